@@ -10,6 +10,7 @@ use std::collections::BTreeMap;
 use std::f64::consts::PI;
 use std::io::Cursor;
 use std::path::Path;
+use support::file_error::FileError;
 
 /// The mapping from the columns of a foreign table to those of a database, read from a TOML file.
 ///
@@ -66,10 +67,9 @@ impl Database {
 /// Reads the rows of a CSV file, to be collected into a database.
 pub fn rows_from_csv(path: &Path, map: &ColumnMap) -> Result<Vec<Row>, DatasetError> {
     map.check()?;
-    let bytes = support::regular_file::read(path).map_err(|source| DatasetError::Read {
-        path: path.to_owned(),
-        source,
-    })?;
+    let bytes = support::regular_file::read(path)
+        .map_err(FileError::at(path))
+        .map_err(DatasetError::Read)?;
     rows_of(&bytes, map).map_err(|source| DatasetError::In {
         path: path.to_owned(),
         source: Box::new(source),
@@ -83,7 +83,7 @@ fn rows_of(bytes: &[u8], map: &ColumnMap) -> Result<Vec<Row>, DatasetError> {
         .into_reader_with_file_handle(Cursor::new(bytes))
         .finish()?;
     let table = ForeignTable { frame, map };
-    let mut rows = vec![schema::blank(); table.frame.height()];
+    let mut rows = vec![Row::default(); table.frame.height()];
     for (index, row) in rows.iter_mut().enumerate() {
         row.job = format!("row-{index:06}");
         row.sample.lambda = 1.0;

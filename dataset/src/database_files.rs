@@ -10,6 +10,7 @@ use crate::manifest::{FORMAT_VERSION, Manifest};
 use crate::parquet;
 use std::io::Write;
 use std::path::{Path, PathBuf};
+use support::file_error::FileError;
 use support::regular_file;
 use support::sealed_json::{self, SealError};
 use support::whole_file::{self, Unnamed};
@@ -155,14 +156,13 @@ fn other_kind(bytes: &[u8]) -> Option<&'static str> {
 }
 
 fn read_bytes(path: &Path) -> Result<Vec<u8>, DatasetError> {
-    regular_file::read(path).map_err(|source| DatasetError::Read {
-        path: path.to_owned(),
-        source,
-    })
+    regular_file::read(path)
+        .map_err(FileError::at(path))
+        .map_err(DatasetError::Read)
 }
 
 /// Maps the error of writing `path`, for use in `map_err`.
 pub(crate) fn unwritable(path: &Path) -> impl FnOnce(std::io::Error) -> DatasetError {
     let path = path.to_owned();
-    move |source| DatasetError::Write { path, source }
+    move |source| DatasetError::Write(FileError { path, source })
 }

@@ -1,6 +1,7 @@
 //! Errors of collecting, reading, writing and correcting a database.
 
 use std::path::PathBuf;
+use support::file_error::FileError;
 
 /// Why a database cannot be collected, read, written or corrected.
 #[derive(Debug, thiserror::Error)]
@@ -91,16 +92,10 @@ pub enum DatasetError {
     },
     #[error("the file is malformed: the Parquet reader fails with `{0}`")]
     Malformed(String),
-    #[error("cannot read {path}: {source}", path = .path.display())]
-    Read {
-        path: PathBuf,
-        source: std::io::Error,
-    },
-    #[error("cannot write {path}: {source}", path = .path.display())]
-    Write {
-        path: PathBuf,
-        source: std::io::Error,
-    },
+    #[error("cannot read {0}")]
+    Read(#[source] FileError),
+    #[error("cannot write {0}")]
+    Write(#[source] FileError),
     #[error(
         "{path} already exists; choose another name, or replace it with `--replace`",
         path = .path.display()

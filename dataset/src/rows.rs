@@ -3,7 +3,7 @@
 use hinge::{HingeDesign, HingeSample};
 
 /// A sample of (eps, g) -> (W, grad W, D) with its provenance; section 2.4.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Row {
     /// Id of the job (one geometry, one ray) of this row.
     pub job: String,

@@ -2,7 +2,6 @@
 
 use crate::error::DatasetError;
 use crate::rows::Row;
-use hinge::{HingeDesign, HingeSample};
 use polars::prelude::{Column, DataFrame, IntoColumn, NamedFrom, Series};
 
 /// A column of numbers, with a value in every row.
@@ -146,7 +145,7 @@ pub(crate) fn from_frame(frame: &DataFrame, most_text: usize) -> Result<Vec<Row>
             })?;
         }
     }
-    let mut rows = vec![blank(); frame.height()];
+    let mut rows = vec![Row::default(); frame.height()];
     for column in &TEXTS {
         let texts = frame.column(column.name)?.str()?.iter();
         let owned = texts.map(|text| text.map(str::to_owned));
@@ -192,28 +191,4 @@ fn fill<T>(
         set(row, value.ok_or(DatasetError::Gap { column, index })?);
     }
     Ok(())
-}
-
-/// An empty row, to be filled.
-pub(crate) fn blank() -> Row {
-    Row {
-        job: String::new(),
-        design: HingeDesign {
-            w_lig: 0.0,
-            alpha: 0.0,
-            fillet_ratio: 0.0,
-            kerf: 0.0,
-            r_win: 0.0,
-        },
-        sample: HingeSample::default(),
-        failure: String::new(),
-        material: String::new(),
-        material_hash: String::new(),
-        settings_hash: String::new(),
-        tier: String::new(),
-        solved_tier: String::new(),
-        gmsh: String::new(),
-        ccx: String::new(),
-        cpu_s: 0.0,
-    }
 }

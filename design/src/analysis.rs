@@ -1,4 +1,4 @@
-//! Analyses of a deployed sheet beyond its shape: forces, capacity, voids (section 3.2), Gamma (section 5.1), comparison with
+//! Analyses of a deployed sheet beyond its shape: forces (section 3.2), Gamma (section 5.1), comparison with
 //! measured points (section 4.4), paths of the hinges (section 5.2).
 
 pub mod actuation_curve;
@@ -9,14 +9,12 @@ pub mod coupon;
 mod coupon_scene;
 pub mod cutting_errors;
 pub mod data_error;
-pub mod degeneration;
 pub mod error_budget;
 pub mod flanks;
 pub mod flatness;
 pub mod force_errors;
 pub mod force_transmission;
 pub mod friction_effect;
-pub mod further_load;
 pub mod localisation;
 pub mod marks;
 pub mod measured_openings;
@@ -30,9 +28,6 @@ pub mod shape_path;
 pub mod sheet_residuals;
 pub mod simulated_coupon;
 pub mod simulated_measurements;
-pub mod solution_set;
 pub mod springback;
 pub mod taylor;
-pub mod tension_lines;
 pub mod threshold;
-pub mod void_families;

@@ -7,8 +7,6 @@ pub mod follower;
 pub mod force_response;
 pub mod friction;
 pub mod hinged_sheet;
-pub mod lbfgs;
-pub mod lbfgs_memory;
 pub mod let_go;
 pub mod load_step;
 pub mod nearby_path;

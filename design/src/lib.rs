@@ -22,7 +22,7 @@
 //! | [`objective`] | objective and gradient (16)-(20) |
 //! | [`optimise`](mod@optimise) | the outer loop, Algorithm 1 |
 //! | [`scene`] | a design problem read from TOML, and its run folder |
-//! | [`analysis`] | forces, capacity, void families, localisation of a deployed sheet; measured sheets |
+//! | [`analysis`] | forces and localisation of a deployed sheet; measured sheets |
 //!
 //! A room uses itself and the rooms above it. Lengths are in mm, forces in N, angles in rad.
 //!

@@ -14,7 +14,7 @@
 //! # let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("../configs/scenes");
 //! let scene = Scene::read(&scenes.join("pin-7x7.toml"))?;
 //! let deployment = scene.problem()?.deploy(&scene.start())?;
-//! let cuts = CutLines::new(&deployment.pattern, &deployment.sheet, scene.config.cutting, &scene.actuation().attachments)?;
+//! let cuts = CutLines::of(&scene, &deployment)?;
 //! let drawing = SheetDrawing::new(&cuts, &deployment.sheet, &scene.material);
 //! assert!(dxf(&drawing.annotated()).contains("LWPOLYLINE"));
 //! # Ok::<_, Box<dyn std::error::Error>>(())

@@ -25,12 +25,7 @@ pub fn write_results(
     force: bool,
 ) -> Result<Report, ResultsError> {
     let best = &designed.best.deployment;
-    let cuts = CutLines::new(
-        &best.pattern,
-        &best.sheet,
-        scene.config.cutting,
-        &scene.actuation().attachments,
-    );
+    let cuts = CutLines::of(scene, best);
     let report = Report::new(scene, designed, &cuts, force);
     let drawn = cuts.as_ref().ok().filter(|_| report.cut_file);
     let results = Results {

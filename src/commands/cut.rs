@@ -183,12 +183,7 @@ impl CutCommand {
         design: &DesignVector,
     ) -> Result<(Deployment, CutLines, Vec<String>)> {
         let deployment = scene.problem()?.deploy(design)?;
-        let cuts = CutLines::new(
-            &deployment.pattern,
-            &deployment.sheet,
-            scene.config.cutting,
-            &scene.actuation().attachments,
-        );
+        let cuts = CutLines::of(scene, &deployment);
         let found = warnings(scene, &deployment, &cuts);
         let cuts = cuts?;
         let errors = found.iter().filter(|it| it.severity == Severity::Error);

@@ -136,13 +136,7 @@ pub(super) fn refusal(why: &str) -> Event {
 /// The page of the start of a scene, and its path.
 fn page_of(scene: &Scene, designed: &Designed, begin: Instant) -> (Event, KnownPath) {
     let best = &designed.best.deployment;
-    let attachments = scene.actuation().attachments;
-    let cuts = CutLines::new(
-        &best.pattern,
-        &best.sheet,
-        scene.config.cutting,
-        &attachments,
-    );
+    let cuts = CutLines::of(scene, best);
     let report = Report::new(scene, designed, &cuts, false);
     let page = PageData::new(scene, designed, &report);
     let ms = Some(milliseconds(begin));

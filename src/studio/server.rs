@@ -18,6 +18,7 @@ use crate::studio::event::Post;
 use crate::studio::request::Request;
 use anyhow::{Result, anyhow};
 use output::run_page::Page;
+use percent_encoding::percent_decode_str;
 use std::io::{self, Read, Write};
 use std::net::Ipv4Addr;
 use std::sync::Arc;
@@ -82,7 +83,11 @@ impl Studio {
             // The library reads a body to its end before it goes, into a buffer of this length.
             return std::mem::forget(request);
         }
-        let (path, query) = split(request.url());
+        let (path, query) = request.url().split_once('?').unwrap_or((request.url(), ""));
+        let (path, query) = (
+            percent_decode_str(path).decode_utf8_lossy().into_owned(),
+            query.to_owned(),
+        );
         let answer = match (request.method(), path.as_str()) {
             _ if !self.is_ours(&request) => refusal(421, "this server is another host"),
             _ if query != format!("token={}", self.token) => refusal(
@@ -242,52 +247,5 @@ fn file(engine: &Engine, name: &str) -> Answer {
             body,
         },
         Err(error) => refusal(404, &error.to_string()),
-    }
-}
-
-/// Path and query of an address; the path with its escapes decoded.
-fn split(url: &str) -> (String, String) {
-    let (path, query) = url.split_once('?').unwrap_or((url, ""));
-    (unescaped(path), query.to_owned())
-}
-
-/// A path with `%20` and the like decoded; unchanged if the result is not UTF-8.
-fn unescaped(path: &str) -> String {
-    let mut bytes = Vec::with_capacity(path.len());
-    let mut rest = path.as_bytes();
-    while let Some((&first, tail)) = rest.split_first() {
-        let code = (first == b'%').then(|| tail.get(..2)).flatten();
-        let code =
-            code.and_then(|code| u8::from_str_radix(std::str::from_utf8(code).ok()?, 16).ok());
-        match code {
-            Some(byte) => {
-                bytes.push(byte);
-                rest = &tail[2..];
-            }
-            None => {
-                bytes.push(first);
-                rest = tail;
-            }
-        }
-    }
-    String::from_utf8(bytes).unwrap_or_else(|_| path.to_owned())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn an_address_is_a_path_and_a_query() {
-        let parts = |url| {
-            let (path, query) = split(url);
-            format!("{path} {query}")
-        };
-        assert_eq!(
-            parts("/files/cut/my%20sheet.dxf?token=1"),
-            "/files/cut/my sheet.dxf token=1"
-        );
-        assert_eq!(parts("/%zz%"), "/%zz% ");
-        assert_eq!(parts("/%ff"), "/%ff ");
     }
 }

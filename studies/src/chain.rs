@@ -7,7 +7,7 @@
 
 mod chain_page;
 
-use crate::choices::{Choice, Choices, Measured, own_weights, rms};
+use crate::choices::{Choice, Choices, Measured, own_weights};
 use crate::designed::designed;
 use anyhow::{Context, Result, ensure};
 use clap::Args;
@@ -24,6 +24,7 @@ use kirigami::ui::{interrupt, run_folder};
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
+use support::statistics::root_mean_square;
 use surrogate::Surrogate;
 
 /// Measure cost and error of every choice of the chain on one sheet
@@ -249,9 +250,10 @@ impl Deployed {
     fn difference(&self, reference: &Self, side: f64) -> Difference {
         let off = |one: &[f64], other: &[f64]| -> f64 {
             let differences = std::iter::zip(one, other).map(|(x, y)| x - y);
-            rms(&differences.collect::<Vec<_>>())
+            root_mean_square(differences)
         };
-        let relative = |one: &[f64], other: &[f64]| off(one, other) / rms(other);
+        let relative =
+            |one: &[f64], other: &[f64]| off(one, other) / root_mean_square(other.iter().copied());
         // The mean square over points is the sum of those of both coordinates.
         let corners = off(&self.corners.concat(), &reference.corners.concat());
         let shape = corners * f64::sqrt(2.0);

@@ -135,9 +135,3 @@ fn thread_seconds() -> Option<f64> {
     let nanoseconds: f64 = text.split_whitespace().next()?.parse().ok()?;
     Some(1e-9 * nanoseconds)
 }
-
-/// Root mean square.
-pub fn rms(values: &[f64]) -> f64 {
-    let squares: f64 = values.iter().map(|x| x * x).sum();
-    (squares / values.len().max(1) as f64).sqrt()
-}

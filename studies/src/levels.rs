@@ -6,7 +6,7 @@
 
 mod searches;
 
-use crate::choices::{Choice, Choices, Measured, own_weights, rms};
+use crate::choices::{Choice, Choices, Measured, own_weights};
 use crate::designed::designed;
 use anyhow::{Context, Result, ensure};
 use clap::Args;
@@ -18,6 +18,7 @@ use kirigami::commands::solve_args::{SolveArgs, task_error};
 use kirigami::ui::run_folder;
 use mesher::Tier;
 use std::path::{Path, PathBuf};
+use support::statistics::root_mean_square;
 use support::table::{Cell, Table};
 use verification::{Balanced, ElementWindows, balanced, movements, size};
 
@@ -189,7 +190,7 @@ impl Row {
         let ([_, step_s], deployed) = (measured.seconds, measured.evaluation.deployment);
         let (own, by_elements) = (truth.by_law(), truth.by_elements());
         let errors: Vec<f64> = (truth.by_mesh())
-            .map(|(_, by_mesh)| rms(&movements(by_mesh, &deployed)))
+            .map(|(_, by_mesh)| root_mean_square(movements(by_mesh, &deployed)))
             .collect();
         let rotations = |of: &Deployment| -> Vec<f64> {
             let states = of.final_step().deformations.iter();
@@ -201,10 +202,10 @@ impl Row {
         Ok(Self {
             choice,
             step_s,
-            effect: rms(&movements(own, &deployed)),
+            effect: root_mean_square(movements(own, &deployed)),
             relative: errors.last().unwrap_or(&f64::NAN) / size(by_elements),
             errors,
-            rotation_deg: rms(&turned),
+            rotation_deg: root_mean_square(turned),
         })
     }
 }
@@ -233,7 +234,7 @@ fn section(title: &str, truth: &Balanced, rows: &[Row]) -> String {
     }
     let mut judge = String::new();
     if let Some([(draft, by_draft), (finest, by_finest)]) = truth.mesh_error() {
-        let error = rms(&movements(by_draft, by_finest));
+        let error = root_mean_square(movements(by_draft, by_finest));
         judge = format!(" Error of `{draft}` itself, by `{finest}`: {error:.3} mm.");
     }
     let table = table

@@ -1,26 +1,19 @@
 //! `kirigami-studies`: cost and error of the choices at each stage, and the paper's experiments.
 
-mod actuations;
 mod attempt;
 mod calibration;
-mod capacity;
 mod chain;
 mod charts;
 mod choices;
 mod coupon;
 mod cpu_seconds;
 mod designed;
-mod drawing;
 mod extremes;
-mod gradient;
 mod keys;
 mod levels;
 mod pages;
 mod polyester;
 mod printed;
-mod shape_alone;
-mod sheet;
-mod solutions;
 mod spread;
 mod stop;
 mod surrogate;
@@ -44,15 +37,10 @@ struct Cli {
 enum Study {
     Levels(levels::LevelsStudy),
     Chain(chain::ChainStudy),
-    Sheet(sheet::SheetStudy),
     Window(window::WindowStudy),
     Polyester(polyester::PolyesterStudy),
-    Gradient(gradient::GradientStudy),
-    Solutions(solutions::SolutionStudy),
-    Actuations(actuations::ActuationStudy),
     Calibration(calibration::CalibrationStudy),
     Coupon(coupon::CouponStudy),
-    Capacity(capacity::CapacityStudy),
     Extremes(extremes::ExtremesStudy),
     Surrogate(surrogate::SurrogateStudy),
     Tradeoff(tradeoff::TradeoffCommand),
@@ -66,15 +54,10 @@ impl Study {
         match self {
             Self::Levels(study) => study.run(),
             Self::Chain(study) => study.run(),
-            Self::Sheet(study) => study.run(),
             Self::Window(study) => study.run(),
             Self::Polyester(study) => study.run(),
-            Self::Gradient(study) => study.run(),
-            Self::Solutions(study) => study.run(),
-            Self::Actuations(study) => study.run(),
             Self::Calibration(study) => study.run(),
             Self::Coupon(study) => study.run(),
-            Self::Capacity(study) => study.run(),
             Self::Extremes(study) => study.run(),
             Self::Surrogate(study) => study.run(),
             Self::Tradeoff(command) => command.run(),

@@ -15,15 +15,6 @@ fn page(work: &Workplace, arguments: &str, file: &str) -> String {
     std::fs::read_to_string(work.path("out").join(file)).unwrap()
 }
 
-/// The numbers in the columns of the first table row that begins with `name`.
-fn numbers(page: &str, name: &str) -> Vec<f64> {
-    let begins = format!("| {name} |");
-    let row = page.lines().find(|line| line.starts_with(&begins));
-    let row = row.unwrap_or_else(|| panic!("no row {name} in {page}"));
-    let cells = row.split('|').filter_map(|cell| cell.trim().parse().ok());
-    cells.collect()
-}
-
 /// Sets the number of search steps of a scene.
 fn set_steps(work: &Workplace, scene: &str, steps: usize) {
     let text = std::fs::read_to_string(work.path(scene)).unwrap();
@@ -41,42 +32,6 @@ fn shipped_weights(work: &Workplace) {
             std::fs::copy(data.join(&file), there).unwrap();
         }
     }
-}
-
-#[test]
-fn the_five_actuations_and_a_missing_one() {
-    let work = Workplace::new();
-    for case in 1..=5 {
-        let scene = format!("configs/scenes/actuation-{case}.toml");
-        set_steps(&work, &scene, 1);
-    }
-    let actuations = page(&work, "actuations", "actuations.md");
-    assert!(actuations.contains("15 x 10 panels"), "{actuations}");
-    assert!(actuations.contains("Voids of the 35 "), "{actuations}");
-    let removed = "configs/scenes/actuation-3.toml";
-    std::fs::remove_file(work.path(removed)).unwrap();
-    assert!(work.error("actuations --out out").contains(removed));
-}
-
-#[test]
-fn the_load_capacity_of_an_opened_sheet() {
-    let work = Workplace::new();
-    let scene = "configs/scenes/capacity.toml";
-    set_steps(&work, scene, 1);
-    let capacity = page(&work, "capacity --to 1 --starts 1", "capacity.md");
-    // In both directions, by the tables of both orders: both loads together are carried up to the maximum tested.
-    let after = capacity.split("The pull first").nth(1).unwrap();
-    for pattern in ["uniform sheet", "with compression and shear"] {
-        let carried = numbers(after, pattern);
-        assert!(
-            carried[0] > 2.0 && (1.0..2.0).contains(&carried[1]),
-            "{capacity}"
-        );
-    }
-    let ways = std::fs::read_to_string(work.path("out/paths.csv")).unwrap();
-    assert!(ways.lines().count() > 8 * 100, "{ways}");
-    work.edit(scene, &[("panel = [7, 9] ", "panel = [7, 10] ")]);
-    assert!(work.error("capacity --out out").contains("[7, 10]"));
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! Reading TOML configuration files. An unknown key is an error that names the most similar known key; an array with more
 //! elements than its type has is an error.
 
+use crate::file_error::FileError;
 use crate::nearest::nearest;
 use crate::regular_file;
 use crate::whole_arrays::{DECIMAL_POINT, Whole};
@@ -14,11 +15,8 @@ use std::path::{Path, PathBuf};
     reason = "the message of each variant is its documentation"
 )]
 pub enum ConfigError {
-    #[error("cannot read {path}: {source}", path = .path.display())]
-    Read {
-        path: PathBuf,
-        source: std::io::Error,
-    },
+    #[error("cannot read {0}")]
+    Read(#[from] FileError),
     #[error(
         "{path}:{line}: unknown key `{key}`{nearest}",
         path = .path.display(),
@@ -40,10 +38,7 @@ pub enum ConfigError {
 
 /// Reads a TOML file into `T`, which should deny unknown fields.
 pub fn read<T: DeserializeOwned>(path: &Path) -> Result<T, ConfigError> {
-    let text = regular_file::read_to_string(path).map_err(|source| ConfigError::Read {
-        path: path.to_owned(),
-        source,
-    })?;
+    let text = regular_file::read_to_string(path).map_err(FileError::at(path))?;
     parse(&text, path)
 }
 

@@ -21,6 +21,7 @@ use std::array::from_fn;
 use std::f64::consts::FRAC_PI_2;
 use std::io;
 use std::path::{Path, PathBuf};
+use support::file_error::FileError;
 use support::sealed_json::{self, SealError};
 use support::statistics::root_mean_square;
 use support::{regular_file, whole_file};
@@ -123,12 +124,12 @@ pub enum SpringbackError {
         "row {0} has a number that is not finite, or a stiffness that is not positive definite"
     )]
     Row(usize),
-    #[error("cannot read {path}: {source}", path = .path.display())]
-    Read { path: PathBuf, source: io::Error },
+    #[error("cannot read {0}")]
+    Read(#[source] FileError),
     #[error("{path} is not a law of released hinges: {source}", path = .path.display())]
     File { path: PathBuf, source: SealError },
-    #[error("cannot write {path}: {source}", path = .path.display())]
-    Write { path: PathBuf, source: io::Error },
+    #[error("cannot write {0}")]
+    Write(#[source] FileError),
 }
 
 impl Springback {
@@ -353,10 +354,9 @@ impl Springback {
 
     /// Reads a law from its file.
     pub fn load(path: &Path) -> Result<Self, SpringbackError> {
-        let bytes = regular_file::read(path).map_err(|source| SpringbackError::Read {
-            path: path.to_owned(),
-            source,
-        })?;
+        let bytes = regular_file::read(path)
+            .map_err(FileError::at(path))
+            .map_err(SpringbackError::Read)?;
         let law: Self =
             sealed_json::from_slice(&bytes).map_err(|source| SpringbackError::File {
                 path: path.to_owned(),
@@ -369,10 +369,9 @@ impl Springback {
     pub fn save(&self, path: &Path) -> Result<(), SpringbackError> {
         let bytes = sealed_json::to_vec(self).map_err(io::Error::other);
         let written = bytes.and_then(|bytes| whole_file::write(path, &bytes));
-        written.map_err(|source| SpringbackError::Write {
-            path: path.to_owned(),
-            source,
-        })
+        written
+            .map_err(FileError::at(path))
+            .map_err(SpringbackError::Write)
     }
 
     /// The factors of the terms.

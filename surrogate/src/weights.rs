@@ -21,6 +21,7 @@ use safetensors::{Dtype, SafeTensorError, SafeTensors};
 use std::collections::BTreeMap;
 use std::io;
 use std::path::{Path, PathBuf};
+use support::file_error::FileError;
 use support::regular_file;
 use support::sealed_json::{self, SealError};
 
@@ -31,10 +32,10 @@ use support::sealed_json::{self, SealError};
     reason = "the message of each variant is its documentation"
 )]
 pub enum WeightsError {
-    #[error("cannot read {path}: {source}", path = .path.display())]
-    Read { path: PathBuf, source: io::Error },
-    #[error("cannot write {path}: {source}", path = .path.display())]
-    Write { path: PathBuf, source: io::Error },
+    #[error("cannot read {0}")]
+    Read(#[source] FileError),
+    #[error("cannot write {0}")]
+    Write(#[source] FileError),
     #[error(
         "{weights} has no card: {card} is missing; copy both files from the same place",
         weights = .weights.display(), card = .card.display()
@@ -103,10 +104,9 @@ impl Surrogate {
 }
 
 fn load(weights: &Path) -> Result<Surrogate, WeightsError> {
-    let bytes = regular_file::read(weights).map_err(|source| WeightsError::Read {
-        path: weights.to_owned(),
-        source,
-    })?;
+    let bytes = regular_file::read(weights)
+        .map_err(FileError::at(weights))
+        .map_err(WeightsError::Read)?;
     let mut tensors = read_tensors(weights, &bytes)?;
     let mut card = read_card(weights)?;
     let expected = card.weights_hash.take().unwrap_or_default();
@@ -213,10 +213,7 @@ fn read_card(weights: &Path) -> Result<Card, WeightsError> {
             weights: weights.to_owned(),
             card: path.clone(),
         },
-        _ => WeightsError::Read {
-            path: path.clone(),
-            source,
-        },
+        _ => WeightsError::Read(FileError::at(&path)(source)),
     })?;
     let malformed = |source| WeightsError::Card {
         path: path.clone(),
@@ -328,8 +325,7 @@ fn take(tensors: &mut BTreeMap<String, Tensor>, name: &str) -> Result<Tensor, In
 }
 
 fn write(path: &Path, bytes: &[u8]) -> Result<(), WeightsError> {
-    support::whole_file::write(path, bytes).map_err(|source| WeightsError::Write {
-        path: path.to_owned(),
-        source,
-    })
+    support::whole_file::write(path, bytes)
+        .map_err(FileError::at(path))
+        .map_err(WeightsError::Write)
 }

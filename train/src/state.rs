@@ -11,8 +11,8 @@ use burn::store::{ModuleRecord, RecordError};
 use burn::tensor::Bytes;
 use safetensors::tensor::{Dtype, SafeTensors, TensorView};
 use serde::{Deserialize, Serialize};
-use std::io;
 use std::path::{Path, PathBuf};
+use support::file_error::FileError;
 use surrogate::Card;
 
 /// Format version of the file. A state is temporary, so no other version is read.
@@ -25,10 +25,10 @@ const FORMAT_VERSION: u32 = 3;
     reason = "the message of each variant is its documentation"
 )]
 pub enum StateError {
-    #[error("cannot read {path}: {source}", path = .path.display())]
-    Read { path: PathBuf, source: io::Error },
-    #[error("cannot write {path}: {source}", path = .path.display())]
-    Write { path: PathBuf, source: io::Error },
+    #[error("cannot read {0}")]
+    Read(#[source] FileError),
+    #[error("cannot write {0}")]
+    Write(#[source] FileError),
     #[error(
         "{path} is not a state of a training, or is damaged ({reason}); delete it and start again",
         path = .path.display()
@@ -107,10 +107,9 @@ pub(crate) fn write(
         .map_err(|error| malformed(error.to_string()))?;
     let mut bytes = blake3::hash(&body).as_bytes().to_vec();
     bytes.extend(body);
-    support::whole_file::write(path, &bytes).map_err(|source| StateError::Write {
-        path: path.to_owned(),
-        source,
-    })
+    support::whole_file::write(path, &bytes)
+        .map_err(FileError::at(path))
+        .map_err(StateError::Write)
 }
 
 impl State {
@@ -119,10 +118,9 @@ impl State {
             path: path.to_owned(),
             reason,
         };
-        let bytes = support::regular_file::read(path).map_err(|source| StateError::Read {
-            path: path.to_owned(),
-            source,
-        })?;
+        let bytes = support::regular_file::read(path)
+            .map_err(FileError::at(path))
+            .map_err(StateError::Read)?;
         let (hash, body) = bytes
             .split_first_chunk::<{ blake3::OUT_LEN }>()
             .ok_or_else(|| malformed("it is too short".into()))?;

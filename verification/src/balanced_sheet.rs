@@ -11,6 +11,7 @@ use crate::recorded_path::paths_of;
 use crate::replay::{ElementWindows, UnsolvedHinge};
 use crate::verification_error::VerificationError;
 use design::analysis::error_budget::ErrorBudget;
+use design::geometry::polygon::{bounds, distance};
 use design::hinge_law::{CorrectedLaw, Correction, HingeLaw, MissingForces, Order};
 use design::objective::design_problem::{Deployment, DesignError, DesignProblem, Model};
 use design::pattern::design_vector::DesignVector;
@@ -416,7 +417,7 @@ pub fn movements(from: &Deployment, to: &Deployment) -> Vec<f64> {
     let corners =
         |of: &Deployment| deployed_corners(&of.sheet, &of.final_step().configuration).concat();
     std::iter::zip(corners(from), corners(to))
-        .map(|([x, y], [x2, y2])| f64::hypot(x2 - x, y2 - y))
+        .map(|(p, q)| distance(p, q))
         .collect()
 }
 
@@ -424,9 +425,6 @@ pub fn movements(from: &Deployment, to: &Deployment) -> Vec<f64> {
 pub fn size(deployment: &Deployment) -> f64 {
     let corners =
         deployed_corners(&deployment.sheet, &deployment.final_step().configuration).concat();
-    let extent = |i: usize| {
-        let along = corners.iter().map(|corner| corner[i]);
-        along.clone().fold(f64::NEG_INFINITY, f64::max) - along.fold(f64::INFINITY, f64::min)
-    };
-    f64::hypot(extent(0), extent(1))
+    let [low, high] = bounds(corners);
+    distance(low, high)
 }

@@ -12,10 +12,9 @@ use crate::replay::{ElementWindows, UnsolvedHinge};
 use crate::verification_error::VerificationError;
 use design::analysis::springback::{WhatStays, let_go};
 use design::equilibrium::let_go::ReleasedSheet;
-use design::geometry::polygon::distance;
 use design::objective::design_problem::{Deployment, DesignProblem};
 use design::scene::Scene;
-use design::sheet::kinematics::deployed_corners;
+use design::sheet::kinematics::corner_distances;
 use hinge::{HingeDeformation, ReleasedHinge};
 use serde::Serialize;
 use std::array::from_fn;
@@ -54,7 +53,10 @@ pub fn released_by_elements(
 ) -> Result<ReleasedByElements, VerificationError> {
     let deployed = found.by_elements();
     let (mut released, by_law) = let_go(scene, problem, law, deployed)?;
-    let first = corners(deployed, &released);
+    let distances = |from: &[[f64; 3]], to: &[[f64; 3]]| {
+        rms_and_maximum(corner_distances(&deployed.sheet, from, to))
+    };
+    let first = released.last().configuration.clone();
     let mut last = first.clone();
     let mut movements = Vec::new();
     let (mut own_forces, mut unsolved) = (0.0, Vec::new());
@@ -79,7 +81,7 @@ pub fn released_by_elements(
             })
             .collect::<Result<_, VerificationError>>()?;
         released = problem.let_go(deployed, hinges)?;
-        let now = corners(deployed, &released);
+        let now = released.last().configuration.clone();
         let [_, movement] = distances(&last, &now);
         movements.push(movement);
         last = now;
@@ -160,16 +162,6 @@ fn share(deployed: &Deployment, found: &Balanced, forces: &[Option<[f64; 3]>]) -
         }
     }
     (left / f64::max(loaded, f64::MIN_POSITIVE)).sqrt()
-}
-
-fn corners(deployed: &Deployment, released: &ReleasedSheet) -> Vec<[f64; 2]> {
-    let last = released.last();
-    deployed_corners(&deployed.sheet, &last.configuration).concat()
-}
-
-fn distances(from: &[[f64; 2]], to: &[[f64; 2]]) -> [f64; 2] {
-    let pairs = std::iter::zip(from, to);
-    rms_and_maximum(pairs.map(|(p, q)| distance(*p, *q)))
 }
 
 impl fmt::Display for ReleasedByElements {

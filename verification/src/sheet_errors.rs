@@ -4,6 +4,7 @@ use crate::balanced_sheet::{
     BALANCED, BALANCED_FORCES, BalanceEnd, Balanced, Round, movements, size,
 };
 use design::analysis::error_budget::{Cause, Effect, ErrorBudget};
+use design::hinge_law::DamageMeasure;
 use design::objective::design_problem::Deployment;
 use mesher::Tier;
 use serde::Serialize;
@@ -65,20 +66,12 @@ impl SheetErrors {
     pub fn new(found: &Balanced, design: String, budget: Option<&ErrorBudget>) -> Self {
         let (by_law, by_elements) = (found.by_law(), found.by_elements());
         let ends = [by_law, by_elements].map(Deployment::final_step);
-        let peak_by_law = |hinge: usize| {
-            let mut damages = by_law.path.iter().map(|step| {
-                let inside = step.inside[hinge];
-                let damage = step.damage.get(hinge).filter(|_| inside);
-                damage.and_then(|damage| damage.d_peak)
-            });
-            damages.try_fold(0.0, |most: f64, peak| Some(most.max(peak?)))
-        };
         let hinges: Vec<HingeErrors> = (0..found.hinges.len())
             .map(|hinge| HingeErrors {
                 hinge,
                 theta_deg: ends.map(|end| end.deformations[hinge].theta.to_degrees()),
                 damage_peak: [
-                    peak_by_law(hinge),
+                    by_law.damage_max(DamageMeasure::Peak, hinge),
                     found.hinges[hinge].and_then(|end| end.d_peak),
                 ],
             })

@@ -17,7 +17,6 @@ use crate::equilibrium::hinged_sheet::HingedSheet;
 use crate::equilibrium::load_step::LoadStep;
 use crate::equilibrium::path_following::Increment;
 use crate::equilibrium::potential::Stage;
-use crate::equilibrium::solver::EquilibriumSolver;
 use crate::equilibrium::weight::weights_of_panels;
 use crate::hinge_law::Order;
 use crate::objective::design_problem::{Deployment, Mechanics};
@@ -102,7 +101,7 @@ impl ActuationCurve {
     ) -> Option<Self> {
         let (mover, direction) = match magnitude(&mechanics.solver.loads) {
             Some(_) => (Mover::Loads, mechanics.solver.loads.to_vec()),
-            None => (Mover::Supports, prescribed(&mechanics.solver)),
+            None => (Mover::Supports, mechanics.solver.support_motions()),
         };
         let (size, translational) = magnitude(&direction)?;
         let law = mechanics.law.prepare(&sheet.designs());
@@ -292,15 +291,6 @@ pub fn holding_forces(
         (0..3).for_each(|d| force[d] -= weight.force[d]);
     }
     forces
-}
-
-/// The motions (u_x, u_y, phi) of the panels that the supports prescribe at full load.
-fn prescribed(solver: &EquilibriumSolver) -> Vec<[f64; 3]> {
-    let mut motions = vec![[0.0; 3]; solver.loads.len()];
-    for support in &solver.supports {
-        motions[support.panel][support.dof.index()] = support.value;
-    }
-    motions
 }
 
 #[cfg(test)]

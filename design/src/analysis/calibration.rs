@@ -23,6 +23,7 @@ use crate::sheet::deviation::Deviation;
 use faer::Mat;
 use faer::linalg::solvers::{DenseSolveCore, Solve};
 use serde::Serialize;
+use support::statistics::root_mean_square;
 
 /// Maximum number of Gauss-Newton steps.
 const MOST_STEPS: usize = 20;
@@ -270,7 +271,8 @@ impl Fit<'_> {
                     0 => self.sheets.iter().map(SheetResiduals::outliers).sum(),
                     _ => 0,
                 },
-                residual: [&before, &after].map(|residuals| unit * rms(&residuals[group])),
+                residual: [&before, &after]
+                    .map(|residuals| unit * root_mean_square(residuals[group].iter().copied())),
                 free: freedom[group],
                 chi_squared: chi[group],
             })
@@ -281,7 +283,10 @@ impl Fit<'_> {
             correlations,
             points: fit(0),
             loads: fit(1),
-            misfits: by_sheet.iter().map(|of| rms(&of.concat())).collect(),
+            misfits: by_sheet
+                .iter()
+                .map(|of| root_mean_square(of.concat()))
+                .collect(),
             steps,
         })
     }
@@ -449,8 +454,4 @@ fn gauss_newton(jacobian: &Mat<f64>, residuals: &Residuals, at: &[f64]) -> Vec<f
     });
     let step = information(jacobian).partial_piv_lu().solve(downhill);
     (0..at.len()).map(|k| step[(k, 0)]).collect()
-}
-
-fn rms(values: &[f64]) -> f64 {
-    (values.iter().map(|x| x * x).sum::<f64>() / values.len().max(1) as f64).sqrt()
 }

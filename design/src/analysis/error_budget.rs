@@ -24,10 +24,10 @@ use crate::analysis::path_separation::PathSeparation;
 use crate::equilibrium::force_response::ForceResponse;
 use crate::hinge_law::{HingeEnergy, Order};
 use crate::objective::design_problem::{Deployment, DesignProblem};
+use crate::objective::response::by_thickness;
 use crate::scene::Scene;
 use hinge::{HingeDesign, Regime};
 use serde::Serialize;
-use std::array::from_fn;
 use support::statistics::rms_and_maximum;
 use surrogate::SpotCheck;
 
@@ -435,7 +435,6 @@ impl Deployed<'_> {
         Ok((ForceErrors::common(&errors), source))
     }
 
-    /// With all lengths multiplied by lambda the energy is multiplied by its cube: t df/dt at constant w_lig, a and s.
     fn thickness(&self) -> Known {
         let tolerance = self.scene.config.tolerances.thickness;
         let tolerance = tolerance.ok_or("no tolerances.thickness in the scene")?;
@@ -445,12 +444,7 @@ impl Deployed<'_> {
         let hinges = self.energies.iter().zip(&self.designs).zip(states);
         let errors: Vec<[f64; 3]> = hinges
             .map(|((energy, design), state)| {
-                from_fn(|i| {
-                    let power = [2.0, 2.0, 3.0][i];
-                    let along = energy.tangent[i][0] * state.a + energy.tangent[i][1] * state.s;
-                    let by_width = energy.mixed[i][0] * design.w_lig;
-                    relative * (power * energy.forces[i] - along - by_width)
-                })
+                by_thickness(energy, state, design.w_lig).map(|change| relative * change)
             })
             .collect();
         let source = format!("+- {tolerance} mm, two standard deviations");
@@ -459,7 +453,7 @@ impl Deployed<'_> {
 }
 
 /// Between the points [x, y] of a table, linear in the logarithms; `None` outside.
-fn interpolated(table: &[[f64; 2]], x: f64) -> Option<f64> {
+pub(crate) fn interpolated(table: &[[f64; 2]], x: f64) -> Option<f64> {
     let pair = table
         .windows(2)
         .find(|pair| (pair[0][0]..=pair[1][0]).contains(&x))?;

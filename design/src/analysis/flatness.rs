@@ -5,6 +5,7 @@
 //! bend in the plane, and the panels stay there unless the sheet is drawn taut; wider ones buckle and tilt them. On a table the weight presses the panels
 //! down about the ligaments, over the elasto-gravity length.
 
+use crate::analysis::error_budget::interpolated;
 use crate::analysis::localisation::elasto_gravity_length;
 use crate::scene::Posture;
 use hinge::SheetMaterial;
@@ -41,19 +42,11 @@ pub fn expected_departure(
     }
 }
 
-/// The error at a ratio, with straight lines between the logarithms.
+/// The error at a ratio; outside of the table that at its end.
 fn between(ratio: f64) -> f64 {
     let [first, .., last] = NOTHING;
-    if ratio <= first[0] {
-        return first[1];
-    }
-    if ratio >= last[0] {
-        return last[1];
-    }
-    let after = NOTHING.partition_point(|[at, _]| *at < ratio);
-    let ([x0, y0], [x1, y1]) = (NOTHING[after - 1], NOTHING[after]);
-    let share = (ratio / x0).ln() / (x1 / x0).ln();
-    y0 * (share * (y1 / y0).ln()).exp()
+    let end = if ratio < first[0] { first } else { last };
+    interpolated(&NOTHING, ratio).unwrap_or(end[1])
 }
 
 #[cfg(test)]

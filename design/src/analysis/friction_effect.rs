@@ -2,10 +2,9 @@
 
 use crate::analysis::actuation_curve::ActuationCurve;
 use crate::equilibrium::load_step::DescentEnd;
-use crate::geometry::polygon::distance;
 use crate::hinge_law::Order;
 use crate::objective::design_problem::{Deployment, Mechanics};
-use crate::sheet::kinematics::{deployed_corners, hinge_deformations};
+use crate::sheet::kinematics::{corner_distances, hinge_deformations};
 use serde::Serialize;
 use support::statistics::rms_and_maximum;
 
@@ -46,10 +45,7 @@ impl FrictionEffect {
             &(without.load_factor, without.configuration.clone()),
             std::iter::once((slid.load_factor, &*slid.configuration)),
         );
-        let [free, held] = [&without.configuration, &slid.configuration]
-            .map(|configuration| deployed_corners(sheet, configuration));
-        let apart =
-            std::iter::zip(free.as_flattened(), held.as_flattened()).map(|(p, q)| distance(*p, *q));
+        let apart = corner_distances(sheet, &without.configuration, &slid.configuration);
         Ok(Self {
             ends: ends.map(|curve| [curve.points[0], curve.points[1]]),
             corners: rms_and_maximum(apart),

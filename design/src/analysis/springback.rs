@@ -3,12 +3,11 @@
 
 use crate::analysis::actuation_curve::{ActuationCurve, Mover};
 use crate::equilibrium::let_go::ReleasedSheet;
-use crate::geometry::polygon::distance;
 use crate::hinge_law::Release;
 use crate::objective::design_problem::{Deployment, DesignError, DesignProblem, found};
 use crate::objective::scores::outline_error_at;
 use crate::scene::{Scene, SpringbackMismatch};
-use crate::sheet::kinematics::deployed_corners;
+use crate::sheet::kinematics::corner_distances;
 use hinge::ReleasedHinge;
 use serde::Serialize;
 use support::statistics::rms_and_maximum;
@@ -112,9 +111,7 @@ impl DesignProblem {
         let loaded = deployment.at_full_load()?;
         let free = found(released.last())?;
         let sheet = &deployment.sheet;
-        let [before, after] =
-            [loaded, free].map(|step| deployed_corners(sheet, &step.configuration));
-        let moved = std::iter::zip(before.as_flattened(), after.as_flattened());
+        let moved = corner_distances(sheet, &loaded.configuration, &free.configuration);
         let curve = self.model.mechanics().and_then(|mechanics| {
             let start = (loaded.load_factor, loaded.configuration.clone());
             let end = std::iter::once((0.0, &*free.configuration));
@@ -135,7 +132,7 @@ impl DesignProblem {
             },
             displacement: curve.map(|curve| [curve.points[0][0], curve.points[1][0]]),
             snaps: released.path.iter().any(|step| step.jumps > 0),
-            corners: rms_and_maximum(moved.map(|(p, q)| distance(*p, *q))),
+            corners: rms_and_maximum(moved),
             outline_error: [loaded, free]
                 .map(|step| outline_error_at(&self.objective, deployment, step)),
         })

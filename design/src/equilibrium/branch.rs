@@ -423,14 +423,12 @@ impl<'a> Branch<'a> {
     /// The rate of the configuration with the load parameter.
     pub fn rate(&self, potential: &Potential, state: &State, factor: &HeldFactor) -> Vec<[f64; 3]> {
         let solver = self.solver;
-        let mut supports = vec![[0.0; 3]; solver.grid.panel_count()];
-        let mut stroke = 0.0;
-        if self.stage == Stage::Actuation {
-            for support in &solver.supports {
-                supports[support.panel][support.dof.index()] = support.value;
-            }
-            stroke = solver.drive.as_ref().map_or(0.0, |(_, stroke)| *stroke);
-        }
+        let (supports, stroke) = if self.stage == Stage::Actuation {
+            let stroke = solver.drive.as_ref().map_or(0.0, |(_, stroke)| *stroke);
+            (solver.support_motions(), stroke)
+        } else {
+            (vec![[0.0; 3]; solver.grid.panel_count()], 0.0)
+        };
         let mut b = potential.driving(state);
         if supports.as_flattened().iter().any(|motion| *motion != 0.0) {
             b = moved(&b, &potential.resistance(state, &supports), -1.0);

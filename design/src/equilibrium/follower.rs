@@ -406,11 +406,7 @@ impl Branch<'_> {
     pub fn minimum(&mut self, start: &Place) -> Result<Minimum, Failure> {
         let potential = self.potential(start.at);
         let configuration = start.configuration.clone();
-        let effort = &mut self.effort;
-        match self.solver.lbfgs {
-            None => potential.minimise(configuration, effort),
-            Some(most) => potential.minimise_lbfgs(configuration, most, effort),
-        }
+        potential.minimise(configuration, &mut self.effort)
     }
 
     /// The maximum rotation or hinge translation between two places, in the frames of a state near them.

@@ -90,10 +90,7 @@ impl<'a> ForceResponse<'a> {
 
     /// See `path_rates`; `None` if the tangent is singular or nothing moves the supports.
     fn rates_along_path(&self, hinged: HingedSheet) -> Option<Vec<[f64; 3]>> {
-        let mut prescribed = vec![[0.0; 3]; self.sheet.panels.len()];
-        for support in &self.solver.supports {
-            prescribed[support.panel][support.dof.index()] = support.value;
-        }
+        let prescribed = self.solver.support_motions();
         let (size, _) = magnitude(&prescribed)?;
         let energies = hinged.energies(&self.step.deformations, Order::Tangent);
         let mut forces = vec![[0.0; 3]; prescribed.len()];

@@ -60,7 +60,6 @@ impl EquilibriumSolver {
         let resting = self.supports.iter().filter(|support| support.value == 0.0);
         let resting: Vec<Support> = resting.copied().collect();
         let free = Self {
-            lbfgs: self.lbfgs,
             weight: self.weight,
             grips: self.grips.clone(),
             ..Self::new(self.grid, &resting, &[], STEPS, self.settings)?

@@ -60,7 +60,7 @@ impl fmt::Display for DescentEnd {
 /// What a part of the path cost.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Effort {
-    /// Newton corrections; iterations of L-BFGS.
+    /// Newton corrections.
     pub iterations: usize,
     /// Factorisations of a tangent.
     pub factorisations: usize,

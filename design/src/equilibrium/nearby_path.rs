@@ -132,7 +132,7 @@ impl EquilibriumSolver {
         let smooth = |step: &LoadStep| {
             matches!(step.status, Status::Converged | Status::LeftDomain) && step.jumps == 0
         };
-        if !known.iter().all(smooth) || self.lbfgs.is_some() {
+        if !known.iter().all(smooth) {
             return None;
         }
         let changes = changes(sheet, designs);

@@ -1,8 +1,7 @@
 //! Load steps of an equilibrium path, from the flat sheet or from the end of another path.
 //!
 //! Newton's method follows the path in increments of its own, and the load steps are read off it: the cubic between two
-//! points of the path is the start of a correction at the load of the step. L-BFGS, the baseline, minimises from
-//! one load step to the next and looks for no limit points.
+//! points of the path is the start of a correction at the load of the step.
 
 use crate::equilibrium::branch::{Branch, Point};
 use crate::equilibrium::displacement_control::{HeldFactor, work};
@@ -12,11 +11,9 @@ use crate::equilibrium::load_step::{DescentEnd, LoadStep, Status, StepTangent};
 use crate::equilibrium::newton::{Failure, Minimum};
 use crate::equilibrium::place::Place;
 use crate::equilibrium::potential::{Stage, State, moved};
-use crate::equilibrium::solver::{EquilibriumError, EquilibriumSolver};
-use crate::equilibrium::supports::{Load, Support};
+use crate::equilibrium::solver::EquilibriumSolver;
 use crate::hinge_law::Order;
 use crate::sheet::kinematics::Configuration;
-use std::sync::Arc;
 
 /// The end of an increment of a path.
 #[derive(Clone, Debug)]
@@ -30,34 +27,6 @@ pub struct Increment {
 }
 
 impl EquilibriumSolver {
-    /// The solver of a path that follows the state `last` of this solver's path: the supports remain where they are,
-    /// its loads are held constant, and `loads` are added in `steps` steps. The new path begins at the
-    /// configuration of `last`; the adjoint does not apply to it.
-    pub fn followed_by(
-        &self,
-        last: &LoadStep,
-        loads: &[Load],
-        steps: usize,
-    ) -> Result<Self, EquilibriumError> {
-        let still = |&support: &Support| Support {
-            value: 0.0,
-            ..support
-        };
-        let supports: Vec<Support> = self.supports.iter().map(still).collect();
-        let next = Self::new(self.grid, &supports, loads, steps, self.settings)?;
-        let held = std::iter::zip(&self.held, &self.loads);
-        Ok(Self {
-            lbfgs: self.lbfgs,
-            stop: Arc::clone(&self.stop),
-            weight: self.weight,
-            grips: self.grips.clone(),
-            held: held
-                .map(|(held, load)| std::array::from_fn(|d| held[d] + last.load_factor * load[d]))
-                .collect(),
-            ..next
-        })
-    }
-
     /// Follows the equilibrium path from the flat sheet: first the load steps of the weight, then those of the loads. The
     /// path ends early if no equilibrium is found.
     ///
@@ -92,12 +61,11 @@ impl EquilibriumSolver {
         )
     }
 
-    /// Follows the equilibrium path from a start that is an equilibrium under the weight alone; for a
-    /// solver that follows another, from the end of that solver's path.
+    /// Follows the equilibrium path from a start that is an equilibrium under the weight and the forces held constant.
     ///
     /// # Panics
     /// If the sheet or the start has another grid than the solver.
-    pub fn path_from(&self, sheet: HingedSheet, start: Configuration) -> Vec<LoadStep> {
+    pub(crate) fn path_from(&self, sheet: HingedSheet, start: Configuration) -> Vec<LoadStep> {
         self.read(sheet, Stage::Actuation, start, self.ends(Stage::Actuation))
     }
 
@@ -228,10 +196,7 @@ fn not_finite(sheet: HingedSheet, configuration: Configuration) -> LoadStep {
 
 impl Follower<'_> {
     fn load_step(&mut self, to: f64) -> LoadStep {
-        let found = match self.branch.solver.lbfgs {
-            None => self.followed(to),
-            Some(_) => self.minimised(to).map(|(minimum, _)| minimum),
-        };
+        let found = self.followed(to);
         let jumps = std::mem::take(&mut self.jumps);
         match found {
             Ok(minimum) => self.branch.load_step(minimum, jumps),

@@ -5,7 +5,7 @@
 //! ```
 //!
 //! If the sheet has a weight in its plane, minus the work of that; it comes on before the loads, the supports resting and a
-//! prescribed stroke being zero meanwhile. If the path follows another, minus the work of the loads held constant.
+//! prescribed stroke being zero meanwhile. For a sheet that is let go, minus the work of the forces that held it.
 
 use crate::equilibrium::displacement_control::Stroke;
 use crate::equilibrium::settings::SolverSettings;
@@ -70,9 +70,6 @@ pub struct EquilibriumSolver {
     pub(crate) grid: Grid,
     pub(crate) settings: SolverSettings,
     pub(crate) steps: usize,
-    /// The maximum number of iterations of L-BFGS per load step, if that replaces Newton's method, as in the paper: from
-    /// one load step to the next, without looking for limit points.
-    pub lbfgs: Option<usize>,
     /// Prescribed motions at full load.
     pub(crate) supports: Box<[Support]>,
     /// (F_x, F_y, M) per panel at full load.
@@ -136,7 +133,6 @@ impl EquilibriumSolver {
             grid,
             settings,
             steps,
-            lbfgs: None,
             pattern: Arc::new(TangentPattern::new(grid, supported.as_flattened())),
             supports: supports.into(),
             weight: [0.0; 2],
@@ -214,6 +210,15 @@ impl EquilibriumSolver {
         at_supports
     }
 
+    /// The motions (u_x, u_y, phi) of the panels that the supports prescribe at full load.
+    pub(crate) fn support_motions(&self) -> Vec<[f64; 3]> {
+        let mut motions = vec![[0.0; 3]; self.loads.len()];
+        for support in &self.supports {
+            motions[support.panel][support.dof.index()] = support.value;
+        }
+        motions
+    }
+
     /// The direction in which the stroke of the loads is prescribed, if it is.
     pub(crate) fn stroke(&self) -> Option<&Stroke> {
         self.drive.as_ref().map(|(stroke, _)| &**stroke)
@@ -268,11 +273,6 @@ impl EquilibriumSolver {
         } else {
             WEIGHT_STEPS
         }
-    }
-
-    /// Number of stored entries of the factors of a tangent, zeros of merged columns included.
-    pub fn factor_entries(&self) -> usize {
-        self.pattern.factor_entries()
     }
 
     /// An error if the supports leave a sheet free to move as a rigid body and its weight does not hold it.

@@ -245,11 +245,6 @@ impl TangentPattern {
         max * sums.into_iter().fold(0.0, f64::max)
     }
 
-    /// Number of stored entries of the factors.
-    pub fn factor_entries(&self) -> usize {
-        self.ldl.factor_entries()
-    }
-
     /// Solves with the factor, in place.
     pub fn solve(&self, factor: &Factor, rhs: &mut [f64]) {
         self.ldl.solve(&factor.values, rhs);

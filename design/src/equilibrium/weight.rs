@@ -56,12 +56,6 @@ pub(crate) fn weights_of_panels<'a>(
         .map(move |(panel, &motion)| PanelWeight::new(panel, by_area, motion[2]).on(panel, motion))
 }
 
-/// The work of the weight from the flat sheet to a configuration (N mm).
-pub fn work_of_weight(sheet: &Sheet, by_area: [f64; 2], configuration: &[[f64; 3]]) -> f64 {
-    let weights = weights_of_panels(sheet, by_area, configuration);
-    -weights.map(|weight| weight.potential).sum::<f64>()
-}
-
 /// Adds the gradient, with respect to the sheet, of the work of the weight in virtual motions `lambda` of the panels.
 pub(crate) fn add_weight_gradient(
     by_sheet: &mut SheetGradient,

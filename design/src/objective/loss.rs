@@ -59,13 +59,6 @@ impl Objective {
             .chain(excess.map(|sheets| (EXCESS, Some("mm^2"), sheets.weight)))
     }
 
-    /// The weight of a term; 0 if the objective has none of this name.
-    pub fn weight(&self, name: &str) -> f64 {
-        let mut weights = self.weights();
-        let named = weights.find(|(other, ..)| *other == name);
-        named.map_or(0.0, |(.., weight)| weight)
-    }
-
     /// The names of all terms in words, with their units.
     pub fn labels(&self) -> Vec<String> {
         let label = |(name, unit, _): (&str, Option<&str>, f64)| {

@@ -13,7 +13,7 @@
 //! [`DesignProblem::shape_curvature`]: crate::objective::design_problem::DesignProblem::shape_curvature
 
 use crate::equilibrium::displacement_control::dot;
-use crate::equilibrium::lbfgs_memory::{Memory, reach, shortened};
+use crate::optimise::lbfgs_memory::{Memory, reach, shortened};
 use faer::linalg::solvers::{Llt, Solve};
 use faer::{Mat, Side};
 

@@ -5,9 +5,9 @@
 //! of these (docs/results/optimisers).
 
 use crate::equilibrium::displacement_control::dot;
-use crate::equilibrium::lbfgs_memory::{Memory, shortened};
 use crate::optimise::adam::Adam;
 use crate::optimise::gauss_newton::ShapeCurvature;
+use crate::optimise::lbfgs_memory::{Memory, shortened};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 

@@ -13,6 +13,7 @@
 //! is arranged in terms that each vanish in the flat sheet, so that small motions keep their accuracy.
 
 use crate::geometry::plane::{I, complex, cross, dot, point, turn, turn_less_one};
+use crate::geometry::polygon::distance;
 use crate::sheet::cut_sheet::{Panel, Sheet};
 use faer::c64;
 use hinge::HingeDeformation;
@@ -31,6 +32,14 @@ pub fn deployed(panel: &Panel, motion: [f64; 3], flat: [f64; 2]) -> [f64; 2] {
 pub fn deployed_corners(sheet: &Sheet, configuration: &[[f64; 3]]) -> Vec<[[f64; 2]; 4]> {
     std::iter::zip(&sheet.panels, configuration)
         .map(|(panel, &motion)| panel.corners.map(|corner| deployed(panel, motion, corner)))
+        .collect()
+}
+
+/// Distance of every panel corner between two configurations (mm).
+pub fn corner_distances(sheet: &Sheet, from: &[[f64; 3]], to: &[[f64; 3]]) -> Vec<f64> {
+    let [from, to] = [from, to].map(|configuration| deployed_corners(sheet, configuration));
+    std::iter::zip(from.as_flattened(), to.as_flattened())
+        .map(|(p, q)| distance(*p, *q))
         .collect()
 }
 

@@ -81,11 +81,6 @@ pub fn overlap(sheet: &Sheet, configuration: &[[f64; 3]]) -> f64 {
         / mean
 }
 
-/// The sum of the common areas of neighbouring panels in a configuration, relative to the sheet's area.
-pub fn total_overlap(sheet: &Sheet, configuration: &[[f64; 3]]) -> f64 {
-    shared_areas(sheet, configuration).iter().sum::<f64>() / sheet.outline.area()
-}
-
 /// The common area of each two panels that share an edge or a corner (mm^2).
 fn shared_areas(sheet: &Sheet, configuration: &[[f64; 3]]) -> Vec<f64> {
     let Grid { m, n } = sheet.grid;

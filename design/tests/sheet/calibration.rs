@@ -89,7 +89,7 @@ fn a_sheet_is_within_two_standard_errors() {
         &film(|config| config.solver.tolerance = 1e-10),
         |sheet, fit| {
             let mut within = [0; 3];
-            for seed in 0..100 {
+            for seed in 0..24 {
                 let mut random = ChaCha8Rng::seed_from_u64(seed);
                 let mut guess = |quantity: Quantity| {
                     quantity.guess(sheet.thickness()) * normal([random.random(), random.random()])
@@ -108,7 +108,7 @@ fn a_sheet_is_within_two_standard_errors() {
                     within[k] += usize::from(error <= 2.0 * estimate.standard_error);
                 }
             }
-            assert!(within.iter().all(|count| *count >= 90), "{within:?}");
+            assert!(within.iter().all(|count| *count >= 22), "{within:?}");
         },
     );
 }

@@ -8,7 +8,6 @@ use design::equilibrium::load_step::{LoadStep, Status};
 use design::equilibrium::settings::SolverSettings;
 use design::equilibrium::solver::{EquilibriumError, EquilibriumSolver};
 use design::equilibrium::supports::{Dof, Load, Support};
-use design::equilibrium::weight::work_of_weight;
 use design::hinge_law::{HingeLaw, LinearLaw};
 use design::pattern::coordinates::PatternCoordinates;
 use design::pattern::cut_pattern::{CutPattern, Outline};
@@ -248,7 +247,15 @@ fn the_work_of_weight_and_loads_is_stored() {
         let solver = solver.with_weight(by_area).unwrap();
         let path = path(&solver, &sheet, [90.0, 40.0, 0.8]);
         let stored = |step: &LoadStep| step.energies.iter().sum::<f64>();
-        let weighed = |step: &LoadStep| work_of_weight(&sheet, by_area, &step.configuration);
+        let weighed = |step: &LoadStep| -> f64 {
+            let panels = std::iter::zip(&sheet.panels, &step.configuration);
+            let works = panels.map(|(panel, &motion)| {
+                let [x, y] = panel.centroid;
+                let [moved_x, moved_y] = deployed(panel, motion, panel.centroid);
+                panel.area * (by_area[0] * (moved_x - x) + by_area[1] * (moved_y - y))
+            });
+            works.sum()
+        };
         let way = |step: &LoadStep| 2.0 * step.configuration[5][0];
         let loaded = &path[solver.weight_steps() - 1..];
         let work: f64 = (loaded.windows(2))

@@ -1,6 +1,7 @@
 //! Why a tensile test cannot be used.
 
 use std::path::PathBuf;
+use support::file_error::FileError;
 
 /// A file that is not a valid tensile curve.
 #[derive(Debug, thiserror::Error)]
@@ -9,11 +10,8 @@ use std::path::PathBuf;
     reason = "the message of each variant is its documentation"
 )]
 pub enum TensileError {
-    #[error("cannot read {path}: {source}", path = .path.display())]
-    Read {
-        path: PathBuf,
-        source: std::io::Error,
-    },
+    #[error("cannot read {0}")]
+    Read(#[from] FileError),
     #[error("{path}:{line}: {what}", path = .path.display())]
     Row {
         path: PathBuf,

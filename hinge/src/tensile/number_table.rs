@@ -8,6 +8,7 @@ use crate::tensile::error::TensileError;
 use crate::tensile::quantity::{Quantity, is_unit};
 use std::collections::BTreeMap;
 use std::path::Path;
+use support::file_error::FileError;
 
 /// Separators and decimal commas, in the order of preference.
 const DIALECTS: [(u8, bool); 6] = [
@@ -41,10 +42,7 @@ pub(super) struct TextRow {
 
 impl NumberTable {
     pub fn read(path: &Path) -> Result<Self, TensileError> {
-        let bytes = support::regular_file::read(path).map_err(|source| TensileError::Read {
-            path: path.to_owned(),
-            source,
-        })?;
+        let bytes = support::regular_file::read(path).map_err(FileError::at(path))?;
         let hash = blake3::hash(&bytes).to_hex()[..16].to_owned();
         match Self::parse(&text_of(&bytes)) {
             Ok(table) => Ok(Self { hash, ..table }),

@@ -22,8 +22,9 @@ use crate::cut_file::fabrication_error::FabricationError;
 use crate::cut_file::written_check::{self, ROUNDING, carries};
 use crate::display::Shape;
 use design::geometry::polygon::{distance, distance_to_segment, edges};
+use design::objective::design_problem::Deployment;
 use design::pattern::cut_pattern::CutPattern;
-use design::scene::{Attachment, CuttingConfig};
+use design::scene::{Attachment, CuttingConfig, Scene};
 use design::sheet::cut_sheet::Sheet;
 use design::sheet::topology::hinge_sites;
 use std::collections::BTreeMap;
@@ -64,6 +65,13 @@ pub struct CutLines {
 }
 
 impl CutLines {
+    /// The cuts of a deployed design of a scene.
+    pub fn of(scene: &Scene, deployment: &Deployment) -> Result<Self, FabricationError> {
+        let attachments = scene.actuation().attachments;
+        let (pattern, sheet) = (&deployment.pattern, &deployment.sheet);
+        Self::new(pattern, sheet, scene.config.cutting, &attachments)
+    }
+
     /// The cuts of `sheet`, which must come from `pattern`, held and pulled at `attachments`. They are checked to be those
     /// of the simulated sheet, to meet nowhere and to leave the sheet in one piece.
     pub fn new(

@@ -163,12 +163,7 @@ fn a_path_that_departs_from_its_ray_is_named() {
     let w_lig = deployment.sheet.hinges[3].w_lig;
     let middle = deployment.path.len() / 2;
     let named = |deployment: &Deployment| {
-        let cuts = CutLines::new(
-            &deployment.pattern,
-            &deployment.sheet,
-            scene.config.cutting,
-            &scene.actuation().attachments,
-        );
+        let cuts = CutLines::of(&scene, deployment);
         let warnings = warnings(&scene, deployment, &cuts);
         let bent = warnings
             .iter()

@@ -142,24 +142,3 @@ fn constants_are_condensed_from_weights() {
     };
     assert_eq!(energies(&*mechanics.law), energies(&expected));
 }
-
-#[test]
-fn both_methods_find_the_same_equilibria() {
-    let folder = tempfile::tempdir().unwrap();
-    let scene = read(folder.path(), &with(&[]));
-    let mut problem = scene.problem().unwrap();
-    let newton = problem.deploy(&scene.start()).unwrap().path;
-    if let Model::Equilibrium(mechanics) = &mut problem.model {
-        mechanics.solver.lbfgs = Some(20_000);
-    }
-    let lbfgs = problem.deploy(&scene.start()).unwrap().path;
-    let total = |path: &[LoadStep]| {
-        path.iter()
-            .map(|step| step.effort.iterations)
-            .sum::<usize>()
-    };
-    assert!(total(&lbfgs) > 5 * total(&newton));
-    for (x, y) in std::iter::zip(&newton[3].configuration, &lbfgs[3].configuration) {
-        assert!((x[2] - y[2]).abs() < 1e-6, "{x:?} {y:?}");
-    }
-}

@@ -104,17 +104,9 @@ impl CouponCommand {
 /// The cut file of all specimens.
 fn drawing(scene: &Scene, specimens: &[Specimen], machine: Option<&Machine>) -> Result<CutDrawing> {
     let pieces = specimens.iter().map(|of| {
-        let deployment = of
-            .loaded
-            .scene
-            .problem()?
-            .deploy(&of.loaded.scene.start())?;
-        let cuts = CutLines::new(
-            &deployment.pattern,
-            &deployment.sheet,
-            of.loaded.scene.config.cutting,
-            &of.loaded.scene.actuation().attachments,
-        );
+        let scene = &of.loaded.scene;
+        let deployment = scene.problem()?.deploy(&scene.start())?;
+        let cuts = CutLines::of(scene, &deployment);
         let panels = &deployment.sheet.panels;
         Ok(CouponPiece {
             name: of.name.clone(),

@@ -1,6 +1,6 @@
 //! The arguments of a calibration.
 
-use crate::commands::calibrate::quantities::{Known, QuantityArg};
+use crate::commands::calibrate::quantities::{Known, quantity};
 use crate::commands::inspect::scene_args::Inspected;
 use crate::commands::points_file::PointArgs;
 use clap::Args;
@@ -24,9 +24,9 @@ pub(super) struct FitArgs {
     /// Readings of displacement and load on the way (CSV) [default for a coupon: readings.csv in its folder]
     #[arg(long, value_name = "FILE")]
     pub readings: Option<PathBuf>,
-    /// Quantities to find; the others are right
-    #[arg(long, value_name = "QUANTITY", value_delimiter = ',', default_values = ["kerf", "thickness", "stress"])]
-    fit: Vec<QuantityArg>,
+    /// Quantities to find: kerf, thickness, and stress, all stresses at equal strain, modulus and yield together; the others are right
+    #[arg(long, value_name = "QUANTITY", value_delimiter = ',', value_parser = quantity, default_values = ["kerf", "thickness", "stress"])]
+    fit: Vec<Quantity>,
     /// Quantities that were measured by themselves, and are not fitted: kerf and thickness in mm, stress over the material's. Example:
     /// thickness=2.93,kerf=0.25
     #[arg(long, value_name = "QUANTITY=VALUE", value_delimiter = ',')]
@@ -55,10 +55,7 @@ fn above_zero(text: &str) -> Result<f64, String> {
 impl FitArgs {
     /// The quantities to fit, each once.
     pub fn quantities(&self) -> Vec<Quantity> {
-        let asked = |quantity: &Quantity| {
-            let mut fitted = self.fit.iter().map(|arg| Quantity::from(*arg));
-            fitted.any(|own| own == *quantity)
-        };
+        let asked = |quantity: &Quantity| self.fit.contains(quantity);
         let known =
             |quantity: &Quantity| self.known.iter().any(|known| known.quantity == *quantity);
         let all = Quantity::ALL.into_iter();

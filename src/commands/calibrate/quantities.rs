@@ -1,31 +1,16 @@
 //! The quantities of a cut sheet: those that are fitted, and those that were measured by themselves.
 
-use anyhow::{Result, ensure};
-use clap::ValueEnum;
+use anyhow::ensure;
 use design::analysis::calibration::Quantity;
 use design::scene::Scene;
 use design::sheet::deviation::Deviation;
 use std::str::FromStr;
 
-/// What is fitted.
-#[derive(Clone, Copy, Debug, ValueEnum)]
-pub(super) enum QuantityArg {
-    /// Width that the cutter removes.
-    Kerf,
-    /// Thickness of the sheet.
-    Thickness,
-    /// All stresses at equal strain, modulus and yield together.
-    Stress,
-}
-
-impl From<QuantityArg> for Quantity {
-    fn from(arg: QuantityArg) -> Self {
-        match arg {
-            QuantityArg::Kerf => Self::Kerf,
-            QuantityArg::Thickness => Self::Thickness,
-            QuantityArg::Stress => Self::Stress,
-        }
-    }
+/// A quantity by its name.
+pub(super) fn quantity(name: &str) -> Result<Quantity, String> {
+    let mut all = Quantity::ALL.into_iter();
+    all.find(|quantity| quantity.name() == name)
+        .ok_or_else(|| "the quantities are kerf, thickness and stress".into())
 }
 
 /// A quantity and its value: mm, or relative to the material's.
@@ -42,12 +27,11 @@ impl FromStr for Known {
         let (name, value) = text
             .split_once('=')
             .ok_or("must be QUANTITY=VALUE, for example thickness=2.93")?;
-        let quantity = QuantityArg::from_str(name, false)
-            .map_err(|_| "the quantities are kerf, thickness and stress")?;
+        let quantity = quantity(name)?;
         let value: Option<f64> = value.parse().ok();
         let value = value.filter(|value| *value > 0.0 && value.is_finite());
         Ok(Self {
-            quantity: quantity.into(),
+            quantity,
             value: value.ok_or_else(|| format!("{name} must be a number above 0"))?,
         })
     }
@@ -57,7 +41,7 @@ impl FromStr for Known {
 const FACTOR: f64 = 4.0;
 
 /// The sheet of a scene with known quantities; an error if one is named twice or out of proportion to the scene.
-pub(super) fn deviation(known: &[Known], scene: &Scene) -> Result<Deviation> {
+pub(super) fn deviation(known: &[Known], scene: &Scene) -> anyhow::Result<Deviation> {
     let mut deviation = Deviation::default();
     for (i, Known { quantity, value }) in known.iter().enumerate() {
         let name = quantity.name();

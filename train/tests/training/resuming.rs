@@ -81,7 +81,7 @@ fn a_damaged_or_foreign_state_is_an_error() {
     std::fs::remove_file(&state).unwrap();
     let error = resumed(&state, &config(3)).err().unwrap();
     assert!(
-        matches!(error, TrainError::State(StateError::Read { .. })),
+        matches!(error, TrainError::State(StateError::Read(_))),
         "{error}"
     );
 }
