@@ -7,7 +7,7 @@
 
 mod chain_page;
 
-use crate::choices::{Choice, Choices, Measured, own_weights};
+use crate::choices::{Choice, Choices, own_weights, step_seconds};
 use crate::designed::designed;
 use anyhow::{Context, Result, ensure};
 use clap::Args;
@@ -161,7 +161,7 @@ impl ChainStudy {
             choice: name,
             windows_s: network.and_then(|network| windows_s(network, databases)),
             training_s: network.and_then(|network| network.card().training_s),
-            step_s: Measured::new(&problem, &reference.design)?.seconds[1],
+            step_s: step_seconds(&problem, &reference.design)?,
             prediction: predicted.difference(&reference.deployed, reference.side),
             outline: [by_choice.outline, by_reference.outline],
             damage: by_reference.damage.iter().copied().fold(0.0, f64::max),

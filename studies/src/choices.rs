@@ -1,8 +1,7 @@
 //! The choices of a scene, varied one at a time, and what each costs.
 
 use anyhow::{Context, Result};
-use design::equilibrium::load_step::Status;
-use design::objective::design_problem::{DesignProblem, Evaluation};
+use design::objective::design_problem::DesignProblem;
 use design::pattern::design_vector::DesignVector;
 use design::scene::{CondensedConfig, HingeModel, SceneConfig};
 use design::sheet::cut_sheet::HingePoint;
@@ -76,39 +75,9 @@ pub fn own_weights(config: &SceneConfig, scene: &Path) -> Result<PathBuf> {
     Ok(std::path::absolute(folder.join(named))?)
 }
 
-/// A design evaluated with a choice.
-pub struct Measured {
-    pub evaluation: Evaluation,
-    /// CPU time of the equilibria, and of equilibria with gradient (s).
-    pub seconds: [f64; 2],
-    pub iterations: usize,
-    /// The worst status of any load step.
-    pub status: Status,
-}
-
-impl Measured {
-    pub fn new(problem: &DesignProblem, design: &DesignVector) -> Result<Self> {
-        let evaluation = problem.evaluate(design)?;
-        let equilibria = cost(|| problem.deploy(design).map(drop))?;
-        let gradient = cost(|| problem.evaluate(design).map(drop))?;
-        let path = &evaluation.deployment.path;
-        let rank = |status: &Status| match status {
-            Status::Converged => 0,
-            Status::LeftDomain => 1,
-            Status::Almost => 2,
-            Status::LimitPoint => 3,
-            Status::Diverged => 4,
-        };
-        let statuses = path.iter().map(|step| step.status);
-        Ok(Self {
-            seconds: [equilibria, gradient],
-            iterations: path.iter().map(|step| step.effort.iterations).sum(),
-            status: statuses
-                .max_by_key(rank)
-                .context("a path has at least one step")?,
-            evaluation,
-        })
-    }
+/// CPU time of an equilibrium path with the gradient of the objective (s).
+pub fn step_seconds(problem: &DesignProblem, design: &DesignVector) -> Result<f64> {
+    Ok(cost(|| problem.evaluate(design).map(drop))?)
 }
 
 /// A cost is the mean over the repeats within this time, with a minimum number of repeats.

@@ -6,7 +6,7 @@
 
 mod searches;
 
-use crate::choices::{Choice, Choices, Measured, own_weights};
+use crate::choices::{Choice, Choices, own_weights, step_seconds};
 use crate::designed::designed;
 use anyhow::{Context, Result, ensure};
 use clap::Args;
@@ -186,8 +186,8 @@ impl Row {
         design: &DesignVector,
         truth: &Balanced,
     ) -> Result<Self> {
-        let measured = Measured::new(problem, design)?;
-        let ([_, step_s], deployed) = (measured.seconds, measured.evaluation.deployment);
+        let step_s = step_seconds(problem, design)?;
+        let deployed = problem.deploy(design)?;
         let (own, by_elements) = (truth.by_law(), truth.by_elements());
         let errors: Vec<f64> = (truth.by_mesh())
             .map(|(_, by_mesh)| root_mean_square(movements(by_mesh, &deployed)))

@@ -26,7 +26,9 @@ pub struct ForceTransmission {
 /// Fractions of the transmitted force, each in [0, 1]; the rest is shear.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TransmissionShares {
+    /// Of interfaces that are pulled apart.
     pub tension: f64,
+    /// Of interfaces that are pressed together.
     pub compression: f64,
 }
 

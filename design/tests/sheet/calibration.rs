@@ -81,8 +81,7 @@ fn exact_measurements_give_the_sheet_that_was_cut() {
     });
 }
 
-/// Of a hundred sheets as they come, each quantity is within two standard errors in 95; at least 90 leave that to chance in one of
-/// fifty.
+/// Of sheets as they come, each quantity is within two standard errors in 95 of 100. Fewer than 22 of 24 are left to chance once in ten.
 #[test]
 fn a_sheet_is_within_two_standard_errors() {
     with(

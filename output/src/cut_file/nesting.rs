@@ -160,7 +160,7 @@ impl Packing {
         };
         for (design, [width, height]) in designs.iter().zip(packing.designs.iter().copied()) {
             let fits_turned = packing.holds([height, width]);
-            if !packing.holds([width, height]) && !(packing.turns && fits_turned) {
+            if !(packing.holds([width, height]) || packing.turns && fits_turned) {
                 return Err(FabricationError::LargerThanStock {
                     name: design.name.clone(),
                     size: design.size(),
