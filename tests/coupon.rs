@@ -63,7 +63,7 @@ fn a_coupon_is_cut_read_and_calibrated() {
         ("thickness=0.293", "decimal point"),
         ("kerf=0.2,kerf=0.3", "names kerf twice"),
     ] {
-        let error = work.error(&format!("calibrate coupon --known {wrong} --out none"));
+        let error = work.error(&format!("calibrate coupon/ --known {wrong} --out none"));
         assert!(error.contains(said), "{error}");
     }
     let thin = calibrated(

@@ -1,4 +1,4 @@
-//! `kirigami-studies`: cost and error of the choices at each stage, and the paper's experiments.
+//! `kirigami-studies`: cost and error of the choices at each stage, and the pages of `docs/results`.
 
 mod attempt;
 mod calibration;
@@ -25,7 +25,7 @@ use clap::{Parser, Subcommand};
 use kirigami::ui::exit::{self, Exit};
 use kirigami::ui::interrupt;
 
-/// Measure cost and error of the choices at each stage, and repeat the paper's experiments
+/// Measure cost and error of the choices at each stage, and make the pages of docs/results
 #[derive(Parser)]
 #[command(version, propagate_version = true)]
 struct Cli {

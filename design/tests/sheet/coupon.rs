@@ -8,12 +8,14 @@ use design::sheet::deviation::Deviation;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use std::path::Path;
+use std::sync::LazyLock;
 
-fn coupon() -> Vec<Specimen> {
+/// The specimens of the A4 plate.
+static COUPON: LazyLock<Vec<Specimen>> = LazyLock::new(|| {
     let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("../configs/scenes");
     let scene = Scene::read(&scenes.join("a4-plate.toml")).unwrap();
     specimens(&scene, &scenes, &mut |_| ()).unwrap()
-}
+});
 
 fn cut() -> Deviation {
     Deviation {
@@ -35,8 +37,7 @@ fn known() -> Deviation {
 /// Every mass opens a specimen further, no hinge beyond 25 degrees, and wider ligaments bear heavier masses.
 #[test]
 fn masses_open_what_they_hang_from() {
-    let coupon = coupon();
-    for of in &coupon {
+    for of in &*COUPON {
         let loaded = &of.loaded;
         assert!(loaded.masses_g.is_sorted() && loaded.displacements.is_sorted());
         assert!(
@@ -47,17 +48,16 @@ fn masses_open_what_they_hang_from() {
         assert!(loaded.displacements[0] > 0.5, "{:?}", loaded.displacements);
     }
     let heaviest = |of: &Specimen| *of.loaded.masses_g.last().unwrap();
-    for row in coupon.chunks(3) {
+    for row in COUPON.chunks(3) {
         assert!(heaviest(&row[0]) < heaviest(&row[1]) && heaviest(&row[1]) < heaviest(&row[2]));
     }
 }
 
 #[test]
 fn exact_readings_give_the_plate() {
-    let coupon = coupon();
     let (cut, known) = (cut(), known());
     let coupon = SimulatedCoupon {
-        specimens: &coupon,
+        specimens: &COUPON,
         cut: &cut,
         error: 1e-5,
     };
@@ -74,10 +74,9 @@ fn exact_readings_give_the_plate() {
 /// once in five hundred. `kirigami-studies coupon` counts more of them.
 #[test]
 fn a_plate_is_within_two_standard_errors() {
-    let coupon = coupon();
     let (cut, known) = (cut(), known());
     let coupon = SimulatedCoupon {
-        specimens: &coupon,
+        specimens: &COUPON,
         cut: &cut,
         error: 0.02,
     };
@@ -102,9 +101,8 @@ fn a_plate_is_within_two_standard_errors() {
 /// Thinner and softer open alike: the thickness is named, and stays near what was known.
 #[test]
 fn the_thickness_is_not_told_from_the_stresses() {
-    let coupon = coupon();
     let coupon = SimulatedCoupon {
-        specimens: &coupon,
+        specimens: &COUPON,
         cut: &cut(),
         error: 0.02,
     };

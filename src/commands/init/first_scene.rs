@@ -317,13 +317,14 @@ mod tests {
         assert!(std::iter::zip(target.centre, middle).all(|(x, y)| (x - y).abs() < 1e-9));
     }
 
-    /// Polypropylene and PETG bear the usual opening; aluminium tears at 24 to 28 degrees.
+    /// Polypropylene, PETG and steel bear the usual opening; aluminium tears at 24 to 28 degrees.
     #[test]
     fn a_material_that_tears_early_opens_less() {
         for (material, degrees) in [
             ("polypropylene-3mm", 25.0),
             ("petg-3mm", 25.0),
             ("aluminium-2mm", 20.0),
+            ("s235-2mm", 25.0),
         ] {
             let root = Path::new(env!("CARGO_MANIFEST_DIR"));
             let weights = root.join("data").join(material).join("medium.safetensors");
