@@ -7,7 +7,7 @@ use crate::commands::cut::nest_args::{Nesting, PLACES, PLAN};
 use crate::commands::inspect::scene_args::{DESIGN_OF_RUN, Inspected};
 use crate::ui::run_folder;
 use crate::ui::width_by_height::width_by_height;
-use anyhow::{Context, Error, Result, ensure};
+use anyhow::{Context, Result, ensure};
 use clap::Args;
 use design::objective::design_problem::Deployment;
 use design::pattern::design_vector::DesignVector;
@@ -84,6 +84,7 @@ struct Pieces {
 
 impl CutCommand {
     /// The files of the run in a folder: tiles for a paper or the file of a machine, besides the usual ones.
+    #[cfg(feature = "pipeline")]
     pub(crate) fn of_run(
         run: PathBuf,
         paper: Option<&str>,
@@ -97,7 +98,10 @@ impl CutCommand {
             },
             nesting: Nesting::default(),
             out: None,
-            paper: paper.map(self::paper).transpose().map_err(Error::msg)?,
+            paper: paper
+                .map(self::paper)
+                .transpose()
+                .map_err(anyhow::Error::msg)?,
             bed: None,
             machine,
             machines: None,
