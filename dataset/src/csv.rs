@@ -1,6 +1,7 @@
 //! CSV export of a database, and import of rows computed by other solvers.
 
 use crate::database::Database;
+use crate::database_files::read_bytes;
 use crate::error::DatasetError;
 use crate::rows::Row;
 use crate::schema::{self, KNOWN, NUMBERS, TEXTS};
@@ -10,7 +11,6 @@ use std::collections::BTreeMap;
 use std::f64::consts::PI;
 use std::io::Cursor;
 use std::path::Path;
-use support::file_error::FileError;
 
 /// The mapping from the columns of a foreign table to those of a database, read from a TOML file.
 ///
@@ -67,9 +67,7 @@ impl Database {
 /// Reads the rows of a CSV file, to be collected into a database.
 pub fn rows_from_csv(path: &Path, map: &ColumnMap) -> Result<Vec<Row>, DatasetError> {
     map.check()?;
-    let bytes = support::regular_file::read(path)
-        .map_err(FileError::at(path))
-        .map_err(DatasetError::Read)?;
+    let bytes = read_bytes(path)?;
     rows_of(&bytes, map).map_err(|source| DatasetError::In {
         path: path.to_owned(),
         source: Box::new(source),

@@ -155,7 +155,7 @@ fn other_kind(bytes: &[u8]) -> Option<&'static str> {
     }
 }
 
-fn read_bytes(path: &Path) -> Result<Vec<u8>, DatasetError> {
+pub(crate) fn read_bytes(path: &Path) -> Result<Vec<u8>, DatasetError> {
     regular_file::read(path)
         .map_err(FileError::at(path))
         .map_err(DatasetError::Read)
@@ -163,6 +163,6 @@ fn read_bytes(path: &Path) -> Result<Vec<u8>, DatasetError> {
 
 /// Maps the error of writing `path`, for use in `map_err`.
 pub(crate) fn unwritable(path: &Path) -> impl FnOnce(std::io::Error) -> DatasetError {
-    let path = path.to_owned();
-    move |source| DatasetError::Write(FileError { path, source })
+    let at_path = FileError::at(path);
+    move |source| DatasetError::Write(at_path(source))
 }

@@ -83,12 +83,10 @@ impl Studio {
             // The library reads a body to its end before it goes, into a buffer of this length.
             return std::mem::forget(request);
         }
-        let (path, query) = request.url().split_once('?').unwrap_or((request.url(), ""));
-        let (path, query) = (
-            percent_decode_str(path).decode_utf8_lossy().into_owned(),
-            query.to_owned(),
-        );
-        let answer = match (request.method(), path.as_str()) {
+        let url = request.url().to_owned();
+        let (path, query) = url.split_once('?').unwrap_or((&url, ""));
+        let path = percent_decode_str(path).decode_utf8_lossy();
+        let answer = match (request.method(), &*path) {
             _ if !self.is_ours(&request) => refusal(421, "this server is another host"),
             _ if query != format!("token={}", self.token) => refusal(
                 403,

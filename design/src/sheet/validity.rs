@@ -75,14 +75,6 @@ impl Validity {
 /// area. Panels that do not even share a corner are not compared.
 pub fn overlap(sheet: &Sheet, configuration: &[[f64; 3]]) -> f64 {
     let mean = sheet.outline.area() / sheet.panels.len() as f64;
-    shared_areas(sheet, configuration)
-        .into_iter()
-        .fold(0.0, f64::max)
-        / mean
-}
-
-/// The common area of each two panels that share an edge or a corner (mm^2).
-fn shared_areas(sheet: &Sheet, configuration: &[[f64; 3]]) -> Vec<f64> {
     let Grid { m, n } = sheet.grid;
     let corners = deployed_corners(sheet, configuration);
     let panels = (0..n).flat_map(|q| (0..m).map(move |p| (p, q)));
@@ -98,7 +90,7 @@ fn shared_areas(sheet: &Sheet, configuration: &[[f64; 3]]) -> Vec<f64> {
         let [one, other] = [(p, q), (s, t)].map(|(p, q)| &corners[sheet.grid.panel(p, q)]);
         area(&common(one, other))
     });
-    shared.collect()
+    shared.fold(0.0, f64::max) / mean
 }
 
 /// The distance of each hinge to the nearest other hinge of its two panels (mm).
