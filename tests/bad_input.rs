@@ -6,6 +6,7 @@ mod failing_ccx;
 
 use common::{Workplace, failure};
 use failing_ccx::failing_ccx;
+use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};
 use support::sealed_json;
 
@@ -132,10 +133,21 @@ fn the_message_about_a_missing_program_states_how_to_install_it() {
             "{message}"
         );
     }
-    failure(
-        work.program("doctor")
-            .env("KIRIGAMI_CCX", "/no/such/program"),
-    );
+    let doctor = |ccx: &str| {
+        let mut doctor = work.program("doctor");
+        let output = doctor.env("KIRIGAMI_CCX", work.path(ccx)).output().unwrap();
+        assert_eq!(output.status.code(), Some(1), "{ccx}");
+        String::from_utf8(output.stdout).unwrap()
+    };
+    assert!(doctor("/no/such/program").contains("was not found"));
+    // A program that cannot be loaded, and another one, which prints a number.
+    for (status, printed) in [(127, "libspooles.so.2.2: cannot open"), (0, "line 4, in x")] {
+        let script = format!("#!/bin/sh\necho '{printed}' >&2\nexit {status}\n");
+        std::fs::write(work.path("ccx"), script).unwrap();
+        std::fs::set_permissions(work.path("ccx"), PermissionsExt::from_mode(0o755)).unwrap();
+        let text = doctor("ccx");
+        assert!(text.contains(printed), "{text}");
+    }
 }
 
 #[test]

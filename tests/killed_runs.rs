@@ -138,13 +138,11 @@ impl Replay {
     }
 }
 
-/// The version that a program prints, which is the number at the end.
+/// What a program prints when it is asked for its version.
 fn version(program: &str, flag: &str) -> String {
     let output = Command::new(program).arg(flag).output().unwrap();
     let text = [output.stdout, output.stderr].concat();
-    let text = String::from_utf8(text).unwrap();
-    let number = |word: &&str| word.starts_with(|c: char| c.is_ascii_digit());
-    text.split_whitespace().find(number).unwrap().to_owned()
+    String::from_utf8(text).unwrap().trim().to_owned()
 }
 
 /// The rows without the costs of their solves.

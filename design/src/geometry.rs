@@ -1,6 +1,7 @@
 //! Plane geometry: points, polygons, smooth extrema, distances between outlines, paths of SVG files.
 
 pub mod chamfer;
+mod near_origin;
 pub mod plane;
 pub mod polygon;
 pub mod similarity;

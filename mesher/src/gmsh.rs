@@ -10,8 +10,19 @@ pub static GMSH: ToolKind = ToolKind {
     name: "gmsh",
     variable: "KIRIGAMI_GMSH",
     version_flag: "--version",
+    version_statuses: &[0],
+    version_in: version,
     install: "apt-get install gmsh",
 };
+
+/// A line that is a version: `4.8.4`, `4.13.1-git-a1b2c3`. Warnings may stand before it.
+fn version(printed: &str) -> Option<&str> {
+    let is_version = |line: &&str| {
+        let number = line.split('-').next().unwrap_or_default();
+        number.contains('.') && number.split('.').all(|part| part.parse::<u32>().is_ok())
+    };
+    printed.lines().map(str::trim).find(is_version)
+}
 
 /// Maximum time limit: gmsh meshes a window in milliseconds and a sheet in seconds, so a longer run hangs.
 const LIMIT: Duration = Duration::from_secs(60);
@@ -62,5 +73,28 @@ impl Gmsh {
         let limit = limit.min(LIMIT);
         let run = self.0.run(&arguments, folder, &log, limit, stop)?;
         self.0.expect_success(run, &log)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::version;
+
+    #[test]
+    fn only_a_line_that_is_a_version_is_one() {
+        assert_eq!(version("4.8.4"), Some("4.8.4"));
+        assert_eq!(
+            version("Warning: 2 fonts\n4.13.1-git-a1b2\n"),
+            Some("4.13.1-git-a1b2")
+        );
+        for other in [
+            "",
+            "4",
+            "  File \"gmsh\", line 4, in <module>",
+            "Python 3.11.2",
+            "4.x.1",
+        ] {
+            assert_eq!(version(other), None, "{other}");
+        }
     }
 }

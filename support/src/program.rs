@@ -33,6 +33,10 @@ pub struct ToolKind {
     pub variable: &'static str,
     /// The argument that makes it print its version.
     pub version_flag: &'static str,
+    /// Its exit statuses after that.
+    pub version_statuses: &'static [i32],
+    /// The version in what it prints; `None` if another program has printed it.
+    pub version_in: fn(&str) -> Option<&str>,
     /// Command that installs it.
     pub install: &'static str,
 }
@@ -105,23 +109,25 @@ impl Tool {
         let folder = Scratch::new().map_err(|source| self.cannot_start(source))?;
         let log = folder.path().join("version.log");
         let arguments = [self.kind.version_flag];
-        self.run(
+        let run = self.run(
             &arguments,
             folder.path(),
             &log,
             VERSION_LIMIT,
             &AtomicBool::new(false),
         )?;
-        // ccx prints "This is Version 2.20", gmsh only "4.8.4".
-        let digits = |word: &&str| word.starts_with(|c: char| c.is_ascii_digit());
-        let text = tail(&log);
-        let version = text.split_whitespace().find(digits).map(str::to_owned);
-        version.ok_or_else(|| {
-            self.cannot_start(std::io::Error::other(format!(
-                "`{}` printed no version number: the program is not {}",
-                self.kind.version_flag, self.kind.name
-            )))
-        })
+        let printed = tail(&log);
+        let answered =
+            (run.status.code()).is_some_and(|status| self.kind.version_statuses.contains(&status));
+        let version = (self.kind.version_in)(&printed).filter(|_| answered);
+        version
+            .map(str::to_owned)
+            .ok_or_else(|| ToolError::NoVersion {
+                kind: self.kind,
+                program: self.program.clone(),
+                status: run.status,
+                printed,
+            })
     }
 
     /// Runs the program in `folder`, with its output in `log`, until it exits by itself.
@@ -264,6 +270,8 @@ mod tests {
         name: "sh",
         variable: "KIRIGAMI_NO_SUCH_VARIABLE",
         version_flag: "--version",
+        version_statuses: &[0],
+        version_in: |printed| printed.strip_prefix("sh "),
         install: "apt-get install dash",
     };
 
@@ -369,6 +377,38 @@ mod tests {
         assert_eq!(refused.unwrap().status.code(), Some(201));
         let (stopped, _) = run("sleep 1000", LONG, true);
         assert!(matches!(stopped, Err(ToolError::Stopped { .. })));
+    }
+
+    /// A program is what its name says only if it prints a version and exits as after one.
+    #[test]
+    fn a_program_that_cannot_print_its_version_is_refused_with_what_it_printed() {
+        let folder = tempfile::tempdir().unwrap();
+        let program = folder.path().join("sh");
+        let found = |script: &str| {
+            use std::os::unix::fs::PermissionsExt;
+            std::fs::write(&program, format!("#!/bin/sh\n{script}\n")).unwrap();
+            let executable = std::fs::Permissions::from_mode(0o755);
+            std::fs::set_permissions(&program, executable).unwrap();
+            Tool::at(&SHELL, &program)
+        };
+        assert_eq!(found("echo sh 4.1").unwrap().version, "4.1");
+        for (script, said) in [
+            (
+                "echo 'File \"gmsh\", line 4, in <module>'; exit 1",
+                "line 4, in",
+            ),
+            (
+                "echo 'libGLU.so.1: cannot open' >&2; exit 127",
+                "libGLU.so.1",
+            ),
+            ("echo sh 4.1; exit 1", "sh 4.1"),
+            ("echo bash 5", "bash 5"),
+            (":", "nothing"),
+        ] {
+            let error = found(script).unwrap_err();
+            assert!(matches!(error, ToolError::NoVersion { .. }), "{error}");
+            assert!(error.to_string().contains(said), "{error}");
+        }
     }
 
     #[test]

@@ -5,7 +5,7 @@
 //! contour that neither crosses nor touches itself. The y axis of SVG points downwards; the result has y
 //! upwards. The size of the outline is set by the scene.
 
-use crate::geometry::polygon;
+use crate::geometry::{near_origin, polygon};
 use usvg::tiny_skia_path::{PathSegment, Point};
 use usvg::{Group, ImageHrefResolver, Node, Options, Path, Transform, Tree};
 
@@ -13,6 +13,8 @@ use usvg::{Group, ImageHrefResolver, Node, Options, Path, Transform, Tree};
 const SEGMENTS: usize = 32;
 /// Points closer than this fraction of the largest coordinate are merged: usvg rounds to f32.
 const WELD: f64 = 1e-6;
+/// Largest coordinate over the size of an outline from which its rounding shows.
+const TOO_FAR: f64 = 1000.0;
 /// Maximum number of points of an outline, 3000 curves: the worst one of them is checked for crossings in seconds.
 const MOST_POINTS: usize = 100_000;
 /// Removes the background colour of the root element, which usvg would draw as a path.
@@ -44,19 +46,24 @@ pub enum SvgPathError {
         "the path has a second contour at ({x}, {y}); keep one closed contour and \
          delete the others"
     )]
-    SecondContour { x: f32, y: f32 },
+    SecondContour { x: f64, y: f64 },
     #[error(
         "the path ends open at ({x}, {y}); end its data with Z, or correct the \
          mistake in the data after this point"
     )]
-    Open { x: f32, y: f32 },
+    Open { x: f64, y: f64 },
+    #[error(
+        "the outline is {times:.0} times its own size away from the origin of its coordinates, and is read with seven digits; \
+         move it to the origin"
+    )]
+    TooFar { times: f64 },
     #[error("the path has {found} different points; draw an outline of at least 3 points")]
     TooFewPoints { found: usize },
     #[error(
         "the path crosses or touches itself near ({x}, {y}); move its points until \
          the outline is one simple loop"
     )]
-    SelfCrossing { x: f32, y: f32 },
+    SelfCrossing { x: f64, y: f64 },
 }
 
 /// The vertices of the only visible path in an SVG text, y upwards.
@@ -73,6 +80,11 @@ pub(crate) fn vertices(svg: &str) -> Result<Vec<[f64; 2]>, SvgPathError> {
         },
         ..Options::default()
     };
+    let moved = near_origin::moved(svg);
+    let (svg, origin) = match &moved {
+        Some((svg, origin)) => (svg.as_str(), *origin),
+        None => (svg, [0.0; 2]),
+    };
     let tree = Tree::from_str(svg, &options).map_err(SvgPathError::NotSvg)?;
     let mut paths = Vec::new();
     add_visible(tree.root(), &mut paths)?;
@@ -84,7 +96,11 @@ pub(crate) fn vertices(svg: &str) -> Result<Vec<[f64; 2]>, SvgPathError> {
             return Err(SvgPathError::SeveralPaths { found });
         }
     };
-    let points = contour(path)?;
+    let points = contour(path, origin)?;
+    let times = near_origin::distance_over_size(&points);
+    if times > TOO_FAR {
+        return Err(SvgPathError::TooFar { times });
+    }
     let found = points.len();
     if found < 3 {
         return Err(SvgPathError::TooFewPoints { found });
@@ -92,7 +108,8 @@ pub(crate) fn vertices(svg: &str) -> Result<Vec<[f64; 2]>, SvgPathError> {
     if found > MOST_POINTS {
         return Err(SvgPathError::TooManyPoints { found });
     }
-    if let Some([x, y]) = polygon::self_crossing(&points).map(single) {
+    if let Some(point) = polygon::self_crossing(&points) {
+        let [x, y] = in_file(point, origin);
         return Err(SvgPathError::SelfCrossing { x, y });
     }
     let transform = path.abs_transform();
@@ -133,16 +150,17 @@ fn add_visible<'a>(group: &'a Group, paths: &mut Vec<&'a Path>) -> Result<(), Sv
     }
 }
 
-/// The distinct points of a path that is one closed contour, before its transform.
-fn contour(path: &Path) -> Result<Vec<[f64; 2]>, SvgPathError> {
+/// The distinct points of a path that is one closed contour, before its transform, from the origin of the moved drawing.
+fn contour(path: &Path, origin: [f64; 2]) -> Result<Vec<[f64; 2]>, SvgPathError> {
     let mut points: Vec<[f64; 2]> = Vec::new();
     let mut closed = false;
     // The start of a second contour; a move at the end of the data draws none.
     let mut second: Option<[f64; 2]> = None;
     for segment in path.data().segments() {
-        if let Some([x, y]) = second.map(single)
+        if let Some(start) = second
             && !matches!(segment, PathSegment::MoveTo(_))
         {
+            let [x, y] = in_file(start, origin);
             return Err(SvgPathError::SecondContour { x, y });
         }
         match segment {
@@ -170,7 +188,7 @@ fn contour(path: &Path) -> Result<Vec<[f64; 2]>, SvgPathError> {
         closed = true;
     }
     if !closed {
-        let [x, y] = single(last);
+        let [x, y] = in_file(last, origin);
         return Err(SvgPathError::Open { x, y });
     }
     Ok(points)
@@ -180,9 +198,9 @@ fn pair(point: Point) -> [f64; 2] {
     [f64::from(point.x), f64::from(point.y)]
 }
 
-/// Rounded to the accuracy of the file, for messages.
-fn single(point: [f64; 2]) -> [f32; 2] {
-    point.map(|c| c as f32)
+/// The coordinates that the file has for a point of the moved drawing, rounded for messages.
+fn in_file(point: [f64; 2], origin: [f64; 2]) -> [f64; 2] {
+    [0, 1].map(|c| (1e5 * (point[c] + origin[c])).round() / 1e5)
 }
 
 /// Appends a Bezier curve that starts at the last point, by de Casteljau's algorithm.
@@ -387,6 +405,45 @@ mod tests {
         of("M 0 0 C 0.1 0.3 0.2 0.6 0.3 0.9 L 0.7 1.1 C 0.5 0.6 0.6 0.1 0.1 -0.3 Z").unwrap();
         of("M 0 0 H 10 V 10 H 5.01 V 1 H 5 V 10 H 0 Z").unwrap();
         of("M 10000 10000 a 1 1 0 0 1 2 0 a 1 1 0 0 1 -2 0 z").unwrap();
+    }
+
+    /// A circle of points at the coordinates of a map has the shape that it has at the origin.
+    #[test]
+    fn an_outline_far_from_the_origin_has_its_shape() {
+        let at = |i: u32, [x, y]: [f64; 2]| {
+            let (sin, cos) = (f64::from(i) / 60.0 * std::f64::consts::TAU).sin_cos();
+            [x + 3.5 * cos, y - 3.5 * sin]
+        };
+        let text = |centre| {
+            let points = (0..60)
+                .map(|i| at(i, centre))
+                .map(|[x, y]| format!("{x:.4},{y:.4}"));
+            points.collect::<Vec<_>>().join(" ")
+        };
+        let near = drawn(&format!("<polygon points='{}'/>", text([0.0; 2]))).unwrap();
+        let far = text([2_506_753.0, 5_624_646.0]);
+        for content in [
+            format!("<polygon points='{far}'/>"),
+            format!("<path d='M{far}Z'/>"),
+            format!("<g transform='translate(-2506753, -5624646)'><path d='M {far} z'/></g>"),
+            format!("<path display='none' d='M0 0 H9 V9 Z'/><path d='M{far}Z'/>"),
+        ] {
+            let found = drawn(&content).unwrap_or_else(|error| panic!("{error}"));
+            let pairs = std::iter::zip(&found, &near);
+            let from_first = |all: &[[f64; 2]], p: &[f64; 2]| [0, 1].map(|c| p[c] - all[0][c]);
+            for (p, q) in pairs {
+                let (p, q) = (from_first(&found, p), from_first(&near, q));
+                assert!(polygon::distance(p, q) < 2e-4, "{p:?} {q:?}");
+            }
+            assert_eq!(found.len(), 60);
+        }
+        let open = of(&format!("M{far}"));
+        assert_refused(open, "ends open at (2506756.48");
+        let crossing = of("M 5000000 7 l 10 10 v -10 l -10 10 Z");
+        assert_refused(crossing, "near (5000005, 12)");
+        // What is not moved is refused.
+        let circle = drawn("<circle cx='5000000' cy='7' r='3'/>");
+        assert_refused(circle, "times its own size away from the origin");
     }
 
     #[test]

@@ -10,6 +10,12 @@ pub static CCX: ToolKind = ToolKind {
     name: "ccx",
     variable: "KIRIGAMI_CCX",
     version_flag: "-v",
+    // It ends as after any run, by the `stop 201` of its Fortran; wrappers end with 0.
+    version_statuses: &[0, 201],
+    version_in: |printed| {
+        let (_, version) = printed.split_once("This is Version ")?;
+        version.split_whitespace().next()
+    },
     install: "apt-get install calculix-ccx",
 };
 

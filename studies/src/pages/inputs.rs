@@ -79,10 +79,15 @@ impl Book {
 fn shipped(commands: &[String], root: &Path) -> Vec<String> {
     let words = commands.iter().flat_map(|command| command.split(' '));
     words
-        .filter(|word| word.starts_with("configs/") || word.starts_with("data/"))
-        .filter(|word| root.join(word).is_file())
+        .filter(|word| is_shipped(word, root))
         .map(str::to_owned)
         .collect()
+}
+
+/// Whether a path names a shipped file. What a user has computed, such as the weights of the demo in `runs`, is none.
+fn is_shipped(path: &str, root: &Path) -> bool {
+    let shipped = ["configs/", "data/"];
+    shipped.iter().any(|folder| path.starts_with(folder)) && root.join(path).is_file()
 }
 
 /// The shipped files that a configuration names, relative to itself.
@@ -100,9 +105,8 @@ fn named_by(input: &str, root: &Path) -> Vec<String> {
                 part => file.push(part),
             }
         }
-        root.join(&file)
-            .is_file()
-            .then(|| file.display().to_string())
+        let file = file.display().to_string();
+        is_shipped(&file, root).then_some(file)
     });
     files.collect()
 }
@@ -153,16 +157,22 @@ mod tests {
     #[test]
     fn a_changed_input_makes_a_page_stale() {
         let folder = tempfile::tempdir().unwrap();
-        std::fs::create_dir(folder.path().join("data")).unwrap();
+        for name in ["configs", "data", "runs"] {
+            std::fs::create_dir(folder.path().join(name)).unwrap();
+        }
         let input = folder.path().join("data/a.csv");
         std::fs::write(&input, "1").unwrap();
+        // What a scene names in `runs` is no input, whether it is there or not.
+        let scene = folder.path().join("configs/a.toml");
+        std::fs::write(&scene, "weights = \"../runs/d\"").unwrap();
+        std::fs::write(folder.path().join("runs/d"), "1").unwrap();
         let page = || Page {
             name: "a".into(),
             question: String::new(),
             needs: vec!["b".into()],
             reads: Vec::new(),
             stale: None,
-            commands: vec!["study --out docs".into()],
+            commands: vec!["study configs/a.toml --out docs".into()],
         };
         let product = super::super::book::Product {
             name: "b".into(),
@@ -177,7 +187,7 @@ mod tests {
         };
         let mut inputs = Inputs::default();
         let changed = |inputs: &Inputs| inputs.changed(&book, &page(), folder.path()).unwrap();
-        assert_eq!(changed(&inputs), ["data/a.csv"]);
+        assert_eq!(changed(&inputs), ["configs/a.toml", "data/a.csv"]);
         inputs.record(&book, &page(), folder.path()).unwrap();
         let file = folder.path().join("inputs.toml");
         inputs.write(&file).unwrap();

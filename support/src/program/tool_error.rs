@@ -30,6 +30,23 @@ pub enum ToolError {
         program: PathBuf,
         source: std::io::Error,
     },
+    #[error(
+        "{program} cannot be used as {name}: `{flag}` ended with {status} and printed no version of it, but {printed}; install it \
+         ({install}) or set {variable} to its path",
+        program = .program.display(),
+        name = .kind.name,
+        flag = .kind.version_flag,
+        printed = if .printed.is_empty() { "nothing".into() } else { format!("`{}`", .printed) },
+        install = .kind.install,
+        variable = .kind.variable
+    )]
+    NoVersion {
+        kind: &'static ToolKind,
+        program: PathBuf,
+        status: ExitStatus,
+        /// The end of what it printed.
+        printed: String,
+    },
     #[error("{name} was terminated at its time limit of {limit} s", limit = .limit.as_secs_f64())]
     TimedOut {
         name: &'static str,
