@@ -3,8 +3,10 @@
 
 .PHONY: demo test lint python python-torch tools test-tools python-tools
 
+# With the features of the whole workspace, so that `make test` compiles no dependency again.
 demo: tools
-	cargo run --release --locked -- demo
+	cargo build --release --locked --workspace --bin kirigami
+	target/release/kirigami demo
 
 test: test-tools
 	cargo test --release --locked --workspace

@@ -97,6 +97,11 @@ impl Report {
         }
     }
 
+    /// How far the outline is from the target, which is the first that a person asks.
+    pub fn miss(&self) -> String {
+        self.facts.miss(self.after.outline_error)
+    }
+
     /// How the search ended.
     pub fn end_of_search(&self) -> String {
         let steps = self.steps;

@@ -4,6 +4,7 @@ use crate::patch::SheetPart;
 use crate::verification_error::VerificationError;
 use crate::whole_sheet::{Branch, sheet_problem, with_support};
 use design::analysis::actuation_curve::ActuationCurve;
+use design::analysis::flatness::Flatness;
 use design::hinge_law::{DamageMeasure, Order};
 use design::objective::design_problem::{Deployment, DesignProblem};
 use design::pattern::design_vector::DesignVector;
@@ -15,10 +16,6 @@ use output::report::Severity;
 use serde::Serialize;
 use support::statistics::rms_and_maximum;
 
-/// Tilt of a panel (deg) above which a sheet does not stay flat.
-const TILTED: f64 = 5.0;
-/// Error of the corners over the longer side of the flat sheet above which the model does not hold.
-const OFF: f64 = 0.01;
 /// Difference of the loads over that of finite elements above which a finding names it.
 const OTHER_LOAD: f64 = 0.05;
 /// Kinetic over internal energy up to which a dynamic path is nearly at rest.
@@ -431,7 +428,7 @@ fn of_branch(check: &SheetCheck, branch: &BranchCheck) -> Vec<SheetFinding> {
     });
     let found = [
         stopped,
-        Some(flatness(check, last, &of)),
+        Some(flatness(check, branch, &of)),
         other_load(check, last, &of),
         tearing(branch, &of),
         still_moving(last, &of),
@@ -439,24 +436,39 @@ fn of_branch(check: &SheetCheck, branch: &BranchCheck) -> Vec<SheetFinding> {
     found.into_iter().flatten().collect()
 }
 
-fn flatness(check: &SheetCheck, last: &StateCheck, of: &str) -> SheetFinding {
-    let [rms, most] = last.corners;
-    let (severity, what) = if last.tilt_deg > TILTED {
-        (Severity::Error, "does not stay flat")
-    } else if rms > OFF * check.size {
-        (Severity::Error, "opens otherwise than predicted")
-    } else if check.support == Posture::HeldFlat {
-        (Severity::Note, "goes where the law has it")
-    } else {
-        (Severity::Note, "stays flat")
+/// Whether the sheet is flat, by the rule of a design, where it is least so: on the way or at the end.
+fn flatness(check: &SheetCheck, branch: &BranchCheck, of: &str) -> SheetFinding {
+    let most = |value: fn(&StateCheck) -> f64| {
+        let one_most = |one: &&StateCheck, other: &&StateCheck| value(one).total_cmp(&value(other));
+        branch.path.iter().max_by(one_most)
     };
+    let (Some(tilted), Some(off)) = (most(|state| state.tilt_deg), most(|state| state.corners[0]))
+    else {
+        return finding(
+            Severity::Error,
+            format!("no state of the sheet is known{of}"),
+        );
+    };
+    let [rms, largest] = off.corners;
+    let (error, tilt) = (rms / check.size, tilted.tilt_deg);
+    let held = check.support == Posture::HeldFlat;
+    let (severity, what) = match (Flatness::of(error, tilt), held) {
+        (Flatness::Flat, true) => (Severity::Note, "goes where the law has it"),
+        (Flatness::Flat, false) => (Severity::Note, "stays flat"),
+        (Flatness::Tilts, true) => (Severity::Warning, "opens otherwise than predicted"),
+        (Flatness::Tilts, false) => (Severity::Warning, "does not stay flat"),
+        (Flatness::Falls, true) => (Severity::Error, "opens otherwise than predicted"),
+        (Flatness::Falls, false) => (Severity::Error, "does not stay flat"),
+    };
+    let at = |state: &StateCheck| format!("at {:.0} % of the path", 100.0 * state.fraction);
     finding(
         severity,
         format!(
-            "the sheet {what}: the panels tilt by up to {:.1} deg, and the corners are {rms:.2} mm (root mean square) from where the \
-         hinge law has them, {most:.2} mm at most: {:.2} % of the sheet{of}",
-            last.tilt_deg,
-            100.0 * rms / check.size
+            "the sheet {what}: the panels tilt by up to {tilt:.1} deg, {}, and the corners are {rms:.2} mm (root mean square) from where \
+             the hinge law has them, {largest:.2} mm at most, {}: {:.2} % of the sheet{of}",
+            at(tilted),
+            at(off),
+            100.0 * error
         ),
     )
 }

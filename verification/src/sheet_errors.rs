@@ -212,13 +212,15 @@ impl SheetErrors {
         if let Some(Effect {
             corners: [rms, maximum],
             load,
+            at_least,
             ..
         }) = &self.budget
         {
             let load = load.map_or("-".into(), |load| format!("{:.2} %", 100.0 * load));
+            let bound = if *at_least { "at least " } else { "" };
             writeln!(
                 f,
-                "| error budget of the report: standard deviation of what finite elements see | {rms:.3} mm | {maximum:.3} mm | - | - | \
+                "| error budget of the report: standard deviation of what finite elements see | {bound}{rms:.3} mm | {maximum:.3} mm | - | - | \
                  {load} |"
             )?;
         }

@@ -16,7 +16,7 @@
 //! Finite elements of all hinges of the sheet replace the first two and the loading path. What they leave is the movement of the
 //! panels in their last round.
 //!
-//! What is not measured is not known, and no part of the sum.
+//! What is not measured is not known: the sum of the others is a lower bound.
 
 use crate::analysis::actuation_curve::ActuationCurve;
 use crate::analysis::force_errors::{Deviations, ForceErrors};
@@ -85,6 +85,8 @@ pub struct Effect {
     pub corners: [f64; 2],
     /// Of the load that the prescribed displacement takes, relative to it; `None` under dead loads.
     pub load: Option<f64>,
+    /// Whether it is a lower bound: a sum of which a part is not known.
+    pub at_least: bool,
     /// Of every panel corner, SW, SE, NE and NW of every panel (mm).
     #[serde(skip)]
     pub by_corner: Vec<f64>,
@@ -180,8 +182,12 @@ impl ErrorBudget {
             contributions: Vec::new(),
             total: Effect::none(sheet.panels.len()),
         };
-        for cause in Cause::ALL {
-            let (source, effect) = match deployed.errors(cause, residual) {
+        let replaced = |cause: &Cause| residual.is_some() && cause.is_seen_by_elements();
+        for cause in Cause::ALL.into_iter().filter(|cause| !replaced(cause)) {
+            let Some(known) = deployed.errors(cause) else {
+                continue;
+            };
+            let (source, effect) = match known {
                 Ok((errors, source)) => {
                     let deviations = errors.deviations(&response, sheet, last)?;
                     (source, Some(Effect::new(deviations, load)))
@@ -194,26 +200,30 @@ impl ErrorBudget {
                 effect,
             });
         }
-        if let (Some(last), Some(residual)) = (budget.contributions.last_mut(), residual) {
-            last.source = "movement in the last round of finite elements".into();
-            last.effect = Some(Effect::new(
-                Deviations {
-                    corners: residual.to_vec(),
-                    load: None,
-                },
-                load,
-            ));
+        if let Some(residual) = residual {
+            let deviations = Deviations {
+                corners: residual.to_vec(),
+                load: None,
+            };
+            budget.contributions.push(Contribution {
+                cause: Cause::VerifyResidual,
+                source: "movement in the last round of finite elements of every hinge, which replace networks, mesh and path".into(),
+                effect: Some(Effect::new(deviations, load)),
+            });
         }
         budget.total = budget.sum(|_| true);
         Some(budget)
     }
 
-    /// The root of the sum of the squares of the known contributions whose causes `count`.
+    /// The root of the sum of the squares of the contributions whose causes `count`; a lower bound if one is not known.
     pub fn sum(&self, count: impl Fn(Cause) -> bool) -> Effect {
-        let counted = self.contributions.iter().filter(|part| count(part.cause));
-        let effects = counted.filter_map(|part| part.effect.as_ref());
+        let counted = || self.contributions.iter().filter(|part| count(part.cause));
+        let effects = counted().filter_map(|part| part.effect.as_ref());
         let none = Effect::none(self.total.by_corner.len() / 4);
-        effects.fold(none, |sum, effect| sum.with(effect))
+        Effect {
+            at_least: counted().any(|part| part.effect.is_none()),
+            ..effects.fold(none, |sum, effect| sum.with(effect))
+        }
     }
 }
 
@@ -222,6 +232,7 @@ impl Effect {
         Self {
             corners: [0.0; 2],
             load: None,
+            at_least: false,
             by_corner: vec![0.0; 4 * panels],
         }
     }
@@ -230,6 +241,7 @@ impl Effect {
         Self {
             corners: rms_and_maximum(deviations.corners.iter().copied()),
             load: deviations.load.map(|deviation| deviation / load.abs()),
+            at_least: false,
             by_corner: deviations.corners,
         }
     }
@@ -242,17 +254,16 @@ impl Effect {
         Self {
             corners: rms_and_maximum(by_corner.iter().copied()),
             load: loads.reduce(f64::hypot),
+            at_least: self.at_least || other.at_least,
             by_corner,
         }
     }
 }
 
 impl Deployed<'_> {
-    fn errors(&self, cause: Cause, residual: Option<&[f64]>) -> Known {
-        if residual.is_some() && cause.is_seen_by_elements() {
-            return Err("replaced by finite elements of every hinge".into());
-        }
-        match cause {
+    /// `None` for a cause that there is not by the law alone.
+    fn errors(&self, cause: Cause) -> Option<Known> {
+        Some(match cause {
             Cause::Network => self.networks(),
             Cause::WindowMesh => self.window_mesh(),
             Cause::MaterialLaw => self.material_law(),
@@ -260,10 +271,8 @@ impl Deployed<'_> {
             Cause::LoadingPath => self.loading_path(),
             Cause::Kerf => self.kerf(),
             Cause::Thickness => self.thickness(),
-            Cause::VerifyResidual => {
-                Err("no finite elements: `kirigami verify --equilibrium`".into())
-            }
-        }
+            Cause::VerifyResidual => return None,
+        })
     }
 
     /// (F_a, F_s, M_theta) of every hinge by the hinge law.

@@ -17,6 +17,15 @@ use surrogate::Springback;
 #[derive(Debug, thiserror::Error)]
 #[allow(missing_docs, reason = "the message of a variant is its documentation")]
 pub enum LetGoError {
+    #[error(
+        "{hinges} hinges are outside the training domain at full load, where the law of released hinges says nothing"
+    )]
+    OutsideDomain { hinges: usize },
+    #[error(
+        "without its loads the sheet would open further, from {loaded:.1} to {free:.1} deg: the law of released hinges does not hold \
+         here; check by `kirigami verify --equilibrium --released`"
+    )]
+    OpensFurther { loaded: f64, free: f64 },
     #[error(transparent)]
     Law(#[from] SpringbackMismatch),
     #[error(transparent)]
@@ -88,6 +97,28 @@ pub fn let_go(
     let hinges = released_hinges(scene, problem, law, deployment)?;
     let released = problem.let_go(deployment, hinges)?;
     let stays = problem.what_stays(deployment, &released)?;
+    Ok((released, stays))
+}
+
+/// As [`let_go`], where the law of released hinges is known to hold.
+///
+/// # Errors
+/// As [`let_go`], if hinges are outside the training domain at full load, or if the sheet would open further without its loads.
+pub fn let_go_in_domain(
+    scene: &Scene,
+    problem: &DesignProblem,
+    law: &Springback,
+    deployment: &Deployment,
+) -> Result<(ReleasedSheet, WhatStays), LetGoError> {
+    let hinges = deployment.hinges_outside();
+    if hinges > 0 {
+        return Err(LetGoError::OutsideDomain { hinges });
+    }
+    let (released, stays) = let_go(scene, problem, law, deployment)?;
+    let [loaded, free] = stays.mean_rotations().map(f64::to_degrees);
+    if free > loaded {
+        return Err(LetGoError::OpensFurther { loaded, free });
+    }
     Ok((released, stays))
 }
 

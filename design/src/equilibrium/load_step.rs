@@ -123,13 +123,23 @@ pub(crate) struct StepTangent {
     pub factor: Option<HeldFactor>,
 }
 
+/// A relative residual in words; forces beyond the range of numbers have none.
+pub(crate) fn residual_in_words(residual: f64) -> String {
+    if residual.is_finite() {
+        format!("relative residual {residual:.1e}")
+    } else {
+        "forces that are no finite numbers".into()
+    }
+}
+
 /// One line: load factor, status, residual and iterations.
 impl fmt::Display for LoadStep {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let (factor, status, residual) = (self.load_factor, self.status, self.residual);
         write!(
             f,
-            "load factor {factor:.4}: {status:?}, relative residual {residual:.1e}, {} iterations",
+            "load factor {factor:.4}: {status:?}, {}, {} iterations",
+            residual_in_words(residual),
             self.effort.iterations
         )
     }

@@ -4,7 +4,7 @@
 use crate::equilibrium::adjoint::SingularTangent;
 use crate::equilibrium::hinged_sheet::HingedSheet;
 use crate::equilibrium::let_go::ReleasedSheet;
-use crate::equilibrium::load_step::{DescentEnd, LoadStep, Status};
+use crate::equilibrium::load_step::{DescentEnd, LoadStep, Status, residual_in_words};
 use crate::equilibrium::nearby_path::KnownPath;
 use crate::equilibrium::solver::{EquilibriumError, EquilibriumSolver};
 use crate::hinge_law::{Contact, DamageMeasure, HingeLaw, PreparedLaw, Release};
@@ -52,7 +52,8 @@ pub enum DesignError {
     #[error("the opening angle {0} rad is not a finite number")]
     Opening(f64),
     #[error(
-        "no equilibrium was found beyond load factor {reached:.4} (relative residual {residual:.1e}){}",
+        "no equilibrium was found beyond load factor {reached:.4} ({}){}",
+        residual_in_words(*residual),
         end.map(|end| format!(": {end}")).unwrap_or_default()
     )]
     NoEquilibrium {

@@ -1,7 +1,7 @@
 //! What stays of the opening of a sheet when its loads are taken off, in numbers.
 
 use crate::drawing;
-use design::analysis::springback::{LetGoError, WhatStays, let_go};
+use design::analysis::springback::{LetGoError, WhatStays, let_go_in_domain};
 use design::objective::design_problem::{Deployment, DesignProblem};
 use design::pattern::design_vector::DesignVector;
 use design::scene::Scene;
@@ -19,8 +19,6 @@ pub struct SpringbackListing {
     pub share: Option<f64>,
     /// Errors of the law at hinges that it has not seen; `None` if they were not measured.
     pub law: Option<SpringbackErrors>,
-    /// Number of hinges in states outside the training domain, about which nothing is known.
-    pub outside: usize,
     #[serde(skip)]
     let_go: Deployment,
 }
@@ -34,12 +32,11 @@ impl SpringbackListing {
         law: &Springback,
     ) -> Result<Self, LetGoError> {
         let deployment = problem.deploy(design)?;
-        let (released, stays) = let_go(scene, problem, law, &deployment)?;
+        let (released, stays) = let_go_in_domain(scene, problem, law, &deployment)?;
         Ok(Self {
             share: stays.share(),
             stays,
             law: law.errors,
-            outside: deployment.hinges_outside(),
             let_go: Deployment {
                 released: Some(released),
                 ..deployment
@@ -103,13 +100,6 @@ impl fmt::Display for SpringbackListing {
                 "{:.0} % of the opening stays; of hinges that were cut free, {:.0} %",
                 100.0 * share,
                 100.0 * alone / loaded
-            )?;
-        }
-        if self.outside > 0 {
-            writeln!(
-                f,
-                "{} hinges were outside the training domain: what stays of them is not known",
-                self.outside
             )?;
         }
         match &self.law {

@@ -67,7 +67,12 @@ impl Budget {
         }));
         let [rms, maximum, load] = self.cells(Some(&self.errors.total));
         let squares = "root of the sum of the squares of what is known".to_owned();
-        rows.push(["sum".to_owned(), rms, maximum, load, squares]);
+        let sum = if self.errors.total.at_least {
+            "at least"
+        } else {
+            "sum"
+        };
+        rows.push([sum.to_owned(), rms, maximum, load, squares]);
         rows
     }
 

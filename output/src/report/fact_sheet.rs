@@ -165,6 +165,21 @@ impl FactSheet {
         }
     }
 
+    /// Longer side of the flat sheet (mm), by which distances are measured.
+    pub(super) fn longer_side(&self) -> f64 {
+        let [width, height] = self.flat_size;
+        width.max(height)
+    }
+
+    /// The distance of the outline to the target (mm), in words.
+    pub(super) fn miss(&self, outline_error: f64) -> String {
+        format!(
+            "the outline is {} mm (root mean square) from the target, {} % of the longer side of the flat sheet",
+            rounded(outline_error, 3),
+            rounded(100.0 * outline_error / self.longer_side(), 2)
+        )
+    }
+
     /// The facts as names and values with units.
     pub fn rows(&self) -> Vec<(&'static str, String)> {
         let size = |[x, y]: [f64; 2]| format!("{} x {} mm", rounded(x, 5), rounded(y, 5));

@@ -1,7 +1,7 @@
 //! What becomes of the opening of a sheet: under a load that stays, and when the load is taken off.
 
 use crate::report::columns::rounded;
-use design::analysis::springback::{LetGoError, WhatStays, let_go};
+use design::analysis::springback::{LetGoError, WhatStays, let_go_in_domain};
 use design::objective::design_problem::{Deployment, DesignProblem};
 use design::scene::Scene;
 use hinge::Creep;
@@ -27,8 +27,6 @@ pub struct Released {
     pub stays: WhatStays,
     /// Errors of the law at hinges that it has not seen; `None` if they were not measured.
     pub law: Option<SpringbackErrors>,
-    /// Number of hinges in states outside the training domain, about which nothing is known.
-    pub outside: usize,
 }
 
 impl LastingShape {
@@ -72,11 +70,10 @@ impl Released {
         deployment: &Deployment,
     ) -> Option<Result<Self, LetGoError>> {
         let law = scene.springback.as_ref()?;
-        let found = let_go(scene, problem, law, deployment);
+        let found = let_go_in_domain(scene, problem, law, deployment);
         Some(found.map(|(_, stays)| Self {
             stays,
             law: law.errors,
-            outside: deployment.hinges_outside(),
         }))
     }
 
@@ -93,12 +90,6 @@ impl Released {
         );
         if self.stays.snaps {
             text += "; the sheet snaps to another state on the way";
-        }
-        if self.outside > 0 {
-            text += &format!(
-                "; {} hinges are outside the training domain at full load: what stays of them, and so of the sheet, is not known",
-                self.outside
-            );
         }
         text += &match &self.law {
             Some(law) => format!(

@@ -29,7 +29,7 @@ covers the target, and the terms above. Lower their weights in [objective] for a
 
 impl fmt::Display for Report {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        writeln!(f, "{}", self.title)?;
+        writeln!(f, "{}\n{}", self.title, self.miss())?;
         if let Some(text) = self.about_cut_files() {
             writeln!(f, "{text}")?;
         }

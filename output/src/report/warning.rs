@@ -32,6 +32,8 @@ pub enum Severity {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Concern {
+    /// Panels lie over each other, or the cuts are closed further than in the flat sheet.
+    PanelsOverlap,
     /// Windows overlap: the sum of hinge energies counts the common material twice.
     WindowsOverlap,
     /// Panels are too small for the windows of their hinges.
@@ -62,7 +64,8 @@ pub enum Concern {
     OtherBranch,
     /// The target outline crosses or touches itself.
     TargetCrosses,
-    /// The outline is further from the target than 1 % of the sheet, or than twice what the model does not know of its corners.
+    /// The outline is further from the target than 1 % of the sheet (a warning from 3 %, an error from 20 %), or than twice what the
+    /// model does not know of its corners.
     TargetMissed,
     /// What the model leaves out of a sheet that is held as the scene says.
     NotModelled,
@@ -104,7 +107,8 @@ impl Concern {
             | Self::HungWeight
             | Self::LoadPeak
             | Self::WeakWeights => Severity::Warning,
-            Self::Tearing
+            Self::PanelsOverlap
+            | Self::Tearing
             | Self::Overstrained
             | Self::CutsTooClose
             | Self::CannotBeCut

@@ -24,6 +24,7 @@ const MOST_TEXT: usize = 20_000;
 #[derive(Serialize)]
 pub struct PageData<'a> {
     title: &'a str,
+    miss: String,
     about_cut_files: Option<&'static str>,
     end_of_search: String,
     facts: Vec<(&'static str, String)>,
@@ -110,6 +111,7 @@ impl<'a> PageData<'a> {
             .min_by(|one, other| worst_first(one, other));
         Self {
             title: &report.title,
+            miss: report.miss(),
             about_cut_files: report.about_cut_files(),
             end_of_search: report.end_of_search(),
             facts: report.fact_rows(),

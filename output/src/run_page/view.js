@@ -32,6 +32,7 @@ function stateText(i) {
 function writeTexts() {
   byId("title").textContent = run.title;
   const [columns, rows] = run.panels.grid;
+  byId("miss").textContent = run.miss[0].toUpperCase() + run.miss.slice(1);
   byId("summary").textContent = `${columns} \u00d7 ${rows} panels, ${hingeCount} hinges. Search: ${run.end_of_search}.`;
   byId("alert").hidden = !run.about_cut_files;
   byId("alert").textContent = `${run.about_cut_files}: see the findings.`;
