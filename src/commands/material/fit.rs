@@ -241,7 +241,10 @@ fn column_table(specimens: &[Specimen]) -> comfy_table::Table {
                 column.number.to_string(),
                 column.name.clone(),
                 column.unit.clone().unwrap_or("not stated".into()),
-                format!("{} {}", column.factor, column.quantity.own_unit()),
+                match column.quantity.own_unit() {
+                    "1" => column.factor.to_string(),
+                    unit => format!("{} {unit}", column.factor),
+                },
             ]);
         }
     }
