@@ -77,6 +77,39 @@ fn records_of_a_film_become_a_material_file_that_is_checked() {
     assert!(((600.0 / edge).powi(3) / gamma - 1.0).abs() < 1e-9);
 }
 
+/// The same force is in N by the file, in kN by an option, and in no stated unit.
+#[test]
+fn the_unit_of_every_column_is_printed() {
+    let work = Workplace::new();
+    let row = |printed: &str, quantity: &str| -> Vec<String> {
+        let line = printed.lines().find(|line| line.contains(quantity));
+        let words = line
+            .unwrap_or_else(|| panic!("{printed}"))
+            .split_whitespace();
+        words.map(str::to_owned).collect()
+    };
+    let printed = work.output(FIT);
+    let force = row(&printed, " force ");
+    let expected = ["strip-1.csv", "force", "3", "Load", "(N)", "N", "1", "N"];
+    assert_eq!(force, expected);
+    let extension = row(&printed, " extension ");
+    assert_eq!(extension[1..3], ["extension", "2"]);
+    assert!(!printed.contains("note: no unit"), "{printed}");
+
+    work.edit("configs/tensile/strip-1.csv", &[("(s);(mm);(N)\n", "")]);
+    let printed = work.output(&format!("{FIT} --replace"));
+    let force = row(&printed, " force ");
+    assert_eq!(force[4..], ["not", "stated", "1", "N"]);
+    let note = "note: no unit of the force is stated in strip-1.csv: taken as N; --units force=UNIT states another";
+    assert!(printed.contains(note), "{printed}");
+
+    let error = work.error(&format!("{FIT} --replace --units force=tons"));
+    assert!(
+        error.contains("strip-1.csv has the force in column 3 `Load`: `tons`"),
+        "{error}"
+    );
+}
+
 #[test]
 fn a_brittle_material_fails_its_check() {
     let work = Workplace::new();

@@ -38,7 +38,7 @@ pub use landmarks::Draw;
 pub use linear_part::LinearPart;
 pub use material_file::{SheetFacts, material_file};
 pub use quantity::Quantity;
-pub use record::RecordOptions;
+pub use record::{ReadColumn, RecordOptions};
 pub use specimen::{End, Specimen, SpecimenOptions};
 
 use quantity::Quantity::PlasticStrain;

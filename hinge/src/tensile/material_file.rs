@@ -3,6 +3,7 @@
 use crate::material::{InvalidMaterial, SheetMaterial};
 use crate::tensile::cleaning::Cause;
 use crate::tensile::fit::{FractureSource, MaterialFit, Origin, Statistic};
+use crate::tensile::record::ReadColumn;
 use crate::tensile::specimen::Specimen;
 use std::fmt::Write;
 
@@ -124,7 +125,13 @@ fn provenance(t: &mut String, specimen: &Specimen) -> std::fmt::Result {
          #   Toe {:.3} %, linear from {from:.3} to {to:.3} % with {:.0} MPa.",
         printable(&name),
         specimen.hash,
-        printable(&specimen.read_as),
+        printable(
+            &specimen
+                .read_as
+                .each_ref()
+                .map(ReadColumn::to_string)
+                .join(", ")
+        ),
         specimen.rows,
         100.0 * specimen.toe,
         specimen.linear.young

@@ -5,7 +5,7 @@
 //! names the columns. Lines that start with `#` are comments.
 
 use crate::tensile::error::TensileError;
-use crate::tensile::quantity::{Quantity, is_unit};
+use crate::tensile::quantity::{Quantity, are_units, bare};
 use std::collections::BTreeMap;
 use std::path::Path;
 use support::file_error::FileError;
@@ -85,6 +85,32 @@ impl NumberTable {
     pub fn number<'a>(&self, row: &'a TextRow, column: usize) -> Result<f64, &'a str> {
         let text = row.cells.get(column).map_or("", String::as_str);
         number(text, self.decimal_comma).ok_or(text)
+    }
+
+    /// A number to the right of the last column: a sign in another number separates the cells.
+    pub fn beyond<'a>(&self, row: &'a TextRow) -> Option<&'a str> {
+        let mut cells = row.cells.iter().skip(self.labels.len());
+        let cell = cells.find(|cell| number(cell, self.decimal_comma).is_some())?;
+        Some(cell)
+    }
+
+    /// A row in which the decimal sign of a column separates thousands: 999 is followed by 1.003, and all numbers with
+    /// the sign have three digits after it.
+    pub fn thousands(&self, column: usize) -> Option<&TextRow> {
+        let sign = if self.decimal_comma { ',' } else { '.' };
+        let (mut found, mut whole) = (None, 0.0_f64);
+        for row in &self.rows {
+            let text = row.cells.get(column)?;
+            let number = self.number(row, column).ok()?.abs();
+            match text.split_once(sign) {
+                None => whole = number,
+                Some((_, digits)) if digits.len() != 3 || number < 1.0 => return None,
+                // Closer to 1000 times the number than to the number.
+                Some(_) if whole.powi(2) > 1e3 * number.powi(2) => found = found.or(Some(row)),
+                Some(_) => whole = 0.0,
+            }
+        }
+        found
     }
 }
 
@@ -180,21 +206,9 @@ fn labels(above: &[TextRow], width: usize, decimal_comma: bool) -> Result<Vec<St
             .map(|cell| cell.trim_start_matches('#').trim().to_owned())
             .collect()
     };
-    let mut lines = above.iter().rev().map(words);
+    let mut lines = above.iter().rev().map(words).peekable();
+    let units = lines.next_if(|cells| are_units(cells)).unwrap_or_default();
     let mut names = lines.next().unwrap_or_default();
-    let bare = |cell: &str| cell.trim_matches(['(', ')', '[', ']']).to_owned();
-    let units: Vec<String> = names.iter().map(|cell| bare(cell)).collect();
-    let named = |unit: &String| !unit.is_empty();
-    if units.iter().any(named) && units.iter().all(|unit| !named(unit) || is_unit(unit)) {
-        names = lines.next().unwrap_or_default();
-        for (name, unit) in names
-            .iter_mut()
-            .zip(&units)
-            .filter(|(_, unit)| !unit.is_empty())
-        {
-            *name = format!("{name} ({unit})");
-        }
-    }
     let known = |names: &[String]| {
         names
             .iter()
@@ -211,11 +225,20 @@ fn labels(above: &[TextRow], width: usize, decimal_comma: bool) -> Result<Vec<St
         && names
             .iter()
             .all(|name| number(name, decimal_comma).is_none());
-    Ok(if named {
-        names
-    } else {
-        vec![String::new(); width]
-    })
+    if !named {
+        names = vec![String::new(); width];
+    }
+    if named || units.len() == width {
+        let units = units.iter().map(|unit| bare(unit));
+        for (name, unit) in names
+            .iter_mut()
+            .zip(units)
+            .filter(|(_, unit)| !unit.is_empty())
+        {
+            *name = format!("{name} ({unit})").trim().to_owned();
+        }
+    }
+    Ok(names)
 }
 
 /// Why a text contains no table.

@@ -1,10 +1,12 @@
 //! The quantities that a testing machine records, their usual names and units.
 
+use serde::Serialize;
 use std::fmt;
 use std::str::FromStr;
 
 /// What a column contains.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Quantity {
     /// Force (N).
     Force,
@@ -35,46 +37,58 @@ const NAMES: [(Quantity, &str); 7] = [
     (PlasticStrain, "plastic-strain"),
 ];
 
-/// Spellings of the units, in lower case, with the number of N, MPa, mm or 1 in each.
-const FORCES: [(&str, f64); 4] = [
-    ("n", 1.0),
-    ("kn", 1e3),
-    ("lbf", 4.448_221_615),
-    ("kgf", 9.806_65),
+/// The spellings of a unit with the number of N, MPa, mm or 1 in it. A spelling is as `plain` leaves it.
+type Unit = (&'static str, f64);
+
+const LBF: f64 = 4.448_221_615_260_5;
+const KGF: f64 = 9.806_65;
+const INCH: f64 = 25.4;
+const PSI: f64 = LBF / (INCH * INCH);
+
+const FORCES: &[Unit] = &[
+    ("N", 1.0),
+    ("mN", 1e-3),
+    ("cN", 1e-2),
+    ("daN", 10.0),
+    ("kN", 1e3),
+    ("MN", 1e6),
+    ("gf", 1e-3 * KGF),
+    ("kgf kp", KGF),
+    ("lbf lb lbs", LBF),
+    ("kip kips", 1e3 * LBF),
 ];
-const STRESSES: [(&str, f64); 9] = [
-    ("mpa", 1.0),
-    ("n/mm2", 1.0),
-    ("n/mm^2", 1.0),
-    ("n/mm²", 1.0),
-    ("pa", 1e-6),
-    ("kpa", 1e-3),
-    ("gpa", 1e3),
-    ("psi", 6.894_757_29e-3),
-    ("ksi", 6.894_757_29),
+const STRESSES: &[Unit] = &[
+    ("MPa N/mm2 MN/m2", 1.0),
+    ("Pa N/m2", 1e-6),
+    ("kPa kN/m2", 1e-3),
+    ("GPa kN/mm2", 1e3),
+    ("N/cm2", 1e-2),
+    ("bar", 0.1),
+    ("kN/cm2 daN/mm2", 10.0),
+    ("kgf/cm2 kp/cm2", 1e-2 * KGF),
+    ("kgf/mm2 kp/mm2", KGF),
+    ("psi lbf/in2", PSI),
+    ("ksi", 1e3 * PSI),
 ];
-const LENGTHS: [(&str, f64); 6] = [
+const LENGTHS: &[Unit] = &[
     ("mm", 1.0),
+    ("um micron microns", 1e-3),
     ("cm", 10.0),
     ("m", 1e3),
-    ("um", 1e-3),
-    ("µm", 1e-3),
-    ("in", 25.4),
+    ("in inch inches", INCH),
+    ("mil mils", 1e-3 * INCH),
 ];
-const RATIOS: [(&str, f64); 10] = [
-    ("%", 0.01),
-    ("percent", 0.01),
-    ("pct", 0.01),
-    ("prozent", 0.01),
-    ("1", 1.0),
-    ("-", 1.0),
-    ("mm/mm", 1.0),
-    ("m/m", 1.0),
-    ("in/in", 1.0),
-    ("‰", 1e-3),
+const RATIOS: &[Unit] = &[
+    ("1 - mm/mm m/m in/in", 1.0),
+    ("% percent pct prozent", 1e-2),
+    ("‰ mm/m", 1e-3),
+    ("ue um/m microstrain", 1e-6),
 ];
-/// Units of columns that are not read.
-const OTHERS: [&str; 6] = ["s", "min", "h", "°c", "deg", "mm/min"];
+/// Units of columns that are not read, in lower case.
+const OTHERS: [&str; 16] = [
+    "s", "sec", "secs", "seconds", "min", "h", "hz", "c", "°c", "k", "deg", "segments", "cycles",
+    "mm/min", "mm/s", "1/s",
+];
 
 impl Quantity {
     /// Whether the quantity is a force or a stress, not a deformation.
@@ -98,27 +112,42 @@ impl Quantity {
         }
     }
 
-    /// The number of N, MPa, mm or 1 in a unit of this quantity; `None` for other units.
-    pub fn factor(self, unit: &str) -> Option<f64> {
-        let units: &[(&str, f64)] = match self {
-            Force => &FORCES,
-            Stress | TrueStress => &STRESSES,
-            Extension => &LENGTHS,
-            Strain | TrueStrain | PlasticStrain => &RATIOS,
-        };
-        let unit = unit.trim().to_lowercase();
-        let found = units.iter().find(|(spelling, _)| *spelling == unit);
-        found.map(|(_, factor)| *factor)
+    fn known(self) -> &'static [Unit] {
+        match self {
+            Force => FORCES,
+            Stress | TrueStress => STRESSES,
+            Extension => LENGTHS,
+            Strain | TrueStrain | PlasticStrain => RATIOS,
+        }
     }
 
-    /// The units of this quantity, separated by commas.
-    pub(super) fn units(self) -> &'static str {
-        match self {
-            Force => "N, kN, lbf, kgf",
-            Stress | TrueStress => "MPa, N/mm2, Pa, kPa, GPa, psi, ksi",
-            Extension => "mm, cm, m, um, in",
-            Strain | TrueStrain | PlasticStrain => "1, %, mm/mm",
-        }
+    /// The number of N, MPa, mm or 1 in a unit of this quantity; `None` for other units. Capital letters matter where
+    /// two units differ by them alone, as mN and MN do.
+    pub fn factor(self, unit: &str) -> Option<f64> {
+        let unit = plain(unit);
+        let spelt = |same: fn(&str, &str) -> bool| {
+            let mut found = (self.known().iter())
+                .filter(|(spellings, _)| spellings.split(' ').any(|it| same(it, &unit)));
+            let (_, factor) = found.next()?;
+            found.next().is_none().then_some(*factor)
+        };
+        spelt(|spelling, unit| spelling == unit).or_else(|| spelt(str::eq_ignore_ascii_case))
+    }
+
+    /// The units of this quantity, separated by commas; the first is that of the project.
+    pub fn units(self) -> String {
+        let known: Vec<&str> = self
+            .known()
+            .iter()
+            .map(|(spellings, _)| *spellings)
+            .collect();
+        known.join(" ").replace(' ', ", ")
+    }
+
+    /// The unit of the project for this quantity: N, MPa, mm or 1.
+    pub fn own_unit(self) -> &'static str {
+        let (spellings, _) = self.known()[0];
+        spellings.split(' ').next().unwrap_or_default()
     }
 
     /// The quantity that a column's name describes, in its usual spellings in English and German.
@@ -136,10 +165,7 @@ impl Quantity {
         let is_true = has(&["true", "wahre", "logarithmic", "log", "hencky"]);
         let is_plastic = has(&["plastic", "plastische"]);
         let unit = unit_of(label);
-        let measured_in = |quantity: Self| {
-            unit.as_ref()
-                .is_some_and(|unit| quantity.factor(unit).is_some())
-        };
+        let measured_in = |quantity: Self| unit.is_some_and(|unit| quantity.factor(unit).is_some());
         if has(&["stress", "sigma"]) || ends("spannung") {
             return Some(if is_true { TrueStress } else { Stress });
         }
@@ -168,24 +194,53 @@ impl Quantity {
     }
 }
 
-/// Whether a text is a unit of any quantity, as in a row of units below the names of the columns.
-pub(super) fn is_unit(text: &str) -> bool {
-    let known = |quantity: &Quantity| quantity.factor(text).is_some();
-    [Force, Stress, Extension, Strain].iter().any(known)
-        || OTHERS.contains(&text.to_lowercase().as_str())
+/// A unit without its spaces, superscripts and Greek letters: `kgf / mm²` is `kgf/mm2`, `µε` is `ue`.
+fn plain(unit: &str) -> String {
+    let letter = |c| match c {
+        '²' => '2',
+        '\u{b5}' | '\u{3bc}' => 'u',
+        'ε' => 'e',
+        c => c,
+    };
+    let kept = unit.chars().filter(|c| !c.is_whitespace() && *c != '^');
+    kept.map(letter).collect()
 }
 
-/// The unit in a column's name: in brackets, or after `_`, `/`, `in` or a space.
-pub(super) fn unit_of(label: &str) -> Option<String> {
+/// Whether a text is a unit of a quantity that is read.
+fn is_unit(text: &str) -> bool {
+    [Force, Stress, Extension, Strain]
+        .iter()
+        .any(|quantity| quantity.factor(text).is_some())
+}
+
+/// Whether the cells are the row of units below the names of the columns: most of them are units.
+pub(super) fn are_units(cells: &[String]) -> bool {
+    let filled: Vec<&str> = (cells.iter().map(|cell| bare(cell)))
+        .filter(|cell| !cell.is_empty())
+        .collect();
+    let known = |cell: &&&str| is_unit(cell) || OTHERS.contains(&cell.to_lowercase().as_str());
+    2 * filled.iter().filter(known).count() > filled.len()
+}
+
+/// A unit without its brackets.
+pub(super) fn bare(unit: &str) -> &str {
+    unit.trim_matches(['(', ')', '[', ']']).trim()
+}
+
+/// The unit in a column's name: the last word, in brackets, or after `/`, `in` or a comma. If none of these is known, the
+/// text that stands where a unit is written.
+pub(super) fn unit_of(label: &str) -> Option<&str> {
     let inside = (label.split(['(', '[']).skip(1)).filter_map(|rest| rest.split([')', ']']).next());
-    let after = [" in ", " / ", "/", "_", " "]
+    let after = ["/", " in ", ","]
         .into_iter()
-        .filter_map(|mark| {
-            let (name, unit) = label.rsplit_once(mark)?;
-            (!name.trim().is_empty()).then_some(unit)
-        });
-    let mut candidates = inside.chain(after).map(str::trim);
-    candidates.find(|text| is_unit(text)).map(str::to_owned)
+        .filter_map(|mark| Some(label.split_once(mark)?.1.trim()))
+        .filter(|text| !text.contains([' ', ')', ']']));
+    let stated = inside.chain(after).map(str::trim);
+    let stated = stated.filter(|text| !text.is_empty());
+    // The last word of `Strain 1` is a number, no unit.
+    let last = (label.rsplit([' ', '_']).next()).filter(|word| *word != "-" && *word != "1");
+    let mut known = last.into_iter().chain(stated.clone());
+    known.find(|text| is_unit(text)).or_else(|| stated.last())
 }
 
 impl fmt::Display for Quantity {
@@ -234,24 +289,71 @@ mod tests {
             ("true_stress_mpa", TrueStress, Some("mpa")),
             ("True strain", TrueStrain, None),
             ("plastic_strain", PlasticStrain, None),
+            ("Load, kN", Force, Some("kN")),
+            ("Kraft/daN", Force, Some("daN")),
+            ("Load (Channel 1) (N)", Force, Some("N")),
+            ("Stress/Load (kg/cm2)", Stress, Some("kg/cm2")),
+            ("Strain m/m", Strain, Some("m/m")),
+            ("Strain 1", Strain, None),
+            ("Strain_1", Strain, None),
+            ("Extension 1", Extension, None),
+            ("Force / stones", Force, Some("stones")),
+            ("Displacement in the machine", Extension, None),
         ] {
             assert_eq!(Quantity::from_label(label), Some(quantity), "{label}");
-            assert_eq!(unit_of(label).as_deref(), unit, "{label}");
+            assert_eq!(unit_of(label), unit, "{label}");
         }
         for label in ["Time (s)", "Strain rate (1/s)", "Width (mm)", "", "Cycle"] {
             assert_eq!(Quantity::from_label(label), None, "{label}");
         }
     }
 
+    /// Two rows of one table never claim a spelling; the first spelling of each table is the unit of the project.
+    #[test]
+    fn every_spelling_has_one_factor() {
+        for (quantity, own) in [
+            (Force, "N"),
+            (Stress, "MPa"),
+            (Extension, "mm"),
+            (Strain, "1"),
+        ] {
+            assert_eq!(
+                (quantity.own_unit(), quantity.factor(own)),
+                (own, Some(1.0))
+            );
+            for (spellings, factor) in quantity.known() {
+                for spelling in spellings.split(' ') {
+                    assert_eq!(quantity.factor(spelling), Some(*factor), "{spelling}");
+                }
+            }
+        }
+    }
+
     #[test]
     fn units_are_converted_to_those_of_the_project() {
-        assert_eq!(Force.factor("kN"), Some(1e3));
-        assert_eq!(Stress.factor("Pa"), Some(1e-6));
-        assert_eq!(Strain.factor(" % "), Some(0.01));
-        assert_eq!(Strain.factor("Percent"), Some(0.01));
-        assert_eq!(Strain.factor("mm"), None);
+        for (quantity, unit, factor) in [
+            (Force, "kN", Some(1e3)),
+            (Force, "KN", Some(1e3)),
+            (Force, "mN", Some(1e-3)),
+            (Force, "MN", Some(1e6)),
+            (Force, "mn", None),
+            (Force, "kgf", Some(9.806_65)),
+            (Force, "mm", None),
+            (Stress, "Pa", Some(1e-6)),
+            (Stress, "Mpa", Some(1.0)),
+            (Stress, "kgf / mm²", Some(9.806_65)),
+            (Stress, "N/cm^2", Some(0.01)),
+            (Extension, "\u{3bc}m", Some(1e-3)),
+            (Extension, "\u{b5}m", Some(1e-3)),
+            (Strain, " % ", Some(0.01)),
+            (Strain, "Percent", Some(0.01)),
+            (Strain, "\u{3bc}ε", Some(1e-6)),
+            (Strain, "mm", None),
+        ] {
+            assert_eq!(quantity.factor(unit), factor, "{quantity} {unit}");
+        }
         // 1 psi = 1 lbf / (25.4 mm)^2.
-        let psi = Force.factor("lbf").unwrap() / 25.4f64.powi(2);
-        assert!((Stress.factor("psi").unwrap() / psi - 1.0).abs() < 1e-8);
+        let ksi = Stress.factor("ksi").unwrap();
+        assert!((ksi - 6.894_757_293_168).abs() < 1e-12, "{ksi}");
     }
 }

@@ -1,11 +1,13 @@
 //! The record of one tensile test: load and deformation of every row, in MPa and as a ratio.
 
 use crate::tensile::error::TensileError;
-use crate::tensile::number_table::NumberTable;
+use crate::tensile::number_table::{NumberTable, TextRow};
 use crate::tensile::quantity::Quantity::{
     Extension, Force, PlasticStrain, Strain, Stress, TrueStrain, TrueStress,
 };
 use crate::tensile::quantity::{Quantity, unit_of};
+use serde::Serialize;
+use std::fmt;
 use std::path::{Path, PathBuf};
 
 /// What a file does not say about its columns and its specimen.
@@ -45,8 +47,8 @@ pub(super) struct Record {
     pub load: Quantity,
     /// Quantity of the column from which the strains are.
     pub deformation: Quantity,
-    /// The columns and the units that were read, in words.
-    pub read_as: String,
+    /// The columns that were read: load and deformation.
+    pub read_as: [ReadColumn; 2],
     /// BLAKE3 hash of the file, 16 hexadecimal digits.
     pub hash: String,
 }
@@ -57,15 +59,23 @@ const MAX_STRAIN: f64 = 10.0;
 const MAX_STRESS: f64 = 1e6;
 /// A strain without unit must be smaller: it could be in per cent.
 const MAX_STRAIN_WITHOUT_UNIT: f64 = 1.0;
+/// What is wrong with `1,234`, and what to do.
+const THOUSANDS: &str = "has separators of thousands, or another decimal sign: save the file with one decimal sign and without \
+                         separators of thousands";
 
-/// A column with the factor to the units of the project.
-struct Column {
-    quantity: Quantity,
-    index: usize,
-    label: String,
-    /// `None` if neither the file nor the options state one.
-    unit: Option<String>,
-    factor: f64,
+/// How a column was read. It is printed as one phrase.
+#[derive(Clone, Debug, Serialize)]
+pub struct ReadColumn {
+    /// What the column contains.
+    pub quantity: Quantity,
+    /// Number of the column, from 1.
+    pub number: usize,
+    /// Name of the column with the unit below it, empty if the file states none.
+    pub name: String,
+    /// The unit; `None` if neither the file nor the options state one.
+    pub unit: Option<String>,
+    /// The number of N, MPa, mm or 1 in a unit.
+    pub factor: f64,
 }
 
 impl Record {
@@ -75,8 +85,10 @@ impl Record {
             what,
         };
         let table = NumberTable::read(path)?;
-        let columns = columns(&table, options).map_err(refuse)?;
+        let columns = columns(&table.labels, options).map_err(refuse)?;
         let [load, deformation] = pair(&columns, &table.labels).map_err(refuse)?;
+        let load = &ReadColumn::new(load, &table.labels, options).map_err(refuse)?;
+        let deformation = &ReadColumn::new(deformation, &table.labels, options).map_err(refuse)?;
         let area = match load.quantity {
             Force => {
                 dimension(options.width, "width").map_err(refuse)?
@@ -88,19 +100,35 @@ impl Record {
             Extension => dimension(options.gauge_length, "gauge-length").map_err(refuse)?,
             _ => 1.0,
         };
+        let at = |row: &TextRow, what| TensileError::Row {
+            path: path.to_owned(),
+            line: row.line,
+            what,
+        };
+        for column in [load, deformation] {
+            if let Some(row) = table.thousands(column.number - 1) {
+                let what = format!("column {} {THOUSANDS}", column.title());
+                return Err(at(row, what));
+            }
+        }
         let mut rows = Vec::with_capacity(table.rows.len());
         for row in &table.rows {
-            let refuse = |what| TensileError::Row {
-                path: path.to_owned(),
-                line: row.line,
-                what,
-            };
-            let number = |column: &Column| {
-                table.number(row, column.index).map_err(|text| {
-                    refuse(format!(
-                        "`{text}` in column {} is not a number: correct the cell or delete the line",
-                        column.name()
-                    ))
+            let refuse = |what| at(row, what);
+            if let Some(text) = table.beyond(row) {
+                return Err(refuse(format!(
+                    "`{text}` is beyond the last of {} columns: save the file with semicolons or tabs between the columns, \
+                     or give every column a name",
+                    table.labels.len()
+                )));
+            }
+            let number = |column: &ReadColumn| {
+                table.number(row, column.number - 1).map_err(|text| {
+                    let what = format!("`{text}` in column {} is not a number", column.title());
+                    refuse(if is_grouped(text) {
+                        format!("{what}: it {THOUSANDS}")
+                    } else {
+                        format!("{what}: correct the cell or delete the line")
+                    })
                 })
             };
             let read = RecordRow {
@@ -120,7 +148,7 @@ impl Record {
             return Err(refuse(format!(
                 "has strains up to {most} in column {} without a unit: state it in the column's name, as in `strain (%)` or \
                  `strain (1)`, or with --units strain=% or --units strain=1",
-                deformation.name()
+                deformation.title()
             )));
         }
         Ok(Self {
@@ -128,7 +156,7 @@ impl Record {
             rows,
             load: load.quantity,
             deformation: deformation.quantity,
-            read_as: format!("{}, {}", load.read_as(), deformation.read_as()),
+            read_as: [load.clone(), deformation.clone()],
             hash: table.hash,
         })
     }
@@ -153,24 +181,62 @@ impl RecordRow {
     }
 }
 
-impl Column {
-    fn name(&self) -> String {
-        match self.label.as_str() {
-            "" => format!("{}", self.index + 1),
-            label => format!("{} `{label}`", self.index + 1),
-        }
+impl ReadColumn {
+    /// The unit is that of the options, or else that in the label.
+    fn new(
+        (quantity, index): (Quantity, usize),
+        labels: &[String],
+        options: &RecordOptions,
+    ) -> Result<Self, String> {
+        let name = labels[index].clone();
+        let given = options.units.iter().find(|(of, _)| *of == quantity);
+        let unit = given.map(|(_, unit)| unit.as_str()).or(unit_of(&name));
+        let factor = unit.map_or(Ok(1.0), |unit| {
+            quantity.factor(unit).ok_or_else(|| {
+                format!(
+                    "has the {quantity} in column {}: `{unit}` is no unit of it that is known; state one of {} with \
+                     --units {quantity}=UNIT",
+                    title(index, &name),
+                    quantity.units()
+                )
+            })
+        })?;
+        Ok(Self {
+            quantity,
+            number: index + 1,
+            unit: unit.map(str::to_owned),
+            name,
+            factor,
+        })
     }
 
-    fn read_as(&self) -> String {
-        let unit = match &self.unit {
-            Some(unit) => format!("in {unit}"),
-            None => format!(
-                "taken as {}",
-                self.quantity.units().split(',').next().unwrap_or_default()
-            ),
-        };
-        format!("{} from column {}, {unit}", self.quantity, self.name())
+    fn title(&self) -> String {
+        title(self.number - 1, &self.name)
     }
+}
+
+impl fmt::Display for ReadColumn {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        write!(f, "{} from column {}, ", self.quantity, self.title())?;
+        match &self.unit {
+            Some(unit) => write!(f, "in {unit}"),
+            None => write!(f, "no unit stated: taken as {}", self.quantity.own_unit()),
+        }
+    }
+}
+
+/// Number and name of a column.
+fn title(index: usize, label: &str) -> String {
+    match label {
+        "" => format!("{}", index + 1),
+        label => format!("{} `{label}`", index + 1),
+    }
+}
+
+/// Whether a text is a number with signs between groups of digits, as in `1,234.5` or `1'234`.
+fn is_grouped(text: &str) -> bool {
+    let sign = |c: char| c.is_whitespace() || ".,'’".contains(c);
+    text.contains(sign) && text.replace(sign, "").parse::<f64>().is_ok()
 }
 
 /// A dimension of the specimen that is needed, in mm.
@@ -190,80 +256,41 @@ fn dimension(given: Option<f64>, option: &str) -> Result<f64, String> {
 }
 
 /// The columns that the options name, or else all that are recognised.
-fn columns(table: &NumberTable, options: &RecordOptions) -> Result<Vec<Column>, String> {
-    let recognised = || {
-        let labels = table.labels.iter().enumerate();
-        labels
-            .filter_map(|(index, label)| Some((Quantity::from_label(label)?, index)))
-            .collect()
-    };
+fn columns(labels: &[String], options: &RecordOptions) -> Result<Vec<(Quantity, usize)>, String> {
+    if options.columns.is_empty() {
+        let recognised =
+            |(index, label): (usize, &String)| Some((Quantity::from_label(label)?, index));
+        return Ok(labels.iter().enumerate().filter_map(recognised).collect());
+    }
     let named = |(quantity, text): &(Quantity, String)| {
-        let by_name = table
-            .labels
-            .iter()
-            .position(|label| label.eq_ignore_ascii_case(text));
-        let number = text
-            .parse()
-            .ok()
-            .filter(|n| (1..=table.labels.len()).contains(n));
-        let index = by_name.or(number.map(|n| n - 1));
-        let index = index.ok_or_else(|| {
-            format!(
-                "has no column `{text}`: its columns are {}",
-                listed(&table.labels)
-            )
+        let by_name = (labels.iter()).position(|label| label.eq_ignore_ascii_case(text));
+        let number = (text.parse().ok()).filter(|n| (1..=labels.len()).contains(n));
+        let index = by_name.or(number.map(|n| n - 1)).ok_or_else(|| {
+            let columns = listed(labels);
+            format!("has no column `{text}`: its columns are {columns}")
         })?;
         Ok((*quantity, index))
     };
-    let chosen: Vec<(Quantity, usize)> = if options.columns.is_empty() {
-        recognised()
-    } else {
-        let named = options.columns.iter().map(named);
-        named.collect::<Result<_, String>>()?
-    };
-    chosen
-        .into_iter()
-        .map(|(quantity, index)| {
-            let label = table.labels[index].clone();
-            let given = options.units.iter().find(|(of, _)| *of == quantity);
-            let unit = given.map(|(_, unit)| unit.clone()).or_else(|| unit_of(&label));
-            let factor = match &unit {
-                None => 1.0,
-                Some(unit) => quantity.factor(unit).ok_or_else(|| {
-                    format!(
-                        "has the {quantity} in column {} in `{unit}`, which is not one of {}: state it with \
-                         --units {quantity}=UNIT",
-                        index + 1,
-                        quantity.units()
-                    )
-                })?,
-            };
-            Ok(Column {
-                quantity,
-                index,
-                label,
-                unit,
-                factor,
-            })
-        })
-        .collect()
+    options.columns.iter().map(named).collect()
 }
 
 /// The column of the load and that of the deformation. Stress is preferred to force, and strain to extension.
-fn pair<'a>(columns: &'a [Column], labels: &[String]) -> Result<[&'a Column; 2], String> {
+fn pair(
+    columns: &[(Quantity, usize)],
+    labels: &[String],
+) -> Result<[(Quantity, usize); 2], String> {
     let one = |quantities: &[Quantity]| {
         let found = quantities.iter().find_map(|quantity| {
-            let mut columns = columns.iter().filter(|column| column.quantity == *quantity);
-            Some((columns.next()?, columns.next()))
+            let mut columns = columns.iter().filter(|(of, _)| of == quantity);
+            Some((*columns.next()?, columns.next()))
         });
         match found {
-            Some((first, Some(second))) => Err(format!(
-                "has the {} in the columns {} and {}: choose one with --columns {}=NUMBER and another for the {}",
-                first.quantity,
-                first.name(),
-                second.name(),
-                first.quantity,
-                if first.quantity.is_load() {
+            Some(((quantity, first), Some((_, second)))) => Err(format!(
+                "has the {quantity} in the columns {} and {}: choose one with --columns {quantity}=NUMBER and another for \
+                 the {}",
+                title(first, &labels[first]),
+                title(*second, &labels[*second]),
+                if quantity.is_load() {
                     "strain"
                 } else {
                     "stress"

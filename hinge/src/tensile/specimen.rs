@@ -13,7 +13,7 @@ use crate::tensile::landmarks::{Draw, draw, offset_yield, uniform_end};
 use crate::tensile::linear_part::LinearPart;
 use crate::tensile::local_curve::{first_part, second_part, true_row};
 use crate::tensile::quantity::Quantity::{PlasticStrain, TrueStrain, TrueStress};
-use crate::tensile::record::Record;
+use crate::tensile::record::{ReadColumn, Record};
 use crate::tensile::regression::Regression;
 use serde::Serialize;
 use std::collections::BTreeSet;
@@ -47,8 +47,8 @@ pub enum End {
 pub struct Specimen {
     /// The file.
     pub path: PathBuf,
-    /// The columns and the units that were read, in words.
-    pub read_as: String,
+    /// The columns that were read: load and deformation.
+    pub read_as: [ReadColumn; 2],
     /// BLAKE3 hash of the file, 16 hexadecimal digits.
     pub hash: String,
     /// Number of rows in the file.

@@ -3,6 +3,7 @@
 mod bad_files;
 mod mutations;
 mod synthetic;
+mod units;
 
 use hinge::SheetMaterial;
 use hinge::tensile::{

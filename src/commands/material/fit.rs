@@ -132,6 +132,7 @@ impl FitCommand {
             println!("{json:#}");
             return Ok(());
         }
+        println!("{}\n", column_table(&fit.specimens));
         println!("{}\n", specimen_table(&fit.specimens));
         println!("{}\n", law_table(&fit));
         for note in notes(&fit) {
@@ -229,6 +230,32 @@ fn assignment(text: &str) -> Result<(Quantity, String), String> {
     Ok((quantity.trim().parse()?, value.trim().to_owned()))
 }
 
+/// The columns that were read, one a row.
+fn column_table(specimens: &[Specimen]) -> comfy_table::Table {
+    let mut table = table(["specimen", "read as", "column", "name", "unit", "factor"]);
+    for specimen in specimens {
+        for column in &specimen.read_as {
+            table.add_row([
+                file_name(specimen),
+                column.quantity.to_string(),
+                column.number.to_string(),
+                column.name.clone(),
+                column.unit.clone().unwrap_or("not stated".into()),
+                match column.quantity.own_unit() {
+                    "1" => column.factor.to_string(),
+                    unit => format!("{} {unit}", column.factor),
+                },
+            ]);
+        }
+    }
+    table
+}
+
+fn file_name(specimen: &Specimen) -> String {
+    let name = specimen.path.file_name().unwrap_or_default();
+    name.to_string_lossy().into_owned()
+}
+
 /// The specimens, one a row.
 fn specimen_table(specimens: &[Specimen]) -> comfy_table::Table {
     let mut table = table([
@@ -254,11 +281,7 @@ fn specimen_table(specimens: &[Specimen]) -> comfy_table::Table {
         };
         let [from, to] = it.linear.strain.map(|strain| 100.0 * strain);
         table.add_row([
-            it.path
-                .file_name()
-                .unwrap_or_default()
-                .to_string_lossy()
-                .into_owned(),
+            file_name(it),
             it.rows.to_string(),
             it.dropped_for(Cause::Toe).to_string(),
             it.dropped_for(Cause::Unloading).to_string(),
@@ -306,11 +329,12 @@ fn law_table(fit: &MaterialFit) -> comfy_table::Table {
 
 /// What a user must know about the law, one sentence each.
 fn notes(fit: &MaterialFit) -> Vec<String> {
-    let mut notes = vec![format!(
+    let mut notes = units_taken(&fit.specimens);
+    notes.push(format!(
         "the table has {} rows and deviates from the mean curve by at most {:.2} %",
         fit.table.len(),
         100.0 * fit.table_deviation
-    )];
+    ));
     let ends = |origin| {
         let mut rows = fit.curve.iter().filter(|row| row.origin == origin);
         rows.clone()
@@ -351,4 +375,25 @@ fn notes(fit: &MaterialFit) -> Vec<String> {
         source => format!("fracture strain: {}", source.words()),
     });
     notes
+}
+
+/// The units that no file and no option states, one note a quantity.
+fn units_taken(specimens: &[Specimen]) -> Vec<String> {
+    let mut taken: Vec<(Quantity, Vec<String>)> = Vec::new();
+    for specimen in specimens {
+        for column in specimen.read_as.iter().filter(|it| it.unit.is_none()) {
+            match taken.iter_mut().find(|(of, _)| *of == column.quantity) {
+                Some((_, files)) => files.push(file_name(specimen)),
+                None => taken.push((column.quantity, vec![file_name(specimen)])),
+            }
+        }
+    }
+    let note = |(quantity, files): &(Quantity, Vec<String>)| {
+        format!(
+            "no unit of the {quantity} is stated in {}: taken as {}; --units {quantity}=UNIT states another",
+            files.join(", "),
+            quantity.own_unit()
+        )
+    };
+    taken.iter().map(note).collect()
 }

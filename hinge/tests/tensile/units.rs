@@ -1,0 +1,331 @@
+//! One curve in every unit gives one law; a unit that is not known, or stated nowhere, is never passed over in silence.
+
+use super::{OPTIONS, fit_with, write};
+use crate::synthetic::Law;
+use hinge::tensile::{MaterialFit, Quantity, RecordOptions, TensileError};
+
+/// sigma = 30.164 + 15 (1 - exp(-eps_p / 0.03)), of a specimen of 10 x 0.5 mm with a gauge length of 50 mm.
+const POLYMER: Law = Law {
+    name: "polymer",
+    young: 2500.0,
+    stress: |plastic| 30.164 + 15.0 * (1.0 - (-plastic / 0.03).exp()),
+    end: 0.08,
+};
+const YIELD: f64 = 30.57;
+const STEEL: Law = Law {
+    name: "steel",
+    young: 200e3,
+    stress: |plastic| 300.0 + 500.0 * plastic,
+    end: 0.08,
+};
+const AREA: f64 = 5.0;
+const LENGTH: f64 = 50.0;
+const LBF: f64 = 4.448_221_615_260_5;
+
+fn specimen() -> RecordOptions {
+    RecordOptions {
+        gauge_length: Some(LENGTH),
+        width: Some(10.0),
+        thickness: Some(0.5),
+        ..RecordOptions::default()
+    }
+}
+
+/// Rows of deformation and load in units of `deformation` and `load`, between a time and an empty column.
+fn text(law: &Law, header: &str, deformation: f64, load: f64) -> String {
+    let mut text = format!("{header}\n");
+    for (time, [strain, stress]) in law.record(600).into_iter().enumerate() {
+        let (strain, stress) = (strain / deformation, stress / load);
+        text += &format!("{time},{strain:.9},{stress:.9},\n");
+    }
+    text
+}
+
+fn read(text: &str, options: &RecordOptions) -> Result<MaterialFit, TensileError> {
+    let folder = tempfile::tempdir().unwrap();
+    let path = write(folder.path(), "test.csv", text);
+    MaterialFit::new(&[(path, options.clone())], &OPTIONS)
+}
+
+#[track_caller]
+fn is_polymer(text: &str, options: &RecordOptions) {
+    let case = text.lines().take(3).collect::<Vec<_>>().join(" | ");
+    let fit = read(text, options).unwrap_or_else(|error| panic!("{case}: {error}"));
+    let error = fit.young.mean / POLYMER.young - 1.0;
+    assert!(error.abs() < 0.01, "{case}: E {:?}", fit.young);
+    let error = fit.offset_yield.mean - YIELD;
+    assert!(error.abs() < 0.1, "{case}: Rp0.2 {:?}", fit.offset_yield);
+}
+
+#[track_caller]
+fn message(text: &str, options: &RecordOptions) -> String {
+    let message = read(text, options).map(|fit| fit.young).unwrap_err();
+    let message = message.to_string();
+    assert!(message.contains("test.csv"), "{message}");
+    message
+}
+
+/// The number of N, mm, MPa or 1 in each unit, from its definition.
+#[test]
+fn forces_lengths_stresses_and_strains_are_read_in_their_units() {
+    assert!((POLYMER.offset_yield() - YIELD).abs() < 0.02);
+    for (unit, newton) in [
+        ("N", 1.0),
+        ("mN", 1e-3),
+        ("cN", 1e-2),
+        ("daN", 10.0),
+        ("dan", 10.0),
+        ("KN", 1e3),
+        ("MN", 1e6),
+        ("gf", 9.806_65e-3),
+        ("kgf", 9.806_65),
+        ("lbf", LBF),
+        ("lb", LBF),
+        ("Lbs", LBF),
+        ("kip", 1e3 * LBF),
+    ] {
+        for (length, mm) in [
+            ("mm", 1.0),
+            ("cm", 10.0),
+            ("m", 1e3),
+            ("um", 1e-3),
+            ("\u{b5}m", 1e-3),
+            ("\u{3bc}m", 1e-3),
+            ("in", 25.4),
+            ("Inch", 25.4),
+            ("inches", 25.4),
+        ] {
+            let header = format!("Time (s),Stroke ({length}),Load ({unit}),");
+            let text = text(&POLYMER, &header, mm / LENGTH, newton / AREA);
+            is_polymer(&text, &specimen());
+        }
+    }
+    for (unit, mpa) in [
+        ("MPa", 1.0),
+        ("mpa", 1.0),
+        ("N/mm2", 1.0),
+        ("N/mm²", 1.0),
+        ("N / mm^2", 1.0),
+        ("MN/m2", 1.0),
+        ("Pa", 1e-6),
+        ("kPa", 1e-3),
+        ("GPa", 1e3),
+        ("bar", 0.1),
+        ("N/cm²", 0.01),
+        ("kgf/mm2", 9.806_65),
+        ("kgf/cm^2", 0.098_066_5),
+        ("psi", LBF / 645.16),
+        ("ksi", 6.894_757_293_168),
+    ] {
+        for (strain, ratio) in [
+            ("-", 1.0),
+            ("1", 1.0),
+            ("mm/mm", 1.0),
+            ("in/in", 1.0),
+            ("%", 0.01),
+            ("\u{b5}ε", 1e-6),
+            ("\u{3bc}ε", 1e-6),
+            ("ue", 1e-6),
+            ("microstrain", 1e-6),
+        ] {
+            let header = format!("Time (s),Strain ({strain}),Stress ({unit}),");
+            let text = text(&POLYMER, &header, ratio, mpa);
+            is_polymer(&text, &RecordOptions::default());
+        }
+    }
+}
+
+/// Names, then units of which some are no unit of a column that is read.
+#[test]
+fn a_row_of_units_is_the_row_most_of_which_are_units() {
+    for units in [
+        "sec,mm,kN,",
+        "(sec),(mm),(kN),",
+        "segments,mm,kN,",
+        "\u{b0}C,[mm],[kN],",
+        "-,mm,kN,",
+        "fortnights,mm,kN,",
+    ] {
+        for names in ["Time,Stroke,Force,", "Sample,Stroke,Force,Remark"] {
+            let header = format!("\"S235\",,,\n{names}\n{units}");
+            let steel = text(&STEEL, &header, 1.0 / LENGTH, 1e3 / AREA);
+            let fit = read(&steel, &specimen()).unwrap();
+            let error = fit.young.mean / STEEL.young - 1.0;
+            assert!(error.abs() < 0.01, "{header}: {:?}", fit.young);
+            let error = fit.offset_yield.mean / STEEL.offset_yield() - 1.0;
+            assert!(error.abs() < 0.01, "{header}: {:?}", fit.offset_yield);
+        }
+    }
+    // The units of columns without names, which the options choose.
+    let chosen = RecordOptions {
+        columns: vec![
+            (Quantity::Extension, "2".into()),
+            (Quantity::Force, "3".into()),
+        ],
+        ..specimen()
+    };
+    let header = "\"S235\"\nsec,mm,kN,";
+    let steel = text(&STEEL, header, 1.0 / LENGTH, 1e3 / AREA);
+    let fit = read(&steel, &chosen).unwrap();
+    assert!(
+        (fit.young.mean / STEEL.young - 1.0).abs() < 0.01,
+        "{:?}",
+        fit.young
+    );
+}
+
+#[test]
+fn an_unknown_unit_of_a_column_that_is_read_is_an_error() {
+    let rows = |header: &str| text(&POLYMER, header, 1.0 / LENGTH, 1.0 / AREA);
+    for (header, unit, quantity) in [
+        ("Time (s),Stroke (mm),Load (tons),", "tons", "force"),
+        ("Time (s),Stroke (mm),Load / tons,", "tons", "force"),
+        ("Time (s),Stroke (mm),Load in tons,", "tons", "force"),
+        ("Time (s),Stroke (mm),Load (mm),", "mm", "force"),
+        ("Time (s),Stroke (mm),Load (mn),", "mn", "force"),
+        ("Time (s),Stroke (ells),Load (N),", "ells", "extension"),
+        ("Time,Stroke,Load,\nsec,mm,tons,", "tons", "force"),
+        ("Time,Stroke,Load,\nsec,ells,N,", "ells", "extension"),
+    ] {
+        let message = message(&rows(header), &specimen());
+        for part in [
+            format!("has the {quantity} in column "),
+            format!("`{unit}`"),
+            format!("--units {quantity}=UNIT"),
+        ] {
+            assert!(message.contains(&part), "{header}: {message}");
+        }
+        let known = if quantity == "force" { "daN" } else { "inches" };
+        assert!(message.contains(known), "{header}: {message}");
+    }
+    // The options decide, and a column that is not read may have any unit.
+    let stated = RecordOptions {
+        units: vec![(Quantity::Force, "N".into())],
+        ..specimen()
+    };
+    is_polymer(&rows("Time (s),Stroke (mm),Load (Cell 1),"), &stated);
+    is_polymer(
+        &rows("Time (moons),Stroke (mm),Load (N),Energy (ergs)"),
+        &specimen(),
+    );
+    let both = text(&POLYMER, "Load (tons),Strain (1),Stress (MPa),", 1.0, 1.0);
+    is_polymer(&both, &RecordOptions::default());
+}
+
+#[test]
+fn the_record_says_how_each_column_was_read() {
+    let folder = tempfile::tempdir().unwrap();
+    let header = "Time,Strain 1,engineering_stress,";
+    let path = write(folder.path(), "test.csv", &text(&POLYMER, header, 1.0, 1.0));
+    let ksi = RecordOptions {
+        units: vec![(Quantity::Stress, "ksi".into())],
+        ..RecordOptions::default()
+    };
+    for (options, unit, factor, words) in [
+        (
+            RecordOptions::default(),
+            None,
+            1.0,
+            "no unit stated: taken as MPa",
+        ),
+        (ksi, Some("ksi"), 6.894_757_293_168_361, "in ksi"),
+    ] {
+        let fit = fit_with(std::slice::from_ref(&path), &OPTIONS, &options);
+        let [load, deformation] = &fit.specimens[0].read_as;
+        assert_eq!((load.quantity, load.number), (Quantity::Stress, 3));
+        assert_eq!(load.unit.as_deref(), unit);
+        assert!(
+            (load.factor / factor - 1.0).abs() < 1e-14,
+            "{}",
+            load.factor
+        );
+        assert_eq!(
+            load.to_string(),
+            format!("stress from column 3 `engineering_stress`, {words}")
+        );
+        assert!((fit.young.mean / factor / POLYMER.young - 1.0).abs() < 0.01);
+        // The number of a specimen is no unit.
+        assert_eq!(deformation.quantity, Quantity::Strain);
+        assert_eq!((deformation.number, &deformation.unit), (2, &None));
+    }
+}
+
+/// 1,234 N is not 1.234 N.
+#[test]
+fn separators_of_thousands_are_an_error() {
+    let rows = |header: &str, row: &dyn Fn(f64, f64) -> String| {
+        let rows = POLYMER.record(400).into_iter();
+        let rows: Vec<String> = rows.map(|[e, s]| row(50.0 * e, 100.0 * s)).collect();
+        format!("{header}\n{}\n", rows.join("\n"))
+    };
+    let grouped = |number: f64, sign: &str| match number {
+        n if n < 999.5 => format!("{n:.0}"),
+        n => format!("{}{sign}{:03.0}", (n / 1e3).floor(), (n % 1e3).floor()),
+    };
+    let wide = RecordOptions {
+        width: Some(20.0),
+        thickness: Some(5.0),
+        ..specimen()
+    };
+    for (case, text) in [
+        (
+            "of the United States, quoted",
+            rows("Extension (mm),Load (N)", &|x, f| {
+                format!("\"{x:.5}\",\"{}.5\"", grouped(f, ","))
+            }),
+        ),
+        (
+            "Swiss",
+            rows("Weg (mm);Kraft (N)", &|x, f| {
+                format!("{x:.5};{}.5", grouped(f, "'"))
+            }),
+        ),
+        (
+            "whole numbers, comma",
+            rows("Weg (um);Kraft (N)", &|x, f| {
+                format!("{:.0};{}", 1e3 * x, grouped(f, ","))
+            }),
+        ),
+        (
+            "whole numbers, point",
+            rows("Weg (um);Kraft (N)", &|x, f| {
+                format!("{:.0};{}", 1e3 * x, grouped(f, "."))
+            }),
+        ),
+    ] {
+        let message = message(&text, &wide);
+        assert!(
+            message.contains("separators of thousands"),
+            "{case}: {message}"
+        );
+    }
+    // Other separators are found between such numbers: an error too.
+    let unquoted = rows("Extension (mm),Load (N)", &|x, f| {
+        format!("{x:.5},{}", grouped(f, ","))
+    });
+    let comma = |sign: &str| {
+        rows("Weg (mm);Kraft (N)", &|x, f| {
+            let way = format!("{x:.5}").replace('.', ",");
+            format!("{way};{},5", grouped(f, sign))
+        })
+    };
+    for text in [unquoted, comma("."), comma("\u{202f}")] {
+        message(&text, &wide);
+    }
+}
+
+#[test]
+fn the_documentation_lists_the_known_units() {
+    let page = include_str!("../../../docs/MATERIALS.md");
+    for quantity in [
+        Quantity::Force,
+        Quantity::Stress,
+        Quantity::Extension,
+        Quantity::Strain,
+    ] {
+        let row = format!("\n| {quantity} | ");
+        let (_, row) = page.split_once(&row).unwrap();
+        let units = format!("| {} |", quantity.units());
+        assert!(row.lines().next().unwrap().ends_with(&units), "{units}");
+    }
+}
