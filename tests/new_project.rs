@@ -221,7 +221,7 @@ fn a_project_with_all_defaults_is_designed() {
     let work = Workplace::new();
     let plate = weights().replace("pet-0.5mm", "polypropylene-3mm");
     let said = work.output(&format!("init plate --weights {plate}"));
-    assert!(said.contains("nothing has to hold it flat"), "{said}");
+    assert!(said.contains("Nothing holds its panels there"), "{said}");
     work.output(&format!(
         "init film --thickness 0.5 --weights {}",
         weights()

@@ -134,8 +134,7 @@ pub const RUN_FILES: [RunFile; 18] = [
 /// The name of the animation of the deployment.
 pub const ANIMATION: &str = "deployment.png";
 
-const CUTS: &str =
-    "cuts in cutting order, 1:1 in mm; layers HOLES, CUT, OUTLINE, REGISTRATION, ANNOTATION";
+const CUTS: &str = "cuts in cutting order, 1:1 in mm; layers HOLES, ATTACHMENT_HOLES, CUT, OUTLINE, ATTACHMENTS, REGISTRATION, ANNOTATION";
 const FLAT: &str = "the flat sheet with its cuts";
 const BEFORE: &str = "the sheet in the state that is compared with the target, before the search";
 const AFTER: &str = "the same after the search";

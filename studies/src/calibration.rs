@@ -198,7 +198,7 @@ impl CalibrationStudy {
         format!(
             "# A sheet, measured, calibrated and cut again\n\n\
              `{}`; the cutter removes {kerf:.2} mm, the sheet is {thickness:.2} mm thick with a modulus of {young:.0} MPa, and every ligament is \
-             off by {} mm. Corners measured to {} mm, readings to {} %. `kirigami-studies calibration`.\n\n{}\n```\n{report}```\n",
+             off by {} mm. Corners measured to {} mm, readings to {} %. Everything is computed: no sheet was cut. `kirigami-studies calibration`.\n\n{}\n```\n{report}```\n",
             self.scene.display(),
             self.ligament,
             self.point_error,

@@ -31,7 +31,8 @@ impl KeysCommand {
 const HEADING: &str = "# Keys of the configuration files
 
 Written by `kirigami-studies keys` from the types that read the files. An unknown key is an error that names the nearest
-known one. Ranges are checked when a file is read; the error states them.
+known one. Ranges are checked when a file is read; the error states them. The keys of a table of machines (`kirigami cut --machines`) and
+of the map of an import (`kirigami dataset import`) are explained in `configs/machines.toml` and `configs/import/example.toml`.
 ";
 
 fn page() -> Result<String> {

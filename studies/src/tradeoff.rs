@@ -21,8 +21,9 @@ pub struct TradeoffCommand {
 
 const HEADING: &str = "# Speed against accuracy
 
-Each table is the output of the command that it names; `kirigami-studies tradeoff` joins them. CPU times are comparable within
-a table.
+The tables are those of the studies in docs/results; `kirigami-studies tradeoff` joins them. *Path dependence*, *Ensemble* and *The sheet's equilibrium* are of
+settled studies, whose code is in the history: [results](results/README.md). CPU times are comparable within a table. Nearly all errors are of films that are
+held flat; of plates there is the table of meshes in [plates](results/plates/tradeoff.md).
 ";
 
 /// The folders of the studies, in the order of the page.
