@@ -73,6 +73,25 @@ fn a_plate_springs_back_and_one_of_twice_the_thickness_twice_as_far() {
     assert!(text.contains("of the opening stays") && text.contains("Not in these numbers"));
 }
 
+/// Outside the training domain the law says nothing, and no number is printed.
+#[test]
+fn what_stays_of_a_sheet_outside_the_domain_is_not_known() {
+    let work = Workplace::new();
+    let law = repository("data/polypropylene-3mm/springback.json");
+    let (weights, named) = weights_with(&law);
+    four_panels(
+        &work,
+        "far.toml",
+        &[("stroke = 22.0", "stroke = 56.0"), (weights, &named)],
+    );
+    let outside = "4 hinges are outside the training domain at full load";
+    let error = work.error(&springback("far.toml", ""));
+    assert!(error.contains(outside), "{error}");
+    let listed = work.output("design far.toml --steps 1 --force --out run");
+    let said = format!("springback        not known: {outside}");
+    assert!(listed.contains(&said), "{listed}");
+}
+
 /// The report of the design of a scene.
 fn report(work: &Workplace, scene: &str) -> Value {
     serde_json::from_str(&work.output(&format!("design {scene} --json"))).unwrap()

@@ -428,7 +428,7 @@ fn of_branch(check: &SheetCheck, branch: &BranchCheck) -> Vec<SheetFinding> {
     });
     let found = [
         stopped,
-        Some(flatness(check, branch, &of)),
+        flatness(check.support, check.size, &branch.path, &of),
         other_load(check, last, &of),
         tearing(branch, &of),
         still_moving(last, &of),
@@ -436,32 +436,30 @@ fn of_branch(check: &SheetCheck, branch: &BranchCheck) -> Vec<SheetFinding> {
     found.into_iter().flatten().collect()
 }
 
-/// Whether the sheet is flat, by the rule of a design, where it is least so: on the way or at the end.
-fn flatness(check: &SheetCheck, branch: &BranchCheck, of: &str) -> SheetFinding {
+/// Whether a sheet of a size (mm) is flat, by the rule of a design, where it is least so: on the way or at the end.
+fn flatness(support: Posture, size: f64, path: &[StateCheck], of: &str) -> Option<SheetFinding> {
     let most = |value: fn(&StateCheck) -> f64| {
-        let one_most = |one: &&StateCheck, other: &&StateCheck| value(one).total_cmp(&value(other));
-        branch.path.iter().max_by(one_most)
+        path.iter()
+            .max_by(|one, other| value(one).total_cmp(&value(other)))
     };
-    let (Some(tilted), Some(off)) = (most(|state| state.tilt_deg), most(|state| state.corners[0]))
-    else {
-        return finding(
-            Severity::Error,
-            format!("no state of the sheet is known{of}"),
-        );
-    };
+    let tilted = most(|state| state.tilt_deg)?;
+    let off = most(|state| state.corners[0])?;
     let [rms, largest] = off.corners;
-    let (error, tilt) = (rms / check.size, tilted.tilt_deg);
-    let held = check.support == Posture::HeldFlat;
-    let (severity, what) = match (Flatness::of(error, tilt), held) {
-        (Flatness::Flat, true) => (Severity::Note, "goes where the law has it"),
-        (Flatness::Flat, false) => (Severity::Note, "stays flat"),
-        (Flatness::Tilts, true) => (Severity::Warning, "opens otherwise than predicted"),
-        (Flatness::Tilts, false) => (Severity::Warning, "does not stay flat"),
-        (Flatness::Falls, true) => (Severity::Error, "opens otherwise than predicted"),
-        (Flatness::Falls, false) => (Severity::Error, "does not stay flat"),
+    let (error, tilt) = (rms / size, tilted.tilt_deg);
+    let [as_predicted, otherwise] = match support {
+        Posture::HeldFlat => [
+            "goes where the law has it",
+            "opens otherwise than predicted",
+        ],
+        _ => ["stays flat", "does not stay flat"],
+    };
+    let (severity, what) = match Flatness::of(error, tilt) {
+        Flatness::Flat => (Severity::Note, as_predicted),
+        Flatness::Tilts => (Severity::Warning, otherwise),
+        Flatness::Falls => (Severity::Error, otherwise),
     };
     let at = |state: &StateCheck| format!("at {:.0} % of the path", 100.0 * state.fraction);
-    finding(
+    Some(finding(
         severity,
         format!(
             "the sheet {what}: the panels tilt by up to {tilt:.1} deg, {}, and the corners are {rms:.2} mm (root mean square) from where \
@@ -470,7 +468,7 @@ fn flatness(check: &SheetCheck, branch: &BranchCheck, of: &str) -> SheetFinding 
             at(off),
             100.0 * error
         ),
-    )
+    ))
 }
 
 fn other_load(check: &SheetCheck, last: &StateCheck, of: &str) -> Option<SheetFinding> {
@@ -514,4 +512,58 @@ fn outside_domain(check: &SheetCheck) -> Option<SheetFinding> {
             hinges.join(", ")
         ))
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Flat at the end is not flat on the way.
+    #[test]
+    fn the_verdict_is_of_the_whole_path() {
+        let state = |fraction: f64, tilt_deg: f64, rms: f64| StateCheck {
+            fraction,
+            stroke: None,
+            load: None,
+            corners: [rms, 2.0 * rms],
+            opening_deg: [20.0; 2],
+            tilt_deg,
+            z: [0.0; 2],
+            bending: 0.0,
+            kinetic: 0.0,
+        };
+        let found = |on_the_way: [f64; 2], support| {
+            let path = [
+                state(0.4, on_the_way[0], on_the_way[1]),
+                state(1.0, 0.4, 0.3),
+            ];
+            flatness(support, 200.0, &path, "").unwrap()
+        };
+        // 0.3 and 5 % of the sheet are 0.6 and 10 mm.
+        for (on_the_way, severity, what) in [
+            ([0.9, 0.59], Severity::Note, "stays flat"),
+            ([2.3, 0.3], Severity::Warning, "does not stay flat"),
+            ([0.3, 0.61], Severity::Warning, "does not stay flat"),
+            ([5.1, 0.3], Severity::Error, "does not stay flat"),
+            ([0.3, 10.1], Severity::Error, "does not stay flat"),
+        ] {
+            let found = found(on_the_way, Posture::Free);
+            assert_eq!(found.severity, severity, "{found:?}");
+            assert!(
+                found.message.contains(&format!("the sheet {what}: ")),
+                "{found:?}"
+            );
+            let largest = on_the_way[0].max(0.4);
+            let tilt = format!("tilt by up to {largest:.1} deg");
+            assert!(found.message.contains(&tilt), "{found:?}");
+        }
+        let held = found([0.3, 1.0], Posture::HeldFlat);
+        for part in [
+            "opens otherwise than predicted",
+            "2.00 mm at most, at 40 % of the path",
+        ] {
+            assert!(held.message.contains(part), "{held:?}");
+        }
+        assert_eq!(flatness(Posture::Free, 200.0, &[], ""), None);
+    }
 }

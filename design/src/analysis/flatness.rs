@@ -93,6 +93,26 @@ mod tests {
     }
 
     #[test]
+    fn a_sheet_is_flat_if_neither_its_corners_nor_its_panels_are_off() {
+        for (error, tilt_deg, expected) in [
+            (0.0, 0.0, Flatness::Flat),
+            (0.003, 1.0, Flatness::Flat),
+            (0.0031, 0.0, Flatness::Tilts),
+            (0.0, 1.1, Flatness::Tilts),
+            (0.05, 5.0, Flatness::Tilts),
+            (0.051, 0.0, Flatness::Falls),
+            (0.0, 5.1, Flatness::Falls),
+            (f64::NAN, 0.0, Flatness::Falls),
+        ] {
+            assert_eq!(
+                Flatness::of(error, tilt_deg),
+                expected,
+                "{error} {tilt_deg}"
+            );
+        }
+    }
+
+    #[test]
     fn plates_with_narrow_ligaments_stay_flat_and_films_do_not() {
         let of = |posture, thickness| expected_departure(posture, &film(thickness), 3.6, 20.0);
         for [ratio, error] in NOTHING {
