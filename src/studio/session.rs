@@ -5,6 +5,7 @@ use crate::commands::design::write_run;
 use crate::studio::draft::{Draft, Steps, draft};
 use crate::studio::event::{Event, Kind};
 use crate::studio::everyday::{Everyday, Listener, Shown, refusal};
+use crate::studio::panels::with_panels;
 use crate::studio::project::Project;
 use crate::studio::request::{Change, Files, Request};
 use crate::studio::run_listing::files_of_run;
@@ -109,6 +110,7 @@ impl Session {
                 self.open(project, scene);
             }
             Request::Change(change) => self.change(change)?,
+            Request::Panels { panels } => self.panels(panels)?,
             Request::Drawing { svg } => self.drawing(&svg)?,
             Request::Design => self.design()?,
             // The engine pauses a search at once.
@@ -155,6 +157,13 @@ impl Session {
     fn change(&mut self, Change { scene, by }: Change) -> Result<()> {
         let changed = self.opened()?.scene.changed(*scene)?;
         self.show(changed)?.by = Some(by);
+        self.draft()
+    }
+
+    fn panels(&mut self, panels: [usize; 2]) -> Result<()> {
+        let changed = with_panels(&self.opened()?.scene, panels)?;
+        self.show(changed)?;
+        self.tell_scene();
         self.draft()
     }
 
