@@ -82,7 +82,7 @@ fn what_stays_of_a_sheet_outside_the_domain_is_not_known() {
     four_panels(
         &work,
         "far.toml",
-        &[("stroke = 22.0", "stroke = 56.0"), (weights, &named)],
+        &[("stroke = 22.0", "stroke = 62.0"), (weights, &named)],
     );
     let outside = "4 hinges are outside the training domain at full load";
     let error = work.error(&springback("far.toml", ""));

@@ -145,6 +145,29 @@ fn after(tab: &mut Tab, action: impl FnOnce(&mut Tab)) {
     tab.wait("document.documentElement.dataset.working === ''");
 }
 
+/// That the page shows a sheet and its fields.
+const DRAWN: &str = "!document.body.classList.contains('empty') && cornersDrawn.length > 0 \
+    && document.querySelector('[data-path=\"sheet.panels.0\"]') !== null";
+
+/// Waits until a page that was opened shows a sheet at rest.
+fn at_rest(tab: &mut Tab) {
+    tab.wait(DRAWN);
+    tab.wait("document.documentElement.dataset.working === ''");
+}
+
+/// Opens the page of a sheet again: it shows the sheet and its fields, and no script has failed.
+fn reload(tab: &mut Tab, studio: &Studio) {
+    let error = "document.documentElement.dataset.error ?? null";
+    assert_eq!(tab.value(error), Value::Null);
+    tab.go(&studio.address);
+    tab.wait(DRAWN);
+    assert_eq!(tab.value(error), Value::Null);
+}
+
+/// That the search of the sheet that is shown has ended.
+const FOUND: &str = "/Search: (\\d+ steps|settled)/.test(document.getElementById('summary').textContent) \
+    && document.documentElement.dataset.working === ''";
+
 /// Types a number into the field of a key.
 fn type_into(tab: &mut Tab, key: &str, number: &str) {
     tab.click(&format!("[data-path='{key}']"));
@@ -160,8 +183,17 @@ fn a_sheet_is_drawn_designed_and_cut_in_the_browser() {
     let mut studio = Studio::start(&work, A4);
     let project = work.path("studio/a4-plate");
     let mut tab = Tab::open(&studio.address);
-    after(&mut tab, |_| {});
+    at_rest(&mut tab);
     let first = scene_on_disk(&project);
+    reload(&mut tab, &studio);
+
+    // A page that is opened while the path is computed shows it, too.
+    type_into(&mut tab, "drive.stroke", "41");
+    tab.wait("document.getElementById('speed').textContent.includes('draft')");
+    reload(&mut tab, &studio);
+    tab.wait(
+        "run.scene.includes('stroke = 41.0') && document.documentElement.dataset.working === ''",
+    );
 
     // A stroke that is typed shows the new equilibrium at once, and becomes a scene.
     after(&mut tab, |tab| {
@@ -214,13 +246,28 @@ fn a_sheet_is_drawn_designed_and_cut_in_the_browser() {
     // The search is paused and goes on; its steps are seen.
     after(&mut tab, |tab| {
         tab.click("#design");
-        tab.wait("document.getElementById('progress').textContent.startsWith('Step')");
+        tab.wait("/^Step [1-9]/.test(document.getElementById('progress').textContent)");
         tab.click("#design");
     });
-    after(&mut tab, |tab| tab.click("#design"));
+    reload(&mut tab, &studio);
+    let summary = "document.getElementById('summary').textContent";
+    tab.wait(&format!("{summary}.includes('stopped after')"));
+    tab.click("#design");
+    tab.wait(&format!("{summary}.includes('Search: step ')"));
+    reload(&mut tab, &studio);
+    tab.wait(FOUND);
     tab.wait(
         "[...document.querySelectorAll('#files a')].some((link) => link.textContent === 'cut.dxf')",
     );
+    // The search that is shown is that of the sheet that is shown.
+    let designs = tab.value("designs.length");
+    after(&mut tab, |tab| tab.click("#undo"));
+    tab.wait(&format!("{summary}.includes('not begun')"));
+    after(&mut tab, |tab| tab.click("#redo"));
+    tab.wait(FOUND);
+    assert_eq!(tab.value("designs.length"), designs);
+    reload(&mut tab, &studio);
+    tab.wait(FOUND);
     let fetched = "(async () => (await fetch([...document.querySelectorAll('#files a')].find((link) => link.textContent === 'cut.dxf').href)).text())()";
     let fetched = tab.value(fetched);
     assert_eq!(
@@ -240,18 +287,47 @@ fn a_sheet_is_drawn_designed_and_cut_in_the_browser() {
     assert_eq!(cut(&run), cut(&repeated));
     assert_eq!(fetched, json!(cut(&run)));
 
-    // Tiles, from the run of the sheet that is shown.
-    tab.value("document.getElementById('paper').value = 'a4'");
+    // Tiles and the file of a machine, from the run of the sheet that is shown, with what services refuse. Only what was written is
+    // said to be.
     tab.click("#write");
-    tab.wait("[...document.querySelectorAll('#files a')].some((link) => link.textContent === 'cut/tiles-a4.pdf')");
+    let said = "document.getElementById('progress').textContent";
+    tab.wait(&format!("{said}.startsWith('nothing was written')"));
+    tab.value("document.getElementById('paper').value = 'a4'");
+    tab.value("document.getElementById('machine').value = 'laser-service'");
+    tab.click("#write");
+    let tiles = "tiles-a4.pdf in ";
+    tab.wait(&format!("{said}.startsWith('written: ') && {said}.includes('{tiles}') && {said}.endsWith('cut/laser-service')"));
+    for _ in 0..2 {
+        for name in ["cut/tiles-a4.pdf", "cut/laser-service/cut.dxf"] {
+            tab.wait(&format!("[...document.querySelectorAll('#files a')].some((link) => link.textContent === '{name}')"));
+        }
+        tab.wait("document.getElementById('verdicts').textContent.includes('laser-service, SendCutSend: refuses holes of')");
+        tab.wait(FOUND);
+        reload(&mut tab, &studio);
+    }
+    assert!(
+        run.join("cut/tiles-a4.pdf").is_file() && run.join("cut/laser-service/cut.dxf").is_file()
+    );
 
     // The page says when the studio has ended; the next one opens the sheet as it was.
     let left = scene_on_disk(&project);
     studio.interrupt();
     tab.wait("!document.getElementById('offline').hidden");
     let again = Studio::start(&work, project.to_str().unwrap());
-    let scene = next(&mut again.events(), "scene");
-    assert_eq!(scene["file"], json!(project.join("scene.toml")));
+    let copied = Studio::start(&work, run.to_str().unwrap());
+    let opened = [(&again, &project), (&copied, &work.path("studio/design-1"))];
+    for (studio, project) in opened {
+        let mut events = studio.events();
+        let sheet = next(&mut events, "sheet");
+        assert_eq!(sheet["file"], json!(project.join("scene.toml")));
+        let files = next(&mut events, "files")["files"].to_string();
+        assert!(files.contains("cut.dxf"), "{files}");
+        let page = next(&mut events, "page");
+        let end = page["page"]["end_of_search"].as_str().unwrap();
+        assert!(end.contains("steps") && !end.contains("stopped"), "{end}");
+        assert_eq!(page["run"], json!("design-1"));
+        assert_eq!(cut(&project.join("design-1")), cut(&run));
+    }
     assert_eq!(scene_on_disk(&project), left);
 }
 
@@ -268,6 +344,7 @@ fn the_tutorial_leads_from_an_empty_page_to_a_cut_sheet() {
     let work = Workplace::new();
     let studio = Studio::start(&work, "");
     let mut tab = Tab::open(&studio.address);
+    tab.go(&studio.address);
     tab.wait("document.getElementById('new-says').textContent.includes('W within')");
     tab.value("document.getElementById('new-name').value = 'Leaf'");
     picture(&mut tab, "begin");
@@ -301,7 +378,7 @@ fn panels_are_held_and_pulled_by_clicks() {
     let work = Workplace::new();
     let studio = Studio::start(&work, A4);
     let mut tab = Tab::open(&studio.address);
-    after(&mut tab, |_| {});
+    at_rest(&mut tab);
     let project = work.path("studio/a4-plate");
     // A panel is clicked and let go, and clamped.
     tab.click("input[value=grip]");
@@ -322,7 +399,9 @@ fn panels_are_held_and_pulled_by_clicks() {
         tab.value("document.querySelector('#grip-menu button').click()");
     });
     assert!(scene_on_disk(&project).contains("at = \"centroid\""));
-    // Another number of columns: nothing of the sheet before is used.
+    // Another number of columns: nothing of the sheet before is used, and what pulled it pulls it.
+    let load = "states.curve.at(-1)[1]";
+    let before = tab.value(load).as_f64().unwrap();
     after(&mut tab, |tab| {
         tab.value("document.querySelector('[data-fields=sheet]').open = true");
         type_into(tab, "sheet.panels.0", "4");
@@ -330,6 +409,11 @@ fn panels_are_held_and_pulled_by_clicks() {
     });
     assert!(scene_on_disk(&project).contains("panels = [4, 4]"));
     assert_eq!(tab.value("hingeCount"), json!(24));
+    let now = tab.value(load).as_f64().unwrap();
+    assert!(
+        now > 0.2 * before && now < 10.0 * before,
+        "{now} N, not {before} N"
+    );
     assert_eq!(
         tab.value("document.getElementById('refusal').hidden"),
         json!(true)
@@ -432,8 +516,8 @@ fn the_scene_of_a_user_is_not_changed() {
     let before = std::fs::read(&scene).unwrap();
     let studio = [0, 1].map(|_| Studio::start(&work, A4));
     let files = studio.each_ref().map(|studio| {
-        let mut scene = next(&mut studio.events(), "scene");
-        PathBuf::from(scene["file"].take().as_str().unwrap())
+        let mut sheet = next(&mut studio.events(), "sheet");
+        PathBuf::from(sheet["file"].take().as_str().unwrap())
     });
     // Each studio has a copy of its own, with runs of its own.
     let copy = std::fs::read_to_string(&files[0]).unwrap();

@@ -13,12 +13,14 @@ use design::objective::design_problem::Deployment;
 use design::pattern::design_vector::DesignVector;
 use design::scene::{Paper, Scene};
 use output::cut_file::{
-    CutDrawing, CutLines, Machine, Machines, OVERLAP, Service, SheetDrawing, Split, Tiling,
-    attachment_list, cut_list, cut_summary, dxf, mark_errors, split, svg, tiles_pdf,
+    CutDrawing, CutLines, Features, Machine, Machines, OVERLAP, Service, SheetDrawing, Split,
+    Tiling, attachment_list, cut_list, cut_summary, dxf, mark_errors, split, svg, tiles_pdf,
 };
 use output::display::Shape;
 use output::report::{Severity, Warning, warnings};
+use serde::Serialize;
 use serde_json::json;
+use std::fmt::{self, Display, Formatter};
 use std::path::{Path, PathBuf};
 use support::nearest::nearest;
 
@@ -83,38 +85,57 @@ struct Pieces {
 }
 
 impl CutCommand {
-    /// The files of the run in a folder: tiles for a paper or the file of a machine, besides the usual ones.
+    /// Writes tiles for a paper, besides the usual files, in the run in a folder.
     #[cfg(feature = "pipeline")]
-    pub(crate) fn of_run(
-        run: PathBuf,
-        paper: Option<&str>,
-        machine: Option<String>,
-    ) -> Result<Self> {
-        Ok(Self {
+    pub(crate) fn tiles_of_run(run: &Path, paper: &str) -> Result<Written> {
+        let paper = Some(self::paper(paper).map_err(anyhow::Error::msg)?);
+        let (_, written) = (Self {
+            paper,
+            ..Self::of_run(run)
+        })
+        .cut()?;
+        Ok(written)
+    }
+
+    /// Writes the file of a machine in the run in a folder.
+    #[cfg(feature = "pipeline")]
+    pub(crate) fn machine_file_of_run(run: &Path, name: &str) -> Result<(Written, Vec<Verdict>)> {
+        let machines = Machines::read(None)?;
+        let machine = machine(&machines, name)?;
+        let file = Self::of_run(run).cut_one_for(machine, services(&machines, machine))?;
+        Ok((file.written, file.verdicts))
+    }
+
+    #[cfg(feature = "pipeline")]
+    fn of_run(run: &Path) -> Self {
+        Self {
             designed: Inspected {
-                scene: run,
+                scene: run.to_owned(),
                 design: None,
                 weights: None,
             },
             nesting: Nesting::default(),
             out: None,
-            paper: paper
-                .map(self::paper)
-                .transpose()
-                .map_err(anyhow::Error::msg)?,
+            paper: None,
             bed: None,
-            machine,
+            machine: None,
             machines: None,
             lap: LAP,
             force: false,
             json: false,
-        })
+        }
     }
 
     pub(crate) fn run(&self) -> Result<()> {
         if let Some(name) = &self.machine {
             return self.cut_for(name);
         }
+        let (pieces, written) = self.cut()?;
+        self.print(&pieces, &written.folder)
+    }
+
+    /// Writes the cut files, and tiles or parts.
+    fn cut(&self) -> Result<(Pieces, Written)> {
         let (scene, design, _) = self.designed.read_run()?;
         let pieces = self.pieces(&scene, &design)?;
         let out = match &self.out {
@@ -123,8 +144,9 @@ impl CutCommand {
         };
         let _held = run_folder::hold(&out)?;
         remove_earlier(&out)?;
-        self.write(&pieces, &scene.config.title, &out)?;
-        self.print(&pieces, &out)
+        let mut written = Written::to(&out)?;
+        self.write(&pieces, &scene.config.title, &mut written)?;
+        Ok((pieces, written))
     }
 
     /// Writes the files of a machine, and prints what services refuse.
@@ -135,17 +157,18 @@ impl CutCommand {
             Path::new(name).file_name().is_some_and(|file| file == name),
             "the machine {name} cannot name a folder: give it a name without slashes"
         );
-        let services = match machine.services {
-            true => &machines.service[..],
-            false => &[],
-        };
+        let services = services(&machines, machine);
         match self.nesting.stock {
             Some(stock) => self.nest(stock, machine, services),
-            None => self.cut_one_for(machine, services),
+            None => {
+                let file = self.cut_one_for(machine, services)?;
+                self.print_file(machine, &file);
+                Ok(())
+            }
         }
     }
 
-    fn cut_one_for(&self, machine: &Machine, services: &[Service]) -> Result<()> {
+    fn cut_one_for(&self, machine: &Machine, services: &[Service]) -> Result<MachineFile> {
         let (scene, design, named) = self.designed.read_run()?;
         let (_, cuts, errors) = self.checked(&scene, &design)?;
         let mut drawing = machine.drawing(&cuts)?;
@@ -155,29 +178,41 @@ impl CutCommand {
             None => scene.output().join("cut").join(&machine.name),
         };
         let _held = run_folder::hold(&out)?;
-        write_drawing(&out, "cut", &drawing)?;
+        let mut written = Written::to(&out)?;
+        written.drawing("cut", &drawing)?;
         let features = cuts.features();
-        let thickness = scene.material.thickness;
-        let refusals = (services.iter()).map(|it| (it, it.refusals(&features, thickness)));
-        let out = out.canonicalize()?;
+        let verdicts = services.iter().map(|service| Verdict {
+            name: service.name.clone(),
+            source: service.source.clone(),
+            refuses: service.refusals(&features, scene.material.thickness),
+        });
+        Ok(MachineFile {
+            verdicts: verdicts.collect(),
+            features,
+            named,
+            written,
+        })
+    }
+
+    fn print_file(&self, machine: &Machine, file: &MachineFile) {
+        let MachineFile {
+            named,
+            features,
+            verdicts,
+            written,
+        } = file;
         if self.json {
-            let services: Vec<_> = refusals
-                .map(|(service, refuses)| {
-                    json!({ "name": service.name, "source": service.source, "refuses": refuses })
-                })
-                .collect();
             let value = json!({
-                "machine": machine.name, "features": features, "services": services, "folder": out,
+                "machine": machine.name, "features": features, "services": verdicts, "folder": written.folder,
             });
             println!("{value:#}");
-            return Ok(());
+            return;
         }
         println!("{}: {}; {named}\n{features}", machine.name, machine.says);
-        for (service, refuses) in refusals {
-            println!("{}: {}", service.name, verdict(&refuses));
+        for Verdict { name, refuses, .. } in verdicts {
+            println!("{name}: {}", verdict(refuses));
         }
-        println!("written to {}", out.display());
-        Ok(())
+        println!("written to {}", written.folder.display());
     }
 
     /// The deployed sheet and its cuts, with the errors of the design; an error if it has any, unless it is forced.
@@ -228,21 +263,21 @@ impl CutCommand {
         })
     }
 
-    fn write(&self, pieces: &Pieces, title: &str, out: &Path) -> Result<()> {
-        write_drawing(out, "cut", &pieces.annotated)?;
-        run_folder::write(out, "cut-list.csv", &pieces.list)?;
-        run_folder::write(out, "attachments.csv", &pieces.attachments)?;
-        run_folder::write(out, "cut-summary.csv", &pieces.summary)?;
+    fn write(&self, pieces: &Pieces, title: &str, written: &mut Written) -> Result<()> {
+        written.drawing("cut", &pieces.annotated)?;
+        written.file("cut-list.csv", &pieces.list)?;
+        written.file("attachments.csv", &pieces.attachments)?;
+        written.file("cut-summary.csv", &pieces.summary)?;
         if let (Some(paper), Some(tiling)) = (self.paper, &pieces.tiling) {
             let whole = &pieces.whole;
             let tiles = tiles_pdf(&whole.numbered, tiling, title, &whole.notes);
-            run_folder::write(out, &tiles_name(paper), &tiles)?;
+            written.file(&tiles_name(paper), &tiles)?;
         }
         if let Some(split) = &pieces.split {
             for (i, part) in split.parts.iter().enumerate() {
-                write_drawing(out, &format!("part-{}", i + 1), &part.drawing)?;
+                written.drawing(&format!("part-{}", i + 1), &part.drawing)?;
             }
-            run_folder::write(out, JOINTS, &split.joint_list())?;
+            written.file(JOINTS, &split.joint_list())?;
         }
         Ok(())
     }
@@ -275,8 +310,69 @@ impl CutCommand {
         if let Some(split) = split {
             print_parts(split, Shape::extent(pieces.whole.numbered.cuts()));
         }
-        println!("written to {}", out.canonicalize()?.display());
+        println!("written to {}", out.display());
         Ok(())
+    }
+}
+
+/// Files that were written.
+pub(crate) struct Written {
+    folder: PathBuf,
+    names: Vec<String>,
+}
+
+impl Written {
+    /// No file yet, in a folder that exists.
+    fn to(folder: &Path) -> Result<Self> {
+        Ok(Self {
+            folder: folder.canonicalize()?,
+            names: Vec::new(),
+        })
+    }
+
+    fn file(&mut self, name: &str, contents: &(impl AsRef<[u8]> + ?Sized)) -> Result<()> {
+        run_folder::write(&self.folder, name, contents)?;
+        self.names.push(name.to_owned());
+        Ok(())
+    }
+
+    /// The DXF and the SVG of a drawing.
+    fn drawing(&mut self, name: &str, drawing: &CutDrawing) -> Result<()> {
+        write_drawing(&self.folder, name, drawing)?;
+        let names = ["dxf", "svg"].map(|kind| format!("{name}.{kind}"));
+        self.names.extend(names);
+        Ok(())
+    }
+}
+
+impl Display for Written {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        write!(f, "{} in {}", self.names.join(", "), self.folder.display())
+    }
+}
+
+/// What a service says of a sheet.
+#[derive(Clone, Serialize)]
+pub(crate) struct Verdict {
+    name: String,
+    source: String,
+    refuses: Vec<String>,
+}
+
+/// The file of a machine, and what services say of it.
+struct MachineFile {
+    /// The design.
+    named: String,
+    features: Features,
+    verdicts: Vec<Verdict>,
+    written: Written,
+}
+
+/// The services whose limits count for the files of a machine.
+fn services<'a>(machines: &'a Machines, machine: &Machine) -> &'a [Service] {
+    match machine.services {
+        true => &machines.service,
+        false => &[],
     }
 }
 

@@ -14,7 +14,9 @@ use strum::IntoStaticStr;
 pub(crate) enum Kind {
     /// The materials with weights, and the machines.
     Shop,
-    /// The keys of the scene and where it is.
+    /// Which sheet is open from now on; what was said of another is forgotten.
+    Sheet,
+    /// The keys of its scene.
     Scene,
     /// The sheet at full load, computed while something is dragged.
     Draft,
@@ -28,7 +30,7 @@ pub(crate) enum Kind {
     Working,
     /// Why the last request was refused, or what it did.
     Says,
-    /// The files that were written.
+    /// The files of its run, and what services say of them.
     Files,
 }
 
@@ -65,9 +67,11 @@ impl Post {
         let mut latest = self.lock();
         latest.count += 1;
         let number = latest.count;
-        latest
-            .events
-            .retain(|(_, earlier)| earlier.kind != event.kind);
+        let opens = event.kind == Kind::Sheet;
+        latest.events.retain(|(_, earlier)| match opens {
+            true => earlier.kind == Kind::Shop,
+            false => earlier.kind != event.kind,
+        });
         latest.events.push((number, Arc::new(event)));
         drop(latest);
         self.news.notify_all();
@@ -110,6 +114,24 @@ mod tests {
         assert_eq!(texts(&post, 0), ["\"page\"", "9999"]);
         assert_eq!(texts(&post, 5002), ["9999"]);
         assert!(texts(&post, 10_001).is_empty());
+    }
+
+    #[test]
+    fn what_is_said_of_a_sheet_follows_it_and_is_forgotten_with_it() {
+        let post = Post::default();
+        for kind in [
+            Kind::Shop,
+            Kind::Sheet,
+            Kind::Scene,
+            Kind::Page,
+            Kind::Scene,
+        ] {
+            post.deliver(Event::new(kind, &<&str>::from(kind)));
+        }
+        let said = ["\"shop\"", "\"sheet\"", "\"page\"", "\"scene\""];
+        assert_eq!(texts(&post, 0), said);
+        post.deliver(Event::new(Kind::Sheet, &"other"));
+        assert_eq!(texts(&post, 0), ["\"shop\"", "\"other\""]);
     }
 
     #[test]

@@ -2,6 +2,7 @@
 
 use crate::studio::event::{Event, Kind};
 use crate::ui::exit::message;
+use anyhow::{Context, Result};
 use design::equilibrium::nearby_path::KnownPath;
 use design::scene::Scene;
 use design::scene::design_run::Designed;
@@ -22,8 +23,52 @@ pub(super) type Listener = Arc<dyn Fn(Event) + Send + Sync>;
 #[derive(Serialize)]
 pub(super) struct Shown<'a> {
     pub page: PageData<'a>,
-    /// How long it took; `None` for the page of a run.
+    /// The run whose best design it is, if the sheet has one.
+    pub run: Option<String>,
+    /// How long it took; `None` at the end of a search.
     pub ms: Option<f64>,
+}
+
+/// A sheet at rest.
+pub(super) enum Resting {
+    /// The start of a scene.
+    Start(Scene),
+    /// The best design of the run of a scene.
+    Run(Scene),
+}
+
+impl Resting {
+    fn scene(&self) -> &Scene {
+        let (Self::Start(scene) | Self::Run(scene)) = self;
+        scene
+    }
+
+    fn designed(&self, stop: Arc<AtomicBool>) -> Result<Designed> {
+        match self {
+            Self::Start(scene) => Ok(Designed::at_start(scene, stop)?),
+            Self::Run(scene) => Designed::of_run(scene, stop)?.with_context(|| {
+                let folder = scene.output();
+                format!(
+                    "the run in {} is gone: change the sheet, or design it again",
+                    folder.display()
+                )
+            }),
+        }
+    }
+
+    fn run(&self) -> Option<String> {
+        match self {
+            Self::Start(_) => None,
+            Self::Run(scene) => Some(run_name(scene)),
+        }
+    }
+}
+
+/// The name of the run folder of a scene.
+pub(super) fn run_name(scene: &Scene) -> String {
+    let folder = scene.output();
+    let name = folder.file_name().unwrap_or_default();
+    name.to_string_lossy().into_owned()
 }
 
 /// The thread, and what it is to compute.
@@ -35,7 +80,7 @@ pub(super) struct Everyday {
 
 #[derive(Default)]
 struct Wanted {
-    scene: Option<Scene>,
+    sheet: Option<Resting>,
     /// Ends the computation that is under way, of which nothing is shown then.
     stop: Arc<AtomicBool>,
     /// The path of the last one that was shown.
@@ -58,17 +103,17 @@ impl Everyday {
         Ok(everyday)
     }
 
-    /// Computes a scene next, and nothing else.
-    pub fn compute(&self, scene: Scene) {
+    /// Computes a sheet next, and nothing else.
+    pub fn compute(&self, sheet: Resting) {
         self.stop();
-        self.lock().scene = Some(scene);
+        self.lock().sheet = Some(sheet);
         self.news.notify_one();
     }
 
     /// Shows nothing of what is under way. Returns the path of the last computation that was shown, once.
     pub fn stop(&self) -> Option<KnownPath> {
         let mut wanted = self.lock();
-        wanted.scene = None;
+        wanted.sheet = None;
         wanted.stop.store(true, Ordering::Relaxed);
         wanted.path.take()
     }
@@ -90,10 +135,10 @@ impl Everyday {
 
     fn work(&self) {
         loop {
-            let nothing = |wanted: &mut Wanted| wanted.scene.is_none();
+            let nothing = |wanted: &mut Wanted| wanted.sheet.is_none();
             let mut wanted = (self.news.wait_while(self.lock(), nothing))
                 .unwrap_or_else(PoisonError::into_inner);
-            let Some(scene) = wanted.scene.take() else {
+            let Some(sheet) = wanted.sheet.take() else {
                 continue;
             };
             let stop = Arc::new(AtomicBool::new(false));
@@ -101,9 +146,9 @@ impl Everyday {
             drop(wanted);
             let begin = Instant::now();
             let computed = caught_panic::catch(|| {
-                let designed = Designed::at_start(&scene, Arc::clone(&stop))?;
-                self.show_path(&scene, &designed, &stop);
-                Ok::<_, anyhow::Error>(page_of(&scene, &designed, begin))
+                let designed = sheet.designed(Arc::clone(&stop))?;
+                self.show_path(sheet.scene(), &designed, &stop);
+                Ok::<_, anyhow::Error>(page_of(&sheet, &designed, begin))
             });
             // Under the lock: nothing is shown after a stop.
             let mut wanted = self.lock();
@@ -133,13 +178,14 @@ pub(super) fn refusal(why: &str) -> Event {
     Event::new(Kind::Says, &json!({ "refused": true, "message": why }))
 }
 
-/// The page of the start of a scene, and its path.
-fn page_of(scene: &Scene, designed: &Designed, begin: Instant) -> (Event, KnownPath) {
+/// The page of a sheet, and its path.
+fn page_of(sheet: &Resting, designed: &Designed, begin: Instant) -> (Event, KnownPath) {
+    let scene = sheet.scene();
     let best = &designed.best.deployment;
     let cuts = CutLines::of(scene, best);
     let report = Report::new(scene, designed, &cuts, false);
     let page = PageData::new(scene, designed, &report);
-    let ms = Some(milliseconds(begin));
-    let event = Event::new(Kind::Page, &Shown { page, ms });
+    let (run, ms) = (sheet.run(), Some(milliseconds(begin)));
+    let event = Event::new(Kind::Page, &Shown { page, run, ms });
     (event, best.known_path())
 }

@@ -4,15 +4,17 @@
 //! |---|---|
 //! | `scene.toml` | the scene that is shown, for `kirigami design` |
 //! | `target-HASH.svg` | drawings that were dropped onto the page |
-//! | `design-N/` | the run folders of the searches, from 1 |
+//! | `design-N/` | the run folders of the searches, from 1; the first one of an opened run is its copy |
 
 use crate::commands::init::InitCommand;
 use crate::studio::request::NewSheet;
 use crate::ui::output_file;
 use anyhow::{Context, Result, ensure};
-use design::scene::design_run::stored_design;
-use design::scene::run_inputs::{STATE_FILE, scene_file};
+use design::optimise::outer_loop::Ended;
+use design::scene::design_run::{left_run, stored_design};
+use design::scene::run_inputs::{INPUTS, SCENE_FILE, STATE_FILE, scene_file};
 use design::scene::{Scene, SceneConfig};
+use output::run_files::RUN_FILES;
 use std::path::{Path, PathBuf};
 use support::regular_file;
 
@@ -51,6 +53,9 @@ impl Project {
         };
         let name = named.file_name().unwrap_or_default().to_string_lossy();
         let project = Self::create(projects, &name)?;
+        if path.is_dir() {
+            copy_run(path, &project.folder.join(project.next_run()))?;
+        }
         let scene = project.write(shown.located()?)?;
         Ok((project, scene))
     }
@@ -105,10 +110,55 @@ impl Project {
 
     /// The name of the next run folder.
     pub fn next_run(&self) -> PathBuf {
-        let names = (1..).map(|i| PathBuf::from(format!("design-{i}")));
-        let mut free = names.filter(|name| !self.folder.join(name).exists());
+        let mut free = run_names().skip_while(|name| self.folder.join(name).exists());
         free.next().expect("there are more numbers than folders")
     }
+
+    /// The last run, with how it ended, if the sheet is its best design.
+    pub fn run_of(&self, sheet: &Scene) -> Option<(Scene, Ended)> {
+        let names = run_names().take_while(|name| self.folder.join(name).exists());
+        let output = names.last()?;
+        let run = Scene::read(&self.folder.join(&output).join(SCENE_FILE))
+            .ok()?
+            .config;
+        let config = SceneConfig {
+            start: run.start,
+            optimiser: run.optimiser,
+            pin: run.pin,
+            output: output.clone(),
+            ..sheet.config.clone()
+        };
+        let run = sheet.changed(config).ok()?;
+        // A run that cannot be read, or of other keys, is not that of the sheet.
+        let (ended, best) = left_run(&run).ok()??;
+        let of_sheet = SceneConfig {
+            output,
+            ..sheet.config.clone()
+        };
+        (run.starting_at(&best) == of_sheet).then_some((run, ended))
+    }
+}
+
+/// The names of run folders.
+fn run_names() -> impl Iterator<Item = PathBuf> {
+    (1..).map(|i| PathBuf::from(format!("design-{i}")))
+}
+
+/// Copies a run: its state, its inputs and its results.
+fn copy_run(from: &Path, to: &Path) -> Result<()> {
+    let inputs = std::fs::read_dir(from.join(INPUTS))?;
+    let inputs = inputs.map(|entry| Ok(Path::new(INPUTS).join(entry?.file_name())));
+    let mut names = inputs.collect::<std::io::Result<Vec<_>>>()?;
+    names.push(SCENE_FILE.into());
+    names.extend(RUN_FILES.iter().map(|file| PathBuf::from(file.name)));
+    for name in names.iter().filter(|name| from.join(name).is_file()) {
+        let (from, to) = (from.join(name), to.join(name));
+        let contents = regular_file::read(&from);
+        let contents = contents.with_context(|| format!("cannot read {}", from.display()))?;
+        output_file::create_folder_of(&to)?;
+        output_file::write(&to, contents)?;
+    }
+    Ok(())
 }
 
 /// Whether the studio wrote a scene.

@@ -12,6 +12,11 @@ pub(crate) enum Request {
     New(NewSheet),
     /// The scene has other keys.
     Change(Change),
+    /// The sheet has another number of panels, and is uniform again.
+    Panels {
+        /// Columns and rows.
+        panels: [usize; 2],
+    },
     /// The target is this drawing, with the place and the area of the present target.
     Drawing {
         /// Text of an SVG file.

@@ -1,16 +1,18 @@
 //! The scene that is shown, and the answers to requests.
 
-use crate::commands::cut::CutCommand;
+use crate::commands::cut::{CutCommand, Verdict};
 use crate::commands::design::write_run;
 use crate::studio::draft::{Draft, Steps, draft};
 use crate::studio::event::{Event, Kind};
-use crate::studio::everyday::{Everyday, Listener, Shown, refusal};
+use crate::studio::everyday::{Everyday, Listener, Resting, Shown, refusal, run_name};
+use crate::studio::panels::with_panels;
 use crate::studio::project::Project;
 use crate::studio::request::{Change, Files, Request};
 use crate::studio::run_listing::files_of_run;
+use crate::ui::exit::message;
 use crate::ui::run_folder;
 use crate::ui::shell_word::shell_word;
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, ensure};
 use design::equilibrium::nearby_path::KnownPath;
 use design::objective::target::TargetShape;
 use design::optimise::outer_loop::Ended;
@@ -51,8 +53,8 @@ struct Opened {
     by: Option<(String, u64)>,
     /// The last equilibrium, from which a draft starts.
     known: Option<KnownPath>,
-    /// The last run.
-    run: Option<Run>,
+    /// The runs, each in a folder of its own.
+    runs: Vec<Run>,
 }
 
 /// A run whose best design is shown while the scene has the keys `adopted`.
@@ -60,6 +62,8 @@ struct Run {
     scene: Scene,
     adopted: SceneConfig,
     ended: Ended,
+    /// What services say of the files of a machine, by its name.
+    verdicts: BTreeMap<String, Vec<Verdict>>,
 }
 
 impl Session {
@@ -88,13 +92,18 @@ impl Session {
     /// Shows another sheet.
     pub fn open(&mut self, project: Project, scene: Scene) {
         self.everyday.stop();
+        let run = project.run_of(&scene);
+        let run = run.map(|(of, ended)| Run::new(of, scene.config.clone(), ended));
+        let file = project.scene_file();
+        let command = format!("kirigami design {}", shell_word(&file));
+        self.tell(Kind::Sheet, &json!({ "file": file, "command": command }));
         self.sheet = Some(Opened {
             on_disk: scene.config.clone(),
             before: Vec::new(),
             after: Vec::new(),
             by: None,
             known: None,
-            run: None,
+            runs: run.into_iter().collect(),
             project,
             scene,
         });
@@ -109,6 +118,7 @@ impl Session {
                 self.open(project, scene);
             }
             Request::Change(change) => self.change(change)?,
+            Request::Panels { panels } => self.panels(panels)?,
             Request::Drawing { svg } => self.drawing(&svg)?,
             Request::Design => self.design()?,
             // The engine pauses a search at once.
@@ -127,8 +137,13 @@ impl Session {
             return Ok(());
         }
         self.commit()?;
+        self.list_files()?;
         self.tell(Kind::Working, &"everyday");
-        self.everyday.compute(self.opened()?.scene.clone());
+        let sheet = self.opened()?;
+        self.everyday.compute(match sheet.run() {
+            Some(run) => Resting::Run(run.scene.clone()),
+            None => Resting::Start(sheet.scene.clone()),
+        });
         Ok(())
     }
 
@@ -155,6 +170,13 @@ impl Session {
     fn change(&mut self, Change { scene, by }: Change) -> Result<()> {
         let changed = self.opened()?.scene.changed(*scene)?;
         self.show(changed)?.by = Some(by);
+        self.draft()
+    }
+
+    fn panels(&mut self, panels: [usize; 2]) -> Result<()> {
+        let changed = with_panels(&self.opened()?.scene, panels)?;
+        self.show(changed)?;
+        self.tell_scene();
         self.draft()
     }
 
@@ -229,10 +251,8 @@ impl Session {
     fn design(&mut self) -> Result<()> {
         self.commit()?;
         let sheet = self.opened()?;
-        let scene = match &sheet.run {
-            Some(run) if run.adopted == sheet.on_disk && run.ended == Ended::Stopped => {
-                run.scene.clone()
-            }
+        let scene = match sheet.run() {
+            Some(run) if run.ended == Ended::Stopped => run.scene.clone(),
             _ => sheet.scene_of_run()?,
         };
         self.stop_everyday();
@@ -254,7 +274,15 @@ impl Session {
         self.tell(Kind::Working, &"files");
         let report = write_run(&scene, &designed, false)?;
         let page = PageData::new(&scene, &designed, &report);
-        self.tell(Kind::Page, &Shown { page, ms: None });
+        let run = Some(run_name(&scene));
+        self.tell(
+            Kind::Page,
+            &Shown {
+                page,
+                run,
+                ms: None,
+            },
+        );
         let adopted = SceneConfig {
             output: self.opened()?.project.next_run(),
             ..scene.starting_at(&designed.design)
@@ -262,11 +290,10 @@ impl Session {
         let shown = self.opened()?.scene.changed(adopted.clone())?;
         let sheet = self.show(shown)?;
         sheet.known = Some(designed.best.deployment.known_path());
-        sheet.run = Some(Run {
-            scene,
-            adopted,
-            ended: designed.ended,
-        });
+        // A run that went on is no longer what it was at its pause.
+        let folder = scene.output();
+        sheet.runs.retain(|run| run.scene.output() != folder);
+        sheet.runs.push(Run::new(scene, adopted, designed.ended));
         self.commit()?;
         self.at_rest = true;
         self.list_files()?;
@@ -274,36 +301,69 @@ impl Session {
         Ok(())
     }
 
-    /// Writes cut files, from the run of the sheet that is shown: one without a step if there is none.
+    /// Writes cut files, from the run of the sheet that is shown: one without a step if there is none. Says what was written.
     fn write(&mut self, files: &Files) -> Result<()> {
         self.commit()?;
         self.tell(Kind::Working, &"files");
-        if !self.opened()?.shows_run() {
+        let mut said = Vec::new();
+        if self.opened()?.run().is_none() {
             self.stop_everyday();
             let scene = self.opened()?.scene_of_run()?;
+            said.push(format!("the run {}", run_name(&scene)));
             self.search(scene, &AtomicBool::new(true))?;
+            self.tell(Kind::Working, &"files");
         }
-        let folder = self.run_folder()?;
-        let (paper, machine) = (files.paper.as_deref(), files.machine.clone());
-        if paper.is_some() || machine.is_some() {
-            CutCommand::of_run(folder.clone(), paper, machine)?.run()?;
+        let sheet = self.opened_mut()?;
+        let run = sheet.run_mut().context("the sheet has no run")?;
+        let folder = run.scene.output();
+        let mut refused = Vec::new();
+        if let Some(paper) = &files.paper {
+            match CutCommand::tiles_of_run(&folder, paper) {
+                Ok(written) => said.push(written.to_string()),
+                Err(error) => refused.push(format!("tiles: {}", message(&error))),
+            }
+        }
+        if let Some(machine) = &files.machine {
+            match CutCommand::machine_file_of_run(&folder, machine) {
+                Ok((written, verdicts)) => {
+                    said.push(written.to_string());
+                    run.verdicts.insert(machine.clone(), verdicts);
+                }
+                Err(error) => refused.push(format!("{machine}: {}", message(&error))),
+            }
         }
         self.list_files()?;
         self.tell(Kind::Working, &());
-        self.say(&format!("written to {}", folder.display()));
+        let written = match said.is_empty() {
+            true => "nothing was written".to_owned(),
+            false => format!("written: {}", said.join("; ")),
+        };
+        ensure!(
+            refused.is_empty(),
+            "not written: {}; {written}",
+            refused.join("; ")
+        );
+        match said.is_empty() {
+            true => self.say(&format!(
+                "{written}: the files of {} are here; choose tiles or a machine for others",
+                folder.display()
+            )),
+            false => self.say(&written),
+        }
         Ok(())
     }
 
-    fn run_folder(&self) -> Result<PathBuf> {
-        let run = self.opened()?.run.as_ref();
-        Ok(run.context("the sheet has no run")?.scene.output())
-    }
-
-    /// Lists the files of the run for the pages.
+    /// Lists the files of the run that is shown for the pages; while there is none, those of the last one stay.
     fn list_files(&self) -> Result<()> {
-        let folder = self.run_folder()?;
+        let Some(run) = self.opened()?.run() else {
+            return Ok(());
+        };
+        let folder = run.scene.output();
         let listed = files_of_run(&folder)?;
-        self.tell(Kind::Files, &listed);
+        self.tell(
+            Kind::Files,
+            &json!({ "files": listed, "verdicts": run.verdicts }),
+        );
         let names = listed.into_iter().map(|file| file.name);
         let fetched = names.map(|name| (name.clone(), folder.join(name)));
         *self.files.lock().unwrap_or_else(PoisonError::into_inner) = fetched.collect();
@@ -355,10 +415,8 @@ impl Session {
                 Kind::Scene,
                 &json!({
                     "scene": sheet.scene.config,
-                    "file": sheet.project.scene_file(),
-                    "command": format!("kirigami design {}", shell_word(&sheet.project.scene_file())),
                     "by": sheet.by,
-                    "run": sheet.shows_run(),
+                    "run": sheet.run().is_some(),
                     "undo": sheet.before.len(),
                     "redo": sheet.after.len(),
                 }),
@@ -379,8 +437,25 @@ impl Opened {
         Ok(self.scene.changed(config)?)
     }
 
-    fn shows_run(&self) -> bool {
-        let run = self.run.as_ref();
-        run.is_some_and(|run| run.adopted == self.scene.config)
+    /// The run whose best design is shown.
+    fn run(&self) -> Option<&Run> {
+        let mut runs = self.runs.iter();
+        runs.find(|run| run.adopted == self.scene.config)
+    }
+
+    fn run_mut(&mut self) -> Option<&mut Run> {
+        let mut runs = self.runs.iter_mut();
+        runs.find(|run| run.adopted == self.scene.config)
+    }
+}
+
+impl Run {
+    fn new(scene: Scene, adopted: SceneConfig, ended: Ended) -> Self {
+        Self {
+            scene,
+            adopted,
+            ended,
+            verdicts: BTreeMap::new(),
+        }
     }
 }

@@ -76,9 +76,14 @@ impl Tab {
         let attach = json!({ "targetId": page["targetId"], "flatten": true });
         let attached = tab.call("Target.attachToTarget", attach);
         tab.session = Some(attached["sessionId"].as_str().unwrap().to_owned());
-        tab.call("Page.navigate", json!({ "url": address }));
-        tab.wait("document.documentElement?.dataset.ready === 'true'");
+        tab.go(address);
         tab
+    }
+
+    /// Opens another page, or the same one again.
+    pub fn go(&mut self, address: &str) {
+        self.call("Page.navigate", json!({ "url": address }));
+        self.wait("document.documentElement?.dataset.ready === 'true'");
     }
 
     /// The result of a command of the protocol.

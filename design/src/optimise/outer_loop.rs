@@ -254,7 +254,7 @@ impl SearchState {
     }
 
     /// Follows the path of the candidate for the best design, without an effect on the search.
-    fn pause(&mut self, problem: &DesignProblem) {
+    pub(crate) fn pause(&mut self, problem: &DesignProblem) {
         self.best = self.base.design.clone();
         self.doubtful = false;
         if let Some(candidate) = &self.candidate {

@@ -105,6 +105,9 @@ struct State {
     model: String,
     /// The copies in the run folder of what the run depends on.
     inputs: InputHashes,
+    /// How the search ended; `None` while it is under way.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    ended: Option<Ended>,
     #[serde(flatten)]
     search: SearchState,
 }
@@ -156,6 +159,14 @@ pub fn design_of_run(
     }
 }
 
+/// How the run in the scene's run folder was left, and its best design; `None` if there is no run.
+///
+/// It is an error if the run is of another scene or model.
+pub fn left_run(scene: &Scene) -> Result<Option<(Ended, DesignVector)>, InverseDesignError> {
+    let state = State::read(&scene.output().join(STATE_FILE), scene)?;
+    Ok(state.map(|state| (state.left(), state.search.best)))
+}
+
 /// The keys of a scene by which a design is found. They change neither its sheet nor how it deploys.
 const SEARCH_KEYS: [&str; 3] = ["objective", "optimiser", "tolerances"];
 
@@ -185,6 +196,46 @@ impl Designed {
             best: start.clone(),
             start,
             problem,
+        })
+    }
+
+    /// The run in the run folder of a scene as it was left, with its paths followed from the flat sheet until `stop` becomes true;
+    /// `None` if there is no run.
+    pub fn of_run(
+        scene: &Scene,
+        stop: Arc<AtomicBool>,
+    ) -> Result<Option<Self>, InverseDesignError> {
+        let Some(state) = State::read(&scene.output().join(STATE_FILE), scene)? else {
+            return Ok(None);
+        };
+        let mut problem = scene.unbalanced_problem()?;
+        problem.stop_by(stop);
+        let problem = scene.balanced(problem)?;
+        let start = (problem.evaluate(&scene.start())).map_err(InverseDesignError::Start)?;
+        let (ended, mut search) = (state.left(), state.search);
+        search.pause(&problem);
+        Self::found(problem, ended, search, start).map(Some)
+    }
+
+    /// A search that has ended.
+    fn found(
+        problem: DesignProblem,
+        ended: Ended,
+        search: SearchState,
+        start: Evaluation,
+    ) -> Result<Self, InverseDesignError> {
+        let best = problem
+            .evaluate(&search.best)
+            .map_err(InverseDesignError::Best)?;
+        Ok(Self {
+            problem,
+            ended,
+            contradicted: search.contradicted(),
+            history: search.history,
+            design: search.best,
+            start,
+            best,
+            residual: None,
         })
     }
 }
@@ -218,17 +269,18 @@ pub fn inverse_design(
         }
     };
     let inputs = run_inputs::keep(scene)?;
-    let save = |search: &SearchState| {
+    let save = |search: &SearchState, ended: Option<&Ended>| {
         let state = State {
             scene: scene.config.clone(),
             model: model.clone(),
             inputs: inputs.clone(),
+            ended: ended.cloned(),
             search: search.clone(),
         };
         state.write(&path)
     };
     // The state names the hashes of the inputs that have just been written.
-    save(&search)?;
+    save(&search, None)?;
     let mut saved = Instant::now();
     let ended = optimise(
         &problem,
@@ -238,26 +290,14 @@ pub fn inverse_design(
         &mut |search| {
             progress(search);
             if saved.elapsed() > SAVE_EVERY {
-                save(search)?;
+                save(search, None)?;
                 saved = Instant::now();
             }
             Ok::<_, FileError>(())
         },
     )?;
-    save(&search)?;
-    let best = problem
-        .evaluate(&search.best)
-        .map_err(InverseDesignError::Best)?;
-    Ok(Designed {
-        problem,
-        ended,
-        contradicted: search.contradicted(),
-        history: search.history,
-        design: search.best,
-        start,
-        best,
-        residual: None,
-    })
+    save(&search, Some(&ended))?;
+    Designed::found(problem, ended, search, start)
 }
 
 /// An error if a panel of the start is so thin that the barrier of the minimum width is infinite.
@@ -273,6 +313,16 @@ fn wide_enough(scene: &Scene, start: &Evaluation) -> Result<(), InverseDesignErr
 }
 
 impl State {
+    /// How the search was left.
+    fn left(&self) -> Ended {
+        match &self.ended {
+            Some(ended) => ended.clone(),
+            // It was killed, or written before its end was.
+            None if self.search.history.len() > self.scene.optimiser.steps => Ended::Completed,
+            None => Ended::Stopped,
+        }
+    }
+
     /// The state in a file; `None` if there is no file.
     fn load(path: &Path) -> Result<Option<Self>, InverseDesignError> {
         let text = match regular_file::read(path) {

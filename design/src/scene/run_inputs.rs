@@ -25,7 +25,8 @@ use support::{regular_file, whole_file};
 pub const STATE_FILE: &str = "state.json";
 /// The scene of a run, in its folder.
 pub const SCENE_FILE: &str = "scene.toml";
-const FOLDER: &str = "inputs";
+/// The folder of the copies, in that of a run.
+pub const INPUTS: &str = "inputs";
 const MATERIAL_FILE: &str = "inputs/material.toml";
 
 /// The BLAKE3 hash of every input of a run, by its path relative to the run folder.
@@ -102,19 +103,19 @@ pub(super) fn keep(scene: &Scene) -> Result<InputHashes, FileError> {
         scene,
         hashes: InputHashes::new(),
     };
-    let folder = scene.output().join(FOLDER);
+    let folder = scene.output().join(INPUTS);
     whole_file::create_folder(&folder).map_err(FileError::at(&folder))?;
     let mut config = scene.config.without_unread_weights();
     config.output = ".".into();
     config.material = kept.write(MATERIAL_FILE, &toml(&scene.measured, &folder)?)?;
     if let Some((file, kind)) = config.target.file_mut() {
-        let name = format!("{FOLDER}/target.{kind}");
+        let name = format!("{INPUTS}/target.{kind}");
         *file = kept.copy(&beside(&scene.path, file), &name)?;
     }
     for (i, weights) in config.weights_files_mut().into_iter().enumerate() {
         let stem = match i {
-            0 => format!("{FOLDER}/weights"),
-            _ => format!("{FOLDER}/ensemble-{i}"),
+            0 => format!("{INPUTS}/weights"),
+            _ => format!("{INPUTS}/ensemble-{i}"),
         };
         let original = beside(&scene.path, weights);
         kept.copy(&original.with_extension("json"), &format!("{stem}.json"))?;
@@ -122,7 +123,7 @@ pub(super) fn keep(scene: &Scene) -> Result<InputHashes, FileError> {
     }
     let learned = config.surrogate.as_mut();
     if let Some(law) = learned.and_then(|learned| learned.springback.as_mut()) {
-        let name = format!("{FOLDER}/springback.json");
+        let name = format!("{INPUTS}/springback.json");
         *law = kept.copy(&beside(&scene.path, law), &name)?;
     }
     kept.write(SCENE_FILE, &toml(&config, &folder)?)?;

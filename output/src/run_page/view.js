@@ -29,11 +29,15 @@ function stateText(i) {
   return text[0].toUpperCase() + text.slice(1);
 }
 
-function writeTexts() {
-  byId("title").textContent = run.title;
+function writeSummary() {
   const [columns, rows] = run.panels.grid;
   byId("miss").textContent = run.miss[0].toUpperCase() + run.miss.slice(1);
   byId("summary").textContent = `${columns} \u00d7 ${rows} panels, ${hingeCount} hinges. Search: ${run.end_of_search}.`;
+}
+
+function writeTexts() {
+  byId("title").textContent = run.title;
+  writeSummary();
   byId("alert").hidden = !run.about_cut_files;
   byId("alert").textContent = `${run.about_cut_files}: see the findings.`;
   byId("facts").textContent = "";

@@ -137,8 +137,8 @@ const groups = {
       numberField(box, "Width (mm)", "sheet.size.0");
       numberField(box, "Height (mm)", "sheet.size.1");
     }
-    numberField(box, "Columns", "sheet.panels.0", (count) => setPanels(0, count), "change");
-    numberField(box, "Rows", "sheet.panels.1", (count) => setPanels(1, count), "change");
+    numberField(box, "Columns", "sheet.panels.0", (count) => askPanels(0, count), "change");
+    numberField(box, "Rows", "sheet.panels.1", (count) => askPanels(1, count), "change");
     if (scene.thickness) numberField(box, "Thickness (mm)", "thickness", setThickness, "change");
     numberField(box, "Kerf (mm)", "process.kerf");
     if (scene.process.hole_diameter) numberField(box, "Hole diameter (mm)", "process.hole_diameter");
@@ -200,15 +200,11 @@ function setThickness(thickness) {
   updateFields();
 }
 
-/** Another number of columns or rows: the pattern is uniform again, and what is held and pulled stays where it was. */
-function setPanels(axis, count) {
-  count = Math.round(count);
-  if (count < 2 || count > 200) return;
-  const before = scene.sheet.panels[axis];
-  const moved = (panel) => { panel[axis] = Math.min(count - 1, Math.floor(((panel[axis] + 0.5) * count) / before)); };
-  [...scene.supports, ...scene.loads].forEach(({ panel }) => moved(panel));
-  scene.start = {};
-  set(`sheet.panels.${axis}`, count);
+/** Asks for another number of columns or rows. */
+function askPanels(axis, count) {
+  const panels = [...scene.sheet.panels];
+  panels[axis] = Math.max(0, Math.round(count));
+  ask({ do: "panels", panels });
 }
 
 /** Writes all groups; the field that has the focus keeps it. */

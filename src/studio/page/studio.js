@@ -4,7 +4,7 @@ document.body.classList.add("studio", "empty");
 const mode = () => document.querySelector("#modes input:checked").value;
 
 /** The texts of a report while something newer is drawn. */
-const reported = () => ["facts-card", "warnings-card", "budget-card", "curve-card", "hinge-card", "forces-card"].map(byId);
+const reported = () => ["summary", "facts-card", "warnings-card", "budget-card", "curve-card", "hinge-card", "forces-card"].map(byId);
 const setStale = (stale) => reported().forEach((card) => card.classList.toggle("stale", stale));
 
 let shop = { materials: [], machines: [] };
@@ -14,7 +14,7 @@ let busy = false;
 
 let times = { draft: null, everyday: null, recent: [] };
 
-/** The designs of this visit: loss, outline error, and the corners of the deployed panels (mm). */
+/** The designs of this visit: run, loss, outline error, and the corners of the deployed panels (mm). */
 let designs = [];
 
 /** The scene file of the sheet that is open. */
@@ -32,13 +32,16 @@ connect({
     for (const [name] of shop.machines) write(byId("machine"), "option", `for ${name}`).value = name;
   },
 
+  sheet({ file: opened, command }) {
+    byId("terminal").textContent = `In the terminal: ${command}`;
+    if (opened !== file) openSheet(opened);
+  },
+
   scene(event) {
     byId("undo").disabled = event.undo === 0;
     byId("redo").disabled = event.redo === 0;
-    byId("files").classList.toggle("stale", !event.run);
+    for (const id of ["files", "verdicts"]) byId(id).classList.toggle("stale", !event.run);
     byId("files-of").hidden = event.run || !byId("files").hasChildNodes();
-    byId("terminal").textContent = `In the terminal: ${event.command}`;
-    if (event.file !== file) openSheet(event.file);
     // Changes of this page that are on their way are newer.
     if (event.by?.[0] === me && event.by[1] < changes) return;
     document.documentElement.dataset.saved = true;
@@ -72,10 +75,8 @@ connect({
     take(event.page);
     document.body.classList.remove("empty");
     setStale(false);
-    const { history } = run;
-    const best = history.loss.reduce((b, loss, i) => (loss < history.loss[b] ? i : b), 0);
-    if (event.ms === null && history.step.length > 1) designs.push({ loss: history.loss[best], error: history.outline_error[best], outline: finalOutline() });
-    else times.everyday = event.ms;
+    if (event.run && run.history.step.length > 1) addDesign(event.run);
+    if (event.ms !== null) times.everyday = event.ms;
     writeTexts();
     writeDesigns();
     sayTimes();
@@ -90,8 +91,10 @@ connect({
   step(event) {
     byId("progress").textContent = `Step ${event.step} of ${event.of}`;
     if (!run) return;
-    run.history = event.history;
+    Object.assign(run, { history: event.history, end_of_search: `step ${event.step} of ${event.of}` });
     if (event.draft) showDraft(event.draft);
+    writeSummary();
+    byId("summary").classList.remove("stale");
     drawHistory();
   },
 
@@ -109,9 +112,10 @@ connect({
     if (!refused && message) byId("progress").textContent = message;
   },
 
-  files(files) {
+  files({ files, verdicts }) {
     const list = byId("files");
     list.textContent = "";
+    writeVerdicts(verdicts);
     for (const { name, contents } of files) {
       const link = write(write(list, "li"), "a", name);
       link.href = withToken(`/files/${name.split("/").map(encodeURIComponent).join("/")}`);
@@ -165,6 +169,14 @@ function finalOutline() {
   return Array.from({ length: panelCount }, (_, k) => [0, 1, 2, 3].map((c) => corner(last, k, c)));
 }
 
+/** Adds the best design of a run to the list, unless it is there. */
+function addDesign(name) {
+  const { loss, outline_error } = run.history;
+  const best = loss.reduce((b, x, i) => (x < loss[b] ? i : b), 0);
+  if (designs.some((design) => design.run === name && design.loss === loss[best])) return;
+  designs.push({ run: name, loss: loss[best], error: outline_error[best], outline: finalOutline() });
+}
+
 overlays.push(() => {
   const before = byId("ghost").checked && designs[designs.length - 2];
   if (before) for (const corners of before.outline) draw(marks, "path", { d: outlinePath(corners), fill: "none", stroke: TEAL, "stroke-width": 1.2 });
@@ -180,6 +192,17 @@ function writeDesigns() {
     const row = write(table, "tr");
     [`design ${i + 1}`, shown(loss), shown(error, 3)].forEach((text) => write(row, "td", text));
   });
+}
+
+/** What services say of the files of machines. */
+function writeVerdicts(verdicts) {
+  const list = byId("verdicts");
+  list.textContent = "";
+  for (const [machine, services] of Object.entries(verdicts))
+    for (const { name, refuses } of services) {
+      const says = refuses.length ? `refuses ${refuses.join("; ")}` : "no published limit is broken";
+      write(list, "li", `${machine}, ${name}: ${says}`, refuses.length ? "refusal" : "note");
+    }
 }
 
 function sayTimes() {
@@ -207,6 +230,7 @@ function openSheet(other) {
   [file, run, designs] = [other, null, []];
   document.body.classList.add("empty");
   byId("files").textContent = "";
+  writeVerdicts({});
   openTools(true);
 }
 
