@@ -191,10 +191,16 @@ fn a_sheet_on_pins_has_no_equilibria_to_list() {
 
 /// A shipped scene in a folder, without a search.
 fn unsearched(folder: &Path, name: &str) -> (Scene, Report) {
+    changed(folder, name, |_| ())
+}
+
+/// The same with changed keys.
+fn changed(folder: &Path, name: &str, change: impl Fn(&mut SceneConfig)) -> (Scene, Report) {
     let file = shipped(name);
     let mut config: SceneConfig = toml_file::read(&file).unwrap();
     config.optimiser.steps = 1;
     config.output = folder.join(name);
+    change(&mut config);
     let scene = Scene::new(config, &file).unwrap();
     let designed = run(&scene, None).unwrap();
     let report = write_results(&scene, &designed, false).unwrap();
@@ -284,18 +290,12 @@ fn the_run_page_knows_the_largest_load() {
     assert!(page.contains(&format!("\"peak\":{peak}")), "{peak}");
 }
 
-/// The shipped sheet on pins with the changed keys, without a search.
+/// The shipped sheet on pins with changed keys, as it begins.
 fn on_pins(folder: &Path, change: impl Fn(&mut SceneConfig)) -> (Scene, Report) {
-    let file = shipped("pin-7x7");
-    let mut config: SceneConfig = toml_file::read(&file).unwrap();
-    config.optimiser.steps = 1;
-    config.optimiser.learning_rate = 1e-9;
-    config.output = folder.join("pins");
-    change(&mut config);
-    let scene = Scene::new(config, &file).unwrap();
-    let designed = run(&scene, None).unwrap();
-    let report = write_results(&scene, &designed, false).unwrap();
-    (scene, report)
+    changed(folder, "pin-7x7", |config| {
+        config.optimiser.learning_rate = 1e-9;
+        change(config);
+    })
 }
 
 /// The finding stands in all that a person sees first.
@@ -361,15 +361,11 @@ fn panels_that_lie_over_each_other_are_an_error() {
 fn a_plate_is_not_called_flat() {
     let flatness = |outwards: f64| {
         let folder = tempfile::tempdir().unwrap();
-        let file = shipped("a4-plate");
-        let mut config: SceneConfig = toml_file::read(&file).unwrap();
-        config.optimiser.steps = 1;
-        config.output = folder.path().join("run");
-        config.loads[0].force = config.loads[0].force.map(|component| outwards * component);
-        config.drive.as_mut().unwrap().stroke = 20.0;
-        let scene = Scene::new(config, &file).unwrap();
-        let designed = run(&scene, None).unwrap();
-        let report = write_results(&scene, &designed, false).unwrap();
+        let (_, report) = changed(folder.path(), "a4-plate", |config| {
+            let force = config.loads[0].force;
+            config.loads[0].force = force.map(|component| outwards * component);
+            config.drive.as_mut().unwrap().stroke = 20.0;
+        });
         let found = found(&report, Concern::LeavesPlane);
         (found.first()).map(|warning| (warning.severity, warning.message.clone()))
     };
