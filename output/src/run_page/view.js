@@ -31,7 +31,11 @@ function stateText(i) {
 
 function writeSummary() {
   const [columns, rows] = run.panels.grid;
-  byId("miss").textContent = run.miss[0].toUpperCase() + run.miss.slice(1);
+  const miss = byId("miss");
+  miss.textContent = "";
+  const missed = run.warnings.find(({ concern }) => concern === "target-missed");
+  if (missed && missed.severity !== "note") write(miss, "span", missed.severity, `tag ${missed.severity}`);
+  miss.append(run.miss[0].toUpperCase() + run.miss.slice(1));
   byId("summary").textContent = `${columns} \u00d7 ${rows} panels, ${hingeCount} hinges. Search: ${run.end_of_search}.`;
 }
 

@@ -4,7 +4,7 @@ document.body.classList.add("studio", "empty");
 const mode = () => document.querySelector("#modes input:checked").value;
 
 /** The texts of a report while something newer is drawn. */
-const reported = () => ["summary", "facts-card", "warnings-card", "budget-card", "curve-card", "hinge-card", "forces-card"].map(byId);
+const reported = () => ["miss", "summary", "facts-card", "warnings-card", "budget-card", "curve-card", "hinge-card", "forces-card"].map(byId);
 const setStale = (stale) => reported().forEach((card) => card.classList.toggle("stale", stale));
 
 let shop = { materials: [], machines: [] };
