@@ -25,9 +25,11 @@ pub(super) fn with_panels(scene: &Scene, panels: [usize; 2]) -> Result<Scene> {
     let Some(mut drive) = changed.config.drive else {
         return Ok(changed);
     };
-    let factor = ideal_stroke(&changed)? / ideal_stroke(scene)?;
-    if factor.is_finite() && factor > 0.0 {
-        drive.stroke = rounded(factor * drive.stroke);
+    if let Some((now, before)) = ideal_stroke(&changed)?.zip(ideal_stroke(scene)?)
+        && (now / before).is_finite()
+        && now / before > 0.0
+    {
+        drive.stroke = rounded(now / before * drive.stroke);
     }
     Ok(changed.changed(SceneConfig {
         drive: Some(drive),
@@ -69,34 +71,30 @@ fn moved(panel: [usize; 2], at: At, before: [usize; 2], after: [usize; 2]) -> [u
     nearest.unwrap_or(panel)
 }
 
-/// The stroke at which the hinges of the sheet of rigid panels open by [`OPENING`], seen from the first panel that is held.
-fn ideal_stroke(scene: &Scene) -> Result<f64> {
-    let (_, sheet) = scene.unbalanced_problem()?.cut(&scene.start())?;
-    let motions = ideal_deployment(&sheet, OPENING);
-    let actuation = scene.actuation();
-    let held = actuation
-        .supports
-        .first()
-        .map_or(0, |support| support.panel);
-    let place = |panel: usize| {
-        let ([x, y], [u, v, _]) = (sheet.panels[panel].reference, motions[panel]);
-        [x + u, y + v]
-    };
-    let (from, fixed) = (place(held), sheet.panels[held].reference);
-    let (sin, cos) = motions[held][2].sin_cos();
-    let (mut work, mut forces, mut couples) = (0.0, 0.0, 0.0);
-    for (panel, [x, y, couple]) in actuation.loads.iter().flat_map(|load| &load.on_panels) {
-        let ([a, b], at) = (place(*panel), sheet.panels[*panel].reference);
-        let arm = [a - from[0], b - from[1]];
-        let motion = [
+/// The stroke at which the hinges of the sheet of rigid panels open by [`OPENING`], seen from the first panel that is held; `None`
+/// without loads.
+fn ideal_stroke(scene: &Scene) -> Result<Option<f64>> {
+    let problem = scene.unbalanced_problem()?;
+    let (_, sheet) = problem.cut(&scene.start())?;
+    let supports = scene.actuation().supports;
+    let held = supports.first().map_or(0, |support| support.panel);
+    let mut motions = ideal_deployment(&sheet, OPENING);
+    let ([u, v, turn], fixed) = (motions[held], sheet.panels[held].reference);
+    let (sin, cos) = turn.sin_cos();
+    for (motion, panel) in motions.iter_mut().zip(&sheet.panels) {
+        let at = panel.reference;
+        let arm = [
+            at[0] + motion[0] - fixed[0] - u,
+            at[1] + motion[1] - fixed[1] - v,
+        ];
+        *motion = [
             fixed[0] + cos * arm[0] + sin * arm[1] - at[0],
             fixed[1] - sin * arm[0] + cos * arm[1] - at[1],
+            motion[2] - turn,
         ];
-        work += x * motion[0] + y * motion[1] + couple * (motions[*panel][2] - motions[held][2]);
-        forces += x.hypot(*y);
-        couples += couple.abs();
     }
-    Ok(work / if forces > 0.0 { forces } else { couples })
+    let mechanics = problem.model.mechanics();
+    Ok(mechanics.and_then(|mechanics| mechanics.stroke(&motions)))
 }
 
 #[cfg(test)]

@@ -209,6 +209,16 @@ impl ActuationCurve {
     }
 }
 
+impl Mechanics {
+    /// The displacement of a configuration along the loads, by which a stroke is prescribed: their work over the sum of their
+    /// magnitudes (mm; rad if there are couples alone). `None` without loads.
+    pub fn stroke(&self, configuration: &[[f64; 3]]) -> Option<f64> {
+        let loads = &self.solver.loads;
+        let (size, _) = magnitude(loads)?;
+        Some(work(loads, configuration) / size)
+    }
+}
+
 /// The maximum load of a path on which a displacement is prescribed.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct LoadPeak {

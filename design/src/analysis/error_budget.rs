@@ -246,7 +246,7 @@ impl Effect {
         }
     }
 
-    /// The root of the sum of the squares of both.
+    /// The root of the sum of the squares of both, which are known.
     fn with(&self, other: &Self) -> Self {
         let corners = std::iter::zip(&self.by_corner, &other.by_corner);
         let by_corner: Vec<f64> = corners.map(|(one, other)| one.hypot(*other)).collect();
@@ -254,7 +254,7 @@ impl Effect {
         Self {
             corners: rms_and_maximum(by_corner.iter().copied()),
             load: loads.reduce(f64::hypot),
-            at_least: self.at_least || other.at_least,
+            at_least: false,
             by_corner,
         }
     }

@@ -9,8 +9,8 @@ use usvg::roxmltree::{Document, Node, ParsingOptions};
 /// Largest coordinate over the size of an outline from which it is moved: nearer ones keep a millionth of their size.
 const FAR: f64 = 8.0;
 
-/// The text of a drawing with all its paths, polygons and polylines moved by the returned vector, or as it is if no outline is
-/// far from zero or the text is no SVG.
+/// The text of a drawing with all its paths, polygons and polylines moved to the returned origin; `None` if no outline is far from
+/// zero or the text is no SVG.
 pub(super) fn moved(svg: &str) -> Option<(String, [f64; 2])> {
     let options = ParsingOptions {
         allow_dtd: true,

@@ -586,8 +586,8 @@ fn missed(judged: &Judged) -> Option<Warning> {
     // A sum of which a part is not known is no measure.
     let budget = budget.filter(|budget| !budget.total.at_least);
     let [uncertain, _] = budget.map_or([f64::INFINITY; 2], |budget| budget.total.corners);
-    let [noted, warned, refused] = MISSED.map(|limit| ratio > limit);
-    if !noted && error <= 2.0 * uncertain {
+    let [noted, warned, refused] = MISSED;
+    if ratio <= noted && error <= 2.0 * uncertain {
         return None;
     }
     let mut message = facts.miss(error);
@@ -598,10 +598,12 @@ fn missed(judged: &Judged) -> Option<Warning> {
             rounded(uncertain, 2)
         );
     }
-    let severity = match (warned, refused) {
-        (_, true) => Severity::Error,
-        (true, _) => Severity::Warning,
-        _ => Severity::Note,
+    let severity = if ratio > refused {
+        Severity::Error
+    } else if ratio > warned {
+        Severity::Warning
+    } else {
+        Severity::Note
     };
     Some(Warning {
         severity,
