@@ -2,9 +2,7 @@
 
 #[cfg(feature = "pipeline")]
 use crate::commands::pipeline;
-use crate::commands::{
-    calibrate, compare, completions, cut, design, export, inspect, man, material,
-};
+use crate::commands::{compare, completions, cut, design, export, inspect, man, material};
 use crate::ui::progress;
 use anyhow::Result;
 use clap::{CommandFactory, Parser, Subcommand};
@@ -13,7 +11,7 @@ use support::verbose;
 /// Design kirigami sheets whose hinges are measured by finite elements
 ///
 /// Material: material. Hinge data: mesh, solve, campaign, dataset. Hinge model: train, surrogate.
-/// Sheets: studio, design, cut, inspect, verify, compare, calibrate, export. Start with: doctor, demo, init.
+/// Sheets: studio, design, cut, inspect, verify, compare, export. Start with: doctor, demo, init.
 #[derive(Parser)]
 #[command(name = "kirigami", version, propagate_version = true)]
 #[command(
@@ -38,7 +36,6 @@ enum Command {
     Cut(cut::CutCommand),
     Inspect(inspect::InspectCommand),
     Compare(compare::CompareCommand),
-    Calibrate(calibrate::CalibrateCommand),
     Export(export::ExportCommand),
     #[cfg(feature = "pipeline")]
     #[command(flatten)]
@@ -62,7 +59,6 @@ impl Cli {
             Command::Cut(command) => command.run(),
             Command::Inspect(command) => command.run(),
             Command::Compare(command) => command.run(),
-            Command::Calibrate(command) => command.run(),
             Command::Export(command) => command.run(),
             #[cfg(feature = "pipeline")]
             Command::Pipeline(command) => command.run(),

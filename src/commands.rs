@@ -1,6 +1,5 @@
 //! The subcommands, one per file.
 
-pub mod calibrate;
 #[cfg(feature = "pipeline")]
 pub mod campaign;
 pub mod compare;

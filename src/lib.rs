@@ -1,4 +1,4 @@
-//! The command line of kirigami: its subcommands, and the code that `kirigami-studies` shares with them.
+//! The command line of kirigami: its subcommands.
 
 #![warn(missing_docs)]
 

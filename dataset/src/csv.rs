@@ -4,7 +4,7 @@ use crate::database::Database;
 use crate::database_files::read_bytes;
 use crate::error::DatasetError;
 use crate::rows::Row;
-use crate::schema::{self, KNOWN, NUMBERS, TEXTS};
+use crate::schema::{self, D_PEAK, NUMBERS, TEXTS};
 use polars::prelude::{CsvReadOptions, CsvWriter, DataFrame, SerReader, SerWriter};
 use serde::Deserialize;
 use std::collections::BTreeMap;
@@ -99,11 +99,9 @@ fn rows_of(bytes: &[u8], map: &ColumnMap) -> Result<Vec<Row>, DatasetError> {
             (values, _) => set_all(&mut rows, values, text.set),
         }
     }
-    for known in &KNOWN {
-        set_all(&mut rows, table.numbers(known.name)?, |row, value| {
-            (known.set)(row, Some(value).filter(|value| !value.is_nan()));
-        });
-    }
+    set_all(&mut rows, table.numbers(D_PEAK)?, |row, value| {
+        row.sample.d_peak = Some(value).filter(|value| !value.is_nan());
+    });
     for number in &NUMBERS {
         let is_required = REQUIRED.contains(&number.name);
         match (
@@ -206,10 +204,8 @@ fn parsed(column: &'static str, cells: &[Option<String>]) -> Result<Vec<f64>, Da
 impl ColumnMap {
     /// Rejects columns that a database does not have, and constants of the wrong type.
     fn check(&self) -> Result<(), DatasetError> {
-        let number = |name: &str| {
-            let known = KNOWN.iter().any(|column| column.name == name);
-            known || NUMBERS.iter().any(|column| column.name == name)
-        };
+        let number =
+            |name: &str| name == D_PEAK || NUMBERS.iter().any(|column| column.name == name);
         let text = |name: &str| TEXTS.iter().any(|column| column.name == name);
         let named = self
             .columns

@@ -138,8 +138,6 @@ pub enum DatasetError {
         path: PathBuf,
         source: Box<DatasetError>,
     },
-    #[error("the column `strain_volumes`: {0}")]
-    StrainVolumes(#[from] hinge::NoHistogram),
     #[error("the table is not a valid database: {0}")]
     Table(#[from] polars::error::PolarsError),
 }

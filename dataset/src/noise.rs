@@ -10,7 +10,7 @@
 //! is common to all increments of a ray, such as that of its mesh, is not detected.
 
 use crate::rows::Row;
-use crate::schema::{KNOWN, NUMBERS};
+use crate::schema::{D_PEAK, NUMBERS};
 use support::statistics::root_mean_square;
 
 /// Column names of the quantities that a surrogate is trained on.
@@ -23,11 +23,8 @@ pub fn noise(rows: &[Row]) -> Vec<(&'static str, [f64; 2])> {
         let value = column.get;
         (column.name, rows.iter().map(value).collect::<Vec<f64>>())
     });
-    let known = KNOWN.iter().map(|column| {
-        let value = |row: &Row| (column.get)(row).unwrap_or(f64::NAN);
-        (column.name, rows.iter().map(value).collect::<Vec<f64>>())
-    });
-    let columns = numbers.chain(known);
+    let peaks = rows.iter().map(|row| row.sample.d_peak.unwrap_or(f64::NAN));
+    let columns = numbers.chain([(D_PEAK, peaks.collect())]);
     columns
         .filter(|(name, _)| QUANTITIES.contains(name))
         .filter(|(_, values)| values.iter().any(|value| !value.is_nan()))

@@ -12,31 +12,8 @@ pub(crate) struct Number {
     pub set: fn(&mut Row, f64),
 }
 
-/// A column of numbers that may have gaps.
-pub(crate) struct Known {
-    pub name: &'static str,
-    pub unit: &'static str,
-    pub get: fn(&Row) -> Option<f64>,
-    pub set: fn(&mut Row, Option<f64>),
-}
-
-pub(crate) const KNOWN: [Known; 2] = [
-    Known {
-        name: "D_peak",
-        unit: "",
-        get: |row| row.sample.d_peak,
-        set: |row, value| row.sample.d_peak = value,
-    },
-    Known {
-        name: "strain_max",
-        unit: "",
-        get: |row| row.sample.strain_max,
-        set: |row, value| row.sample.strain_max = value,
-    },
-];
-
-/// The column of [`hinge::StrainVolumes`] as text; it may have gaps.
-const STRAIN_VOLUMES: &str = "strain_volumes";
+/// The column of D_peak, the only one of numbers that may have gaps.
+pub(crate) const D_PEAK: &str = "D_peak";
 
 /// A column of text.
 pub(crate) struct Text {
@@ -66,7 +43,7 @@ macro_rules! texts {
     };
 }
 
-pub(crate) const NUMBERS: [Number; 21] = numbers! {
+pub(crate) const NUMBERS: [Number; 20] = numbers! {
     "w_lig" ["mm"] = design.w_lig;
     "alpha" ["rad"] = design.alpha;
     "fillet_ratio" [""] = design.fillet_ratio;
@@ -84,7 +61,6 @@ pub(crate) const NUMBERS: [Number; 21] = numbers! {
     "M_theta" ["N mm"] = sample.m_theta;
     "plastic_integral" ["mm^3"] = sample.plastic_integral;
     "D" [""] = sample.d;
-    "D_window" [""] = sample.d_window;
     "uz_max" ["mm"] = sample.uz_max;
     "energy_residual" [""] = sample.energy_residual;
     "cpu_s" ["s"] = cpu_s;
@@ -100,9 +76,7 @@ const RATIOS: [&str; 2] = ["eta_a", "eta_s"];
 /// The unit of every column that has a unit.
 pub(crate) fn units() -> impl Iterator<Item = (&'static str, &'static str)> {
     let numbers = NUMBERS.iter().map(|column| (column.name, column.unit));
-    let known = KNOWN.iter().map(|column| (column.name, column.unit));
-    let columns = numbers.chain(known).chain([(STRAIN_VOLUMES, "mm^3")]);
-    columns.filter(|(_, unit)| !unit.is_empty())
+    numbers.filter(|(_, unit)| !unit.is_empty())
 }
 
 /// The table of `rows`.
@@ -116,13 +90,8 @@ pub(crate) fn to_frame(rows: &[Row]) -> Result<DataFrame, DatasetError> {
         let values: Vec<f64> = rows.iter().map(column.get).collect();
         columns.push(Series::new(column.name.into(), values).into_column());
     }
-    for column in &KNOWN {
-        let values: Vec<Option<f64>> = rows.iter().map(column.get).collect();
-        columns.push(Series::new(column.name.into(), values).into_column());
-    }
-    let volumes = rows.iter().map(|row| row.sample.strain_volumes);
-    let volumes: Vec<Option<String>> = volumes.map(|volumes| volumes.map(Into::into)).collect();
-    columns.push(Series::new(STRAIN_VOLUMES.into(), volumes).into_column());
+    let peaks: Vec<Option<f64>> = rows.iter().map(|row| row.sample.d_peak).collect();
+    columns.push(Series::new(D_PEAK.into(), peaks).into_column());
     for (index, name) in RATIOS.into_iter().enumerate() {
         let values: Vec<f64> = rows.iter().map(|row| row.eta()[index]).collect();
         columns.push(Series::new(name.into(), values).into_column());
@@ -155,15 +124,9 @@ pub(crate) fn from_frame(frame: &DataFrame, most_text: usize) -> Result<Vec<Row>
         let series = frame.column(column.name)?;
         fill(&mut rows, column.name, series.f64()?.iter(), column.set)?;
     }
-    for column in &KNOWN {
-        let values = frame.column(column.name)?.f64()?.iter();
-        for (row, value) in rows.iter_mut().zip(values) {
-            (column.set)(row, value);
-        }
-    }
-    let volumes = frame.column(STRAIN_VOLUMES)?.str()?.iter();
-    for (row, text) in rows.iter_mut().zip(volumes) {
-        row.sample.strain_volumes = text.map(str::parse).transpose()?;
+    let peaks = frame.column(D_PEAK)?.f64()?.iter();
+    for (row, peak) in rows.iter_mut().zip(peaks) {
+        row.sample.d_peak = peak;
     }
     match rows.iter().find(|row| !is_finite(row)) {
         Some(row) => Err(DatasetError::NotFinite {
@@ -177,8 +140,7 @@ pub(crate) fn from_frame(frame: &DataFrame, most_text: usize) -> Result<Vec<Row>
 /// Whether every number of the row is finite.
 pub(crate) fn is_finite(row: &Row) -> bool {
     let mut numbers = NUMBERS.iter().map(|column| (column.get)(row));
-    let mut known = KNOWN.iter().filter_map(|column| (column.get)(row));
-    numbers.all(f64::is_finite) && known.all(f64::is_finite)
+    numbers.all(f64::is_finite) && row.sample.d_peak.is_none_or(f64::is_finite)
 }
 
 fn fill<T>(

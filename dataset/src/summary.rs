@@ -189,10 +189,10 @@ fn values(rows: &[Row], name: &str) -> Vec<f64> {
     if let Some(column) = schema::NUMBERS.iter().find(|column| column.name == name) {
         return rows.iter().map(column.get).collect();
     }
-    let known = schema::KNOWN.iter().find(|column| column.name == name);
-    known.map_or(Vec::new(), |column| {
-        rows.iter().filter_map(column.get).collect()
-    })
+    match name {
+        schema::D_PEAK => rows.iter().filter_map(|row| row.sample.d_peak).collect(),
+        _ => Vec::new(),
+    }
 }
 
 /// The bin of each value, between the minimum and the maximum of all values.

@@ -8,12 +8,10 @@ use design::equilibrium::load_step::Status;
 use design::equilibrium::settings::SolverSettings;
 use design::equilibrium::solver::EquilibriumSolver;
 use design::equilibrium::supports::{Dof, Load, Support};
-use design::geometry::chamfer::{Chamfer, Precision};
 use design::hinge_law::{DamageMeasure, HingeLaw, LinearLaw, SurrogateLaw};
-use design::objective::centre::Centre;
 use design::objective::design_problem::{DesignProblem, Mechanics, Model};
 use design::objective::loss::Objective;
-use design::objective::shape::{OutlinePoints, Shape};
+use design::objective::shape::Shape;
 use design::objective::term::Weighted;
 use design::objective::terms::{Compression, Damage, Shear};
 use design::pattern::cut_pattern::Outline;
@@ -103,13 +101,8 @@ fn problem(
         objective: Objective {
             shape: Shape {
                 target: target.collect(),
-                chamfer: Chamfer {
-                    coverage_weight: 0.5,
-                    smoothing: 0.0,
-                    precision: Precision::Samples,
-                },
-                outline: OutlinePoints::Free,
-                centre: Some(Centre::Points),
+                coverage_weight: 0.5,
+                centred: true,
             },
             functionals: vec![
                 Weighted::new(
@@ -124,7 +117,6 @@ fn problem(
                 Weighted::new(0.1, Shear { temperature: 0.02 }),
             ],
             penalties: Vec::new(),
-            cut_sheets: None,
         },
     };
     (problem, perturbed(grid))

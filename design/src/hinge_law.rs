@@ -3,14 +3,12 @@
 //! | law | energy | needs |
 //! |---|---|---|
 //! | [`LinearLaw`] | (11), three springs | constants |
-//! | [`CondensedLaw`] | (11) with the constants of a learned energy | weights |
 //! | [`SurrogateLaw`] | (14), continued beyond the training domain | weights |
 //! | [`ReleasedLaw`] | elastic about the deformation that stays when a hinge is let go | rest deformations and stiffnesses |
 //! | [`CorrectedLaw`] | another law, corrected to forces measured at some states of each hinge | those forces |
 //!
 //! A law is prepared once for the hinges of a sheet and then evaluated for all of them at once.
 
-mod condensed;
 mod contact;
 mod corrected;
 mod law;
@@ -20,7 +18,6 @@ mod surrogate;
 
 pub(crate) use corrected::LENGTHS;
 
-pub use condensed::{CondensedLaw, Constant};
 pub use contact::{Contact, InvalidContact};
 pub use corrected::{CorrectedLaw, Correction, MissingForces};
 pub use law::{

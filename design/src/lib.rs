@@ -17,7 +17,7 @@
 //! | [`geometry`] | points, polygons, distances of outlines, SVG paths |
 //! | [`pattern`] | the cut pattern (2)-(5) and its coordinates |
 //! | [`sheet`] | panels and hinges of a pattern, their kinematics (6)-(8) |
-//! | [`hinge_law`] | the energy of a hinge: linear (11), condensed, learned (14), contact |
+//! | [`hinge_law`] | the energy of a hinge: linear (11), learned (14), contact |
 //! | [`equilibrium`] | equilibrium paths (10) and their adjoint (20) |
 //! | [`objective`] | objective and gradient (16)-(20) |
 //! | [`optimise`](mod@optimise) | the outer loop, Algorithm 1 |

@@ -1,11 +1,8 @@
 //! The design objective and its gradient through the equilibria; equations (16) to (20).
 
-mod balance;
 pub mod centre;
-pub mod cut_sheets;
 mod design_gradient;
 pub mod design_problem;
-mod expected_loss;
 pub mod hinge_measures;
 pub mod loss;
 mod released_sheet;

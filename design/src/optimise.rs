@@ -2,7 +2,6 @@
 
 pub mod adam;
 pub mod backing_off;
-pub(crate) mod gauss_newton;
 mod lbfgs_memory;
 pub mod outer_loop;
 pub mod search;

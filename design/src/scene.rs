@@ -35,16 +35,14 @@ pub use boundary_values::{Actuation, AppliedLoad, Attachment, SupportedPanel, pa
 pub use checked_scene::Scene;
 pub use cutting::CuttingConfig;
 pub use drawn_target::place_drawing;
-pub use hinge_model::{
-    CondensedConfig, ContactConfig, HingeModel, LinearConstants, PinConfig, SurrogateFile,
-};
+pub use hinge_model::{ContactConfig, HingeModel, LinearConstants, PinConfig, SurrogateFile};
 pub use invalid_scene::{InvalidScene, WeightsMismatch};
 pub use keys::{OptimiserConfig, SceneConfig};
 pub use loaded_hinge::LoadedHinge;
-pub use posture::{Posture, PostureConfig};
+pub use posture::{FRICTION, Posture, PostureConfig};
 pub use ratios::{Ratios, rounded};
 pub use scene_error::SceneError;
 pub use sheet_config::{LigamentConfig, SheetConfig, StartConfig};
 pub use springback_file::{SpringbackFileError, SpringbackMismatch};
 pub use stock::{Paper, Stock};
-pub use tolerances::ToleranceConfig;
+pub use tolerances::{ErrorDeviations, ToleranceConfig};

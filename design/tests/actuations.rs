@@ -12,7 +12,6 @@ fn changed(name: &str, change: impl FnOnce(&mut SceneConfig)) -> (DesignProblem,
     let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("../configs/scenes");
     let path = scenes.join(name);
     let mut config: SceneConfig = support::toml_file::read(&path).unwrap();
-    config.objective.balance = false;
     change(&mut config);
     let scene = Scene::new(config, &path).unwrap();
     let problem = scene.problem().unwrap();

@@ -65,7 +65,7 @@ fn a_pure_rotation_stores_the_work_done_on_it() {
     assert!(end.f_s.abs() < 1e-2 * end.f_a.abs(), "{end:?}");
     // The ligament has buckled by tens of thicknesses, and yielded.
     assert!(end.uz_max > 10.0 && end.uz_max < 40.0, "{}", end.uz_max);
-    assert!(end.d > 0.0 && Some(end.d) < end.d_peak && end.d_window < end.d);
+    assert!(end.d > 0.0 && Some(end.d) < end.d_peak);
     assert!(
         solution
             .samples
@@ -320,11 +320,6 @@ fn the_fields_of_a_window_agree_with_its_last_sample() {
         .map(|(strain, volume)| strain * volume)
         .sum();
     assert!((plastic / last.plastic_integral - 1.0).abs() < 1e-12);
-    let maximum = field("plastic strain, maximum")
-        .iter()
-        .copied()
-        .fold(0.0, f64::max);
-    assert_eq!(Some(maximum), last.strain_max);
     std::fs::remove_file(folder.path().join("window.dat")).unwrap();
     assert!(fields().is_none());
 }

@@ -45,7 +45,6 @@ mod net_ligament;
 mod regime;
 mod released;
 mod sample;
-mod strain_volumes;
 pub mod tensile;
 
 pub use creep::Creep;
@@ -58,5 +57,4 @@ pub use net_ligament::{NetLigament, NetLigamentJet};
 pub use regime::Regime;
 pub use released::{ReleasedHinge, ReleasedSample};
 pub use sample::HingeSample;
-pub use strain_volumes::{NoHistogram, StrainVolumes};
 pub use tensile::TensileError;

@@ -1,6 +1,6 @@
 //! One converged increment of a window solve.
 
-use crate::{HingeDeformation, HingeForces, StrainVolumes};
+use crate::{HingeDeformation, HingeForces};
 use serde::{Deserialize, Serialize};
 
 /// The state at one converged increment: (eps, g) -> (W, grad W, D); section 2.4.
@@ -30,15 +30,9 @@ pub struct HingeSample {
     pub plastic_integral: f64,
     /// `plastic_integral` divided by eps_f and by the ligament's half-disc volume (pi/2) w_lig^2 t.
     pub d: f64,
-    /// (12) as printed in the paper: `plastic_integral` divided by eps_f and by the window's volume.
-    pub d_window: f64,
     /// Mean plastic strain of the most strained 1 % of the ligament's half-disc volume, divided by eps_f.
     /// The ligament tears at 1. `None` in samples for which it was not evaluated.
     pub d_peak: Option<f64>,
-    /// Maximum plastic strain over the integration points.
-    pub strain_max: Option<f64>,
-    /// Histogram of the window's volume by plastic strain.
-    pub strain_volumes: Option<StrainVolumes>,
     /// Maximum out-of-plane displacement (mm).
     pub uz_max: f64,
     /// |w - w_work| divided by the maximum w of the ray.
@@ -50,8 +44,7 @@ pub struct HingeSample {
 
 impl HingeSample {
     /// The state of a ray at `lambda`, interpolated linearly between its samples, which must be in order of
-    /// lambda, and between the undeformed state and the first sample. `None` beyond the last sample. The
-    /// histogram is not interpolated.
+    /// lambda, and between the undeformed state and the first sample. `None` beyond the last sample.
     pub fn at(ray: &[Self], lambda: f64) -> Option<Self> {
         let after = ray.partition_point(|x| x.lambda < lambda);
         let next = ray.get(after)?;
@@ -76,10 +69,7 @@ impl HingeSample {
             m_theta: mix(|x| x.m_theta),
             plastic_integral: mix(|x| x.plastic_integral),
             d: mix(|x| x.d),
-            d_window: mix(|x| x.d_window),
             d_peak: mix_known(|x| x.d_peak),
-            strain_max: mix_known(|x| x.strain_max),
-            strain_volumes: None,
             uz_max: mix(|x| x.uz_max),
             energy_residual: mix(|x| x.energy_residual),
         })

@@ -5,7 +5,6 @@
 //! that is larger than the bed of the machine; [`nest()`] lays several designs on sheets of one stock.
 
 mod attachments;
-mod coupon_drawing;
 mod cut_drawing;
 mod cut_lines;
 mod cut_list;
@@ -27,7 +26,6 @@ mod totals;
 mod written_check;
 
 pub use attachments::PlacedAttachment;
-pub use coupon_drawing::{CouponPiece, coupon_drawing};
 pub use cut_drawing::{CutDrawing, Layer, deployed_panels};
 pub use cut_lines::{CutLines, Hole, Slit};
 pub use cut_list::{attachment_list, cut_list, cut_summary, nested_cut_list};

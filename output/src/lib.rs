@@ -22,7 +22,6 @@
 
 #![warn(missing_docs)]
 
-pub mod calibration;
 pub mod cut_file;
 mod deployment_states;
 pub mod display;

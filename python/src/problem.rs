@@ -629,9 +629,8 @@ fn read_method(name: &str) -> PyResult<SearchMethod> {
     match name {
         "adam" => Ok(SearchMethod::Adam),
         "lbfgs" => Ok(SearchMethod::Lbfgs),
-        "gauss-newton" => Ok(SearchMethod::GaussNewton),
         _ => Err(PyValueError::new_err(format!(
-            "`method` is \"{name}\", expected \"adam\", \"lbfgs\" or \"gauss-newton\""
+            "`method` is \"{name}\", expected \"adam\" or \"lbfgs\""
         ))),
     }
 }

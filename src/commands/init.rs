@@ -17,7 +17,6 @@ use crate::ui::shell_word::shell_word;
 use crate::ui::width_by_height::{length, stock, width_by_height};
 use anyhow::{Context, Result, bail, ensure};
 use clap::Args;
-use design::analysis::coupon::OPENING;
 use design::scene::{Paper, Scene, Stock};
 use hinge::{Regime, SheetMaterial};
 use mesher::Tier;
@@ -158,7 +157,7 @@ impl InitCommand {
                 let named = named.map(|weights| weights.regime);
                 let mut first = FirstScene::new(self.size, cut_from, sheet.thickness, named)?;
                 let weights = of(first.regime);
-                first.opening = weights.map_or(OPENING, |weights| weights.opening);
+                first.opening = weights.map_or(first_scene::OPENING, |weights| weights.opening);
                 (
                     first.text(&path(weights), self.target.as_deref())?,
                     first.regime,

@@ -4,8 +4,8 @@
 //! mirror image of the one before: the pulls and the target would point elsewhere, and the stroke would tear it. So what is held or
 //! pulled moves to the nearest panel that turns in the same sense. The stroke changes as that of the sheet of rigid panels does.
 
+use crate::commands::init::first_scene::OPENING;
 use anyhow::Result;
-use design::analysis::coupon::OPENING;
 use design::scene::{At, NamedPoint, Scene, SceneConfig, StartConfig, rounded};
 use design::sheet::ideal_deployment::ideal_deployment;
 
@@ -74,7 +74,7 @@ fn moved(panel: [usize; 2], at: At, before: [usize; 2], after: [usize; 2]) -> [u
 /// The stroke at which the hinges of the sheet of rigid panels open by [`OPENING`], seen from the first panel that is held; `None`
 /// without loads.
 fn ideal_stroke(scene: &Scene) -> Result<Option<f64>> {
-    let problem = scene.unbalanced_problem()?;
+    let problem = scene.problem()?;
     let (_, sheet) = problem.cut(&scene.start())?;
     let supports = scene.actuation().supports;
     let held = supports.first().map_or(0, |support| support.panel);

@@ -206,7 +206,7 @@ impl Session {
         self.say("");
         let begin = Instant::now();
         let sheet = self.opened_mut()?;
-        let (scene, problem) = (&sheet.scene, sheet.scene.unbalanced_problem()?);
+        let (scene, problem) = (&sheet.scene, sheet.scene.problem()?);
         let deployment = draft(&problem, &scene.start(), sheet.known.as_ref())?;
         sheet.known = Some(deployment.known_path());
         let draft = Draft::new(&sheet.scene, &problem, &deployment, begin);

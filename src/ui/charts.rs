@@ -1,4 +1,4 @@
-//! Charts of tensile tests, trainings, studies and replays as SVG: common helpers; one file per kind of chart.
+//! Charts of tensile tests, trainings and replays as SVG: common helpers; one file per kind of chart.
 
 pub mod axes;
 mod learning_curve;
@@ -57,18 +57,6 @@ pub fn drawn(size: (u32, u32), draw: impl FnOnce(&Area) -> ChartResult) -> Resul
         whole().map_err(|error| anyhow!("cannot draw the chart: {error}"))?;
     }
     Ok(svg)
-}
-
-/// The decades that contain the values, which must be positive.
-pub fn decades(values: impl Iterator<Item = f64>) -> Range<f64> {
-    let (min, max) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, g), v| {
-        (l.min(v), g.max(v))
-    });
-    if min > max {
-        return 1e-3..1.0;
-    }
-    let (from, to) = (min.log10().floor(), max.log10().floor() + 1.0);
-    10f64.powf(from)..10f64.powf(to)
 }
 
 /// The range of the values with a margin of 5 % at both ends.

@@ -32,11 +32,6 @@ impl Cell {
         Self::number(fraction, format!("{percent:.decimals$} %"))
     }
 
-    /// A number as a power of ten with a fixed number of decimals.
-    pub fn scientific(value: f64, decimals: usize) -> Self {
-        Self::number(value, format!("{value:.decimals$e}"))
-    }
-
     /// A number with its own text on a page.
     pub fn number(value: f64, shown: impl Into<String>) -> Self {
         let (shown, stored) = (shown.into(), value.to_string());

@@ -5,13 +5,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use tempfile::TempDir;
 
-const PROGRAM: &str = match option_env!("CARGO_BIN_EXE_kirigami") {
-    Some(program) => program,
-    None => match option_env!("CARGO_BIN_EXE_kirigami-studies") {
-        Some(program) => program,
-        None => panic!("no program to test"),
-    },
-};
+const PROGRAM: &str = env!("CARGO_BIN_EXE_kirigami");
 
 pub struct Workplace {
     folder: TempDir,
@@ -21,12 +15,8 @@ impl Workplace {
     /// A folder with the shipped configurations.
     pub fn new() -> Self {
         let folder = tempfile::tempdir().unwrap();
-        let mut folders = Path::new(env!("CARGO_MANIFEST_DIR")).ancestors();
-        let configs = folders.find_map(|folder| {
-            let configs = folder.join("configs");
-            configs.is_dir().then_some(configs)
-        });
-        copy(&configs.unwrap(), &folder.path().join("configs"));
+        let configs = Path::new(env!("CARGO_MANIFEST_DIR")).join("configs");
+        copy(&configs, &folder.path().join("configs"));
         Self { folder }
     }
 

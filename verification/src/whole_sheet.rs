@@ -88,7 +88,6 @@ pub fn with_support(scene: &Scene, support: Option<Posture>) -> Result<Scene, Ve
                 kind,
                 down: None,
                 weight: None,
-                friction: None,
             });
         }
     }

@@ -121,13 +121,6 @@ impl ActuationCurve {
         })
     }
 
-    /// Displacements and loads of the states under load, the displacements from the sheet before its loads.
-    pub fn from_before_loads(&self) -> impl Iterator<Item = [f64; 2]> {
-        let [start, _] = self.points[0];
-        let loaded = self.points[1..].iter();
-        loaded.map(move |[displacement, load]| [displacement - start, *load])
-    }
-
     /// The maximum of the load, in the direction of the displacement.
     pub fn peak(&self) -> LoadPeak {
         let (points, sense) = (self.forwards(), self.sense());

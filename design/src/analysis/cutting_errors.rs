@@ -12,13 +12,12 @@
 //! (Haldar and Mahadevan, "Probability, Reliability and Statistical Methods in Engineering Design", 2000.)
 
 use crate::analysis::actuation_curve::ActuationCurve;
-use crate::analysis::real_sheet::RealSheet;
+use crate::equilibrium::nearby_path::KnownPath;
 use crate::hinge_law::DamageMeasure;
-use crate::objective::cut_sheets::ErrorDeviations;
 use crate::objective::design_problem::{Deployment, DesignError, DesignProblem, Mechanics};
 use crate::objective::scores::outline_error;
 use crate::pattern::design_vector::DesignVector;
-use crate::scene::{Scene, ToleranceConfig};
+use crate::scene::{ErrorDeviations, Scene, ToleranceConfig};
 use crate::sheet::deviation::Deviation;
 use crate::sheet::kinematics::deployed_corners;
 use rand::{RngExt, SeedableRng};
@@ -137,7 +136,12 @@ struct Outcome {
 /// A designed sheet and the standard deviations of its errors.
 pub struct CuttingErrors<'a> {
     problem: &'a DesignProblem,
-    sheet: RealSheet<'a>,
+    mechanics: &'a Mechanics,
+    designed: Deployment,
+    /// The path of the designed sheet, from which those of cut ones are corrected.
+    known: KnownPath,
+    /// Its thickness (mm).
+    thickness: f64,
     outcome: Outcome,
     deviations: ErrorDeviations,
 }
@@ -156,25 +160,29 @@ impl<'a> CuttingErrors<'a> {
         }
         let mechanics = problem.model.mechanics();
         let mechanics = mechanics.ok_or(CuttingErrorsError::NoEquilibrium)?;
-        let sheet = RealSheet::new(scene, problem, design)?;
-        if deviations.thickness > 0.0 && !sheet.has_similar_laws() {
+        let designed = problem.deploy(design)?;
+        designed.at_full_load()?;
+        if deviations.thickness > 0.0 && mechanics.law.scales() != [true; 2] {
             return Err(CuttingErrorsError::NoThickness);
         }
-        let hinges = sheet.designed().sheet.hinges.len();
+        let hinges = designed.sheet.hinges.len();
         if hinges > MOST_HINGES {
             return Err(CuttingErrorsError::TooManyHinges(hinges));
         }
         Ok(Self {
-            outcome: Outcome::new(problem, mechanics, sheet.designed())?,
+            outcome: Outcome::new(problem, mechanics, &designed)?,
             problem,
-            sheet,
+            mechanics,
+            known: designed.known_path(),
+            designed,
+            thickness: scene.material.thickness,
             deviations,
         })
     }
 
     /// The designed sheet without errors.
     pub fn designed(&self) -> &Deployment {
-        self.sheet.designed()
+        &self.designed
     }
 
     /// All errors that have a tolerance.
@@ -352,7 +360,8 @@ impl<'a> CuttingErrors<'a> {
     }
 
     fn outcome_of(&self, errors: &Deviation) -> Result<Outcome, DesignError> {
-        let (deployment, mechanics) = self.sheet.deployed(errors)?;
+        let mechanics = self.mechanics.as_cut(errors, self.thickness)?;
+        let deployment = mechanics.deploy_cut(&self.designed, errors, &self.known)?;
         Outcome::new(self.problem, &mechanics, &deployment)
     }
 }

@@ -136,7 +136,6 @@ impl<'a> Branch<'a> {
             stage: self.stage,
             sheet: self.sheet,
             at,
-            friction: None,
             force: self.force,
             panel_size: self.panel_size,
         }

@@ -1,4 +1,4 @@
-//! Forces that act on the panels themselves, besides those of the hinges: their weight, their friction on a surface.
+//! The weight of a panel as a force, besides those of its hinges.
 
 /// A force on a panel in one of its positions, with its derivative.
 #[derive(Clone, Copy, Default)]
@@ -12,16 +12,6 @@ pub(crate) struct PanelForce {
 }
 
 impl PanelForce {
-    pub fn add(&mut self, other: &Self) {
-        self.potential += other.potential;
-        for i in 0..3 {
-            self.force[i] += other.force[i];
-            for j in 0..3 {
-                self.stiffness[i][j] += other.stiffness[i][j];
-            }
-        }
-    }
-
     /// The resistance of the stiffness to a motion.
     pub fn resistance(&self, motion: &[f64; 3]) -> [f64; 3] {
         self.stiffness

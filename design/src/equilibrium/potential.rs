@@ -8,11 +8,9 @@
 //! ```
 //!
 //! The minimised function is then U alone, because the work of the loads is the same in every configuration with
-//! that stroke. If there are a weight or loads held constant, U contains their work with negative sign; the potential of
-//! friction belongs to it, too.
+//! that stroke. If there are a weight or loads held constant, U contains their work with negative sign.
 
 use crate::equilibrium::displacement_control::dot;
-use crate::equilibrium::friction::Friction;
 use crate::equilibrium::hinged_sheet::HingedSheet;
 use crate::equilibrium::panel_force::PanelForce;
 use crate::equilibrium::solver::EquilibriumSolver;
@@ -40,8 +38,6 @@ pub(crate) struct Potential<'a> {
     pub at: f64,
     /// Size of a panel, by which moments are divided (mm).
     pub panel_size: f64,
-    /// Friction since a known configuration; `None` without.
-    pub friction: Option<&'a Friction>,
     /// Lower bound of the force that residuals are relative to (N): if the path passes a state without forces,
     /// the force of the states before.
     pub force: f64,
@@ -234,19 +230,13 @@ impl Potential<'_> {
         }))
     }
 
-    /// Weight and friction of every panel; empty if there is neither.
+    /// The weight of every panel; empty if there is none.
     fn on_panels(&self, configuration: &[[f64; 3]]) -> Vec<PanelForce> {
         let (sheet, weight) = (self.sheet.sheet, self.weight());
-        let mut sums = Vec::new();
-        if weight != [0.0; 2] {
-            sums.extend(weights_of_panels(sheet, weight, configuration));
+        match weight {
+            [0.0, 0.0] => Vec::new(),
+            _ => weights_of_panels(sheet, weight, configuration).collect(),
         }
-        if let Some(friction) = self.friction {
-            sums.resize_with(sheet.panels.len(), PanelForce::default);
-            let frictions = friction.on_panels(sheet, configuration);
-            std::iter::zip(&mut sums, frictions).for_each(|(sum, force)| sum.add(&force));
-        }
-        sums
     }
 
     /// Weight of a unit of area at this point of the path (N/mm^2).

@@ -1,5 +1,4 @@
-//! The point of the deployed outline P that is placed at the origin, and likewise that of the target: the mean of the
-//! points, or the centroid of the area inside,
+//! The centroid of the area inside the deployed outline P, which is placed at the origin, and likewise that of the target,
 //!
 //! ```text
 //! c = 1/(6 A) sum (p_i + p_i+1) (p_i x p_i+1),     A = 1/2 sum p_i x p_i+1
@@ -8,45 +7,21 @@
 use crate::geometry::plane::{I, complex, cross, dot, point};
 use crate::geometry::polygon::mean;
 use faer::c64;
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
 
-/// The point of an outline that is placed at the origin.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum Centre {
-    /// The mean of the points, as in the paper. It depends on where the points are along the outline.
-    #[default]
-    Points,
-    /// The centroid of the area inside the outline.
-    Area,
+/// The centroid of the area inside an outline.
+pub fn of(outline: &[[f64; 2]]) -> [f64; 2] {
+    let middle = mean(outline);
+    let (area, moment) = moments(outline, middle);
+    point(complex(middle) + moment / (3.0 * area))
 }
 
-impl Centre {
-    /// The centre of an outline.
-    pub fn of(self, outline: &[[f64; 2]]) -> [f64; 2] {
-        let middle = mean(outline);
-        match self {
-            Self::Points => middle,
-            Self::Area => {
-                let (area, moment) = moments(outline, middle);
-                point(complex(middle) + moment / (3.0 * area))
-            }
-        }
-    }
-
-    /// The gradient in the points of an outline from that in its points relative to its centre.
-    pub(crate) fn pullback(self, outline: &[[f64; 2]], moved: &[[f64; 2]]) -> Vec<[f64; 2]> {
-        let force: c64 = moved.iter().map(|slope| complex(*slope)).sum();
-        let by_centre = match self {
-            Self::Points => vec![force / outline.len() as f64; outline.len()],
-            Self::Area => by_centroid(outline, force),
-        };
-        let relative = std::iter::zip(moved, by_centre);
-        relative
-            .map(|(moved, by_centre)| point(complex(*moved) - by_centre))
-            .collect()
-    }
+/// The gradient in the points of an outline from that in its points relative to its centre.
+pub(crate) fn pullback(outline: &[[f64; 2]], moved: &[[f64; 2]]) -> Vec<[f64; 2]> {
+    let force: c64 = moved.iter().map(|slope| complex(*slope)).sum();
+    let relative = std::iter::zip(moved, by_centroid(outline, force));
+    relative
+        .map(|(moved, by_centre)| point(complex(*moved) - by_centre))
+        .collect()
 }
 
 /// 2 A and the sum of (p_i + p_i+1) (p_i x p_i+1), relative to a point.
@@ -95,38 +70,34 @@ mod tests {
 
     #[test]
     fn the_centroid_of_an_angle_is_that_of_its_two_legs() {
-        let [x, y] = Centre::Area.of(&L);
+        let [x, y] = of(&L);
         // Legs of 3 x 1 at (1.5, 0.5) and of 1 x 2 at (0.5, 2) from the corner (5, 7).
         assert!((x - 5.0 - (3.0 * 1.5 + 2.0 * 0.5) / 5.0).abs() < 1e-14);
         assert!((y - 7.0 - (3.0 * 0.5 + 2.0 * 2.0) / 5.0).abs() < 1e-14);
-        let [x, _] = Centre::Points.of(&L);
-        assert!((x - 38.0 / 6.0).abs() < 1e-14);
     }
 
     #[test]
-    fn gradients_agree_with_differences() {
-        for centre in [Centre::Points, Centre::Area] {
-            // sum k (x_k + 2 y_k^2) of the points relative to the centre
-            let value = |flat: &[f64]| -> f64 {
-                let points = flat.as_chunks().0;
-                let [x, y] = centre.of(points);
-                let relative = points.iter().map(|p| [p[0] - x, p[1] - y]);
-                relative
-                    .zip(1..)
-                    .map(|([x, y], k)| f64::from(k) * (x + 2.0 * y * y))
-                    .sum()
-            };
-            let [_, y] = centre.of(&L);
-            let slopes = L
-                .iter()
+    fn the_gradient_agrees_with_differences() {
+        // sum k (x_k + 2 y_k^2) of the points relative to the centre
+        let value = |flat: &[f64]| -> f64 {
+            let points = flat.as_chunks().0;
+            let [x, y] = of(points);
+            let relative = points.iter().map(|p| [p[0] - x, p[1] - y]);
+            relative
                 .zip(1..)
-                .map(|(p, k)| [1.0, 4.0 * (p[1] - y)].map(|s| f64::from(k) * s));
-            let gradient = centre.pullback(&L, &slopes.collect::<Vec<_>>());
-            for (i, found) in gradient.as_flattened().iter().enumerate() {
-                let unit: Vec<f64> = (0..12).map(|j| f64::from(i == j)).collect();
-                let slope = central_slope(value, L.as_flattened(), &unit, 1e-5);
-                assert!((found - slope).abs() < 1e-8, "{i}: {found} {slope}");
-            }
+                .map(|([x, y], k)| f64::from(k) * (x + 2.0 * y * y))
+                .sum()
+        };
+        let [_, y] = of(&L);
+        let slopes = L
+            .iter()
+            .zip(1..)
+            .map(|(p, k)| [1.0, 4.0 * (p[1] - y)].map(|s| f64::from(k) * s));
+        let gradient = pullback(&L, &slopes.collect::<Vec<_>>());
+        for (i, found) in gradient.as_flattened().iter().enumerate() {
+            let unit: Vec<f64> = (0..12).map(|j| f64::from(i == j)).collect();
+            let slope = central_slope(value, L.as_flattened(), &unit, 1e-5);
+            assert!((found - slope).abs() < 1e-8, "{i}: {found} {slope}");
         }
     }
 }

@@ -4,9 +4,9 @@ use crate::equilibrium::adjoint::{PathGradient, adjoint};
 use crate::equilibrium::load_step::LoadStep;
 use crate::equilibrium::nearby_path::KnownPath;
 use crate::geometry::plane::add;
-use crate::hinge_law::{HingeGradient, Order, PreparedLaw};
+use crate::hinge_law::{HingeGradient, PreparedLaw};
 use crate::objective::design_problem::{
-    Deployment, DesignError, DesignProblem, Evaluation, Mechanics, Model, Sensitivities,
+    Deployment, DesignError, DesignProblem, Evaluation, Mechanics, Sensitivities,
 };
 use crate::pattern::design_vector::DesignVector;
 use crate::sheet::cut_sheet::{Sheet, SheetGradient};
@@ -61,19 +61,7 @@ impl DesignProblem {
         let by_damage = self.objective.needs_damage_gradient();
         let (deployment, law) = self.deploy_prepared(design, by_damage, known)?;
         let law = self.model.mechanics().zip(law.as_deref());
-        let mut evaluation = self.evaluated(design, deployment, law)?;
-        self.add_excess(design, &mut evaluation)?;
-        Ok(evaluation)
-    }
-
-    /// The objective of a deployment and its gradient, without the excess of cut sheets.
-    pub(super) fn evaluated(
-        &self,
-        design: &DesignVector,
-        deployment: Deployment,
-        law: Option<(&Mechanics, &dyn PreparedLaw)>,
-    ) -> Result<Evaluation, DesignError> {
-        let outline = self.objective.shape.outline.corners(&deployment.sheet);
+        let outline = deployment.sheet.free_outline_corners();
         let judgement = self.judge(&deployment, &outline)?;
         let partials = Partials {
             path: &deployment.path,
@@ -93,47 +81,6 @@ impl DesignProblem {
             deployment,
             adjoint_residual: gradient.adjoint_residual,
         })
-    }
-
-    /// Gradients in the design whose products with themselves, v v^T, add up to the second derivative of the Chamfer
-    /// distance at a deployment, but for the curvature of the deployment itself (Gauss-Newton).
-    pub fn shape_curvature(
-        &self,
-        design: &DesignVector,
-        deployment: &Deployment,
-    ) -> Result<Vec<Vec<f64>>, DesignError> {
-        let sheet = &deployment.sheet;
-        let shape = &self.objective.shape;
-        let outline = shape.outline.corners(sheet);
-        let mut last = deployment.final_step().clone();
-        let mut law = None;
-        if let Model::Equilibrium(mechanics) = &self.model {
-            let prepared = mechanics.law.prepare(&sheet.designs());
-            if last.order != Order::Design {
-                // Evaluated here once, and not by the adjoint of every vector.
-                let hinged = mechanics.hinged(sheet, &*prepared, true);
-                last.hinges = hinged.energies(&last.deformations, Order::Design);
-                last.order = Order::Design;
-            }
-            law = Some((&**mechanics, prepared));
-        }
-        let law = law.as_ref().map(|(mechanics, law)| (*mechanics, &**law));
-        let by_states = vec![vec![[0.0; 6]]; sheet.hinges.len()];
-        let vectors = shape.curvature(&deployment.outline(&outline));
-        let gradients = vectors.iter().map(|by_outline| {
-            let partials = Partials {
-                path: std::slice::from_ref(&last),
-                outline: &outline,
-                by_outline,
-                by_states: &by_states,
-                by_load_factors: &[0.0],
-                by_corners: None,
-                by_reactions: None,
-            };
-            let gradient = self.design_gradient(design, deployment, law, partials)?;
-            Ok(gradient.design.to_flat())
-        });
-        gradients.collect()
     }
 
     /// The gradient of a function of the deployment.

@@ -41,8 +41,6 @@ pub enum DesignError {
         "a sheet with these errors cannot exist: a ligament, the thickness or the stresses are not positive"
     )]
     ImpossibleSheet,
-    #[error("objective.robust: a sheet with the errors of [tolerances] has no loss: {0}")]
-    CutSheet(Box<DesignError>),
     #[error("the target has no points")]
     EmptyTarget,
     #[error(
@@ -343,13 +341,12 @@ impl DesignProblem {
     /// L(theta) without its gradient.
     pub fn loss(&self, design: &DesignVector) -> Result<f64, DesignError> {
         let deployment = self.deploy(design)?;
-        let drawn = self.loss_of(&deployment)?;
-        Ok(drawn + self.weighted_excess(&deployment, drawn)?)
+        self.loss_of(&deployment)
     }
 
-    /// L of a deployed sheet at full load, without the excess of cut sheets.
+    /// L of a deployed sheet at full load.
     pub fn loss_of(&self, deployment: &Deployment) -> Result<f64, DesignError> {
-        let outline = self.objective.shape.outline.corners(&deployment.sheet);
+        let outline = deployment.sheet.free_outline_corners();
         Ok(self.judge(deployment, &outline)?.loss)
     }
 
@@ -415,19 +412,17 @@ impl Mechanics {
         self.similar(thicker, 1.0 + deviation.stress)
     }
 
-    /// A cut sheet at full load with its hinge law, from the path of the sheet as `drawn`; the mechanics are those of the cut one.
+    /// A cut sheet at full load, from the path of the sheet as `drawn`; the mechanics are those of the cut one.
     pub(crate) fn deploy_cut(
         &self,
         drawn: &Deployment,
         deviation: &Deviation,
         known: &KnownPath,
-        by_damage: bool,
-    ) -> Result<(Deployment, Box<dyn PreparedLaw + '_>), DesignError> {
+    ) -> Result<Deployment, DesignError> {
         let sheet = drawn.sheet.clone().with_deviation(deviation);
         let sheet = sheet.ok_or(DesignError::ImpossibleSheet)?;
         let law = self.law.prepare(&sheet.designs());
-        let hinged = self.hinged(&sheet, &*law, by_damage);
-        let (path, followed) = self.path(hinged, Some(known));
+        let (path, followed) = self.path(self.hinged(&sheet, &*law, false), Some(known));
         let deployment = Deployment {
             pattern: drawn.pattern.clone(),
             released: self.released(&*law, &sheet, &path)?,
@@ -436,7 +431,7 @@ impl Mechanics {
             followed,
         };
         deployment.at_full_load()?;
-        Ok((deployment, law))
+        Ok(deployment)
     }
 
     /// The path of a sheet, corrected from a `known` one that is near enough, or else followed from the flat sheet, and whether it

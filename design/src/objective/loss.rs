@@ -1,7 +1,6 @@
 //! The design objective: the Chamfer distance of the deployed outline to the target, functionals of the deformation paths
 //! of the hinges (16), and penalties.
 
-use crate::objective::cut_sheets::{CutSheets, EXCESS};
 use crate::objective::hinge_measures::add_by_states;
 use crate::objective::shape::Shape;
 use crate::objective::term::{Deployed, Term, TermGradient, Weighted, in_words};
@@ -19,8 +18,6 @@ pub struct Objective {
     pub functionals: Vec<Weighted>,
     /// The penalties; zero without weight.
     pub penalties: Vec<Weighted>,
-    /// The sheets with errors of cutting whose loss counts too, if any does.
-    pub cut_sheets: Option<CutSheets>,
 }
 
 /// The objective and its partial derivatives at a deployment.
@@ -40,7 +37,6 @@ impl Objective {
             shape,
             functionals: Vec::new(),
             penalties: Vec::new(),
-            cut_sheets: None,
         }
     }
 
@@ -53,10 +49,8 @@ impl Objective {
 
     /// The names of all terms with their units and weights, in the order of the [`TermValues`] of an evaluation.
     pub fn weights(&self) -> impl Iterator<Item = (&'static str, Option<&'static str>, f64)> {
-        let excess = self.cut_sheets.as_ref();
         self.terms()
             .map(|(term, weight)| (term.name(), term.unit(), weight))
-            .chain(excess.map(|sheets| (EXCESS, Some("mm^2"), sheets.weight)))
     }
 
     /// The names of all terms in words, with their units.

@@ -1,7 +1,7 @@
 //! The objective of one design and its terms, as stored for each step and reported.
 
 use crate::equilibrium::load_step::LoadStep;
-use crate::geometry::chamfer::{Chamfer, Precision};
+use crate::geometry::chamfer::chamfer;
 use crate::objective::design_problem::{Deployment, Evaluation};
 use crate::objective::loss::{Objective, TermValues};
 use serde::{Deserialize, Serialize};
@@ -48,14 +48,9 @@ pub(crate) fn outline_error_at(
     step: &LoadStep,
 ) -> f64 {
     let shape = &objective.shape;
-    let points = shape.outline.corners(&deployment.sheet);
+    let points = deployment.sheet.free_outline_corners();
     let outline = shape.placed(&deployment.outline_at(step, &points));
-    let precision = Chamfer {
-        coverage_weight: 0.0,
-        smoothing: 0.0,
-        precision: Precision::Curve,
-    };
-    let (squared, _) = precision.evaluate(&outline, &shape.target);
+    let (squared, _) = chamfer(&outline, &shape.target, 0.0);
     squared.sqrt()
 }
 

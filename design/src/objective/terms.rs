@@ -18,12 +18,10 @@ pub use peak_load::PeakLoad;
 pub use shear::Shear;
 pub use symmetric_difference::SymmetricDifference;
 
-use crate::geometry::chamfer::{Chamfer, Precision};
 use crate::hinge_law::{DamageMeasure, HingeLaw};
-use crate::objective::centre::Centre;
-use crate::objective::cut_sheets::CutSheets;
+use crate::objective::centre;
 use crate::objective::loss::Objective;
-use crate::objective::shape::{OutlinePoints, Shape, TargetState};
+use crate::objective::shape::{Shape, TargetState};
 use crate::objective::target::Target;
 use crate::objective::term::Weighted;
 use schemars::JsonSchema;
@@ -37,22 +35,6 @@ pub struct ObjectiveConfig {
     /// w_cov of the Chamfer distance.
     #[schemars(range(min = 0.0, max = 1e9))]
     pub coverage: f64,
-    /// Temperature of the minima in the Chamfer distance (mm^2); 0 is the hard minimum of the paper.
-    #[serde(default)]
-    #[schemars(range(min = 0.0, max = 1e9))]
-    pub smoothing: f64,
-    /// What the distance of the outline is measured to: the `samples` of the target, as in the paper, or the
-    /// `curve` through them.
-    #[serde(default)]
-    pub precision: Precision,
-    /// The panel corners on the outline that are compared with the target: `free`, those that belong
-    /// to no hinge, or `all`.
-    #[serde(default)]
-    pub outline: OutlinePoints,
-    /// The point of a sheet on pins that is placed on that of its target: the mean of the `points` that are compared, as in
-    /// the paper, or the centroid of the `area` inside the outline.
-    #[serde(default)]
-    pub centre: Centre,
     /// The state of the sheet that the target is for: `loaded`, at full load, or `released`, after the loads were taken off, which needs
     /// `surrogate.springback`.
     #[serde(default)]
@@ -61,7 +43,7 @@ pub struct ObjectiveConfig {
     #[schemars(range(min = 1, max = 1_000_000))]
     pub target_points: usize,
     /// Weight of the area inside the polygon through the compared corners and outside the target, or the reverse, over
-    /// the area of the target. Never relative to a gradient.
+    /// the area of the target.
     #[serde(default)]
     #[schemars(range(min = 0.0, max = 1e9))]
     pub symmetric_difference: f64,
@@ -80,13 +62,9 @@ pub struct ObjectiveConfig {
     #[serde(default)]
     #[schemars(range(min = 0.0, max = 1e9))]
     pub shear: f64,
-    /// Whether the weights of (17)-(19) are instead relative to the gradient of the Chamfer distance at the
-    /// start: at the weight 1 the gradient of a functional has the same norm.
-    #[serde(default)]
-    pub balance: bool,
     /// Weight of the panel shape penalty: on panels stretched more than eight to one or with angles below 14 degrees,
     /// which the outline alone does not prevent, and, with learned hinges, on corners of a panel closer than three
-    /// radii of their windows. Never relative to a gradient.
+    /// radii of their windows.
     #[serde(default)]
     #[schemars(range(min = 0.0, max = 1e9))]
     pub panel_shape: f64,
@@ -98,22 +76,16 @@ pub struct ObjectiveConfig {
     #[schemars(range(min = 0.0))]
     pub min_panel_width: f64,
     /// Weight of the penalty on states outside the training domain of the hinge law, in squared tenths of its range,
-    /// as a mean over hinges and load steps. Needs `hinge = "surrogate"`. Never relative to a gradient.
+    /// as a mean over hinges and load steps. Needs `hinge = "surrogate"`.
     #[serde(default)]
     #[schemars(range(min = 0.0, max = 1e9))]
     pub domain: f64,
     /// Weight of the peak of the load, for a sheet that a dead load of the final size shall open: the maximum of the load at the
     /// load steps over that at the end, less one. Needs `[drive]`, a start that is pulled and not held back at its end, and as
-    /// many load steps as resolve the peak. Never relative to a gradient.
+    /// many load steps as resolve the peak.
     #[serde(default)]
     #[schemars(range(min = 0.0, max = 1e9))]
     pub peak_load: f64,
-    /// Weight of the expected loss under the errors of `[tolerances]`, less the loss of the drawing: at 1 the search minimises the
-    /// expected loss. Needs `[tolerances]` and an equilibrium. A step then costs three times as much for the kerf or the thickness,
-    /// five times for both, and nine times with `ligament`. Never relative to a gradient.
-    #[serde(default)]
-    #[schemars(range(min = 0.0, max = 1e3))]
-    pub robust: f64,
 }
 
 /// The sheet that an objective is for.
@@ -128,15 +100,12 @@ pub struct Setting<'a> {
     pub r_win: f64,
     /// The prescribed stroke of the loads, if there is one.
     pub stroke: Option<f64>,
-    /// The sheets with errors of cutting whose loss counts too.
-    pub cut_sheets: Option<CutSheets>,
 }
 
 impl ObjectiveConfig {
-    /// The objective for a sheet, before its weights are balanced.
+    /// The objective for a sheet.
     pub fn objective(&self, setting: &Setting) -> Objective {
         let area = setting.mean_panel_area;
-        let unit = if self.balance { 1.0 } else { area };
         let scale = (setting.law).and_then(|law| law.damage_scale(self.damage_measure));
         let domain = setting.law.and_then(|law| law.domain());
         // Only a learned hinge has a window. Two window radii and a gap: the windows do not lie on one line.
@@ -170,30 +139,25 @@ impl ObjectiveConfig {
         Objective {
             shape,
             functionals: vec![
-                Weighted::new(self.damage * unit, damage),
-                Weighted::new(self.compression * unit, Compression { temperature }),
-                Weighted::new(self.shear * unit, Shear { temperature }),
+                Weighted::new(self.damage * area, damage),
+                Weighted::new(self.compression * area, Compression { temperature }),
+                Weighted::new(self.shear * area, Shear { temperature }),
             ],
             penalties,
-            cut_sheets: setting.cut_sheets.clone(),
         }
     }
 
     fn shape(&self, setting: &Setting) -> Shape {
-        let centre = setting.law.is_none().then_some(self.centre);
         let points = &setting.target.points;
-        let [x, y] = centre.map_or([0.0; 2], |centre| centre.of(points));
+        let centred = setting.law.is_none();
+        let [x, y] = match centred {
+            true => centre::of(points),
+            false => [0.0; 2],
+        };
         Shape {
-            target: (points.iter())
-                .map(|point| [point[0] - x, point[1] - y])
-                .collect(),
-            chamfer: Chamfer {
-                coverage_weight: self.coverage,
-                smoothing: self.smoothing,
-                precision: self.precision,
-            },
-            outline: self.outline,
-            centre,
+            target: points.iter().map(|[px, py]| [px - x, py - y]).collect(),
+            coverage_weight: self.coverage,
+            centred,
         }
     }
 }
@@ -240,10 +204,6 @@ mod tests {
     fn objective(damage_measure: DamageMeasure) -> Objective {
         let config = ObjectiveConfig {
             coverage: 0.5,
-            smoothing: 10.0,
-            precision: Precision::Samples,
-            outline: OutlinePoints::All,
-            centre: Centre::Points,
             target_state: TargetState::Loaded,
             target_points: 20,
             symmetric_difference: 0.9,
@@ -251,12 +211,10 @@ mod tests {
             damage_measure,
             compression: 0.3,
             shear: 0.2,
-            balance: false,
             panel_shape: 0.4,
             min_panel_width: 6.0,
             domain: 0.6,
             peak_load: 0.0,
-            robust: 0.0,
         };
         let circle = TargetShape::Circle {
             centre: [90.0, 10.0],
@@ -273,7 +231,6 @@ mod tests {
             mean_panel_area: 10.0,
             r_win: 10.0,
             stroke: None,
-            cut_sheets: None,
         })
     }
 

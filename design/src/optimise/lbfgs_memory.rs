@@ -56,17 +56,6 @@ impl Memory {
             // A zero gradient has no direction.
             None => first_length / dot(gradient, gradient).sqrt().max(f64::MIN_POSITIVE),
         };
-        self.direction_from(gradient, |vector| {
-            vector.iter_mut().for_each(|entry| *entry *= size);
-        })
-    }
-
-    /// The same, where `initial` multiplies a vector by the inverse Hessian to which the memory is added.
-    pub(crate) fn direction_from(
-        &self,
-        gradient: &[f64],
-        initial: impl FnOnce(&mut [f64]),
-    ) -> Vec<f64> {
         let mut direction: Vec<f64> = gradient.iter().map(|g| -g).collect();
         let mut weights = Vec::with_capacity(self.pairs.len());
         for pair in &self.pairs {
@@ -74,29 +63,18 @@ impl Memory {
             add(&mut direction, &pair.change, -weight);
             weights.push(weight);
         }
-        initial(&mut direction);
+        direction.iter_mut().for_each(|entry| *entry *= size);
         for (pair, weight) in std::iter::zip(&self.pairs, weights).rev() {
             let along = dot(&pair.change, &direction) / pair.product;
             add(&mut direction, &pair.step, weight - along);
         }
         direction
     }
-
-    /// The last step with its change of the gradient.
-    pub(crate) fn last(&self) -> Option<(&[f64], &[f64])> {
-        self.pairs.front().map(|pair| (&*pair.step, &*pair.change))
-    }
-}
-
-/// The longest coordinate of a step.
-pub(crate) fn reach(step: &[f64]) -> f64 {
-    step.iter()
-        .fold(0.0, |reach, entry| f64::max(reach, entry.abs()))
 }
 
 /// A step no coordinate of which is longer than `longest`.
 pub(crate) fn shortened(mut step: Vec<f64>, longest: f64) -> Vec<f64> {
-    let reach = reach(&step);
+    let reach = (step.iter()).fold(0.0, |reach, entry| f64::max(reach, entry.abs()));
     if reach > longest {
         step.iter_mut().for_each(|entry| *entry *= longest / reach);
     }

@@ -14,7 +14,6 @@ use crate::equilibrium::nearby_path::KnownPath;
 use crate::objective::design_problem::{DesignProblem, Evaluation, Model};
 use crate::objective::scores::Scores;
 use crate::optimise::backing_off::{MAX_HALVINGS, Setback, evaluate_or_back_off};
-use crate::optimise::gauss_newton::ShapeCurvature;
 use crate::optimise::search::{Search, SearchMethod};
 use crate::pattern::design_vector::DesignVector;
 use serde::{Deserialize, Serialize};
@@ -279,7 +278,7 @@ impl SearchState {
         self.contradicted = true;
         (self.anchor, self.known) = (None, None);
         self.search = self.search.restarted();
-        self.go_on(problem, self.base.design.clone(), &evaluation);
+        self.go_on(self.base.design.clone(), &evaluation);
         Ok(())
     }
 
@@ -312,7 +311,7 @@ impl SearchState {
             self.known =
                 (self.follow_every(problem) > 1).then(|| evaluation.deployment.known_path());
         }
-        self.go_on(problem, design, evaluation);
+        self.go_on(design, evaluation);
         self.history.push(StepRecord {
             step: self.history.len(),
             scores: Scores::new(&problem.objective, evaluation),
@@ -323,15 +322,10 @@ impl SearchState {
     }
 
     /// Computes the proposal that follows an evaluated design.
-    fn go_on(&mut self, problem: &DesignProblem, design: DesignVector, evaluation: &Evaluation) {
+    fn go_on(&mut self, design: DesignVector, evaluation: &Evaluation) {
         let gradient = evaluation.gradient.to_flat();
         let x = design.to_flat();
-        // A singular tangent has no curvature; the step is then that of L-BFGS.
-        let curvature = (self.search.needs_curvature())
-            .then(|| problem.shape_curvature(&design, &evaluation.deployment))
-            .and_then(Result::ok)
-            .map(ShapeCurvature::new);
-        let increment = (self.search).increment(&x, evaluation.loss, &gradient, curvature.as_ref());
+        let increment = (self.search).increment(&x, evaluation.loss, &gradient);
         self.design = design;
         self.propose(&increment);
     }

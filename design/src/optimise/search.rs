@@ -1,12 +1,8 @@
-//! How the next design is proposed: by Adam, as in Algorithm 1, or by L-BFGS with backtracking, from a multiple of the
-//! unit matrix or from the Gauss-Newton matrix of the shape.
-//!
-//! L-BFGS needs a fraction of Adam's evaluations on designs with equilibrium, and with the Gauss-Newton matrix a fraction
-//! of these (docs/results/optimisers).
+//! How the next design is proposed: by Adam, as in Algorithm 1, or by L-BFGS with backtracking, which needs a fraction of
+//! Adam's evaluations on designs with equilibrium.
 
 use crate::equilibrium::displacement_control::dot;
 use crate::optimise::adam::Adam;
-use crate::optimise::gauss_newton::ShapeCurvature;
 use crate::optimise::lbfgs_memory::{Memory, shortened};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -27,8 +23,6 @@ pub enum SearchMethod {
     Adam,
     /// L-BFGS with backtracking.
     Lbfgs,
-    /// L-BFGS that starts from the Gauss-Newton matrix of the shape.
-    GaussNewton,
 }
 
 /// The state of the optimiser: all that a resumed run needs.
@@ -45,8 +39,6 @@ pub(crate) enum Search {
 pub(crate) struct Lbfgs {
     /// Length per coordinate of a step without curvature memory.
     learning_rate: f64,
-    /// Whether steps use the Gauss-Newton matrix of the shape.
-    gauss_newton: bool,
     memory: Memory,
     /// The point of the last proposal; `None` before the first.
     from: Option<Point>,
@@ -67,9 +59,8 @@ impl Search {
     pub(crate) fn new(method: SearchMethod, learning_rate: f64, n: usize) -> Self {
         match method {
             SearchMethod::Adam => Self::Adam(Adam::new(n, learning_rate)),
-            SearchMethod::Lbfgs | SearchMethod::GaussNewton => Self::Lbfgs(Lbfgs {
+            SearchMethod::Lbfgs => Self::Lbfgs(Lbfgs {
                 learning_rate,
-                gauss_newton: method == SearchMethod::GaussNewton,
                 memory: Memory::default(),
                 from: None,
             }),
@@ -88,17 +79,6 @@ impl Search {
         }
     }
 
-    /// Whether [`increment`](Self::increment) uses the curvature of the shape.
-    pub(crate) fn needs_curvature(&self) -> bool {
-        matches!(
-            self,
-            Self::Lbfgs(Lbfgs {
-                gauss_newton: true,
-                ..
-            })
-        )
-    }
-
     /// Whether the state has `n` coordinates.
     pub(crate) fn fits(&self, n: usize) -> bool {
         match self {
@@ -110,14 +90,8 @@ impl Search {
         }
     }
 
-    /// The step from an accepted point, with the curvature of the shape there if it is needed.
-    pub(crate) fn increment(
-        &mut self,
-        x: &[f64],
-        loss: f64,
-        gradient: &[f64],
-        curvature: Option<&ShapeCurvature>,
-    ) -> Vec<f64> {
+    /// The step from an accepted point.
+    pub(crate) fn increment(&mut self, x: &[f64], loss: f64, gradient: &[f64]) -> Vec<f64> {
         match self {
             Self::Adam(adam) => adam.increment(gradient),
             Self::Lbfgs(lbfgs) => {
@@ -134,7 +108,7 @@ impl Search {
                     gradient: gradient.to_vec(),
                     slope: 0.0,
                 });
-                lbfgs.step(curvature)
+                lbfgs.step()
             }
         }
     }
@@ -158,7 +132,7 @@ impl Search {
         match self {
             Self::Lbfgs(lbfgs) if !lbfgs.memory.is_empty() => {
                 lbfgs.memory = Memory::default();
-                Some(lbfgs.step(None))
+                Some(lbfgs.step())
             }
             _ => None,
         }
@@ -166,21 +140,13 @@ impl Search {
 }
 
 impl Lbfgs {
-    fn step(&mut self, curvature: Option<&ShapeCurvature>) -> Vec<f64> {
+    fn step(&mut self) -> Vec<f64> {
         let Some(from) = &mut self.from else {
             return Vec::new();
         };
-        let (gradient, memory) = (&from.gradient, &self.memory);
-        let step = match curvature {
-            Some(curvature) if memory.is_empty() => {
-                curvature.step(gradient, memory, self.learning_rate)
-            }
-            Some(curvature) => curvature.step(gradient, memory, LONGEST),
-            None => {
-                let first_length = self.learning_rate * (from.x.len() as f64).sqrt();
-                shortened(memory.direction(gradient, first_length), LONGEST)
-            }
-        };
+        let first_length = self.learning_rate * (from.x.len() as f64).sqrt();
+        let direction = self.memory.direction(&from.gradient, first_length);
+        let step = shortened(direction, LONGEST);
         from.slope = dot(&step, &from.gradient);
         step
     }
@@ -203,7 +169,7 @@ mod tests {
         let mut x = vec![-1.2, 1.0];
         let (mut loss, mut gradient) = valley(&x);
         let mut evaluations = 1;
-        let mut step = search.increment(&x, loss, &gradient, None);
+        let mut step = search.increment(&x, loss, &gradient);
         'steps: loop {
             for halvings in 0..30 {
                 let fraction = 0.5f64.powi(halvings);
@@ -213,7 +179,7 @@ mod tests {
                 if search.accepts(next.0, fraction) {
                     x = beside.to_vec();
                     (loss, gradient) = next;
-                    step = search.increment(&x, loss, &gradient, None);
+                    step = search.increment(&x, loss, &gradient);
                     continue 'steps;
                 }
             }
@@ -227,7 +193,7 @@ mod tests {
         assert!(search.fits(2) && !search.fits(3));
         // Adam accepts any step and has no other to offer.
         let mut adam = Search::new(SearchMethod::Adam, 0.1, 2);
-        adam.increment(&x, loss, &gradient, None);
+        adam.increment(&x, loss, &gradient);
         assert!(adam.accepts(1e9, 1.0));
         assert_eq!(adam.retry(), None);
     }

@@ -74,7 +74,7 @@ impl Scene {
                 (config.thickness, config.ligament.range, process),
             )
         };
-        let same = reads(&config) == reads(&self.config) && config.condensed.is_none();
+        let same = reads(&config) == reads(&self.config);
         let known = same.then_some(&*self.hinge.networks);
         Self::with_networks(config, &self.path, known)
     }
@@ -161,7 +161,7 @@ impl Scene {
         self.config.scale(&self.measured)
     }
 
-    /// The weights that the hinge law reads: those of the learned law, or those that linear constants are condensed from.
+    /// The weights of the learned law.
     pub fn weights(&self) -> Option<&Surrogate> {
         self.hinge.networks.first()
     }

@@ -3,7 +3,6 @@
 //! The ranges are wider than those of any real sheet, and narrower than an error by a factor of 1000.
 
 use crate::geometry::polygon::{contains, distance, edges, mean};
-use crate::objective::centre::Centre;
 use crate::objective::shape::TargetState;
 use crate::objective::target::Target;
 use crate::pattern::cut_pattern::CutPattern;
@@ -14,7 +13,6 @@ use crate::scene::invalid_scene::InvalidScene;
 use crate::scene::keys::SceneConfig;
 use crate::scene::posture::Posture;
 use crate::scene::sheet_config::SheetConfig;
-use crate::scene::tolerances::ToleranceConfig;
 use crate::sheet::topology::panel_endpoints;
 use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::FRAC_PI_2;
@@ -59,7 +57,7 @@ pub(super) fn target(target: &Target, scene: &SceneConfig) -> Result<(), Invalid
         "mm",
     )?;
     let objective = &scene.objective;
-    let needs_area = objective.symmetric_difference > 0.0 || objective.centre == Centre::Area;
+    let needs_area = objective.symmetric_difference > 0.0 || scene.hinge == HingeModel::Pin;
     if needs_area && target.area() <= NO_AREA * target.length * target.length {
         let points = objective.target_points;
         return Err(InvalidScene::TargetWithoutArea { points });
@@ -163,17 +161,16 @@ fn posture(scene: &SceneConfig) -> Result<(), InvalidScene> {
             Ok(())
         };
     };
-    let (hanging, lying) = (Posture::Hanging, Posture::Lying);
-    for (key, is_given, kind) in [
-        ("down", posture.down.is_some(), hanging),
-        ("weight", posture.weight.is_some(), hanging),
-        ("friction", posture.friction.is_some(), lying),
+    let hangs = posture.kind == Posture::Hanging;
+    for (key, is_given) in [
+        ("down", posture.down.is_some()),
+        ("weight", posture.weight.is_some()),
     ] {
-        if is_given && posture.kind != kind {
+        if is_given && !hangs {
             return Err(InvalidScene::OtherPosture(key, posture.kind));
         }
     }
-    if posture.kind == hanging && posture.down().is_none() {
+    if hangs && posture.down().is_none() {
         return Err(InvalidScene::NoDown);
     }
     Ok(())
@@ -339,28 +336,8 @@ fn objective(scene: &SceneConfig) -> Result<(), InvalidScene> {
     if scene.objective.peak_load > 0.0 && scene.drive.is_none() {
         return Err(InvalidScene::NoDrive);
     }
-    if scene.objective.centre == Centre::Area && scene.hinge != HingeModel::Pin {
-        return Err(InvalidScene::HeldCentre);
-    }
     if scene.objective.target_state == TargetState::Released && scene.springback().is_none() {
         return Err(InvalidScene::ReleasedWithoutLaw);
-    }
-    if scene.objective.robust > 0.0 {
-        let ToleranceConfig {
-            ligament,
-            kerf,
-            thickness,
-        } = scene.tolerances;
-        let given = |tolerance: Option<f64>| tolerance.is_some_and(|tolerance| tolerance > 0.0);
-        if scene.hinge == HingeModel::Pin {
-            return Err(InvalidScene::RobustPins);
-        }
-        if ![ligament, kerf, thickness].into_iter().any(given) {
-            return Err(InvalidScene::RobustWithoutTolerances);
-        }
-        if given(thickness) && scene.hinge != HingeModel::Surrogate {
-            return Err(InvalidScene::RobustThickness);
-        }
     }
     Ok(())
 }

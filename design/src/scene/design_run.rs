@@ -90,13 +90,6 @@ pub enum InverseDesignError {
     Outdated { path: PathBuf, changed: String },
 }
 
-impl InverseDesignError {
-    /// Whether the run folder belongs to another scene, size or model.
-    pub fn is_of_another_run(&self) -> bool {
-        matches!(self, Self::OtherSize { .. } | Self::OtherScene { .. })
-    }
-}
-
 /// The scene of a run and the state of its search.
 #[derive(Debug, Serialize, Deserialize)]
 struct State {
@@ -173,9 +166,8 @@ const SEARCH_KEYS: [&str; 3] = ["objective", "optimiser", "tolerances"];
 impl Designed {
     /// The start of a scene before any step of its search, with its path followed from the flat sheet until `stop` becomes true.
     pub fn at_start(scene: &Scene, stop: Arc<AtomicBool>) -> Result<Self, InverseDesignError> {
-        let mut problem = scene.unbalanced_problem()?;
+        let mut problem = scene.problem()?;
         problem.stop_by(stop);
-        let problem = scene.balanced(problem)?;
         let design = scene.start();
         let start = problem
             .evaluate(&design)
@@ -208,9 +200,8 @@ impl Designed {
         let Some(state) = State::read(&scene.output().join(STATE_FILE), scene)? else {
             return Ok(None);
         };
-        let mut problem = scene.unbalanced_problem()?;
+        let mut problem = scene.problem()?;
         problem.stop_by(stop);
-        let problem = scene.balanced(problem)?;
         let start = (problem.evaluate(&scene.start())).map_err(InverseDesignError::Start)?;
         let (ended, mut search) = (state.left(), state.search);
         search.pause(&problem);
@@ -348,17 +339,15 @@ impl State {
         (!changed.is_empty()).then(|| changed.join(", "))
     }
 
-    /// The keys of the scene that changed since the run, without those that may: the number of steps, the title, the cutting and,
-    /// unless the search is for them, the tolerances, which change no design, and paths, since [`Scene::model_hash`] identifies what
+    /// The keys of the scene that changed since the run, without those that may: the number of steps, the title, the cutting
+    /// and the tolerances, which change no design, and paths, since [`Scene::model_hash`] identifies what
     /// they name.
     fn changed_keys(&self, scene: &Scene) -> BTreeSet<String> {
         let mut before = self.scene.without_paths();
         before.optimiser.steps = scene.config.optimiser.steps;
         before.title.clone_from(&scene.config.title);
         before.cutting = scene.config.cutting;
-        if before.objective.robust == 0.0 {
-            before.tolerances = scene.config.tolerances;
-        }
+        before.tolerances = scene.config.tolerances;
         let keys = |config: &SceneConfig| match serde_json::to_value(config) {
             Ok(Value::Object(keys)) => keys,
             _ => unreachable!("a run writes the same keys to its state"),

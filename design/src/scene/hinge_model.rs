@@ -70,12 +70,3 @@ pub struct SurrogateFile {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub springback: Option<PathBuf>,
 }
-
-/// The constants of (11), derived from a learned energy for each hinge.
-#[derive(Clone, Debug, PartialEq)]
-pub struct CondensedConfig {
-    /// Path of the weights `X.safetensors`, relative to the scene file.
-    pub weights: PathBuf,
-    /// Angle of the rotational secant stiffness (deg); 0 uses the Hessian at the undeformed state.
-    pub secant_deg: f64,
-}

@@ -3,7 +3,6 @@
 use crate::equilibrium::solver::EquilibriumError;
 use crate::equilibrium::tangent::MIN_PIVOT_RATIO;
 use crate::hinge_law::InvalidContact;
-use crate::objective::design_problem::DesignError;
 use crate::objective::target::TargetError;
 use crate::pattern::pattern_error::PatternError;
 use crate::scene::posture::Posture;
@@ -24,8 +23,6 @@ pub enum InvalidScene {
     Target(#[from] TargetError),
     #[error(transparent)]
     Equilibrium(#[from] EquilibriumError),
-    #[error("objective.balance needs the gradients at the start: {0}")]
-    Balance(DesignError),
     #[error(transparent)]
     Material(#[from] InvalidMaterial),
     #[error("title contains the control character {0:?}: remove it")]
@@ -69,7 +66,7 @@ pub enum InvalidScene {
     NoDown,
     #[error(
         "posture.{0} belongs to another kind than {1:?}: `down` and `weight` are of a sheet that is hanging, with gravity in \
-         its plane, `friction` of one that is lying: remove the key or change `kind`"
+         its plane: remove the key or change `kind`"
     )]
     OtherPosture(&'static str, Posture),
     #[error(
@@ -143,13 +140,10 @@ pub enum InvalidScene {
     #[error("hinge = \"{0}\" needs the section [{0}]")]
     NoSection(&'static str),
     #[error(
-        "{section}.weights: there is no file {}: train it, or give the constants of hinge = \"linear\"",
+        "surrogate.weights: there is no file {}: train it, or give the constants of hinge = \"linear\"",
         file.display()
     )]
-    NoWeights {
-        section: &'static str,
-        file: PathBuf,
-    },
+    NoWeights { file: PathBuf },
     #[error("the weights {} are for {source}", file.display())]
     OtherHinges {
         file: PathBuf,
@@ -164,12 +158,6 @@ pub enum InvalidScene {
     SameNetwork { files: [PathBuf; 2] },
     #[error(transparent)]
     Springback(#[from] SpringbackFileError),
-    #[error(
-        "condensed: at w_lig = {w_lig} mm the weights have k_a = {} N/mm, k_s = {} N/mm, k_theta = {} N mm, which must \
-         all be positive: use hinge = \"surrogate\" or other weights",
-        constants[0], constants[1], constants[2]
-    )]
-    Condensed { w_lig: f64, constants: [f64; 3] },
     #[error(
         "linear.k_theta is {ratio:.0e} times the greater of linear.k_a and linear.k_s times the area of a panel: below \
          {MIN_PIVOT_RATIO:.0e} rotations are lost in the rounding of the translations. Raise k_theta, or lower k_a and k_s"
@@ -187,24 +175,8 @@ pub enum InvalidScene {
     )]
     NoDrive,
     #[error(
-        "objective.centre = \"area\" needs hinge = \"pin\": supports hold other sheets where they are"
-    )]
-    HeldCentre,
-    #[error(
-        "objective.robust: hinge = \"pin\" has no equilibrium that errors of cutting change: remove it, or use another hinge law"
-    )]
-    RobustPins,
-    #[error(
-        "objective.robust needs errors to be robust against: give [tolerances] ligament, kerf or thickness (mm) above 0"
-    )]
-    RobustWithoutTolerances,
-    #[error(
-        "objective.robust with tolerances.thickness needs hinge = \"surrogate\": the constants of other laws hold for one thickness"
-    )]
-    RobustThickness,
-    #[error(
         "objective.target_points = {points}: the polygon through them encloses no area, which objective.symmetric_difference \
-         and objective.centre = \"area\" need: increase it"
+         and the centre of a sheet on pins need: increase it"
     )]
     TargetWithoutArea { points: usize },
     #[error(

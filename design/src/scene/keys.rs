@@ -9,7 +9,7 @@ use crate::scene::actuation::{
 };
 use crate::scene::cutting::CuttingConfig;
 use crate::scene::hinge_model::{
-    CondensedConfig, ContactConfig, HingeModel, LinearConstants, PinConfig, SurrogateFile,
+    ContactConfig, HingeModel, LinearConstants, PinConfig, SurrogateFile,
 };
 use crate::scene::posture::PostureConfig;
 use crate::scene::sheet_config::{LigamentConfig, SheetConfig, StartConfig};
@@ -63,9 +63,6 @@ pub struct SceneConfig {
     pub pin: Option<PinConfig>,
     /// Constants of (11); read if `hinge = "linear"`.
     pub linear: Option<LinearConstants>,
-    /// Constants of (11) from a learned energy, instead of `linear`: a law of studies, not a key.
-    #[serde(skip)]
-    pub condensed: Option<CondensedConfig>,
     /// Read if `hinge = "surrogate"`.
     pub surrogate: Option<SurrogateFile>,
     /// What keeps the panels in their plane; required if `hinge = "surrogate"`.

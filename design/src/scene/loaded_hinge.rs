@@ -1,13 +1,13 @@
 //! The hinge law of a scene, loaded with the files it needs.
 
 use crate::equilibrium::tangent::MIN_PIVOT_RATIO;
-use crate::hinge_law::{CondensedLaw, Contact, DamageMeasure, HingeLaw, LinearLaw, SurrogateLaw};
-use crate::scene::hinge_model::{CondensedConfig, HingeModel, LinearConstants};
+use crate::hinge_law::{Contact, DamageMeasure, HingeLaw, LinearLaw, Order, SurrogateLaw};
+use crate::scene::hinge_model::{HingeModel, LinearConstants};
 use crate::scene::invalid_scene::{InvalidScene, WeightsMismatch};
 use crate::scene::keys::{SceneConfig, beside};
 use crate::scene::scene_error::SceneError;
 use crate::sheet::cut_sheet::HingePoint;
-use hinge::{Regime, SheetMaterial};
+use hinge::{HingeDeformation, Regime, SheetMaterial};
 use std::f64::consts::FRAC_PI_2;
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -73,7 +73,7 @@ impl LoadedHinge {
         };
         let hinge = match config.hinge {
             HingeModel::Pin => pinned(config),
-            HingeModel::Linear => linear(config, networks),
+            HingeModel::Linear => linear(config),
             HingeModel::Surrogate => learned(config, networks),
         };
         let hinge = hinge.map_err(SceneError::at(path))?;
@@ -135,14 +135,7 @@ fn networks(
     let load = |weights: PathBuf| {
         let file = beside(path, &weights);
         if !file.is_file() {
-            let section = match config.hinge {
-                HingeModel::Surrogate => "surrogate",
-                HingeModel::Linear | HingeModel::Pin => "condensed",
-            };
-            return Err(SceneError::at(path)(InvalidScene::NoWeights {
-                section,
-                file,
-            }));
+            return Err(SceneError::at(path)(InvalidScene::NoWeights { file }));
         }
         network(config, measured, path, &file)
     };
@@ -167,38 +160,13 @@ pub(super) fn network(
     })
 }
 
-/// The linear law of a learned energy; the contact has the same stiffness relative to the hinges of the start as
-/// with given constants.
-fn condensed(
-    config: &SceneConfig,
-    networks: Vec<Surrogate>,
-    file: &CondensedConfig,
-) -> Result<LoadedHinge, InvalidScene> {
-    let law = CondensedLaw {
-        surrogate: networks[0].clone(),
-        secant: file.secant_deg.to_radians(),
-    };
-    let constants = constants_at_start(config, &law);
-    let [_, _, k_theta] = constants;
-    if !constants.iter().all(|constant| *constant > 0.0) {
-        let w_lig = config.ligament.start;
-        return Err(InvalidScene::Condensed { w_lig, constants });
-    }
-    let contact = contact(config, k_theta, CONTACT_WALL)?;
-    Ok(springs(Arc::new(law), contact, networks))
-}
-
 /// The learned law; the contact stiffness is relative to the secant stiffness of a hinge of the start.
 fn learned(config: &SceneConfig, networks: Vec<Surrogate>) -> Result<LoadedHinge, InvalidScene> {
     let surrogate = networks.first();
     let surrogate = surrogate.ok_or(InvalidScene::NoSection("surrogate"))?;
     let [_, _, [closed, _]] = surrogate.domain().bounds();
     let wall = if closed < 0.0 { closed } else { CONTACT_WALL };
-    let secant = CondensedLaw {
-        surrogate: surrogate.clone(),
-        secant: TYPICAL_SECANT,
-    };
-    let [.., k_theta] = constants_at_start(config, &secant);
+    let k_theta = secant_at_start(config, surrogate);
     Ok(LoadedHinge {
         label: "learned energy (14)",
         behaviour: HingeBehaviour::Elastic {
@@ -212,10 +180,14 @@ fn learned(config: &SceneConfig, networks: Vec<Surrogate>) -> Result<LoadedHinge
     })
 }
 
-/// (k_a, k_s, k_theta) of a hinge with the start width and cuts at a right angle.
-fn constants_at_start(config: &SceneConfig, law: &CondensedLaw) -> [f64; 3] {
-    let typical = config.process.hinge(config.ligament.start, FRAC_PI_2);
-    law.constants(&[typical])[0].map(|constant| constant.value)
+/// The secant stiffness (N mm/rad) of the rotation of a hinge with the start width and cuts at a right angle.
+fn secant_at_start(config: &SceneConfig, surrogate: &Surrogate) -> f64 {
+    let prepared = surrogate.prepare(&[config.process.hinge(config.ligament.start, FRAC_PI_2)]);
+    let turned = HingeDeformation::from([0.0, 0.0, TYPICAL_SECANT]);
+    let [energy] = &surrogate.evaluate(&prepared, &[turned], Order::Forces)[..] else {
+        unreachable!("one state has one energy")
+    };
+    (1.0 / TYPICAL_SECANT) * energy.forces[2]
 }
 
 /// The contact of a scene, or by default one for hinges with the stiffness `k_theta` that becomes infinite at the
@@ -273,20 +245,7 @@ fn pinned(config: &SceneConfig) -> Result<LoadedHinge, InvalidScene> {
     })
 }
 
-/// A law of springs (11).
-fn springs(law: Arc<dyn HingeLaw>, contact: Contact, networks: Vec<Surrogate>) -> LoadedHinge {
-    LoadedHinge {
-        label: "linear springs (11)",
-        behaviour: HingeBehaviour::Elastic { law, contact },
-        hinge_point: HingePoint::Corner,
-        networks,
-    }
-}
-
-fn linear(config: &SceneConfig, networks: Vec<Surrogate>) -> Result<LoadedHinge, InvalidScene> {
-    if let Some(file) = &config.condensed {
-        return condensed(config, networks, file);
-    }
+fn linear(config: &SceneConfig) -> Result<LoadedHinge, InvalidScene> {
     let constants = config.linear.ok_or(InvalidScene::NoSection("linear"))?;
     let LinearConstants { k_a, k_s, k_theta } = constants;
     let grid = config.sheet.grid();
@@ -295,9 +254,15 @@ fn linear(config: &SceneConfig, networks: Vec<Surrogate>) -> Result<LoadedHinge,
     if ratio < MIN_PIVOT_RATIO {
         return Err(InvalidScene::Soft { ratio });
     }
-    let law = LinearLaw::uniform([k_a, k_s, k_theta], grid.hinge_count());
-    let contact = contact(config, k_theta, CONTACT_WALL)?;
-    Ok(springs(Arc::new(law), contact, networks))
+    Ok(LoadedHinge {
+        label: "linear springs (11)",
+        behaviour: HingeBehaviour::Elastic {
+            law: Arc::new(LinearLaw::uniform([k_a, k_s, k_theta], grid.hinge_count())),
+            contact: contact(config, k_theta, CONTACT_WALL)?,
+        },
+        hinge_point: HingePoint::Corner,
+        networks: Vec::new(),
+    })
 }
 
 /// Relative difference of r_win from that of the weights that rounding in a scene file may cause.

@@ -1,7 +1,7 @@
 //! The deployed sheet in the position in which the objective compares it with the target.
 
+use crate::objective::centre;
 use crate::objective::design_problem::Deployment;
-use crate::objective::shape::OutlinePoints;
 use crate::scene::checked_scene::Scene;
 use crate::sheet::cut_sheet::Sheet;
 use crate::sheet::kinematics::{Configuration, deployed};
@@ -12,9 +12,8 @@ use crate::sheet::topology::PanelCorner;
 pub fn placed(scene: &Scene, sheet: &Sheet, configuration: &[[f64; 3]]) -> Configuration {
     let mut placed = configuration.to_vec();
     if scene.config.supports.is_empty() {
-        let objective = &scene.config.objective;
-        let outline = corners(sheet, objective.outline.corners(sheet), configuration);
-        let [from, to] = [&outline, &scene.target.points].map(|it| objective.centre.of(it));
+        let outline = corners(sheet, sheet.free_outline_corners(), configuration);
+        let [from, to] = [&outline, &scene.target.points].map(|it| centre::of(it));
         for axis in 0..2 {
             let shift = to[axis] - from[axis];
             placed.iter_mut().for_each(|motion| motion[axis] += shift);
@@ -23,15 +22,11 @@ pub fn placed(scene: &Scene, sheet: &Sheet, configuration: &[[f64; 3]]) -> Confi
     placed
 }
 
-/// The deployed outline through `points`, in the position in which the objective compares it (mm).
-pub fn deployed_outline(
-    scene: &Scene,
-    deployment: &Deployment,
-    points: OutlinePoints,
-) -> Vec<[f64; 2]> {
+/// The deployed outline through all of its corners, in the position in which the objective compares it (mm).
+pub fn deployed_outline(scene: &Scene, deployment: &Deployment) -> Vec<[f64; 2]> {
     let sheet = &deployment.sheet;
     let configuration = placed(scene, sheet, &deployment.compared().configuration);
-    corners(sheet, points.corners(sheet), &configuration)
+    corners(sheet, sheet.outline_corners(), &configuration)
 }
 
 fn corners(sheet: &Sheet, corners: Vec<PanelCorner>, configuration: &[[f64; 3]]) -> Vec<[f64; 2]> {

@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Coefficient of friction of a sheet on a surface where a scene gives none: typical of plastics and metals on smooth dry
+/// Coefficient of friction of a sheet on a surface: typical of plastics and metals on smooth dry
 /// surfaces; ISO 8295 and ASTM D1894 measure it.
 pub const FRICTION: f64 = 0.3;
 
@@ -18,9 +18,6 @@ pub struct PostureConfig {
     pub down: Option<[f64; 2]>,
     /// Whether the weight of the panels is modelled if the sheet is `hanging`; by default it is.
     pub weight: Option<bool>,
-    /// Coefficient of friction on the surface if the sheet is `lying`; by default 0.3.
-    #[schemars(range(min = 0.0, max = 2.0))]
-    pub friction: Option<f64>,
 }
 
 /// What keeps the panels in their plane. In the model all panels stay in it.
@@ -48,10 +45,5 @@ impl PostureConfig {
     /// Whether the weight of the panels is modelled.
     pub fn is_heavy(&self) -> bool {
         self.kind == Posture::Hanging && self.weight != Some(false)
-    }
-
-    /// The coefficient of friction of a lying sheet.
-    pub fn friction(&self) -> Option<f64> {
-        (self.kind == Posture::Lying).then(|| self.friction.unwrap_or(FRICTION))
     }
 }

@@ -2,14 +2,12 @@
 
 use crate::equilibrium::solver::{EquilibriumError, EquilibriumSolver};
 use crate::hinge_law::Release;
-use crate::objective::cut_sheets::CutSheets;
 use crate::objective::design_problem::{DesignProblem, Mechanics, Model};
 use crate::objective::loss::Objective;
 use crate::objective::terms::Setting;
 use crate::pattern::design_vector::{DesignVector, WidthChart};
 use crate::pattern::grid::Grid;
 use crate::scene::checked_scene::Scene;
-use crate::scene::invalid_scene::InvalidScene;
 use crate::scene::keys::SceneConfig;
 use crate::scene::loaded_hinge::HingeBehaviour;
 use crate::scene::scene_error::SceneError;
@@ -25,21 +23,6 @@ impl Scene {
 
     /// The design problem: everything that is constant during the design.
     pub fn problem(&self) -> Result<DesignProblem, SceneError> {
-        self.balanced(self.unbalanced_problem()?)
-    }
-
-    /// The same problem with its terms weighed by their gradients at the start, if the scene asks for it.
-    pub(super) fn balanced(&self, problem: DesignProblem) -> Result<DesignProblem, SceneError> {
-        if !self.config.objective.balance {
-            return Ok(problem);
-        }
-        let balanced = problem.balanced(&self.start());
-        let balanced = balanced.map_err(InvalidScene::Balance);
-        balanced.map_err(SceneError::at(&self.path))
-    }
-
-    /// The design problem before `objective.balance` weighs its terms by their gradients at the start: the same sheets and equilibria.
-    pub fn unbalanced_problem(&self) -> Result<DesignProblem, SceneError> {
         let model = self.model()?;
         Ok(DesignProblem {
             grid: self.grid(),
@@ -98,16 +81,7 @@ impl Scene {
             mean_panel_area: self.config.sheet.mean_panel_area(),
             r_win: self.config.process.r_win,
             stroke: self.config.drive.map(|drive| drive.stroke),
-            cut_sheets: self.cut_sheets(),
         })
-    }
-
-    fn cut_sheets(&self) -> Option<CutSheets> {
-        let weight = self.config.objective.robust;
-        let errors = self.config.tolerances.deviations();
-        let hinges = self.grid().hinge_count();
-        let thickness = self.material.thickness;
-        (weight > 0.0).then(|| CutSheets::new(weight, hinges, thickness, errors))
     }
 
     fn model(&self) -> Result<Model, SceneError> {

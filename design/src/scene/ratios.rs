@@ -69,7 +69,6 @@ impl Ratios {
             contact.stiffness = by(energy)(contact.stiffness);
         }
         config.objective.min_panel_width = by(size)(config.objective.min_panel_width);
-        config.objective.smoothing = by(size.powi(2))(config.objective.smoothing);
         scale_target(&mut config.target, size);
     }
 }

@@ -1,14 +1,13 @@
-//! Tolerances of the cut sheet: the error budget of a design contains them, and `objective.robust` designs for them.
+//! Tolerances of the cut sheet, which the error budget of a design contains.
 
-use crate::objective::cut_sheets::ErrorDeviations;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// A tolerance is so many standard deviations.
 const TOLERANCE: f64 = 2.0;
 
-/// Tolerances of the cut sheet for the error budget of the report and for `objective.robust`, as two standard deviations. Without
-/// `objective.robust` a run continues under other values, which change its report only.
+/// Tolerances of the cut sheet for the error budget of the report, as two standard deviations. A run continues under other
+/// values, which change its report only.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct ToleranceConfig {
@@ -22,6 +21,17 @@ pub struct ToleranceConfig {
     /// Tolerance +- of the thickness of the sheet (mm).
     #[schemars(range(min = 0.0, max = 1.0))]
     pub thickness: Option<f64>,
+}
+
+/// The standard deviations of the errors of cutting (mm).
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ErrorDeviations {
+    /// Of the width of every ligament by itself.
+    pub ligament: f64,
+    /// Of the kerf.
+    pub kerf: f64,
+    /// Of the thickness.
+    pub thickness: f64,
 }
 
 impl ToleranceConfig {

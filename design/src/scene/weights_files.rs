@@ -9,23 +9,18 @@ impl SceneConfig {
     /// belongs to the replaced weights, is dropped. A law without weights is an error.
     pub fn name_weights(&mut self, weights: &Path) -> std::io::Result<()> {
         let weights = std::path::absolute(weights)?;
-        match (self.hinge, &mut self.condensed) {
-            (HingeModel::Surrogate, _) => {
-                let replaced = self.surrogate.take();
-                self.surrogate = Some(SurrogateFile {
-                    weights,
-                    ensemble: Vec::new(),
-                    springback: replaced.and_then(|learned| learned.springback),
-                });
-            }
-            (HingeModel::Linear, Some(condensed)) => condensed.weights = weights,
-            (HingeModel::Linear | HingeModel::Pin, _) => {
-                return Err(std::io::Error::new(
-                    std::io::ErrorKind::InvalidInput,
-                    "other weights were named, but the hinge law of the scene reads none: use hinge = \"surrogate\"",
-                ));
-            }
+        if self.hinge != HingeModel::Surrogate {
+            return Err(std::io::Error::new(
+                std::io::ErrorKind::InvalidInput,
+                "other weights were named, but the hinge law of the scene reads none: use hinge = \"surrogate\"",
+            ));
         }
+        let replaced = self.surrogate.take();
+        self.surrogate = Some(SurrogateFile {
+            weights,
+            ensemble: Vec::new(),
+            springback: replaced.and_then(|learned| learned.springback),
+        });
         Ok(())
     }
 
@@ -41,19 +36,11 @@ impl SceneConfig {
 
     /// The same, to be changed.
     pub(crate) fn weights_files_mut(&mut self) -> Vec<&mut PathBuf> {
-        match self.hinge {
-            HingeModel::Pin => Vec::new(),
-            HingeModel::Linear => {
-                let condensed = self.condensed.iter_mut();
-                condensed.map(|file| &mut file.weights).collect()
-            }
-            HingeModel::Surrogate => {
-                let learned = self.surrogate.iter_mut();
-                let files = learned
-                    .flat_map(|file| std::iter::once(&mut file.weights).chain(&mut file.ensemble));
-                files.collect()
-            }
-        }
+        let learned = self.surrogate.iter_mut();
+        let learned = learned.filter(|_| self.hinge == HingeModel::Surrogate);
+        learned
+            .flat_map(|file| std::iter::once(&mut file.weights).chain(&mut file.ensemble))
+            .collect()
     }
 
     /// The same scene without the sections of weights that its hinge law does not read.
@@ -61,9 +48,6 @@ impl SceneConfig {
         let mut config = self.clone();
         if config.hinge != HingeModel::Surrogate {
             config.surrogate = None;
-        }
-        if config.hinge != HingeModel::Linear {
-            config.condensed = None;
         }
         config
     }

@@ -290,10 +290,9 @@ fn searched(
         return;
     };
     add(Finding::Searched, String::new());
-    let method = match (seed / 4) % 3 {
+    let method = match (seed / 4) % 2 {
         0 => SearchMethod::Adam,
-        1 => SearchMethod::Lbfgs,
-        _ => SearchMethod::GaussNewton,
+        _ => SearchMethod::Lbfgs,
     };
     let mut state = SearchState::new(problem, start, &evaluation, method, 0.03);
     let mut sink = |_: &SearchState| Ok::<(), Infallible>(());

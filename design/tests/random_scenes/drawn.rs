@@ -3,11 +3,10 @@
 use design::equilibrium::settings::SolverSettings;
 use design::equilibrium::solver::EquilibriumSolver;
 use design::equilibrium::supports::{Dof, Load, Support};
-use design::geometry::chamfer::{Chamfer, Precision};
 use design::hinge_law::{Contact, HingeLaw, LinearLaw, SurrogateLaw};
 use design::objective::design_problem::{DesignProblem, Mechanics, Model};
 use design::objective::loss::Objective;
-use design::objective::shape::{OutlinePoints, Shape};
+use design::objective::shape::Shape;
 use design::pattern::coordinates::PatternCoordinates;
 use design::pattern::cut_pattern::Outline;
 use design::pattern::design_vector::{DesignVector, WidthChart};
@@ -264,13 +263,8 @@ impl Drawn {
             })),
             objective: Objective::from_shape(Shape {
                 target: target.collect(),
-                chamfer: Chamfer {
-                    coverage_weight: 0.5,
-                    smoothing: 0.0,
-                    precision: Precision::Samples,
-                },
-                outline: OutlinePoints::All,
-                centre: None,
+                coverage_weight: 0.5,
+                centred: false,
             }),
         }
     }

@@ -1,10 +1,8 @@
 //! The chain from cut pattern to design gradient: reference cases, closed forms, Taylor tests,
 //! extreme input.
 
-mod calibration;
 mod cases;
 mod closed_forms;
-mod coupon;
 mod cutting_errors;
 mod driven;
 mod equilibrium;

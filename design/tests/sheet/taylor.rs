@@ -7,13 +7,10 @@ use design::equilibrium::load_step::Status;
 use design::equilibrium::settings::SolverSettings;
 use design::equilibrium::solver::EquilibriumSolver;
 use design::equilibrium::supports::{Dof, Load, Support};
-use design::geometry::chamfer::{Chamfer, Precision};
-use design::hinge_law::{CondensedLaw, Contact, DamageMeasure, HingeLaw, LinearLaw, SurrogateLaw};
-use design::objective::centre::Centre;
-use design::objective::cut_sheets::{CutSheets, ErrorDeviations};
-use design::objective::design_problem::{Deployment, DesignProblem, Mechanics, Model};
+use design::hinge_law::{Contact, DamageMeasure, HingeLaw, LinearLaw, SurrogateLaw};
+use design::objective::design_problem::{DesignProblem, Mechanics, Model};
 use design::objective::loss::Objective;
-use design::objective::shape::{OutlinePoints, Shape};
+use design::objective::shape::Shape;
 use design::objective::term::Weighted;
 use design::objective::terms::{
     Compression, Damage, DomainPenalty, PanelShape, PeakLoad, Shear, SymmetricDifference,
@@ -112,13 +109,8 @@ pub fn problem(model: Model, hinge_point: HingePoint) -> DesignProblem {
         objective: Objective {
             shape: Shape {
                 target: target.collect(),
-                chamfer: Chamfer {
-                    coverage_weight: 0.5,
-                    smoothing: 500.0,
-                    precision: Precision::Samples,
-                },
-                outline: OutlinePoints::Free,
-                centre: Some(Centre::Points),
+                coverage_weight: 0.5,
+                centred: true,
             },
             functionals: vec![
                 Weighted::new(
@@ -141,7 +133,6 @@ pub fn problem(model: Model, hinge_point: HingePoint) -> DesignProblem {
                 ),
                 Weighted::new(1.0, domain),
             ],
-            cut_sheets: None,
         },
     }
 }
@@ -217,9 +208,8 @@ fn ideal_deployment() {
 
 /// With the opening as a design variable, and held.
 #[test]
-fn taylor_rate_of_two_with_areas_instead_of_points() {
+fn taylor_rate_of_two_with_the_symmetric_difference() {
     let mut problem = problem(Model::Ideal { opening: 0.9 }, HingePoint::Corner);
-    problem.objective.shape.centre = Some(Centre::Area);
     let difference = SymmetricDifference::new(problem.objective.shape.clone());
     let difference = Weighted::new(1e5, difference);
     problem.objective.penalties.push(difference);
@@ -229,66 +219,6 @@ fn taylor_rate_of_two_with_areas_instead_of_points() {
         assert!(evaluation.terms["symmetric_difference"] > 0.0);
         assert_order_two(&problem, &design);
     }
-}
-
-/// The products of the rows with a direction are the motions of the outline points along it, in the metric of the Chamfer
-/// distance.
-#[test]
-fn the_curvature_of_the_shape_is_that_of_its_points() {
-    for (model, centre) in [
-        (Model::Ideal { opening: 0.9 }, Centre::Points),
-        (Model::Ideal { opening: 0.9 }, Centre::Area),
-        (
-            mechanics(springs(), 40.0, East::Pulled(15.0)),
-            Centre::Points,
-        ),
-    ] {
-        let mut problem = problem(model, HingePoint::Corner);
-        problem.objective.shape.centre = Some(centre);
-        let [by_rows, by_points] = curvatures(&problem, &start());
-        assert!(
-            (by_rows / by_points - 1.0).abs() < 1e-5,
-            "{by_rows} {by_points}"
-        );
-    }
-}
-
-/// The curvature of the shape along a direction, by its rows and by the motions of its points.
-pub fn curvatures(problem: &DesignProblem, design: &DesignVector) -> [f64; 2] {
-    let deployment = problem.evaluate(design).unwrap().deployment;
-    let x = design.to_flat();
-    let direction = Random::new(17).numbers(x.len(), 1.0);
-    let placed = |deployment: &Deployment| {
-        let corners = problem.objective.shape.outline.corners(&deployment.sheet);
-        problem
-            .objective
-            .shape
-            .placed(&deployment.outline(&corners))
-    };
-    let moved = |step: f64| {
-        let x = std::iter::zip(&x, &direction).map(|(x, d)| x + step * d);
-        placed(
-            &problem
-                .deploy(&design.with_flat(&x.collect::<Vec<f64>>()))
-                .unwrap(),
-        )
-    };
-    let (ahead, behind) = (moved(1e-4), moved(-1e-4));
-    let shape = &problem.objective.shape;
-    let factors = (shape.chamfer).curvature_factors(&placed(&deployment), &shape.target);
-    let by_points: f64 = (0..factors.len())
-        .flat_map(|k| {
-            let motion = [0, 1].map(|axis| (ahead[k][axis] - behind[k][axis]) / 2e-4);
-            factors[k].map(|[x, y]| (x * motion[0] + y * motion[1]).powi(2))
-        })
-        .sum();
-    let rows = problem.shape_curvature(design, &deployment).unwrap();
-    let along = |row: &Vec<f64>| -> f64 {
-        std::iter::zip(row, &direction)
-            .map(|(row, d)| row * d)
-            .sum()
-    };
-    [rows.iter().map(|row| along(row).powi(2)).sum(), by_points]
 }
 
 pub fn springs() -> LinearLaw {
@@ -318,18 +248,6 @@ fn driven_sheets() {
 }
 
 #[test]
-fn linear_law_condensed_from_the_surrogate() {
-    for secant in [0.0, 0.35] {
-        let law = CondensedLaw {
-            surrogate: tiny().surrogate,
-            secant,
-        };
-        let model = mechanics(law, 80.0, East::Pulled(4.0));
-        assert_order_two(&problem(model, HingePoint::CutTip), &start());
-    }
-}
-
-#[test]
 fn surrogate_law_at_the_tip() {
     let model = mechanics(tiny(), 40.0, East::Pulled(2.0));
     assert_order_two(&problem(model, HingePoint::CutTip), &start());
@@ -342,31 +260,6 @@ fn surrogate_law_with_drilled_holes() {
     let mut problem = problem(model, HingePoint::CutTip);
     problem.options.process.hole = Hole::Diameter(4.0);
     assert_order_two(&problem, &start());
-}
-
-/// The loss of sheets with errors of cutting, whose holes have one ratio or one diameter.
-#[test]
-fn the_expected_loss_of_cut_sheets() {
-    let errors = ErrorDeviations {
-        ligament: 0.5,
-        kerf: 0.2,
-        thickness: 0.01,
-    };
-    for (east, hole) in [
-        (East::Pulled(2.0), PROCESS.hole),
-        (East::Driven(2.0, 18.0), Hole::Diameter(4.0)),
-    ] {
-        let mut problem = problem(mechanics(tiny(), 40.0, east), HingePoint::CutTip);
-        problem.options.process.hole = hole;
-        let alone = problem.evaluate(&start()).unwrap();
-        problem.objective.cut_sheets = Some(CutSheets::new(0.7, GRID.hinge_count(), 0.5, errors));
-        let evaluation = problem.evaluate(&start()).unwrap();
-        let excess = evaluation.terms["expected_excess"];
-        assert!(excess.abs() > 1e-4 * alone.loss, "{excess}");
-        let sum = alone.loss + 0.7 * excess;
-        assert!((evaluation.loss / sum - 1.0).abs() < 1e-12);
-        assert_order_two(&problem, &start());
-    }
 }
 
 /// The same problem for a sheet with a weight, held and pulled at other points than centroids.

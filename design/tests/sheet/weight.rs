@@ -1,4 +1,4 @@
-//! The weight of a sheet, its friction on a surface, and forces at other points than centroids: closed forms, balances,
+//! The weight of a sheet, and forces at other points than centroids: closed forms, balances,
 //! independence of the reference point.
 
 use crate::cases::{self, AT_CORNER, case, difference};
@@ -279,53 +279,4 @@ fn a_weight_that_is_no_number_is_refused() {
     let sheet = cases::sheet(&case("p0_3x3_uniform"));
     let result = solver(&sheet, &clamp(0), &[], 1).with_weight([0.0, f64::NAN]);
     assert!(matches!(result, Err(EquilibriumError::Weight(_))));
-}
-
-/// Joined by soft hinges to a clamped panel, the pulled panel stays below mu N and is pulled free of friction above it.
-#[test]
-fn a_sheet_with_friction_does_not_move_below_its_limit() {
-    let grid = Grid { m: 2, n: 2 };
-    let coordinates = PatternCoordinates::uniform(grid);
-    let pattern = CutPattern::new(grid, Outline::rectangle(2.0, 2.0), &coordinates).unwrap();
-    let sheet = Sheet::new(&pattern, &[0.1; 4], AT_CORNER).unwrap();
-    let supports: Vec<Support> = [0, 2, 3].into_iter().flat_map(clamp).collect();
-    let held = Support {
-        panel: 1,
-        dof: Dof::Phi,
-        value: 0.0,
-    };
-    let supports: Vec<Support> = supports.into_iter().chain([held]).collect();
-    // Two hinges, each with k_a along one axis and k_s along the other.
-    let stiffness = 5.0;
-    let law = LinearLaw::uniform([stiffness, stiffness, 1.0], sheet.hinges.len());
-    let law = law.prepare(&sheet.designs());
-    let hinged = HingedSheet {
-        sheet: &sheet,
-        law: &*law,
-        contact: None,
-        damage_gradient: false,
-    };
-    let limit = 0.4 * sheet.panels[1].area;
-    for (force, way) in [
-        (0.5 * limit, 0.0),
-        (0.9 * limit, 0.0),
-        (2.5 * limit, 1.5 * limit / (2.0 * stiffness)),
-    ] {
-        let solver = solver(&sheet, &supports, &[pulled(1, Dof::UX, force)], 5);
-        let slid = solver.slid(hinged, 0.4).unwrap();
-        let found = slid.configuration[1][0];
-        assert!((found - way).abs() < 2e-4, "{force}: {found} {way}");
-        assert!((slid.slips[1] - found.abs()).abs() < 2e-4);
-        assert!(slid.residual < 1e-6);
-        // Creep of a tenth of a thousandth counts as work, too.
-        assert!(
-            (slid.dissipated - limit * way).abs() < 3e-4 * limit,
-            "{slid:?}"
-        );
-        // Without friction the path of load steps.
-        let free = solver.slid(hinged, 0.0).unwrap();
-        let path = solver.path(hinged);
-        let apart = difference(&free.configuration, &path[4].configuration);
-        assert!(apart < 1e-9, "{apart}");
-    }
 }

@@ -3,9 +3,7 @@
 use crate::calculix::dat::Frame;
 use crate::calculix::model::WindowModel;
 use crate::calculix::panel_motion::{PanelMotion, rotated};
-use hinge::{
-    HingeDeformation, HingeDesign, HingeForces, HingeSample, SheetMaterial, StrainVolumes,
-};
+use hinge::{HingeDeformation, HingeDesign, HingeForces, HingeSample, SheetMaterial};
 use mesher::WindowMesh;
 use std::f64::consts::PI;
 
@@ -43,10 +41,7 @@ pub(crate) fn samples(model: &WindowModel, frames: &[Frame]) -> Vec<HingeSample>
                 m_theta: forces.m_theta,
                 plastic_integral: damage.plastic_integral,
                 d: damage.d,
-                d_window: damage.plastic_integral / (material.fracture_strain * mesh.volume()),
                 d_peak: Some(damage.d_peak),
-                strain_max: Some(damage.strain_max),
-                strain_volumes: Some(damage.strain_volumes),
                 uz_max: (frame.displacements.iter().take(mesh.bottom.len()))
                     .fold(0.0, |most, [_, _, uz]| uz.abs().max(most)),
                 energy_residual: (frame.energy - w_work).abs() / largest_w,
@@ -104,8 +99,6 @@ pub(crate) struct Damage {
     plastic_integral: f64,
     pub d: f64,
     pub d_peak: f64,
-    strain_max: f64,
-    strain_volumes: StrainVolumes,
 }
 
 impl Damage {
@@ -124,8 +117,6 @@ impl Damage {
             plastic_integral,
             d: plastic_integral / (fracture * ligament),
             d_peak: mean_of_first(&points, PEAK_FRACTION * ligament) / fracture,
-            strain_max: points.first().map_or(0.0, |(strain, _)| *strain),
-            strain_volumes: StrainVolumes::from_points(points),
         }
     }
 }

@@ -38,7 +38,7 @@ pub struct WindowProblem {
 pub struct WindowSolve {
     /// The window problem.
     pub problem: WindowProblem,
-    /// The recipe of the mesh: that of the tier, except in studies of the mesh.
+    /// The recipe of the mesh: that of the tier.
     pub mesh: MeshRecipe,
     /// Versions of the external programs.
     pub tools: ToolVersions,

@@ -4,7 +4,6 @@ use design::geometry::symmetric_difference::intersection_over_union;
 use design::objective::design_problem::{DesignError, DesignProblem, Evaluation, Sensitivities};
 use design::objective::loss::TermValues;
 use design::objective::scores::outline_error;
-use design::objective::shape::OutlinePoints;
 use design::pattern::design_vector::DesignVector;
 use design::scene::Scene;
 use design::scene::placement::deployed_outline;
@@ -44,7 +43,7 @@ impl GradientListing {
     ) -> Result<Self, DesignError> {
         let evaluation = problem.evaluate(design)?;
         let outline_error = outline_error(&problem.objective, &evaluation.deployment);
-        let outline = deployed_outline(scene, &evaluation.deployment, OutlinePoints::All);
+        let outline = deployed_outline(scene, &evaluation.deployment);
         let Evaluation {
             loss,
             terms,

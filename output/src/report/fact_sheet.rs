@@ -141,13 +141,7 @@ impl FactSheet {
             material: material.name.clone(),
             thickness: material.thickness,
             mass_kg,
-            self_weight: SelfWeight::new(
-                scene,
-                problem,
-                deployment,
-                mass_kg,
-                reached.as_ref().and_then(Reached::force),
-            ),
+            self_weight: SelfWeight::new(scene, mass_kg, reached.as_ref().and_then(Reached::force)),
             lasting_shape: LastingShape::new(scene, problem, deployment),
             panels: scene.config.sheet.panels,
             flat_size: extent(flat.iter().copied()),
@@ -214,8 +208,7 @@ impl FactSheet {
                     .iter()
                     .map(|text| ("attachment", text.clone())),
             );
-            let units = self.reached.as_ref().map(|reached| reached.units);
-            facts.extend(self.self_weight.rows(units));
+            facts.extend(self.self_weight.rows());
         }
         facts.extend(self.lasting_shape.iter().flat_map(LastingShape::rows));
         if let Some(gamma) = self.gamma_min {

@@ -16,7 +16,7 @@ use design::objective::design_problem::Deployment;
 use design::objective::scores::Scores;
 use design::objective::shape::TargetState;
 use design::scene::design_run::Designed;
-use design::scene::{Actuation, Posture, Scene};
+use design::scene::{Actuation, FRICTION, Posture, Scene};
 use design::sheet::cut_sheet::PanelPoint;
 use design::sheet::hinge_window::Window;
 use design::sheet::validity::overlap;
@@ -470,28 +470,15 @@ fn weightless(judged: &Judged) -> Option<Warning> {
 fn friction(judged: &Judged) -> Option<Warning> {
     judged.scene.surrogate()?;
     let weight = &judged.run.as_ref()?.facts.self_weight;
-    let lying = weight.lying.as_ref()?;
-    let ratio = lying.coefficient * weight.over_load?;
-    if ratio <= HEAVY {
-        return None;
-    }
-    let effect = match (&lying.effect, lying.ended) {
-        (Some(effect), _) => {
-            let [rms, most] = effect.corners.map(|length| rounded(length, 3));
-            format!("with it the corners are off by {rms} mm (root mean square), {most} mm at most")
-        }
-        (None, Some((at, _))) => format!(
-            "with it no equilibrium was found beyond {} of the path",
-            rounded(at, 3)
-        ),
-        (None, None) => "its effect is not known".to_owned(),
-    };
-    Some(Concern::Friction.of_sheet(format!(
-        "friction on the surface, at mu = {}, is {}, and the design does not contain it: {effect}; lift or shake the sheet \
-         while it opens, or reduce the friction",
-        lying.coefficient,
-        of_the_load(ratio)
-    )))
+    weight.lying.as_ref()?;
+    let ratio = FRICTION * weight.over_load?;
+    (ratio > HEAVY).then(|| {
+        Concern::Friction.of_sheet(format!(
+            "friction on the surface, at mu = {FRICTION}, is {}, and the design does not contain it: lift or shake the sheet while \
+             it opens, or reduce the friction",
+            of_the_load(ratio)
+        ))
+    })
 }
 
 fn hung_weight(judged: &Judged) -> Option<Warning> {

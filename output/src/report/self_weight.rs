@@ -1,11 +1,8 @@
 //! The weight of a sheet beside its load, and what follows from how the sheet is held out of its plane.
 
 use crate::report::columns::rounded;
-use design::analysis::friction_effect::FrictionEffect;
 use design::analysis::localisation::elasto_gravity_length;
-use design::equilibrium::load_step::DescentEnd;
-use design::objective::design_problem::{Deployment, DesignProblem};
-use design::scene::{Posture, Scene};
+use design::scene::{FRICTION, Posture, Scene};
 use serde::Serialize;
 
 /// The weight of the uncut sheet and how it acts.
@@ -28,30 +25,17 @@ pub struct SelfWeight {
 /// A sheet that lies on a surface.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Lying {
-    /// Coefficient of friction.
-    pub coefficient: f64,
-    /// Friction while all panels slide (N).
+    /// Friction while all panels slide (N), with the coefficient [`FRICTION`].
     pub friction: f64,
     /// The length l_eg at which the weight of a plate bends it as much as its stiffness resists (mm).
     pub bending_length: f64,
     /// The radius of the windows of hinges (mm).
     pub window: f64,
-    /// What friction changes; `None` if the path with friction ends early, or without equilibrium.
-    pub effect: Option<FrictionEffect>,
-    /// Where the path with friction ends early, and why.
-    #[serde(skip)]
-    pub ended: Option<(f64, DescentEnd)>,
 }
 
 impl SelfWeight {
     /// Of a sheet with the given mass (kg), beside a force (N) if there is one.
-    pub(super) fn new(
-        scene: &Scene,
-        problem: &DesignProblem,
-        deployment: &Deployment,
-        mass_kg: f64,
-        load: Option<f64>,
-    ) -> Self {
+    pub(super) fn new(scene: &Scene, mass_kg: f64, load: Option<f64>) -> Self {
         let weight = hinge::STANDARD_GRAVITY * mass_kg;
         let load = load.map(f64::abs).filter(|load| *load > 0.0);
         // Under a prescribed stroke a mass is a direction only.
@@ -66,7 +50,7 @@ impl SelfWeight {
             over_load: load.map(|load| weight / load),
             is_modelled: scene.weight_by_area() != [0.0; 2],
             hung: (hung > 0.0).then(|| 1e-3 * hung / mass_kg),
-            lying: Lying::new(scene, problem, deployment, weight),
+            lying: Lying::new(scene, weight),
         }
     }
 
@@ -88,8 +72,8 @@ impl SelfWeight {
         })
     }
 
-    /// Names and values; `units` are those of displacement and load.
-    pub(super) fn rows(&self, units: Option<[&str; 2]>) -> Vec<(&'static str, String)> {
+    /// Names and values.
+    pub(super) fn rows(&self) -> Vec<(&'static str, String)> {
         let modelled = if self.is_modelled {
             "modelled"
         } else {
@@ -98,7 +82,7 @@ impl SelfWeight {
         let weight = self.beside_load(self.weight);
         let mut rows = vec![("weight", format!("{weight}; {modelled}"))];
         if let Some(lying) = &self.lying {
-            rows.extend(lying.rows(self, units));
+            rows.extend(lying.rows(self));
         }
         rows
     }
@@ -112,66 +96,20 @@ impl SelfWeight {
 }
 
 impl Lying {
-    fn new(
-        scene: &Scene,
-        problem: &DesignProblem,
-        deployment: &Deployment,
-        weight: f64,
-    ) -> Option<Self> {
-        let coefficient = scene.config.posture?.friction()?;
-        let by_area = coefficient * scene.material.weight_by_area();
-        let effect = (problem.model.mechanics())
-            .map(|mechanics| FrictionEffect::new(mechanics, deployment, by_area));
-        let (effect, ended) = match effect {
-            Some(Ok(effect)) => (Some(effect), None),
-            Some(Err(ended)) => (None, Some(ended)),
-            None => (None, None),
-        };
-        Some(Self {
-            coefficient,
-            friction: coefficient * weight,
+    fn new(scene: &Scene, weight: f64) -> Option<Self> {
+        (scene.config.posture?.kind == Posture::Lying).then(|| Self {
+            friction: FRICTION * weight,
             bending_length: elasto_gravity_length(&scene.material),
             window: scene.config.process.r_win,
-            effect,
-            ended,
         })
     }
 
-    fn rows(&self, of: &SelfWeight, units: Option<[&str; 2]>) -> Vec<(&'static str, String)> {
-        let mu = self.coefficient;
+    fn rows(&self, of: &SelfWeight) -> Vec<(&'static str, String)> {
         let force = of.beside_load(self.friction);
         let mut rows = vec![(
             "friction",
-            format!("{force}, while all panels slide at mu = {mu}; not in the design"),
+            format!("{force}, while all panels slide at mu = {FRICTION}; not in the design"),
         )];
-        if let Some(effect) = &self.effect {
-            let [rms, most] = effect.corners.map(|length| rounded(length, 3));
-            let slip = effect.slips.iter().copied().fold(0.0, f64::max);
-            let slip = rounded(slip, 3);
-            let end = match (effect.ends, units) {
-                (Some([without, with]), Some([length, force])) => {
-                    let [from, to] = [without, with].map(|end| end.map(|value| rounded(value, 4)));
-                    format!(
-                        "{} {force} at a stroke of {} {length} in place of {} {force} at {} {length}; ",
-                        to[1], to[0], from[1], from[0]
-                    )
-                }
-                _ => String::new(),
-            };
-            let [rubbed, stored] = effect.work.map(|work| rounded(1e-3 * work, 3));
-            let text = format!(
-                "{end}corners off by {rms} mm (root mean square), {most} mm at most; panels slide by up to {slip} mm, which takes \
-                 {rubbed} J beside {stored} J stored"
-            );
-            rows.push(("with friction", text));
-        }
-        if let Some((at, end)) = self.ended {
-            let text = format!(
-                "no equilibrium found beyond {} of the path: {end}",
-                rounded(at, 3)
-            );
-            rows.push(("with friction", text));
-        }
         let length = rounded(self.bending_length, 3);
         let ratio = rounded(self.bending_length / self.window, 2);
         let text = format!("l_eg {length} mm, {ratio} times the radius of a window");
@@ -211,7 +149,7 @@ mod tests {
         assert_eq!(film.beside_load(0.0851), "0.0851 N, 16 % of the load");
         assert_eq!(film.beside_load(0.02553), "0.0255 N, 4.9 % of the load");
         // The bell: 161 kg and 28 N.
-        let bell = weight(1579.0, Some(56.4)).rows(None);
+        let bell = weight(1579.0, Some(56.4)).rows();
         assert!(
             bell[0].1.contains("56 times the load; not modelled"),
             "{bell:?}"

@@ -32,18 +32,14 @@ fn the_loss_falls_and_the_best_design_is_returned() {
 }
 
 const LBFGS: (&str, &str) = ("steps = 25", "steps = 25\nmethod = \"lbfgs\"");
-const GAUSS_NEWTON: (&str, &str) = ("steps = 25", "steps = 25\nmethod = \"gauss-newton\"");
 
 #[test]
-fn every_step_of_lbfgs_and_gauss_newton_lowers_the_loss() {
-    let curve = ("coverage = 0.5", "coverage = 0.5\nprecision = \"curve\"");
-    for method in [LBFGS, GAUSS_NEWTON] {
-        let folder = tempfile::tempdir().unwrap();
-        let designed = run(&read(folder.path(), &with(&[method, curve])), None).unwrap();
-        let falls = |pair: &[StepRecord]| pair[1].scores.loss < pair[0].scores.loss;
-        assert!(designed.history.windows(2).all(falls));
-        assert!(designed.best.loss < 0.8 * designed.start.loss);
-    }
+fn every_step_of_lbfgs_lowers_the_loss() {
+    let folder = tempfile::tempdir().unwrap();
+    let designed = run(&read(folder.path(), &with(&[LBFGS])), None).unwrap();
+    let falls = |pair: &[StepRecord]| pair[1].scores.loss < pair[0].scores.loss;
+    assert!(designed.history.windows(2).all(falls));
+    assert!(designed.best.loss < 0.8 * designed.start.loss);
 }
 
 #[test]
@@ -69,7 +65,6 @@ fn lbfgs_ends_at_a_minimum() {
 fn a_stopped_run_resumes_to_the_same_trajectory() {
     resumes(SCENE);
     resumes(&with(&[LBFGS]));
-    resumes(&with(&[GAUSS_NEWTON]));
 }
 
 fn resumes(text: &str) {
@@ -120,28 +115,17 @@ fn a_run_continues_with_more_steps_but_not_with_another_scene() {
     assert!(error.contains("restart the run"), "{error}");
 }
 
-/// Tolerances are part of an expected loss alone.
 #[test]
-fn a_search_for_sheets_with_errors_continues_with_the_same_tolerances() {
-    for robust in [0.0, 1.0] {
-        let folder = tempfile::tempdir().unwrap();
-        let run_with = |kerf: f64, steps: usize| {
-            let sections = format!("[tolerances]\nkerf = {kerf}\n\n[objective]\nrobust = {robust}");
-            let steps = format!("steps = {steps}");
-            let text = with(&[("[objective]", &*sections), ("steps = 25", &*steps)]);
-            run(&read(folder.path(), &text), None)
-        };
-        let short = run_with(0.5, 1).unwrap();
-        let other = run_with(1.0, 2).map(|designed| designed.history.len());
-        if robust == 0.0 {
-            assert_eq!(other.unwrap(), 3);
-        } else {
-            let error = other.unwrap_err().to_string();
-            assert!(error.contains("the key `tolerances` changed"), "{error}");
-            assert_eq!(run_with(0.5, 2).unwrap().history.len(), 3);
-            assert!(short.best.terms["expected_excess"] != 0.0);
-        }
-    }
+fn a_search_continues_with_other_tolerances() {
+    let folder = tempfile::tempdir().unwrap();
+    let run_with = |kerf: f64, steps: usize| {
+        let sections = format!("[tolerances]\nkerf = {kerf}\n\n[objective]");
+        let steps = format!("steps = {steps}");
+        let text = with(&[("[objective]", &*sections), ("steps = 25", &*steps)]);
+        run(&read(folder.path(), &text), None).unwrap()
+    };
+    run_with(0.5, 1);
+    assert_eq!(run_with(1.0, 2).history.len(), 3);
 }
 
 #[test]

@@ -2,12 +2,7 @@
 
 use super::{read, with};
 use design::equilibrium::load_step::LoadStep;
-use design::hinge_law::{CondensedLaw, HingeLaw, Order};
-use design::objective::design_problem::Model;
-use design::scene::{CondensedConfig, Scene};
-use hinge::HingeDeformation;
-use std::path::Path;
-use surrogate::Surrogate;
+use design::scene::Scene;
 
 const PULL: &str = "[[loads]]\npanel = [2, 1]\nforce = [2.0, 0.0]";
 
@@ -112,33 +107,4 @@ fn a_target_is_drawn_in_an_svg_file() {
         let (x, y) = ((x - 700.0).abs() / 900.0, (y - 550.0).abs() / 450.0);
         assert!((x.max(y) - 1.0).abs() < 1e-9, "{x} {y}");
     }
-}
-
-#[test]
-fn constants_are_condensed_from_weights() {
-    let folder = tempfile::tempdir().unwrap();
-    super::learned::weights(folder.path(), &[]);
-    let mut config = read(folder.path(), &with(&[])).config;
-    config.linear = None;
-    config.condensed = Some(CondensedConfig {
-        weights: "tiny.safetensors".into(),
-        secant_deg: 20.0,
-    });
-    let scene = Scene::new(config, &folder.path().join("scene.toml")).unwrap();
-    let problem = scene.problem().unwrap();
-    let (_, sheet) = problem.cut(&scene.start()).unwrap();
-    let Model::Equilibrium(mechanics) = &problem.model else {
-        panic!("the scene has mechanics");
-    };
-    let states = vec![HingeDeformation::from([0.3, -0.2, 0.4]); 12];
-    let energies = |law: &dyn HingeLaw| {
-        let prepared = law.prepare(&sheet.designs());
-        prepared.energies(&states, Order::Design)
-    };
-    let weights = Surrogate::load(Path::new(&folder.path().join("tiny.safetensors"))).unwrap();
-    let expected = CondensedLaw {
-        surrogate: weights,
-        secant: 20.0_f64.to_radians(),
-    };
-    assert_eq!(energies(&*mechanics.law), energies(&expected));
 }

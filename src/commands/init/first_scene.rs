@@ -14,7 +14,6 @@ use crate::commands::init::edited::{heading, scale, set};
 use crate::commands::init::template::Template;
 use crate::commands::input_file;
 use anyhow::{Context, Result};
-use design::analysis::coupon::OPENING;
 use design::scene::{CuttingConfig, Paper, place_drawing, rounded};
 use hinge::{HingeDeformation, Regime};
 use std::f64::consts::FRAC_PI_2;
@@ -24,6 +23,8 @@ use toml_edit::{Array, DocumentMut, Item, Table, value};
 
 /// Minimum side of a panel over the radius of a window: windows of neighbouring hinges do not overlap.
 pub(crate) const PANEL: f64 = 3.5;
+/// The largest opening of a hinge that is planned for a first sheet (rad): 25 degrees.
+pub(crate) const OPENING: f64 = 0.436;
 /// Thickness (mm) from which a sheet is a plate: the narrowest ligaments of a thinner one, a third of its thickness, would be
 /// too narrow for a hole wider than the kerf.
 pub(super) const THINNEST_PLATE: f64 = 2.0;

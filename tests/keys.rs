@@ -1,7 +1,6 @@
-//! `kirigami-studies keys`: docs/KEYS.md, the reference of every configuration file, from the types that read them.
+//! docs/KEYS.md, the reference of every configuration file, is what the types say that read the files. With `KIRIGAMI_WRITE=1` the
+//! test writes the page instead.
 
-use anyhow::{Context, Result};
-use clap::Args;
 use design::scene::SceneConfig;
 use fe_driver::Campaign;
 use hinge::SheetMaterial;
@@ -9,33 +8,17 @@ use schemars::{Schema, schema_for};
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::fmt::Write;
-use std::path::PathBuf;
 use support::key_limits::Range;
 use train::TrainingConfig;
 
-/// Write the reference of all keys of scenes, campaigns, materials and trainings
-#[derive(Args)]
-pub struct KeysCommand {
-    /// The page to write
-    #[arg(long, value_name = "FILE", default_value = "docs/KEYS.md")]
-    out: PathBuf,
-}
-
-impl KeysCommand {
-    pub fn run(&self) -> Result<()> {
-        support::whole_file::write(&self.out, page()?.as_bytes())
-            .with_context(|| format!("cannot write {}", self.out.display()))
-    }
-}
-
 const HEADING: &str = "# Keys of the configuration files
 
-Written by `kirigami-studies keys` from the types that read the files. An unknown key is an error that names the nearest
+Written from the types that read the files (`KIRIGAMI_WRITE=1 cargo test --test keys`). An unknown key is an error that names the nearest
 known one. Ranges are checked when a file is read; the error states them. The keys of a table of machines (`kirigami cut --machines`) and
 of the map of an import (`kirigami dataset import`) are explained in `configs/machines.toml` and `configs/import/example.toml`.
 ";
 
-fn page() -> Result<String> {
+fn page() -> String {
     let files: [(&str, &str, Schema); 4] = [
         ("Scene", "configs/scenes", schema_for!(SceneConfig)),
         ("Campaign", "configs/campaigns", Campaign::file_schema()),
@@ -48,21 +31,21 @@ fn page() -> Result<String> {
     ];
     let (mut page, mut described) = (HEADING.to_owned(), Described::new());
     for (title, folder, schema) in files {
-        writeln!(page, "\n## {title} ({folder})")?;
-        file(&mut page, &mut described, title, schema.as_value())?;
+        writeln!(page, "\n## {title} ({folder})").unwrap();
+        file(&mut page, &mut described, title, schema.as_value());
     }
-    Ok(page)
+    page
 }
 
 /// The titles under which the page describes types so far.
 type Described = BTreeMap<String, String>;
 
 /// The keys of a file, its sections, and the values of its enumerations.
-fn file(page: &mut String, described: &mut Described, title: &str, schema: &Value) -> Result<()> {
+fn file(page: &mut String, described: &mut Described, title: &str, schema: &Value) {
     let types = &schema["$defs"];
     let (sections, keys): (Vec<_>, Vec<_>) = properties(schema)
         .partition(|(_, property)| type_name(property).is_some_and(|name| has_keys(&types[name])));
-    table(page, keys.into_iter(), schema)?;
+    table(page, keys.into_iter(), schema);
     for (key, property) in sections {
         let name = type_name(property).unwrap_or_default();
         let section = match property["type"].as_str() {
@@ -75,31 +58,30 @@ fn file(page: &mut String, described: &mut Described, title: &str, schema: &Valu
         } else {
             ""
         };
-        writeln!(page, "\n### {section}{need}\n")?;
+        writeln!(page, "\n### {section}{need}\n").unwrap();
         let meaning = text(property);
         if !text(&types[name]).starts_with(meaning.trim_end_matches('.')) {
-            writeln!(page, "{meaning}")?;
+            writeln!(page, "{meaning}").unwrap();
         }
         if let Some(earlier) = described.get(name) {
-            writeln!(page, "The keys are those of {earlier}.")?;
+            writeln!(page, "The keys are those of {earlier}.").unwrap();
             continue;
         }
-        describe(page, &types[name])?;
+        describe(page, &types[name]);
         described.insert(name.to_owned(), section);
     }
     for (name, definition) in types.as_object().into_iter().flatten() {
         if !described.contains_key(name) {
-            writeln!(page, "\n### {name}\n")?;
-            describe(page, definition)?;
+            writeln!(page, "\n### {name}\n").unwrap();
+            describe(page, definition);
             described.insert(name.clone(), name.clone());
         }
     }
-    Ok(())
 }
 
 /// What a type is, with its keys or values.
-fn describe(page: &mut String, definition: &Value) -> Result<()> {
-    writeln!(page, "{}", text(definition))?;
+fn describe(page: &mut String, definition: &Value) {
+    writeln!(page, "{}", text(definition)).unwrap();
     match definition.get("properties") {
         Some(_) => table(page, properties(definition), definition),
         None => choices(page, definition),
@@ -137,11 +119,12 @@ fn table<'a>(
     page: &mut String,
     keys: impl Iterator<Item = (&'a String, &'a Value)>,
     schema: &Value,
-) -> Result<()> {
+) {
     writeln!(
         page,
         "\n| key | type | range | default | meaning |\n|---|---|---|---|---|"
-    )?;
+    )
+    .unwrap();
     for (key, property) in keys {
         let default = match property.get("default") {
             _ if required(schema, key) => "required".to_owned(),
@@ -152,9 +135,9 @@ fn table<'a>(
         writeln!(
             page,
             "| `{key}` | {kind} | {range} | {default} | {meaning} |"
-        )?;
+        )
+        .unwrap();
     }
-    Ok(())
 }
 
 /// The range of a number, or of the numbers of a list, also as one of several types.
@@ -173,28 +156,27 @@ fn range(property: &Value) -> String {
 }
 
 /// The alternatives of an enumeration.
-fn choices(page: &mut String, schema: &Value) -> Result<()> {
+fn choices(page: &mut String, schema: &Value) {
     let alternatives = ["oneOf", "anyOf"]
         .iter()
         .find_map(|key| schema[key].as_array());
     if let Some(names) = schema["enum"].as_array() {
-        writeln!(page, "\nOne of {}.", quoted(names))?;
+        writeln!(page, "\nOne of {}.", quoted(names)).unwrap();
     }
     for alternative in alternatives.into_iter().flatten() {
         if let Some(name) = alternative.get("const") {
-            writeln!(page, "- `{name}`: {}", text(alternative))?;
+            writeln!(page, "- `{name}`: {}", text(alternative)).unwrap();
         } else if let Some(names) = alternative["enum"].as_array() {
-            writeln!(page, "- one of {}", quoted(names))?;
+            writeln!(page, "- one of {}", quoted(names)).unwrap();
         }
         for (key, value) in properties(alternative) {
-            writeln!(page, "- `{key}`: {}", text(alternative))?;
+            writeln!(page, "- `{key}`: {}", text(alternative)).unwrap();
             if value.get("properties").is_some() {
-                table(page, properties(value), value)?;
-                writeln!(page)?;
+                table(page, properties(value), value);
+                writeln!(page).unwrap();
             }
         }
     }
-    Ok(())
 }
 
 fn quoted(names: &[Value]) -> String {
@@ -242,14 +224,16 @@ fn kind(schema: &Value) -> String {
     }
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_shipped_page_is_current() {
-        let shipped = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/KEYS.md");
-        let shipped = std::fs::read_to_string(shipped).unwrap();
-        assert!(shipped == page().unwrap(), "run `kirigami-studies keys`");
+#[test]
+fn the_page_of_keys_is_what_the_types_say() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/KEYS.md");
+    let page = page();
+    if std::env::var_os("KIRIGAMI_WRITE").is_some() {
+        std::fs::write(path, &page).unwrap();
     }
+    let shipped = std::fs::read_to_string(path).unwrap();
+    assert!(
+        shipped == page,
+        "run `KIRIGAMI_WRITE=1 cargo test --test keys`"
+    );
 }
