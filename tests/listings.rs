@@ -95,8 +95,7 @@ fn patterns_and_deployments() {
         let case = case(name);
         let sections = format!(
             "hinge = \"pin\"\n{}\n[pin]\nopening_deg = 30.0\n\
-             [target.circle]\ncentre = [150.0, 150.0]\nradius = 200.0\n\
-             [objective]\ncoverage = 0.5\ntarget_points = 100\n",
+             [target.circle]\ncentre = [150.0, 150.0]\nradius = 200.0\n",
             sheet(&case, &case)
         );
         let pattern = printed(&work, "pattern", &sections, "");
@@ -163,13 +162,11 @@ fn equilibria_objective_and_gradient() {
     let sections = format!(
         "hinge = \"linear\"\nload_steps = 5\n{}\nw_lig = {widths:?}\n\
          [linear]\nk_a = 1.0\nk_s = 0.6\nk_theta = 100.0\n\
-         [contact]\nstiffness = 1.0\nphi_min_deg = -179.0\nphi_cut_deg = -178.0\n\
          [[supports]]\npanel = [0, 1]\nkind = \"clamp\"\n\
          [[loads]]\npanel = [2, 1]\nforce = [1.2, 0.0]\n\
          [[loads]]\npanel = [2, 2]\ncouple = 20.0\n\
          [target.circle]\ncentre = [170.0, 150.0]\nradius = 220.0\n\
-         [objective]\ncoverage = 0.5\ncompression = 0.3\nshear = 0.2\noutline = \"all\"\n\
-         target_points = 160\n",
+         [objective]\ncompression = 0.3\nshear = 0.2\n",
         sheet(&case, theta)
     );
     let equilibrium = printed(&work, "equilibrium", &sections, "");

@@ -206,8 +206,8 @@ fn a_design_for_the_shape_that_stays() {
             "size = [140.0, 135.0]\nrotation",
         ),
         (
-            "coverage = 0.5",
-            "coverage = 0.5\ntarget_state = \"released\"",
+            "[optimiser]",
+            "[objective]\ntarget_state = \"released\"\n\n[optimiser]",
         ),
         ("steps = 1\n", "steps = 6\n"),
     ];

@@ -35,7 +35,7 @@ pub use boundary_values::{Actuation, AppliedLoad, Attachment, SupportedPanel, pa
 pub use checked_scene::Scene;
 pub use cutting::CuttingConfig;
 pub use drawn_target::place_drawing;
-pub use hinge_model::{ContactConfig, HingeModel, LinearConstants, PinConfig, SurrogateFile};
+pub use hinge_model::{HingeModel, LinearConstants, PinConfig, SurrogateFile};
 pub use invalid_scene::{InvalidScene, WeightsMismatch};
 pub use keys::{OptimiserConfig, SceneConfig};
 pub use loaded_hinge::LoadedHinge;

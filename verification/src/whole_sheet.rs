@@ -84,11 +84,7 @@ pub fn with_support(scene: &Scene, support: Option<Posture>) -> Result<Scene, Ve
         }
         (Some(kind), Some(posture)) => posture.kind = kind,
         (Some(kind), posture @ None) => {
-            *posture = Some(PostureConfig {
-                kind,
-                down: None,
-                weight: None,
-            });
+            *posture = Some(PostureConfig { kind, down: None });
         }
     }
     Ok(scene)

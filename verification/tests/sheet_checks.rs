@@ -45,8 +45,6 @@ centre = [70.0, 70.0]
 size = [150.0, 150.0]
 rotation_deg = 0.0
 [objective]
-coverage = 0.5
-target_points = 100
 [optimiser]
 method = "lbfgs"
 steps = 1

@@ -44,8 +44,8 @@ pub struct SingularTangent {
 pub(crate) struct PathGradient<'a> {
     /// `by_states[h][i]`: in (a, s, theta, w_lig, alpha) of hinge h at load step i.
     pub by_states: &'a [Vec<HingeGradient>],
-    /// In the load factor of each load step; read under displacement control only.
-    pub by_load_factors: &'a [f64],
+    /// In the load factor of the last load step; read under displacement control only.
+    pub by_load_factor: f64,
     /// In the last configuration.
     pub by_last: Vec<[f64; 3]>,
     /// In the forces (F_x, F_y, M) of the supports in the last state; zero at free degrees of freedom. `None` if it depends on none.
@@ -73,7 +73,7 @@ pub(crate) fn adjoint(
     path: &[LoadStep],
     PathGradient {
         by_states,
-        by_load_factors,
+        by_load_factor,
         by_last,
         by_reactions,
     }: PathGradient,
@@ -88,9 +88,8 @@ pub(crate) fn adjoint(
         residual: 0.0,
     };
     for (i, (step, mut by_q)) in std::iter::zip(path, by_configurations).enumerate() {
-        let is_read =
-            by_load_factors[i] != 0.0 || by_states.iter().any(|hinge| hinge[i] != [0.0; 6]);
-        if !is_read && i + 1 < path.len() {
+        let is_last = i + 1 == path.len();
+        if !is_last && by_states.iter().all(|hinge| hinge[i] == [0.0; 6]) {
             continue;
         }
         let hinges = || sheet.sheet.hinges.iter().enumerate();
@@ -99,14 +98,15 @@ pub(crate) fn adjoint(
             let [a, s, theta, ..] = by_states[h][i];
             add_at_hinge(&mut by_q, hinge, motions[h].forces([a, s, theta]));
         }
-        let by_supports = by_reactions.as_ref().filter(|_| i + 1 == path.len());
+        let by_supports = by_reactions.as_ref().filter(|_| is_last);
         let held = by_supports.map(|by_reactions| held_motion(solver, sheet, step, by_reactions));
         if let Some(held) = &held {
             add_motions(&mut by_q, &held.resistance, -1.0);
         }
         let rhs = solver.pattern.gather(&by_q);
         let stroke = solver.stroke();
-        let slack = stroke.map_or(0.0, |stroke| stroke.slack(by_load_factors[i]));
+        let by_load_factor = if is_last { by_load_factor } else { 0.0 };
+        let slack = stroke.map_or(0.0, |stroke| stroke.slack(by_load_factor));
         let solution = (step.tangent.as_ref())
             .and_then(|tangent| refined_solve(&solver.pattern, tangent, stroke, (&rhs, slack)))
             .filter(|solution| solution.error < SINGULAR)

@@ -1,25 +1,17 @@
 //! Settings of the equilibrium solver.
 
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
-
 /// The equilibrium solver.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, default)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SolverSettings {
     /// Residual of a converged state, relative to the largest force, unless rounding causes a larger one.
-    #[schemars(range(min = 1e-14, max = 0.1))]
     pub tolerance: f64,
     /// Every how many steps of a design the path is followed from the flat sheet; the load steps of the designs between
     /// are corrected from those of the last followed path.
-    #[schemars(range(min = 1, max = 10_000))]
     pub follow_every: usize,
     /// Maximum number of Newton iterations of a descent in energy, as after a jump. A descent ends before that where it
     /// reaches an equilibrium or makes no progress: the longest one known takes 3000.
-    #[serde(skip)]
     pub max_iterations: usize,
     /// Maximum number of increments that are tried along a path; a path that needs more ends there.
-    #[serde(skip)]
     pub max_increments: usize,
 }
 

@@ -25,8 +25,8 @@ pub(super) struct Partials<'a> {
     pub by_outline: &'a [[f64; 2]],
     /// In (a, s, theta, w_lig, alpha) per hinge and step of `path`.
     pub by_states: &'a [Vec<HingeGradient>],
-    /// In the load factor of each step of `path`.
-    pub by_load_factors: &'a [f64],
+    /// In the load factor of the last step.
+    pub by_load_factor: f64,
     /// In the flat corners of every panel; `None` if all are zero.
     pub by_corners: Option<&'a [[[f64; 2]; 4]]>,
     /// In the forces of the supports in the last step; `None` if all are zero.
@@ -68,7 +68,7 @@ impl DesignProblem {
             outline: &outline,
             by_outline: &judgement.gradient.by_outline,
             by_states: &judgement.gradient.by_states,
-            by_load_factors: &judgement.gradient.by_load_factors,
+            by_load_factor: 0.0,
             by_corners: Some(&judgement.gradient.by_corners),
             by_reactions: None,
         };
@@ -131,7 +131,7 @@ impl DesignProblem {
                     partials.path,
                     PathGradient {
                         by_states: &by_states,
-                        by_load_factors: partials.by_load_factors,
+                        by_load_factor: partials.by_load_factor,
                         by_last,
                         by_reactions: partials.by_reactions,
                     },

@@ -71,7 +71,7 @@ impl Mechanics {
             std::slice::from_ref(free),
             PathGradient {
                 by_states: &vec![vec![[0.0; 6]]; sheet.hinges.len()],
-                by_load_factors: &[0.0],
+                by_load_factor: 0.0,
                 by_last: by_free,
                 by_reactions: None,
             },

@@ -213,7 +213,7 @@ impl DesignProblem {
             outline: &corners,
             by_outline: by.corners.as_flattened(),
             by_states: &vec![vec![[0.0; 6]]; sheet.hinges.len()],
-            by_load_factors: &[by.load_factor],
+            by_load_factor: by.load_factor,
             by_corners: None,
             by_reactions: of_supports.then_some(reactions),
         };

@@ -68,8 +68,6 @@ pub struct TermGradient {
     pub by_measures: Vec<Vec<[f64; 4]>>,
     /// In the state and the design of each hinge at each load step.
     pub by_states: Vec<Vec<HingeGradient>>,
-    /// In the load factor of each load step, which a prescribed stroke determines.
-    pub by_load_factors: Vec<f64>,
     /// In the flat corners of every panel.
     pub by_corners: Vec<[[f64; 2]; 4]>,
 }
@@ -82,7 +80,6 @@ impl TermGradient {
             by_outline: vec![[0.0; 2]; at.outline.len()],
             by_measures: vec![vec![[0.0; 4]; steps]; hinges],
             by_states: vec![vec![[0.0; 6]; steps]; hinges],
-            by_load_factors: vec![0.0; steps],
             by_corners: vec![[[0.0; 2]; 4]; at.sheet.panels.len()],
         }
     }

@@ -5,7 +5,6 @@ mod damage;
 mod domain;
 mod panel_shape;
 pub mod panel_width;
-mod peak_load;
 mod shear;
 mod symmetric_difference;
 
@@ -14,7 +13,6 @@ pub use damage::Damage;
 pub use domain::DomainPenalty;
 pub use panel_shape::PanelShape;
 pub use panel_width::PanelWidth;
-pub use peak_load::PeakLoad;
 pub use shear::Shear;
 pub use symmetric_difference::SymmetricDifference;
 
@@ -27,65 +25,49 @@ use crate::objective::term::Weighted;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+/// w_cov of the Chamfer distance, as in the paper.
+const COVERAGE: f64 = 0.5;
+/// Number of points on the target outline.
+pub const TARGET_POINTS: usize = 1000;
+
 /// The weights of (16)-(19), relative to the Chamfer distance divided by the mean panel area: at the
 /// weight 1 a functional with the value 1 costs as much as an outline error of one panel size.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
 pub struct ObjectiveConfig {
-    /// w_cov of the Chamfer distance.
-    #[schemars(range(min = 0.0, max = 1e9))]
-    pub coverage: f64,
     /// The state of the sheet that the target is for: `loaded`, at full load, or `released`, after the loads were taken off, which needs
     /// `surrogate.springback`.
-    #[serde(default)]
     pub target_state: TargetState,
-    /// Number of points on the target outline.
-    #[schemars(range(min = 1, max = 1_000_000))]
-    pub target_points: usize,
     /// Weight of the area inside the polygon through the compared corners and outside the target, or the reverse, over
     /// the area of the target.
-    #[serde(default)]
     #[schemars(range(min = 0.0, max = 1e9))]
     pub symmetric_difference: f64,
     /// Weight of (17); needs `hinge = "surrogate"`.
-    #[serde(default)]
     #[schemars(range(min = 0.0, max = 1e9))]
     pub damage: f64,
     /// The damage measure of (17): `mean`, D as in the paper, or `peak`, D_peak, at which 1 means tearing.
-    #[serde(default)]
     pub damage_measure: DamageMeasure,
     /// Weight of (18).
-    #[serde(default)]
     #[schemars(range(min = 0.0, max = 1e9))]
     pub compression: f64,
     /// Weight of (19).
-    #[serde(default)]
     #[schemars(range(min = 0.0, max = 1e9))]
     pub shear: f64,
     /// Weight of the panel shape penalty: on panels stretched more than eight to one or with angles below 14 degrees,
     /// which the outline alone does not prevent, and, with learned hinges, on corners of a panel closer than three
     /// radii of their windows.
-    #[serde(default)]
     #[schemars(range(min = 0.0, max = 1e9))]
     pub panel_shape: f64,
     /// No panel is thinner anywhere (mm), at most a third of the side of a square panel of the mean area: the minimum
     /// that the cutter accepts. Distances of corners from the edges of their panel are kept above it by a barrier, which
     /// begins at twice the value; use it with `method = "lbfgs"`, since Adam can get stuck at it. The panels of the
     /// start must be wider. 0 sets no limit.
-    #[serde(default)]
     #[schemars(range(min = 0.0))]
     pub min_panel_width: f64,
     /// Weight of the penalty on states outside the training domain of the hinge law, in squared tenths of its range,
     /// as a mean over hinges and load steps. Needs `hinge = "surrogate"`.
-    #[serde(default)]
     #[schemars(range(min = 0.0, max = 1e9))]
     pub domain: f64,
-    /// Weight of the peak of the load, for a sheet that a dead load of the final size shall open: the maximum of the load at the
-    /// load steps over that at the end, less one. Needs `[drive]`, a start that is pulled and not held back at its end, and as
-    /// many load steps as resolve the peak.
-    #[serde(default)]
-    #[schemars(range(min = 0.0, max = 1e9))]
-    pub peak_load: f64,
 }
 
 /// The sheet that an objective is for.
@@ -98,8 +80,6 @@ pub struct Setting<'a> {
     pub mean_panel_area: f64,
     /// Radius of the windows of the hinges (mm).
     pub r_win: f64,
-    /// The prescribed stroke of the loads, if there is one.
-    pub stroke: Option<f64>,
 }
 
 impl ObjectiveConfig {
@@ -124,13 +104,6 @@ impl ObjectiveConfig {
             Weighted::new(limited, PanelWidth { minimum }),
             Weighted::new(self.domain * area, DomainPenalty { domain }),
         ];
-        if let Some(stroke) = setting.stroke.filter(|_| self.peak_load > 0.0) {
-            let peak = PeakLoad {
-                temperature,
-                stroke,
-            };
-            penalties.push(Weighted::new(self.peak_load * area, peak));
-        }
         let shape = self.shape(setting);
         if self.symmetric_difference > 0.0 {
             let difference = SymmetricDifference::new(shape.clone());
@@ -156,7 +129,7 @@ impl ObjectiveConfig {
         };
         Shape {
             target: points.iter().map(|[px, py]| [px - x, py - y]).collect(),
-            coverage_weight: self.coverage,
+            coverage_weight: COVERAGE,
             centred,
         }
     }
@@ -203,9 +176,7 @@ mod tests {
     /// The objective with all terms.
     fn objective(damage_measure: DamageMeasure) -> Objective {
         let config = ObjectiveConfig {
-            coverage: 0.5,
             target_state: TargetState::Loaded,
-            target_points: 20,
             symmetric_difference: 0.9,
             damage: 0.7,
             damage_measure,
@@ -214,7 +185,6 @@ mod tests {
             panel_shape: 0.4,
             min_panel_width: 6.0,
             domain: 0.6,
-            peak_load: 0.0,
         };
         let circle = TargetShape::Circle {
             centre: [90.0, 10.0],
@@ -222,7 +192,7 @@ mod tests {
         };
         let state = [[-0.02, 0.03], [-0.02, 0.02], [0.0, 0.1]];
         config.objective(&Setting {
-            target: &Target::sample(&circle, Path::new(""), config.target_points).unwrap(),
+            target: &Target::sample(&circle, Path::new(""), TARGET_POINTS).unwrap(),
             law: Some(&Law(TrainingDomain::from_box(
                 state,
                 [1.0, 2.5],
@@ -230,7 +200,6 @@ mod tests {
             ))),
             mean_panel_area: 10.0,
             r_win: 10.0,
-            stroke: None,
         })
     }
 

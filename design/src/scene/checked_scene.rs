@@ -2,6 +2,7 @@
 
 use crate::objective::shape::TargetState;
 use crate::objective::target::Target;
+use crate::objective::terms::TARGET_POINTS;
 use crate::scene::checks;
 use crate::scene::keys::{SceneConfig, beside, folder};
 use crate::scene::loaded_hinge::{LoadedHinge, network};
@@ -92,8 +93,7 @@ impl Scene {
             ..measured.clone()
         };
         (material.validate()).map_err(SceneError::at(path))?;
-        let points = config.objective.target_points;
-        let target = Target::sample(&config.target, folder(path), points);
+        let target = Target::sample(&config.target, folder(path), TARGET_POINTS);
         let target = target.map_err(SceneError::at(path))?;
         checks::target(&target, &config).map_err(SceneError::at(path))?;
         let hinge = LoadedHinge::load(&config, &measured, path, known)?;
@@ -216,7 +216,7 @@ impl Scene {
     /// The options that turn a pattern into the sheet of this scene.
     pub fn sheet_options(&self) -> SheetOptions {
         SheetOptions {
-            hinge_point: (self.config.hinge_point).unwrap_or(self.hinge.hinge_point),
+            hinge_point: self.hinge.hinge_point,
             process: self.config.process,
         }
     }

@@ -59,8 +59,7 @@ pub(super) fn target(target: &Target, scene: &SceneConfig) -> Result<(), Invalid
     let objective = &scene.objective;
     let needs_area = objective.symmetric_difference > 0.0 || scene.hinge == HingeModel::Pin;
     if needs_area && target.area() <= NO_AREA * target.length * target.length {
-        let points = objective.target_points;
-        return Err(InvalidScene::TargetWithoutArea { points });
+        return Err(InvalidScene::TargetWithoutArea);
     }
     Ok(())
 }
@@ -162,13 +161,8 @@ fn posture(scene: &SceneConfig) -> Result<(), InvalidScene> {
         };
     };
     let hangs = posture.kind == Posture::Hanging;
-    for (key, is_given) in [
-        ("down", posture.down.is_some()),
-        ("weight", posture.weight.is_some()),
-    ] {
-        if is_given && !hangs {
-            return Err(InvalidScene::OtherPosture(key, posture.kind));
-        }
+    if posture.down.is_some() && !hangs {
+        return Err(InvalidScene::OtherPosture(posture.kind));
     }
     if hangs && posture.down().is_none() {
         return Err(InvalidScene::NoDown);
@@ -333,9 +327,6 @@ fn objective(scene: &SceneConfig) -> Result<(), InvalidScene> {
     let (key, width) = ("objective.min_panel_width", scene.objective.min_panel_width);
     let side = scene.sheet.mean_panel_area().sqrt();
     within(key, width, [0.0, side / 3.0], "mm")?;
-    if scene.objective.peak_load > 0.0 && scene.drive.is_none() {
-        return Err(InvalidScene::NoDrive);
-    }
     if scene.objective.target_state == TargetState::Released && scene.springback().is_none() {
         return Err(InvalidScene::ReleasedWithoutLaw);
     }

@@ -43,18 +43,6 @@ pub struct LinearConstants {
     pub k_theta: f64,
 }
 
-/// The barrier on the void angles; see the text of (11).
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct ContactConfig {
-    /// Stiffness of the barrier (N mm), positive.
-    pub stiffness: f64,
-    /// Void angle at which the barrier becomes infinite (deg), above -180 and below `phi_cut_deg`.
-    pub phi_min_deg: f64,
-    /// Void angle at which contact begins (deg), at most 0.
-    pub phi_cut_deg: f64,
-}
-
 /// The weights of (14).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]

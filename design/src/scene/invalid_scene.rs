@@ -65,10 +65,10 @@ pub enum InvalidScene {
     )]
     NoDown,
     #[error(
-        "posture.{0} belongs to another kind than {1:?}: `down` and `weight` are of a sheet that is hanging, with gravity in \
-         its plane: remove the key or change `kind`"
+        "posture.down belongs to another kind than {0:?}: gravity is in the plane of a hanging sheet alone: remove the key or \
+         change `kind`"
     )]
-    OtherPosture(&'static str, Posture),
+    OtherPosture(Posture),
     #[error(
         "loads[{i}].mass_g: a weight pulls along gravity, which is in the plane of a hanging sheet only: set \
          posture.kind = \"hanging\" with `down`, or give a force"
@@ -166,19 +166,15 @@ pub enum InvalidScene {
     #[error(transparent)]
     Contact(#[from] InvalidContact),
     #[error(
-        "supports, loads, edge_loads, opening_couples, drive, contact: hinge = \"pin\" has no equilibrium: remove these \
+        "supports, loads, edge_loads, opening_couples, drive: hinge = \"pin\" has no equilibrium: remove these \
          sections, or use hinge = \"linear\""
     )]
     HeldPins,
     #[error(
-        "objective.peak_load needs [drive]: only under a prescribed stroke does the load have a maximum before its end"
+        "the target encloses no area, which objective.symmetric_difference and the centre of a sheet on pins need: give it an \
+         inside"
     )]
-    NoDrive,
-    #[error(
-        "objective.target_points = {points}: the polygon through them encloses no area, which objective.symmetric_difference \
-         and the centre of a sheet on pins need: increase it"
-    )]
-    TargetWithoutArea { points: usize },
+    TargetWithoutArea,
     #[error(
         "objective.target_state = \"released\" needs the law of released hinges: hinge = \"surrogate\" and surrogate.springback, a file \
          that `kirigami surrogate release` writes"

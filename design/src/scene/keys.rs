@@ -8,13 +8,10 @@ use crate::scene::actuation::{
     DriveConfig, EdgeLoadConfig, LoadConfig, OpeningCoupleConfig, SupportConfig,
 };
 use crate::scene::cutting::CuttingConfig;
-use crate::scene::hinge_model::{
-    ContactConfig, HingeModel, LinearConstants, PinConfig, SurrogateFile,
-};
+use crate::scene::hinge_model::{HingeModel, LinearConstants, PinConfig, SurrogateFile};
 use crate::scene::posture::PostureConfig;
 use crate::scene::sheet_config::{LigamentConfig, SheetConfig, StartConfig};
 use crate::scene::tolerances::ToleranceConfig;
-use crate::sheet::cut_sheet::HingePoint;
 use crate::sheet::cutting_process::CuttingProcess;
 use hinge::SheetMaterial;
 use schemars::JsonSchema;
@@ -35,8 +32,6 @@ pub struct SceneConfig {
     pub thickness: Option<f64>,
     /// The hinge law: `pin`, `linear` or `surrogate`.
     pub hinge: HingeModel,
-    /// The attachment points of the panels; by default those that the hinge model was measured with.
-    pub hinge_point: Option<HingePoint>,
     /// N of the load steps zeta_i = i/N, where the path is read for pictures and path functionals. The solver chooses its
     /// own increments between them.
     #[schemars(range(min = 1, max = 10_000))]
@@ -71,9 +66,6 @@ pub struct SceneConfig {
     /// a single pin. Empty if `hinge = "pin"`.
     #[serde(default)]
     pub supports: Vec<SupportConfig>,
-    /// Contact of panel edges; by default with ten times the k_theta of a hinge with the start width, from 0 to
-    /// -5.7 deg or, for a learned law, to the end of its domain.
-    pub contact: Option<ContactConfig>,
     /// Dead loads on panels.
     #[serde(default)]
     pub loads: Vec<LoadConfig>,
@@ -85,12 +77,13 @@ pub struct SceneConfig {
     pub opening_couples: Vec<OpeningCoupleConfig>,
     /// Displacement control: prescribes the stroke of the loads instead of their magnitude.
     pub drive: Option<DriveConfig>,
-    /// The equilibrium solver.
-    #[serde(default)]
+    /// Settings of the equilibrium solver: of code, not keys.
+    #[serde(skip)]
     pub solver: SolverSettings,
     /// The target outline; its length must be 0.2 to 3 times the perimeter of the flat sheet.
     pub target: TargetShape,
     /// The objective (16) and its weights.
+    #[serde(default)]
     pub objective: ObjectiveConfig,
     /// The search of the outer loop.
     pub optimiser: OptimiserConfig,

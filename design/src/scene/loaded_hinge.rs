@@ -28,7 +28,7 @@ pub struct LoadedHinge {
     /// What the law is, for reports.
     pub label: &'static str,
     pub(super) behaviour: HingeBehaviour,
-    /// The point at which the deformation is measured unless the scene names another.
+    /// The point at which the deformation is measured.
     pub(super) hinge_point: HingePoint,
     /// The networks that the law reads, its own first, then those of the ensemble.
     pub(super) networks: Vec<Surrogate>,
@@ -173,7 +173,7 @@ fn learned(config: &SceneConfig, networks: Vec<Surrogate>) -> Result<LoadedHinge
             law: Arc::new(SurrogateLaw {
                 surrogate: surrogate.clone(),
             }),
-            contact: contact(config, k_theta.abs().max(f64::MIN_POSITIVE), wall)?,
+            contact: contact(k_theta.abs().max(f64::MIN_POSITIVE), wall)?,
         },
         hinge_point: HingePoint::CutTip,
         networks,
@@ -190,17 +190,9 @@ fn secant_at_start(config: &SceneConfig, surrogate: &Surrogate) -> f64 {
     (1.0 / TYPICAL_SECANT) * energy.forces[2]
 }
 
-/// The contact of a scene, or by default one for hinges with the stiffness `k_theta` that becomes infinite at the
-/// void angle `wall` (rad).
-fn contact(config: &SceneConfig, k_theta: f64, wall: f64) -> Result<Contact, InvalidScene> {
-    let contact = match config.contact {
-        Some(given) => {
-            let [wall, begin] = [given.phi_min_deg, given.phi_cut_deg].map(f64::to_radians);
-            Contact::new(given.stiffness, wall, begin)
-        }
-        None => Contact::new(CONTACT_STIFFNESS * k_theta, wall, 0.0),
-    };
-    Ok(contact?)
+/// The contact for hinges with the stiffness `k_theta`, which becomes infinite at the void angle `wall` (rad).
+fn contact(k_theta: f64, wall: f64) -> Result<Contact, InvalidScene> {
+    Ok(Contact::new(CONTACT_STIFFNESS * k_theta, wall, 0.0)?)
 }
 
 /// The spread of networks trained on different data estimates the error of neither, and that of one network is zero.
@@ -231,7 +223,7 @@ fn same_training(config: &SceneConfig, networks: &[Surrogate]) -> Result<(), Inv
 fn pinned(config: &SceneConfig) -> Result<LoadedHinge, InvalidScene> {
     let pin = config.pin.ok_or(InvalidScene::NoSection("pin"))?;
     let held_or_loaded = !config.supports.is_empty() || config.has_loads();
-    if held_or_loaded || config.drive.is_some() || config.contact.is_some() {
+    if held_or_loaded || config.drive.is_some() {
         return Err(InvalidScene::HeldPins);
     }
     Ok(LoadedHinge {
@@ -258,7 +250,7 @@ fn linear(config: &SceneConfig) -> Result<LoadedHinge, InvalidScene> {
         label: "linear springs (11)",
         behaviour: HingeBehaviour::Elastic {
             law: Arc::new(LinearLaw::uniform([k_a, k_s, k_theta], grid.hinge_count())),
-            contact: contact(config, k_theta, CONTACT_WALL)?,
+            contact: contact(k_theta, CONTACT_WALL)?,
         },
         hinge_point: HingePoint::Corner,
         networks: Vec::new(),

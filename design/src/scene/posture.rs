@@ -16,8 +16,6 @@ pub struct PostureConfig {
     /// The direction [x, y] of gravity in the plane of the flat sheet, such as [0.0, -1.0]; required for `hanging`.
     #[schemars(inner(range(min = -1e3, max = 1e3)))]
     pub down: Option<[f64; 2]>,
-    /// Whether the weight of the panels is modelled if the sheet is `hanging`; by default it is.
-    pub weight: Option<bool>,
 }
 
 /// What keeps the panels in their plane. In the model all panels stay in it.
@@ -44,6 +42,6 @@ impl PostureConfig {
 
     /// Whether the weight of the panels is modelled.
     pub fn is_heavy(&self) -> bool {
-        self.kind == Posture::Hanging && self.weight != Some(false)
+        self.kind == Posture::Hanging
     }
 }

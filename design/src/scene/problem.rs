@@ -80,7 +80,6 @@ impl Scene {
             law: model.mechanics().map(|mechanics| &*mechanics.law),
             mean_panel_area: self.config.sheet.mean_panel_area(),
             r_win: self.config.process.r_win,
-            stroke: self.config.drive.map(|drive| drive.stroke),
         })
     }
 

@@ -65,9 +65,6 @@ impl Ratios {
             linear.k_s = by(young * thickness)(linear.k_s);
             linear.k_theta = by(energy)(linear.k_theta);
         }
-        if let Some(contact) = &mut config.contact {
-            contact.stiffness = by(energy)(contact.stiffness);
-        }
         config.objective.min_panel_width = by(size)(config.objective.min_panel_width);
         scale_target(&mut config.target, size);
     }

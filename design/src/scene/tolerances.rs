@@ -11,9 +11,9 @@ const TOLERANCE: f64 = 2.0;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct ToleranceConfig {
-    /// Tolerance +- of the width of every ligament by itself, from where the cutter ends its cuts (mm). `kirigami inspect
-    /// tolerances` reads it, the error budget does not.
-    #[schemars(range(min = 0.0, max = 5.0))]
+    /// Tolerance +- of the width of every ligament by itself, from where the cutter ends its cuts (mm): an option of `kirigami
+    /// inspect tolerances`, no key.
+    #[serde(skip)]
     pub ligament: Option<f64>,
     /// Tolerance +- of the width that the cutter removes (mm): half of it moves the edge of a ligament and that of its hole.
     #[schemars(range(min = 0.0, max = 1.0))]

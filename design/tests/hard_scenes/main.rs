@@ -1,10 +1,11 @@
 //! Scenes drawn at random on which a path or a search once went wrong; the first part of a name says how.
 
 use design::equilibrium::load_step::{LoadStep, Status};
-use design::objective::design_problem::DesignProblem;
+use design::hinge_law::Contact;
+use design::objective::design_problem::{DesignError, DesignProblem, Model};
 use design::optimise::outer_loop::{SearchState, optimise};
 use design::pattern::design_vector::DesignVector;
-use design::scene::Scene;
+use design::scene::{Scene, SceneConfig};
 use std::convert::Infallible;
 use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
@@ -18,8 +19,24 @@ fn folder() -> PathBuf {
     PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/hard_scenes"))
 }
 
-fn scene(name: &str) -> Scene {
-    Scene::read(&folder().join(name).with_extension("toml")).unwrap()
+/// A scene, and its problem with the contact and the hinge point that it was drawn with, which are no keys.
+fn drawn(name: &str, change: impl FnOnce(&mut SceneConfig)) -> (Scene, DesignProblem) {
+    let path = folder().join(name).with_extension("toml");
+    let mut keys: toml::Table = toml::from_str(&std::fs::read_to_string(&path).unwrap()).unwrap();
+    let [contact, hinge_point] = ["contact", "hinge_point"].map(|key| keys.remove(key));
+    let mut config: SceneConfig = keys.try_into().unwrap();
+    change(&mut config);
+    let scene = Scene::new(config, &path).unwrap();
+    let mut problem = scene.problem().unwrap();
+    if let Some(point) = hinge_point {
+        problem.options.hinge_point = point.try_into().unwrap();
+    }
+    if let (Some(contact), Model::Equilibrium(mechanics)) = (contact, &mut problem.model) {
+        let key = |name: &str| contact[name].as_float().unwrap();
+        let [wall, begin] = ["phi_min_deg", "phi_cut_deg"].map(|name| key(name).to_radians());
+        mechanics.contact = Some(Contact::new(key("stiffness"), wall, begin).unwrap());
+    }
+    (scene, problem)
 }
 
 /// The names of the scenes that begin so.
@@ -37,10 +54,8 @@ fn named(beginning: &str) -> Vec<String> {
 
 /// The last state of a sheet that is followed in so many load steps.
 fn deployed(name: &str, load_steps: usize) -> (LoadStep, f64) {
-    let mut config = scene(name).config;
-    config.load_steps = load_steps;
-    let scene = Scene::new(config, &folder().join(name)).unwrap();
-    let deployment = scene.problem().unwrap().deploy(&scene.start()).unwrap();
+    let (scene, problem) = drawn(name, |config| config.load_steps = load_steps);
+    let deployment = problem.deploy(&scene.start()).unwrap();
     let sheet = &deployment.sheet;
     let size = (sheet.outline.area() / sheet.panels.len() as f64).sqrt();
     (deployment.final_step().clone(), size)
@@ -64,6 +79,11 @@ fn reaches_one_state_at_full_load(name: &str) {
             last.status != Status::Diverged,
             "{name}, {load_steps} load steps: {last}"
         );
+        assert!(
+            last.residual < 1e-6 && last.negative_pivots == 0,
+            "{name}: {last}"
+        );
+        assert_eq!(last.descent_end, None, "{name}");
         let first = first.get_or_insert_with(|| last.clone());
         let difference = apart(first, &last, size);
         assert!(
@@ -88,19 +108,22 @@ fn sheets_that_have_an_equilibrium_reach_full_load_with_any_number_of_load_steps
 }
 
 /// The design with the minimum loss that a search reports, and the losses of its steps.
-fn searched(scene: &Scene, steps: usize, sink: &mut dyn FnMut(&SearchState)) -> SearchState {
-    let problem = scene.problem().unwrap();
+fn searched(
+    (scene, problem): (&Scene, &DesignProblem),
+    steps: usize,
+    sink: &mut dyn FnMut(&SearchState),
+) -> SearchState {
     let optimiser = &scene.config.optimiser;
     let start = scene.start();
     let evaluation = problem.evaluate(&start).unwrap();
     let (method, rate) = (optimiser.method, optimiser.learning_rate);
-    let mut state = SearchState::new(&problem, start, &evaluation, method, rate);
+    let mut state = SearchState::new(problem, start, &evaluation, method, rate);
     let stop = AtomicBool::new(false);
     let mut sink = |state: &SearchState| {
         sink(state);
         Ok::<(), Infallible>(())
     };
-    let Ok(_) = optimise(&problem, &mut state, steps, &stop, &mut sink);
+    let Ok(_) = optimise(problem, &mut state, steps, &stop, &mut sink);
     state
 }
 
@@ -108,9 +131,8 @@ fn searched(scene: &Scene, steps: usize, sink: &mut dyn FnMut(&SearchState)) -> 
 fn a_search_through_jumps_does_not_end_above_its_start() {
     for name in named("corrected-path-linear") {
         let steps = if name.contains("lbfgs") { 150 } else { 40 };
-        let scene = scene(&name);
-        let found = searched(&scene, steps, &mut |_| {});
-        let problem = scene.problem().unwrap();
+        let (scene, problem) = drawn(&name, |_| {});
+        let found = searched((&scene, &problem), steps, &mut |_| {});
         let [start, best] = [&scene.start(), &found.best].map(|of| problem.loss(of).unwrap());
         assert!(best <= start, "{name}: {best} from {start}");
         assert!(found.contradicted(), "{name} has no jump any more");
@@ -132,11 +154,10 @@ fn compared(problem: &DesignProblem, anchor: &DesignVector, design: &DesignVecto
 /// exchanges the sides, without a jump.
 #[test]
 fn a_corrected_path_has_the_loss_of_the_followed_one_or_other_stable_states() {
-    let scene = scene("corrected-path-pet-3x3-55");
-    let problem = scene.problem().unwrap();
+    let (scene, problem) = drawn("corrected-path-pet-3x3-55", |_| {});
     let mut anchor = scene.start();
     let (mut same, mut on_another_arm) = (0, 0);
-    searched(&scene, 60, &mut |state| {
+    searched((&scene, &problem), 60, &mut |state| {
         if state.last().followed {
             anchor = state.last_design().clone();
             return;
@@ -151,4 +172,23 @@ fn a_corrected_path_has_the_loss_of_the_followed_one_or_other_stable_states() {
         }
     });
     assert!(same > 0 && on_another_arm > 0, "{same}, {on_another_arm}");
+}
+
+#[test]
+fn a_descent_that_is_cut_short_says_which_limit_ended_it() {
+    let message = |iterations: usize, increments: usize| {
+        let (scene, problem) = drawn("false-no-equilibrium-1235", |config| {
+            config.solver.max_iterations = iterations;
+            config.solver.max_increments = increments;
+        });
+        let deployment = problem.deploy(&scene.start()).unwrap();
+        let error = deployment.at_full_load().unwrap_err();
+        assert!(matches!(error, DesignError::NoEquilibrium { .. }));
+        error.to_string()
+    };
+    let iterations = message(60, 100_000);
+    assert!(iterations.contains("at the last iteration"), "{iterations}");
+    assert!(!iterations.contains("ligaments"), "{iterations}");
+    let increments = message(1, 1);
+    assert!(increments.contains("number of increments"), "{increments}");
 }

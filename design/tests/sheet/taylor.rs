@@ -13,7 +13,7 @@ use design::objective::loss::Objective;
 use design::objective::shape::Shape;
 use design::objective::term::Weighted;
 use design::objective::terms::{
-    Compression, Damage, DomainPenalty, PanelShape, PeakLoad, Shear, SymmetricDifference,
+    Compression, Damage, DomainPenalty, PanelShape, Shear, SymmetricDifference,
 };
 use design::pattern::coordinates::PatternCoordinates;
 use design::pattern::cut_pattern::Outline;
@@ -185,7 +185,7 @@ pub fn assert_order_two(problem: &DesignProblem, design: &DesignVector) {
         let values = Random::new(13).numbers(block.len(), 1.0);
         direction[block].copy_from_slice(&values);
         let loss = |x: &[f64]| problem.loss(&design.with_flat(x));
-        let remainders = TaylorRemainders::new(loss, &x, &gradient, &direction, 2e-3, 4).unwrap();
+        let remainders = TaylorRemainders::new(loss, &x, &gradient, &direction, 1e-3, 4).unwrap();
         let orders = remainders.orders();
         assert!(
             orders.iter().all(|order| (1.95..2.05).contains(order)),
@@ -318,27 +318,4 @@ fn a_sheet_on_a_nail() {
     }));
     let model = hung(model, [0.0, -5e-5]);
     assert_order_two(&problem(model, HingePoint::Corner), &start());
-}
-
-/// A weight in the direction of the stroke and a target load that is reached early: the largest load is not the last.
-#[test]
-fn the_peak_of_the_load() {
-    for weight in [[0.0; 2], [1e-5, -5e-5]] {
-        let model = hung(
-            mechanics(springs(), 240.0, East::Driven(12.0, 60.0)),
-            weight,
-        );
-        let mut problem = problem(model, HingePoint::Corner);
-        let peak = Weighted::new(
-            1e5,
-            PeakLoad {
-                temperature: 0.2,
-                stroke: 60.0,
-            },
-        );
-        problem.objective.penalties.push(peak);
-        let value = problem.evaluate(&start()).unwrap().terms["peak_load"];
-        assert!(value.abs() > 1e-3, "{value}");
-        assert_order_two(&problem, &start());
-    }
 }

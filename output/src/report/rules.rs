@@ -460,8 +460,7 @@ fn weightless(judged: &Judged) -> Option<Warning> {
         .over_load
         .filter(|ratio| left_out && *ratio > HEAVY)?;
     Some(Concern::Weight.of_sheet(format!(
-        "the weight of the sheet is {} and not modelled: if it hangs, set posture.kind = \"hanging\" with `down`, and without \
-         weight = false",
+        "the weight of the sheet is {} and not modelled: if it hangs, set posture.kind = \"hanging\" with `down`",
         of_the_load(ratio)
     )))
 }

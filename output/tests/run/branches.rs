@@ -1,81 +1,22 @@
-//! Sheets with several equilibria: the descent after a jump goes on to its end, and a search keeps designs whose path was
+//! Sheets with several equilibria: a search keeps designs whose path was
 //! followed from the flat sheet.
 
 use super::{SCENE, read, run};
-use design::equilibrium::load_step::Status;
-use design::objective::design_problem::DesignError;
 use design::optimise::outer_loop::Ended;
 use design::scene::design_run::design_of_run;
 use design::scene::{Scene, SceneConfig};
 use output::report::{Concern, Severity};
 use output::run_results::write_results;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use support::toml_file;
 
-/// Random sheets whose descent after a jump takes 60 to 3000 iterations.
-fn sheets_that_jump() -> Vec<PathBuf> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/cases/after-jump");
-    let files = std::fs::read_dir(folder).unwrap();
-    let mut files: Vec<PathBuf> = files.map(|file| file.unwrap().path()).collect();
-    files.sort();
-    files
-}
-
-#[test]
-fn full_load_is_reached_after_long_descents() {
-    let files = sheets_that_jump();
-    assert_eq!(files.len(), 16);
-    for file in files {
-        let scene = Scene::read(&file).unwrap();
-        let path = scene
-            .problem()
-            .unwrap()
-            .deploy(&scene.start())
-            .unwrap()
-            .path;
-        assert_eq!(path.len(), scene.config.load_steps, "{}", file.display());
-        for step in path {
-            assert_ne!(step.status, Status::Diverged, "{}", file.display());
-            assert!(step.residual < 1e-6, "{} {step}", file.display());
-            assert_eq!(step.negative_pivots, 0, "{} {step}", file.display());
-            assert_eq!(step.descent_end, None);
-        }
-    }
-}
-
-#[test]
-fn a_descent_that_is_cut_short_says_which_limit_ended_it() {
-    let files = sheets_that_jump();
-    let file = files
-        .iter()
-        .find(|file| file.ends_with("1235.toml"))
-        .unwrap();
-    let mut config: SceneConfig = toml_file::read(file).unwrap();
-    config.solver.max_iterations = 60;
-    let scene = Scene::new(config, file).unwrap();
-    let deployment = scene.problem().unwrap().deploy(&scene.start()).unwrap();
-    let error = deployment.at_full_load().unwrap_err();
-    assert!(matches!(error, DesignError::NoEquilibrium { .. }));
-    let message = error.to_string();
-    assert!(message.contains("at the last iteration"), "{message}");
-    assert!(!message.contains("ligaments"), "{message}");
-
-    let mut config: SceneConfig = toml_file::read(file).unwrap();
-    config.solver.max_increments = 1;
-    config.solver.max_iterations = 1;
-    let scene = Scene::new(config, file).unwrap();
-    let deployment = scene.problem().unwrap().deploy(&scene.start()).unwrap();
-    let message = deployment.at_full_load().unwrap_err().to_string();
-    assert!(message.contains("number of increments"), "{message}");
-}
-
 /// The scene linear-7x7 from a random start, with 40 steps of an optimiser.
-fn circle(folder: &Path, method: &str, seed: u64, follow_every: usize) -> Scene {
+fn circle(folder: &Path, (method, noise, seed): (&str, f64, u64), follow_every: usize) -> Scene {
     let configs = Path::new(env!("CARGO_MANIFEST_DIR")).join("../configs/scenes");
     let file = configs.join("linear-7x7.toml");
     let mut config: SceneConfig = toml_file::read(&file).unwrap();
     config.optimiser.method = serde_json::from_str(&format!("\"{method}\"")).unwrap();
-    config.optimiser.start_noise = 0.5;
+    config.optimiser.start_noise = noise;
     (config.optimiser.seed, config.optimiser.steps) = (seed, 40);
     config.solver.follow_every = follow_every;
     config.output = folder.join("run");
@@ -85,22 +26,19 @@ fn circle(folder: &Path, method: &str, seed: u64, follow_every: usize) -> Scene 
 /// Between two followed paths, the paths of these searches go on along another branch.
 #[test]
 fn a_search_keeps_a_design_whose_path_was_followed() {
-    for (method, seed) in [("adam", 6), ("adam", 18), ("lbfgs", 7)] {
+    for start in [("adam", 0.5, 6), ("adam", 0.5, 18), ("lbfgs", 0.7, 7)] {
         let folder = tempfile::tempdir().unwrap();
-        let scene = circle(folder.path(), method, seed, 10);
+        let scene = circle(folder.path(), start, 10);
         let designed = run(&scene, None).unwrap();
-        assert!(designed.contradicted, "{method} {seed}");
-        assert!(
-            designed.best.loss < 0.5 * designed.start.loss,
-            "{method} {seed}"
-        );
+        assert!(designed.contradicted, "{start:?}");
+        assert!(designed.best.loss < 0.5 * designed.start.loss, "{start:?}");
         // The design in the run folder has the loss that the report states, and no step found a lower one.
         let stored = design_of_run(&scene, false).unwrap().unwrap();
         let problem = scene.problem().unwrap();
         assert_eq!(problem.loss(&stored).unwrap(), designed.best.loss);
         let least = designed.history.iter().map(|step| step.scores.loss);
         let least = least.fold(f64::INFINITY, f64::min);
-        assert!(least > (1.0 - 1e-6) * designed.best.loss, "{method} {seed}");
+        assert!(least > (1.0 - 1e-6) * designed.best.loss, "{start:?}");
         // A settled search has settled on a followed path.
         if designed.ended == Ended::Settled {
             assert!(designed.history.last().unwrap().followed);
@@ -121,7 +59,7 @@ fn a_search_keeps_a_design_whose_path_was_followed() {
 #[test]
 fn every_path_is_followed_after_a_contradiction() {
     let folder = tempfile::tempdir().unwrap();
-    let designed = run(&circle(folder.path(), "adam", 6, 10), None).unwrap();
+    let designed = run(&circle(folder.path(), ("adam", 0.5, 6), 10), None).unwrap();
     let corrected = designed.history.iter().rposition(|step| !step.followed);
     let history = &designed.history[corrected.map_or(0, |last| last + 1)..];
     assert!(history.len() > 20 && history.iter().all(|step| step.followed));
@@ -136,17 +74,17 @@ fn every_path_is_followed_after_a_contradiction() {
 /// A pause has no effect on a search, not even between a false design and its discovery.
 #[test]
 fn a_stopped_search_that_is_refuted_resumes_to_the_same_trajectory() {
-    for (method, seed) in [("adam", 6), ("lbfgs", 7)] {
+    for start in [("adam", 0.5, 6), ("lbfgs", 0.7, 7)] {
         let whole = tempfile::tempdir().unwrap();
-        let uninterrupted = run(&circle(whole.path(), method, seed, 10), None).unwrap();
+        let uninterrupted = run(&circle(whole.path(), start, 10), None).unwrap();
         for stop in [3, 7] {
             let parts = tempfile::tempdir().unwrap();
-            let scene = circle(parts.path(), method, seed, 10);
+            let scene = circle(parts.path(), start, 10);
             let stopped = run(&scene, Some(stop)).unwrap();
             assert_eq!(stopped.ended, Ended::Stopped);
             assert!(stopped.best.loss <= stopped.start.loss);
             let resumed = run(&scene, None).unwrap();
-            assert_eq!(resumed.history, uninterrupted.history, "{method} {stop}");
+            assert_eq!(resumed.history, uninterrupted.history, "{start:?} {stop}");
             assert_eq!(resumed.design, uninterrupted.design);
         }
     }

@@ -32,10 +32,6 @@ const HELD_FLAT: &str = "kind = \"held-flat\"";
 const LYING: (&str, &str) = (HELD_FLAT, "kind = \"lying\"");
 const FREE: (&str, &str) = (HELD_FLAT, "kind = \"free\"");
 const HANGING: (&str, &str) = (HELD_FLAT, "kind = \"hanging\"\ndown = [0.0, -2.0]");
-const WEIGHTLESS: (&str, &str) = (
-    HELD_FLAT,
-    "kind = \"hanging\"\ndown = [0.0, -1.0]\nweight = false",
-);
 
 fn one(report: &Report, concern: Concern) -> &Warning {
     let [warning] = found(report, concern)[..] else {
@@ -86,7 +82,6 @@ fn a_weight_that_is_left_out_is_a_warning() {
     for (posture, force, expected) in [
         (FREE, "[195.0, 0.0]", 1),
         (FREE, "[198.0, 0.0]", 0),
-        (WEIGHTLESS, "[195.0, 0.0]", 1),
         ((HELD_FLAT, HELD_FLAT), "[2.0, 0.0]", 0),
         (HANGING, "[2.0, 0.0]", 0),
     ] {
@@ -112,7 +107,6 @@ fn friction_is_a_warning_beside_a_small_load() {
         warning.message
     );
     let text = heavy.to_string();
-    assert!(text.contains("2 N at a stroke of"), "{text}");
     assert!(text.contains("clamp, panel P3 [0,1], at ("), "{text}");
     // At 4.9 % of the load it is none.
     let light = report(&[], &[LYING, ("[2.0, 0.0]", "[60.5, 0.0]"), SHORT]);

@@ -55,9 +55,7 @@ centre = [700.0, 550.0]
 radius = 750.0
 
 [objective]
-coverage = 0.5
 compression = 0.01
-target_points = 100
 
 [optimiser]
 steps = 25

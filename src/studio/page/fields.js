@@ -154,7 +154,7 @@ const groups = {
   search(box) {
     choiceField(box, "Method", "optimiser.method", [["lbfgs", "L-BFGS"], ["gauss-newton", "Gauss-Newton"], ["adam", "Adam"]]);
     numberField(box, "Steps", "optimiser.steps", (steps) => set("optimiser.steps", Math.max(1, Math.round(steps))));
-    for (const [text, key] of [["Coverage", "coverage"], ["Damage", "damage"], ["Compression", "compression"], ["Panel shape", "panel_shape"], ["Domain", "domain"]])
+    for (const [text, key] of [["Damage", "damage"], ["Compression", "compression"], ["Panel shape", "panel_shape"], ["Domain", "domain"]])
       numberField(box, text, `objective.${key}`);
     write(box, "p", "Weights relative to the outline's distance to the target; docs/KEYS.md describes them.", "note");
   },
