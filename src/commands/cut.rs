@@ -1,9 +1,5 @@
-//! `kirigami cut`: the cut files of a designed sheet, tiles of paper, parts for a bed, and several designs on one stock.
+//! `kirigami cut`: the cut files of a designed sheet, tiles of paper and parts for a bed.
 
-mod nest;
-mod nest_args;
-
-use crate::commands::cut::nest_args::{Nesting, PLACES, PLAN};
 use crate::commands::inspect::scene_args::{DESIGN_OF_RUN, Inspected};
 use crate::ui::run_folder;
 use crate::ui::width_by_height::width_by_height;
@@ -24,24 +20,19 @@ use std::fmt::{self, Display, Formatter};
 use std::path::{Path, PathBuf};
 use support::nearest::nearest;
 
-/// Write the cut files of a designed sheet, tiles for hand cutting, parts for a bed, or several designs on one stock
+/// Write the cut files of a designed sheet, tiles for hand cutting, or parts for a bed
 ///
 /// Writes DXF, SVG and cut list of the design in the run folder of a scene, with the cutting settings of the scene.
 /// With --paper also a PDF at 1:1 on pages that overlap, with --bed also one DXF and SVG a part. docs/CUTTING.md
-/// describes the files. With --for the file holds what one kind of machine or service accepts, with --stock also
-/// that of several designs and pieces on as few sheets of a stock as are found. Examples:
+/// describes the files. With --for the file holds what one kind of machine or service accepts. Examples:
 /// kirigami cut configs/scenes/demo.toml --paper a4 --bed 900x600;
-/// kirigami cut configs/scenes/a4-plate.toml --for laser-service;
-/// kirigami cut runs/a4-plate runs/leaf --for lightburn --stock 600x400 --margin 5 --gap 3 --copies 2,1
+/// kirigami cut configs/scenes/a4-plate.toml --for laser-service
 #[derive(Args)]
 #[command(mut_arg("design", |arg| arg.help(DESIGN_OF_RUN)))]
 pub struct CutCommand {
     #[command(flatten)]
     designed: Inspected,
-    #[command(flatten)]
-    nesting: Nesting,
-    /// Folder of the files [default: `cut` in the run folder of the scene; with --for `cut/MACHINE`; with --stock `nest/MACHINE` beside
-    /// the run folder of the first scene]
+    /// Folder of the files [default: `cut` in the run folder of the scene; with --for `cut/MACHINE`]
     #[arg(long, value_name = "FOLDER")]
     out: Option<PathBuf>,
     /// Write tiles for this paper: a5 to a0, letter or tabloid
@@ -114,7 +105,6 @@ impl CutCommand {
                 design: None,
                 weights: None,
             },
-            nesting: Nesting::default(),
             out: None,
             paper: None,
             bed: None,
@@ -157,15 +147,9 @@ impl CutCommand {
             Path::new(name).file_name().is_some_and(|file| file == name),
             "the machine {name} cannot name a folder: give it a name without slashes"
         );
-        let services = services(&machines, machine);
-        match self.nesting.stock {
-            Some(stock) => self.nest(stock, machine, services),
-            None => {
-                let file = self.cut_one_for(machine, services)?;
-                self.print_file(machine, &file);
-                Ok(())
-            }
-        }
+        let file = self.cut_one_for(machine, services(&machines, machine))?;
+        self.print_file(machine, &file);
+        Ok(())
     }
 
     fn cut_one_for(&self, machine: &Machine, services: &[Service]) -> Result<MachineFile> {
@@ -430,7 +414,7 @@ fn print_parts(split: &Split, [low, high]: [[f64; 2]; 2]) {
     }
 }
 
-/// Removes tiles, parts and sheets of stock of an earlier call, which may be of another design.
+/// Removes tiles and parts of an earlier call, which may be of another design.
 fn remove_earlier(folder: &Path) -> Result<()> {
     for entry in std::fs::read_dir(folder)? {
         let entry = entry?;
@@ -443,11 +427,11 @@ fn remove_earlier(folder: &Path) -> Result<()> {
     Ok(())
 }
 
-/// Whether a file with this name is written with --paper, --bed or --stock.
+/// Whether a file with this name is written with --paper or --bed.
 fn is_written(name: &str) -> bool {
     let number = name.split_once('-').and_then(|(kind, rest)| {
         let number = (rest.strip_suffix(".dxf")).or_else(|| rest.strip_suffix(".svg"));
-        number.filter(|_| ["part", "stock"].contains(&kind))
+        number.filter(|_| kind == "part")
     });
     let is_numbered = number.is_some_and(|number| {
         !number.is_empty() && !number.starts_with('0') && number.bytes().all(|c| c.is_ascii_digit())
@@ -456,7 +440,7 @@ fn is_written(name: &str) -> bool {
     let is_tiles = paper
         .and_then(|paper| self::paper(paper).ok())
         .is_some_and(|paper| name == tiles_name(paper));
-    is_numbered || is_tiles || [JOINTS, PLACES, PLAN].contains(&name)
+    is_numbered || is_tiles || name == JOINTS
 }
 
 fn tiles_name(paper: Paper) -> String {
@@ -493,15 +477,7 @@ mod tests {
             "tiles-of-mine.pdf",
             "cut.dxf",
         ];
-        let ours = [
-            "part-1.dxf",
-            "part-12.svg",
-            "stock-3.dxf",
-            "tiles-letter.pdf",
-            JOINTS,
-            PLACES,
-            PLAN,
-        ];
+        let ours = ["part-1.dxf", "part-12.svg", "tiles-letter.pdf", JOINTS];
         for name in own.iter().chain(&ours) {
             std::fs::write(folder.path().join(name), "").unwrap();
         }

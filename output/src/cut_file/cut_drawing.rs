@@ -113,13 +113,6 @@ impl CutDrawing {
         })
     }
 
-    /// Turns all shapes about the origin by 90 degrees, counter-clockwise.
-    pub fn turn(&mut self) {
-        for (_, shape) in &mut self.shapes {
-            shape.turn();
-        }
-    }
-
     /// Shifts all shapes (mm).
     pub fn shift(&mut self, by: [f64; 2]) {
         for (_, shape) in &mut self.shapes {

@@ -99,21 +99,6 @@ pub enum FabricationError {
         bed: [f64; 2],
     },
     #[error(
-        "{name} takes {:.1} x {:.1} mm with kerf and over-run, but a sheet of the stock has {:.1} x {:.1} mm inside its margin: {}",
-        size[0], size[1], room[0], room[1],
-        if *fits_turned {
-            "turned by 90 degrees it fits (leave out --no-turn)"
-        } else {
-            "use a larger stock, a smaller margin, or cut the design in parts (--bed)"
-        }
-    )]
-    LargerThanStock {
-        name: String,
-        size: [f64; 2],
-        room: [f64; 2],
-        fits_turned: bool,
-    },
-    #[error(
         "the joint at hinge {hinge} crosses panel {panel}, which is too small for tape of {lap} mm to either side: {}",
         with_less_tape(*widest)
     )]

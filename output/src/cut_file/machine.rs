@@ -175,7 +175,7 @@ impl Machine {
     }
 
     /// The paths in a sheet and the marks on it, in the order of the pattern; an error if they do not exist.
-    pub fn paths(&self, cuts: &CutLines) -> Result<CutDrawing, FabricationError> {
+    fn paths(&self, cuts: &CutLines) -> Result<CutDrawing, FabricationError> {
         key_limits::check::<Self>(self)?;
         let kerf = self.kerf_of_paths(cuts);
         let mut cuts = cuts.clone();
@@ -195,17 +195,6 @@ impl Machine {
             }
         }
         Ok(drawing)
-    }
-
-    /// Whether a slit is one pass of the tool, which is then as wide as the slits.
-    pub fn cuts_lines(&self) -> bool {
-        self.cuts == Cuts::Lines
-    }
-
-    /// Distance of the centre of the tool from the paths, on their outer side (mm): half of the part of the kerf that the paths do
-    /// not allow for. A service compensates its own kerf, which is at most that of the slits.
-    pub fn reach(&self, cuts: &CutLines) -> f64 {
-        0.5 * (cuts.kerf - self.kerf_of_paths(cuts)).max(0.0)
     }
 
     /// Width that the tool removes and the paths allow for (mm).
