@@ -24,15 +24,15 @@ fn a_design_of_another_scene_is_not_cut_unless_it_is_named() {
 }
 
 #[test]
-fn a_designed_sheet_is_cut_on_paper_and_in_parts() {
+fn a_designed_sheet_is_cut_on_paper() {
     let work = Workplace::new();
     let missing = work.error(&format!("cut {SCENE}"));
     assert!(missing.contains("run `kirigami design` first"), "{missing}");
     work.output(&format!("design {SCENE} --steps 3 --out run"));
     let cut = format!("cut {SCENE} --design run/state.json --out files");
-    let text = work.output(&format!("{cut} --paper a3 --bed 1900x1900"));
+    let text = work.output(&format!("{cut} --paper a3"));
     assert!(
-        text.contains("84 holes, 48 slits") && text.contains("part 4: "),
+        text.contains("84 holes, 48 slits") && text.contains("rows x "),
         "{text}"
     );
     for name in [
@@ -42,8 +42,6 @@ fn a_designed_sheet_is_cut_on_paper_and_in_parts() {
         "attachments.csv",
         "cut-summary.csv",
         "tiles-a3.pdf",
-        "part-4.dxf",
-        "joints.csv",
     ] {
         assert!(work.path("files").join(name).exists(), "{name}");
     }
@@ -55,17 +53,12 @@ fn a_designed_sheet_is_cut_on_paper_and_in_parts() {
     let json = work.output(&format!("{cut} --json"));
     let json: serde_json::Value = serde_json::from_str(&json).unwrap();
     assert_eq!(json["totals"]["holes"], 84);
-    assert!(json["parts"].is_null() && !work.path("files/part-1.dxf").exists());
+    assert!(!work.path("files/tiles-a3.pdf").exists());
     let summary = std::fs::read_to_string(work.path("files/cut-summary.csv")).unwrap();
     assert!(summary.contains("over-run,3,mm"), "{summary}");
     // Other cutting settings are not another run.
     work.output(&format!("design {SCENE} --steps 3 --out run"));
 
-    let small = work.error(&format!("{cut} --bed 300x300"));
-    assert!(
-        small.contains("does not fit on the bed") || small.contains("use a larger bed"),
-        "{small}"
-    );
     work.edit(SCENE, &[("over_run = 3.0", "over_run = 300.0")]);
     assert!(work.error(&cut).contains("cutting.over_run"));
 }

@@ -1,8 +1,7 @@
 //! Cut files of a designed sheet for cutting machines and for cutting by hand, at 1:1 in mm.
 //!
 //! [`CutLines`] is the finished geometry, checked against the simulated sheet. [`SheetDrawing`] is what is cut, in cutting
-//! order, with numbers and instructions; [`dxf()`], [`svg()`] and [`tiles_pdf`] are its files. [`split`] divides a sheet
-//! that is larger than the bed of the machine.
+//! order, with numbers and instructions; [`dxf()`], [`svg()`] and [`tiles_pdf`] are its files.
 
 mod attachments;
 mod coupon_drawing;
@@ -15,9 +14,7 @@ mod fabrication_error;
 mod finished_contours;
 mod machine;
 mod numbers;
-mod parts;
 mod pdf_tiles;
-mod seam;
 mod sheet_drawing;
 mod svg;
 mod tiling;
@@ -33,9 +30,7 @@ pub use dxf::dxf;
 pub use fabrication_error::FabricationError;
 pub(crate) use machine::fits;
 pub use machine::{Features, Machine, Machines, Service};
-pub use parts::{Part, Split, split};
 pub use pdf_tiles::tiles_pdf;
-pub use seam::Seam;
 pub use sheet_drawing::{FORCED, SheetDrawing, mark_errors};
 pub use svg::svg;
 pub use tiling::{OVERLAP, Tiling};

@@ -1,18 +1,16 @@
-//! `kirigami cut`: the cut files of a designed sheet, tiles of paper and parts for a bed.
+//! `kirigami cut`: the cut files of a designed sheet, and tiles of paper.
 
 use crate::commands::inspect::scene_args::{DESIGN_OF_RUN, Inspected};
 use crate::ui::run_folder;
-use crate::ui::width_by_height::width_by_height;
 use anyhow::{Context, Result, ensure};
 use clap::Args;
 use design::objective::design_problem::Deployment;
 use design::pattern::design_vector::DesignVector;
 use design::scene::{Paper, Scene};
 use output::cut_file::{
-    CutDrawing, CutLines, Features, Machine, Machines, OVERLAP, Service, SheetDrawing, Split,
-    Tiling, attachment_list, cut_list, cut_summary, dxf, mark_errors, split, svg, tiles_pdf,
+    CutDrawing, CutLines, Features, Machine, Machines, OVERLAP, Service, SheetDrawing, Tiling,
+    attachment_list, cut_list, cut_summary, dxf, mark_errors, svg, tiles_pdf,
 };
-use output::display::Shape;
 use output::report::{Severity, Warning, warnings};
 use serde::Serialize;
 use serde_json::json;
@@ -20,12 +18,11 @@ use std::fmt::{self, Display, Formatter};
 use std::path::{Path, PathBuf};
 use support::nearest::nearest;
 
-/// Write the cut files of a designed sheet, tiles for hand cutting, or parts for a bed
+/// Write the cut files of a designed sheet, or tiles for hand cutting
 ///
 /// Writes DXF, SVG and cut list of the design in the run folder of a scene, with the cutting settings of the scene.
-/// With --paper also a PDF at 1:1 on pages that overlap, with --bed also one DXF and SVG a part. docs/CUTTING.md
-/// describes the files. With --for the file holds what one kind of machine or service accepts. Examples:
-/// kirigami cut configs/scenes/demo.toml --paper a4 --bed 900x600;
+/// With --paper also a PDF at 1:1 on pages that overlap. docs/CUTTING.md describes the files. With --for the file holds what one kind of machine or service accepts. Examples:
+/// kirigami cut configs/scenes/demo.toml --paper a4;
 /// kirigami cut configs/scenes/a4-plate.toml --for laser-service
 #[derive(Args)]
 #[command(mut_arg("design", |arg| arg.help(DESIGN_OF_RUN)))]
@@ -38,30 +35,20 @@ pub struct CutCommand {
     /// Write tiles for this paper: a5 to a0, letter or tabloid
     #[arg(long, value_name = "PAPER", value_parser = paper)]
     paper: Option<Paper>,
-    /// Write parts that fit on a bed of this width and height (mm); the height of a roll is inf
-    #[arg(long, value_name = "WIDTHxHEIGHT", value_parser = bed)]
-    bed: Option<[f64; 2]>,
     /// Write one DXF and one SVG for this machine: laser-service, lightburn, knife, plain or one of --machines; for a service
     /// list which refuse the sheet, and why. With --design start before the search
-    #[arg(long = "for", value_name = "MACHINE", conflicts_with_all = ["paper", "bed"])]
+    #[arg(long = "for", value_name = "MACHINE", conflicts_with = "paper")]
     machine: Option<String>,
     /// Table of machines and services (TOML) [default: the shipped configs/machines.toml]
     #[arg(long, value_name = "FILE", requires = "machine")]
     machines: Option<PathBuf>,
-    /// Width of the adhesive tape on either side of a seam between parts (mm)
-    #[arg(long, value_name = "MM", default_value_t = LAP, value_parser = lap)]
-    lap: f64,
     /// Write the files even if the design has errors
     #[arg(long)]
     force: bool,
-    /// Print totals, parts and files as JSON; with --for the smallest features, and what services refuse
+    /// Print totals and files as JSON; with --for the smallest features, and what services refuse
     #[arg(long)]
     json: bool,
 }
-
-/// The usual width of the tape (mm).
-const LAP: f64 = 20.0;
-const JOINTS: &str = "joints.csv";
 
 /// What is written of a sheet.
 struct Pieces {
@@ -72,7 +59,6 @@ struct Pieces {
     attachments: String,
     summary: String,
     tiling: Option<Tiling>,
-    split: Option<Split>,
 }
 
 impl CutCommand {
@@ -107,10 +93,8 @@ impl CutCommand {
             },
             out: None,
             paper: None,
-            bed: None,
             machine: None,
             machines: None,
-            lap: LAP,
             force: false,
             json: false,
         }
@@ -124,7 +108,7 @@ impl CutCommand {
         self.print(&pieces, &written.folder)
     }
 
-    /// Writes the cut files, and tiles or parts.
+    /// Writes the cut files, and tiles.
     fn cut(&self) -> Result<(Pieces, Written)> {
         let (scene, design, _) = self.designed.read_run()?;
         let pieces = self.pieces(&scene, &design)?;
@@ -230,12 +214,6 @@ impl CutCommand {
         let tiling = (self.paper)
             .map(|paper| Tiling::new(paper, whole.numbered.bounds()))
             .transpose()?;
-        let mut split = (self.bed)
-            .map(|bed| split(&cuts, sheet, bed, self.lap))
-            .transpose()?;
-        for part in split.iter_mut().flat_map(|split| &mut split.parts) {
-            mark_errors(&mut part.drawing, &errors);
-        }
         Ok(Pieces {
             list: cut_list(sheet, &cuts),
             attachments: attachment_list(&cuts),
@@ -243,7 +221,6 @@ impl CutCommand {
             whole,
             annotated,
             tiling,
-            split,
         })
     }
 
@@ -257,24 +234,15 @@ impl CutCommand {
             let tiles = tiles_pdf(&whole.numbered, tiling, title, &whole.notes);
             written.file(&tiles_name(paper), &tiles)?;
         }
-        if let Some(split) = &pieces.split {
-            for (i, part) in split.parts.iter().enumerate() {
-                written.drawing(&format!("part-{}", i + 1), &part.drawing)?;
-            }
-            written.file(JOINTS, &split.joint_list())?;
-        }
         Ok(())
     }
 
     fn print(&self, pieces: &Pieces, out: &Path) -> Result<()> {
-        let (tiling, split) = (&pieces.tiling, &pieces.split);
+        let tiling = &pieces.tiling;
         if self.json {
             let value = json!({
                 "totals": pieces.whole.totals,
                 "tiles": tiling.as_ref().map(Tiling::pages),
-                "parts": split.as_ref().map(|split| split.parts.iter().map(|part| json!({
-                    "origin": part.origin, "size": part.size, "area": part.area,
-                })).collect::<Vec<_>>()),
                 "folder": out,
             });
             println!("{}", serde_json::to_string_pretty(&value)?);
@@ -290,9 +258,6 @@ impl CutCommand {
                 "{} pages: {rows} rows x {columns} columns, which overlap by {OVERLAP} mm, and an overview",
                 rows * columns + 1
             );
-        }
-        if let Some(split) = split {
-            print_parts(split, Shape::extent(pieces.whole.numbered.cuts()));
         }
         println!("written to {}", out.display());
         Ok(())
@@ -386,40 +351,12 @@ fn verdict(refuses: &[String]) -> String {
     }
 }
 
-fn print_parts(split: &Split, [low, high]: [[f64; 2]; 2]) {
-    if split.parts.len() > 1 {
-        println!(
-            "the whole sheet takes {:.1} x {:.1} mm, with the kerf and the over-run beyond its edges",
-            high[0] - low[0],
-            high[1] - low[1]
-        );
-    }
-    for (i, part) in split.parts.iter().enumerate() {
-        let ([x, y], [width, height]) = (part.origin, part.size);
-        println!(
-            "part {}: {width:.1} x {height:.1} mm, from ({x:.1}, {y:.1}) mm of the sheet",
-            i + 1
-        );
-    }
-    let hinges = split.joints.iter().map(|(seam, _)| seam.hinge.to_string());
-    let hinges: Vec<String> = hinges.collect();
-    match hinges.len() {
-        0 => println!("the sheet fits on the bed as a whole: no joints"),
-        count => println!(
-            "{count} seams, each across a panel beside a hinge, so that every ligament stays whole; tape {} mm to \
-             either side. Hinges: {}",
-            split.lap,
-            hinges.join(", ")
-        ),
-    }
-}
-
-/// Removes tiles and parts of an earlier call, which may be of another design.
+/// Removes tiles of an earlier call, which may be of another design.
 fn remove_earlier(folder: &Path) -> Result<()> {
     for entry in std::fs::read_dir(folder)? {
         let entry = entry?;
         let path = entry.path();
-        if entry.file_type()?.is_file() && is_written(&entry.file_name().to_string_lossy()) {
+        if entry.file_type()?.is_file() && is_tiles(&entry.file_name().to_string_lossy()) {
             std::fs::remove_file(&path)
                 .with_context(|| format!("cannot remove {}", path.display()))?;
         }
@@ -427,20 +364,12 @@ fn remove_earlier(folder: &Path) -> Result<()> {
     Ok(())
 }
 
-/// Whether a file with this name is written with --paper or --bed.
-fn is_written(name: &str) -> bool {
-    let number = name.split_once('-').and_then(|(kind, rest)| {
-        let number = (rest.strip_suffix(".dxf")).or_else(|| rest.strip_suffix(".svg"));
-        number.filter(|_| kind == "part")
-    });
-    let is_numbered = number.is_some_and(|number| {
-        !number.is_empty() && !number.starts_with('0') && number.bytes().all(|c| c.is_ascii_digit())
-    });
+/// Whether a file with this name is written with --paper.
+fn is_tiles(name: &str) -> bool {
     let paper = (name.strip_prefix("tiles-")).and_then(|rest| rest.strip_suffix(".pdf"));
-    let is_tiles = paper
+    paper
         .and_then(|paper| self::paper(paper).ok())
-        .is_some_and(|paper| name == tiles_name(paper));
-    is_numbered || is_tiles || name == JOINTS
+        .is_some_and(|paper| name == tiles_name(paper))
 }
 
 fn tiles_name(paper: Paper) -> String {
@@ -452,16 +381,6 @@ fn paper(name: &str) -> Result<Paper, String> {
     name.parse().map_err(refused)
 }
 
-fn bed(text: &str) -> Result<[f64; 2], String> {
-    width_by_height(text)
-        .ok_or_else(|| "must be WIDTHxHEIGHT in mm, like 1000x600 or 1300xinf".into())
-}
-
-fn lap(text: &str) -> Result<f64, String> {
-    let lap = text.parse().ok().filter(|lap| (0.0..=200.0).contains(lap));
-    lap.ok_or_else(|| "must be 0 to 200 mm".into())
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -469,21 +388,14 @@ mod tests {
     #[test]
     fn only_files_that_a_cut_writes_are_removed() {
         let folder = tempfile::tempdir().unwrap();
-        let own = [
-            "part-list.xlsx",
-            "part-a.dxf",
-            "part-01.dxf",
-            "part-1.dxf.bak",
-            "tiles-of-mine.pdf",
-            "cut.dxf",
-        ];
-        let ours = ["part-1.dxf", "part-12.svg", "tiles-letter.pdf", JOINTS];
+        let own = ["tiles-of-mine.pdf", "tiles-a4.pdf.bak", "cut.dxf"];
+        let ours = ["tiles-a3.pdf", "tiles-letter.pdf"];
         for name in own.iter().chain(&ours) {
             std::fs::write(folder.path().join(name), "").unwrap();
         }
-        std::fs::create_dir(folder.path().join("part-2.dxf")).unwrap();
+        std::fs::create_dir(folder.path().join("tiles-a5.pdf")).unwrap();
         remove_earlier(folder.path()).unwrap();
-        for name in own.iter().chain(&["part-2.dxf"]) {
+        for name in own.iter().chain(&["tiles-a5.pdf"]) {
             assert!(folder.path().join(name).exists(), "{name}");
         }
         for name in ours {

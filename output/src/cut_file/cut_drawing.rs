@@ -12,7 +12,7 @@ pub enum Layer {
     AttachmentHoles,
     /// The slits.
     Cut,
-    /// The seams between two parts of a sheet.
+    /// Without shapes: files declare it, as those of earlier versions.
     Joint,
     /// The edge of the sheet.
     Outline,

@@ -156,7 +156,7 @@ impl Service {
         let large = self.size.filter(too_large).map(|most| {
             let [width, height] = features.size;
             format!(
-                "a sheet of {width:.0} x {height:.0} mm, at most {:.0} x {:.0} mm (--bed)",
+                "a sheet of {width:.0} x {height:.0} mm, at most {:.0} x {:.0} mm",
                 most[0], most[1]
             )
         });
