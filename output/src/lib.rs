@@ -32,7 +32,6 @@ pub mod listing;
 pub mod material_check;
 pub mod measurement;
 pub mod report;
-mod report_pdf;
 pub mod run_files;
 pub mod run_page;
 pub mod run_results;

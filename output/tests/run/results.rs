@@ -65,7 +65,6 @@ fn a_sound_design_writes_all_files_and_only_its_miss_is_a_warning() {
             "flat.svg",
             "inputs",
             "report.json",
-            "report.pdf",
             "report.txt",
             "run.html",
             "scene.toml",
