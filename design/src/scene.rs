@@ -17,7 +17,6 @@ mod loaded_hinge;
 pub mod placement;
 mod posture;
 mod problem;
-mod ratios;
 pub mod run_inputs;
 mod scene_error;
 mod sheet_config;
@@ -34,7 +33,7 @@ pub use actuation::{
 pub use boundary_values::{Actuation, AppliedLoad, Attachment, SupportedPanel, panel_name};
 pub use checked_scene::Scene;
 pub use cutting::CuttingConfig;
-pub use drawn_target::place_drawing;
+pub use drawn_target::{place_drawing, rounded};
 pub use hinge_model::{
     CondensedConfig, ContactConfig, HingeModel, LinearConstants, PinConfig, SurrogateFile,
 };
@@ -42,7 +41,6 @@ pub use invalid_scene::{InvalidScene, WeightsMismatch};
 pub use keys::{OptimiserConfig, SceneConfig};
 pub use loaded_hinge::LoadedHinge;
 pub use posture::{Posture, PostureConfig};
-pub use ratios::{Ratios, rounded};
 pub use scene_error::SceneError;
 pub use sheet_config::{LigamentConfig, SheetConfig, StartConfig};
 pub use springback_file::{SpringbackFileError, SpringbackMismatch};

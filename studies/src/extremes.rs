@@ -3,6 +3,7 @@
 //! Every row has a promise, which the study checks, and an outcome. The study fails if a promise is not kept.
 
 mod law_extremes;
+mod ratios;
 mod sheet_extremes;
 mod training_extremes;
 mod window_extremes;

@@ -1,12 +1,13 @@
 //! Sheets at the limits of loads, ligaments, cut angles, thickness, size and solver settings.
 
 use super::{Checked, kept, one_line};
+use crate::extremes::ratios::Ratios;
 use anyhow::{Result, anyhow};
 use design::equilibrium::load_step::{LoadStep, Status};
 use design::hinge_law::DamageMeasure;
 use design::objective::design_problem::Deployment;
 use design::objective::target::TargetShape;
-use design::scene::{EdgeLoadConfig, Ratios, Scene, SceneConfig, SheetEdge};
+use design::scene::{EdgeLoadConfig, Scene, SceneConfig, SheetEdge};
 use std::f64::consts::PI;
 use std::fmt::Write;
 use std::path::Path;

@@ -4,9 +4,8 @@
 //! with lambda, the sheet and its displacements with mu. The energy of a hinge at an equal rotation grows with
 //! e lambda^3, so couples do too, forces with e lambda^3 / mu, and the stiffnesses k_a and k_s with e lambda.
 
-use crate::objective::target::TargetShape;
-use crate::scene::actuation::At;
-use crate::scene::keys::SceneConfig;
+use design::objective::target::TargetShape;
+use design::scene::{At, SceneConfig, rounded};
 
 /// Ratios of a new sheet to the original one.
 #[derive(Clone, Copy, Debug)]
@@ -104,15 +103,10 @@ fn scale_target(target: &mut TargetShape, factor: f64) {
     }
 }
 
-/// To six significant digits, so that a product of two short numbers is short.
-pub fn rounded(x: f64) -> f64 {
-    format!("{x:.5e}").parse().unwrap_or(x)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{EdgeLoadConfig, OpeningCoupleConfig, SheetEdge};
+    use design::scene::{EdgeLoadConfig, OpeningCoupleConfig, SheetEdge};
     use std::path::Path;
 
     /// All lengths doubled: the energies grow by eight, the forces by four, the tractions by two.
