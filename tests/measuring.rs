@@ -200,9 +200,4 @@ fn a_deployment_is_exported_state_by_state() {
             );
         });
     }
-    #[cfg(feature = "pipeline")]
-    assert!(
-        printed.contains("840 rows in export/hinges.parquet"),
-        "{printed}"
-    );
 }
