@@ -2,7 +2,6 @@
 
 use crate::analysis::answers::Answers;
 use crate::analysis::data_error::DataError;
-use crate::analysis::marks::MeasuredPoint;
 use crate::analysis::measured_sheet::{MeasuredSheet, MeasurementError};
 use crate::analysis::measurements::{Measurements, PointData};
 use crate::analysis::real_sheet::{ReadingPlan, RealSheet};
@@ -32,12 +31,10 @@ pub(super) struct SheetResiduals<'a> {
     /// The parts of the readings and, for points, full load.
     plan: ReadingPlan,
     answers: Option<Answers>,
-    /// The points that are no outliers.
-    kept: Vec<MeasuredPoint>,
 }
 
 impl<'a> SheetResiduals<'a> {
-    /// The residuals without outliers; an error if the measurements are not those of the sheet.
+    /// The residuals; an error if the measurements are not those of the sheet.
     pub fn new(of: CutAndMeasured<'a>) -> Result<Self, DataError> {
         let CutAndMeasured {
             problem,
@@ -59,31 +56,17 @@ impl<'a> SheetResiduals<'a> {
         if let Some(answers) = &answers {
             answers.check(plan.drawn.as_ref().ok_or(DataError::NothingMoves)?)?;
         }
-        let mut residuals = Self {
-            of,
-            plan,
-            answers,
-            kept: Vec::new(),
-        };
-        residuals.keep(&Deviation::default())?;
-        Ok(residuals)
+        if let Some(points) = &data.points {
+            let (deployment, _) = sheet.deployed(&Deviation::default())?;
+            let path = ShapePath::new(problem, &deployment);
+            MeasuredSheet::new(&path, &points.points, points.scale)?;
+        }
+        Ok(Self { of, plan, answers })
     }
 
-    /// Looks for outliers among the points; whether there are others than before.
-    pub fn keep(&mut self, deviation: &Deviation) -> Result<bool, DataError> {
-        let Some(data) = self.points() else {
-            return Ok(false);
-        };
-        let (deployment, _) = self.of.sheet.deployed(deviation)?;
-        let path = ShapePath::new(self.of.problem, &deployment);
-        let measured = MeasuredSheet::new(&path, &data.points, data.scale)?;
-        let kept: Vec<MeasuredPoint> = std::iter::zip(&data.points, &measured.full.points)
-            .filter(|(_, fitted)| !fitted.outlier)
-            .map(|(point, _)| *point)
-            .collect();
-        let changed = kept != self.kept;
-        self.kept = kept;
-        Ok(changed)
+    /// All points are used, at any deviation.
+    pub fn keep(&mut self, _: &Deviation) -> Result<bool, DataError> {
+        Ok(false)
     }
 
     /// The residuals over the stated standard errors.
@@ -91,7 +74,7 @@ impl<'a> SheetResiduals<'a> {
         let mut residuals = Residuals::default();
         let read = self.of.sheet.read(&self.plan, deviation)?;
         if let (Some(data), Some(full)) = (self.points(), read.steps.last()) {
-            let pairs: Vec<Pair> = (self.kept.iter())
+            let pairs: Vec<Pair> = (data.points.iter())
                 .map(|point| {
                     let predicted = point.mark.deployed(&read.sheet, &full.configuration);
                     [complex(predicted), complex(point.position)]
@@ -130,8 +113,7 @@ impl<'a> SheetResiduals<'a> {
 
     /// Number of points that are left out.
     pub fn outliers(&self) -> usize {
-        self.points()
-            .map_or(0, |data| data.points.len() - self.kept.len())
+        0
     }
 
     fn points(&self) -> Option<&'a PointData> {

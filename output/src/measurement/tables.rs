@@ -4,7 +4,7 @@ use crate::measurement::{Agreement, Closed, MeasurementReport, OpeningSpread, Sp
 use design::objective::scores::shown;
 use std::fmt::{self, Write};
 
-/// Number of outliers, of hinges and of panels on the printed page; the tables hold all of them.
+/// Number of hinges and of panels on the printed page; the tables hold all of them.
 const LISTED: usize = 12;
 
 impl MeasurementReport {
@@ -12,7 +12,7 @@ impl MeasurementReport {
     pub fn residuals_csv(&self) -> String {
         let mut text =
             "panel,corner,measured_x_mm,measured_y_mm,predicted_x_mm,predicted_y_mm,residual_x_mm,\
-                        residual_y_mm,distance_mm,outlier\n"
+                        residual_y_mm,distance_mm\n"
                 .to_owned();
         for point in &self.best_points {
             let corner = point.mark.corner.map(|corner| corner.to_string());
@@ -21,11 +21,10 @@ impl MeasurementReport {
             // Writing to a string cannot fail.
             let _ = writeln!(
                 text,
-                "{},{},{mx:.4},{my:.4},{px:.4},{py:.4},{rx:.4},{ry:.4},{:.4},{}",
+                "{},{},{mx:.4},{my:.4},{px:.4},{py:.4},{rx:.4},{ry:.4},{:.4}",
                 point.mark.panel,
                 corner.unwrap_or_default(),
-                point.distance(),
-                point.outlier
+                point.distance()
             );
         }
         text
@@ -117,35 +116,6 @@ impl MeasurementReport {
         )
     }
 
-    fn outliers(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        let count = self.outliers.len();
-        match count {
-            0 => writeln!(f, "\nno outliers")?,
-            _ => writeln!(f, "\noutliers, {count} points left out of the fit:")?,
-        }
-        for renumbered in &self.renumbered {
-            writeln!(f, "  {renumbered}: correct the numbers in the file")?;
-        }
-        let explained = |panel| self.renumbered.iter().any(|other| other.panel == panel);
-        let single = self
-            .outliers
-            .iter()
-            .filter(|outlier| !explained(outlier.mark.panel));
-        for outlier in single.clone().take(LISTED) {
-            let [x, y] = outlier.residual;
-            let (mark, distance) = (outlier.mark.to_string(), outlier.distance);
-            writeln!(
-                f,
-                "  {mark:<16} {distance:>10.2} mm from its prediction ({x:+.2}, {y:+.2})"
-            )?;
-        }
-        if single.count() > LISTED {
-            writeln!(f, "  ... all of them are in residuals.csv")
-        } else {
-            Ok(())
-        }
-    }
-
     fn hinges(&self, f: &mut fmt::Formatter) -> fmt::Result {
         if self.openings.is_empty() {
             return writeln!(f, "\nno hinge has two panels with at least two points each");
@@ -179,12 +149,11 @@ impl MeasurementReport {
 
 impl fmt::Display for MeasurementReport {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        let used = self.points - self.outliers.len();
         writeln!(f, "{}: measured against predicted\n", self.title)?;
         writeln!(f, "predicted with panels in the plane and without friction")?;
         writeln!(
             f,
-            "{} points, {used} used; sheet of {:.1} mm",
+            "{} points; sheet of {:.1} mm",
             self.points, self.sheet_size
         )?;
         // In mm of the design, also if the points are in pixels.
@@ -218,7 +187,6 @@ impl fmt::Display for MeasurementReport {
         if let Some(closed) = &self.closed {
             closed.fmt(f)?;
         }
-        self.outliers(f)?;
         self.hinges(f)
     }
 }
@@ -236,13 +204,6 @@ impl fmt::Display for Closed {
             rms(&self.floor.corners),
             rms(&self.floor.centres)
         )?;
-        if self.doubtful {
-            writeln!(
-                f,
-                "warning: these points are more than half as far from the flat sheet as those of the deployed sheet: is the \
-                 file of --closed that of the closed sheet?"
-            )?;
-        }
         let above = self.centres_above.iter().map(|panel| format!(" P{panel}"));
         let (count, more) = (above.len(), if above.len() > LISTED { " ..." } else { "" });
         let listed: String = above.take(LISTED).collect();
