@@ -11,12 +11,13 @@ use output::cut_file::{
     CutDrawing, CutLines, Features, Machine, Machines, OVERLAP, Service, SheetDrawing, Tiling,
     attachment_list, cut_list, cut_summary, dxf, mark_errors, svg, tiles_pdf,
 };
-use output::report::{Severity, Warning, warnings};
+use output::report::{Warning, warnings};
 use serde::Serialize;
 use serde_json::json;
 use std::fmt::{self, Display, Formatter};
 use std::path::{Path, PathBuf};
 use support::nearest::nearest;
+use support::severity::Severity;
 
 /// Write the cut files of a designed sheet, or tiles for hand cutting
 ///

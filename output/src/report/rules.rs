@@ -6,7 +6,7 @@ use crate::report::columns::rounded;
 use crate::report::fact_sheet::FactSheet;
 use crate::report::hinge_row::HingeRow;
 use crate::report::self_weight::of_the_load;
-use crate::report::warning::{Concern, Severity, Warning};
+use crate::report::warning::{Concern, Warning};
 use design::analysis::error_budget::ErrorBudget;
 use design::analysis::flatness::{Flatness, expected_departure};
 use design::equilibrium::load_step::{LoadStep, Status};
@@ -21,6 +21,7 @@ use design::sheet::cut_sheet::PanelPoint;
 use design::sheet::hinge_window::Window;
 use design::sheet::validity::overlap;
 use hinge::Regime;
+use support::severity::Severity;
 
 /// Weight or friction over load from which a sheet opens otherwise than without it.
 const HEAVY: f64 = 0.05;

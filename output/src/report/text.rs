@@ -1,10 +1,11 @@
 //! The report as text for people: about sixty lines for a small sheet.
 
 use crate::report::columns::{columns, fixed, rounded};
-use crate::report::{HingeRow, Report, Severity};
+use crate::report::{HingeRow, Report};
 use design::objective::scores::{Scores, shown};
 use std::cmp::Ordering;
 use std::fmt;
+use support::severity::Severity;
 
 /// Maximum number of hinges of which all are listed.
 const ALL_LISTED: usize = 24;

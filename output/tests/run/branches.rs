@@ -7,9 +7,10 @@ use design::objective::design_problem::DesignError;
 use design::optimise::outer_loop::Ended;
 use design::scene::design_run::design_of_run;
 use design::scene::{Scene, SceneConfig};
-use output::report::{Concern, Severity};
+use output::report::Concern;
 use output::run_results::write_results;
 use std::path::{Path, PathBuf};
+use support::severity::Severity;
 use support::toml_file;
 
 /// Random sheets whose descent after a jump takes 60 to 3000 iterations.

@@ -8,9 +8,10 @@ use design::objective::design_problem::Model;
 use design::objective::target::TargetShape;
 use design::scene::{Scene, SceneConfig};
 use output::listing::EquilibriumListing;
-use output::report::{Concern, Report, Severity, Warning};
+use output::report::{Concern, Report, Warning};
 use output::run_results::write_results;
 use std::path::{Path, PathBuf};
+use support::severity::Severity;
 use support::toml_file;
 
 fn found(report: &Report, concern: Concern) -> Vec<&Warning> {

@@ -2,10 +2,11 @@
 
 use super::{read, run, with};
 use output::cut_file::FORCED;
-use output::report::{Concern, Report, Severity};
+use output::report::{Concern, Report};
 use output::run_files::RUN_FILES;
 use output::run_results::{remove_run, write_results};
 use std::collections::BTreeSet;
+use support::severity::Severity;
 
 fn report(changes: &[(&str, &str)]) -> (tempfile::TempDir, Report) {
     let folder = tempfile::tempdir().unwrap();
