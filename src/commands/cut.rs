@@ -5,11 +5,10 @@ use crate::ui::run_folder;
 use anyhow::{Context, Result, ensure};
 use clap::Args;
 use design::objective::design_problem::Deployment;
-use design::pattern::design_vector::DesignVector;
 use design::scene::{Paper, Scene};
 use output::cut_file::{
-    CutDrawing, CutLines, Features, Machine, Machines, OVERLAP, Service, SheetDrawing, Tiling,
-    attachment_list, cut_list, cut_summary, dxf, mark_errors, svg, tiles_pdf,
+    CutDrawing, CutLines, FabricationError, Features, Machine, Machines, OVERLAP, SheetDrawing,
+    Tiling, Totals, attachment_list, cut_list, cut_summary, dxf, mark_errors, svg, tiles_pdf,
 };
 use output::report::{Warning, warnings};
 use serde::Serialize;
@@ -51,15 +50,22 @@ pub struct CutCommand {
     json: bool,
 }
 
-/// What is written of a sheet.
-struct Pieces {
-    whole: SheetDrawing,
-    /// The whole sheet with marks and notes, for a machine.
-    annotated: CutDrawing,
-    list: String,
-    attachments: String,
-    summary: String,
+/// A design that may be cut.
+struct Checked {
+    scene: Scene,
+    /// What the design is.
+    named: String,
+    deployment: Deployment,
+    cuts: CutLines,
+    /// The errors of a design whose files are forced.
+    errors: Vec<String>,
+}
+
+/// The files of a sheet.
+struct SheetFiles {
+    totals: Totals,
     tiling: Option<Tiling>,
+    written: Written,
 }
 
 impl CutCommand {
@@ -67,12 +73,11 @@ impl CutCommand {
     #[cfg(feature = "pipeline")]
     pub(crate) fn tiles_of_run(run: &Path, paper: &str) -> Result<Written> {
         let paper = Some(self::paper(paper).map_err(anyhow::Error::msg)?);
-        let (_, written) = (Self {
+        let files = Self {
             paper,
             ..Self::of_run(run)
-        })
-        .cut()?;
-        Ok(written)
+        };
+        Ok(files.cut()?.written)
     }
 
     /// Writes the file of a machine in the run in a folder.
@@ -80,7 +85,7 @@ impl CutCommand {
     pub(crate) fn machine_file_of_run(run: &Path, name: &str) -> Result<(Written, Vec<Verdict>)> {
         let machines = Machines::read(None)?;
         let machine = machine(&machines, name)?;
-        let file = Self::of_run(run).cut_one_for(machine, services(&machines, machine))?;
+        let file = Self::of_run(run).cut_for(&machines, machine)?;
         Ok((file.written, file.verdicts))
     }
 
@@ -102,55 +107,100 @@ impl CutCommand {
     }
 
     pub(crate) fn run(&self) -> Result<()> {
-        if let Some(name) = &self.machine {
-            return self.cut_for(name);
-        }
-        let (pieces, written) = self.cut()?;
-        self.print(&pieces, &written.folder)
-    }
-
-    /// Writes the cut files, and tiles.
-    fn cut(&self) -> Result<(Pieces, Written)> {
-        let (scene, design, _) = self.designed.read_run()?;
-        let pieces = self.pieces(&scene, &design)?;
-        let out = match &self.out {
-            Some(out) => out.clone(),
-            None => scene.output().join("cut"),
+        let Some(name) = self.machine.as_deref() else {
+            self.print(&self.cut()?);
+            return Ok(());
         };
-        let _held = run_folder::hold(&out)?;
-        remove_earlier(&out)?;
-        let mut written = Written::to(&out)?;
-        self.write(&pieces, &scene.config.title, &mut written)?;
-        Ok((pieces, written))
-    }
-
-    /// Writes the files of a machine, and prints what services refuse.
-    fn cut_for(&self, name: &str) -> Result<()> {
         let machines = Machines::read(self.machines.as_deref())?;
         let machine = machine(&machines, name)?;
         ensure!(
             Path::new(name).file_name().is_some_and(|file| file == name),
             "the machine {name} cannot name a folder: give it a name without slashes"
         );
-        let file = self.cut_one_for(machine, services(&machines, machine))?;
-        self.print_file(machine, &file);
+        self.print_file(machine, &self.cut_for(&machines, machine)?);
         Ok(())
     }
 
-    fn cut_one_for(&self, machine: &Machine, services: &[Service]) -> Result<MachineFile> {
+    /// Reads and deploys the design; an error if it has any, unless it is forced.
+    fn checked(&self) -> Result<Checked> {
         let (scene, design, named) = self.designed.read_run()?;
-        let (_, cuts, errors) = self.checked(&scene, &design)?;
+        let deployment = scene.problem()?.deploy(&design)?;
+        let cuts = CutLines::of(&scene, &deployment);
+        let found = warnings(&scene, &deployment, &cuts);
+        let errors = found.iter().filter(|it| it.severity == Severity::Error);
+        let errors: Vec<String> = errors.map(Warning::to_string).collect();
+        let cuts = cuts?;
+        ensure!(
+            self.force || errors.is_empty(),
+            "no cut file: {}; --force writes one",
+            errors.join("; ")
+        );
+        Ok(Checked {
+            scene,
+            named,
+            deployment,
+            cuts,
+            errors,
+        })
+    }
+
+    /// Writes the cut files, and tiles.
+    fn cut(&self) -> Result<SheetFiles> {
+        let Checked {
+            scene,
+            deployment: Deployment { sheet, .. },
+            cuts,
+            errors,
+            ..
+        } = self.checked()?;
+        let mut whole = SheetDrawing::new(&cuts, &sheet, &scene.material);
+        let mut annotated = whole.annotated();
+        for drawing in [&mut annotated, &mut whole.numbered] {
+            mark_errors(drawing, &errors);
+        }
+        let tiles = self.paper.map(|paper| {
+            let tiling = Tiling::new(paper, whole.numbered.bounds())?;
+            Ok::<_, FabricationError>((paper, tiling))
+        });
+        let tiles = tiles.transpose()?;
+        let out = self.out_or(&scene, "cut");
+        let _held = run_folder::hold(&out)?;
+        remove_earlier(&out)?;
+        let mut written = Written::to(&out)?;
+        written.drawing(&annotated)?;
+        written.file("cut-list.csv", &cut_list(&sheet, &cuts))?;
+        written.file("attachments.csv", &attachment_list(&cuts))?;
+        written.file("cut-summary.csv", &cut_summary(&cuts, &whole.totals))?;
+        if let Some((paper, tiling)) = &tiles {
+            let title = &scene.config.title;
+            let pdf = tiles_pdf(&whole.numbered, tiling, title, &whole.notes);
+            written.file(&tiles_name(*paper), &pdf)?;
+        }
+        Ok(SheetFiles {
+            totals: whole.totals,
+            tiling: tiles.map(|(_, tiling)| tiling),
+            written,
+        })
+    }
+
+    /// Writes the file of a machine.
+    fn cut_for(&self, machines: &Machines, machine: &Machine) -> Result<MachineFile> {
+        let Checked {
+            scene,
+            named,
+            cuts,
+            errors,
+            ..
+        } = self.checked()?;
         let mut drawing = machine.drawing(&cuts)?;
         mark_errors(&mut drawing, &errors);
-        let out = match &self.out {
-            Some(out) => out.clone(),
-            None => scene.output().join("cut").join(&machine.name),
-        };
+        let out = self.out_or(&scene, &format!("cut/{}", machine.name));
         let _held = run_folder::hold(&out)?;
         let mut written = Written::to(&out)?;
-        written.drawing("cut", &drawing)?;
+        written.drawing(&drawing)?;
         let features = cuts.features();
-        let verdicts = services.iter().map(|service| Verdict {
+        let services = machines.service.iter().filter(|_| machine.services);
+        let verdicts = services.map(|service| Verdict {
             name: service.name.clone(),
             source: service.source.clone(),
             refuses: service.refusals(&features, scene.material.thickness),
@@ -161,6 +211,36 @@ impl CutCommand {
             named,
             written,
         })
+    }
+
+    /// The folder of the files: by default one in the run folder of the scene.
+    fn out_or(&self, scene: &Scene, folder: &str) -> PathBuf {
+        let out = self.out.clone();
+        out.unwrap_or_else(|| scene.output().join(folder))
+    }
+
+    fn print(&self, files: &SheetFiles) {
+        let SheetFiles {
+            totals,
+            tiling,
+            written,
+        } = files;
+        if self.json {
+            let value = json!({
+                "totals": totals, "tiles": tiling.as_ref().map(Tiling::pages), "folder": written.folder,
+            });
+            println!("{value:#}");
+            return;
+        }
+        println!("{totals}");
+        if let Some(tiling) = tiling {
+            let [rows, columns] = tiling.counts;
+            println!(
+                "{} pages: {rows} rows x {columns} columns, which overlap by {OVERLAP} mm, and an overview",
+                rows * columns + 1
+            );
+        }
+        println!("written to {}", written.folder.display());
     }
 
     fn print_file(&self, machine: &Machine, file: &MachineFile) {
@@ -179,89 +259,12 @@ impl CutCommand {
         }
         println!("{}: {}; {named}\n{features}", machine.name, machine.says);
         for Verdict { name, refuses, .. } in verdicts {
-            println!("{name}: {}", verdict(refuses));
+            match &refuses[..] {
+                [] => println!("{name}: no published limit is broken"),
+                _ => println!("{name}: refuses {}", refuses.join("; ")),
+            }
         }
         println!("written to {}", written.folder.display());
-    }
-
-    /// The deployed sheet and its cuts, with the errors of the design; an error if it has any, unless it is forced.
-    fn checked(
-        &self,
-        scene: &Scene,
-        design: &DesignVector,
-    ) -> Result<(Deployment, CutLines, Vec<String>)> {
-        let deployment = scene.problem()?.deploy(design)?;
-        let cuts = CutLines::of(scene, &deployment);
-        let found = warnings(scene, &deployment, &cuts);
-        let cuts = cuts?;
-        let errors = found.iter().filter(|it| it.severity == Severity::Error);
-        let errors: Vec<String> = errors.map(Warning::to_string).collect();
-        ensure!(
-            self.force || errors.is_empty(),
-            "no cut file: {}; --force writes one",
-            errors.join("; ")
-        );
-        Ok((deployment, cuts, errors))
-    }
-
-    /// The drawings of a design.
-    fn pieces(&self, scene: &Scene, design: &DesignVector) -> Result<Pieces> {
-        let (deployment, cuts, errors) = self.checked(scene, design)?;
-        let sheet = &deployment.sheet;
-        let mut whole = SheetDrawing::new(&cuts, sheet, &scene.material);
-        let mut annotated = whole.annotated();
-        mark_errors(&mut annotated, &errors);
-        mark_errors(&mut whole.numbered, &errors);
-        let tiling = (self.paper)
-            .map(|paper| Tiling::new(paper, whole.numbered.bounds()))
-            .transpose()?;
-        Ok(Pieces {
-            list: cut_list(sheet, &cuts),
-            attachments: attachment_list(&cuts),
-            summary: cut_summary(&cuts, &whole.totals),
-            whole,
-            annotated,
-            tiling,
-        })
-    }
-
-    fn write(&self, pieces: &Pieces, title: &str, written: &mut Written) -> Result<()> {
-        written.drawing("cut", &pieces.annotated)?;
-        written.file("cut-list.csv", &pieces.list)?;
-        written.file("attachments.csv", &pieces.attachments)?;
-        written.file("cut-summary.csv", &pieces.summary)?;
-        if let (Some(paper), Some(tiling)) = (self.paper, &pieces.tiling) {
-            let whole = &pieces.whole;
-            let tiles = tiles_pdf(&whole.numbered, tiling, title, &whole.notes);
-            written.file(&tiles_name(paper), &tiles)?;
-        }
-        Ok(())
-    }
-
-    fn print(&self, pieces: &Pieces, out: &Path) -> Result<()> {
-        let tiling = &pieces.tiling;
-        if self.json {
-            let value = json!({
-                "totals": pieces.whole.totals,
-                "tiles": tiling.as_ref().map(Tiling::pages),
-                "folder": out,
-            });
-            println!("{}", serde_json::to_string_pretty(&value)?);
-            return Ok(());
-        }
-        println!("{}", pieces.whole.totals);
-        if let Some(Tiling {
-            counts: [rows, columns],
-            ..
-        }) = tiling
-        {
-            println!(
-                "{} pages: {rows} rows x {columns} columns, which overlap by {OVERLAP} mm, and an overview",
-                rows * columns + 1
-            );
-        }
-        println!("written to {}", out.display());
-        Ok(())
     }
 }
 
@@ -287,10 +290,9 @@ impl Written {
     }
 
     /// The DXF and the SVG of a drawing.
-    fn drawing(&mut self, name: &str, drawing: &CutDrawing) -> Result<()> {
-        write_drawing(&self.folder, name, drawing)?;
-        let names = ["dxf", "svg"].map(|kind| format!("{name}.{kind}"));
-        self.names.extend(names);
+    fn drawing(&mut self, drawing: &CutDrawing) -> Result<()> {
+        write_drawing(&self.folder, "cut", drawing)?;
+        self.names.extend(["cut.dxf", "cut.svg"].map(str::to_owned));
         Ok(())
     }
 }
@@ -318,14 +320,6 @@ struct MachineFile {
     written: Written,
 }
 
-/// The services whose limits count for the files of a machine.
-fn services<'a>(machines: &'a Machines, machine: &Machine) -> &'a [Service] {
-    match machine.services {
-        true => &machines.service,
-        false => &[],
-    }
-}
-
 /// The machine with a name.
 pub(crate) fn machine<'a>(machines: &'a Machines, name: &str) -> Result<&'a Machine> {
     let machine = machines.machine.iter().find(|machine| machine.name == name);
@@ -342,14 +336,6 @@ pub(crate) fn machine<'a>(machines: &'a Machines, name: &str) -> Result<&'a Mach
 pub(crate) fn write_drawing(out: &Path, name: &str, drawing: &CutDrawing) -> Result<()> {
     run_folder::write(out, &format!("{name}.dxf"), &dxf(drawing))?;
     run_folder::write(out, &format!("{name}.svg"), &svg(drawing))
-}
-
-/// What a service says of a sheet.
-fn verdict(refuses: &[String]) -> String {
-    match refuses.is_empty() {
-        true => "no published limit is broken".to_owned(),
-        false => format!("refuses {}", refuses.join("; ")),
-    }
 }
 
 /// Removes tiles of an earlier call, which may be of another design.
