@@ -105,7 +105,7 @@ impl Report {
         } else {
             ""
         };
-        columns(&table) + why
+        columns(&table, &[]) + why
     }
 
     /// Whether Gamma is stated, which is of a sheet that lies on a surface.
@@ -142,7 +142,7 @@ impl Report {
                 .iter_mut()
                 .for_each(|row| row.truncate(names.len() - 1));
         }
-        head + &columns(&table)
+        head + &columns(&table, &[])
     }
 }
 
