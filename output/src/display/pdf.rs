@@ -1,8 +1,7 @@
-//! Pages of PDF in mm, in Helvetica, which every reader has.
+//! Pages of PDF in mm, in Helvetica, which every reader has. Styles are colours, widths and dashes: no opacity, no halo.
 
 use crate::display::shape::{Anchor, Shape, Text};
 use crate::display::style::{Colour, Style};
-use pdf_writer::types::{LineCapStyle, LineJoinStyle, TextRenderingMode};
 use pdf_writer::{Content, Finish, Name, Pdf, Rect, Ref, Str};
 
 /// Points per mm.
@@ -74,43 +73,30 @@ pub(crate) fn clip(content: &mut Content, [low, high]: [[f64; 2]; 2]) {
     content.clip_nonzero().end_path();
 }
 
-/// The colour of texts, 0 to 255.
-fn colour(content: &mut Content, rgb: Colour) {
-    let [r, g, b] = rgb.map(|x| f32::from(x) / 255.0);
-    content.set_fill_rgb(r, g, b);
-}
-
 /// Sets what follows smaller or larger, and shifts its origin to a point (mm).
 pub(crate) fn place(content: &mut Content, scale: f64, [x, y]: [f64; 2]) {
     let [scale, x, y] = [scale, x, y].map(|value| value as f32);
     content.transform([scale, 0.0, 0.0, scale, x, y]);
 }
 
-/// Draws shapes one after the other; texts in Helvetica. Where a style is transparent the paper shines through.
+/// Draws shapes one after the other.
 pub(crate) fn draw<'a>(
     content: &mut Content,
     shapes: impl IntoIterator<Item = (Style, &'a Shape)>,
 ) {
     for (style, shape) in shapes {
+        if let Some([r, g, b]) = style.fill.map(rgb) {
+            content.set_fill_rgb(r, g, b);
+        }
         if let Shape::Text(text) = shape {
-            draw_text(content, &style, text);
+            write(content, text);
             continue;
         }
-        if let Some(fill) = style.fill {
-            colour(content, on_white(fill, style.fill_opacity));
+        if let Some([r, g, b]) = style.stroke.map(rgb) {
+            content.set_stroke_rgb(r, g, b);
+            content.set_line_width(style.width as f32);
         }
-        if let Some(stroke) = style.stroke {
-            set_line(content, on_white(stroke, style.stroke_opacity), style.width);
-            let [cap, join] = if style.round { [1, 1] } else { [0, 0] };
-            content.set_line_cap([LineCapStyle::ButtCap, LineCapStyle::RoundCap][cap]);
-            content.set_line_join([LineJoinStyle::MiterJoin, LineJoinStyle::RoundJoin][join]);
-        }
-        let dash: Vec<f32> = style
-            .dash
-            .iter()
-            .flatten()
-            .map(|length| *length as f32)
-            .collect();
+        let dash = style.dash.iter().flatten().map(|length| *length as f32);
         content.set_dash_pattern(dash, 0.0);
         outline(content, shape);
         match (style.fill, style.stroke) {
@@ -122,14 +108,8 @@ pub(crate) fn draw<'a>(
     }
 }
 
-/// A colour with this opacity on white paper.
-fn on_white(rgb: Colour, opacity: f64) -> Colour {
-    rgb.map(|x| (255.0 - opacity * (255.0 - f64::from(x))).round() as u8)
-}
-
-fn set_line(content: &mut Content, rgb: Colour, width: f64) {
-    let [r, g, b] = rgb.map(|x| f32::from(x) / 255.0);
-    content.set_stroke_rgb(r, g, b).set_line_width(width as f32);
+fn rgb(colour: Colour) -> [f32; 3] {
+    colour.map(|x| f32::from(x) / 255.0)
 }
 
 fn outline(content: &mut Content, shape: &Shape) {
@@ -169,33 +149,15 @@ fn circle(content: &mut Content, [x, y]: [f64; 2], radius: f64) {
     content.close_path();
 }
 
-fn draw_text(content: &mut Content, style: &Style, text: &Text) {
+fn write(content: &mut Content, text: &Text) {
     let size = text.height / CAPITALS;
-    let widths = text
-        .text
-        .chars()
-        .map(|c| if c.is_ascii_digit() { DIGIT } else { LETTER });
+    let characters = || text.text.chars();
+    let widths = characters().map(|c| if c.is_ascii_digit() { DIGIT } else { LETTER });
     let [mut x, y] = text.baseline();
     if text.anchor != Anchor::Start {
         x -= 0.5 * size * widths.sum::<f64>();
     }
-    if let Some(width) = style.halo {
-        set_line(content, [255; 3], width);
-        content.set_dash_pattern([], 0.0);
-        content.set_text_rendering_mode(TextRenderingMode::Stroke);
-        write(content, size, [x, y], &text.text);
-        content.set_text_rendering_mode(TextRenderingMode::Fill);
-    }
-    colour(
-        content,
-        on_white(style.fill.unwrap_or_default(), style.fill_opacity),
-    );
-    write(content, size, [x, y], &text.text);
-}
-
-/// A text that begins at a point, in the font at the given size (mm).
-fn write(content: &mut Content, size: f64, [x, y]: [f64; 2], text: &str) {
-    let bytes: Vec<u8> = text.chars().map(|c| byte(c).unwrap_or(b'?')).collect();
+    let bytes: Vec<u8> = characters().map(|c| byte(c).unwrap_or(b'?')).collect();
     content
         .begin_text()
         .set_font(FONT, size as f32)
