@@ -27,7 +27,6 @@ pub mod cut_file;
 mod deployment_states;
 pub mod display;
 pub mod drawing;
-pub mod hinge_states;
 pub mod listing;
 pub mod material_check;
 pub mod measurement;
