@@ -51,69 +51,51 @@ impl MeasurementReport {
     }
 
     fn agreement(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        let mut row = |name: &str, [full, best]: [Option<String>; 2]| {
-            let [full, best] = [full, best].map(|value| value.unwrap_or_else(|| "-".to_owned()));
-            writeln!(f, "{name:<38} {full:>20} {best:>20}")
-        };
-        let both =
-            |value: &dyn Fn(&Agreement) -> Option<String>| [&self.full, &self.best].map(value);
-        row(
-            "",
-            ["end of the path", "best fit"].map(|name| Some(name.to_owned())),
-        )?;
         let best = match self.load_factor_error {
             Some(error) => format!("{} +- {}", shown(self.best.load_factor), shown(error)),
             None => "not determined".to_owned(),
         };
-        row(
-            "load factor",
-            [shown(self.full.load_factor), best].map(Some),
-        )?;
+        let full = shown(self.full.load_factor);
+        writeln!(f, "{:<38} {:>20} {:>20}", "", "end of the path", "best fit")?;
+        writeln!(f, "{:<38} {full:>20} {best:>20}", "load factor")?;
+        let mut row = |name: &str, value: &dyn Fn(&Agreement) -> Option<String>| {
+            let [full, best] =
+                [&self.full, &self.best].map(|of| value(of).unwrap_or_else(|| "-".to_owned()));
+            writeln!(f, "{name:<38} {full:>20} {best:>20}")
+        };
         type Part = fn(&Agreement) -> Option<&Spread>;
         let parts: [(&str, Part); 2] = [
-            ("corners", |agreement| agreement.corners.as_ref()),
-            ("panel centres", |agreement| agreement.centres.as_ref()),
+            ("corners", |of| of.corners.as_ref()),
+            ("panel centres", |of| of.centres.as_ref()),
         ];
         for (name, part) in parts {
-            let value =
-                |value: fn(&Spread) -> String| both(&|agreement| part(agreement).map(value));
-            row(
-                &format!("{name}, rms (mm)"),
-                value(|spread| format!("{:.2}", spread.rms)),
-            )?;
-            row(
-                &format!("{name}, rms (% of the sheet)"),
-                value(|spread| format!("{:.3}", spread.rms_percent)),
-            )?;
-            row(
-                &format!("{name}, maximum (mm)"),
-                value(|spread| format!("{:.2}", spread.max)),
-            )?;
-            row("  at", value(|spread| spread.max_at.clone()))?;
+            let [rms, percent, maximum] = ["rms (mm)", "rms (% of the sheet)", "maximum (mm)"]
+                .map(|quantity| format!("{name}, {quantity}"));
+            row(&rms, &|of| Some(format!("{:.2}", part(of)?.rms)))?;
+            row(&percent, &|of| {
+                Some(format!("{:.3}", part(of)?.rms_percent))
+            })?;
+            row(&maximum, &|of| Some(format!("{:.2}", part(of)?.max)))?;
+            row("  at", &|of| Some(part(of)?.max_at.clone()))?;
         }
-        let value = |value: fn(&OpeningSpread) -> String| {
-            both(&|agreement| agreement.openings.as_ref().map(value))
-        };
-        row(
-            "openings, mean measured (deg)",
-            value(|spread| format!("{:.2}", spread.measured_mean_deg)),
-        )?;
-        row(
-            "openings, mean predicted (deg)",
-            value(|spread| format!("{:.2}", spread.predicted_mean_deg)),
-        )?;
-        row(
-            "openings, rms about the mean (deg)",
-            value(|spread| format!("{:.2}", spread.spread_deg)),
-        )?;
-        row(
-            "openings, worst (deg)",
-            value(|spread| format!("{:+.2}", spread.max_deg)),
-        )?;
-        row(
-            "  at",
-            value(|spread| format!("hinge {}", spread.max_hinge)),
-        )
+        type Degrees = fn(&OpeningSpread) -> f64;
+        let degrees: [(&str, Degrees); 3] = [
+            ("mean measured", |of| of.measured_mean_deg),
+            ("mean predicted", |of| of.predicted_mean_deg),
+            ("rms about the mean", |of| of.spread_deg),
+        ];
+        for (name, value) in degrees {
+            let name = format!("openings, {name} (deg)");
+            row(&name, &|of| {
+                Some(format!("{:.2}", value(of.openings.as_ref()?)))
+            })?;
+        }
+        row("openings, worst (deg)", &|of| {
+            Some(format!("{:+.2}", of.openings.as_ref()?.max_deg))
+        })?;
+        row("  at", &|of| {
+            Some(format!("hinge {}", of.openings.as_ref()?.max_hinge))
+        })
     }
 
     fn hinges(&self, f: &mut fmt::Formatter) -> fmt::Result {
