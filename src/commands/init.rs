@@ -3,20 +3,21 @@
 mod cut_from;
 mod edited;
 pub(crate) mod first_scene;
+mod size_args;
 mod template;
 
 use crate::commands::init::cut_from::CutFrom;
 use crate::commands::init::edited::{heading, scale, set};
 use crate::commands::init::first_scene::{FirstScene, THINNEST_PLATE, safe_opening};
+use crate::commands::init::size_args::{length, size, stock};
 use crate::commands::init::template::Template;
 use crate::commands::input_file;
 use crate::ui::output_file;
 use crate::ui::shell_word::shell_word;
-use crate::ui::width_by_height::{length, stock, width_by_height};
 use anyhow::{Context, Result, bail, ensure};
 use clap::Args;
 use design::analysis::coupon::OPENING;
-use design::scene::{Paper, Scene, Stock};
+use design::scene::{Scene, Stock};
 use hinge::{Regime, SheetMaterial};
 use mesher::Tier;
 use std::path::{Path, PathBuf};
@@ -337,16 +338,6 @@ pub(crate) fn material_text(path: &Path, thickness: f64) -> Result<String> {
         set(&mut material["tensile_csv"], &*curve.to_string_lossy());
     }
     Ok(material.to_string())
-}
-
-fn size(text: &str) -> Result<[f64; 2], String> {
-    let size = width_by_height(text).filter(|size| size.iter().all(|side| side.is_finite()));
-    size.ok_or_else(|| match text.parse::<Paper>() {
-        Ok(paper) => format!(
-            "the size of a sheet is two lengths in mm; for the largest sheet that is cut from {text} use --stock {paper}"
-        ),
-        Err(_) => "expected two lengths in mm, for example 210x297".into(),
-    })
 }
 
 #[cfg(test)]
