@@ -177,7 +177,10 @@ impl Machine {
     /// The paths in a sheet and the marks on it, in the order of the pattern; an error if they do not exist.
     fn paths(&self, cuts: &CutLines) -> Result<CutDrawing, FabricationError> {
         key_limits::check::<Self>(self)?;
-        let kerf = self.kerf_of_paths(cuts);
+        let kerf = self.tool_kerf.unwrap_or(match self.cuts {
+            Cuts::Lines => cuts.kerf,
+            Cuts::Slots => 0.0,
+        });
         let mut cuts = cuts.clone();
         cuts.cutting.over_run = self.over_run(&cuts);
         let mut drawing = match self.cuts {
@@ -195,14 +198,6 @@ impl Machine {
             }
         }
         Ok(drawing)
-    }
-
-    /// Width that the tool removes and the paths allow for (mm).
-    fn kerf_of_paths(&self, cuts: &CutLines) -> f64 {
-        self.tool_kerf.unwrap_or(match self.cuts {
-            Cuts::Lines => cuts.kerf,
-            Cuts::Slots => 0.0,
-        })
     }
 
     fn over_run(&self, cuts: &CutLines) -> f64 {
