@@ -12,7 +12,6 @@ pub mod progress;
 pub mod run_folder;
 pub mod shell_word;
 pub mod table;
-pub mod width_by_height;
 #[cfg(feature = "pipeline")]
 pub(crate) mod with_unit;
 

@@ -24,15 +24,15 @@ fn a_design_of_another_scene_is_not_cut_unless_it_is_named() {
 }
 
 #[test]
-fn a_designed_sheet_is_cut_on_paper_and_in_parts() {
+fn a_designed_sheet_is_cut_on_paper() {
     let work = Workplace::new();
     let missing = work.error(&format!("cut {SCENE}"));
     assert!(missing.contains("run `kirigami design` first"), "{missing}");
     work.output(&format!("design {SCENE} --steps 3 --out run"));
     let cut = format!("cut {SCENE} --design run/state.json --out files");
-    let text = work.output(&format!("{cut} --paper a3 --bed 1900x1900"));
+    let text = work.output(&format!("{cut} --paper a3"));
     assert!(
-        text.contains("84 holes, 48 slits") && text.contains("part 4: "),
+        text.contains("84 holes, 48 slits") && text.contains("rows x "),
         "{text}"
     );
     for name in [
@@ -42,8 +42,6 @@ fn a_designed_sheet_is_cut_on_paper_and_in_parts() {
         "attachments.csv",
         "cut-summary.csv",
         "tiles-a3.pdf",
-        "part-4.dxf",
-        "joints.csv",
     ] {
         assert!(work.path("files").join(name).exists(), "{name}");
     }
@@ -55,17 +53,12 @@ fn a_designed_sheet_is_cut_on_paper_and_in_parts() {
     let json = work.output(&format!("{cut} --json"));
     let json: serde_json::Value = serde_json::from_str(&json).unwrap();
     assert_eq!(json["totals"]["holes"], 84);
-    assert!(json["parts"].is_null() && !work.path("files/part-1.dxf").exists());
+    assert!(!work.path("files/tiles-a3.pdf").exists());
     let summary = std::fs::read_to_string(work.path("files/cut-summary.csv")).unwrap();
     assert!(summary.contains("over-run,3,mm"), "{summary}");
     // Other cutting settings are not another run.
     work.output(&format!("design {SCENE} --steps 3 --out run"));
 
-    let small = work.error(&format!("{cut} --bed 300x300"));
-    assert!(
-        small.contains("does not fit on the bed") || small.contains("use a larger bed"),
-        "{small}"
-    );
     work.edit(SCENE, &[("over_run = 3.0", "over_run = 300.0")]);
     assert!(work.error(&cut).contains("cutting.over_run"));
 }
@@ -146,89 +139,4 @@ fn a_stock_is_a_paper_or_two_sides() {
         message.contains("cutting.stock = 0.2 mm violates 1 <= cutting.stock"),
         "{message}"
     );
-}
-
-/// Two designs of one material, of which only their own files hold the numbers of the hinges.
-#[test]
-fn designs_are_nested_on_sheets_of_one_stock() {
-    let work = Workplace::new();
-    let root = env!("CARGO_MANIFEST_DIR");
-    let scene = |name: &str| format!("{root}/configs/scenes/{name}.toml");
-    let [plate, service] = ["a4-plate", "a4-plate-service"].map(scene);
-    let nest = format!("cut {plate} {service} --design start --out nest");
-    let cut = format!("{nest} --for laser-service --stock 660x450 --margin 5 --gap 3");
-    let said = work.output(&format!("{cut} --copies 3,2"));
-    assert!(
-        said.contains("sheet 2 of 2, 660 x 450 mm: 1 of 5 pieces"),
-        "{said}"
-    );
-    assert!(
-        said.contains("SendCutSend: refuses") && said.contains("a4-plate.toml: holes of"),
-        "{said}"
-    );
-    let text = |name: &str| std::fs::read_to_string(work.path("nest").join(name)).unwrap();
-    let svg = text("stock-1.svg");
-    assert!(svg.contains("width=\"660mm\" height=\"450mm\" viewBox=\"0 -450 660 450\""));
-    assert_eq!(text("places.csv").lines().count(), 1 + 5);
-    // The hinges of each design once, with its name.
-    let list = text("cut-list.csv");
-    let rows = |name: &str| list.lines().filter(|row| row.contains(name)).count();
-    assert!(list.starts_with("design,hinge,hole_diameter_mm"), "{list}");
-    assert_eq!([rows(&plate), rows(&service)], [17, 17]);
-    for name in ["stock-1.dxf", "stock-2.dxf", "stock-2.svg", "plan.svg"] {
-        assert!(work.path("nest").join(name).exists(), "{name}");
-    }
-    // Sheets of an earlier call do not remain.
-    let json = work.output(&format!("{cut} --json"));
-    let json: serde_json::Value = serde_json::from_str(&json).unwrap();
-    assert_eq!(json["sheets"][0]["pieces"].as_array().unwrap().len(), 2);
-    let used = json["sheets"][0]["used"].as_f64().unwrap();
-    assert!(
-        (used - 2.0 * 210.0 * 297.0 / (660.0 * 450.0)).abs() < 1e-9,
-        "{used}"
-    );
-    assert!(!work.path("nest/stock-2.dxf").exists());
-
-    let refused = |arguments: &str| work.error(&format!("{nest} {arguments}"));
-    let lines = "--for lightburn --stock 660x450";
-    let message = refused(lines);
-    assert!(message.contains("one tool cuts all slits"), "{message}");
-    let message = refused("--for laser-service --stock a4");
-    assert!(
-        message.contains("a4-plate.toml takes 210.2 x 297.2 mm"),
-        "{message}"
-    );
-    let message = refused("--for laser-service --stock a3 --copies 1,2,3");
-    assert!(message.contains("3 numbers for 2 designs"), "{message}");
-    for none in ["0", "300"] {
-        let message = refused(&format!("--for laser-service --stock a3 --copies {none}"));
-        assert!(
-            message.contains("at least one piece, and all have at most"),
-            "{message}"
-        );
-    }
-    let film = scene("a4-polyester");
-    let message = work.error(&format!("cut {plate} {film} --design start {lines}"));
-    for part in [
-        "a4-plate.toml is of",
-        "a4-polyester.toml is of",
-        "3 mm thick",
-        "0.1 mm thick",
-    ] {
-        assert!(message.contains(part), "{message}");
-    }
-    let message = work.error(&format!("cut {plate} {plate} --design start {lines}"));
-    assert!(message.contains("named twice"), "{message}");
-    for (wrong, said) in [
-        ("--for lightburn", "--stock"),
-        ("--stock 600x400", "--for"),
-        ("--for lightburn --stock a9", "letter or tabloid"),
-        ("--for lightburn --stock 600xinf", "WIDTHxHEIGHT"),
-        ("--for lightburn --stock a3 --gap 2000", "0 to 1000 mm"),
-    ] {
-        let output = work.program(&format!("{nest} {wrong}")).output().unwrap();
-        let message = String::from_utf8(output.stderr).unwrap();
-        assert_eq!(output.status.code(), Some(2), "{message}");
-        assert!(message.contains(said), "{message}");
-    }
 }

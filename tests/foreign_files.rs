@@ -11,7 +11,7 @@ fn files_that_no_run_has_written_are_not_replaced() {
     let work = Workplace::new();
     let design = format!("design {SCENE} --steps 1 --out runs/a");
     std::fs::create_dir_all(work.path("runs/a")).unwrap();
-    for name in ["report.pdf", "cut.svg", "state.json", "scene.toml"] {
+    for name in ["report.txt", "cut.svg", "state.json", "scene.toml"] {
         let own = work.path("runs/a").join(name);
         std::fs::write(&own, "# my own").unwrap();
         for command in [&design, &format!("{design} --restart")] {

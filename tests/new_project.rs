@@ -120,101 +120,6 @@ fn a_drawing_becomes_the_target() {
     assert!(!work.path("other").exists());
 }
 
-#[test]
-fn a_project_like_a_scene_is_similar_to_it() {
-    let work = Workplace::new();
-    let like = "configs/scenes/pet-3x3.toml";
-    let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("data");
-    work.edit(like, &[("../../data", &data.display().to_string())]);
-    let init = format!(
-        "init thin --like {like} --thickness 0.1 --weights {}",
-        weights()
-    );
-    let message = work.error(&format!("{init} --size 300x300"));
-    assert!(message.contains("another ratio"), "{message}");
-    work.output(&init);
-    let scene = keys(&work, "thin/scene.toml");
-    let close = |item: &toml_edit::Item, expected: f64, tolerance: f64| {
-        let found = item.as_float().unwrap();
-        assert!(
-            (found / expected - 1.0).abs() < tolerance,
-            "{found} {expected}"
-        );
-    };
-    // A fifth of every length.
-    for (side, expected) in [(0, 487.68), (1, 243.84)] {
-        close(
-            &scene["sheet"]["size"]
-                .as_array()
-                .unwrap()
-                .get(side)
-                .unwrap()
-                .clone()
-                .into(),
-            expected,
-            1e-9,
-        );
-    }
-    close(&scene["ligament"]["start"], 3.6, 1e-9);
-    close(&scene["process"]["r_win"], 20.0, 1e-9);
-    close(&scene["target"]["rectangle"]["rotation_deg"], -15.4, 1e-9);
-    // A similar sheet carries forces in proportion to the square of its lengths; its kerf is that of the same tool, and
-    // the factor is found to 0.6 %.
-    let force = scene["loads"].as_array_of_tables().unwrap().get(0).unwrap()["force"]
-        .as_array()
-        .unwrap();
-    close(&force.get(0).unwrap().clone().into(), 27.85 / 25.0, 0.02);
-    work.output("design thin/scene.toml --steps 1 --force");
-    assert!(work.path("thin/design/cut.dxf").exists());
-}
-
-/// Without further options, `--like` keeps thickness, material and weights of the scene.
-#[test]
-fn a_project_like_a_scene_has_its_sheet() {
-    let work = Workplace::new();
-    let like = "configs/scenes/a2-polypropylene.toml";
-    let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("data");
-    work.edit(like, &[("../../data", &data.display().to_string())]);
-    let said = work.output(&format!("init same --like {like}"));
-    assert!(said.contains("The material has weights"), "{said}");
-    let [project, shipped] = ["same/scene.toml", like].map(|file| keys(&work, file));
-    assert_eq!(project["thickness"].as_float(), Some(0.2));
-    for (section, key) in [("sheet", "panels"), ("process", "r_win")] {
-        let [new, old] = [&project, &shipped].map(|scene| &scene[section][key]);
-        let value = |item: &toml_edit::Item| {
-            let item = item.to_string();
-            let value = item.split('#').next().unwrap_or_default();
-            value.replace(".0", "").replace(' ', "")
-        };
-        assert_eq!(value(new), value(old), "{section}.{key}");
-    }
-    let weights = project["surrogate"]["weights"].as_str().unwrap();
-    assert!(
-        weights.ends_with("polypropylene-0.8mm/weights.safetensors"),
-        "{weights}"
-    );
-    // A scene whose loads are dead keeps them, and its ensemble.
-    let dead = "configs/scenes/pet-3x3.toml";
-    work.edit(dead, &[("../../data", &data.display().to_string())]);
-    work.output(&format!("init dead --like {dead}"));
-    let [project, shipped] = ["dead/scene.toml", dead].map(|file| keys(&work, file));
-    let force = |scene: &toml_edit::DocumentMut| {
-        let load = scene["loads"].as_array_of_tables().unwrap().get(0).unwrap();
-        load["force"].as_array().unwrap().get(0).unwrap().as_float()
-    };
-    assert_eq!(force(&project), force(&shipped));
-    let networks = |scene: &toml_edit::DocumentMut| {
-        let networks = scene["surrogate"]
-            .get("ensemble")
-            .and_then(|list| list.as_array());
-        networks.map_or(0, toml_edit::Array::len)
-    };
-    assert_eq!(networks(&project), networks(&shipped));
-    let material = std::fs::read_to_string(work.path("same/material.toml")).unwrap();
-    assert!(material.contains("polypropylene-0.8mm"), "{material}");
-    work.output("design same/scene.toml --steps 1 --force");
-}
-
 /// `init FOLDER` alone gives a project that can be designed: a plate of A4. A film of 0.5 mm is larger.
 #[test]
 fn a_project_with_all_defaults_is_designed() {
@@ -275,8 +180,8 @@ fn weights_of_a_film_do_not_serve_a_plate() {
 fn a_project_that_needs_a_change_says_so() {
     let work = Workplace::new();
     let message = work.error(&format!(
-        "init thin --like {}/configs/scenes/a4-plate.toml --thickness 1",
-        env!("CARGO_MANIFEST_DIR")
+        "init thin --material configs/materials/polypropylene-3mm.toml --thickness 1 --weights {}",
+        weights().replace("pet-0.5mm", "polypropylene-3mm")
     ));
     assert!(message.contains("needs a change"), "{message}");
     assert!(message.contains("violates 0.5 <= w_lig"), "{message}");
@@ -299,39 +204,6 @@ fn a_project_fits_the_stock_that_it_is_cut_from() {
     assert_eq!(scene["cutting"]["stock"].as_str(), Some("a4"));
     let said = work.output("design plate/scene.toml --steps 1 --force");
     assert!(!said.contains("the stock has"), "{said}");
-    let nest = "cut plate/design --force --for lightburn";
-    let said = work.output(&format!("{nest} --stock a4"));
-    assert!(
-        said.contains("sheet 1 of 1, 210 x 297 mm: 1 of 1 pieces"),
-        "{said}"
-    );
-    assert!(work.path("plate/nest/lightburn/stock-1.dxf").exists());
-    // The margin is that of the scene.
-    let message = work.error(&format!("{nest} --stock 210x295"));
-    assert!(
-        message.contains("plate/design takes 199.0 x 286.0 mm"),
-        "{message}"
-    );
-    assert!(
-        message.contains("200.0 x 285.0 mm inside its margin"),
-        "{message}"
-    );
-
-    let like = "configs/scenes/pet-3x3.toml";
-    let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("data");
-    work.edit(like, &[("../../data", &data.display().to_string())]);
-    let like = format!(
-        "init like --like {like} --thickness 0.1 --weights {}",
-        weights()
-    );
-    work.output(&format!("{like} --stock a3 --margin 5"));
-    let scene = keys(&work, "like/scene.toml");
-    let size = scene["sheet"]["size"].as_array().unwrap();
-    let side = |i: usize| size.get(i).and_then(toml_edit::Value::as_float).unwrap();
-    // 407 x 284 mm remain of A3 on its side; the sheet is twice as wide as high.
-    assert!(side(0) <= 407.0 && side(0) > 406.0, "{size}");
-    assert!((side(0) / side(1) - 2.0).abs() < 1e-4, "{size}");
-
     let message = work.error("init none --stock a4 --margin 105");
     assert!(
         message.contains("leaves nothing of a stock of 210 x 297 mm"),

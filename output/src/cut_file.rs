@@ -1,8 +1,7 @@
 //! Cut files of a designed sheet for cutting machines and for cutting by hand, at 1:1 in mm.
 //!
 //! [`CutLines`] is the finished geometry, checked against the simulated sheet. [`SheetDrawing`] is what is cut, in cutting
-//! order, with numbers and instructions; [`dxf()`], [`svg()`] and [`tiles_pdf`] are its files. [`split`] divides a sheet
-//! that is larger than the bed of the machine; [`nest()`] lays several designs on sheets of one stock.
+//! order, with numbers and instructions; [`dxf()`], [`svg()`] and [`tiles_pdf`] are its files.
 
 mod attachments;
 mod cut_drawing;
@@ -13,12 +12,8 @@ mod dxf;
 mod fabrication_error;
 mod finished_contours;
 mod machine;
-mod nesting;
-mod nesting_plan;
 mod numbers;
-mod parts;
 mod pdf_tiles;
-mod seam;
 mod sheet_drawing;
 mod svg;
 mod tiling;
@@ -28,17 +23,13 @@ mod written_check;
 pub use attachments::PlacedAttachment;
 pub use cut_drawing::{CutDrawing, Layer, deployed_panels};
 pub use cut_lines::{CutLines, Hole, Slit};
-pub use cut_list::{attachment_list, cut_list, cut_summary, nested_cut_list};
+pub use cut_list::{attachment_list, cut_list, cut_summary};
 pub use dxf::dxf;
 pub use fabrication_error::FabricationError;
 pub(crate) use machine::fits;
 pub use machine::{Features, Machine, Machines, Service};
-pub use nesting::{NestedDesign, NestedSheet, NestingStock, Place, nest};
-pub use nesting_plan::nesting_plan;
-pub use parts::{Part, Split, split};
 pub use pdf_tiles::tiles_pdf;
-pub use seam::Seam;
 pub use sheet_drawing::{FORCED, SheetDrawing, mark_errors};
-pub use svg::{svg, svg_on_page};
+pub use svg::svg;
 pub use tiling::{OVERLAP, Tiling};
 pub use totals::Totals;

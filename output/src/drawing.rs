@@ -9,10 +9,8 @@ mod numbering;
 pub mod page;
 mod surface;
 
-pub(crate) use deployed::deployed_on_paper;
 pub use deployed::{deployed, deployed_by_share, deployment_frames};
 pub use flat::flat;
-pub(crate) use flat::flat_on_paper;
 pub use measured::measured;
 pub use numbering::numbering;
 pub use surface::{Surface, View, surface};

@@ -1,5 +1,5 @@
 //! All numbers of a design, for comparison with other programs: pattern, ideal deployment, equilibria,
-//! gradient, tolerances, springback. `Serialize` writes all of them, `Display` a short table.
+//! gradient, tolerances, springback. JSON has all of them, the text is a short table.
 //!
 //! Orders: vertices j (M+1) + i; panels q M + p; corners SW SE NE NW; hinges by vertex, x before x';
 //! r row by row; tau on the edges bottom right top left; motions (u_x, u_y, phi); hinge
@@ -13,9 +13,29 @@ mod pattern;
 mod springback;
 mod tolerances;
 
-pub use deployment::DeploymentListing;
-pub use equilibrium::{EnergyParts, EquilibriumListing, StepListing};
-pub use gradient::GradientListing;
-pub use pattern::{HingeListing, PatternListing};
+pub use deployment::deployment;
+pub use equilibrium::equilibrium;
+pub use gradient::gradient;
+pub use pattern::pattern;
 pub use springback::SpringbackListing;
 pub use tolerances::{ToleranceListing, ToleranceQuestion};
+
+use serde::Serialize;
+use serde_json::Value;
+use std::fmt;
+
+/// The numbers of a stage of a design: `Serialize` writes all of them, `Display` a short table.
+#[derive(Clone, Debug, Serialize)]
+pub struct Listing {
+    /// All numbers.
+    #[serde(flatten)]
+    pub numbers: Value,
+    #[serde(skip)]
+    text: String,
+}
+
+impl fmt::Display for Listing {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str(&self.text)
+    }
+}

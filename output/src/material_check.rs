@@ -12,10 +12,10 @@
 //! The range of the strain at the tip is that of window solves, tier `small`, of the five materials of Table 2 at
 //! w / t = 18 and 36 and rotations of 45 and 60 degrees; docs/MATERIALS.md lists them.
 
-use crate::report::Severity;
 use design::analysis::localisation::{critical_edge, gamma};
 use hinge::SheetMaterial;
 use serde::Serialize;
+use support::severity::Severity;
 
 /// The intended use of a material.
 #[derive(Clone, Copy, Debug, PartialEq)]

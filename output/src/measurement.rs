@@ -1,4 +1,4 @@
-//! The report of a measured sheet: agreement with the path in the measures of section 4.4, outliers, openings.
+//! The report of a measured sheet: agreement with the path in the measures of section 4.4, openings.
 //!
 //! `Serialize` writes all numbers, `Display` a page; `residuals_csv` and `openings_csv` the tables.
 
@@ -7,19 +7,16 @@ mod tables;
 
 pub use agreement::{Agreement, OpeningSpread, Spread};
 
-use design::analysis::marks::{FittedPoint, Mark};
+use design::analysis::marks::FittedPoint;
 use design::analysis::measured_openings::{
     MeasuredOpening, MeasuredPanel, openings, scatter, slip,
 };
 use design::analysis::measured_sheet::MeasuredSheet;
-use design::analysis::misread::Renumbered;
-use design::analysis::robust_pose::Fit;
-use design::geometry::plane::{complex, point};
-use design::geometry::similarity::{Pair, Scale, Similarity};
+use design::analysis::path_fit::Fit;
+use design::geometry::plane::point;
 use design::sheet::cut_sheet::Sheet;
 use faer::c64;
 use serde::Serialize;
-use support::statistics::root_mean_square;
 
 /// A measured sheet in numbers.
 #[derive(Clone, Debug, Serialize)]
@@ -42,10 +39,6 @@ pub struct MeasurementReport {
     pub at_the_end: bool,
     /// Standard deviation of one measured coordinate about rigid panels (mm).
     pub scatter: Option<f64>,
-    /// Points that were left out of the fit.
-    pub outliers: Vec<Outlier>,
-    /// Panels whose points lie at other marks.
-    pub renumbered: Vec<Renumbered>,
     /// The measurement of the closed sheet, if there is one.
     pub closed: Option<Closed>,
     /// Measured panels, at the best state.
@@ -67,25 +60,11 @@ pub struct Motion {
     pub scale: f64,
 }
 
-/// A point far from its prediction.
-#[derive(Clone, Copy, Debug, Serialize)]
-pub struct Outlier {
-    /// The panel and its corner.
-    pub mark: Mark,
-    /// Measured minus predicted position (mm).
-    pub residual: [f64; 2],
-    /// Length of `residual` (mm).
-    pub distance: f64,
-}
-
 /// The measurement of the closed sheet, whose shape is known: the floor of the measurement.
 #[derive(Clone, Debug, Serialize)]
 pub struct Closed {
     /// Agreement of the closed sheet with the flat design.
     pub floor: Agreement,
-    /// Whether the points are more than half as far from the flat sheet as those of the deployed sheet: they are hardly those
-    /// of the closed sheet.
-    pub doubtful: bool,
     /// Panels whose deployed centre is farther from its prediction than the rms of the closed centres.
     pub centres_above: Vec<usize>,
     /// Motion of the supported panels between the two measurements that the model does not predict.
@@ -114,12 +93,6 @@ impl MeasurementReport {
         let MeasuredSheet { best, full, .. } = measured;
         let panels = MeasuredPanel::all(sheet, best);
         let openings = openings(sheet, best, &panels);
-        let outliers = best.points.iter().filter(|point| point.outlier);
-        let outliers = outliers.map(|point| Outlier {
-            mark: point.mark,
-            residual: point.residual(),
-            distance: point.distance(),
-        });
         Self {
             title: title.to_owned(),
             sheet_size: sheet.outline.size(),
@@ -134,8 +107,6 @@ impl MeasurementReport {
             load_factor_error: measured.load_factor_error,
             at_the_end: best.position > full.position - 1e-6,
             scatter: scatter(&panels),
-            outliers: outliers.collect(),
-            renumbered: measured.renumbered.clone(),
             closed: closed.map(|closed| Closed::new(sheet, closed, best, &panels, supported)),
             panels,
             openings,
@@ -163,22 +134,9 @@ impl Closed {
             Some(Slip { panel, slip })
         });
         Self {
-            doubtful: from_flat(sheet, closed) > 0.5 * from_flat(sheet, deployed),
             centres_above: above.map(|panel| panel.panel).collect(),
             slips: slips.collect(),
             floor,
         }
     }
-}
-
-/// Root mean square distance of the points of a fit from the flat sheet, without a rigid motion (mm).
-fn from_flat(sheet: &Sheet, fit: &Fit) -> f64 {
-    let points = fit.kept();
-    let pairs: Vec<Pair> = points
-        .map(|point| [point.mark.flat(sheet), point.measured].map(complex))
-        .collect();
-    let Some(motion) = Similarity::least_squares(&pairs, Scale::Given) else {
-        return 0.0;
-    };
-    root_mean_square(pairs.iter().map(|pair| motion.residual(pair)))
 }

@@ -22,7 +22,7 @@ pub use fact_sheet::{FactSheet, Reached, SpotCheck, WeightFacts};
 pub use hinge_row::HingeRow;
 pub use lasting_shape::{LastingShape, Released};
 pub use self_weight::{Lying, SelfWeight};
-pub use warning::{Concern, Severity, Warning};
+pub use warning::{Concern, Warning};
 
 use crate::cut_file::{CutLines, FabricationError};
 use crate::report::rules::{Judged, JudgedRun};
@@ -33,6 +33,7 @@ use design::optimise::outer_loop::Ended;
 use design::scene::Scene;
 use design::scene::design_run::Designed;
 use serde::Serialize;
+use support::severity::Severity;
 
 /// The report of a run, for people (`Display`) and programs (JSON).
 #[derive(Clone, Debug, Serialize)]

@@ -6,7 +6,6 @@ use crate::cut_file::{
 };
 use crate::drawing;
 use crate::report::{Report, Warning};
-use crate::report_pdf::report_pdf;
 use crate::run_page::run_page;
 use design::objective::design_problem::Deployment;
 use design::scene::Scene;
@@ -49,7 +48,7 @@ pub struct Results<'a> {
 
 /// The files in the order in which they are written: the report first, so that there is never a cut file without its
 /// report. The copies of the inputs, `scene.toml` and `inputs/`, are not among them: a run may be started from them.
-pub const RUN_FILES: [RunFile; 18] = [
+pub const RUN_FILES: [RunFile; 17] = [
     RunFile {
         name: STATE_FILE,
         contents: "state of the search, from which a stopped run continues, and the hashes of the copies of its inputs",
@@ -65,14 +64,6 @@ pub const RUN_FILES: [RunFile; 18] = [
         "run.html",
         "the run on one page: open it in a browser, click a hinge, move the slider",
         |run| Ok(Some(run_page(run.scene, run.designed, run.report)?.into())),
-    ),
-    result(
-        "report.pdf",
-        "the report for paper with both drawings",
-        |run| {
-            let cuts = run.cuts.as_ref().ok();
-            Ok(Some(report_pdf(run.scene, run.designed, run.report, cuts)))
-        },
     ),
     result("cut.dxf", CUTS, |run| {
         Ok(run.annotated().map(|drawing| dxf(&drawing).into()))

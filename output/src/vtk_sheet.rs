@@ -2,8 +2,8 @@
 //!
 //! Points are those of the flat sheet; the point data `displacement (mm)` moves them to the deployed one.
 
-use crate::hinge_states::{HingeState, hinge_states};
 use design::equilibrium::load_step::LoadStep;
+use design::hinge_law::DamageMeasure;
 use design::objective::design_problem::Deployment;
 use design::sheet::cut_sheet::Sheet;
 use design::sheet::kinematics::{deployed, deployed_corners};
@@ -22,29 +22,23 @@ pub struct VtkState {
 
 /// The flat sheet and every load step.
 pub fn vtk_states(deployment: &Deployment) -> Vec<VtkState> {
-    let sheet = &deployment.sheet;
-    let states = hinge_states(deployment);
-    let flat: Vec<HingeState> = states[..sheet.hinges.len()].iter().map(flat).collect();
-    let still = vec![[0.0; 3]; sheet.panels.len()];
-    let steps = deployment
-        .path
-        .iter()
-        .map(|step| (time(step), &step.configuration));
-    let hinges = std::iter::once(&flat[..]).chain(states.chunks(sheet.hinges.len()));
-    let start = if deployment.weight_steps().is_empty() {
-        0.0
-    } else {
-        -1.0
+    let Deployment { sheet, path, .. } = deployment;
+    let start = match deployment.weight_steps() {
+        [] => 0.0,
+        _ => -1.0,
     };
-    std::iter::once((start, &still))
-        .chain(steps)
-        .zip(hinges)
-        .map(|((time, configuration), states)| VtkState {
-            time,
-            panels: panels(sheet, configuration),
-            hinges: hinge_points(sheet, configuration, states),
-        })
-        .collect()
+    let flat = vec![[0.0; 3]; sheet.panels.len()];
+    let flat = VtkState {
+        time: start,
+        panels: panels(sheet, &flat),
+        hinges: hinge_points(sheet, &flat, &path[0], true),
+    };
+    let states = path.iter().map(|step| VtkState {
+        time: time(step),
+        panels: panels(sheet, &step.configuration),
+        hinges: hinge_points(sheet, &step.configuration, step, false),
+    });
+    std::iter::once(flat).chain(states).collect()
 }
 
 /// The time of a load step in an animation.
@@ -53,19 +47,6 @@ fn time(step: &LoadStep) -> f64 {
         step.weight - 1.0
     } else {
         step.load_factor
-    }
-}
-
-fn flat(state: &HingeState) -> HingeState {
-    HingeState {
-        step: 0,
-        load_factor: 0.0,
-        deformation: [0.0; 3],
-        eta: [0.0; 2],
-        energy: 0.0,
-        damage: state.damage.map(|damage| damage.map(|_| 0.0)),
-        inside: true,
-        ..*state
     }
 }
 
@@ -90,10 +71,12 @@ fn panels(sheet: &Sheet, configuration: &[[f64; 3]]) -> UnstructuredGrid {
     }
 }
 
+/// The hinges in a load step; the `flat` ones have neither deformation nor damage.
 fn hinge_points(
     sheet: &Sheet,
     configuration: &[[f64; 3]],
-    states: &[HingeState],
+    step: &LoadStep,
+    flat: bool,
 ) -> UnstructuredGrid {
     // The reference point moves with both panels, which part by (a, s): their mean is drawn.
     let moved = sheet.hinges.iter().map(|hinge| {
@@ -104,7 +87,19 @@ fn hinge_points(
             [0, 1].map(|axis| 0.5 * (a[axis] + b[axis])),
         )
     });
-    let of = |name, value: fn(&HingeState) -> f64| Field::scalar(name, states.iter().map(value));
+    let of = |name, value: &dyn Fn(usize) -> f64| {
+        let shown = |x: f64| if flat && !x.is_nan() { 0.0 } else { x };
+        Field::scalar(name, (0..sheet.hinges.len()).map(|h| shown(value(h))))
+    };
+    let damage = |name, measure: DamageMeasure| {
+        let known = |h: usize| {
+            measure
+                .known(step.damage.get(h)?)
+                .filter(|_| step.inside[h])
+        };
+        of(name, &|h| known(h).unwrap_or(f64::NAN))
+    };
+    let inside = |h: &bool| f64::from(u8::from(flat || *h));
     UnstructuredGrid {
         points: sheet
             .hinges
@@ -115,15 +110,15 @@ fn hinge_points(
         cells: (0..sheet.hinges.len()).map(|h| vec![h]).collect(),
         point_data: vec![
             displacement(moved),
-            of("hinge", |state| state.hinge as f64),
-            of("w_lig (mm)", |state| state.w_lig),
-            of("a (mm)", |state| state.deformation[0]),
-            of("s (mm)", |state| state.deformation[1]),
-            of("theta (deg)", |state| state.deformation[2].to_degrees()),
-            of("W (N mm)", |state| state.energy),
-            of("D", |state| state.damage[0].unwrap_or(f64::NAN)),
-            of("D_peak", |state| state.damage[1].unwrap_or(f64::NAN)),
-            of("inside", |state| f64::from(u8::from(state.inside))),
+            Field::scalar("hinge", (0..sheet.hinges.len()).map(|h| h as f64)),
+            Field::scalar("w_lig (mm)", sheet.hinges.iter().map(|hinge| hinge.w_lig)),
+            of("a (mm)", &|h| step.deformations[h].a),
+            of("s (mm)", &|h| step.deformations[h].s),
+            of("theta (deg)", &|h| step.deformations[h].theta.to_degrees()),
+            of("W (N mm)", &|h| step.energies[h]),
+            damage("D", DamageMeasure::Mean),
+            damage("D_peak", DamageMeasure::Peak),
+            Field::scalar("inside", step.inside.iter().map(inside)),
         ],
         cell_data: Vec::new(),
     }

@@ -1,87 +1,71 @@
-//! `kirigami cut`: the cut files of a designed sheet, tiles of paper, parts for a bed, and several designs on one stock.
+//! `kirigami cut`: the cut files of a designed sheet, and tiles of paper.
 
-mod nest;
-mod nest_args;
-
-use crate::commands::cut::nest_args::{Nesting, PLACES, PLAN};
 use crate::commands::inspect::scene_args::{DESIGN_OF_RUN, Inspected};
 use crate::ui::run_folder;
-use crate::ui::width_by_height::width_by_height;
 use anyhow::{Context, Result, ensure};
 use clap::Args;
 use design::objective::design_problem::Deployment;
-use design::pattern::design_vector::DesignVector;
 use design::scene::{Paper, Scene};
 use output::cut_file::{
-    CutDrawing, CutLines, Features, Machine, Machines, OVERLAP, Service, SheetDrawing, Split,
-    Tiling, attachment_list, cut_list, cut_summary, dxf, mark_errors, split, svg, tiles_pdf,
+    CutDrawing, CutLines, FabricationError, Features, Machine, Machines, OVERLAP, SheetDrawing,
+    Tiling, Totals, attachment_list, cut_list, cut_summary, dxf, mark_errors, svg, tiles_pdf,
 };
-use output::display::Shape;
-use output::report::{Severity, Warning, warnings};
+use output::report::{Warning, warnings};
 use serde::Serialize;
 use serde_json::json;
 use std::fmt::{self, Display, Formatter};
 use std::path::{Path, PathBuf};
 use support::nearest::nearest;
+use support::severity::Severity;
 
-/// Write the cut files of a designed sheet, tiles for hand cutting, parts for a bed, or several designs on one stock
+/// Write the cut files of a designed sheet, or tiles for hand cutting
 ///
 /// Writes DXF, SVG and cut list of the design in the run folder of a scene, with the cutting settings of the scene.
-/// With --paper also a PDF at 1:1 on pages that overlap, with --bed also one DXF and SVG a part. docs/CUTTING.md
-/// describes the files. With --for the file holds what one kind of machine or service accepts, with --stock also
-/// that of several designs and pieces on as few sheets of a stock as are found. Examples:
-/// kirigami cut configs/scenes/demo.toml --paper a4 --bed 900x600;
-/// kirigami cut configs/scenes/a4-plate.toml --for laser-service;
-/// kirigami cut runs/a4-plate runs/leaf --for lightburn --stock 600x400 --margin 5 --gap 3 --copies 2,1
+/// With --paper also a PDF at 1:1 on pages that overlap. docs/CUTTING.md describes the files. With --for the file holds what one kind of machine or service accepts. Examples:
+/// kirigami cut configs/scenes/demo.toml --paper a4;
+/// kirigami cut configs/scenes/a4-plate.toml --for laser-service
 #[derive(Args)]
 #[command(mut_arg("design", |arg| arg.help(DESIGN_OF_RUN)))]
 pub struct CutCommand {
     #[command(flatten)]
     designed: Inspected,
-    #[command(flatten)]
-    nesting: Nesting,
-    /// Folder of the files [default: `cut` in the run folder of the scene; with --for `cut/MACHINE`; with --stock `nest/MACHINE` beside
-    /// the run folder of the first scene]
+    /// Folder of the files [default: `cut` in the run folder of the scene; with --for `cut/MACHINE`]
     #[arg(long, value_name = "FOLDER")]
     out: Option<PathBuf>,
     /// Write tiles for this paper: a5 to a0, letter or tabloid
     #[arg(long, value_name = "PAPER", value_parser = paper)]
     paper: Option<Paper>,
-    /// Write parts that fit on a bed of this width and height (mm); the height of a roll is inf
-    #[arg(long, value_name = "WIDTHxHEIGHT", value_parser = bed)]
-    bed: Option<[f64; 2]>,
     /// Write one DXF and one SVG for this machine: laser-service, lightburn, knife, plain or one of --machines; for a service
     /// list which refuse the sheet, and why. With --design start before the search
-    #[arg(long = "for", value_name = "MACHINE", conflicts_with_all = ["paper", "bed"])]
+    #[arg(long = "for", value_name = "MACHINE", conflicts_with = "paper")]
     machine: Option<String>,
     /// Table of machines and services (TOML) [default: the shipped configs/machines.toml]
     #[arg(long, value_name = "FILE", requires = "machine")]
     machines: Option<PathBuf>,
-    /// Width of the adhesive tape on either side of a seam between parts (mm)
-    #[arg(long, value_name = "MM", default_value_t = LAP, value_parser = lap)]
-    lap: f64,
     /// Write the files even if the design has errors
     #[arg(long)]
     force: bool,
-    /// Print totals, parts and files as JSON; with --for the smallest features, and what services refuse
+    /// Print totals and files as JSON; with --for the smallest features, and what services refuse
     #[arg(long)]
     json: bool,
 }
 
-/// The usual width of the tape (mm).
-const LAP: f64 = 20.0;
-const JOINTS: &str = "joints.csv";
+/// A design that may be cut.
+struct Checked {
+    scene: Scene,
+    /// What the design is.
+    named: String,
+    deployment: Deployment,
+    cuts: CutLines,
+    /// The errors of a design whose files are forced.
+    errors: Vec<String>,
+}
 
-/// What is written of a sheet.
-struct Pieces {
-    whole: SheetDrawing,
-    /// The whole sheet with marks and notes, for a machine.
-    annotated: CutDrawing,
-    list: String,
-    attachments: String,
-    summary: String,
+/// The files of a sheet.
+struct SheetFiles {
+    totals: Totals,
     tiling: Option<Tiling>,
-    split: Option<Split>,
+    written: Written,
 }
 
 impl CutCommand {
@@ -89,12 +73,11 @@ impl CutCommand {
     #[cfg(feature = "pipeline")]
     pub(crate) fn tiles_of_run(run: &Path, paper: &str) -> Result<Written> {
         let paper = Some(self::paper(paper).map_err(anyhow::Error::msg)?);
-        let (_, written) = (Self {
+        let files = Self {
             paper,
             ..Self::of_run(run)
-        })
-        .cut()?;
-        Ok(written)
+        };
+        Ok(files.cut()?.written)
     }
 
     /// Writes the file of a machine in the run in a folder.
@@ -102,7 +85,7 @@ impl CutCommand {
     pub(crate) fn machine_file_of_run(run: &Path, name: &str) -> Result<(Written, Vec<Verdict>)> {
         let machines = Machines::read(None)?;
         let machine = machine(&machines, name)?;
-        let file = Self::of_run(run).cut_one_for(machine, services(&machines, machine))?;
+        let file = Self::of_run(run).cut_for(&machines, machine)?;
         Ok((file.written, file.verdicts))
     }
 
@@ -114,74 +97,110 @@ impl CutCommand {
                 design: None,
                 weights: None,
             },
-            nesting: Nesting::default(),
             out: None,
             paper: None,
-            bed: None,
             machine: None,
             machines: None,
-            lap: LAP,
             force: false,
             json: false,
         }
     }
 
     pub(crate) fn run(&self) -> Result<()> {
-        if let Some(name) = &self.machine {
-            return self.cut_for(name);
-        }
-        let (pieces, written) = self.cut()?;
-        self.print(&pieces, &written.folder)
-    }
-
-    /// Writes the cut files, and tiles or parts.
-    fn cut(&self) -> Result<(Pieces, Written)> {
-        let (scene, design, _) = self.designed.read_run()?;
-        let pieces = self.pieces(&scene, &design)?;
-        let out = match &self.out {
-            Some(out) => out.clone(),
-            None => scene.output().join("cut"),
+        let Some(name) = self.machine.as_deref() else {
+            self.print(&self.cut()?);
+            return Ok(());
         };
-        let _held = run_folder::hold(&out)?;
-        remove_earlier(&out)?;
-        let mut written = Written::to(&out)?;
-        self.write(&pieces, &scene.config.title, &mut written)?;
-        Ok((pieces, written))
-    }
-
-    /// Writes the files of a machine, and prints what services refuse.
-    fn cut_for(&self, name: &str) -> Result<()> {
         let machines = Machines::read(self.machines.as_deref())?;
         let machine = machine(&machines, name)?;
         ensure!(
             Path::new(name).file_name().is_some_and(|file| file == name),
             "the machine {name} cannot name a folder: give it a name without slashes"
         );
-        let services = services(&machines, machine);
-        match self.nesting.stock {
-            Some(stock) => self.nest(stock, machine, services),
-            None => {
-                let file = self.cut_one_for(machine, services)?;
-                self.print_file(machine, &file);
-                Ok(())
-            }
-        }
+        self.print_file(machine, &self.cut_for(&machines, machine)?);
+        Ok(())
     }
 
-    fn cut_one_for(&self, machine: &Machine, services: &[Service]) -> Result<MachineFile> {
+    /// Reads and deploys the design; an error if it has any, unless it is forced.
+    fn checked(&self) -> Result<Checked> {
         let (scene, design, named) = self.designed.read_run()?;
-        let (_, cuts, errors) = self.checked(&scene, &design)?;
+        let deployment = scene.problem()?.deploy(&design)?;
+        let cuts = CutLines::of(&scene, &deployment);
+        let found = warnings(&scene, &deployment, &cuts);
+        let errors = found.iter().filter(|it| it.severity == Severity::Error);
+        let errors: Vec<String> = errors.map(Warning::to_string).collect();
+        let cuts = cuts?;
+        ensure!(
+            self.force || errors.is_empty(),
+            "no cut file: {}; --force writes one",
+            errors.join("; ")
+        );
+        Ok(Checked {
+            scene,
+            named,
+            deployment,
+            cuts,
+            errors,
+        })
+    }
+
+    /// Writes the cut files, and tiles.
+    fn cut(&self) -> Result<SheetFiles> {
+        let Checked {
+            scene,
+            deployment: Deployment { sheet, .. },
+            cuts,
+            errors,
+            ..
+        } = self.checked()?;
+        let mut whole = SheetDrawing::new(&cuts, &sheet, &scene.material);
+        let mut annotated = whole.annotated();
+        for drawing in [&mut annotated, &mut whole.numbered] {
+            mark_errors(drawing, &errors);
+        }
+        let tiles = self.paper.map(|paper| {
+            let tiling = Tiling::new(paper, whole.numbered.bounds())?;
+            Ok::<_, FabricationError>((paper, tiling))
+        });
+        let tiles = tiles.transpose()?;
+        let out = self.out_or(&scene, "cut");
+        let _held = run_folder::hold(&out)?;
+        remove_earlier(&out)?;
+        let mut written = Written::to(&out)?;
+        written.drawing(&annotated)?;
+        written.file("cut-list.csv", &cut_list(&sheet, &cuts))?;
+        written.file("attachments.csv", &attachment_list(&cuts))?;
+        written.file("cut-summary.csv", &cut_summary(&cuts, &whole.totals))?;
+        if let Some((paper, tiling)) = &tiles {
+            let title = &scene.config.title;
+            let pdf = tiles_pdf(&whole.numbered, tiling, title, &whole.notes);
+            written.file(&tiles_name(*paper), &pdf)?;
+        }
+        Ok(SheetFiles {
+            totals: whole.totals,
+            tiling: tiles.map(|(_, tiling)| tiling),
+            written,
+        })
+    }
+
+    /// Writes the file of a machine.
+    fn cut_for(&self, machines: &Machines, machine: &Machine) -> Result<MachineFile> {
+        let Checked {
+            scene,
+            named,
+            cuts,
+            errors,
+            ..
+        } = self.checked()?;
         let mut drawing = machine.drawing(&cuts)?;
         mark_errors(&mut drawing, &errors);
-        let out = match &self.out {
-            Some(out) => out.clone(),
-            None => scene.output().join("cut").join(&machine.name),
-        };
+        let out = self.out_or(&scene, &format!("cut/{}", machine.name));
         let _held = run_folder::hold(&out)?;
         let mut written = Written::to(&out)?;
-        written.drawing("cut", &drawing)?;
+        written.drawing(&drawing)?;
         let features = cuts.features();
-        let verdicts = services.iter().map(|service| Verdict {
+        let services = machines.service.iter().filter(|_| machine.services);
+        let verdicts = services.map(|service| Verdict {
             name: service.name.clone(),
             source: service.source.clone(),
             refuses: service.refusals(&features, scene.material.thickness),
@@ -192,6 +211,36 @@ impl CutCommand {
             named,
             written,
         })
+    }
+
+    /// The folder of the files: by default one in the run folder of the scene.
+    fn out_or(&self, scene: &Scene, folder: &str) -> PathBuf {
+        let out = self.out.clone();
+        out.unwrap_or_else(|| scene.output().join(folder))
+    }
+
+    fn print(&self, files: &SheetFiles) {
+        let SheetFiles {
+            totals,
+            tiling,
+            written,
+        } = files;
+        if self.json {
+            let value = json!({
+                "totals": totals, "tiles": tiling.as_ref().map(Tiling::pages), "folder": written.folder,
+            });
+            println!("{value:#}");
+            return;
+        }
+        println!("{totals}");
+        if let Some(tiling) = tiling {
+            let [rows, columns] = tiling.counts;
+            println!(
+                "{} pages: {rows} rows x {columns} columns, which overlap by {OVERLAP} mm, and an overview",
+                rows * columns + 1
+            );
+        }
+        println!("written to {}", written.folder.display());
     }
 
     fn print_file(&self, machine: &Machine, file: &MachineFile) {
@@ -210,108 +259,12 @@ impl CutCommand {
         }
         println!("{}: {}; {named}\n{features}", machine.name, machine.says);
         for Verdict { name, refuses, .. } in verdicts {
-            println!("{name}: {}", verdict(refuses));
+            match &refuses[..] {
+                [] => println!("{name}: no published limit is broken"),
+                _ => println!("{name}: refuses {}", refuses.join("; ")),
+            }
         }
         println!("written to {}", written.folder.display());
-    }
-
-    /// The deployed sheet and its cuts, with the errors of the design; an error if it has any, unless it is forced.
-    fn checked(
-        &self,
-        scene: &Scene,
-        design: &DesignVector,
-    ) -> Result<(Deployment, CutLines, Vec<String>)> {
-        let deployment = scene.problem()?.deploy(design)?;
-        let cuts = CutLines::of(scene, &deployment);
-        let found = warnings(scene, &deployment, &cuts);
-        let cuts = cuts?;
-        let errors = found.iter().filter(|it| it.severity == Severity::Error);
-        let errors: Vec<String> = errors.map(Warning::to_string).collect();
-        ensure!(
-            self.force || errors.is_empty(),
-            "no cut file: {}; --force writes one",
-            errors.join("; ")
-        );
-        Ok((deployment, cuts, errors))
-    }
-
-    /// The drawings of a design.
-    fn pieces(&self, scene: &Scene, design: &DesignVector) -> Result<Pieces> {
-        let (deployment, cuts, errors) = self.checked(scene, design)?;
-        let sheet = &deployment.sheet;
-        let mut whole = SheetDrawing::new(&cuts, sheet, &scene.material);
-        let mut annotated = whole.annotated();
-        mark_errors(&mut annotated, &errors);
-        mark_errors(&mut whole.numbered, &errors);
-        let tiling = (self.paper)
-            .map(|paper| Tiling::new(paper, whole.numbered.bounds()))
-            .transpose()?;
-        let mut split = (self.bed)
-            .map(|bed| split(&cuts, sheet, bed, self.lap))
-            .transpose()?;
-        for part in split.iter_mut().flat_map(|split| &mut split.parts) {
-            mark_errors(&mut part.drawing, &errors);
-        }
-        Ok(Pieces {
-            list: cut_list(sheet, &cuts),
-            attachments: attachment_list(&cuts),
-            summary: cut_summary(&cuts, &whole.totals),
-            whole,
-            annotated,
-            tiling,
-            split,
-        })
-    }
-
-    fn write(&self, pieces: &Pieces, title: &str, written: &mut Written) -> Result<()> {
-        written.drawing("cut", &pieces.annotated)?;
-        written.file("cut-list.csv", &pieces.list)?;
-        written.file("attachments.csv", &pieces.attachments)?;
-        written.file("cut-summary.csv", &pieces.summary)?;
-        if let (Some(paper), Some(tiling)) = (self.paper, &pieces.tiling) {
-            let whole = &pieces.whole;
-            let tiles = tiles_pdf(&whole.numbered, tiling, title, &whole.notes);
-            written.file(&tiles_name(paper), &tiles)?;
-        }
-        if let Some(split) = &pieces.split {
-            for (i, part) in split.parts.iter().enumerate() {
-                written.drawing(&format!("part-{}", i + 1), &part.drawing)?;
-            }
-            written.file(JOINTS, &split.joint_list())?;
-        }
-        Ok(())
-    }
-
-    fn print(&self, pieces: &Pieces, out: &Path) -> Result<()> {
-        let (tiling, split) = (&pieces.tiling, &pieces.split);
-        if self.json {
-            let value = json!({
-                "totals": pieces.whole.totals,
-                "tiles": tiling.as_ref().map(Tiling::pages),
-                "parts": split.as_ref().map(|split| split.parts.iter().map(|part| json!({
-                    "origin": part.origin, "size": part.size, "area": part.area,
-                })).collect::<Vec<_>>()),
-                "folder": out,
-            });
-            println!("{}", serde_json::to_string_pretty(&value)?);
-            return Ok(());
-        }
-        println!("{}", pieces.whole.totals);
-        if let Some(Tiling {
-            counts: [rows, columns],
-            ..
-        }) = tiling
-        {
-            println!(
-                "{} pages: {rows} rows x {columns} columns, which overlap by {OVERLAP} mm, and an overview",
-                rows * columns + 1
-            );
-        }
-        if let Some(split) = split {
-            print_parts(split, Shape::extent(pieces.whole.numbered.cuts()));
-        }
-        println!("written to {}", out.display());
-        Ok(())
     }
 }
 
@@ -337,10 +290,9 @@ impl Written {
     }
 
     /// The DXF and the SVG of a drawing.
-    fn drawing(&mut self, name: &str, drawing: &CutDrawing) -> Result<()> {
-        write_drawing(&self.folder, name, drawing)?;
-        let names = ["dxf", "svg"].map(|kind| format!("{name}.{kind}"));
-        self.names.extend(names);
+    fn drawing(&mut self, drawing: &CutDrawing) -> Result<()> {
+        write_drawing(&self.folder, "cut", drawing)?;
+        self.names.extend(["cut.dxf", "cut.svg"].map(str::to_owned));
         Ok(())
     }
 }
@@ -368,14 +320,6 @@ struct MachineFile {
     written: Written,
 }
 
-/// The services whose limits count for the files of a machine.
-fn services<'a>(machines: &'a Machines, machine: &Machine) -> &'a [Service] {
-    match machine.services {
-        true => &machines.service,
-        false => &[],
-    }
-}
-
 /// The machine with a name.
 pub(crate) fn machine<'a>(machines: &'a Machines, name: &str) -> Result<&'a Machine> {
     let machine = machines.machine.iter().find(|machine| machine.name == name);
@@ -394,48 +338,12 @@ pub(crate) fn write_drawing(out: &Path, name: &str, drawing: &CutDrawing) -> Res
     run_folder::write(out, &format!("{name}.svg"), &svg(drawing))
 }
 
-/// What a service says of a sheet.
-fn verdict(refuses: &[String]) -> String {
-    match refuses.is_empty() {
-        true => "no published limit is broken".to_owned(),
-        false => format!("refuses {}", refuses.join("; ")),
-    }
-}
-
-fn print_parts(split: &Split, [low, high]: [[f64; 2]; 2]) {
-    if split.parts.len() > 1 {
-        println!(
-            "the whole sheet takes {:.1} x {:.1} mm, with the kerf and the over-run beyond its edges",
-            high[0] - low[0],
-            high[1] - low[1]
-        );
-    }
-    for (i, part) in split.parts.iter().enumerate() {
-        let ([x, y], [width, height]) = (part.origin, part.size);
-        println!(
-            "part {}: {width:.1} x {height:.1} mm, from ({x:.1}, {y:.1}) mm of the sheet",
-            i + 1
-        );
-    }
-    let hinges = split.joints.iter().map(|(seam, _)| seam.hinge.to_string());
-    let hinges: Vec<String> = hinges.collect();
-    match hinges.len() {
-        0 => println!("the sheet fits on the bed as a whole: no joints"),
-        count => println!(
-            "{count} seams, each across a panel beside a hinge, so that every ligament stays whole; tape {} mm to \
-             either side. Hinges: {}",
-            split.lap,
-            hinges.join(", ")
-        ),
-    }
-}
-
-/// Removes tiles, parts and sheets of stock of an earlier call, which may be of another design.
+/// Removes tiles of an earlier call, which may be of another design.
 fn remove_earlier(folder: &Path) -> Result<()> {
     for entry in std::fs::read_dir(folder)? {
         let entry = entry?;
         let path = entry.path();
-        if entry.file_type()?.is_file() && is_written(&entry.file_name().to_string_lossy()) {
+        if entry.file_type()?.is_file() && is_tiles(&entry.file_name().to_string_lossy()) {
             std::fs::remove_file(&path)
                 .with_context(|| format!("cannot remove {}", path.display()))?;
         }
@@ -443,20 +351,12 @@ fn remove_earlier(folder: &Path) -> Result<()> {
     Ok(())
 }
 
-/// Whether a file with this name is written with --paper, --bed or --stock.
-fn is_written(name: &str) -> bool {
-    let number = name.split_once('-').and_then(|(kind, rest)| {
-        let number = (rest.strip_suffix(".dxf")).or_else(|| rest.strip_suffix(".svg"));
-        number.filter(|_| ["part", "stock"].contains(&kind))
-    });
-    let is_numbered = number.is_some_and(|number| {
-        !number.is_empty() && !number.starts_with('0') && number.bytes().all(|c| c.is_ascii_digit())
-    });
+/// Whether a file with this name is written with --paper.
+fn is_tiles(name: &str) -> bool {
     let paper = (name.strip_prefix("tiles-")).and_then(|rest| rest.strip_suffix(".pdf"));
-    let is_tiles = paper
+    paper
         .and_then(|paper| self::paper(paper).ok())
-        .is_some_and(|paper| name == tiles_name(paper));
-    is_numbered || is_tiles || [JOINTS, PLACES, PLAN].contains(&name)
+        .is_some_and(|paper| name == tiles_name(paper))
 }
 
 fn tiles_name(paper: Paper) -> String {
@@ -468,16 +368,6 @@ fn paper(name: &str) -> Result<Paper, String> {
     name.parse().map_err(refused)
 }
 
-fn bed(text: &str) -> Result<[f64; 2], String> {
-    width_by_height(text)
-        .ok_or_else(|| "must be WIDTHxHEIGHT in mm, like 1000x600 or 1300xinf".into())
-}
-
-fn lap(text: &str) -> Result<f64, String> {
-    let lap = text.parse().ok().filter(|lap| (0.0..=200.0).contains(lap));
-    lap.ok_or_else(|| "must be 0 to 200 mm".into())
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -485,29 +375,14 @@ mod tests {
     #[test]
     fn only_files_that_a_cut_writes_are_removed() {
         let folder = tempfile::tempdir().unwrap();
-        let own = [
-            "part-list.xlsx",
-            "part-a.dxf",
-            "part-01.dxf",
-            "part-1.dxf.bak",
-            "tiles-of-mine.pdf",
-            "cut.dxf",
-        ];
-        let ours = [
-            "part-1.dxf",
-            "part-12.svg",
-            "stock-3.dxf",
-            "tiles-letter.pdf",
-            JOINTS,
-            PLACES,
-            PLAN,
-        ];
+        let own = ["tiles-of-mine.pdf", "tiles-a4.pdf.bak", "cut.dxf"];
+        let ours = ["tiles-a3.pdf", "tiles-letter.pdf"];
         for name in own.iter().chain(&ours) {
             std::fs::write(folder.path().join(name), "").unwrap();
         }
-        std::fs::create_dir(folder.path().join("part-2.dxf")).unwrap();
+        std::fs::create_dir(folder.path().join("tiles-a5.pdf")).unwrap();
         remove_earlier(folder.path()).unwrap();
-        for name in own.iter().chain(&["part-2.dxf"]) {
+        for name in own.iter().chain(&["tiles-a5.pdf"]) {
             assert!(folder.path().join(name).exists(), "{name}");
         }
         for name in ours {

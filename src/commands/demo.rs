@@ -3,10 +3,9 @@
 use crate::commands::campaign::{CollectCommand, RunCommand};
 use crate::commands::design::DesignCommand;
 use crate::commands::train::TrainCommand;
-use crate::ui::table::table;
+use crate::ui::table::{Table, table};
 use anyhow::{Result, ensure};
 use clap::Args;
-use comfy_table::Table;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 

@@ -1,8 +1,5 @@
 //! `kirigami export`: the deployment of a designed sheet for other programs.
 
-#[cfg(feature = "pipeline")]
-mod parquet;
-
 use crate::commands::inspect::scene_args::{DESIGN_OF_RUN, Inspected};
 use crate::ui::run_folder;
 use anyhow::{Context, Result};
@@ -11,11 +8,10 @@ use output::vtk_sheet::vtk_states;
 use std::path::PathBuf;
 use support::vtk;
 
-/// Write the deployment of a designed sheet for ParaView, meshio and data frames
+/// Write the deployment of a designed sheet for ParaView and meshio
 ///
 /// sheet.pvd opens in ParaView: panels and hinges at every load step, moved by the point data `displacement (mm)`
-/// (filter Warp By Vector). The full build also writes hinges.parquet, one row a hinge and load step, and path.parquet,
-/// one row a load step. Lengths in mm, forces in N, angles in rad unless the name says deg.
+/// (filter Warp By Vector). Lengths in mm, forces in N, angles in rad unless the name says deg.
 /// Example: kirigami export configs/scenes/pet-3x3.toml
 #[derive(Args)]
 #[command(mut_arg("design", |arg| arg.help(DESIGN_OF_RUN)))]
@@ -52,8 +48,6 @@ impl ExportCommand {
             grids.len() / 2,
             self.out.join("sheet.pvd").display()
         );
-        #[cfg(feature = "pipeline")]
-        parquet::write(&deployment, &self.out)?;
         Ok(())
     }
 }

@@ -3,21 +3,20 @@
 mod cut_from;
 mod edited;
 pub(crate) mod first_scene;
-mod similar_scene;
+mod size_args;
 mod template;
 
 use crate::commands::init::cut_from::CutFrom;
 use crate::commands::init::edited::{heading, scale, set};
 use crate::commands::init::first_scene::{FirstScene, THINNEST_PLATE, safe_opening};
-use crate::commands::init::similar_scene::{Like, SimilarScene};
+use crate::commands::init::size_args::{length, size, stock};
 use crate::commands::init::template::Template;
 use crate::commands::input_file;
 use crate::ui::output_file;
 use crate::ui::shell_word::shell_word;
-use crate::ui::width_by_height::{length, stock, width_by_height};
 use anyhow::{Context, Result, bail, ensure};
 use clap::Args;
-use design::scene::{Paper, Scene, Stock};
+use design::scene::{Scene, Stock};
 use hinge::{Regime, SheetMaterial};
 use mesher::Tier;
 use std::path::{Path, PathBuf};
@@ -35,41 +34,34 @@ use toml_edit::DocumentMut;
 /// Examples: kirigami init my-sheet --thickness 3 --size 210x297;
 /// kirigami init first --stock a4 --margin 5;
 /// kirigami init film --thickness 0.1;
-/// kirigami init leaf --thickness 0.1 --target configs/targets/leaf.svg;
-/// kirigami init thin --like configs/scenes/pet-3x3.toml --thickness 0.1;
-/// kirigami init longer --like configs/scenes/a4-polyester.toml --size 420x594
+/// kirigami init leaf --thickness 0.1 --target configs/targets/leaf.svg
 #[derive(Args)]
 pub struct InitCommand {
     /// Folder to create
     #[arg(value_name = "FOLDER")]
     folder: PathBuf,
-    /// Sheet material (TOML) [default: configs/materials/polypropylene-3mm.toml, below 2 mm of thickness pet-0.5mm.toml; with
-    /// --like that of its scene]
+    /// Sheet material (TOML) [default: configs/materials/polypropylene-3mm.toml, below 2 mm of thickness pet-0.5mm.toml]
     #[arg(long, value_name = "FILE")]
     material: Option<PathBuf>,
-    /// Thickness of the sheet (mm) [default: that of the material file; with --like that of its sheet]
+    /// Thickness of the sheet (mm) [default: that of the material file]
     #[arg(long, value_name = "MM")]
     thickness: Option<f64>,
     /// Width and height of the sheet (mm) [default: 210x297 for plates up to 3 mm and films up to 0.1 mm, larger in
-    /// proportion to the thickness; with --like those of its sheet, in proportion to the thickness]
+    /// proportion to the thickness]
     #[arg(long, value_name = "WIDTHxHEIGHT", value_parser = size)]
     size: Option<[f64; 2]>,
     /// The stock that the sheet is cut from: a5 to a0, letter, tabloid, or width and height (mm). The sheet is smaller by twice the
-    /// margin, the over-run and half a kerf, so that its cuts fit; with --like it keeps the shape of that sheet
+    /// margin, the over-run and half a kerf, so that its cuts fit
     #[arg(long, value_name = "STOCK", value_parser = stock, conflicts_with = "size")]
     stock: Option<Stock>,
-    /// Border of the stock that the machine cannot cut (mm) [default: 0, with --like the cutting.margin of that scene]
+    /// Border of the stock that the machine cannot cut (mm) [default: 0]
     #[arg(long, value_name = "MM", value_parser = length, requires = "stock")]
     margin: Option<f64>,
-    /// Scene whose pattern, panels, supports, loads and target are taken, scaled to thickness and size. With weights the
-    /// loads open the new sheet as far as that of the scene
-    #[arg(long, value_name = "SCENE")]
-    like: Option<PathBuf>,
     /// Outline that the sheet opens onto (SVG, one closed path), scaled to the area of the opened sheet and placed on its
     /// centre [default: the opened sheet's rectangle]
-    #[arg(long, value_name = "FILE", conflicts_with = "like")]
+    #[arg(long, value_name = "FILE")]
     target: Option<PathBuf>,
-    /// Weights for this material [default: those for it among the shipped ones; with --like those of its scene]
+    /// Weights for this material [default: those for it among the shipped ones]
     #[arg(long, value_name = "FILE")]
     weights: Option<PathBuf>,
 }
@@ -103,7 +95,6 @@ impl InitCommand {
             size,
             stock: None,
             margin: None,
-            like: None,
             target: None,
             weights: None,
         }
@@ -121,50 +112,28 @@ impl InitCommand {
             "{} exists already: name a new folder",
             self.folder.display()
         );
-        let like = self.like.as_deref().map(Like::read).transpose()?;
-        let material = self.material_file(like.as_ref());
+        let material = self.material_file();
         input_file::require(&material, "--material")?;
         let measured = SheetMaterial::load(&material)?;
-        let alike = like.as_ref().map(|like| like.scene.material.thickness);
         let sheet = SheetMaterial {
-            thickness: self.thickness.or(alike).unwrap_or(measured.thickness),
+            thickness: self.thickness.unwrap_or(measured.thickness),
             ..measured.clone()
         };
         sheet.validate()?;
-        let fitting = self.weights_of(&measured, like.as_ref())?;
-        let of = |regime| fitting.iter().find(|weights| weights.regime == regime);
-        let path = |weights: Option<&Weights>| match weights {
-            Some(weights) => weights.file.clone(),
-            None => "weights.safetensors".into(),
-        };
-        let cut_from = self.cut_from(like.as_ref());
-        let (scene, regime, trained) = match like {
-            Some(like) => {
-                let of_scene = &like.scene;
-                let widest = of_scene.config.ligament.range[1];
-                let regime = of_scene.material.regime(widest);
-                let weights = of(regime);
-                let material = weights.map(|_| &*material);
-                let scene = SimilarScene::new(like, &sheet, self.size, cut_from)?;
-                (
-                    scene.text(&path(weights), material)?,
-                    regime,
-                    weights.is_some(),
-                )
-            }
-            None => {
-                let named = self.weights.as_ref().and(fitting.first());
-                let named = named.map(|weights| weights.regime);
-                let mut first = FirstScene::new(self.size, cut_from, sheet.thickness, named)?;
-                let weights = of(first.regime);
-                first.opening = weights.map_or(first_scene::OPENING, |weights| weights.opening);
-                (
-                    first.text(&path(weights), self.target.as_deref())?,
-                    first.regime,
-                    weights.is_some(),
-                )
-            }
-        };
+        let fitting = self.weights_of(&measured)?;
+        let named = self.weights.as_ref().and(fitting.first());
+        let named = named.map(|weights| weights.regime);
+        let cut_from = self.stock.map(|stock| CutFrom {
+            stock,
+            margin: self.margin.unwrap_or(0.0),
+        });
+        let mut first = FirstScene::new(self.size, cut_from, sheet.thickness, named)?;
+        let regime = first.regime;
+        let weights = fitting.iter().find(|weights| weights.regime == regime);
+        let trained = weights.is_some();
+        first.opening = weights.map_or(first_scene::OPENING, |weights| weights.opening);
+        let weights = weights.map_or("weights.safetensors".into(), |weights| weights.file.clone());
+        let scene = first.text(&weights, self.target.as_deref())?;
         let name = self
             .folder
             .file_name()
@@ -196,22 +165,12 @@ impl InitCommand {
         Ok(readme)
     }
 
-    /// The stock that is named; without a margin with that of the scene that is like it.
-    fn cut_from(&self, like: Option<&Like>) -> Option<CutFrom> {
-        let of_scene = like.map(|like| like.scene.config.cutting.margin);
-        let margin = self.margin.or(of_scene).unwrap_or(0.0);
-        self.stock.map(|stock| CutFrom { stock, margin })
-    }
-
     /// The file of the material that is named, or else the usual one.
-    fn material_file(&self, like: Option<&Like>) -> PathBuf {
-        match (&self.material, like) {
+    fn material_file(&self) -> PathBuf {
+        match (&self.material, self.thickness) {
             (Some(material), _) => material.clone(),
-            (None, Some(like)) => like.beside(&like.scene.config.material),
-            (None, None) => match self.thickness {
-                Some(thickness) if thickness < THINNEST_PLATE => FILM.into(),
-                _ => PLATE.into(),
-            },
+            (None, Some(thickness)) if thickness < THINNEST_PLATE => FILM.into(),
+            _ => PLATE.into(),
         }
     }
 
@@ -227,7 +186,7 @@ impl InitCommand {
     }
 
     /// The weights that are for the material. Weights that are named must be.
-    fn weights_of(&self, material: &SheetMaterial, like: Option<&Like>) -> Result<Vec<Weights>> {
+    fn weights_of(&self, material: &SheetMaterial) -> Result<Vec<Weights>> {
         let candidates = match &self.weights {
             Some(weights) => {
                 input_file::require(weights, "--weights")?;
@@ -235,11 +194,7 @@ impl InitCommand {
             }
             None => {
                 let shipped = WEIGHTS.map(PathBuf::from).into_iter();
-                let existing = shipped.filter(|weights| weights.is_file());
-                like.and_then(Like::weights)
-                    .into_iter()
-                    .chain(existing)
-                    .collect()
+                shipped.filter(|weights| weights.is_file()).collect()
             }
         };
         let mut fitting = Vec::new();
@@ -382,16 +337,6 @@ pub(crate) fn material_text(path: &Path, thickness: f64) -> Result<String> {
         set(&mut material["tensile_csv"], &*curve.to_string_lossy());
     }
     Ok(material.to_string())
-}
-
-fn size(text: &str) -> Result<[f64; 2], String> {
-    let size = width_by_height(text).filter(|size| size.iter().all(|side| side.is_finite()));
-    size.ok_or_else(|| match text.parse::<Paper>() {
-        Ok(paper) => format!(
-            "the size of a sheet is two lengths in mm; for the largest sheet that is cut from {text} use --stock {paper}"
-        ),
-        Err(_) => "expected two lengths in mm, for example 210x297".into(),
-    })
 }
 
 #[cfg(test)]

@@ -9,10 +9,7 @@ use crate::ui::output_file;
 use crate::ui::progress::Progress;
 use anyhow::{Context, Result};
 use clap::{Args, Subcommand};
-use output::listing::{
-    DeploymentListing, EquilibriumListing, GradientListing, PatternListing, SpringbackListing,
-    ToleranceListing, ToleranceQuestion,
-};
+use output::listing::{self, SpringbackListing, ToleranceListing, ToleranceQuestion};
 use std::path::PathBuf;
 use surrogate::Springback;
 
@@ -119,7 +116,7 @@ impl InspectCommand {
         match &self.stage {
             Stage::Pattern(listed) => {
                 let (scene, design, name) = listed.read()?;
-                listed.print(name, PatternListing::new(&scene.problem()?, &design)?)
+                listed.print(name, listing::pattern(&scene.problem()?, &design)?)
             }
             Stage::Deploy(DeployArgs {
                 listed,
@@ -130,20 +127,17 @@ impl InspectCommand {
                 let opening = (opening_deg.map(f64::to_radians))
                     .or(problem.opening(&design))
                     .context("this scene's hinges are not pins: pass --opening-deg")?;
-                listed.print(name, DeploymentListing::new(&problem, &design, opening)?)
+                listed.print(name, listing::deployment(&problem, &design, opening)?)
             }
             Stage::Equilibrium(listed) => {
                 let (scene, design, name) = listed.read()?;
-                listed.print(name, EquilibriumListing::new(&scene.problem()?, &design)?)
+                listed.print(name, listing::equilibrium(&scene.problem()?, &design)?)
             }
             Stage::Tolerances(args) => args.run(),
             Stage::Springback(args) => args.run(),
             Stage::Gradient(listed) => {
                 let (scene, design, name) = listed.read()?;
-                listed.print(
-                    name,
-                    GradientListing::new(&scene, &scene.problem()?, &design)?,
-                )
+                listed.print(name, listing::gradient(&scene, &scene.problem()?, &design)?)
             }
         }
     }

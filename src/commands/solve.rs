@@ -4,11 +4,10 @@ use crate::commands::input_file;
 use crate::commands::window_args::WindowArgs;
 use crate::ui::exit::Unfinished;
 use crate::ui::progress::watched;
-use crate::ui::table::table;
+use crate::ui::table::{Table, table};
 use crate::ui::{interrupt, run_folder};
 use anyhow::{Error, Result, bail};
 use clap::Args;
-use comfy_table::Table;
 use fe_driver::{
     CalculiX, DeformationPath, HingePath, Solver, WindowProblem, WindowSolve, reached,
 };

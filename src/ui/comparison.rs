@@ -11,7 +11,7 @@ pub fn write<const N: usize>(
     name: &str,
     columns: [&str; N],
     rows: impl IntoIterator<Item = [String; N]>,
-) -> Result<comfy_table::Table> {
+) -> Result<ui::table::Table> {
     let rows: Vec<[String; N]> = rows.into_iter().collect();
     let table = (columns.iter().enumerate()).fold(Table::new(), |table, (i, name)| {
         table.column(*name, move |cells: &[String; N]| Cell::text(&cells[i]))

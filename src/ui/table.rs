@@ -1,19 +1,42 @@
 //! Printed tables: a rule under the header and no other lines.
 
-use comfy_table::{CellAlignment, Table, TableComponent, presets};
+use std::fmt::{self, Display, Formatter};
+use support::table::aligned;
 
-/// An empty table; the first column aligned left, the others right.
+/// A table; the first column aligned left, the others right.
+pub struct Table {
+    /// Number of lines of the header.
+    header: usize,
+    rows: Vec<Vec<String>>,
+}
+
+/// An empty table. The names of its columns may have several lines.
 pub fn table<const N: usize>(header: [&str; N]) -> Table {
-    let mut table = Table::new();
-    table.load_preset(presets::NOTHING).set_header(header);
-    for rule in [
-        TableComponent::HeaderLines,
-        TableComponent::MiddleHeaderIntersections,
-    ] {
-        table.set_style(rule, '─');
+    let lines = header.map(|name| name.lines().count());
+    let lines = lines.into_iter().max().unwrap_or(0);
+    let line = |i| header.map(|name| name.lines().nth(i).unwrap_or("").to_owned());
+    Table {
+        header: lines,
+        rows: (0..lines).map(|i| line(i).to_vec()).collect(),
     }
-    for column in table.column_iter_mut().skip(1) {
-        column.set_cell_alignment(CellAlignment::Right);
+}
+
+impl Table {
+    /// Adds a row.
+    pub fn add_row(&mut self, cells: impl IntoIterator<Item = String>) {
+        let cells = cells.into_iter().map(|cell| cell.replace('\n', " "));
+        self.rows.push(cells.collect());
     }
-    table
+}
+
+impl Display for Table {
+    fn fmt(&self, f: &mut Formatter) -> fmt::Result {
+        let mut lines = aligned(&self.rows, |column| column == 0, "   ");
+        let rule = lines.first().map_or(0, |line| line.chars().count());
+        lines
+            .iter_mut()
+            .for_each(|line| *line = format!(" {line} "));
+        lines.insert(self.header, "\u{2500}".repeat(rule + 2));
+        f.write_str(&lines.join("\n"))
+    }
 }

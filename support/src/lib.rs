@@ -1,6 +1,7 @@
 //! Domain-independent utilities: configuration files, ranges of their keys, misspelt names, input files, CSV tables, VTK
 //! files, atomic file writes, lock files, external programs, temporary folders, notes of what a command does, a pool of
-//! threads, panics of libraries, shards of a list of jobs, memory of the machine.
+//! threads, panics of libraries, shards of a list of jobs, memory of the machine,
+//! the severity of findings.
 //!
 //! ```
 //! use support::table::{Cell, Table};
@@ -25,6 +26,7 @@ pub mod program;
 pub mod regular_file;
 pub mod scratch;
 pub mod sealed_json;
+pub mod severity;
 pub mod shard;
 pub mod statistics;
 pub mod table;

@@ -1,4 +1,5 @@
-//! Tables as Markdown and CSV: a column is said once, as its heading and how a cell follows from a row.
+//! Tables as Markdown and CSV: a column is said once, as its heading and how a cell follows from a row. Printed tables have
+//! aligned columns.
 
 use std::fmt::Display;
 
@@ -136,6 +137,26 @@ fn csv_line<'c>(cells: impl Iterator<Item = &'c str>) -> String {
         }
     });
     quoted.collect::<Vec<_>>().join(",") + "\n"
+}
+
+/// Rows as lines of columns that are as wide as their widest cell, with `gap` between them; those that are not `left` are
+/// aligned right.
+pub fn aligned(rows: &[Vec<String>], left: impl Fn(usize) -> bool, gap: &str) -> Vec<String> {
+    let count = rows.iter().map(Vec::len).max().unwrap_or(0);
+    let width = |column: usize| {
+        let cells = rows.iter().filter_map(|row| row.get(column));
+        cells.map(|cell| cell.chars().count()).max().unwrap_or(0)
+    };
+    let widths: Vec<usize> = (0..count).map(width).collect();
+    let line = |row: &Vec<String>| {
+        let cells = std::iter::zip(row, &widths).enumerate();
+        let cells = cells.map(|(column, (cell, width))| match left(column) {
+            true => format!("{cell:<width$}"),
+            false => format!("{cell:>width$}"),
+        });
+        cells.collect::<Vec<_>>().join(gap)
+    };
+    rows.iter().map(line).collect()
 }
 
 /// A number with a fixed number of decimals; `-` if it is not known (NaN).

@@ -12,8 +12,8 @@ use design::scene::{Posture, Scene};
 use design::sheet::kinematics::{Configuration, deployed_corners, hinge_deformations};
 use fe_driver::{SheetSolve, SheetState, SheetSurface, Solved, ToolVersions};
 use mesher::Tier;
-use output::report::Severity;
 use serde::Serialize;
+use support::severity::Severity;
 use support::statistics::rms_and_maximum;
 
 /// Difference of the loads over that of finite elements above which a finding names it.

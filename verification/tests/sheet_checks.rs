@@ -3,10 +3,10 @@
 use design::scene::{Posture, Scene};
 use fe_driver::{CalculiX, SolveService, SolveStore};
 use mesher::Tier;
-use output::report::Severity;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
+use support::severity::Severity;
 use verification::{SheetCheck, SheetCost, SheetTask, VerificationError};
 
 /// Four panels of film; `change` replaces a part of its text by another.

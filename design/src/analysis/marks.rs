@@ -33,8 +33,6 @@ pub struct FittedPoint {
     pub measured: [f64; 2],
     /// The position of the mark on the path.
     pub predicted: [f64; 2],
-    /// Whether the point was left out of the fit.
-    pub outlier: bool,
 }
 
 impl Mark {

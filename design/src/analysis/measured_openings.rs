@@ -4,7 +4,7 @@
 //! 2 n - 3 degrees of freedom for n marks, give the standard deviation of one coordinate for any prediction: the
 //! errors of the measurement, and the bending of the panels.
 
-use crate::analysis::robust_pose::Fit;
+use crate::analysis::path_fit::Fit;
 use crate::geometry::plane::{complex, point};
 use crate::geometry::polygon::distance;
 use crate::geometry::similarity::{Pair, Scale, Similarity};
@@ -48,11 +48,11 @@ pub struct MeasuredOpening {
 }
 
 impl MeasuredPanel {
-    /// The panels whose centre, or two other marks, are measured and are no outliers.
+    /// The panels whose centre, or two other marks, are measured.
     pub fn all(sheet: &Sheet, fit: &Fit) -> Vec<Self> {
         let mut marks: Vec<Vec<Pair>> = vec![Vec::new(); sheet.panels.len()];
         let mut centres = vec![None; sheet.panels.len()];
-        for seen in fit.kept() {
+        for seen in &fit.points {
             let flat = complex(seen.mark.flat(sheet));
             marks[seen.mark.panel].push([flat, complex(seen.measured)]);
             if seen.mark.corner.is_none() {

@@ -1,14 +1,10 @@
 //! Points measured on a deployed sheet, compared with its equilibrium path; section 4.4.
 
 use crate::analysis::marks::{Mark, MeasuredPoint};
-use crate::analysis::misread::{Misread, Renumbered, misread, renumbered};
-use crate::analysis::robust_pose::{Fit, MIN_POINTS, Problem};
+use crate::analysis::path_fit::{Fit, MIN_POINTS, Problem};
 use crate::analysis::shape_path::ShapePath;
 use crate::geometry::similarity::Scale;
 use std::collections::HashMap;
-
-/// A median residual above this fraction of the panel size is a reason to look for mistakes of the whole file.
-const SUSPICIOUS: f64 = 0.05;
 
 /// A measured sheet beside its path.
 #[derive(Clone, Debug)]
@@ -20,8 +16,6 @@ pub struct MeasuredSheet {
     /// Standard error of the load factor of `best`, if the errors of the points are independent; `None` if the
     /// points do not determine the load factor.
     pub load_factor_error: Option<f64>,
-    /// Panels whose points fit another panel or another order of the corners.
-    pub renumbered: Vec<Renumbered>,
 }
 
 /// Why a measurement cannot be compared.
@@ -45,8 +39,6 @@ pub enum MeasurementError {
          measure in mm, cm or m and fix the scale (--scale given)"
     )]
     ScaleUnknown,
-    #[error(transparent)]
-    Misread(#[from] Misread),
 }
 
 /// Why a point is not one of the sheet.
@@ -76,23 +68,15 @@ impl MeasuredSheet {
             points,
             scale,
         };
-        let (position, motion, level) = problem.start(points).ok_or(MeasurementError::Coincide)?;
-        let area: f64 = path.sheet.panels.iter().map(|panel| panel.area).sum();
-        let panel_size = (area / path.sheet.panels.len() as f64).sqrt();
-        if level > SUSPICIOUS * panel_size {
-            misread(&problem, level)?;
-        }
-        let (best, kept, limit) = problem
-            .robust((position, motion))
-            .ok_or(MeasurementError::Coincide)?;
-        let full = problem
-            .motion_at(path.end(), &kept)
-            .ok_or(MeasurementError::Coincide)?;
+        let best = problem.fit(problem.best_position());
+        let full = problem.fit(path.end());
+        let (Some(best), Some(full)) = (best, full) else {
+            return Err(MeasurementError::Coincide);
+        };
         Ok(Self {
-            load_factor_error: problem.load_factor_error(&best, &kept),
-            renumbered: renumbered(path.sheet, &problem.fit(best, &kept), limit),
-            best: problem.fit(best, &kept),
-            full: problem.fit(full, &kept),
+            load_factor_error: problem.load_factor_error(&best),
+            best,
+            full,
         })
     }
 }

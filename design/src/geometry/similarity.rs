@@ -10,8 +10,6 @@
 //! the plane case of Umeyama (IEEE Trans. PAMI 13, 1991, 376). At a fixed scale, turn is divided by its magnitude.
 
 use faer::c64;
-use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
 
 /// Whether the scale is a part of the fit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -44,10 +42,6 @@ pub struct Similarity {
 /// A point and its image.
 pub type Pair = [c64; 2];
 
-/// Maximum number of two-point fits of [`Similarity::least_median`]. With half of the points wrong, none of 500 pairs
-/// consists of two correct ones with a probability of 0.75^500.
-const MAX_TRIALS: usize = 500;
-
 impl Similarity {
     /// The least-squares fit; `None` if the points, or their images, coincide.
     pub fn least_squares(pairs: &[Pair], scale: Scale) -> Option<Self> {
@@ -68,30 +62,6 @@ impl Similarity {
             turn,
             shift: to - turn * from,
         })
-    }
-
-    /// The two-point fit with the least median of the residuals, and that median: half of the points may be
-    /// wrong by any amount (Rousseeuw, J. Am. Stat. Assoc. 79, 1984, 871). At most 500 pairs of points are tried.
-    pub fn least_median(pairs: &[Pair], scale: Scale) -> Option<(Self, f64)> {
-        let count = pairs.len();
-        let all = (0..count).flat_map(|i| (0..i).map(move |j| (i, j)));
-        let mut trials: Vec<(usize, usize)> = all.take(MAX_TRIALS + 1).collect();
-        if trials.len() > MAX_TRIALS {
-            let mut random = ChaCha8Rng::seed_from_u64(0);
-            let mut one = || random.random_range(0..count);
-            trials = (0..MAX_TRIALS).map(|_| (one(), one())).collect();
-        }
-        let fits = trials
-            .into_iter()
-            .filter_map(|(i, j)| Self::least_squares(&[pairs[i], pairs[j]], scale));
-        fits.map(|fit| (fit, fit.median(pairs)))
-            .min_by(|a, b| a.1.total_cmp(&b.1))
-    }
-
-    /// The median of the residuals, as lengths before the motion.
-    fn median(&self, pairs: &[Pair]) -> f64 {
-        let mut residuals: Vec<f64> = pairs.iter().map(|pair| self.residual(pair)).collect();
-        median(&mut residuals)
     }
 
     /// Distance of the image from its prediction, as a length before the motion.
@@ -117,15 +87,6 @@ impl Similarity {
     /// The rotation (rad).
     pub fn rotation(&self) -> f64 {
         self.turn.arg()
-    }
-}
-
-/// The upper median; the values are reordered. Zero without values.
-pub fn median(values: &mut [f64]) -> f64 {
-    let middle = values.len() / 2;
-    match values.len() {
-        0 => 0.0,
-        _ => *values.select_nth_unstable_by(middle, f64::total_cmp).1,
     }
 }
 
@@ -187,25 +148,10 @@ mod tests {
     }
 
     #[test]
-    fn four_tenths_of_wrong_points_do_not_move_the_least_median() {
-        let mut pairs = pairs(MOTION);
-        for pair in pairs.iter_mut().step_by(5).take(12) {
-            pair[1] += c64::new(1e5, -400.0);
-        }
-        for pair in pairs.iter_mut().skip(1).step_by(5).take(12) {
-            pair[1] = c64::new(7.0, 7.0);
-        }
-        let (fit, median) = Similarity::least_median(&pairs, Scale::Free).unwrap();
-        assert!(median < 1e-10, "{median}");
-        assert!((fit.turn - MOTION.turn).norm() < 1e-12);
-    }
-
-    #[test]
     fn coinciding_points_have_no_fit() {
         let same = [[c64::ONE, c64::I]; 5];
         for scale in [Scale::Given, Scale::Free] {
             assert_eq!(Similarity::least_squares(&same, scale), None);
-            assert_eq!(Similarity::least_median(&same, scale), None);
             assert_eq!(Similarity::least_squares(&[], scale), None);
         }
     }

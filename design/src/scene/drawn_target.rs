@@ -1,7 +1,6 @@
 //! A drawing as the target of a sheet.
 
 use crate::objective::target::{Target, TargetError, TargetShape};
-use crate::scene::ratios::rounded;
 use std::path::Path;
 
 /// Points along a drawn outline from which its area is computed.
@@ -24,4 +23,9 @@ pub fn place_drawing(
     let offset = outline.mean();
     let placed = [0, 1].map(|i| rounded(centre[i] - height * offset[i]));
     Ok((placed, height))
+}
+
+/// To six significant digits, so that a product of two short numbers is short.
+pub fn rounded(x: f64) -> f64 {
+    format!("{x:.5e}").parse().unwrap_or(x)
 }

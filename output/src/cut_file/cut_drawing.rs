@@ -12,7 +12,7 @@ pub enum Layer {
     AttachmentHoles,
     /// The slits.
     Cut,
-    /// The seams between two parts of a sheet.
+    /// Without shapes: files declare it, as those of earlier versions.
     Joint,
     /// The edge of the sheet.
     Outline,
@@ -111,13 +111,6 @@ impl CutDrawing {
             let shapes = self.on(layer);
             shapes.map(move |shape| (style(layer, shape), shape))
         })
-    }
-
-    /// Turns all shapes about the origin by 90 degrees, counter-clockwise.
-    pub fn turn(&mut self) {
-        for (_, shape) in &mut self.shapes {
-            shape.turn();
-        }
     }
 
     /// Shifts all shapes (mm).

@@ -16,20 +16,6 @@ pub fn cut_list(sheet: &Sheet, cuts: &CutLines) -> String {
     text
 }
 
-/// The rows of the cut lists of several designs, each row with the name of its design, by which hinges are numbered.
-pub fn nested_cut_list<'a>(lists: impl Iterator<Item = (&'a str, String)>) -> String {
-    let mut text = String::new();
-    for (name, list) in lists {
-        let name = name.replace('"', "\"\"");
-        let mut lines = list.lines();
-        if let Some(header) = lines.next().filter(|_| text.is_empty()) {
-            text += &format!("design,{header}\n");
-        }
-        lines.for_each(|line| text += &format!("\"{name}\",{line}\n"));
-    }
-    text
-}
-
 /// One row an attachment: what holds or pulls which panel, where in the flat sheet, its hole and its clip.
 pub fn attachment_list(cuts: &CutLines) -> String {
     let mut text = "attachment,panel,x_mm,y_mm,hole_diameter_mm,clip_width_mm\n".to_owned();

@@ -1,4 +1,4 @@
-//! The order of cutting: holes before slits, slits before seams, the outline last, so that the sheet holds what is cut.
+//! The order of cutting: holes before slits, the outline last, so that the sheet holds what is cut.
 //!
 //! Within a layer the tool moves on to the nearest cut, which it begins at the nearer end. The tour is then shortened
 //! by 2-opt: a run of cuts is cut backwards wherever this reduces the travel between the cuts.

@@ -88,53 +88,6 @@ pub enum FabricationError {
         written: f64,
         simulated: f64,
     },
-    #[error(
-        "panel {panel} with its joints is {} x {} mm large and does not fit on the bed of {} x {} mm: use a bed \
-         of at least this size",
-        size[0].ceil(), size[1].ceil(), bed[0], bed[1]
-    )]
-    PartTooLarge {
-        panel: usize,
-        size: [f64; 2],
-        bed: [f64; 2],
-    },
-    #[error(
-        "{name} takes {:.1} x {:.1} mm with kerf and over-run, but a sheet of the stock has {:.1} x {:.1} mm inside its margin: {}",
-        size[0], size[1], room[0], room[1],
-        if *fits_turned {
-            "turned by 90 degrees it fits (leave out --no-turn)"
-        } else {
-            "use a larger stock, a smaller margin, or cut the design in parts (--bed)"
-        }
-    )]
-    LargerThanStock {
-        name: String,
-        size: [f64; 2],
-        room: [f64; 2],
-        fits_turned: bool,
-    },
-    #[error(
-        "the joint at hinge {hinge} crosses panel {panel}, which is too small for tape of {lap} mm to either side: {}",
-        with_less_tape(*widest)
-    )]
-    NoRoomForSeam {
-        hinge: usize,
-        panel: usize,
-        lap: f64,
-        /// The widest tape for which there is room; not positive if there is none without tape either.
-        widest: f64,
-    },
     #[error("the drawing takes {pages} pages, more than {limit}: choose a larger paper")]
     TooManyPages { pages: usize, limit: usize },
-}
-
-/// What to do where a panel is too small for a joint.
-fn with_less_tape(widest: f64) -> String {
-    // Rounded down, so that the width stated fits.
-    let tenths = (10.0 * widest).floor() / 10.0;
-    if tenths > 0.0 {
-        format!("use --lap {tenths}, or a larger bed")
-    } else {
-        "use a larger bed, or design larger panels".to_owned()
-    }
 }

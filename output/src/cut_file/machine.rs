@@ -156,7 +156,7 @@ impl Service {
         let large = self.size.filter(too_large).map(|most| {
             let [width, height] = features.size;
             format!(
-                "a sheet of {width:.0} x {height:.0} mm, at most {:.0} x {:.0} mm (--bed)",
+                "a sheet of {width:.0} x {height:.0} mm, at most {:.0} x {:.0} mm",
                 most[0], most[1]
             )
         });
@@ -175,9 +175,12 @@ impl Machine {
     }
 
     /// The paths in a sheet and the marks on it, in the order of the pattern; an error if they do not exist.
-    pub fn paths(&self, cuts: &CutLines) -> Result<CutDrawing, FabricationError> {
+    fn paths(&self, cuts: &CutLines) -> Result<CutDrawing, FabricationError> {
         key_limits::check::<Self>(self)?;
-        let kerf = self.kerf_of_paths(cuts);
+        let kerf = self.tool_kerf.unwrap_or(match self.cuts {
+            Cuts::Lines => cuts.kerf,
+            Cuts::Slots => 0.0,
+        });
         let mut cuts = cuts.clone();
         cuts.cutting.over_run = self.over_run(&cuts);
         let mut drawing = match self.cuts {
@@ -195,25 +198,6 @@ impl Machine {
             }
         }
         Ok(drawing)
-    }
-
-    /// Whether a slit is one pass of the tool, which is then as wide as the slits.
-    pub fn cuts_lines(&self) -> bool {
-        self.cuts == Cuts::Lines
-    }
-
-    /// Distance of the centre of the tool from the paths, on their outer side (mm): half of the part of the kerf that the paths do
-    /// not allow for. A service compensates its own kerf, which is at most that of the slits.
-    pub fn reach(&self, cuts: &CutLines) -> f64 {
-        0.5 * (cuts.kerf - self.kerf_of_paths(cuts)).max(0.0)
-    }
-
-    /// Width that the tool removes and the paths allow for (mm).
-    fn kerf_of_paths(&self, cuts: &CutLines) -> f64 {
-        self.tool_kerf.unwrap_or(match self.cuts {
-            Cuts::Lines => cuts.kerf,
-            Cuts::Slots => 0.0,
-        })
     }
 
     fn over_run(&self, cuts: &CutLines) -> f64 {

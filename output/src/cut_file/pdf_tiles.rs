@@ -5,7 +5,7 @@
 
 use crate::cut_file::cut_drawing::CutDrawing;
 use crate::cut_file::tiling::{BORDER, FOOTER, OVERLAP, Tiling, cell_name};
-use crate::display::pdf::{self, Font, Form, clip, draw, page, place};
+use crate::display::pdf::{self, Form, clip, draw, page, place};
 use crate::display::{Canvas, Colour, Style, Text, rectangle};
 use pdf_writer::{Content, Name};
 
@@ -40,7 +40,7 @@ pub fn tiles_pdf(drawing: &CutDrawing, tiling: &Tiling, title: &str, notes: &[St
         content: shapes.finish().to_vec(),
         bounds: [low.map(|x| x - 1.0), high.map(|x| x + 1.0)],
     };
-    pdf::file(tiling.page, &[Font::Sans], Some(&form), pages)
+    pdf::file(tiling.page, &form, pages)
 }
 
 /// The page of a tile: its part of the drawing, trim lines with crosses, its name and a ruler.

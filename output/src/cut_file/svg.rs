@@ -11,11 +11,7 @@ const LINE: f64 = 0.1;
 /// The file of a drawing, on a page around it.
 pub fn svg(drawing: &CutDrawing) -> String {
     let [low, high] = drawing.bounds();
-    svg_on_page(drawing, [low.map(|x| x - MARGIN), high.map(|x| x + MARGIN)])
-}
-
-/// The file of a drawing, on a page with the given lower left and upper right corner (mm).
-pub fn svg_on_page(drawing: &CutDrawing, page: [[f64; 2]; 2]) -> String {
+    let page = [low.map(|x| x - MARGIN), high.map(|x| x + MARGIN)];
     let used = Layer::all().filter(|layer| drawing.on(*layer).next().is_some());
     let groups = used.map(|layer| group(layer.name(), layer.rgb(), LINE, drawing.on(layer)));
     document(

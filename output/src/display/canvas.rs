@@ -60,11 +60,6 @@ impl Canvas {
         self.shapes.iter().map(|(style, shape)| (*style, shape))
     }
 
-    /// The bounding box: lower left and upper right corner (mm).
-    pub(crate) fn bounds(&self) -> [[f64; 2]; 2] {
-        Shape::extent(self.shapes.iter().map(|(_, shape)| shape))
-    }
-
     /// The SVG of the rectangle from `low` to `high` (mm), `width` wide in an SVG unit such as `mm` or `px`.
     pub fn svg(&self, corners: [[f64; 2]; 2], width: f64, unit: &str) -> String {
         let elements = self.shapes.iter();

@@ -1,8 +1,7 @@
-//! Pages of PDF in mm, with fonts that every reader has.
+//! Pages of PDF in mm, in Helvetica, which every reader has. Styles are colours, widths and dashes: no opacity, no halo.
 
 use crate::display::shape::{Anchor, Shape, Text};
 use crate::display::style::{Colour, Style};
-use pdf_writer::types::{LineCapStyle, LineJoinStyle, TextRenderingMode};
 use pdf_writer::{Content, Finish, Name, Pdf, Rect, Ref, Str};
 
 /// Points per mm.
@@ -12,27 +11,8 @@ const CAPITALS: f64 = 0.718;
 const DIGIT: f64 = 0.556;
 const LETTER: f64 = 0.6;
 
-/// A font.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Font {
-    /// Helvetica.
-    Sans,
-    /// Helvetica Bold.
-    Bold,
-    /// Courier, in which every character is 0.6 times as wide as the font is high.
-    Fixed,
-}
-
-impl Font {
-    /// The name of its resource, and of the font.
-    fn names(self) -> [Name<'static>; 2] {
-        match self {
-            Self::Sans => [Name(b"F"), Name(b"Helvetica")],
-            Self::Bold => [Name(b"B"), Name(b"Helvetica-Bold")],
-            Self::Fixed => [Name(b"C"), Name(b"Courier")],
-        }
-    }
-}
+/// The name of the resource of the font.
+const FONT: Name = Name(b"F");
 
 /// A drawing that is written once and shown on any number of pages.
 pub(crate) struct Form {
@@ -44,36 +24,21 @@ pub(crate) struct Form {
     pub bounds: [[f64; 2]; 2],
 }
 
-/// A file of pages of the given size (mm), with the fonts and the form that they use.
-pub(crate) fn file(
-    size: [f64; 2],
-    fonts: &[Font],
-    form: Option<&Form>,
-    pages: Vec<Content>,
-) -> Vec<u8> {
+/// A file of pages of the given size (mm), with a form that they use.
+pub(crate) fn file(size: [f64; 2], form: &Form, pages: Vec<Content>) -> Vec<u8> {
     let mut ids = (1..).map(Ref::new);
     let mut next = || ids.next().expect("fewer objects than integers");
-    let [catalog, tree] = [next(), next()];
-    let fonts: Vec<(Font, Ref)> = fonts.iter().map(|font| (*font, next())).collect();
+    let [catalog, tree, font, shared] = std::array::from_fn(|_| next());
     let mut file = Pdf::new();
     file.catalog(catalog).pages(tree);
-    for (font, id) in &fonts {
-        file.type1_font(*id)
-            .base_font(font.names()[1])
-            .encoding_predefined(Name(b"WinAnsiEncoding"));
-    }
-    let form = form.map(|form| {
-        let id = next();
-        let [low, high] = form.bounds.map(|corner| corner.map(|x| x as f32));
-        let mut object = file.form_xobject(id, &form.content);
-        object.bbox(Rect::new(low[0], low[1], high[0], high[1]));
-        let mut resources = object.resources();
-        let mut dictionary = resources.fonts();
-        for (font, id) in &fonts {
-            dictionary.pair(font.names()[0], *id);
-        }
-        (form.name, id)
-    });
+    file.type1_font(font)
+        .base_font(Name(b"Helvetica"))
+        .encoding_predefined(Name(b"WinAnsiEncoding"));
+    let [low, high] = form.bounds.map(|corner| corner.map(|x| x as f32));
+    let mut object = file.form_xobject(shared, &form.content);
+    object.bbox(Rect::new(low[0], low[1], high[0], high[1]));
+    object.resources().fonts().pair(FONT, font);
+    object.finish();
     let pages: Vec<(Ref, Ref, Content)> = (pages.into_iter())
         .map(|page| (next(), next(), page))
         .collect();
@@ -85,14 +50,8 @@ pub(crate) fn file(
         page.media_box(Rect::new(0.0, 0.0, width, height));
         page.parent(tree).contents(stream);
         let mut resources = page.resources();
-        let mut dictionary = resources.fonts();
-        for (font, id) in &fonts {
-            dictionary.pair(font.names()[0], *id);
-        }
-        dictionary.finish();
-        if let Some((name, id)) = form {
-            resources.x_objects().pair(name, id);
-        }
+        resources.fonts().pair(FONT, font);
+        resources.x_objects().pair(form.name, shared);
         resources.finish();
         page.finish();
         file.stream(stream, &content.finish());
@@ -114,43 +73,30 @@ pub(crate) fn clip(content: &mut Content, [low, high]: [[f64; 2]; 2]) {
     content.clip_nonzero().end_path();
 }
 
-/// The colour of texts, 0 to 255.
-pub(crate) fn colour(content: &mut Content, rgb: Colour) {
-    let [r, g, b] = rgb.map(|x| f32::from(x) / 255.0);
-    content.set_fill_rgb(r, g, b);
-}
-
 /// Sets what follows smaller or larger, and shifts its origin to a point (mm).
 pub(crate) fn place(content: &mut Content, scale: f64, [x, y]: [f64; 2]) {
     let [scale, x, y] = [scale, x, y].map(|value| value as f32);
     content.transform([scale, 0.0, 0.0, scale, x, y]);
 }
 
-/// Draws shapes one after the other; texts in Helvetica. Where a style is transparent the paper shines through.
+/// Draws shapes one after the other.
 pub(crate) fn draw<'a>(
     content: &mut Content,
     shapes: impl IntoIterator<Item = (Style, &'a Shape)>,
 ) {
     for (style, shape) in shapes {
+        if let Some([r, g, b]) = style.fill.map(rgb) {
+            content.set_fill_rgb(r, g, b);
+        }
         if let Shape::Text(text) = shape {
-            draw_text(content, &style, text);
+            write(content, text);
             continue;
         }
-        if let Some(fill) = style.fill {
-            colour(content, on_white(fill, style.fill_opacity));
+        if let Some([r, g, b]) = style.stroke.map(rgb) {
+            content.set_stroke_rgb(r, g, b);
+            content.set_line_width(style.width as f32);
         }
-        if let Some(stroke) = style.stroke {
-            set_line(content, on_white(stroke, style.stroke_opacity), style.width);
-            let [cap, join] = if style.round { [1, 1] } else { [0, 0] };
-            content.set_line_cap([LineCapStyle::ButtCap, LineCapStyle::RoundCap][cap]);
-            content.set_line_join([LineJoinStyle::MiterJoin, LineJoinStyle::RoundJoin][join]);
-        }
-        let dash: Vec<f32> = style
-            .dash
-            .iter()
-            .flatten()
-            .map(|length| *length as f32)
-            .collect();
+        let dash = style.dash.iter().flatten().map(|length| *length as f32);
         content.set_dash_pattern(dash, 0.0);
         outline(content, shape);
         match (style.fill, style.stroke) {
@@ -162,14 +108,8 @@ pub(crate) fn draw<'a>(
     }
 }
 
-/// A colour with this opacity on white paper.
-fn on_white(rgb: Colour, opacity: f64) -> Colour {
-    rgb.map(|x| (255.0 - opacity * (255.0 - f64::from(x))).round() as u8)
-}
-
-fn set_line(content: &mut Content, rgb: Colour, width: f64) {
-    let [r, g, b] = rgb.map(|x| f32::from(x) / 255.0);
-    content.set_stroke_rgb(r, g, b).set_line_width(width as f32);
+fn rgb(colour: Colour) -> [f32; 3] {
+    colour.map(|x| f32::from(x) / 255.0)
 }
 
 fn outline(content: &mut Content, shape: &Shape) {
@@ -209,36 +149,18 @@ fn circle(content: &mut Content, [x, y]: [f64; 2], radius: f64) {
     content.close_path();
 }
 
-fn draw_text(content: &mut Content, style: &Style, text: &Text) {
+fn write(content: &mut Content, text: &Text) {
     let size = text.height / CAPITALS;
-    let widths = text
-        .text
-        .chars()
-        .map(|c| if c.is_ascii_digit() { DIGIT } else { LETTER });
+    let characters = || text.text.chars();
+    let widths = characters().map(|c| if c.is_ascii_digit() { DIGIT } else { LETTER });
     let [mut x, y] = text.baseline();
     if text.anchor != Anchor::Start {
         x -= 0.5 * size * widths.sum::<f64>();
     }
-    if let Some(width) = style.halo {
-        set_line(content, [255; 3], width);
-        content.set_dash_pattern([], 0.0);
-        content.set_text_rendering_mode(TextRenderingMode::Stroke);
-        write(content, Font::Sans, size, [x, y], &text.text);
-        content.set_text_rendering_mode(TextRenderingMode::Fill);
-    }
-    colour(
-        content,
-        on_white(style.fill.unwrap_or_default(), style.fill_opacity),
-    );
-    write(content, Font::Sans, size, [x, y], &text.text);
-}
-
-/// A text that begins at a point, in a font of the given size (mm).
-pub(crate) fn write(content: &mut Content, font: Font, size: f64, [x, y]: [f64; 2], text: &str) {
-    let bytes: Vec<u8> = text.chars().map(|c| byte(c).unwrap_or(b'?')).collect();
+    let bytes: Vec<u8> = characters().map(|c| byte(c).unwrap_or(b'?')).collect();
     content
         .begin_text()
-        .set_font(font.names()[0], size as f32)
+        .set_font(FONT, size as f32)
         .set_text_matrix([1.0, 0.0, 0.0, 1.0, x as f32, y as f32])
         .show(Str(&bytes))
         .end_text();

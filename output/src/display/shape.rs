@@ -144,21 +144,12 @@ impl Shape {
 
     /// Shifts the shape (mm).
     pub(crate) fn shift(&mut self, by: [f64; 2]) {
-        self.each_point(|[x, y]| [x + by[0], y + by[1]]);
-    }
-
-    /// Turns the shape about the origin by 90 degrees, counter-clockwise; a text stays horizontal.
-    pub(crate) fn turn(&mut self) {
-        self.each_point(|[x, y]| [-y, x]);
-    }
-
-    fn each_point(&mut self, moved: impl Fn([f64; 2]) -> [f64; 2]) {
-        let replace = |point: &mut [f64; 2]| *point = moved(*point);
+        let shift = |point: &mut [f64; 2]| *point = [point[0] + by[0], point[1] + by[1]];
         match self {
-            Self::Line(ends) => ends.iter_mut().for_each(replace),
-            Self::Circle { centre, .. } => replace(centre),
-            Self::Polyline(points) | Self::Polygon(points) => points.iter_mut().for_each(replace),
-            Self::Text(text) => replace(&mut text.at),
+            Self::Line(ends) => ends.iter_mut().for_each(shift),
+            Self::Circle { centre, .. } => shift(centre),
+            Self::Polyline(points) | Self::Polygon(points) => points.iter_mut().for_each(shift),
+            Self::Text(text) => shift(&mut text.at),
         }
     }
 }

@@ -15,7 +15,6 @@ use design::sheet::kinematics::{
     Configuration, deployed as moved, deployed_corners, hinge_deformations,
 };
 use design::sheet::topology::is_even;
-use std::collections::BTreeSet;
 
 /// What a state without loads is called.
 const LET_GO: &str = "Loads taken off";
@@ -106,33 +105,6 @@ pub fn deployment_frames(scene: &Scene, designed: &Designed, most: usize) -> Vec
         )
     };
     std::iter::zip(&index, &states).map(frame).collect()
-}
-
-/// A state without its hinge windows, with the numbers of the panels that have no symbol, for paper; `unit` is in mm of the
-/// sheet.
-pub(crate) fn deployed_on_paper(
-    scene: &Scene,
-    sheet: &Sheet,
-    step: &LoadStep,
-    unit: f64,
-) -> Sketch {
-    let state = State::new(scene, sheet, step);
-    let mut sketch = Sketch::new(unit);
-    state.panels(&mut sketch);
-    let actuation = scene.actuation();
-    let supported = actuation.supports.iter().map(|support| support.panel);
-    let loads = actuation.boundary_loads().into_iter();
-    let loaded = loads.map(|load| load.panel);
-    let marked: BTreeSet<usize> = supported.chain(loaded).collect();
-    let corners = deployed_corners(sheet, &state.configuration);
-    for (k, corners) in corners.iter().enumerate() {
-        if !marked.contains(&k) {
-            sketch.panel_number(k, corners);
-        }
-    }
-    state.target(&mut sketch);
-    state.loads(&mut sketch);
-    sketch
 }
 
 /// What the colours of the hinge windows show.

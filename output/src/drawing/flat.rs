@@ -1,7 +1,7 @@
 //! The flat pattern: panels, cuts, holes, ligaments with their windows, hinge numbers.
 
 use crate::cut_file::CutLines;
-use crate::display::{Anchor, Style, Text};
+use crate::display::{Anchor, Style};
 use crate::drawing::page::{ACCENT, INK, MUTED, PANELS, Page, Sketch, TEAL};
 use design::sheet::cut_sheet::{Hinge, Sheet};
 use design::sheet::hinge_window::Window;
@@ -26,23 +26,6 @@ pub fn flat(title: &str, sheet: &Sheet, cuts: &CutLines) -> String {
     cut_lines(&mut page.sketch, cuts);
     ligaments(&mut page.sketch, sheet);
     page.finish()
-}
-
-/// The paths of the tool, with the numbers of panels and hinges, for paper; `unit` is in mm of the sheet.
-pub(crate) fn flat_on_paper(sheet: &Sheet, cuts: &CutLines, unit: f64) -> Sketch {
-    let mut sketch = Sketch::new(unit);
-    sketch.cut_drawing(&cuts.drawing());
-    for (k, panel) in sheet.panels.iter().enumerate() {
-        sketch.panel_number(k, &panel.corners);
-    }
-    for (number, (hinge, window)) in sheet.hinges.iter().zip(Window::of_sheet(sheet)).enumerate() {
-        let height = sketch.number_height(sheet.panels[hinge.panel_b()].area);
-        let reach = f64::max(0.55 * window.radius, 1.3 * height);
-        let at = number_place(hinge, &window, reach);
-        let text = Text::centred(at, height, number.to_string());
-        sketch.canvas.add(Style::fill(TEAL), text);
-    }
-    sketch
 }
 
 fn panels(sketch: &mut Sketch, sheet: &Sheet) {

@@ -7,12 +7,11 @@ use crate::drawing::page::{ACCENT, INK, MUTED, PANELS, Page, Sketch, TEAL};
 use crate::measurement::MeasurementReport;
 use design::analysis::marks::FittedPoint;
 use design::analysis::measured_openings::MeasuredOpening;
-use design::analysis::robust_pose::Fit;
+use design::analysis::path_fit::Fit;
 use design::geometry::polygon::bounds;
 use design::sheet::cut_sheet::Sheet;
 use design::sheet::kinematics::deployed_corners;
 use design::sheet::topology::is_even;
-use std::collections::BTreeSet;
 
 /// Magnifications of the residuals.
 const MAGNIFICATIONS: [f64; 8] = [1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0];
@@ -27,7 +26,7 @@ pub fn measured(sheet: &Sheet, fit: &Fit, report: &MeasurementReport) -> String 
     let area: f64 = sheet.panels.iter().map(|panel| panel.area).sum();
     let panel_size = (area / sheet.panels.len() as f64).sqrt();
     let factor = magnification(fit, panel_size);
-    let residuals_drawn = fit.kept().map(|point| residual(point, factor)[1]);
+    let residuals_drawn = fit.points.iter().map(|point| residual(point, factor)[1]);
     let [low, high] = bounds(corners.iter().flatten().copied().chain(residuals_drawn));
     let (width, height) = (high[0] - low[0], high[1] - low[1]);
     // Both charts stand at the right of the sheet, one above the other.
@@ -60,9 +59,6 @@ pub fn measured(sheet: &Sheet, fit: &Fit, report: &MeasurementReport) -> String 
     }
     outlines(sketch, sheet, fit);
     residuals(sketch, fit, factor, panel_size);
-    let margin = 0.2 * panel_size;
-    let around = [low.map(|x| x - margin), high.map(|x| x + margin)];
-    outliers(sketch, fit, around);
     openings(
         sketch,
         [[left, top - 1.05 * side], [left + side, top - 0.05 * side]],
@@ -78,7 +74,11 @@ pub fn measured(sheet: &Sheet, fit: &Fit, report: &MeasurementReport) -> String 
 
 /// The largest magnification at which no residual of the fit is longer than a part of a panel.
 fn magnification(fit: &Fit, panel_size: f64) -> f64 {
-    let longest = fit.kept().map(FittedPoint::distance).fold(0.0, f64::max);
+    let longest = fit
+        .points
+        .iter()
+        .map(FittedPoint::distance)
+        .fold(0.0, f64::max);
     let fits = |factor: &&f64| *factor * longest <= LONGEST * panel_size;
     *MAGNIFICATIONS.iter().rev().find(fits).unwrap_or(&1.0)
 }
@@ -86,7 +86,7 @@ fn magnification(fit: &Fit, panel_size: f64) -> f64 {
 /// Draws the edges of the panels whose two corners are measured.
 fn outlines(sketch: &mut Sketch, sheet: &Sheet, fit: &Fit) {
     let mut measured = vec![[None; 4]; sheet.panels.len()];
-    for point in fit.kept() {
+    for point in &fit.points {
         if let Some(corner) = point.mark.corner {
             measured[point.mark.panel][corner] = Some(point.measured);
         }
@@ -105,7 +105,7 @@ fn outlines(sketch: &mut Sketch, sheet: &Sheet, fit: &Fit) {
 fn residuals(sketch: &mut Sketch, fit: &Fit, factor: f64, panel_size: f64) {
     let (stroke, dot) = (sketch.stroke(ACCENT, 1.6), Style::fill(ACCENT));
     let size = f64::min(2.2 * sketch.unit, 0.03 * panel_size);
-    for point in fit.kept() {
+    for point in &fit.points {
         let [from, to] = residual(point, factor);
         sketch.canvas.line(from, to, stroke);
         sketch.canvas.circle(from, size, dot);
@@ -116,32 +116,6 @@ fn residuals(sketch: &mut Sketch, fit: &Fit, factor: f64, panel_size: f64) {
 fn residual(point: &FittedPoint, factor: f64) -> [[f64; 2]; 2] {
     let ([x, y], [dx, dy]) = (point.predicted, point.residual());
     [[x, y], [x + factor * dx, y + factor * dy]]
-}
-
-/// Draws a cross at every outlier between `low` and `high`, and the number of its panel once.
-fn outliers(sketch: &mut Sketch, fit: &Fit, [low, high]: [[f64; 2]; 2]) {
-    let label = sketch.haloed(INK).bold();
-    let (cross, arm) = (sketch.stroke(INK, 1.6), 4.0 * sketch.unit);
-    let inside =
-        |[x, y]: [f64; 2]| (low[0]..=high[0]).contains(&x) && (low[1]..=high[1]).contains(&y);
-    let mut named = BTreeSet::new();
-    let outliers = fit
-        .points
-        .iter()
-        .filter(|point| point.outlier && inside(point.measured));
-    for point in outliers {
-        let ([x, y], panel) = (point.measured, point.mark.panel);
-        sketch
-            .canvas
-            .line([x - arm, y - arm], [x + arm, y + arm], cross);
-        sketch
-            .canvas
-            .line([x - arm, y + arm], [x + arm, y - arm], cross);
-        if named.insert(panel) {
-            let (beside, height) = ([x + 1.5 * arm, y + 0.5 * arm], 12.0 * sketch.unit);
-            sketch.text(beside, height, Anchor::Start, label, &format!("P{panel}"));
-        }
-    }
 }
 
 /// Draws the openings measured against predicted, with two standard errors and the line of agreement.

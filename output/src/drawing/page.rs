@@ -1,8 +1,7 @@
 //! Common parts of the pictures: the page with its title and scale bar, the colours, the colour scale.
 
-use crate::cut_file::CutDrawing;
-use crate::display::{Anchor, Canvas, Colour, Style, Text, rectangle, trimmed};
-use design::geometry::polygon::{area, bounds, mean};
+use crate::display::{Anchor, Canvas, Colour, Style, rectangle, trimmed};
+use design::geometry::polygon::bounds;
 
 /// Colour of main lines and titles.
 pub const INK: Colour = [31, 41, 51];
@@ -54,12 +53,6 @@ pub(crate) struct Page {
 }
 
 impl Sketch {
-    /// An empty drawing.
-    pub fn new(unit: f64) -> Self {
-        let canvas = Canvas::default();
-        Self { canvas, unit }
-    }
-
     /// A line with the given width in units.
     pub fn stroke(&self, colour: Colour, width: f64) -> Style {
         Style::stroke(colour, width * self.unit).round()
@@ -79,28 +72,6 @@ impl Sketch {
     /// A text that remains readable over lines.
     pub fn haloed(&self, colour: Colour) -> Style {
         Style::fill(colour).haloed(4.0 * self.unit)
-    }
-
-    /// Adds the paths of a tool in the colours of their layers.
-    pub fn cut_drawing(&mut self, drawing: &CutDrawing) {
-        let shapes = drawing.coloured(1.2 * self.unit);
-        let shapes = shapes.map(|(style, shape)| (style, shape.clone()));
-        self.canvas.shapes.extend(shapes);
-    }
-
-    /// Writes the number of a panel with the given corners in its middle.
-    pub fn panel_number(&mut self, k: usize, corners: &[[f64; 2]; 4]) {
-        let text = Text::centred(
-            mean(corners),
-            self.number_height(area(corners)),
-            format!("P{k}"),
-        );
-        self.canvas.add(Style::fill(MUTED), text);
-    }
-
-    /// The height of a number on a panel of the given area: less than that of other labels on small panels (mm).
-    pub fn number_height(&self, panel_area: f64) -> f64 {
-        f64::min(10.0 * self.unit, 0.14 * panel_area.sqrt())
     }
 }
 

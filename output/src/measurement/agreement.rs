@@ -1,12 +1,12 @@
 //! How far a measured sheet is from a state of its path.
 
 use design::analysis::measured_openings::{MeasuredOpening, MeasuredPanel, openings};
-use design::analysis::robust_pose::Fit;
+use design::analysis::path_fit::Fit;
 use design::sheet::cut_sheet::Sheet;
 use serde::Serialize;
 use support::statistics::root_mean_square;
 
-/// Agreement of the points without outliers with one state, after the rigid motion (and scale) is removed.
+/// Agreement of the points with one state, after the rigid motion (and scale) is removed.
 #[derive(Clone, Debug, Serialize)]
 pub struct Agreement {
     /// Load factor of the state.
@@ -56,7 +56,10 @@ pub struct OpeningSpread {
 impl Agreement {
     pub(super) fn new(sheet: &Sheet, fit: &Fit) -> Self {
         let panels = MeasuredPanel::all(sheet, fit);
-        let corners = fit.kept().filter(|point| point.mark.corner.is_some());
+        let corners = fit
+            .points
+            .iter()
+            .filter(|point| point.mark.corner.is_some());
         let corners = corners.map(|point| (point.mark.to_string(), point.distance()));
         let centres = panels
             .iter()

@@ -4,7 +4,7 @@ use crate::measurement::{Agreement, Closed, MeasurementReport, OpeningSpread, Sp
 use design::objective::scores::shown;
 use std::fmt::{self, Write};
 
-/// Number of outliers, of hinges and of panels on the printed page; the tables hold all of them.
+/// Number of hinges and of panels on the printed page; the tables hold all of them.
 const LISTED: usize = 12;
 
 impl MeasurementReport {
@@ -12,7 +12,7 @@ impl MeasurementReport {
     pub fn residuals_csv(&self) -> String {
         let mut text =
             "panel,corner,measured_x_mm,measured_y_mm,predicted_x_mm,predicted_y_mm,residual_x_mm,\
-                        residual_y_mm,distance_mm,outlier\n"
+                        residual_y_mm,distance_mm\n"
                 .to_owned();
         for point in &self.best_points {
             let corner = point.mark.corner.map(|corner| corner.to_string());
@@ -21,11 +21,10 @@ impl MeasurementReport {
             // Writing to a string cannot fail.
             let _ = writeln!(
                 text,
-                "{},{},{mx:.4},{my:.4},{px:.4},{py:.4},{rx:.4},{ry:.4},{:.4},{}",
+                "{},{},{mx:.4},{my:.4},{px:.4},{py:.4},{rx:.4},{ry:.4},{:.4}",
                 point.mark.panel,
                 corner.unwrap_or_default(),
-                point.distance(),
-                point.outlier
+                point.distance()
             );
         }
         text
@@ -52,98 +51,51 @@ impl MeasurementReport {
     }
 
     fn agreement(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        let mut row = |name: &str, [full, best]: [Option<String>; 2]| {
-            let [full, best] = [full, best].map(|value| value.unwrap_or_else(|| "-".to_owned()));
-            writeln!(f, "{name:<38} {full:>20} {best:>20}")
-        };
-        let both =
-            |value: &dyn Fn(&Agreement) -> Option<String>| [&self.full, &self.best].map(value);
-        row(
-            "",
-            ["end of the path", "best fit"].map(|name| Some(name.to_owned())),
-        )?;
         let best = match self.load_factor_error {
             Some(error) => format!("{} +- {}", shown(self.best.load_factor), shown(error)),
             None => "not determined".to_owned(),
         };
-        row(
-            "load factor",
-            [shown(self.full.load_factor), best].map(Some),
-        )?;
+        let full = shown(self.full.load_factor);
+        writeln!(f, "{:<38} {:>20} {:>20}", "", "end of the path", "best fit")?;
+        writeln!(f, "{:<38} {full:>20} {best:>20}", "load factor")?;
+        let mut row = |name: &str, value: &dyn Fn(&Agreement) -> Option<String>| {
+            let [full, best] =
+                [&self.full, &self.best].map(|of| value(of).unwrap_or_else(|| "-".to_owned()));
+            writeln!(f, "{name:<38} {full:>20} {best:>20}")
+        };
         type Part = fn(&Agreement) -> Option<&Spread>;
         let parts: [(&str, Part); 2] = [
-            ("corners", |agreement| agreement.corners.as_ref()),
-            ("panel centres", |agreement| agreement.centres.as_ref()),
+            ("corners", |of| of.corners.as_ref()),
+            ("panel centres", |of| of.centres.as_ref()),
         ];
         for (name, part) in parts {
-            let value =
-                |value: fn(&Spread) -> String| both(&|agreement| part(agreement).map(value));
-            row(
-                &format!("{name}, rms (mm)"),
-                value(|spread| format!("{:.2}", spread.rms)),
-            )?;
-            row(
-                &format!("{name}, rms (% of the sheet)"),
-                value(|spread| format!("{:.3}", spread.rms_percent)),
-            )?;
-            row(
-                &format!("{name}, maximum (mm)"),
-                value(|spread| format!("{:.2}", spread.max)),
-            )?;
-            row("  at", value(|spread| spread.max_at.clone()))?;
+            let [rms, percent, maximum] = ["rms (mm)", "rms (% of the sheet)", "maximum (mm)"]
+                .map(|quantity| format!("{name}, {quantity}"));
+            row(&rms, &|of| Some(format!("{:.2}", part(of)?.rms)))?;
+            row(&percent, &|of| {
+                Some(format!("{:.3}", part(of)?.rms_percent))
+            })?;
+            row(&maximum, &|of| Some(format!("{:.2}", part(of)?.max)))?;
+            row("  at", &|of| Some(part(of)?.max_at.clone()))?;
         }
-        let value = |value: fn(&OpeningSpread) -> String| {
-            both(&|agreement| agreement.openings.as_ref().map(value))
-        };
-        row(
-            "openings, mean measured (deg)",
-            value(|spread| format!("{:.2}", spread.measured_mean_deg)),
-        )?;
-        row(
-            "openings, mean predicted (deg)",
-            value(|spread| format!("{:.2}", spread.predicted_mean_deg)),
-        )?;
-        row(
-            "openings, rms about the mean (deg)",
-            value(|spread| format!("{:.2}", spread.spread_deg)),
-        )?;
-        row(
-            "openings, worst (deg)",
-            value(|spread| format!("{:+.2}", spread.max_deg)),
-        )?;
-        row(
-            "  at",
-            value(|spread| format!("hinge {}", spread.max_hinge)),
-        )
-    }
-
-    fn outliers(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        let count = self.outliers.len();
-        match count {
-            0 => writeln!(f, "\nno outliers")?,
-            _ => writeln!(f, "\noutliers, {count} points left out of the fit:")?,
+        type Degrees = fn(&OpeningSpread) -> f64;
+        let degrees: [(&str, Degrees); 3] = [
+            ("mean measured", |of| of.measured_mean_deg),
+            ("mean predicted", |of| of.predicted_mean_deg),
+            ("rms about the mean", |of| of.spread_deg),
+        ];
+        for (name, value) in degrees {
+            let name = format!("openings, {name} (deg)");
+            row(&name, &|of| {
+                Some(format!("{:.2}", value(of.openings.as_ref()?)))
+            })?;
         }
-        for renumbered in &self.renumbered {
-            writeln!(f, "  {renumbered}: correct the numbers in the file")?;
-        }
-        let explained = |panel| self.renumbered.iter().any(|other| other.panel == panel);
-        let single = self
-            .outliers
-            .iter()
-            .filter(|outlier| !explained(outlier.mark.panel));
-        for outlier in single.clone().take(LISTED) {
-            let [x, y] = outlier.residual;
-            let (mark, distance) = (outlier.mark.to_string(), outlier.distance);
-            writeln!(
-                f,
-                "  {mark:<16} {distance:>10.2} mm from its prediction ({x:+.2}, {y:+.2})"
-            )?;
-        }
-        if single.count() > LISTED {
-            writeln!(f, "  ... all of them are in residuals.csv")
-        } else {
-            Ok(())
-        }
+        row("openings, worst (deg)", &|of| {
+            Some(format!("{:+.2}", of.openings.as_ref()?.max_deg))
+        })?;
+        row("  at", &|of| {
+            Some(format!("hinge {}", of.openings.as_ref()?.max_hinge))
+        })
     }
 
     fn hinges(&self, f: &mut fmt::Formatter) -> fmt::Result {
@@ -179,12 +131,11 @@ impl MeasurementReport {
 
 impl fmt::Display for MeasurementReport {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        let used = self.points - self.outliers.len();
         writeln!(f, "{}: measured against predicted\n", self.title)?;
         writeln!(f, "predicted with panels in the plane and without friction")?;
         writeln!(
             f,
-            "{} points, {used} used; sheet of {:.1} mm",
+            "{} points; sheet of {:.1} mm",
             self.points, self.sheet_size
         )?;
         // In mm of the design, also if the points are in pixels.
@@ -218,7 +169,6 @@ impl fmt::Display for MeasurementReport {
         if let Some(closed) = &self.closed {
             closed.fmt(f)?;
         }
-        self.outliers(f)?;
         self.hinges(f)
     }
 }
@@ -236,13 +186,6 @@ impl fmt::Display for Closed {
             rms(&self.floor.corners),
             rms(&self.floor.centres)
         )?;
-        if self.doubtful {
-            writeln!(
-                f,
-                "warning: these points are more than half as far from the flat sheet as those of the deployed sheet: is the \
-                 file of --closed that of the closed sheet?"
-            )?;
-        }
         let above = self.centres_above.iter().map(|panel| format!(" P{panel}"));
         let (count, more) = (above.len(), if above.len() > LISTED { " ..." } else { "" });
         let listed: String = above.take(LISTED).collect();

@@ -96,17 +96,8 @@ impl Budget {
 
     /// The table as lines.
     pub(super) fn text(&self) -> String {
-        let rows = self.rows();
-        let widest = |column: usize| {
-            let widths = rows.iter().map(|row| row[column].chars().count());
-            widths.max().unwrap_or(0)
-        };
-        let [first, last] = [widest(0), widest(4)];
-        let aligned = rows.iter().map(|[cause, rms, maximum, load, source]| {
-            let [cause, source] = [format!("{cause:<first$}"), format!("{source:<last$}")];
-            vec![cause, rms.clone(), maximum.clone(), load.clone(), source]
-        });
-        let table = columns(&aligned.collect::<Vec<_>>());
+        let rows = self.rows().into_iter().map(Vec::from);
+        let table = columns(&rows.collect::<Vec<_>>(), &[0, 4]);
         format!("{BUDGET_HEADING}\n{table}{}\n", self.left_out())
     }
 }

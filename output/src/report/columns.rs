@@ -1,5 +1,7 @@
 //! Numbers as text, and columns that are as wide as their widest entry.
 
+use support::table::aligned;
+
 /// A number with the given number of significant digits: in full between 1e-3 and 1e6, with an exponent otherwise.
 pub(crate) fn rounded(value: f64, digits: usize) -> String {
     let exponential = format!("{value:.*e}", digits - 1);
@@ -30,20 +32,11 @@ pub(super) fn fixed(value: f64, decimals: usize) -> String {
     }
 }
 
-/// Rows of cells as lines; every column is aligned right, as wide as its widest cell, two spaces after the one
-/// before.
-pub(super) fn columns(rows: &[Vec<String>]) -> String {
-    let count = rows.iter().map(Vec::len).max().unwrap_or(0);
-    let width = |column: usize| {
-        let cells = rows.iter().filter_map(|row| row.get(column));
-        cells.map(|cell| cell.chars().count()).max().unwrap_or(0)
-    };
-    let widths: Vec<usize> = (0..count).map(width).collect();
-    let line = |row: &Vec<String>| {
-        let cells = std::iter::zip(row, &widths).map(|(cell, width)| format!("{cell:>width$}"));
-        cells.collect::<Vec<_>>().join("  ").trim_end().to_owned() + "\n"
-    };
-    rows.iter().map(line).collect()
+/// Rows of cells as lines; every column but those at the places `left` is aligned right, two spaces after the one before.
+pub(super) fn columns(rows: &[Vec<String>], left: &[usize]) -> String {
+    let lines = aligned(rows, |column| left.contains(&column), "  ");
+    let lines = lines.iter().map(|line| line.trim_end().to_owned() + "\n");
+    lines.collect()
 }
 
 #[cfg(test)]
@@ -82,7 +75,7 @@ mod tests {
         let rows: Vec<Vec<String>> = (extremes.iter())
             .map(|value| vec![fixed(*value, 3), fixed(-value, 1), "x".repeat(7)])
             .collect();
-        let text = columns(&rows);
+        let text = columns(&rows, &[]);
         let ends = |line: &str| line.match_indices("  ").count();
         for (line, row) in std::iter::zip(text.lines(), &rows) {
             assert_eq!(line.split_whitespace().collect::<Vec<_>>(), *row, "{text}");

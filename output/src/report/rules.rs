@@ -6,7 +6,7 @@ use crate::report::columns::rounded;
 use crate::report::fact_sheet::FactSheet;
 use crate::report::hinge_row::HingeRow;
 use crate::report::self_weight::of_the_load;
-use crate::report::warning::{Concern, Severity, Warning};
+use crate::report::warning::{Concern, Warning};
 use design::analysis::error_budget::ErrorBudget;
 use design::analysis::flatness::{Flatness, expected_departure};
 use design::equilibrium::load_step::{LoadStep, Status};
@@ -21,6 +21,7 @@ use design::sheet::cut_sheet::PanelPoint;
 use design::sheet::hinge_window::Window;
 use design::sheet::validity::overlap;
 use hinge::Regime;
+use support::severity::Severity;
 
 /// Weight or friction over load from which a sheet opens otherwise than without it.
 const HEAVY: f64 = 0.05;
@@ -206,7 +207,7 @@ fn stock(judged: &Judged) -> Option<Warning> {
     (!fits(taken, room.map(|side| side + ROUNDING))).then(|| {
         Concern::StockTooSmall.of_sheet(format!(
             "the cuts take {:.1} x {:.1} mm with kerf and over-run, but the stock has {:.1} x {:.1} mm inside its margin: use a smaller \
-             sheet.size, a smaller cutting.over_run, or cut it in parts (`kirigami cut --bed`)",
+             sheet.size or a smaller cutting.over_run",
             taken[0], taken[1], room[0], room[1]
         ))
     })

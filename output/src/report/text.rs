@@ -1,10 +1,11 @@
 //! The report as text for people: about sixty lines for a small sheet.
 
 use crate::report::columns::{columns, fixed, rounded};
-use crate::report::{HingeRow, Report, Severity};
+use crate::report::{HingeRow, Report};
 use design::objective::scores::{Scores, shown};
 use std::cmp::Ordering;
 use std::fmt;
+use support::severity::Severity;
 
 /// Maximum number of hinges of which all are listed.
 const ALL_LISTED: usize = 24;
@@ -104,7 +105,7 @@ impl Report {
         } else {
             ""
         };
-        columns(&table) + why
+        columns(&table, &[]) + why
     }
 
     /// Whether Gamma is stated, which is of a sheet that lies on a surface.
@@ -141,7 +142,7 @@ impl Report {
                 .iter_mut()
                 .for_each(|row| row.truncate(names.len() - 1));
         }
-        head + &columns(&table)
+        head + &columns(&table, &[])
     }
 }
 

@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 use std::fmt;
+use support::severity::Severity;
 
 /// A limit of the model or of fabrication that a design exceeds.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -14,18 +15,6 @@ pub struct Warning {
     pub hinges: Vec<usize>,
     /// The limit that is exceeded, in words.
     pub message: String,
-}
-
-/// The consequence of a warning.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Severity {
-    /// The model is less accurate than elsewhere.
-    Note,
-    /// The sheet may not behave as computed: check before cutting.
-    Warning,
-    /// The sheet will not behave as computed, or cannot be cut: no cut file is written unless forced.
-    Error,
 }
 
 /// The subject of a warning.
@@ -123,16 +112,6 @@ impl Concern {
             hinges: Vec::new(),
             message,
         }
-    }
-}
-
-impl fmt::Display for Severity {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        f.write_str(match self {
-            Self::Note => "note",
-            Self::Warning => "warning",
-            Self::Error => "error",
-        })
     }
 }
 

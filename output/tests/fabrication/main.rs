@@ -1,5 +1,5 @@
 //! The cut lines of the uniform 3 x 3 sheet against numbers computed by hand, and those of irregular sheets against the
-//! rule that no cut enters a ligament; cutting order, numbers and parts of random sheets; several on one stock; the files, read back.
+//! rule that no cut enters a ligament; cutting order, numbers of random sheets; the files, read back.
 //!
 //! The uniform sheet of 400 mm panels and 18 mm ligaments, with its four interior slits:
 //!
@@ -11,9 +11,7 @@
 
 mod attachments;
 mod files;
-mod nesting;
 mod order_and_numbers;
-mod parts;
 
 use design::pattern::coordinates::PatternCoordinates;
 use design::pattern::cut_pattern::{CutPattern, Outline};

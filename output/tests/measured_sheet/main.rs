@@ -6,7 +6,6 @@ mod mistakes;
 use design::analysis::marks::{Mark, MeasuredPoint};
 use design::analysis::measured_openings::{MeasuredPanel, openings, scatter, slip};
 use design::analysis::measured_sheet::{MeasuredSheet, MeasurementError, PointFault};
-use design::analysis::misread::{Misread, Renumbered};
 use design::analysis::shape_path::ShapePath;
 use design::equilibrium::settings::SolverSettings;
 use design::equilibrium::supports::{Dof, Load, Support};
@@ -103,7 +102,8 @@ fn disturb(points: &mut [MeasuredPoint], sigma: f64, seed: u64) {
 fn squares(sheet: &MeasuredSheet) -> f64 {
     sheet
         .best
-        .kept()
+        .points
+        .iter()
         .map(|point| point.distance().powi(2))
         .sum()
 }

@@ -5,9 +5,10 @@ use super::{SCENE, read, run};
 use design::optimise::outer_loop::Ended;
 use design::scene::design_run::design_of_run;
 use design::scene::{Scene, SceneConfig};
-use output::report::{Concern, Severity};
+use output::report::Concern;
 use output::run_results::write_results;
 use std::path::Path;
+use support::severity::Severity;
 use support::toml_file;
 
 /// The scene linear-7x7 from a random start, with 40 steps of an optimiser.

@@ -7,10 +7,11 @@ use design::analysis::actuation_curve::ActuationCurve;
 use design::objective::design_problem::Model;
 use design::objective::target::TargetShape;
 use design::scene::{Scene, SceneConfig};
-use output::listing::EquilibriumListing;
-use output::report::{Concern, Report, Severity, Warning};
+use output::listing::equilibrium;
+use output::report::{Concern, Report, Warning};
 use output::run_results::write_results;
 use std::path::{Path, PathBuf};
+use support::severity::Severity;
 use support::toml_file;
 
 fn found(report: &Report, concern: Concern) -> Vec<&Warning> {
@@ -173,7 +174,7 @@ fn shipped(name: &str) -> PathBuf {
 #[test]
 fn a_sheet_on_pins_has_no_equilibria_to_list() {
     let scene = Scene::read(&shipped("pin-7x7")).unwrap();
-    let error = EquilibriumListing::new(&scene.problem().unwrap(), &scene.start()).unwrap_err();
+    let error = equilibrium(&scene.problem().unwrap(), &scene.start()).unwrap_err();
     assert!(matches!(error, DesignError::NoMechanics));
 }
 

@@ -6,10 +6,11 @@ use design::objective::design_problem::Deployment;
 use design::objective::target::TargetShape;
 use design::scene::Scene;
 use output::cut_file::CutLines;
-use output::report::{Concern, Report, Severity, warnings};
+use output::report::{Concern, Report, warnings};
 use output::run_results::{remove_run, write_results};
 use std::path::Path;
 use support::sealed_json;
+use support::severity::Severity;
 use surrogate::Surrogate;
 
 /// Writes the random weights and their card, with changes, next to the scene.

@@ -2,10 +2,10 @@
 
 mod actuation_curve;
 mod branches;
+mod drawn_loads;
 mod findings;
 mod learned;
 mod outer_loop;
-mod paper;
 mod results;
 mod run_page;
 mod sections;

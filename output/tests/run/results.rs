@@ -2,10 +2,11 @@
 
 use super::{read, run, with};
 use output::cut_file::FORCED;
-use output::report::{Concern, Report, Severity};
+use output::report::{Concern, Report};
 use output::run_files::RUN_FILES;
 use output::run_results::{remove_run, write_results};
 use std::collections::BTreeSet;
+use support::severity::Severity;
 
 fn report(changes: &[(&str, &str)]) -> (tempfile::TempDir, Report) {
     let folder = tempfile::tempdir().unwrap();
@@ -65,7 +66,6 @@ fn a_sound_design_writes_all_files_and_only_its_miss_is_a_warning() {
             "flat.svg",
             "inputs",
             "report.json",
-            "report.pdf",
             "report.txt",
             "run.html",
             "scene.toml",

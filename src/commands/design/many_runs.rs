@@ -2,8 +2,8 @@
 //! compares them.
 
 use crate::ui::comparison;
+use crate::ui::table::Table;
 use anyhow::{Context, Result, ensure};
-use comfy_table::Table;
 use design::scene::Scene;
 use serde_json::Value;
 use std::collections::BTreeSet;

@@ -1,7 +1,7 @@
 //! The stock that a new sheet is cut from.
 
 use anyhow::{Result, ensure};
-use design::scene::{CuttingConfig, Stock};
+use design::scene::Stock;
 use toml_edit::{Array, Item, Table, value};
 
 /// A stock and its border that the machine cannot cut (mm).
@@ -12,15 +12,6 @@ pub(super) struct CutFrom {
 }
 
 impl CutFrom {
-    /// The settings with this stock.
-    pub(super) fn set(self, settings: CuttingConfig) -> CuttingConfig {
-        CuttingConfig {
-            stock: Some(self.stock),
-            margin: self.margin,
-            ..settings
-        }
-    }
-
     /// Width and height of the largest sheet whose cuts fit on the stock as it lies (mm), in whole millimetres: inside of the
     /// margin, the over-run of its slits and half of the kerf (mm).
     pub(super) fn largest_sheet(self, over_run: f64, kerf: f64) -> Result<[f64; 2]> {

@@ -7,8 +7,8 @@ use design::scene::SceneConfig;
 use design::scene::run_inputs::scene_file;
 use hinge::SheetMaterial;
 use output::material_check::{Intended, MaterialCheck};
-use output::report::Severity;
 use std::path::PathBuf;
+use support::severity::Severity;
 use support::toml_file;
 
 /// Check a material before windows are solved with it

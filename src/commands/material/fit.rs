@@ -2,7 +2,7 @@
 
 use crate::ui::charts::tensile_test;
 use crate::ui::shell_word::shell_word;
-use crate::ui::table::table;
+use crate::ui::table::{Table, table};
 use crate::ui::{output_file, picture, run_folder};
 use anyhow::{Result, ensure};
 use clap::Args;
@@ -231,7 +231,7 @@ fn assignment(text: &str) -> Result<(Quantity, String), String> {
 }
 
 /// The columns that were read, one a row.
-fn column_table(specimens: &[Specimen]) -> comfy_table::Table {
+fn column_table(specimens: &[Specimen]) -> Table {
     let mut table = table(["specimen", "read as", "column", "name", "unit", "factor"]);
     for specimen in specimens {
         for column in &specimen.read_as {
@@ -257,7 +257,7 @@ fn file_name(specimen: &Specimen) -> String {
 }
 
 /// The specimens, one a row.
-fn specimen_table(specimens: &[Specimen]) -> comfy_table::Table {
+fn specimen_table(specimens: &[Specimen]) -> Table {
     let mut table = table([
         "specimen",
         "rows",
@@ -300,7 +300,7 @@ fn specimen_table(specimens: &[Specimen]) -> comfy_table::Table {
 }
 
 /// The numbers of the law with their scatter.
-fn law_table(fit: &MaterialFit) -> comfy_table::Table {
+fn law_table(fit: &MaterialFit) -> Table {
     let mut table = table(["law", "mean", "standard deviation"]);
     let mut row = |name: &str, of: &Statistic, digits: usize| {
         let deviation = of

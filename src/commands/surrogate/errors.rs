@@ -1,7 +1,6 @@
 //! Errors of weights at given states against finite elements, and the states with the largest errors.
 
-use crate::ui::table::table;
-use comfy_table::Table;
+use crate::ui::table::{Table, table};
 use dataset::{COMPARED, ComparedState, Row, reference_rms};
 use std::fmt;
 use surrogate::Surrogate;

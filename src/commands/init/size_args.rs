@@ -1,16 +1,31 @@
-//! Lengths, width and height, and stock as one argument.
+//! Lengths, the size of a sheet, and its stock as one argument.
 
-use design::scene::Stock;
+use design::scene::{Paper, Stock};
 
-/// Two positive lengths (mm), possibly infinite, from a text such as `210x297` or `1200 x 600mm`.
-pub fn width_by_height(text: &str) -> Option<[f64; 2]> {
+/// Two positive lengths (mm) from a text such as `210x297` or `1200 x 600mm`.
+fn width_by_height(text: &str) -> Option<[f64; 2]> {
     let (width, height) = text.trim_end_matches("mm").split_once(['x', 'X'])?;
-    let side = |text: &str| text.trim().parse().ok().filter(|side: &f64| *side > 0.0);
+    let side = |text: &str| {
+        text.trim()
+            .parse()
+            .ok()
+            .filter(|side: &f64| *side > 0.0 && side.is_finite())
+    };
     Some([side(width)?, side(height)?])
 }
 
+/// Width and height of a sheet (mm).
+pub(super) fn size(text: &str) -> Result<[f64; 2], String> {
+    width_by_height(text).ok_or_else(|| match text.parse::<Paper>() {
+        Ok(paper) => format!(
+            "the size of a sheet is two lengths in mm; for the largest sheet that is cut from {text} use --stock {paper}"
+        ),
+        Err(_) => "expected two lengths in mm, for example 210x297".into(),
+    })
+}
+
 /// A stock: the name of a paper, or width and height (mm).
-pub fn stock(text: &str) -> Result<Stock, String> {
+pub(super) fn stock(text: &str) -> Result<Stock, String> {
     let sides =
         width_by_height(text).filter(|sides| sides.iter().all(|side| Stock::SIDES.contains(side)));
     let paper = text.parse().map(Stock::Paper);
@@ -21,7 +36,7 @@ pub fn stock(text: &str) -> Result<Stock, String> {
 }
 
 /// A length of 0 to 1000 mm.
-pub fn length(text: &str) -> Result<f64, String> {
+pub(super) fn length(text: &str) -> Result<f64, String> {
     let length = text.trim_end_matches("mm").trim().parse().ok();
     let length = length.filter(|length| (0.0..=1e3).contains(length));
     length.ok_or_else(|| "must be 0 to 1000 mm".into())
@@ -35,8 +50,8 @@ mod tests {
     fn sizes_are_two_positive_lengths() {
         assert_eq!(width_by_height("210x297"), Some([210.0, 297.0]));
         assert_eq!(width_by_height("1200 x 600mm"), Some([1200.0, 600.0]));
-        assert_eq!(width_by_height("1300Xinf"), Some([1300.0, f64::INFINITY]));
-        for wrong in ["210", "x", "axb", "0x5", "-1x5", "nanx5", "1x2x3"] {
+        assert_eq!(width_by_height("1300X40"), Some([1300.0, 40.0]));
+        for wrong in ["210", "x", "axb", "0x5", "-1x5", "nanx5", "5xinf", "1x2x3"] {
             assert_eq!(width_by_height(wrong), None, "{wrong}");
         }
     }
