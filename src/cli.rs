@@ -2,7 +2,9 @@
 
 #[cfg(feature = "pipeline")]
 use crate::commands::pipeline;
-use crate::commands::{compare, completions, cut, design, export, inspect, man, material};
+use crate::commands::{
+    compare, completions, cut, design, export, init, inspect, man, material, studio,
+};
 use crate::ui::progress;
 use anyhow::Result;
 use clap::{CommandFactory, Parser, Subcommand};
@@ -37,6 +39,8 @@ enum Command {
     Inspect(inspect::InspectCommand),
     Compare(compare::CompareCommand),
     Export(export::ExportCommand),
+    Init(init::InitCommand),
+    Studio(studio::StudioCommand),
     #[cfg(feature = "pipeline")]
     #[command(flatten)]
     Pipeline(pipeline::PipelineCommand),
@@ -60,6 +64,8 @@ impl Cli {
             Command::Inspect(command) => command.run(),
             Command::Compare(command) => command.run(),
             Command::Export(command) => command.run(),
+            Command::Init(command) => command.run(),
+            Command::Studio(command) => command.run(),
             #[cfg(feature = "pipeline")]
             Command::Pipeline(command) => command.run(),
             Command::Completions(command) => command.run(Self::command()),

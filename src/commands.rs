@@ -15,9 +15,7 @@ pub mod design;
 #[cfg(feature = "pipeline")]
 pub mod doctor;
 pub mod export;
-#[cfg(feature = "pipeline")]
 pub mod init;
-#[cfg(feature = "pipeline")]
 mod input_file;
 pub mod inspect;
 pub mod man;
@@ -31,7 +29,6 @@ mod points_file;
 pub mod solve;
 #[cfg(feature = "pipeline")]
 pub mod solve_args;
-#[cfg(feature = "pipeline")]
 pub mod studio;
 #[cfg(feature = "pipeline")]
 pub mod surrogate;

@@ -4,6 +4,5 @@
 
 pub mod cli;
 pub mod commands;
-#[cfg(feature = "pipeline")]
 mod studio;
 pub mod ui;

@@ -70,7 +70,6 @@ struct SheetFiles {
 
 impl CutCommand {
     /// Writes tiles for a paper, besides the usual files, in the run in a folder.
-    #[cfg(feature = "pipeline")]
     pub(crate) fn tiles_of_run(run: &Path, paper: &str) -> Result<Written> {
         let paper = Some(self::paper(paper).map_err(anyhow::Error::msg)?);
         let files = Self {
@@ -81,7 +80,6 @@ impl CutCommand {
     }
 
     /// Writes the file of a machine in the run in a folder.
-    #[cfg(feature = "pipeline")]
     pub(crate) fn machine_file_of_run(run: &Path, name: &str) -> Result<(Written, Vec<Verdict>)> {
         let machines = Machines::read(None)?;
         let machine = machine(&machines, name)?;
@@ -89,7 +87,6 @@ impl CutCommand {
         Ok((file.written, file.verdicts))
     }
 
-    #[cfg(feature = "pipeline")]
     fn of_run(run: &Path) -> Self {
         Self {
             designed: Inspected {

@@ -1,7 +1,7 @@
 //! `kirigami init`: a folder with the files of a new project, scaled to the thickness of its sheet.
 
 mod cut_from;
-mod edited;
+pub(crate) mod edited;
 pub(crate) mod first_scene;
 mod size_args;
 mod template;
@@ -18,7 +18,6 @@ use anyhow::{Context, Result, bail, ensure};
 use clap::Args;
 use design::scene::{Scene, Stock};
 use hinge::{Regime, SheetMaterial};
-use mesher::Tier;
 use std::path::{Path, PathBuf};
 use support::regular_file;
 use surrogate::Surrogate;
@@ -145,7 +144,7 @@ impl InitCommand {
             _ => measured.thickness,
         };
         let text = material_text(&material, solved)?;
-        let campaign = campaign(&name, solved, tier_of(regime))?;
+        let campaign = campaign(&name, solved, regime)?;
 
         let template = Template::of(regime);
         let readme = readme(&self.folder, template, regime, trained);
@@ -229,30 +228,12 @@ struct Weights {
     opening: f64,
 }
 
-/// The tier of a campaign of a material, unless a sheet says otherwise.
-pub(crate) fn usual_tier(material: &SheetMaterial) -> Tier {
-    tier_of(if material.thickness >= THINNEST_PLATE {
-        Regime::Plate
-    } else {
-        Regime::Film
-    })
-}
-
-/// The tier of the campaigns of a regime.
-fn tier_of(regime: Regime) -> Tier {
-    match regime {
-        Regime::Film => Tier::Default,
-        Regime::Plate => Tier::Plate,
-    }
-}
-
-/// The shipped campaign of the regime of a tier, scaled to a sheet of `thickness` (mm); its material is `material.toml` in
+/// The shipped campaign of a regime, scaled to a sheet of `thickness` (mm); its material is `material.toml` in
 /// the same folder.
-pub(crate) fn campaign(name: &str, thickness: f64, tier: Tier) -> Result<String> {
-    let template = Template::of(tier.regime());
+pub(crate) fn campaign(name: &str, thickness: f64, regime: Regime) -> Result<String> {
+    let template = Template::of(regime);
     let factor = thickness / template.campaign_thickness;
     let mut campaign: DocumentMut = template.campaign.parse()?;
-    set(&mut campaign["tier"], tier.to_string());
     set(&mut campaign["name"], name);
     set(&mut campaign["material"], "material.toml");
     heading(
@@ -370,10 +351,10 @@ mod tests {
 
     #[test]
     fn a_campaign_is_scaled_and_keeps_its_comments() {
-        let text = campaign("thin", 0.1, Tier::Small).unwrap();
+        let text = campaign("thin", 0.1, Regime::Film).unwrap();
         for line in [
             "name = \"thin\"",
-            "tier = \"small\"",
+            "tier = \"default\"",
             "r_win = 20.0        # mm; radius of the window",
             "w_lig = [1.0, 5.0]       # mm",
             "full_range_w_lig = 1.6    # mm, 16 thicknesses",

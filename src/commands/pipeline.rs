@@ -1,8 +1,6 @@
 //! The subcommands of the pipeline from a material to weights; absent from a build for design alone.
 
-use crate::commands::{
-    campaign, dataset, demo, doctor, init, mesh, solve, studio, surrogate, train, verify,
-};
+use crate::commands::{campaign, dataset, demo, doctor, mesh, solve, surrogate, train, verify};
 use anyhow::Result;
 use clap::Subcommand;
 
@@ -10,7 +8,6 @@ use clap::Subcommand;
 pub enum PipelineCommand {
     Demo(demo::DemoCommand),
     Doctor(doctor::DoctorCommand),
-    Init(init::InitCommand),
     Mesh(mesh::MeshCommand),
     Solve(solve::SolveCommand),
     Campaign(campaign::CampaignCommand),
@@ -18,7 +15,6 @@ pub enum PipelineCommand {
     Train(train::TrainCommand),
     Surrogate(surrogate::SurrogateCommand),
     Verify(verify::VerifyCommand),
-    Studio(studio::StudioCommand),
 }
 
 impl PipelineCommand {
@@ -26,7 +22,6 @@ impl PipelineCommand {
         match self {
             Self::Demo(command) => command.run(),
             Self::Doctor(command) => command.run(),
-            Self::Init(command) => command.run(),
             Self::Mesh(command) => command.run(),
             Self::Solve(command) => command.run(),
             Self::Campaign(command) => command.run(),
@@ -34,7 +29,6 @@ impl PipelineCommand {
             Self::Train(command) => command.run(),
             Self::Surrogate(command) => command.run(),
             Self::Verify(command) => command.run(),
-            Self::Studio(command) => command.run(),
         }
     }
 }

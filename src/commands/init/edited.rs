@@ -4,7 +4,7 @@ use design::scene::rounded;
 use toml_edit::{Array, DocumentMut, Item, Value};
 
 /// Replaces a value and keeps its comment.
-pub(super) fn set(item: &mut Item, value: impl Into<Value>) {
+pub(crate) fn set(item: &mut Item, value: impl Into<Value>) {
     if let Some(old) = item.as_value_mut() {
         let decor = old.decor().clone();
         *old = value.into();

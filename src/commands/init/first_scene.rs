@@ -27,7 +27,7 @@ pub(crate) const PANEL: f64 = 3.5;
 pub(crate) const OPENING: f64 = 0.436;
 /// Thickness (mm) from which a sheet is a plate: the narrowest ligaments of a thinner one, a third of its thickness, would be
 /// too narrow for a hole wider than the kerf.
-pub(super) const THINNEST_PLATE: f64 = 2.0;
+pub(crate) const THINNEST_PLATE: f64 = 2.0;
 /// The largest D_peak that a first plate is designed for, and by how much less it opens until it is not above it (rad): 5 degrees.
 const SAFE_PEAK: f64 = 0.7;
 const LESS: f64 = 0.0873;

@@ -8,7 +8,8 @@ mod conclusion;
 mod fine_tuning;
 
 use crate::commands::campaign::RayProgress;
-use crate::commands::init;
+use crate::commands::init::first_scene::THINNEST_PLATE;
+use crate::commands::init::{self, edited};
 use crate::commands::material::learn::conclusion::conclusion;
 use crate::commands::material::learn::fine_tuning::FineTuning;
 use crate::commands::solve_args::{SolveArgs, task_error};
@@ -29,6 +30,7 @@ use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 use surrogate::Surrogate;
+use toml_edit::DocumentMut;
 use verification::{
     Accuracy, LearningEnd, LearningRound, LearningSteps, LearningTask, VerificationError,
     distillation_states, drawn, learn, random_paths, region, spot_check,
@@ -93,11 +95,23 @@ const STATES_PER_RAY: usize = 4;
 const TRAINING_FILE: &str = "fine-tuning.toml";
 const TRAINING: &str = include_str!("../../../configs/training/fine-tuning.toml");
 
+/// The regime of a material, unless a sheet says otherwise.
+fn usual_regime(material: &SheetMaterial) -> Regime {
+    if material.thickness >= THINNEST_PLATE {
+        Regime::Plate
+    } else {
+        Regime::Film
+    }
+}
+
 impl LearnCommand {
     pub(crate) fn run(&self) -> Result<()> {
         let began = Instant::now();
         let material = SheetMaterial::load(&self.material)?;
-        let tier = self.tier.unwrap_or_else(|| init::usual_tier(&material));
+        let tier = self.tier.unwrap_or(match usual_regime(&material) {
+            Regime::Film => Tier::Default,
+            Regime::Plate => Tier::Plate,
+        });
         let from = match &*self.from {
             [] => shipped_parents(tier.regime()),
             named => named.to_vec(),
@@ -181,8 +195,10 @@ impl LearnCommand {
         let name = self.out.file_name().unwrap_or_default().to_string_lossy();
         let text = init::material_text(&self.material, material.thickness)?;
         run_folder::write(&self.out, "material.toml", &text)?;
-        let campaign = init::campaign(&name, material.thickness, tier)?;
-        run_folder::write(&self.out, "campaign.toml", &campaign)
+        let mut campaign: DocumentMut =
+            init::campaign(&name, material.thickness, tier.regime())?.parse()?;
+        edited::set(&mut campaign["tier"], tier.to_string());
+        run_folder::write(&self.out, "campaign.toml", &campaign.to_string())
     }
 
     /// The campaign of the folder, which must be that of the material and the tier.
