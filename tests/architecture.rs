@@ -288,3 +288,120 @@ fn the_tests_that_the_page_of_faults_names_exist() {
         );
     }
 }
+
+/// What the page allows at most of a thing; its row begins with the name.
+fn allowed(page: &str, name: &str) -> usize {
+    let row = page
+        .lines()
+        .find_map(|line| line.strip_prefix(&format!("| {name} | ")));
+    let row = row.unwrap_or_else(|| panic!("docs/ARCHITECTURE.md has no row for {name}"));
+    let number = row.trim_end_matches(" |").replace(' ', "");
+    number.parse().unwrap_or_else(|_| panic!("{name}: {row}"))
+}
+
+/// Lines of code of a file, neither blank nor comments, before its unit tests and in them.
+fn code_lines(path: &Path) -> [usize; 2] {
+    let text = std::fs::read_to_string(path).unwrap();
+    let is_code = |line: &&str| !line.trim().is_empty() && !line.trim().starts_with("//");
+    let (before, tests) = text.split_once("#[cfg(test)]").unwrap_or((&text, ""));
+    let of_tests = tests.lines().filter(is_code).count() + usize::from(!tests.is_empty());
+    let [code, mut of_tests] = [before.lines().filter(is_code).count(), of_tests];
+    let below = path.strip_prefix(root()).unwrap();
+    let is_test = below
+        .iter()
+        .any(|part| part == "tests" || part == "benches" || part == "tests.rs");
+    if is_test {
+        of_tests += code;
+        return [0, of_tests];
+    }
+    [code, of_tests]
+}
+
+/// Whoever needs more raises the table in the same commit and says why in its message.
+#[test]
+fn the_code_fits_into_the_table_of_the_page() {
+    let page = std::fs::read_to_string(root().join("docs/ARCHITECTURE.md")).unwrap();
+    let (mut all, mut tests) = (0, 0);
+    let members = crates().into_iter().map(|member| member.name);
+    for member in members {
+        let folders = ["src", "tests", "benches"].map(|part| root().join(&member).join(part));
+        let sources = folders.iter().filter(|folder| folder.is_dir());
+        let lines: Vec<_> = sources.flat_map(|folder| files(folder)).collect();
+        let lines: Vec<[usize; 2]> = lines.iter().map(|file| code_lines(file)).collect();
+        let [code, of_tests] = [0, 1].map(|i| lines.iter().map(|lines| lines[i]).sum::<usize>());
+        let name = if member == "." { "kirigami" } else { &member };
+        let most = allowed(&page, &format!("`{name}`"));
+        assert!(
+            code <= most,
+            "{name} has {code} lines of code, {most} are allowed"
+        );
+        (all, tests) = (all + code, tests + of_tests);
+    }
+    for (name, found) in [("all crates", all), ("tests", tests)] {
+        let most = allowed(&page, name);
+        assert!(
+            found <= most,
+            "{name}: {found} lines of code, {most} are allowed"
+        );
+    }
+}
+
+/// The number of long options of a subcommand and of those below it.
+fn long_options(command: &[&str]) -> usize {
+    let help = std::process::Command::new(env!("CARGO_BIN_EXE_kirigami"))
+        .args(command)
+        .arg("--help")
+        .output()
+        .unwrap();
+    let help = String::from_utf8(help.stdout).unwrap();
+    let of_all = ["--help", "--version", "--quiet", "--verbose"];
+    let option = |line: &str| {
+        let words = line.split([' ', ',']).filter(|word| !word.is_empty());
+        let long = words.take(2).find(|word| word.starts_with("--"));
+        long.is_some_and(|long| !of_all.contains(&long.trim_end()))
+    };
+    let own = help
+        .lines()
+        .filter(|line| line.trim_start().starts_with('-') && option(line));
+    let below = help.lines().skip_while(|line| *line != "Commands:").skip(1);
+    let below = below.take_while(|line| !line.is_empty());
+    let names = below.filter_map(|line| {
+        let name = line.strip_prefix("  ")?;
+        name.split(' ')
+            .next()
+            .filter(|name| !name.is_empty() && *name != "help")
+    });
+    let of_subcommands = names.map(|name| long_options(&[command, &[name]].concat()));
+    own.count() + of_subcommands.sum::<usize>()
+}
+
+#[test]
+fn keys_options_and_words_fit_into_the_table_of_the_page() {
+    let page = std::fs::read_to_string(root().join("docs/ARCHITECTURE.md")).unwrap();
+    let read = |path: PathBuf| std::fs::read_to_string(path).unwrap();
+    let keys = read(root().join("docs/KEYS.md"));
+    let keys = keys.lines().filter(|line| line.starts_with("| `")).count();
+    let mut pages = vec![root().join("README.md")];
+    let mut folders = vec![root().join("docs")];
+    while let Some(folder) = folders.pop() {
+        for entry in std::fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            match path.extension() {
+                _ if path.is_dir() => folders.push(path),
+                Some(kind) if kind == "md" => pages.push(path),
+                _ => {}
+            }
+        }
+    }
+    let words = pages
+        .into_iter()
+        .map(|page| read(page).split_whitespace().count());
+    for (name, found) in [
+        ("keys of the configuration files", keys),
+        ("long options", long_options(&[])),
+        ("words of README and docs", words.sum()),
+    ] {
+        let most = allowed(&page, name);
+        assert!(found <= most, "{name}: {found}, {most} are allowed");
+    }
+}

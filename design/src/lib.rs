@@ -104,3 +104,7 @@ pub use pattern::design_vector::{DesignVector, WidthChart};
 pub use pattern::grid::Grid;
 pub use scene::Scene;
 pub use sheet::cut_sheet::Sheet;
+
+#[cfg(test)]
+#[path = "../tests/common/derivatives.rs"]
+mod derivatives;

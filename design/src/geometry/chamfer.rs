@@ -49,7 +49,7 @@ fn pull(gradient: &mut [f64; 2], weight: f64, p: [f64; 2], t: [f64; 2]) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::analysis::taylor::central_slope;
+    use crate::derivatives::central_slope;
     use std::f64::consts::TAU;
 
     const POINTS: [[f64; 2]; 3] = [[0.0, 0.0], [1.0, 0.1], [0.4, 0.9]];

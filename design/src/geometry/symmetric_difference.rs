@@ -162,7 +162,7 @@ fn trapezoids([bottom, top]: [f64; 2], edges: &[&Edge], gradient: &mut [[f64; 2]
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::analysis::taylor::{TaylorRemainders, central_slope};
+    use crate::derivatives::{TaylorRemainders, central_slope};
     use std::convert::Infallible;
 
     type Polygon = Vec<[f64; 2]>;

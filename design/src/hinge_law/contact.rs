@@ -93,7 +93,7 @@ impl Contact {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::analysis::taylor::central_slope;
+    use crate::derivatives::central_slope;
 
     fn contact() -> Contact {
         Contact::new(2.0, -0.3, -0.05).unwrap()

@@ -200,7 +200,7 @@ fn dot(x: [f64; 3], y: [f64; 3]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::analysis::taylor::central_slope;
+    use crate::derivatives::central_slope;
     use crate::hinge_law::SurrogateLaw;
     use ::surrogate::Surrogate;
     use hinge::HingeConstants;

@@ -288,7 +288,7 @@ fn drawn_in([minimum, maximum]: [f64; 2], alpha: f64) -> [f64; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::analysis::taylor::central_slope;
+    use crate::derivatives::central_slope;
     use std::path::Path;
 
     fn tiny() -> SurrogateLaw {

@@ -57,7 +57,7 @@ fn relative_edges(outline: &[[f64; 2]], origin: [f64; 2]) -> impl Iterator<Item 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::analysis::taylor::central_slope;
+    use crate::derivatives::central_slope;
 
     const L: [[f64; 2]; 6] = [
         [5.0, 7.0],

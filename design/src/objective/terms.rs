@@ -138,7 +138,7 @@ impl ObjectiveConfig {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::analysis::taylor::central_slope;
+    use crate::derivatives::central_slope;
     use crate::equilibrium::load_step::LoadStep;
     use crate::hinge_law::{HingeDamage, PreparedLaw};
     use crate::objective::hinge_measures::add_by_states;

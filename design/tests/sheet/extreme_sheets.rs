@@ -2,10 +2,10 @@
 
 use crate::cases::{self, AT_CORNER, case};
 use crate::closed_forms::{clamp, opening_moments, path};
+use crate::derivatives::TaylorRemainders;
 use crate::extremes::{Rotational, assert_finite, snapping};
 use crate::random::Random;
 use crate::taylor::{GRID, SIDE, problem, start, tiny};
-use design::analysis::taylor::TaylorRemainders;
 use design::equilibrium::hinged_sheet::HingedSheet;
 use design::equilibrium::load_step::{LoadStep, Status};
 use design::equilibrium::settings::SolverSettings;

@@ -2,8 +2,8 @@
 //! points.
 
 use crate::cases::{AT_CORNER, case, pattern};
+use crate::derivatives::central_slope;
 use crate::random::Random;
-use design::analysis::taylor::central_slope;
 use design::sheet::cut_sheet::{HingePoint, Sheet, SheetOptions};
 use design::sheet::kinematics::{
     Configuration, HingeGeometryGradient, HingeMotion, hinge_deformations,

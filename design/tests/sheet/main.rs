@@ -4,6 +4,8 @@
 mod cases;
 mod closed_forms;
 mod cutting_errors;
+#[path = "../common/derivatives.rs"]
+mod derivatives;
 mod driven;
 mod equilibrium;
 mod error_budget;
@@ -24,4 +26,5 @@ mod released;
 mod response;
 mod sensitivities;
 mod taylor;
+mod taylor_test;
 mod weight;

@@ -1,8 +1,8 @@
 //! Vector-Jacobian products of pattern, sheet and ideal deployment against finite differences.
 
 use crate::cases::{AT_CORNER, PROCESS, case, coordinates, grid, outline};
+use crate::derivatives::central_slope;
 use crate::random::Random;
-use design::analysis::taylor::central_slope;
 use design::pattern::cut_pattern::{CutPattern, Outline};
 use design::pattern::design_vector::{DesignVector, WidthChart};
 use design::sheet::cut_sheet::{Grip, HingePoint, PanelPoint, Sheet, SheetGradient, SheetOptions};

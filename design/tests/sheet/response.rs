@@ -1,7 +1,7 @@
 //! The equilibrium at full load as a function: its gradient in every input by Taylor remainders, balance of loads, reactions and
 //! weight, and inputs that are refused.
 
-use design::analysis::taylor::TaylorRemainders;
+use crate::derivatives::TaylorRemainders;
 use design::equilibrium::load_step::{DescentEnd, Status};
 use design::equilibrium::solver::EquilibriumError;
 use design::objective::response::{Conditions, Response, ResponseCotangent};

@@ -1,8 +1,8 @@
 //! The gradient in the constants of the design problem (loads, spring constants, outline) by finite differences.
 
 use crate::cases::AT_CORNER;
+use crate::derivatives::central_slope;
 use crate::taylor::{GRID, problem, start};
-use design::analysis::taylor::central_slope;
 use design::equilibrium::settings::SolverSettings;
 use design::equilibrium::solver::EquilibriumSolver;
 use design::equilibrium::supports::{Dof, Load, Support};

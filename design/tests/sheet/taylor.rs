@@ -1,8 +1,8 @@
 //! The whole gradient of L in theta, by its Taylor remainders in each block of the design vector.
 
 use crate::cases::PROCESS;
+use crate::derivatives::TaylorRemainders;
 use crate::random::Random;
-use design::analysis::taylor::TaylorRemainders;
 use design::equilibrium::load_step::Status;
 use design::equilibrium::settings::SolverSettings;
 use design::equilibrium::solver::EquilibriumSolver;

@@ -91,7 +91,7 @@ fn excess([minimum, maximum]: [f64; 2], at: f64) -> (f64, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::analysis::taylor::central_slope;
+    use crate::derivatives::central_slope;
     use hinge::HingeConstants;
 
     fn domain() -> TrainingDomain {

@@ -99,7 +99,7 @@ fn crowded(panel: &Panel, min_distance: f64, gradient: &mut [[f64; 2]; 4]) -> f6
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::analysis::taylor::central_slope;
+    use crate::derivatives::central_slope;
     use crate::sheet::cut_sheet::PanelPoint;
 
     fn panel(corners: [[f64; 2]; 4]) -> Panel {

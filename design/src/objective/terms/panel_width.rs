@@ -103,7 +103,7 @@ fn barrier(x: f64) -> (f64, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::analysis::taylor::central_slope;
+    use crate::derivatives::central_slope;
     use crate::sheet::cut_sheet::PanelPoint;
 
     fn panel(corners: [[f64; 2]; 4]) -> Panel {

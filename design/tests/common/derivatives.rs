@@ -1,12 +1,11 @@
-//! Test of a gradient by its Taylor remainders:
+//! Derivatives compared with differences, for the tests. Of a gradient the Taylor remainders:
 //!
 //! ```text
 //! R(h) = |f(x + h d) - f(x) - h grad f . d| = O(h^2)
 //! ```
 //!
 //! An exact gradient of a smooth function gives the order 2, a wrong one the order 1.
-
-use crate::equilibrium::displacement_control::dot;
+#![allow(dead_code, reason = "every test program uses only a part")]
 
 /// Taylor remainders along one direction, at h, h/2, h/4, ...
 #[derive(Clone, Debug, PartialEq)]
@@ -29,7 +28,9 @@ impl TaylorRemainders {
         count: usize,
     ) -> Result<Self, E> {
         let value = f(x)?;
-        let slope = dot(gradient, direction);
+        let slope: f64 = std::iter::zip(gradient, direction)
+            .map(|(g, d)| g * d)
+            .sum();
         let steps: Vec<f64> = std::iter::successors(Some(first), |h| Some(0.5 * h))
             .take(count)
             .collect();
@@ -62,25 +63,4 @@ pub fn central_slope(f: impl Fn(&[f64]) -> f64, x: &[f64], direction: &[f64], h:
             .collect()
     };
     (f(&beside(h)) - f(&beside(-h))) / (2.0 * h)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use std::convert::Infallible;
-
-    fn orders(gradient: [f64; 2]) -> Vec<f64> {
-        let f = |x: &[f64]| Ok::<_, Infallible>(x[0].sin() * x[1].exp());
-        TaylorRemainders::new(f, &[0.3, 0.7], &gradient, &[0.8, -0.6], 1e-3, 4)
-            .unwrap()
-            .orders()
-    }
-
-    #[test]
-    fn an_exact_gradient_shows_order_two_and_a_wrong_one_order_one() {
-        let exact = [0.3_f64.cos() * 0.7_f64.exp(), 0.3_f64.sin() * 0.7_f64.exp()];
-        assert!(orders(exact).iter().all(|order| (order - 2.0).abs() < 0.02));
-        let wrong = [exact[0], 1.1 * exact[1]];
-        assert!(orders(wrong).iter().all(|order| *order < 1.2));
-    }
 }
