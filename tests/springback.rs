@@ -13,8 +13,9 @@ fn repository(path: &str) -> String {
 
 /// The scene of four panels in the workplace, with some of its text replaced.
 fn four_panels(work: &Workplace, name: &str, replacements: &[(&str, &str)]) {
-    let scene = std::fs::read_to_string(repository("docs/results/springback/four-panels.toml"));
-    let mut text = scene.unwrap().replace("../../../", &repository(""));
+    let scene = std::fs::read_to_string(repository("configs/sheets/four-panels-springback.toml"));
+    let mut text = scene.unwrap().replace("../../", &repository(""));
+    text = text.replace("../materials", &repository("configs/materials"));
     for (from, to) in replacements {
         assert!(text.contains(from), "{from}");
         text = text.replace(from, to);
@@ -105,8 +106,8 @@ fn weights_with(law: &str) -> (&'static str, String) {
 #[test]
 fn the_report_says_what_stays_by_the_law_that_the_scene_names() {
     let work = Workplace::new();
-    let output = ("../../../runs/springback/four-panels", "run");
-    let output = (&*output.0.replace("../../../", &repository("")), output.1);
+    let output = ("../../runs/springback/four-panels", "run");
+    let output = (&*output.0.replace("../../", &repository("")), output.1);
     let (weights, named) = weights_with(&repository("data/polypropylene-3mm/springback.json"));
     four_panels(&work, "with.toml", &[output, (weights, &named)]);
     four_panels(&work, "without.toml", &[output]);

@@ -34,7 +34,7 @@ const DISTILLATION_STATES: usize = 20_000;
 
 /// The states at which one network learns the median of several, drawn uniformly inside the region. If they lie on rays of
 /// the campaign alone, the network is free in the corners that no ray passes: the moment of one of steel was wrong by 27 times
-/// the root mean square there, although those of the networks were not (`docs/results/fine-tuning`). Some states lie outside
+/// the root mean square there, although those of the networks were not (docs/TRIED.md). Some states lie outside
 /// the training domain of the solved rays: the networks extrapolate there, and the one network follows their median.
 pub fn distillation_states(drawn: DrawnStates) -> Vec<(HingeDesign, HingeDeformation)> {
     // Other states than those of a spot check, whose seeds are small by habit.

@@ -9,7 +9,7 @@
 //! | window mesh | errors of the weights beside a finer mesh, over the force | alike in like states | spot check on the card |
 //! | material law | in proportion to the force | common | the material file |
 //! | imperfection | in proportion to the force | independent | docs/results/window, docs/results/plates |
-//! | loading path | in proportion to the force and the separation from the ray | independent | docs/results/detours |
+//! | loading path | in proportion to the force and the separation from the ray | independent | docs/TRIED.md |
 //! | kerf | of a ligament that is narrower and of a hole that is wider, each by half of its tolerance | common | the scene |
 //! | thickness | by similarity, of its tolerance | common | the scene |
 //!
@@ -32,12 +32,12 @@ use support::statistics::rms_and_maximum;
 use surrogate::SpotCheck;
 
 /// Ligament width over thickness, and the relative change of M_theta in a pure rotation if the imperfection has two thicknesses
-/// instead of one: the larger of two cut angles (docs/results/window/window.md, polyester film of 0.5 mm).
+/// instead of one: the larger of two cut angles (docs/results/window, polyester film of 0.5 mm).
 const FILM_IMPERFECTION: [[f64; 2]; 3] = [[10.0, 0.0970], [36.0, 0.0247], [50.0, 0.0161]];
-/// The same if it has 0.1 instead of 0.02 thicknesses (docs/results/plates/window.md, polypropylene plate of 3 mm).
+/// The same if it has 0.1 instead of 0.02 thicknesses (docs/results/window, polypropylene plate of 3 mm).
 const PLATE_IMPERFECTION: [[f64; 2]; 3] = [[1.0 / 3.0, 0.0127], [2.0 / 3.0, 0.0081], [1.0, 0.0075]];
 /// The separation of a path from its ray, in ligament widths, at which the forces differ by the fraction; they do in proportion to it:
-/// the law through all detours (docs/results/detours/detours.md, polyester film of 0.5 mm).
+/// the law through all detours (docs/TRIED.md, polyester film of 0.5 mm).
 const DETOUR: [f64; 2] = [0.17, 0.05];
 /// Yield strain of that film. The forces of a material that yields at a smaller one depend more on the path: those of steel, at a
 /// thirteenth of it, by some fifty times (docs/results/metals). Materials below half of it are not covered.
@@ -423,7 +423,7 @@ impl Deployed<'_> {
             *size *= fraction * separation / at;
             largest = largest.max(separation);
         }
-        let source = format!("up to {largest:.3} w_lig from the ray (docs/results/detours)");
+        let source = format!("up to {largest:.3} w_lig from the ray (docs/TRIED.md)");
         Ok((ForceErrors::isotropic(&sizes, &self.designs), source))
     }
 

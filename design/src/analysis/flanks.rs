@@ -8,7 +8,7 @@
 //!
 //! In a plate they stay in the plane: the least gap counts, at the hole or at the rim of the window. The panels of a film tilt
 //! out of the plane as the ligament folds, which draws the flanks apart at the hole: in solved windows they touch only where
-//! they do at the rim, which moves with the rigid panel (docs/results/flanks).
+//! they do at the rim, which moves with the rigid panel (docs/TRIED.md).
 
 use hinge::{HingeDeformation, HingeDesign, Regime};
 

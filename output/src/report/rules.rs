@@ -41,7 +41,7 @@ const MEASURED_KERF_OF_PLATE: [f64; 2] = [0.05, 0.64];
 const SAME_KERF: f64 = 1e-6;
 /// Relative error of a force (%) above which a law is inaccurate.
 const INACCURATE: f64 = 10.0;
-/// Separation of a path from its ray, in ligament widths, up to which W differs by less than 1 % (docs/results/detours).
+/// Separation of a path from its ray, in ligament widths, up to which W differs by less than 1 % (docs/TRIED.md).
 const SAFE_SEPARATION: f64 = 0.15;
 /// Rounding of lengths (mm).
 const ROUNDING: f64 = 1e-6;
@@ -241,7 +241,7 @@ fn path_dependence(judged: &Judged) -> Option<Warning> {
     let bent = judged.those(|row| row.path_separation > SAFE_SEPARATION);
     let message = format!(
         "paths depart by more than {SAFE_SEPARATION} ligament widths from the straight rays of the hinge law: energy, forces \
-         and damage depend on the path there (docs/results/detours); check by `kirigami verify`"
+         and damage depend on the path there (docs/TRIED.md); check by `kirigami verify`"
     );
     about(Concern::PathDependence, bent, message)
 }
@@ -254,7 +254,7 @@ fn flanks_touch(judged: &Judged) -> Option<Warning> {
     let most = -gaps.fold(f64::INFINITY, f64::min);
     let message = format!(
         "the flanks of their cuts are pushed into each other, by up to {} mm: contact between them is not modelled, and the load is \
-         larger than stated (docs/results/flanks)",
+         larger than stated (docs/TRIED.md)",
         rounded(most, 2)
     );
     about(Concern::FlanksTouch, touching, message)
