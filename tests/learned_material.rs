@@ -5,6 +5,7 @@ mod common;
 use common::{Workplace, failure};
 use std::path::Path;
 use support::sealed_json;
+use surrogate::Surrogate;
 
 const POLYPROPYLENE: &str = "configs/materials/polypropylene-0.8mm.toml";
 const OPTIONS: &str = "--tier tiny --rays 6 --spot-rays 3 --out learned";
@@ -178,13 +179,16 @@ fn a_stopped_run_is_continued_and_its_folder_belongs_to_one_material() {
 #[test]
 fn unsuitable_weights_are_refused_before_a_window_is_solved() {
     let work = Workplace::new();
-    let shipped = std::fs::read_to_string(work.path("configs/training/fine-tuning.toml")).unwrap();
-    let sharper = shipped.replace("damage_sharpness = 8.0", "damage_sharpness = 9.0");
-    std::fs::create_dir(work.path("learned")).unwrap();
-    std::fs::write(work.path("learned/fine-tuning.toml"), sharper).unwrap();
-    let message = work.error(&learn_from(&["small"], POLYPROPYLENE, OPTIONS));
+    let small = Surrogate::load(&work.path("data/pet-0.5mm/small.safetensors")).unwrap();
+    let mut card = small.card().clone();
+    card.damage_sharpness = 9.0;
+    let sharper = Surrogate::from_parts(small.layers(), card).unwrap();
+    sharper
+        .save(&work.path("data/pet-0.5mm/sharper.safetensors"))
+        .unwrap();
+    let message = work.error(&learn_from(&["sharper"], POLYPROPYLENE, OPTIONS));
     assert!(
-        message.contains("small.safetensors") && message.contains("damage_sharpness"),
+        message.contains("sharper.safetensors") && message.contains("damage_sharpness"),
         "{message}"
     );
     assert!(!work.path("learned/campaign").exists());

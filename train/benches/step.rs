@@ -3,7 +3,7 @@
 
 use dataset::{Database, Gates, Row, SplitPlan};
 use hinge::{HingeDesign, HingeSample};
-use train::{Backend, Precision, TrainingConfig, train};
+use train::{Backend, TrainingConfig, train};
 
 fn main() {
     divan::main();
@@ -11,31 +11,22 @@ fn main() {
 
 #[divan::bench(args = Backend::ALL, sample_count = 10, sample_size = 1)]
 fn demo(bencher: divan::Bencher, backend: &Backend) {
-    ten_steps(bencher, *backend, &[64, 64, 32], &[64, 64]);
+    ten_steps(bencher, *backend, &[64, 64, 32]);
 }
 
 #[divan::bench(args = Backend::ALL, sample_count = 10, sample_size = 1)]
 fn paper(bencher: divan::Bencher, backend: &Backend) {
-    ten_steps(bencher, *backend, &[256, 256, 256, 128], &[256, 256]);
+    ten_steps(bencher, *backend, &[256, 256, 256, 128]);
 }
 
-fn ten_steps(bencher: divan::Bencher, backend: Backend, embedding: &[usize], damage: &[usize]) {
+fn ten_steps(bencher: divan::Bencher, backend: Backend, embedding: &[usize]) {
     let database = database();
     let config = TrainingConfig {
         seed: 0,
         embedding: embedding.to_vec(),
-        damage: damage.to_vec(),
-        mirror: false,
         epochs: 1,
         batch_size: 256,
-        precision: Precision::F32,
         learning_rate: 1e-3,
-        learning_rate_end: 1e-3,
-        gradient_norm_max: 1.0,
-        energy_weight: 0.5,
-        damage_weight: 0.1,
-        damage_sharpness: 8.0,
-        patience: None,
         frozen_layers: 0,
     };
     bencher.bench(|| train(&database, &config, backend, &mut |_| {}));

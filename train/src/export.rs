@@ -34,7 +34,7 @@ fn layer(affine: Affine) -> Result<Layer, TrainError> {
 mod tests {
     use super::*;
     use crate::backend::Backend;
-    use crate::config::TrainingConfig;
+    use crate::config::{DAMAGE_SHARPNESS, TrainingConfig};
     use crate::loss::predict;
     use crate::loss::tests::config;
     use crate::samples::{Batch, Scales};
@@ -45,8 +45,6 @@ mod tests {
     use surrogate::{
         Card, FEATURE_NAMES, FORMAT_VERSION, Surrogate, TestErrors, UNITS, feature_names,
     };
-
-    const SHARPNESS: f64 = 4.0;
 
     fn row(index: usize) -> Row {
         let wave = |speed: f64| (speed * index as f64 + 0.3).sin();
@@ -98,7 +96,7 @@ mod tests {
             energy_scale: scales.energy,
             damage_scale: scales.damage,
             peak_scale: scales.peak,
-            damage_sharpness: SHARPNESS,
+            damage_sharpness: DAMAGE_SHARPNESS,
             fine_tuned_from: None,
             distillation: None,
             domain,
@@ -130,8 +128,6 @@ mod tests {
         let config = TrainingConfig {
             seed: 1,
             embedding: vec![64, 64, 32],
-            damage: vec![64, 64],
-            mirror: true,
             ..config()
         };
         let networks = Networks::new(&config, features, true, &options);
@@ -141,16 +137,12 @@ mod tests {
                 row.design.fillet_ratio = 0.2 + 0.15 * (2.3 * i as f64).sin();
             }
         }
-        let scales = Scales::new(&rows, 0.16, feature_names(several_holes), false).unwrap();
+        let scales = Scales::new(&rows, 0.16, feature_names(several_holes)).unwrap();
         let samples: Vec<_> = rows
             .iter()
             .map(|row| scales.sample(&row.design, &row.sample))
             .collect();
-        let predicted = predict(
-            &networks,
-            &Batch::new(&samples, features, &options),
-            SHARPNESS,
-        );
+        let predicted = predict(&networks, &Batch::new(&samples, features, &options));
         let column = |tensor: &burn::tensor::Tensor<2>, k: usize, scale: f64| -> Vec<f64> {
             let column = tensor.clone().inner().narrow(1, k, 1);
             let values: Vec<f64> = column.try_into_vec_as().unwrap();

@@ -11,7 +11,7 @@
 //! Apart from these factors and from rounding, the function of the networks is that of the pretrained ones.
 
 use crate::backend::Backend;
-use crate::config::TrainingConfig;
+use crate::config::{DAMAGE_SHARPNESS, TrainingConfig};
 use crate::error::TrainError;
 use crate::export::layers;
 use crate::mirror;
@@ -30,13 +30,11 @@ pub(crate) struct Initial {
 }
 
 impl Initial {
-    /// The pretrained weights for the windows of a database, fitted to the training rows, which include their mirror images if
-    /// `symmetric`.
+    /// The pretrained weights for the windows of a database, fitted to the training rows, which include their mirror images.
     pub fn new(
         pretrained: &Surrogate,
         rows: &[Row],
         manifest: &Manifest,
-        symmetric: bool,
     ) -> Result<Self, TrainError> {
         if pretrained.card().domain.holes.is_some() && manifest.domain.holes.is_none() {
             return Err(TrainError::OneHole);
@@ -44,7 +42,7 @@ impl Initial {
         let pretrained = at_size_of(pretrained, &manifest.hinge);
         let parity = Parity::new(&pretrained, rows);
         let names = feature_names(manifest.domain.holes.is_some());
-        let own = Scales::new(rows, manifest.hinge.fillet_ratio, names, symmetric)?;
+        let own = Scales::new(rows, manifest.hinge.fillet_ratio, names)?;
         let card = pretrained.card();
         let mut layers = pretrained.layers();
         let (from, to) = (&card.standardisation, &own.standardisation);
@@ -99,7 +97,7 @@ pub fn check_pretrained(
 ) -> Result<(), TrainError> {
     let given = pretrained.layers();
     let heads = 1 + usize::from(given.chi_p.is_some());
-    let damage = std::iter::repeat_n(config.damage.clone(), heads);
+    let damage = std::iter::repeat_n(config.damage().to_vec(), heads);
     let expected: Vec<_> = std::iter::once(config.embedding.clone())
         .chain(damage)
         .collect();
@@ -108,13 +106,13 @@ pub fn check_pretrained(
         return Err(TrainError::OtherSizes { expected, found });
     }
     let found = pretrained.card().damage_sharpness;
-    if found != config.damage_sharpness {
+    if found != DAMAGE_SHARPNESS {
         return Err(TrainError::OtherSharpness { found });
     }
     let exact = TensorCreationOptions::new(backend.device()).with_dtype(DType::F64);
-    let folded = Networks::from_layers(&given, config.mirror, &exact);
+    let folded = Networks::from_layers(&given, &exact);
     let unchanged = layers(&folded)? == given;
-    let centred = !config.mirror || mirror::is_centred(&pretrained.card().standardisation);
+    let centred = mirror::is_centred(&pretrained.card().standardisation);
     if unchanged && centred {
         Ok(())
     } else {

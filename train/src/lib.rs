@@ -42,7 +42,7 @@ mod training;
 mod validation;
 
 pub use backend::{Backend, UnknownBackend};
-pub use config::{InvalidConfig, Precision, TrainingConfig};
+pub use config::{InvalidConfig, TrainingConfig};
 pub use distillation::{Distillation, TrainingData};
 pub use ensemble::{Disagreement, EnsembleCheck, disagreements};
 pub use epoch::Epoch;

@@ -10,7 +10,7 @@
 use dataset::{Database, Gates, Row, SplitPlan};
 use hinge::{HingeDeformation, HingeDesign, HingeSample};
 use surrogate::{Order, Surrogate};
-use train::{Backend, Precision, Trained, Training, TrainingConfig, train};
+use train::{Backend, Trained, Training, TrainingConfig, train};
 
 pub fn sample(design: &HingeDesign, eps: HingeDeformation, lambda: f64) -> HingeSample {
     let w = design.w_lig;
@@ -82,18 +82,9 @@ pub fn config(epochs: usize) -> TrainingConfig {
     TrainingConfig {
         seed: 4,
         embedding: vec![32, 32, 16],
-        damage: vec![32, 32],
-        mirror: true,
         epochs,
         batch_size: 64,
-        precision: Precision::F32,
         learning_rate: 5e-3,
-        learning_rate_end: 1e-5,
-        gradient_norm_max: 1.0,
-        energy_weight: 0.5,
-        damage_weight: 0.5,
-        damage_sharpness: 8.0,
-        patience: None,
         frozen_layers: 0,
     }
 }

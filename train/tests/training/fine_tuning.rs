@@ -4,9 +4,7 @@ use crate::closed_form::{config, database, finished, rows, trained};
 use dataset::{Database, Part, Row};
 use hinge::HingeSample;
 use surrogate::Surrogate;
-use train::{
-    Backend, Parity, Precision, Start, StateError, TrainError, Training, TrainingConfig, train,
-};
+use train::{Backend, Parity, Start, StateError, TrainError, Training, TrainingConfig, train};
 
 /// The rows in a sheet of `factor` times the thickness, whose material is `stiffness` times as stiff.
 fn similar(rows: Vec<Row>, factor: f64, stiffness: f64) -> Vec<Row> {
@@ -27,12 +25,11 @@ fn similar(rows: Vec<Row>, factor: f64, stiffness: f64) -> Vec<Row> {
     rows.into_iter().map(row).collect()
 }
 
-/// The training of `epochs` epochs in float64 on the rows of a sheet of another thickness and stiffness, which starts from
+/// The training of `epochs` epochs on the rows of a sheet of another thickness and stiffness, which starts from
 /// `pretrained`.
 fn tuned(pretrained: &Surrogate, epochs: usize) -> (Database, Training) {
     let database = database(similar(rows(30), 0.4, 3.0));
     let config = TrainingConfig {
-        precision: Precision::F64,
         learning_rate: 1e-3,
         ..config(epochs)
     };
@@ -71,7 +68,7 @@ fn fine_tuning_starts_with_the_function_of_the_given_weights() {
             .fold(0.0, f64::max);
         for (expected, found) in expected.iter().zip(found) {
             let difference = (factor * expected[1] - found[1]).abs();
-            assert!(difference < 1e-10 * factor * size, "{difference}");
+            assert!(difference < 1e-5 * factor * size, "{difference}");
         }
     }
 }
@@ -105,7 +102,6 @@ fn weights_of_the_same_law_keep_their_domain_and_sizes() {
     let start = |rows: &Database| {
         let other = TrainingConfig {
             embedding: vec![4],
-            damage: vec![4],
             ..config(1)
         };
         let config = other.with_sizes_of(&pretrained);
@@ -190,20 +186,17 @@ fn unsuitable_initial_weights_are_errors() {
     };
     let error = refusal(&base, &wider);
     assert!(matches!(error, TrainError::OtherSizes { .. }), "{error}");
-    let sharper = TrainingConfig {
-        damage_sharpness: 9.0,
-        ..config(1)
-    };
-    let error = refusal(&base, &sharper);
+    let mut card = base.card().clone();
+    card.damage_sharpness = 9.0;
+    let sharper = Surrogate::from_parts(base.layers(), card).unwrap();
+    let error = refusal(&sharper, &config(1));
     assert!(
         matches!(error, TrainError::OtherSharpness { .. }),
         "{error}"
     );
-    let plain = TrainingConfig {
-        mirror: false,
-        ..config(1)
-    };
-    let plain = train(&database, &plain, Backend::default(), &mut |_| {}).unwrap();
-    let error = refusal(&plain.surrogate, &config(1));
+    let mut layers = base.layers();
+    layers.chi[0].bias.values[0] += 0.1;
+    let plain = Surrogate::from_parts(layers, base.card().clone()).unwrap();
+    let error = refusal(&plain, &config(1));
     assert!(matches!(error, TrainError::NotSymmetric), "{error}");
 }
