@@ -108,8 +108,6 @@ struct CampaignFile {
     count: usize,
     /// Seed of the rays; a larger campaign with the same seed begins with the smaller one.
     seed: u64,
-    /// Time limit of one solve (s), 1 to 86 400.
-    time_limit_s: f64,
     /// CSV file of rays in addition to the sampled ones, relative to this file; written by `kirigami campaign extend`.
     extra_rays: Option<PathBuf>,
     /// Constants of all hinges.
@@ -120,8 +118,6 @@ struct CampaignFile {
 
 /// Maximum number of rays; a larger number is a typing error.
 const MAX_COUNT: usize = 1_000_000;
-/// Maximum time limit of a solve (s): one day.
-const MAX_TIME_LIMIT: f64 = 86_400.0;
 
 impl CampaignFile {
     /// The first defect of the file; `None` if it is valid.
@@ -134,12 +130,6 @@ impl CampaignFile {
             let count = self.count;
             return Some(format!(
                 "count = {count} violates {minimum} <= count <= {MAX_COUNT}"
-            ));
-        }
-        let seconds = self.time_limit_s;
-        if !(1.0..=MAX_TIME_LIMIT).contains(&seconds) {
-            return Some(format!(
-                "time_limit_s = {seconds} violates 1 <= time_limit_s <= {MAX_TIME_LIMIT}"
             ));
         }
         self.rays.defect().or_else(|| {
@@ -211,7 +201,7 @@ impl Campaign {
             tier: file.tier,
             count: file.count,
             seed: file.seed,
-            time_limit: Duration::from_secs_f64(file.time_limit_s),
+            time_limit: file.tier.time_limit(),
             design: file.design,
             rays: file.rays,
             further,
@@ -315,7 +305,6 @@ mod tests {
         assert!(message("count = 40", "count = 0").contains("mine.toml: count = 0"));
         assert!(message("kerf =", "kerv =").contains("did you mean `kerf`"));
         assert!(message("r_win = 100.0", "r_win = 50.0").contains("r_win > 2.5 w_lig"));
-        assert!(message("limit_s = 120.0", "limit_s = nan").contains("time_limit_s = NaN"));
         assert!(message("tier = \"tiny\"", "tier = \"huge\"").contains("huge"));
         let plate = message("tier = \"tiny\"", "tier = \"plate\"");
         assert!(plate.contains("ligaments of up to 0.5 mm"), "{plate}");
