@@ -8,7 +8,6 @@ use crate::mixing::Mixing;
 use crate::parquet;
 use crate::rows::Row;
 use crate::split::{Part, Split, SplitPlan, geometry};
-use hinge::TrainingDomain;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Rows in the order of job and lambda, with the bytes of their Parquet file and its manifest.
@@ -83,23 +82,6 @@ impl Database {
         } else {
             Ok(alike)
         }
-    }
-
-    /// The same database with at most the first `training` rays of the training part. The validation and test parts
-    /// are unchanged. Ids are hashes, so that the first rays are a random selection.
-    pub fn thinned(&self, training: usize) -> Self {
-        let mut split = self.manifest.split.clone();
-        split.training = split.training.into_iter().take(training).collect();
-        self.clone().with_split(split)
-    }
-
-    /// The same split, with only states inside the domain in the training and validation parts.
-    pub fn within(&self, domain: &TrainingDomain) -> Result<Self, DatasetError> {
-        let test = self.manifest.split.jobs(Part::Test);
-        let inside = |row: &&Row| {
-            test.contains(&row.job) || domain.contains(&row.design, &row.sample.deformation())
-        };
-        self.with_rows(self.rows.iter().filter(inside).cloned().collect())
     }
 
     /// A database of other rows of the same jobs, with the same gates and split.

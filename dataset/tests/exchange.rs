@@ -4,7 +4,7 @@ mod common;
 
 use common::{collect, rows};
 use dataset::{
-    ColumnMap, Constant, Database, DatasetError, Gates, Mixing, Part, Row, SplitPlan, rows_from_csv,
+    ColumnMap, Constant, Database, DatasetError, Gates, Mixing, Row, SplitPlan, rows_from_csv,
 };
 use std::path::PathBuf;
 use tempfile::TempDir;
@@ -209,19 +209,4 @@ fn rows_with_gaps_or_non_finite_numbers_are_rejected() {
         assert_eq!(database.rows().len(), 3, "{cell}");
         assert_eq!(database.manifest().rejected.values().sum::<usize>(), 1);
     }
-}
-
-#[test]
-fn the_summary_contains_coverage_residuals_and_repeated_states() {
-    let database = collect(rows()).unwrap();
-    let text = dataset::Details(&database).to_string();
-    for expected in [
-        "w_lig",
-        "energy residual",
-        "of 64 cells",
-        "more than once: 0",
-    ] {
-        assert!(text.contains(expected), "{text}");
-    }
-    assert_eq!(database.part(Part::Test).len(), 5);
 }

@@ -5,7 +5,7 @@ mod compare;
 use crate::ui::output_file;
 use anyhow::{Result, ensure};
 use clap::{Args, Subcommand};
-use dataset::{ColumnMap, Database, Details, Gates, Mixing, SplitPlan, rows_from_csv};
+use dataset::{ColumnMap, Database, Gates, Mixing, SplitPlan, rows_from_csv};
 use std::path::{Path, PathBuf};
 
 /// Summarise, join, split, correct and compare hinge databases, and exchange them as CSV
@@ -27,7 +27,7 @@ enum Action {
     Correct(CorrectCommand),
 }
 
-/// Print counts, ranges, histograms, rejected rows, energy residuals and coverage
+/// Print counts, rejected rows and the range of every column
 #[derive(Args)]
 struct SummaryCommand {
     /// Database (Parquet with its manifest)
@@ -172,7 +172,7 @@ impl SummaryCommand {
             println!("{}", serde_json::to_string_pretty(database.manifest())?);
             return Ok(());
         }
-        println!("{database}\n{}", Details(&database));
+        println!("{database}");
         Ok(())
     }
 }

@@ -1,25 +1,25 @@
 //! Time of ten training steps (2560 rows in batches of 256), including set-up and one validation, for
-//! each backend and for the network sizes of `demo.toml` and `paper.toml`.
+//! the network sizes of `demo.toml` and `paper.toml`.
 
 use dataset::{Database, Gates, Row, SplitPlan};
 use hinge::{HingeDesign, HingeSample};
-use train::{Backend, TrainingConfig, train};
+use train::{TrainingConfig, train};
 
 fn main() {
     divan::main();
 }
 
-#[divan::bench(args = Backend::ALL, sample_count = 10, sample_size = 1)]
-fn demo(bencher: divan::Bencher, backend: &Backend) {
-    ten_steps(bencher, *backend, &[64, 64, 32]);
+#[divan::bench(sample_count = 10, sample_size = 1)]
+fn demo(bencher: divan::Bencher) {
+    ten_steps(bencher, &[64, 64, 32]);
 }
 
-#[divan::bench(args = Backend::ALL, sample_count = 10, sample_size = 1)]
-fn paper(bencher: divan::Bencher, backend: &Backend) {
-    ten_steps(bencher, *backend, &[256, 256, 256, 128]);
+#[divan::bench(sample_count = 10, sample_size = 1)]
+fn paper(bencher: divan::Bencher) {
+    ten_steps(bencher, &[256, 256, 256, 128]);
 }
 
-fn ten_steps(bencher: divan::Bencher, backend: Backend, embedding: &[usize]) {
+fn ten_steps(bencher: divan::Bencher, embedding: &[usize]) {
     let database = database();
     let config = TrainingConfig {
         seed: 0,
@@ -29,7 +29,7 @@ fn ten_steps(bencher: divan::Bencher, backend: Backend, embedding: &[usize]) {
         learning_rate: 1e-3,
         frozen_layers: 0,
     };
-    bencher.bench(|| train(&database, &config, backend, &mut |_| {}));
+    bencher.bench(|| train(&database, &config, &mut |_| {}));
 }
 
 /// 100 rays of 32 rows, 80 of them for training.

@@ -33,13 +33,13 @@ fn layer(affine: Affine) -> Result<Layer, TrainError> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::backend::Backend;
     use crate::config::{DAMAGE_SHARPNESS, TrainingConfig};
     use crate::loss::predict;
     use crate::loss::tests::config;
     use crate::samples::{Batch, Scales};
+    use crate::training::options;
     use crate::validation::Parity;
-    use burn::tensor::{DType, TensorCreationOptions};
+    use burn::tensor::DType;
     use dataset::Row;
     use hinge::{HingeConstants, HingeDesign, HingeSample, NetLigament, TrainingDomain};
     use surrogate::{
@@ -122,9 +122,9 @@ mod tests {
     }
 
     /// |burn - kernel| / |kernel| over all rows, for W, F_a, F_s, M_theta, D and D_peak.
-    fn disagreement(backend: Backend, dtype: DType, several_holes: bool) -> [f64; 6] {
+    fn disagreement(dtype: DType, several_holes: bool) -> [f64; 6] {
         let features = feature_names(several_holes).len();
-        let options = TensorCreationOptions::new(backend.device()).with_dtype(dtype);
+        let options = options(dtype);
         let config = TrainingConfig {
             seed: 1,
             embedding: vec![64, 64, 32],
@@ -174,13 +174,11 @@ mod tests {
 
     #[test]
     fn the_kernel_agrees_with_burn_in_both_precisions() {
-        for &backend in Backend::ALL {
-            for (dtype, tolerance) in [(DType::F32, 1e-6), (DType::F64, 1e-14)] {
-                for several_holes in [false, true] {
-                    let errors = disagreement(backend, dtype, several_holes);
-                    let close = errors.iter().all(|&error| error < tolerance);
-                    assert!(close, "{backend} {dtype:?} {several_holes}: {errors:?}");
-                }
+        for (dtype, tolerance) in [(DType::F32, 1e-6), (DType::F64, 1e-14)] {
+            for several_holes in [false, true] {
+                let errors = disagreement(dtype, several_holes);
+                let close = errors.iter().all(|&error| error < tolerance);
+                assert!(close, "{dtype:?} {several_holes}: {errors:?}");
             }
         }
     }

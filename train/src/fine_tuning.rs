@@ -10,15 +10,15 @@
 //!
 //! Apart from these factors and from rounding, the function of the networks is that of the pretrained ones.
 
-use crate::backend::Backend;
 use crate::config::{DAMAGE_SHARPNESS, TrainingConfig};
 use crate::error::TrainError;
 use crate::export::layers;
 use crate::mirror;
 use crate::networks::Networks;
 use crate::samples::Scales;
+use crate::training::options;
 use crate::validation::Parity;
-use burn::tensor::{DType, TensorCreationOptions};
+use burn::tensor::DType;
 use dataset::{Manifest, Row};
 use hinge::HingeConstants;
 use surrogate::{Card, Layer, Layers, Standardisation, Surrogate, feature_names};
@@ -90,11 +90,7 @@ pub(crate) fn inherit(card: &mut Card, pretrained: &Surrogate, rows: &[Row]) {
 }
 
 /// Rejects initial weights whose sizes, sharpness or symmetry are not those of the configuration.
-pub fn check_pretrained(
-    pretrained: &Surrogate,
-    config: &TrainingConfig,
-    backend: Backend,
-) -> Result<(), TrainError> {
+pub fn check_pretrained(pretrained: &Surrogate, config: &TrainingConfig) -> Result<(), TrainError> {
     let given = pretrained.layers();
     let heads = 1 + usize::from(given.chi_p.is_some());
     let damage = std::iter::repeat_n(config.damage().to_vec(), heads);
@@ -109,7 +105,7 @@ pub fn check_pretrained(
     if found != DAMAGE_SHARPNESS {
         return Err(TrainError::OtherSharpness { found });
     }
-    let exact = TensorCreationOptions::new(backend.device()).with_dtype(DType::F64);
+    let exact = options(DType::F64);
     let folded = Networks::from_layers(&given, &exact);
     let unchanged = layers(&folded)? == given;
     let centred = mirror::is_centred(&pretrained.card().standardisation);

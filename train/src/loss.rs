@@ -62,10 +62,10 @@ pub(crate) fn loss(networks: &Networks, batch: &Batch) -> Tensor<1> {
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
-    use crate::backend::Backend;
     use crate::config::TrainingConfig;
     use crate::networks::Dense;
     use crate::samples::tests::samples;
+    use crate::training::options;
     use burn::module::Param;
     use burn::tensor::{DType, TensorCreationOptions, TensorData};
 
@@ -99,8 +99,7 @@ pub(crate) mod tests {
 
     #[test]
     fn the_parameter_gradient_agrees_with_finite_differences() {
-        let options =
-            TensorCreationOptions::new(Backend::default().device()).with_dtype(DType::F64);
+        let options = options(DType::F64);
         let config = TrainingConfig {
             seed: 3,
             ..config()

@@ -1,7 +1,6 @@
 //! The training loop: optimiser steps with a cosine learning-rate schedule. Each network is taken from the epoch of its
 //! minimum validation error.
 
-use crate::backend::Backend;
 use crate::bins::error_bins;
 use crate::config::{DAMAGE_SHARPNESS, TrainingConfig};
 use crate::distillation::TrainingData;
@@ -14,10 +13,9 @@ use crate::networks::Networks;
 use crate::optimiser::{learning_rate, optimiser};
 use crate::samples::{Batch, Sample, Scales};
 use crate::state::{self, Progress, State};
-use crate::stiffness::StiffnessCheck;
 use crate::validation::Parity;
 use burn::optim::{GradientsParams, ModuleOptimizer};
-use burn::tensor::{DType, TensorCreationOptions};
+use burn::tensor::{DType, Device, TensorCreationOptions};
 use dataset::{Database, Manifest, Part, Row, with_mirrored};
 use hinge::TrainingDomain;
 use rand::SeedableRng;
@@ -42,8 +40,6 @@ pub struct Trained {
     pub test_errors: TestErrors,
     /// Targets and predictions on the test part.
     pub parity: Parity,
-    /// Check of the learned tangent on the test part.
-    pub stiffness: StiffnessCheck,
 }
 
 /// The starting point of a training.
@@ -93,10 +89,9 @@ struct Parts {
 pub fn train(
     database: &Database,
     config: &TrainingConfig,
-    backend: Backend,
     progress: &mut dyn FnMut(&Epoch),
 ) -> Result<Trained, TrainError> {
-    let mut training = Training::new(database, config, backend, Start::Fresh)?;
+    let mut training = Training::new(database, config, Start::Fresh)?;
     while !training.is_finished() {
         progress(&training.epoch()?);
     }
@@ -108,7 +103,6 @@ impl Training {
     pub fn new<'a>(
         data: impl Into<TrainingData<'a>>,
         config: &TrainingConfig,
-        backend: Backend,
         start: Start,
     ) -> Result<Self, TrainError> {
         config.validate()?;
@@ -123,7 +117,7 @@ impl Training {
         };
         let (layers, scales) = match (start, &state) {
             (Start::Weights(pretrained), _) => {
-                check_pretrained(pretrained, config, backend)?;
+                check_pretrained(pretrained, config)?;
                 let initial = Initial::new(pretrained, &rows, manifest)?;
                 (Some(initial.layers), initial.scales)
             }
@@ -146,7 +140,7 @@ impl Training {
                 card.fine_tuned_from = pretrained.map(Surrogate::hash);
             }
         }
-        let options = options(backend);
+        let options = options(DType::F32);
         let networks = match &layers {
             Some(layers) => Networks::from_layers(layers, &options),
             None => Networks::new(config, scales.features(), scales.peak.is_some(), &options),
@@ -250,7 +244,6 @@ impl Training {
         let last = export(&self.networks, &self.card)?;
         let last_errors = Parity::new(&last, &self.parts.test).errors();
         Ok(Trained {
-            stiffness: StiffnessCheck::new(&best, &self.parts.test),
             surrogate: best.with_test_errors(test_errors, bins),
             last: last.with_test_errors(last_errors, Vec::new()),
             history: self.history,
@@ -323,9 +316,9 @@ impl Parts {
     }
 }
 
-/// Device and number type of the tensors.
-fn options(backend: Backend) -> TensorCreationOptions {
-    TensorCreationOptions::new(backend.device()).with_dtype(DType::F32)
+/// Tensors of a number type on the processor, recording gradients.
+pub(crate) fn options(dtype: DType) -> TensorCreationOptions {
+    TensorCreationOptions::new(Device::flex().autodiff()).with_dtype(dtype)
 }
 
 /// The card before training; the test errors are added at the end.

@@ -18,7 +18,7 @@ use crate::ui::interrupt;
 use crate::ui::progress::duration;
 use crate::ui::run_folder;
 use crate::ui::with_unit::{percent, time};
-use ::train::{Backend, TrainingConfig, check_pretrained};
+use ::train::{TrainingConfig, check_pretrained};
 use anyhow::{Context, Result, bail, ensure};
 use clap::Args;
 use dataset::{Database, Gates, SplitPlan};
@@ -115,8 +115,7 @@ impl LearnCommand {
                 file.display(),
                 from[0].display()
             );
-            check_pretrained(parent, &config, Backend::default())
-                .with_context(|| format!("{}", file.display()))?;
+            check_pretrained(parent, &config).with_context(|| format!("{}", file.display()))?;
         }
         let campaign = self.campaign(&material, tier)?;
         let region = region(&campaign).ok_or(VerificationError::NoRegion)?;

@@ -10,10 +10,10 @@ use crate::ui::exit::Unfinished;
 use crate::ui::progress::announce;
 use crate::ui::table::table;
 use crate::ui::{comparison, interrupt, output_file};
-use ::train::{EnsembleCheck, Trained, TrainingConfig, disagreements};
+use ::train::{Trained, TrainingConfig};
 use anyhow::{Context, Result, bail, ensure};
 use comfy_table::Table;
-use dataset::{Database, Part};
+use dataset::Database;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
 use support::table::number_or_dash;
@@ -134,7 +134,7 @@ impl TrainCommand {
     fn continued(&self, config: &TrainingConfig, shared: Shared, discard: bool) -> Result<Trained> {
         let state = state(&self.member(config.seed));
         let Shared { database, base } = shared;
-        continued_fit(database.into(), config, self.backend, base, &state, discard)
+        continued_fit(database.into(), config, base, &state, discard)
     }
 
     /// Writes the weights of the best seed with their curves and plots, and the comparison of the seeds.
@@ -151,8 +151,9 @@ impl TrainCommand {
         let folder = name.parent().unwrap_or(Path::new(""));
         let name = name.file_name().unwrap_or_default().to_string_lossy();
         println!("{}\n", comparison::write(folder, &name, COLUMNS, rows)?);
-        print_spread(&members, shared.database);
-        self.write(&members[best], shared.database)
+        let errors: Vec<TestErrors> = members.iter().map(|member| member.test_errors).collect();
+        println!("{}\n", spread_table(&errors));
+        self.write(&members[best])
     }
 
     /// The cells of one seed in the comparison.
@@ -216,25 +217,6 @@ fn validation_errors(trained: &Trained) -> [f64; 3] {
 fn validation_error(trained: &Trained) -> f64 {
     let [w, d, _] = validation_errors(trained);
     [w, d].into_iter().filter(|error| !error.is_nan()).product()
-}
-
-/// Prints the spread of the errors of the seeds, and what it implies for the error.
-fn print_spread(members: &[Trained], database: &Database) {
-    let errors: Vec<TestErrors> = members.iter().map(|member| member.test_errors).collect();
-    println!("{}\n", spread_table(&errors));
-    let surrogates = members.iter().map(|member| member.surrogate.clone());
-    let surrogates: Vec<Surrogate> = surrogates.collect();
-    let check = EnsembleCheck::new(&disagreements(&surrogates, &database.part(Part::Test)));
-    println!(
-        "forces of {} networks, in units of their root mean square: standard deviation {:.3}, error of the mean {:.3};\n\
-         the tenth of the states with the largest deviation has {:.0} % of the squared error; \
-         correlation of the logarithms of deviation and error {:.2}\n",
-        members.len(),
-        check.deviation,
-        check.error,
-        100.0 * check.error_in_top_tenth,
-        check.correlation
-    );
 }
 
 /// Minimum, mean and maximum relative root mean square error over the trainings.

@@ -10,7 +10,7 @@
 use dataset::{Database, Gates, Row, SplitPlan};
 use hinge::{HingeDeformation, HingeDesign, HingeSample};
 use surrogate::{Order, Surrogate};
-use train::{Backend, Trained, Training, TrainingConfig, train};
+use train::{Trained, Training, TrainingConfig, train};
 
 pub fn sample(design: &HingeDesign, eps: HingeDeformation, lambda: f64) -> HingeSample {
     let w = design.w_lig;
@@ -89,8 +89,8 @@ pub fn config(epochs: usize) -> TrainingConfig {
     }
 }
 
-pub fn trained(epochs: usize, backend: Backend) -> Trained {
-    train(&database(rows(60)), &config(epochs), backend, &mut |_| {}).unwrap()
+pub fn trained(epochs: usize) -> Trained {
+    train(&database(rows(60)), &config(epochs), &mut |_| {}).unwrap()
 }
 
 /// The energies of a surrogate at some states.

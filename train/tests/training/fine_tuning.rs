@@ -4,7 +4,7 @@ use crate::closed_form::{config, database, finished, rows, trained};
 use dataset::{Database, Part, Row};
 use hinge::HingeSample;
 use surrogate::Surrogate;
-use train::{Backend, Parity, Start, StateError, TrainError, Training, TrainingConfig, train};
+use train::{Parity, Start, StateError, TrainError, Training, TrainingConfig, train};
 
 /// The rows in a sheet of `factor` times the thickness, whose material is `stiffness` times as stiff.
 fn similar(rows: Vec<Row>, factor: f64, stiffness: f64) -> Vec<Row> {
@@ -34,13 +34,13 @@ fn tuned(pretrained: &Surrogate, epochs: usize) -> (Database, Training) {
         ..config(epochs)
     };
     let start = Start::Weights(pretrained);
-    let training = Training::new(&database, &config, Backend::default(), start).unwrap();
+    let training = Training::new(&database, &config, start).unwrap();
     (database, training)
 }
 
 #[test]
 fn fine_tuning_starts_with_the_function_of_the_given_weights() {
-    let pretrained = trained(40, Backend::default()).surrogate;
+    let pretrained = trained(40).surrogate;
     let (database, training) = tuned(&pretrained, 1);
     let start = training.finish().unwrap().surrogate;
     let scaled = pretrained.clone().scaled(0.4);
@@ -75,9 +75,9 @@ fn fine_tuning_starts_with_the_function_of_the_given_weights() {
 
 #[test]
 fn a_fine_tuned_network_is_closer_than_one_from_scratch() {
-    let pretrained = trained(40, Backend::default()).surrogate;
+    let pretrained = trained(40).surrogate;
     let (database, training) = tuned(&pretrained, 10);
-    let scratch = train(&database, &config(10), Backend::default(), &mut |_| {}).unwrap();
+    let scratch = train(&database, &config(10), &mut |_| {}).unwrap();
     let tuned = finished(training);
     for k in 0..4 {
         let [tuned, scratch] = [&tuned, &scratch].map(|it| it.test_errors.percents()[k]);
@@ -95,9 +95,7 @@ fn weights_of_the_same_law_keep_their_domain_and_sizes() {
         database(rows.into_iter().map(with_law).collect())
     };
     let whole = of_law(rows(40), "film");
-    let pretrained = train(&whole, &config(1), Backend::default(), &mut |_| {})
-        .unwrap()
-        .surrogate;
+    let pretrained = train(&whole, &config(1), &mut |_| {}).unwrap().surrogate;
     let few: Vec<Row> = whole.part(Part::Training).into_iter().take(80).collect();
     let start = |rows: &Database| {
         let other = TrainingConfig {
@@ -105,12 +103,7 @@ fn weights_of_the_same_law_keep_their_domain_and_sizes() {
             ..config(1)
         };
         let config = other.with_sizes_of(&pretrained);
-        let training = Training::new(
-            rows,
-            &config,
-            Backend::default(),
-            Start::Weights(&pretrained),
-        );
+        let training = Training::new(rows, &config, Start::Weights(&pretrained));
         training.unwrap().finish().unwrap().surrogate
     };
     let domain = |surrogate: &Surrogate| surrogate.card().domain.clone();
@@ -133,7 +126,7 @@ fn weights_of_the_same_law_keep_their_domain_and_sizes() {
 
 #[test]
 fn frozen_layers_are_not_trained() {
-    let pretrained = trained(2, Backend::default()).surrogate;
+    let pretrained = trained(2).surrogate;
     let database = database(rows(20));
     let config = TrainingConfig {
         frozen_layers: 1,
@@ -141,7 +134,7 @@ fn frozen_layers_are_not_trained() {
     };
     let folder = tempfile::tempdir().unwrap();
     let state = folder.path().join("chi.state");
-    let begun = |start| Training::new(&database, &config, Backend::default(), start).unwrap();
+    let begun = |start| Training::new(&database, &config, start).unwrap();
     let start = Start::Weights(&pretrained);
     let initial = begun(start).finish().unwrap().last.layers();
     let mut training = begun(start);
@@ -153,7 +146,7 @@ fn frozen_layers_are_not_trained() {
         pretrained,
     };
     let last = finished(begun(resumed(Some(&pretrained)))).last.layers();
-    let without = Training::new(&database, &config, Backend::default(), resumed(None));
+    let without = Training::new(&database, &config, resumed(None));
     assert!(matches!(
         without.err(),
         Some(TrainError::State(StateError::Other { what, .. })) if what.contains("start from")
@@ -173,11 +166,11 @@ fn frozen_layers_are_not_trained() {
 
 #[test]
 fn unsuitable_initial_weights_are_errors() {
-    let base = trained(1, Backend::default()).surrogate;
+    let base = trained(1).surrogate;
     let database = database(rows(20));
     let refusal = |pretrained: &Surrogate, config: &TrainingConfig| {
         let start = Start::Weights(pretrained);
-        let training = Training::new(&database, config, Backend::default(), start);
+        let training = Training::new(&database, config, start);
         training.err().unwrap()
     };
     let wider = TrainingConfig {
