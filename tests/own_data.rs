@@ -215,7 +215,7 @@ fn a_database_is_compared_with_another_of_the_same_rays() {
         output.contains("| F_s | 5.00 % | 5.00 % | 5.00 % | 5.00 % |"),
         "{output}"
     );
-    for name in ["compare.csv", "compare.md", "compare.png", "tradeoff.md"] {
+    for name in ["compare.csv", "compare.md", "compare.png"] {
         assert!(work.path("results/tiers").join(name).exists(), "{name}");
     }
 }

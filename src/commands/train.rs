@@ -62,7 +62,7 @@ pub struct TrainCommand {
     #[arg(long, conflicts_with = "seeds")]
     resume: bool,
     /// Number of trainings, with successive seeds. The one with the smallest product of the validation errors of W and
-    /// of D is kept as the weights; the spread of their forces estimates the error. Seeds that are trained already are
+    /// of D is kept as the weights. Seeds that are trained already are
     /// not trained again
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..=64))]
     seeds: u64,

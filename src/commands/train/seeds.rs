@@ -5,19 +5,17 @@
 //! and the comparison. Two commands that do so at the same time write the same contents.
 
 use crate::commands::train::kept_fits::{continued_fit, is_of};
-use crate::commands::train::{QUANTITIES, TrainCommand, hold};
+use crate::commands::train::{TrainCommand, hold};
 use crate::ui::exit::Unfinished;
 use crate::ui::progress::announce;
-use crate::ui::table::table;
 use crate::ui::{comparison, interrupt, output_file};
 use ::train::{Trained, TrainingConfig};
 use anyhow::{Context, Result, bail, ensure};
-use comfy_table::Table;
 use dataset::Database;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
 use support::table::number_or_dash;
-use surrogate::{Surrogate, TestErrors};
+use surrogate::Surrogate;
 
 /// What all seeds of one command have in common.
 #[derive(Clone, Copy)]
@@ -151,8 +149,6 @@ impl TrainCommand {
         let folder = name.parent().unwrap_or(Path::new(""));
         let name = name.file_name().unwrap_or_default().to_string_lossy();
         println!("{}\n", comparison::write(folder, &name, COLUMNS, rows)?);
-        let errors: Vec<TestErrors> = members.iter().map(|member| member.test_errors).collect();
-        println!("{}\n", spread_table(&errors));
         self.write(&members[best])
     }
 
@@ -217,25 +213,4 @@ fn validation_errors(trained: &Trained) -> [f64; 3] {
 fn validation_error(trained: &Trained) -> f64 {
     let [w, d, _] = validation_errors(trained);
     [w, d].into_iter().filter(|error| !error.is_nan()).product()
-}
-
-/// Minimum, mean and maximum relative root mean square error over the trainings.
-fn spread_table(errors: &[TestErrors]) -> Table {
-    let header = format!("relative RMSE (%) of {} seeds", errors.len());
-    let mut table = table([header.as_str(), "minimum", "mean", "maximum"]);
-    for (quantity, name) in QUANTITIES.into_iter().enumerate() {
-        let values: Vec<f64> = errors
-            .iter()
-            .map(|errors| errors.percents()[quantity])
-            .collect();
-        let fold =
-            |pick: fn(f64, f64) -> f64| values.iter().copied().reduce(pick).unwrap_or(f64::NAN);
-        table.add_row([
-            name.to_owned(),
-            number_or_dash(fold(f64::min), 2),
-            number_or_dash(values.iter().sum::<f64>() / values.len() as f64, 2),
-            number_or_dash(fold(f64::max), 2),
-        ]);
-    }
-    table
 }
