@@ -322,14 +322,13 @@ fn dot(c: &Coefficients, terms: &Coefficients) -> f64 {
 mod tests {
     use super::*;
     use crate::compare::relative_rms;
-    use crate::gates::Gates;
     use crate::rows::tests::rows;
     use crate::split::SplitPlan;
 
     const RAYS: usize = 40;
 
     fn database(rows: Vec<Row>) -> Database {
-        Database::collect(rows, &Gates::default(), &SplitPlan::default()).unwrap()
+        Database::collect(rows, &SplitPlan::default()).unwrap()
     }
 
     /// The database of [`rows`] with the errors of a coarse mesh, by a known q.

@@ -120,16 +120,11 @@ fn arc(centre: [f64; 2], radius: f64, from: [f64; 2], to: [f64; 2], angle: f64) 
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
+    use hinge::HingeConstants;
     use proptest::prelude::*;
 
     pub(crate) fn design(w_lig: f64, alpha_deg: f64) -> HingeDesign {
-        HingeDesign {
-            w_lig,
-            alpha: alpha_deg.to_radians(),
-            fillet_ratio: 0.16,
-            kerf: 0.2,
-            r_win: 100.0,
-        }
+        HingeConstants::PAPER.hinge(w_lig, alpha_deg.to_radians())
     }
 
     proptest! {

@@ -67,12 +67,11 @@ fn case() -> (Surrogate, Vec<HingeDesign>, Vec<HingeDeformation>) {
     )
     .expect("the weights are finite and the shapes fit");
     let spread = |index: usize, step: f64| (step * index as f64).sin();
-    let designs = (0..HINGES).map(|index| HingeDesign {
-        w_lig: 15.0 + 10.0 * spread(index, 0.7),
-        alpha: 1.5 + 0.7 * spread(index, 1.3),
-        fillet_ratio: 0.16,
-        kerf: 0.2,
-        r_win: 100.0,
+    let designs = (0..HINGES).map(|index| {
+        HingeConstants::PAPER.hinge(
+            15.0 + 10.0 * spread(index, 0.7),
+            1.5 + 0.7 * spread(index, 1.3),
+        )
     });
     let designs: Vec<HingeDesign> = designs.collect();
     let states = designs.iter().enumerate().map(|(index, design)| {
@@ -131,11 +130,7 @@ fn card() -> Card {
             [5.0, 25.0],
             [0.8, 2.3],
         ),
-        hinge: HingeConstants {
-            fillet_ratio: 0.16,
-            kerf: 0.2,
-            r_win: 100.0,
-        },
+        hinge: HingeConstants::PAPER,
         material: "benchmark".into(),
         material_hash: None,
         settings_hash: None,

@@ -1,8 +1,8 @@
 //! Time of ten training steps (2560 rows in batches of 256), including set-up and one validation, for
 //! the network sizes of `demo.toml` and `paper.toml`.
 
-use dataset::{Database, Gates, Row, SplitPlan};
-use hinge::{HingeDesign, HingeSample};
+use dataset::{Database, Row, SplitPlan};
+use hinge::{HingeConstants, HingeSample};
 use train::{TrainingConfig, train};
 
 fn main() {
@@ -39,13 +39,8 @@ fn database() -> Database {
         let lambda = (index % 32 + 1) as f64 / 32.0;
         Row {
             job: format!("job-{ray:03}"),
-            design: HingeDesign {
-                w_lig: 15.0 + 10.0 * ray.sin(),
-                alpha: 1.5 + 0.7 * (1.7 * ray).sin(),
-                fillet_ratio: 0.16,
-                kerf: 0.2,
-                r_win: 100.0,
-            },
+            design: HingeConstants::PAPER
+                .hinge(15.0 + 10.0 * ray.sin(), 1.5 + 0.7 * (1.7 * ray).sin()),
             sample: HingeSample {
                 lambda,
                 a: lambda * ray.cos(),
@@ -58,17 +53,12 @@ fn database() -> Database {
                 d: 0.01 * lambda,
                 ..HingeSample::default()
             },
-            failure: String::new(),
             material: "benchmark".into(),
-            material_hash: String::new(),
-            settings_hash: String::new(),
             tier: "none".into(),
             solved_tier: "none".into(),
-            gmsh: "none".into(),
-            ccx: "none".into(),
-            cpu_s: 0.0,
+            ..Row::default()
         }
     });
-    Database::collect(rows.collect(), &Gates::default(), &SplitPlan::default())
+    Database::collect(rows.collect(), &SplitPlan::default())
         .expect("the rows are finite and of a hundred geometries")
 }

@@ -41,7 +41,7 @@ mod tests {
     use crate::validation::Parity;
     use burn::tensor::DType;
     use dataset::Row;
-    use hinge::{HingeConstants, HingeDesign, HingeSample, NetLigament, TrainingDomain};
+    use hinge::{HingeConstants, HingeSample, NetLigament, TrainingDomain};
     use surrogate::{
         Card, FEATURE_NAMES, FORMAT_VERSION, Surrogate, TestErrors, UNITS, feature_names,
     };
@@ -50,13 +50,7 @@ mod tests {
         let wave = |speed: f64| (speed * index as f64 + 0.3).sin();
         Row {
             job: format!("{index}"),
-            design: HingeDesign {
-                w_lig: 15.0 + 9.0 * wave(1.3),
-                alpha: 1.5 + 0.7 * wave(2.9),
-                fillet_ratio: 0.16,
-                kerf: 0.2,
-                r_win: 100.0,
-            },
+            design: HingeConstants::PAPER.hinge(15.0 + 9.0 * wave(1.3), 1.5 + 0.7 * wave(2.9)),
             sample: HingeSample {
                 a: 2.0 * wave(0.7),
                 s: 2.0 * wave(1.9),
@@ -69,15 +63,7 @@ mod tests {
                 d_peak: Some(0.2),
                 ..HingeSample::default()
             },
-            failure: String::new(),
-            material: String::new(),
-            material_hash: String::new(),
-            settings_hash: String::new(),
-            tier: String::new(),
-            solved_tier: String::new(),
-            gmsh: String::new(),
-            ccx: String::new(),
-            cpu_s: 0.0,
+            ..Row::default()
         }
     }
 
@@ -100,11 +86,7 @@ mod tests {
             fine_tuned_from: None,
             distillation: None,
             domain,
-            hinge: HingeConstants {
-                fillet_ratio: 0.16,
-                kerf: 0.2,
-                r_win: 100.0,
-            },
+            hinge: HingeConstants::PAPER,
             material: String::new(),
             material_hash: None,
             settings_hash: None,

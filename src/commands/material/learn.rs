@@ -21,7 +21,7 @@ use crate::ui::with_unit::{percent, time};
 use ::train::{TrainingConfig, check_pretrained};
 use anyhow::{Context, Result, bail, ensure};
 use clap::Args;
-use dataset::{Database, Gates, SplitPlan};
+use dataset::{Database, SplitPlan};
 use fe_driver::{CalculiX, Campaign, Progress};
 use hinge::{Regime, SheetMaterial, TrainingDomain};
 use mesher::Tier;
@@ -219,7 +219,7 @@ impl LearnCommand {
             println!("not solved: {unsolved}");
         }
         let states = check.rows.len();
-        let database = Database::collect(check.rows, &Gates::default(), &SplitPlan::default())
+        let database = Database::collect(check.rows, &SplitPlan::default())
             .context("the solver followed too few rays of the spot check: increase --spot-rays")?;
         database.write(&self.out.join("spot-check.parquet"), true)?;
         println!(
