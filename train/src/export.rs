@@ -36,8 +36,8 @@ mod tests {
     use crate::config::{DAMAGE_SHARPNESS, TrainingConfig};
     use crate::loss::predict;
     use crate::loss::tests::config;
+    use crate::networks::options;
     use crate::samples::{Batch, Scales};
-    use crate::training::options;
     use crate::validation::Parity;
     use burn::tensor::DType;
     use dataset::Row;

@@ -57,10 +57,9 @@ mod tests {
     use crate::affine::forward;
     use crate::config::TrainingConfig;
     use crate::loss::tests::config;
-    use crate::networks::Networks;
+    use crate::networks::{Networks, options};
     use crate::samples::tests::samples;
     use crate::samples::{Batch, Sample};
-    use crate::training::options;
     use burn::tensor::DType;
 
     #[test]

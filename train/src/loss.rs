@@ -63,9 +63,8 @@ pub(crate) fn loss(networks: &Networks, batch: &Batch) -> Tensor<1> {
 pub(crate) mod tests {
     use super::*;
     use crate::config::TrainingConfig;
-    use crate::networks::Dense;
+    use crate::networks::{Dense, options};
     use crate::samples::tests::samples;
-    use crate::training::options;
     use burn::module::Param;
     use burn::tensor::{DType, TensorCreationOptions, TensorData};
 

@@ -4,7 +4,7 @@ use crate::affine::Affine;
 use crate::config::TrainingConfig;
 use crate::mirror::Fold;
 use burn::module::{Module, Param};
-use burn::tensor::{Tensor, TensorCreationOptions, TensorData};
+use burn::tensor::{DType, Device, Tensor, TensorCreationOptions, TensorData};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use surrogate::{Layer, Layers};
@@ -31,6 +31,11 @@ pub(crate) struct Dense {
     pub bias: Param<Tensor<1>>,
     #[module(skip)]
     fold: Fold,
+}
+
+/// Tensors of a number type on the processor, recording gradients.
+pub(crate) fn options(dtype: DType) -> TensorCreationOptions {
+    TensorCreationOptions::new(Device::flex().autodiff()).with_dtype(dtype)
 }
 
 impl Networks {

@@ -9,13 +9,13 @@ use crate::error::TrainError;
 use crate::export::layers;
 use crate::fine_tuning::{Initial, check_pretrained, inherit};
 use crate::loss::loss;
-use crate::networks::Networks;
+use crate::networks::{Networks, options};
 use crate::optimiser::{learning_rate, optimiser};
 use crate::samples::{Batch, Sample, Scales};
 use crate::state::{self, Progress, State};
 use crate::validation::Parity;
 use burn::optim::{GradientsParams, ModuleOptimizer};
-use burn::tensor::{DType, Device, TensorCreationOptions};
+use burn::tensor::{DType, TensorCreationOptions};
 use dataset::{Database, Manifest, Part, Row, with_mirrored};
 use hinge::TrainingDomain;
 use rand::SeedableRng;
@@ -314,11 +314,6 @@ impl Parts {
             test: part(Part::Test, "test")?,
         })
     }
-}
-
-/// Tensors of a number type on the processor, recording gradients.
-pub(crate) fn options(dtype: DType) -> TensorCreationOptions {
-    TensorCreationOptions::new(Device::flex().autodiff()).with_dtype(dtype)
 }
 
 /// The card before training; the test errors are added at the end.
