@@ -381,15 +381,18 @@ fn two_runs_without_locks_give_the_rows_of_one() {
 #[test]
 fn time_in_which_the_run_is_suspended_does_not_count() {
     let work = Workplace::new();
+    let solve = "solve --tier tiny --theta-deg 5";
+    work.output(&format!("{solve} --out recorded"));
     let ccx = work.path("suspending-ccx");
-    let suspends = "kill -STOP $PPID; sleep 6; kill -CONT $PPID; sleep 0.5; exec ccx \"$@\"";
-    std::fs::write(
-        &ccx,
-        format!("#!/bin/sh\n[ \"$1\" = -v ] && exec ccx -v\n{suspends}\n"),
-    )
-    .unwrap();
+    let recorded = work.path("recorded/window.dat");
+    let script = format!(
+        "#!/bin/sh\n[ \"$1\" = -v ] && exec ccx -v\nkill -STOP $PPID; sleep 4; kill -CONT $PPID; sleep 0.5\n\
+         echo 'Job finished'; exec cp {} window.dat\n",
+        recorded.display()
+    );
+    std::fs::write(&ccx, script).unwrap();
     std::fs::set_permissions(&ccx, PermissionsExt::from_mode(0o755)).unwrap();
-    let mut solve = work.program("solve --tier tiny --theta-deg 5 --time-limit-s 5");
+    let mut solve = work.program(&format!("{solve} --time-limit-s 3"));
     assert!(solve.env("KIRIGAMI_CCX", ccx).status().unwrap().success());
 }
 

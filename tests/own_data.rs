@@ -65,7 +65,7 @@ fn a_table_becomes_weights_that_predict_it() {
     let work = workplace();
     let summary = work.output(&format!("dataset summary {DATABASE}"));
     assert!(summary.contains("300 rows of 30 rays"), "{summary}");
-    assert!(summary.contains("cells of (w_lig, alpha)"), "{summary}");
+    assert!(summary.contains("split by geometry"), "{summary}");
 
     let train = format!("train {DATABASE} --config configs/training/demo.toml");
     let output = work.output(&format!("{train} --seeds 2 --out {WEIGHTS}"));
