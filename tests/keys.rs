@@ -21,12 +21,8 @@ of the map of an import (`kirigami dataset import`) are explained in `configs/ma
 fn page() -> String {
     let files: [(&str, &str, Schema); 4] = [
         ("Scene", "configs/scenes", schema_for!(SceneConfig)),
-        ("Campaign", "configs/campaigns", Campaign::file_schema()),
-        (
-            "Material",
-            "configs/materials",
-            SheetMaterial::file_schema(),
-        ),
+        ("Campaign", "configs/campaigns", schema_for!(Campaign)),
+        ("Material", "configs/materials", schema_for!(SheetMaterial)),
         ("Training", "configs/training", schema_for!(TrainingConfig)),
     ];
     let (mut page, mut described) = (HEADING.to_owned(), Described::new());

@@ -380,23 +380,20 @@ fn two_runs_without_locks_give_the_rows_of_one() {
 /// As if the machine had been suspended.
 #[test]
 fn time_in_which_the_run_is_suspended_does_not_count() {
-    let replay = Replay::new();
-    replay
-        .work
-        .edit(CAMPAIGN, &[("time_limit_s = 120.0", "time_limit_s = 3.0")]);
-    let ccx = replay.work.path("replaying-ccx");
-    let text = std::fs::read_to_string(&ccx).unwrap();
-    let suspends = "kill -STOP $PPID; sleep 4; kill -CONT $PPID; sleep 0.5";
-    std::fs::write(&ccx, text.replace("sleep 0.02", suspends)).unwrap();
-    let mut run = replay.campaign("run", "suspended", "--jobs 1 --shard 1/3");
-    assert!(run.status().unwrap().success());
-    let status = replay.work.output(&format!(
-        "campaign status {CAMPAIGN} --folder suspended --json"
-    ));
-    assert!(
-        status.contains("\"complete\": 2") && status.contains("\"failures\": {}"),
-        "{status}"
+    let work = Workplace::new();
+    let solve = "solve --tier tiny --theta-deg 5";
+    work.output(&format!("{solve} --out recorded"));
+    let ccx = work.path("suspending-ccx");
+    let recorded = work.path("recorded/window.dat");
+    let script = format!(
+        "#!/bin/sh\n[ \"$1\" = -v ] && exec ccx -v\nkill -STOP $PPID; sleep 4; kill -CONT $PPID; sleep 0.5\n\
+         echo 'Job finished'; exec cp {} window.dat\n",
+        recorded.display()
     );
+    std::fs::write(&ccx, script).unwrap();
+    std::fs::set_permissions(&ccx, PermissionsExt::from_mode(0o755)).unwrap();
+    let mut solve = work.program(&format!("{solve} --time-limit-s 3"));
+    assert!(solve.env("KIRIGAMI_CCX", ccx).status().unwrap().success());
 }
 
 #[test]

@@ -3,8 +3,9 @@
 mod common;
 
 use common::{Workplace, failure};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use support::sealed_json;
+use surrogate::Surrogate;
 
 const POLYPROPYLENE: &str = "configs/materials/polypropylene-0.8mm.toml";
 const OPTIONS: &str = "--tier tiny --rays 6 --spot-rays 3 --out learned";
@@ -15,13 +16,17 @@ fn learn(material: &str, options: &str) -> String {
 }
 
 fn learn_from(weights: &[&str], material: &str, options: &str) -> String {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/pet-0.5mm");
-    let from = weights.iter().map(|name| {
-        let file = folder.join(name).with_added_extension("safetensors");
-        format!("--from {}", file.display())
-    });
+    let from = weights
+        .iter()
+        .map(|name| format!("--from {}", shipped(name).display()));
     let from: Vec<String> = from.collect();
     format!("material learn {} {material} {options}", from.join(" "))
+}
+
+/// Weights of the film, or a file with an absolute path.
+fn shipped(name: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/pet-0.5mm");
+    folder.join(name).with_added_extension("safetensors")
 }
 
 /// Short rays, and a short training.
@@ -178,13 +183,21 @@ fn a_stopped_run_is_continued_and_its_folder_belongs_to_one_material() {
 #[test]
 fn unsuitable_weights_are_refused_before_a_window_is_solved() {
     let work = Workplace::new();
-    let shipped = std::fs::read_to_string(work.path("configs/training/fine-tuning.toml")).unwrap();
-    let sharper = shipped.replace("damage_sharpness = 8.0", "damage_sharpness = 9.0");
-    std::fs::create_dir(work.path("learned")).unwrap();
-    std::fs::write(work.path("learned/fine-tuning.toml"), sharper).unwrap();
-    let message = work.error(&learn_from(&["small"], POLYPROPYLENE, OPTIONS));
+    let small = Surrogate::load(&shipped("small")).unwrap();
+    let mut card = small.card().clone();
+    card.damage_sharpness = 9.0;
+    let sharper = Surrogate::from_parts(small.layers(), card).unwrap();
+    let path = work.path("sharper");
+    sharper
+        .save(&path.with_added_extension("safetensors"))
+        .unwrap();
+    let message = work.error(&learn_from(
+        &[path.to_str().unwrap()],
+        POLYPROPYLENE,
+        OPTIONS,
+    ));
     assert!(
-        message.contains("small.safetensors") && message.contains("damage_sharpness"),
+        message.contains("sharper.safetensors") && message.contains("damage_sharpness"),
         "{message}"
     );
     assert!(!work.path("learned/campaign").exists());

@@ -4,7 +4,7 @@
 mod common;
 
 use common::{Workplace, failure};
-use dataset::{Database, Gates, Row, SplitPlan};
+use dataset::{Database, Row, SplitPlan};
 use serde_json::Value;
 use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};
@@ -165,7 +165,7 @@ fn timeless(path: &Path) -> Vec<u8> {
         .into_iter()
         .map(|row| Row { cpu_s: 0.0, ..row })
         .collect();
-    let database = Database::collect(rows, &Gates::default(), &SplitPlan::default()).unwrap();
+    let database = Database::collect(rows, &SplitPlan::default()).unwrap();
     let path = path.with_extension("timeless.parquet");
     database.write(&path, false).unwrap();
     std::fs::read(path).unwrap()

@@ -145,14 +145,13 @@ fn forces_without_work(rays: &[&[Row]]) -> Option<Finding> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::gates::Gates;
     use crate::rows::tests::rows;
     use crate::split::SplitPlan;
 
     fn found(change: impl Fn(&mut Vec<Row>)) -> Vec<&'static str> {
         let mut rows = rows(12);
         change(&mut rows);
-        let database = Database::collect(rows, &Gates::default(), &SplitPlan::default());
+        let database = Database::collect(rows, &SplitPlan::default());
         database
             .unwrap()
             .check()
@@ -192,8 +191,7 @@ mod tests {
             );
         };
         // The gates reject such a row at collection; a table may have been written by other means.
-        let mut database =
-            Database::collect(rows(12), &Gates::default(), &SplitPlan::default()).unwrap();
+        let mut database = Database::collect(rows(12), &SplitPlan::default()).unwrap();
         database.rows[7].sample.w = -1.0;
         assert!(
             database
@@ -221,7 +219,7 @@ mod tests {
     #[test]
     fn a_test_geometry_that_was_trained_on_is_found() {
         let plan = SplitPlan::default();
-        let mut database = Database::collect(rows(12), &Gates::default(), &plan).unwrap();
+        let mut database = Database::collect(rows(12), &plan).unwrap();
         assert_eq!(database.leak(), None);
         let split = &mut database.manifest.split;
         let job = split.test.first().unwrap().clone();

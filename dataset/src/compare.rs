@@ -159,13 +159,12 @@ fn rays(rows: &[Row]) -> BTreeMap<(Ray, &str), Vec<&Row>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::gates::Gates;
     use crate::mixing::Mixing;
     use crate::rows::tests::rows;
     use crate::split::SplitPlan;
 
     fn database(rows: Vec<Row>) -> Database {
-        Database::collect(rows, &Gates::default(), &SplitPlan::default()).unwrap()
+        Database::collect(rows, &SplitPlan::default()).unwrap()
     }
 
     #[test]

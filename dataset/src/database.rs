@@ -2,13 +2,12 @@
 
 use crate::digest::{Digest, by_job_and_lambda};
 use crate::error::DatasetError;
-use crate::gates::{Gates, Rejection};
+use crate::gates::Rejection;
 use crate::manifest::Manifest;
 use crate::mixing::Mixing;
 use crate::parquet;
 use crate::rows::Row;
 use crate::split::{Part, Split, SplitPlan, geometry};
-use hinge::TrainingDomain;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Rows in the order of job and lambda, with the bytes of their Parquet file and its manifest.
@@ -23,8 +22,8 @@ impl Database {
     /// Drops and counts the rows that the gates reject, and splits the others by geometry.
     ///
     /// Rows of different materials, tiers or hinge constants are an error.
-    pub fn collect(rows: Vec<Row>, gates: &Gates, plan: &SplitPlan) -> Result<Self, DatasetError> {
-        Self::assemble(rows, gates, plan, Mixing::Refused)
+    pub fn collect(rows: Vec<Row>, plan: &SplitPlan) -> Result<Self, DatasetError> {
+        Self::assemble(rows, plan, Mixing::Refused)
     }
 
     /// Merges several databases into one and splits it again.
@@ -39,9 +38,6 @@ impl Database {
         let mut rows: Vec<Row> = Vec::new();
         let mut jobs: BTreeSet<&str> = BTreeSet::new();
         let mut rejected: BTreeMap<Rejection, usize> = BTreeMap::new();
-        let mut gates = Gates {
-            energy_residual_max: 0.0,
-        };
         for database in databases {
             let new = |row: &&Row| !jobs.contains(row.job.as_str());
             let before = rows.len();
@@ -53,10 +49,8 @@ impl Database {
             for (reason, count) in &database.manifest.rejected {
                 *rejected.entry(*reason).or_default() += count;
             }
-            let limit = database.manifest.gates.energy_residual_max;
-            gates.energy_residual_max = gates.energy_residual_max.max(limit);
         }
-        let mut merged = Self::assemble(rows, &gates, plan, mixing)?;
+        let mut merged = Self::assemble(rows, plan, mixing)?;
         merged.manifest.rejected = rejected;
         Ok(merged)
     }
@@ -85,32 +79,12 @@ impl Database {
         }
     }
 
-    /// The same database with at most the first `training` rays of the training part. The validation and test parts
-    /// are unchanged. Ids are hashes, so that the first rays are a random selection.
-    pub fn thinned(&self, training: usize) -> Self {
-        let mut split = self.manifest.split.clone();
-        split.training = split.training.into_iter().take(training).collect();
-        self.clone().with_split(split)
-    }
-
-    /// The same split, with only states inside the domain in the training and validation parts.
-    pub fn within(&self, domain: &TrainingDomain) -> Result<Self, DatasetError> {
-        let test = self.manifest.split.jobs(Part::Test);
-        let inside = |row: &&Row| {
-            test.contains(&row.job) || domain.contains(&row.design, &row.sample.deformation())
-        };
-        self.with_rows(self.rows.iter().filter(inside).cloned().collect())
-    }
-
-    /// A database of other rows of the same jobs, with the same gates and split.
+    /// A database of other rows of the same jobs, with the same split.
     pub(crate) fn with_rows(&self, rows: Vec<Row>) -> Result<Self, DatasetError> {
         let Manifest {
-            gates,
-            split_plan,
-            split,
-            ..
+            split_plan, split, ..
         } = &self.manifest;
-        let mut other = Self::assemble(rows, gates, split_plan, Mixing::Allowed)?;
+        let mut other = Self::assemble(rows, split_plan, Mixing::Allowed)?;
         for (reason, count) in &self.manifest.rejected {
             *other.manifest.rejected.entry(*reason).or_default() += count;
         }
@@ -134,13 +108,8 @@ impl Database {
         self
     }
 
-    fn assemble(
-        rows: Vec<Row>,
-        gates: &Gates,
-        plan: &SplitPlan,
-        mixing: Mixing,
-    ) -> Result<Self, DatasetError> {
-        let mut digest = Digest::new(gates, mixing);
+    fn assemble(rows: Vec<Row>, plan: &SplitPlan, mixing: Mixing) -> Result<Self, DatasetError> {
+        let mut digest = Digest::new(mixing);
         let mut rows = digest.accepted(rows);
         rows.sort_by(by_job_and_lambda);
         for ray in rows.chunk_by(|left, right| left.job == right.job) {

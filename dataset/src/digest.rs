@@ -20,7 +20,6 @@ pub(crate) fn by_job_and_lambda(left: &Row, right: &Row) -> Ordering {
 
 /// What is known of the rows so far.
 pub(crate) struct Digest {
-    gates: Gates,
     mixing: Mixing,
     rejected: BTreeMap<Rejection, usize>,
     /// The first accepted row.
@@ -49,9 +48,8 @@ const TEXTS: [fn(&Row) -> &String; 6] = [
 ];
 
 impl Digest {
-    pub fn new(gates: &Gates, mixing: Mixing) -> Self {
+    pub fn new(mixing: Mixing) -> Self {
         Self {
-            gates: *gates,
             mixing,
             rejected: BTreeMap::new(),
             first: None,
@@ -68,7 +66,7 @@ impl Digest {
 
     /// The rows that pass the gates; the others are counted.
     pub fn accepted(&mut self, mut rows: Vec<Row>) -> Vec<Row> {
-        rows.retain(|row| match self.gates.rejection(row) {
+        rows.retain(|row| match Gates::default().rejection(row) {
             Some(reason) => {
                 *self.rejected.entry(reason).or_default() += 1;
                 false
@@ -148,7 +146,7 @@ impl Digest {
             partial_rays: self.partial_rays,
             geometries: self.geometries.len(),
             cpu_s: self.cpu_s,
-            gates: self.gates,
+            gates: Gates::default(),
             rejected: self.rejected,
             material: joined(material),
             tier: joined(tier),

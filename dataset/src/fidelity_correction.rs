@@ -322,14 +322,13 @@ fn dot(c: &Coefficients, terms: &Coefficients) -> f64 {
 mod tests {
     use super::*;
     use crate::compare::relative_rms;
-    use crate::gates::Gates;
     use crate::rows::tests::rows;
     use crate::split::SplitPlan;
 
     const RAYS: usize = 40;
 
     fn database(rows: Vec<Row>) -> Database {
-        Database::collect(rows, &Gates::default(), &SplitPlan::default()).unwrap()
+        Database::collect(rows, &SplitPlan::default()).unwrap()
     }
 
     /// The database of [`rows`] with the errors of a coarse mesh, by a known q.
@@ -356,8 +355,10 @@ mod tests {
 
     #[test]
     fn the_mesh_error_is_corrected_on_rays_that_were_solved_only_once() {
-        // With a split that no plan gives.
-        let (coarse, fine) = (coarse().thinned(20), database(rows(RAYS)));
+        let mut coarse = coarse();
+        // A split that no plan gives.
+        coarse.manifest.split.training.pop_first();
+        let fine = database(rows(RAYS));
         let half = database(rows(RAYS / 2));
         let (corrected, _) = coarse.corrected(&half).unwrap();
         // Ten seconds per ray; half of the rays were solved twice.

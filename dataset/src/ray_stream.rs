@@ -4,7 +4,6 @@
 use crate::database_files::{publish, refuse_existing, unwritable};
 use crate::digest::{Digest, by_job_and_lambda};
 use crate::error::DatasetError;
-use crate::gates::Gates;
 use crate::manifest::Manifest;
 use crate::mixing::Mixing;
 use crate::parquet::{Hashing, Table};
@@ -30,7 +29,6 @@ impl Collected {
     /// An existing file is an error unless `replace` is true.
     pub fn write<E: From<DatasetError>>(
         rays: impl IntoIterator<Item = Result<Vec<Row>, E>>,
-        gates: &Gates,
         plan: &SplitPlan,
         path: &Path,
         replace: bool,
@@ -38,7 +36,7 @@ impl Collected {
         refuse_existing(path, replace)?;
         let mut file = Unnamed::beside(path).map_err(unwritable(path))?;
         let failed = |error: DatasetError| unwritable(path)(std::io::Error::other(error));
-        let mut digest = Digest::new(gates, Mixing::Refused);
+        let mut digest = Digest::new(Mixing::Refused);
         let mut contents = Contents::default();
         let mut hashing = Hashing::new(file.file());
         let mut table = Table::new(&mut hashing).map_err(failed)?;
@@ -73,10 +71,10 @@ mod tests {
     fn rays_that_arrive_one_by_one_give_the_files_of_all_rows_together() {
         let folder = tempfile::tempdir().unwrap();
         let [together, apart] = ["together", "apart"].map(|name| folder.path().join(name));
-        let (gates, plan) = (Gates::default(), SplitPlan::default());
+        let plan = SplitPlan::default();
         let mut rows = rows(40);
         rows[57].sample.w = -1.0;
-        let database = Database::collect(rows.clone(), &gates, &plan).unwrap();
+        let database = Database::collect(rows.clone(), &plan).unwrap();
         database
             .write(&together.with_extension("parquet"), false)
             .unwrap();
@@ -87,7 +85,7 @@ mod tests {
                 let backwards = ray.iter().rev().cloned();
                 Ok::<_, DatasetError>(backwards.collect())
             });
-            Collected::write(rays, &gates, &plan, &path, replace)
+            Collected::write(rays, &plan, &path, replace)
         };
         let collected = write(&rows, false).unwrap();
         for extension in ["parquet", "json"] {

@@ -51,6 +51,7 @@ impl Row {
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
+    use hinge::HingeConstants;
 
     /// A row of the quadratic energy 10 (a^2 + s^2) + 50 theta^2 of the job `index`, at `lambda`.
     pub fn row(index: usize, lambda: f64) -> Row {
@@ -58,13 +59,8 @@ pub(crate) mod tests {
         let [a, s, theta] = [0.3 * (1.7 * x).sin(), 0.2 * (2.9 * x).cos(), 1.0].map(|v| v * lambda);
         Row {
             job: format!("job-{index:03}"),
-            design: HingeDesign {
-                w_lig: 15.0 + 8.0 * (0.9 * x).sin(),
-                alpha: 1.1 + 0.4 * (1.3 * x).sin(),
-                fillet_ratio: 0.16,
-                kerf: 0.2,
-                r_win: 100.0,
-            },
+            design: HingeConstants::PAPER
+                .hinge(15.0 + 8.0 * (0.9 * x).sin(), 1.1 + 0.4 * (1.3 * x).sin()),
             sample: HingeSample {
                 lambda,
                 a,

@@ -203,18 +203,6 @@ fn a_missing_malformed_or_newer_manifest_is_an_error() {
     assert!(matches!(Database::read(&path), Err(DatasetError::Read(_))));
 }
 
-#[test]
-fn a_thinned_database_keeps_its_validation_and_test_parts() {
-    let whole = collect(rows()).unwrap();
-    let thinned = whole.thinned(3);
-    assert_eq!(thinned.manifest().split.jobs(Part::Training).len(), 3);
-    assert_eq!(thinned.part(Part::Training).len(), 15);
-    assert_eq!(thinned.part(Part::Test), whole.part(Part::Test));
-    assert_eq!(thinned.part(Part::Validation), whole.part(Part::Validation));
-    assert_ne!(thinned.manifest().split_hash, whole.manifest().split_hash);
-    assert_eq!(whole.thinned(1000).manifest(), whole.manifest());
-}
-
 fn dealt_with_another_seed(database: &Database) -> Database {
     let plan = SplitPlan {
         seed: 5,
@@ -255,45 +243,12 @@ fn a_split_like_another_database_gives_each_geometry_its_part() {
                 .eq(expected)
         );
     }
-    // Geometries in no part of the other database are for training.
-    let filled = whole.split_like(&other.thinned(0)).unwrap();
-    assert_eq!(filled.manifest().split, other.manifest().split);
     // Without a geometry of the test part there is nothing to measure errors on.
     let test = other.manifest().split.jobs(Part::Test);
     let rows = whole.rows().iter().filter(|row| !test.contains(&row.job));
     let untested = collect(rows.cloned().collect()).unwrap();
     let error = untested.split_like(&other).unwrap_err();
     assert!(matches!(error, DatasetError::NotAlike), "{error}");
-}
-
-#[test]
-fn restricted_rows_keep_a_split_like_another() {
-    let whole = collect(rows()).unwrap();
-    let other = dealt_with_another_seed(&whole);
-    let alike = whole.split_like(&other).unwrap().thinned(3);
-    let wide = whole.manifest().domain.scaled_by(2.0);
-    assert_eq!(
-        alike.within(&wide).unwrap().manifest().split,
-        alike.manifest().split
-    );
-}
-
-#[test]
-fn restriction_to_a_domain_does_not_change_the_test_part() {
-    let whole = collect(rows()).unwrap();
-    let domain = &whole.manifest().domain;
-    let half = domain.scaled_by(0.5);
-    let within = whole.within(&half).unwrap();
-    assert_eq!(within.part(Part::Test), whole.part(Part::Test));
-    assert_ne!(within.manifest().hash, whole.manifest().hash);
-    for part in [Part::Training, Part::Validation] {
-        let (rows, all) = (within.part(part), whole.part(part));
-        let inside = |row: &&Row| half.contains(&row.design, &row.sample.deformation());
-        assert_eq!(rows, all.iter().filter(inside).cloned().collect::<Vec<_>>());
-        assert!(!rows.is_empty() && rows.len() < all.len());
-    }
-    let wide = domain.scaled_by(2.0);
-    assert_eq!(whole.within(&wide).unwrap().manifest(), whole.manifest());
 }
 
 #[test]

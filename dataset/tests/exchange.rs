@@ -3,9 +3,7 @@
 mod common;
 
 use common::{collect, rows};
-use dataset::{
-    ColumnMap, Constant, Database, DatasetError, Gates, Mixing, Part, Row, SplitPlan, rows_from_csv,
-};
+use dataset::{ColumnMap, Constant, Database, DatasetError, Mixing, Row, SplitPlan, rows_from_csv};
 use std::path::PathBuf;
 use tempfile::TempDir;
 
@@ -135,7 +133,7 @@ fn rows_round_trip_through_csv_exactly() {
 fn a_foreign_table_is_imported() {
     let (_folder, path) = file(FOREIGN);
     let rows = rows_from_csv(&path, &foreign_map()).unwrap();
-    let database = Database::collect(rows, &Gates::default(), &plan(0)).unwrap();
+    let database = Database::collect(rows, &plan(0)).unwrap();
     assert_eq!((database.manifest().rays, database.rows().len()), (3, 4));
     let row = &database.rows()[1];
     assert_eq!((row.job.as_str(), row.sample.lambda), ("A", 1.0));
@@ -205,23 +203,8 @@ fn rows_with_gaps_or_non_finite_numbers_are_rejected() {
     for cell in ["", "NaN", "inf"] {
         let (_folder, path) = file(&FOREIGN.replacen("20,6.0", &format!("20,{cell}"), 1));
         let rows = rows_from_csv(&path, &foreign_map()).unwrap();
-        let database = Database::collect(rows, &Gates::default(), &plan(0)).unwrap();
+        let database = Database::collect(rows, &plan(0)).unwrap();
         assert_eq!(database.rows().len(), 3, "{cell}");
         assert_eq!(database.manifest().rejected.values().sum::<usize>(), 1);
     }
-}
-
-#[test]
-fn the_summary_contains_coverage_residuals_and_repeated_states() {
-    let database = collect(rows()).unwrap();
-    let text = dataset::Details(&database).to_string();
-    for expected in [
-        "w_lig",
-        "energy residual",
-        "of 64 cells",
-        "more than once: 0",
-    ] {
-        assert!(text.contains(expected), "{text}");
-    }
-    assert_eq!(database.part(Part::Test).len(), 5);
 }

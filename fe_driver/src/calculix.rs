@@ -8,7 +8,6 @@ pub(crate) mod deck;
 pub(crate) mod deck_run;
 pub(crate) mod driven_arc;
 pub(crate) mod fields;
-pub(crate) mod flanks;
 pub(crate) mod model;
 pub(crate) mod panel_motion;
 pub(crate) mod response;

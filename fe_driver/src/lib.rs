@@ -58,6 +58,9 @@
 
 #![warn(missing_docs)]
 
+#[cfg(test)]
+extern crate self as fe_driver;
+
 mod calculix;
 mod campaign;
 mod record_file;
@@ -93,7 +96,6 @@ pub use sheet::sheet_states::{HingeState, PanelState, SheetState, SheetStates, S
 pub use solve::attempts::SolveListError;
 pub use solve::deformation_path::{DeformationPath, PathError};
 pub use solve::failure::{Cause, FailureKind, UnknownFailure};
-pub use solve::fake_solver::{FakeSolver, Fault};
 pub use solve::hinge_path::{HingePath, Ray};
 pub use solve::ladder::AttemptKind;
 pub use solve::problem::{Solve, SolvedPath};

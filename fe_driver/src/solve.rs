@@ -3,7 +3,6 @@
 pub(crate) mod attempts;
 pub(crate) mod deformation_path;
 pub(crate) mod failure;
-pub(crate) mod fake_solver;
 pub(crate) mod hinge_path;
 pub(crate) mod host;
 pub(crate) mod ladder;
@@ -15,5 +14,7 @@ pub(crate) mod solve_folder;
 pub(crate) mod solved;
 pub(crate) mod solver;
 pub(crate) mod step_control;
+#[cfg(test)]
+pub(crate) mod tests;
 pub(crate) mod tool_versions;
 pub(crate) mod window_solve;

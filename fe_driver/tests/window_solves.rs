@@ -230,31 +230,6 @@ fn windows_of_every_thickness_are_similar() {
     }
 }
 
-/// At the rim the flanks move with the panels, which are rigid there: they open by the rotation from the kerf on, and where the
-/// hinge closes they pass through each other.
-#[test]
-fn flanks_are_a_kerf_apart_and_pass_through_each_other_where_a_hinge_closes() {
-    let solver = CalculiX::find().unwrap();
-    let gaps = |theta_deg: f64| -> Vec<f64> {
-        let asked = problem(90.0, [0.0, 0.0], theta_deg);
-        let folder = tempfile::tempdir().unwrap();
-        let solution = solve_in(folder.path(), &solver, &asked);
-        let solve = WindowSolve::new(asked, &solver.versions());
-        let gaps = solver.flank_gaps(&solve, folder.path()).unwrap();
-        assert_eq!(gaps.len(), solution.samples.len());
-        gaps.into_iter().map(Option::unwrap).collect()
-    };
-    let HingeDesign {
-        w_lig, kerf, r_win, ..
-    } = problem(90.0, [0.0, 0.0], 1.0).hinge.design;
-    let opened = gaps(5.0);
-    assert!((opened[0] / kerf - 1.0).abs() < 0.2, "{opened:?}");
-    assert!(opened.is_sorted(), "{opened:?}");
-    let rim = kerf - 2.0 * (r_win - w_lig) * f64::to_radians(1.5).sin();
-    let closed = *gaps(-3.0).last().unwrap();
-    assert!((closed / rim - 1.0).abs() < 0.01, "{closed} {rim}");
-}
-
 /// Printing all displacements changes no sample, and the fields are those of the prescribed motion and of the sample.
 #[test]
 fn the_fields_of_a_window_agree_with_its_last_sample() {

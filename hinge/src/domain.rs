@@ -198,54 +198,6 @@ impl TrainingDomain {
         NetLigament::new(design, self.hole().unwrap_or(design.fillet_ratio))
     }
 
-    /// The boundary of the domain in the plane of (eta_a, eta_s) at a width (mm) and a rotation (rad), for the paper's hole: a
-    /// closed polyline, empty if the point of the centre in this plane is outside the domain.
-    pub fn slice(&self, w_lig: f64, theta: f64) -> Vec<[f64; 2]> {
-        const POINTS: u32 = 72;
-        let [centre_a, centre_s, _] = self.centre;
-        let centre_a = centre_a + self.mean_path(theta);
-        let at = |radius: f64, angle: f64| {
-            let (sin, cos) = angle.sin_cos();
-            [
-                centre_a + radius * self.half_range[0] * cos,
-                centre_s + radius * self.half_range[1] * sin,
-            ]
-        };
-        let design = HingeConstants::PAPER.hinge(w_lig, self.alpha[0]);
-        let inside = |[eta_a, eta_s]: [f64; 2]| {
-            let state = HingeDeformation::from_eta(eta_a, eta_s, theta, w_lig);
-            self.gauge(&design, &state) <= 1.0
-        };
-        if !inside(at(0.0, 0.0)) {
-            return Vec::new();
-        }
-        (0..=POINTS)
-            .map(|i| {
-                let angle = f64::from(i % POINTS) * std::f64::consts::TAU / f64::from(POINTS);
-                let [mut inner, mut outer] = [0.0, 8.0];
-                for _ in 0..30 {
-                    let middle = 0.5 * (inner + outer);
-                    *(if inside(at(middle, angle)) {
-                        &mut inner
-                    } else {
-                        &mut outer
-                    }) = middle;
-                }
-                at(inner, angle)
-            })
-            .collect()
-    }
-
-    /// The domain whose states are the states of this one multiplied by `factor`.
-    pub fn scaled_by(&self, factor: f64) -> Self {
-        Self {
-            mean_path: [self.mean_path[0], self.mean_path[1] / factor],
-            centre: self.centre.map(|x| factor * x),
-            half_range: self.half_range.map(|x| factor * x),
-            ..self.clone()
-        }
-    }
-
     fn scaled(&self, x: [f64; 3]) -> [f64; 3] {
         from_fn(|i| (x[i] - self.centre[i]) / self.half_range[i])
     }
@@ -457,20 +409,6 @@ mod tests {
             assert!((plus.gradient[3] - minus.gradient[3]).abs() < 1e-6);
             assert!((plus.hessian[3][3] - minus.hessian[3][3]).abs() < 1e-3);
         }
-    }
-
-    #[test]
-    fn the_depth_is_zero_on_a_slice_and_halved_states_give_a_halved_domain() {
-        let domain = domain(&cone());
-        let slice = domain.slice(7.0, 0.6);
-        assert!(slice.len() > 20 && slice[0] == slice[slice.len() - 1]);
-        for [eta_a, eta_s] in slice {
-            let state = HingeDeformation::from_eta(eta_a, eta_s, 0.6, 7.0);
-            assert!(domain.depth(&design(7.0), &state).abs() < 1e-6);
-            let half = domain.scaled_by(0.5).depth(&design(7.0), &state.at(0.5));
-            assert!(half.abs() < 1e-6);
-        }
-        assert!(domain.slice(7.0, 2.0).is_empty());
     }
 
     #[test]

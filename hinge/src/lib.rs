@@ -35,7 +35,6 @@
 
 #![warn(missing_docs)]
 
-mod creep;
 mod deformation;
 mod design;
 mod domain;
@@ -47,12 +46,11 @@ mod released;
 mod sample;
 pub mod tensile;
 
-pub use creep::Creep;
 pub use deformation::{HingeDeformation, HingeForces};
 pub use design::{HingeConstants, HingeDesign, InvalidDesign};
 pub use domain::{InvalidDomain, TrainingDomain};
 pub use jet::Jet;
-pub use material::{InvalidMaterial, MaterialError, STANDARD_GRAVITY, SheetMaterial};
+pub use material::{Creep, InvalidMaterial, MaterialError, STANDARD_GRAVITY, SheetMaterial};
 pub use net_ligament::{NetLigament, NetLigamentJet};
 pub use regime::Regime;
 pub use released::{ReleasedHinge, ReleasedSample};

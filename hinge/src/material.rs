@@ -1,7 +1,7 @@
 //! The sheet material, as measured on tensile specimens; section 4.1.
 
+use crate::Regime;
 use crate::tensile::{TensileError, read_tensile};
-use crate::{Creep, Regime};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
@@ -11,64 +11,56 @@ use support::toml_file::{self, ConfigError};
 /// Standard acceleration of gravity, rounded (m/s^2 = N/kg).
 pub const STANDARD_GRAVITY: f64 = 9.81;
 
-/// A uniform sheet: thickness, isotropic elasticity, tabulated J2 hardening, fracture strain.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+/// A uniform sheet: thickness, isotropic elasticity, tabulated J2 hardening, fracture strain. Its TOML files are in
+/// `configs/materials/`.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SheetMaterial {
     /// Name of the material; it is stored in databases and weights.
     pub name: String,
     /// Thickness of the sheet (mm).
+    #[schemars(range(min = 0.02, max = 10.0))]
     pub thickness: f64,
-    /// Young's modulus (MPa).
+    /// Young's modulus (MPa): tungsten has 411 000.
+    #[schemars(range(min = 10.0, max = 5e5))]
     pub young: f64,
-    /// Poisson's ratio, in [0, 0.5).
+    /// Poisson's ratio.
+    #[schemars(range(min = 0.0, max = 0.499))]
     pub poisson: f64,
-    /// Density (kg/m^3, the unit of data sheets): the weight of the sheet, and (21)-(22). No window solve uses it.
+    /// Density (kg/m^3): the weight of the sheet, and (21)-(22). No window solve uses it.
+    #[schemars(range(min = 50.0, max = 25e3))]
     pub density_kg_m3: f64,
     /// Equivalent plastic strain at fracture, eps_f of (12).
+    #[schemars(range(min = 1e-3, max = 10.0))]
     pub fracture_strain: f64,
-    /// Rows [true stress (MPa), true plastic strain]; the first row is at zero plastic strain.
+    /// Rows [true stress (MPa), true plastic strain]; the stress is above 0 and below `young`, the strain starts at
+    /// zero and increases.
+    #[serde(default)]
     pub plastic: Vec<[f64; 2]>,
-    /// Relative standard deviation of the stress at equal strain, if known; no window solve uses it.
+    /// Path of a measured curve instead of `plastic`, relative to the material's file.
+    #[serde(default, skip_serializing)]
+    pub tensile_csv: Option<PathBuf>,
+    /// Relative standard deviation of the stress at equal strain, of the sheet that is cut from this law, for the error budget of
+    /// a design; `kirigami material fit` writes that of its specimens. No window solve uses it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0.0, max = 1.0))]
     pub stress_deviation: Option<f64>,
-    /// Creep, if known; no solve uses it.
+    /// Creep under a load that stays, by order of magnitude; without it the report says that it is not known.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub creep: Option<Creep>,
 }
 
-/// The TOML file; see `configs/materials/`.
-#[derive(Deserialize, JsonSchema)]
+/// Creep of the material, by order of magnitude, which the report of a design states; no solve uses it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-struct MaterialFile {
-    /// Name of the material; it is stored in databases and weights.
-    name: String,
-    /// Thickness of the sheet (mm).
-    #[schemars(range(min = 0.02, max = 10.0))]
-    thickness: f64,
-    /// Young's modulus (MPa): tungsten has 411 000.
-    #[schemars(range(min = 10.0, max = 5e5))]
-    young: f64,
-    /// Poisson's ratio.
-    #[schemars(range(min = 0.0, max = 0.499))]
-    poisson: f64,
-    /// Density (kg/m^3): the weight of the sheet, and (21)-(22). No window solve uses it.
-    #[schemars(range(min = 50.0, max = 25e3))]
-    density_kg_m3: f64,
-    /// Equivalent plastic strain at fracture, eps_f of (12).
-    #[schemars(range(min = 1e-3, max = 10.0))]
-    fracture_strain: f64,
-    /// Rows [true stress (MPa), true plastic strain]; the stress is above 0 and below `young`, the strain starts at
-    /// zero and increases.
-    plastic: Option<Vec<[f64; 2]>>,
-    /// Path of a measured curve instead of `plastic`, relative to the material's file.
-    tensile_csv: Option<PathBuf>,
-    /// Relative standard deviation of the stress at equal strain, of the sheet that is cut from this law, for the error budget of
-    /// a design; `kirigami material fit` writes that of its specimens. No window solve uses it.
-    #[schemars(range(min = 0.0, max = 1.0))]
-    stress_deviation: Option<f64>,
-    /// Creep under a load that stays, by order of magnitude; without it the report says that it is not known.
-    creep: Option<Creep>,
+pub struct Creep {
+    /// Deformation after `years` under a constant small load, over that at once (ISO 9967: the creep ratio); the stiffness falls to its
+    /// reciprocal.
+    #[schemars(range(min = 1.0, max = 100.0))]
+    pub ratio: f64,
+    /// Time under load, in years.
+    #[schemars(range(min = 1e-3, max = 100.0))]
+    pub years: f64,
 }
 
 /// Maximum of Young's modulus over density (MPa m^3/kg): laminates of carbon fibre have up to 190, beryllium 155, metals 20
@@ -111,33 +103,17 @@ impl SheetMaterial {
         Regime::of(w_lig / self.thickness)
     }
 
-    /// Schema of a material's TOML file.
-    pub fn file_schema() -> schemars::Schema {
-        schemars::schema_for!(MaterialFile)
-    }
-
     /// Reads a material and its tensile curve, and rejects impossible values.
     pub fn load(path: &Path) -> Result<Self, MaterialError> {
-        let file: MaterialFile = toml_file::read(path)?;
-        let plastic = match (file.plastic, file.tensile_csv) {
-            (Some(rows), None) => rows,
-            (None, Some(curve)) => {
+        let mut material: Self = toml_file::read(path)?;
+        match (material.plastic.is_empty(), material.tensile_csv.take()) {
+            (false, None) => {}
+            (true, Some(curve)) => {
                 let folder = path.parent().unwrap_or(Path::new(""));
-                read_tensile(&folder.join(curve), file.young)?
+                material.plastic = read_tensile(&folder.join(curve), material.young)?;
             }
             _ => return Err(MaterialError::Hardening(path.to_owned())),
-        };
-        let material = Self {
-            name: file.name,
-            thickness: file.thickness,
-            young: file.young,
-            poisson: file.poisson,
-            density_kg_m3: file.density_kg_m3,
-            fracture_strain: file.fracture_strain,
-            plastic,
-            stress_deviation: file.stress_deviation,
-            creep: file.creep,
-        };
+        }
         match material.validate() {
             Ok(()) => Ok(material),
             Err(source) => Err(MaterialError::Invalid {
@@ -203,11 +179,8 @@ impl SheetMaterial {
                 reason,
             })
         };
-        if let Err(error) = key_limits::check::<MaterialFile>(self) {
+        if let Err(error) = key_limits::check::<Self>(self) {
             return refuse(error.to_string());
-        }
-        if (self.creep.as_ref()).is_some_and(|creep| creep.source.trim().is_empty()) {
-            return refuse("creep.source is empty: say where the ratio is from".into());
         }
         let stiffness = self.young / self.density_kg_m3;
         if stiffness > STIFFEST {
@@ -258,8 +231,7 @@ mod tests {
             density_kg_m3: 1390.0,
             fracture_strain: 1.784,
             plastic: vec![[44.0, 0.0], [33.6, 0.05], [200.0, 1.784]],
-            stress_deviation: None,
-            creep: None,
+            ..SheetMaterial::default()
         }
     }
 
@@ -279,22 +251,17 @@ mod tests {
 
     #[test]
     fn creep_is_a_fact_of_the_report_alone() {
-        let creeping = |ratio: f64, years: f64, source: &str| SheetMaterial {
-            creep: Some(Creep {
-                ratio,
-                years,
-                source: source.into(),
-            }),
+        let creeping = |ratio: f64, years: f64| SheetMaterial {
+            creep: Some(Creep { ratio, years }),
             ..film()
         };
-        let known = creeping(3.0, 2.0, "a table");
+        let known = creeping(3.0, 2.0);
         known.validate().unwrap();
         assert_eq!(known.law_hash(), film().law_hash());
         assert_eq!(known.as_solved(), film());
         for (material, expected) in [
-            (creeping(0.33, 2.0, "a table"), "creep.ratio = 0.33"),
-            (creeping(3.0, 0.0, "a table"), "creep.years = 0"),
-            (creeping(3.0, 2.0, " "), "creep.source is empty"),
+            (creeping(0.33, 2.0), "creep.ratio = 0.33"),
+            (creeping(3.0, 0.0), "creep.years = 0"),
         ] {
             let message = material.validate().unwrap_err().to_string();
             assert!(message.contains(expected), "{message}");
@@ -308,79 +275,25 @@ mod tests {
 
     #[test]
     fn unit_errors_and_impossible_tables_are_rejected() {
-        let cases = [
+        type Change = fn(&mut SheetMaterial);
+        let cases: [(Change, &str); 10] = [
+            (|m| m.young = 3.0, "did you mean 3000 MPa"),
             (
-                SheetMaterial {
-                    young: 3.0,
-                    ..film()
-                },
-                "did you mean 3000 MPa",
-            ),
-            (
-                SheetMaterial {
-                    young: 660e3,
-                    ..film()
-                },
+                |m| m.young = 660e3,
                 "young = 660000 MPa violates 10 <= young <= 500000 MPa",
             ),
-            (
-                SheetMaterial {
-                    young: 300e3,
-                    ..film()
-                },
-                "is 216 MPa for each kg/m^3",
-            ),
-            (
-                SheetMaterial {
-                    thickness: 0.0005,
-                    ..film()
-                },
-                "did you mean 0.5 mm",
-            ),
-            (
-                SheetMaterial {
-                    density_kg_m3: 1.39,
-                    ..film()
-                },
-                "did you mean 1390 kg/m^3",
-            ),
-            (
-                SheetMaterial {
-                    poisson: 0.5,
-                    ..film()
-                },
-                "poisson",
-            ),
-            (
-                SheetMaterial {
-                    plastic: vec![],
-                    ..film()
-                },
-                "empty",
-            ),
-            (
-                SheetMaterial {
-                    plastic: vec![[44.0, 0.1]],
-                    ..film()
-                },
-                "zero strain",
-            ),
-            (
-                SheetMaterial {
-                    plastic: vec![[44.0, 0.0], [50.0, 0.0]],
-                    ..film()
-                },
-                "increase",
-            ),
-            (
-                SheetMaterial {
-                    plastic: vec![[-44.0, 0.0]],
-                    ..film()
-                },
-                "0 < stress",
-            ),
+            (|m| m.young = 300e3, "is 216 MPa for each kg/m^3"),
+            (|m| m.thickness = 0.0005, "did you mean 0.5 mm"),
+            (|m| m.density_kg_m3 = 1.39, "did you mean 1390 kg/m^3"),
+            (|m| m.poisson = 0.5, "poisson"),
+            (|m| m.plastic.clear(), "empty"),
+            (|m| m.plastic = vec![[44.0, 0.1]], "zero strain"),
+            (|m| m.plastic = vec![[44.0, 0.0], [50.0, 0.0]], "increase"),
+            (|m| m.plastic = vec![[-44.0, 0.0]], "0 < stress"),
         ];
-        for (material, expected) in cases {
+        for (change, expected) in cases {
+            let mut material = film();
+            change(&mut material);
             let message = material.validate().unwrap_err().to_string();
             assert!(message.contains(expected), "{message}");
         }

@@ -4,6 +4,7 @@ use crate::element::ElementKind;
 use hinge::{HingeDesign, Regime};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use std::time::Duration;
 
 /// A named mesh fineness; for each regime in order of increasing CPU time.
 ///
@@ -224,6 +225,11 @@ impl Tier {
             Tier::Plate => 7.0,
             Tier::PlateReference => 70.0,
         }
+    }
+
+    /// Time limit of one solve: sixty times the usual time and at least twenty minutes, for stiff materials and slow machines.
+    pub fn time_limit(self) -> Duration {
+        Duration::from_secs_f64((60.0 * self.usual_cpu_seconds()).max(1200.0))
     }
 
     /// The name used in configurations and on the command line.

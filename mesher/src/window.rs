@@ -65,16 +65,6 @@ impl Window<'_> {
         [0, 1].map(|i| o[i] + along * u[i] + across * n[i])
     }
 
-    /// The distance of a place of the plane mesh (mm) from O along the main cut, if it is on the kerf face of a panel.
-    pub fn on_flank(&self, [x, y]: [f64; 2], side: Side) -> Option<f64> {
-        let [x0, y0] = self.0.tip();
-        let from_tip = [x - x0, y - y0];
-        let along = dot(from_tip, self.0.main_cut());
-        let [x1, y1] = self.on_kerf_face(side, along);
-        let is_on = along > 0.0 && f64::hypot(x - x1, y - y1) < 1e-6 * self.0.r_win;
-        is_on.then_some(along)
-    }
-
     /// Half of the angle at O that the mouth of the main cut subtends on a circle of radius `rho` (mm) about O (rad).
     pub fn mouth_half_angle(&self, rho: f64) -> f64 {
         (0.5 * self.0.kerf / rho).asin()
@@ -130,16 +120,11 @@ fn arc(centre: [f64; 2], radius: f64, from: [f64; 2], to: [f64; 2], angle: f64) 
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
+    use hinge::HingeConstants;
     use proptest::prelude::*;
 
     pub(crate) fn design(w_lig: f64, alpha_deg: f64) -> HingeDesign {
-        HingeDesign {
-            w_lig,
-            alpha: alpha_deg.to_radians(),
-            fillet_ratio: 0.16,
-            kerf: 0.2,
-            r_win: 100.0,
-        }
+        HingeConstants::PAPER.hinge(w_lig, alpha_deg.to_radians())
     }
 
     proptest! {

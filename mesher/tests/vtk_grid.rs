@@ -1,7 +1,7 @@
 //! The VTK grid of a window, evaluated with VTK's cells: their parametric coordinates as in vtkQuadraticHexahedron and
 //! vtkQuadraticWedge, and the polynomials that they interpolate.
 
-use hinge::HingeDesign;
+use hinge::HingeConstants;
 use mesher::{Gmsh, Tier, WindowMesh, WindowShape, vtk_grid};
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
@@ -125,13 +125,7 @@ impl VtkCell {
 }
 
 fn mesh(tier: Tier) -> WindowMesh {
-    let design = HingeDesign {
-        w_lig: 18.0,
-        alpha: 1.1,
-        fillet_ratio: 0.16,
-        kerf: 0.2,
-        r_win: 100.0,
-    };
+    let design = HingeConstants::PAPER.hinge(18.0, 1.1);
     let scratch = tempfile::tempdir().unwrap();
     let (limit, stop) = (Duration::from_secs(60), AtomicBool::new(false));
     let gmsh = Gmsh::find().unwrap();

@@ -290,8 +290,7 @@ mod tests {
             density_kg_m3: 1390.0,
             fracture_strain: 1.784,
             plastic: vec![[44.0, 0.0], [33.6, 0.05], [200.0, 1.784]],
-            stress_deviation: None,
-            creep: None,
+            ..SheetMaterial::default()
         }
     }
 

@@ -5,7 +5,7 @@ mod compare;
 use crate::ui::output_file;
 use anyhow::{Result, ensure};
 use clap::{Args, Subcommand};
-use dataset::{ColumnMap, Database, Details, Gates, Mixing, SplitPlan, rows_from_csv};
+use dataset::{ColumnMap, Database, Mixing, SplitPlan, rows_from_csv};
 use std::path::{Path, PathBuf};
 
 /// Summarise, join, split, correct and compare hinge databases, and exchange them as CSV
@@ -27,7 +27,7 @@ enum Action {
     Correct(CorrectCommand),
 }
 
-/// Print counts, ranges, histograms, rejected rows, energy residuals and coverage
+/// Print counts, rejected rows and the range of every column
 #[derive(Args)]
 struct SummaryCommand {
     /// Database (Parquet with its manifest)
@@ -85,9 +85,6 @@ struct ImportCommand {
     /// Column names, unit factors and constants of the table (TOML); see configs/import
     #[arg(long, value_name = "FILE")]
     columns: Option<PathBuf>,
-    /// Maximum energy residual of an accepted row (relative), if the table has that column
-    #[arg(long, value_name = "FRACTION", default_value_t = Gates::default().energy_residual_max)]
-    energy_residual_max: f64,
     #[command(flatten)]
     out: OutArgs,
 }
@@ -172,7 +169,7 @@ impl SummaryCommand {
             println!("{}", serde_json::to_string_pretty(database.manifest())?);
             return Ok(());
         }
-        println!("{database}\n{}", Details(&database));
+        println!("{database}");
         Ok(())
     }
 }
@@ -234,12 +231,8 @@ impl ImportCommand {
             Some(path) => support::toml_file::read(path)?,
             None => ColumnMap::default(),
         };
-        let gates = Gates {
-            energy_residual_max: self.energy_residual_max,
-        };
         let rows = rows_from_csv(&self.table, &map)?;
-        self.out
-            .write(&Database::collect(rows, &gates, &self.out.plan())?)
+        self.out.write(&Database::collect(rows, &self.out.plan())?)
     }
 }
 

@@ -102,11 +102,6 @@ impl SolveCommand {
         {
             run_folder::write(&self.out, "window.vtu", &grid.to_vtu())?;
         }
-        let gaps = match solution.samples.is_empty() {
-            true => Vec::new(),
-            false => solver.flank_gaps(&solve, &self.out)?,
-        };
-        warn_of_contact(&gaps);
         if self.json {
             let description = json!({
                 "design": design,
@@ -114,7 +109,6 @@ impl SolveCommand {
                 "material": material,
                 "tier": self.tier,
                 "samples": solution.samples,
-                "flank_gaps": gaps,
                 "stopped": solution.stopped.as_ref().map(ToString::to_string),
                 "cpu_seconds": solution.cpu_seconds,
                 "wall_seconds": solution.wall_seconds,
@@ -122,7 +116,7 @@ impl SolveCommand {
             });
             println!("{description:#}");
         } else if !solution.samples.is_empty() {
-            println!("{}", ray_table(&solution.samples, &gaps));
+            println!("{}", ray_table(&solution.samples));
             println!(
                 "{} increments, {} iterations, {:.1} s; mesh, input deck and log in {}",
                 solution.samples.len(),
@@ -138,20 +132,8 @@ impl SolveCommand {
     }
 }
 
-/// Warns if the flanks of the cut pass through each other, since the window model has no contact.
-fn warn_of_contact(gaps: &[Option<f64>]) {
-    let minimum = gaps.iter().flatten().copied().fold(0.0, f64::min);
-    if minimum < 0.0 {
-        eprintln!(
-            "warning: the flanks of the cut pass through each other, by up to {:.2} mm, where a real sheet would be in contact; \
-             the results below are without contact",
-            -minimum
-        );
-    }
-}
-
 /// The rows of a ray, thinned to about twenty.
-fn ray_table(samples: &[HingeSample], gaps: &[Option<f64>]) -> Table {
+fn ray_table(samples: &[HingeSample]) -> Table {
     let mut table = table([
         "lambda",
         "theta\ndeg",
@@ -164,11 +146,10 @@ fn ray_table(samples: &[HingeSample], gaps: &[Option<f64>]) -> Table {
         "D",
         "D_peak",
         "u_z\nmm",
-        "flanks\nmm",
         "energy\nresidual",
     ]);
     let stride = samples.len().div_ceil(20).max(1);
-    for (i, (x, gap)) in samples.iter().zip(gaps).enumerate() {
+    for (i, x) in samples.iter().enumerate() {
         if (samples.len() - 1 - i).is_multiple_of(stride) {
             table.add_row([
                 format!("{:.3}", x.lambda),
@@ -182,7 +163,6 @@ fn ray_table(samples: &[HingeSample], gaps: &[Option<f64>]) -> Table {
                 format!("{:.5}", x.d),
                 x.d_peak.map_or("-".into(), |peak| format!("{peak:.3}")),
                 format!("{:.2}", x.uz_max),
-                gap.map_or("-".into(), |gap| format!("{gap:.2}")),
                 format!("{:.1e}", x.energy_residual),
             ]);
         }

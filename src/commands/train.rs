@@ -2,7 +2,6 @@
 
 mod kept_fits;
 mod seeds;
-mod slices;
 
 pub use kept_fits::kept_fit;
 
@@ -23,16 +22,13 @@ use std::time::{Duration, Instant};
 use support::shard::Shard;
 use support::table::number_or_dash;
 use surrogate::{ErrorBin, Surrogate, TestErrors};
-use train::{
-    Backend, Distillation, Epoch, Start, StiffnessCheck, Trained, Training, TrainingConfig,
-    TrainingData,
-};
+use train::{Distillation, Epoch, Start, Trained, Training, TrainingConfig, TrainingData};
 use verification::distillation_states;
 
 /// Train the surrogate hinge energy on a database
 ///
-/// Writes the weights (of the best epoch and of the last), their card, the learning curve, a parity
-/// plot and slices of the energy, and prints the errors on hinge geometries that were not used for
+/// Writes the weights (of the best epoch and of the last), their card, the learning curve, and a parity
+/// plot, and prints the errors on hinge geometries that were not used for
 /// training. A stopped training continues with --resume; of several seeds, with the same command. Examples:
 /// kirigami train runs/demo/hinges.parquet --config configs/training/demo.toml;
 /// kirigami train runs/demo/hinges.parquet --config configs/training/demo.toml --seeds 8 --shard 1/4
@@ -52,9 +48,6 @@ pub struct TrainCommand {
         default_value = "runs/weights/surrogate.safetensors"
     )]
     out: PathBuf,
-    /// Tensor backend: flex or ndarray
-    #[arg(long, value_name = "NAME", default_value_t = Backend::default())]
-    backend: Backend,
     /// Fine-tune these weights of another material, thickness or mesh; the network sizes are those of the weights.
     /// docs/MATERIALS.md lists the errors over the number of rays
     #[arg(long, value_name = "WEIGHTS")]
@@ -68,7 +61,7 @@ pub struct TrainCommand {
     #[arg(long, conflicts_with = "seeds")]
     resume: bool,
     /// Number of trainings, with successive seeds. The one with the smallest product of the validation errors of W and
-    /// of D is kept as the weights; the spread of their forces estimates the error. Seeds that are trained already are
+    /// of D is kept as the weights. Seeds that are trained already are
     /// not trained again
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..=64))]
     seeds: u64,
@@ -98,13 +91,12 @@ const CHART_TITLES: [&str; 6] = [
 const SAVE_EVERY: Duration = Duration::from_secs(30);
 
 impl TrainCommand {
-    /// With the default backend; existing weights are replaced.
+    /// Existing weights are replaced.
     pub fn new(database: PathBuf, config: PathBuf, out: PathBuf) -> Self {
         Self {
             database,
             config: Some(config),
             out,
-            backend: Backend::default(),
             from: None,
             teachers: Vec::new(),
             resume: false,
@@ -157,8 +149,8 @@ impl TrainCommand {
             database: &database,
             distillation: distillation.as_ref(),
         };
-        let trained = fit(data, &config, self.backend, start, &state)?;
-        self.write(&trained, &database)?;
+        let trained = fit(data, &config, start, &state)?;
+        self.write(&trained)?;
         std::fs::remove_file(&state).ok();
         Ok(())
     }
@@ -228,25 +220,19 @@ impl TrainCommand {
     }
 
     /// Writes weights, last weights, curves and plots of one training, and prints its errors.
-    fn write(&self, trained: &Trained, database: &Database) -> Result<()> {
+    fn write(&self, trained: &Trained) -> Result<()> {
         trained.surrogate.save(&self.out)?;
         trained.last.save(&self.beside("last.safetensors"))?;
         self.write_curve(&trained.history)?;
         let axes = ["finite elements", "surrogate"];
         let parity = charts::parity(&trained.parity.states, CHART_TITLES, axes)?;
         picture::save(&parity, &self.beside("parity"), 2000)?;
-        let slices = slices::rotations(&trained.surrogate, database);
-        if !slices.is_empty() {
-            picture::save(&charts::slices(&slices)?, &self.beside("slices"), 1200)?;
-        }
         println!("{}\n", error_table(&trained.test_errors, UNSEEN));
         println!("{}\n", bin_table(&trained.surrogate.card().error_bins));
-        print_stiffness(&trained.stiffness);
         if let Some(last) = trained.history.last() {
             println!(
-                "{} epochs on {} in {:.1} s; weights written to {}",
+                "{} epochs in {:.1} s; weights written to {}",
                 last.epoch,
-                self.backend,
                 last.elapsed_s,
                 self.out.display()
             );
@@ -298,12 +284,11 @@ impl TrainCommand {
 pub fn fit(
     data: TrainingData,
     config: &TrainingConfig,
-    backend: Backend,
     start: Start,
     state: &Path,
 ) -> Result<Trained> {
     let stop = interrupt::stop_flag()?;
-    let mut training = Training::new(data, config, backend, start)?;
+    let mut training = Training::new(data, config, start)?;
     let bar = Progress::new(config.epochs, "epochs");
     let mut saved = Instant::now();
     while !training.is_finished() {
@@ -413,17 +398,4 @@ pub fn bin_table(bins: &[ErrorBin]) -> Table {
         table.add_row(row);
     }
     table
-}
-
-fn print_stiffness(check: &StiffnessCheck) {
-    println!(
-        "tangent of {} states: {:.1} % indefinite; along the rays the energy is concave in {:.1} % \
-         (finite elements {:.1} %), error of the curvature {:.1} % (median {:.1} %)",
-        check.pairs,
-        100.0 * check.indefinite,
-        100.0 * check.learned_softening,
-        100.0 * check.softening,
-        100.0 * check.curvature.relative_rmse,
-        100.0 * check.curvature.median
-    );
 }

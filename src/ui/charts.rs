@@ -4,13 +4,11 @@ pub mod axes;
 mod learning_curve;
 #[cfg(feature = "pipeline")]
 mod parity;
-mod slices;
 mod tensile_test;
 
 pub use learning_curve::learning_curve;
 #[cfg(feature = "pipeline")]
 pub use parity::parity;
-pub use slices::{Slice, slices};
 pub use tensile_test::tensile_test;
 
 use anyhow::{Result, anyhow};
@@ -23,7 +21,7 @@ pub const POINT: RGBColor = RGBColor(31, 110, 140);
 /// Colour of the second curve, such as the validation error.
 pub const VALIDATION: RGBColor = RGBColor(217, 95, 2);
 /// Colours of the curves of one chart, in order.
-pub const SLICES: [RGBColor; 7] = [
+pub const COLOURS: [RGBColor; 7] = [
     POINT,
     VALIDATION,
     RGBColor(117, 112, 179),

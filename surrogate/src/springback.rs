@@ -534,8 +534,7 @@ mod tests {
             density_kg_m3: 900.0,
             fracture_strain: 1.0,
             plastic: vec![[30.0, 0.0]],
-            stress_deviation: None,
-            creep: None,
+            ..SheetMaterial::default()
         }
     }
 

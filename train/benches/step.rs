@@ -1,44 +1,35 @@
 //! Time of ten training steps (2560 rows in batches of 256), including set-up and one validation, for
-//! each backend and for the network sizes of `demo.toml` and `paper.toml`.
+//! the network sizes of `demo.toml` and `paper.toml`.
 
-use dataset::{Database, Gates, Row, SplitPlan};
-use hinge::{HingeDesign, HingeSample};
-use train::{Backend, Precision, TrainingConfig, train};
+use dataset::{Database, Row, SplitPlan};
+use hinge::{HingeConstants, HingeSample};
+use train::{TrainingConfig, train};
 
 fn main() {
     divan::main();
 }
 
-#[divan::bench(args = Backend::ALL, sample_count = 10, sample_size = 1)]
-fn demo(bencher: divan::Bencher, backend: &Backend) {
-    ten_steps(bencher, *backend, &[64, 64, 32], &[64, 64]);
+#[divan::bench(sample_count = 10, sample_size = 1)]
+fn demo(bencher: divan::Bencher) {
+    ten_steps(bencher, &[64, 64, 32]);
 }
 
-#[divan::bench(args = Backend::ALL, sample_count = 10, sample_size = 1)]
-fn paper(bencher: divan::Bencher, backend: &Backend) {
-    ten_steps(bencher, *backend, &[256, 256, 256, 128], &[256, 256]);
+#[divan::bench(sample_count = 10, sample_size = 1)]
+fn paper(bencher: divan::Bencher) {
+    ten_steps(bencher, &[256, 256, 256, 128]);
 }
 
-fn ten_steps(bencher: divan::Bencher, backend: Backend, embedding: &[usize], damage: &[usize]) {
+fn ten_steps(bencher: divan::Bencher, embedding: &[usize]) {
     let database = database();
     let config = TrainingConfig {
         seed: 0,
         embedding: embedding.to_vec(),
-        damage: damage.to_vec(),
-        mirror: false,
         epochs: 1,
         batch_size: 256,
-        precision: Precision::F32,
         learning_rate: 1e-3,
-        learning_rate_end: 1e-3,
-        gradient_norm_max: 1.0,
-        energy_weight: 0.5,
-        damage_weight: 0.1,
-        damage_sharpness: 8.0,
-        patience: None,
         frozen_layers: 0,
     };
-    bencher.bench(|| train(&database, &config, backend, &mut |_| {}));
+    bencher.bench(|| train(&database, &config, &mut |_| {}));
 }
 
 /// 100 rays of 32 rows, 80 of them for training.
@@ -48,13 +39,8 @@ fn database() -> Database {
         let lambda = (index % 32 + 1) as f64 / 32.0;
         Row {
             job: format!("job-{ray:03}"),
-            design: HingeDesign {
-                w_lig: 15.0 + 10.0 * ray.sin(),
-                alpha: 1.5 + 0.7 * (1.7 * ray).sin(),
-                fillet_ratio: 0.16,
-                kerf: 0.2,
-                r_win: 100.0,
-            },
+            design: HingeConstants::PAPER
+                .hinge(15.0 + 10.0 * ray.sin(), 1.5 + 0.7 * (1.7 * ray).sin()),
             sample: HingeSample {
                 lambda,
                 a: lambda * ray.cos(),
@@ -67,17 +53,12 @@ fn database() -> Database {
                 d: 0.01 * lambda,
                 ..HingeSample::default()
             },
-            failure: String::new(),
             material: "benchmark".into(),
-            material_hash: String::new(),
-            settings_hash: String::new(),
             tier: "none".into(),
             solved_tier: "none".into(),
-            gmsh: "none".into(),
-            ccx: "none".into(),
-            cpu_s: 0.0,
+            ..Row::default()
         }
     });
-    Database::collect(rows.collect(), &Gates::default(), &SplitPlan::default())
+    Database::collect(rows.collect(), &SplitPlan::default())
         .expect("the rows are finite and of a hundred geometries")
 }

@@ -69,11 +69,7 @@ mod tests {
     use hinge::{HingeConstants, HingeSample};
 
     fn row(w_lig: f64, theta: f64) -> Row {
-        let constants = HingeConstants {
-            fillet_ratio: 0.16,
-            kerf: 0.2,
-            r_win: 100.0,
-        };
+        let constants = HingeConstants::PAPER;
         Row {
             job: String::new(),
             design: constants.hinge(w_lig, 1.5),
@@ -81,15 +77,7 @@ mod tests {
                 theta,
                 ..HingeSample::default()
             },
-            failure: String::new(),
-            material: String::new(),
-            material_hash: String::new(),
-            settings_hash: String::new(),
-            tier: String::new(),
-            solved_tier: String::new(),
-            gmsh: String::new(),
-            ccx: String::new(),
-            cpu_s: 0.0,
+            ..Row::default()
         }
     }
 

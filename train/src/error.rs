@@ -52,8 +52,8 @@ pub enum TrainError {
         found: Vec<Vec<usize>>,
     },
     #[error(
-        "the initial weights have `damage_sharpness = {found}`; set this value in the \
-         configuration, or start with random weights"
+        "the initial weights have `damage_sharpness = {found}`, and those of a training {expected}; start with random weights",
+        expected = crate::config::DAMAGE_SHARPNESS
     )]
     OtherSharpness { found: f64 },
     #[error(
@@ -61,10 +61,7 @@ pub enum TrainError {
          for one radius, or with random weights"
     )]
     OneHole,
-    #[error(
-        "the initial weights do not have the mirror symmetry; set `mirror = false` in the \
-         configuration, or start with random weights"
-    )]
+    #[error("the initial weights do not have the mirror symmetry; start with random weights")]
     NotSymmetric,
     #[error(transparent)]
     State(#[from] StateError),

@@ -33,32 +33,24 @@ fn layer(affine: Affine) -> Result<Layer, TrainError> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::backend::Backend;
-    use crate::config::TrainingConfig;
+    use crate::config::{DAMAGE_SHARPNESS, TrainingConfig};
     use crate::loss::predict;
     use crate::loss::tests::config;
+    use crate::networks::options;
     use crate::samples::{Batch, Scales};
     use crate::validation::Parity;
-    use burn::tensor::{DType, TensorCreationOptions};
+    use burn::tensor::DType;
     use dataset::Row;
-    use hinge::{HingeConstants, HingeDesign, HingeSample, NetLigament, TrainingDomain};
+    use hinge::{HingeConstants, HingeSample, NetLigament, TrainingDomain};
     use surrogate::{
         Card, FEATURE_NAMES, FORMAT_VERSION, Surrogate, TestErrors, UNITS, feature_names,
     };
-
-    const SHARPNESS: f64 = 4.0;
 
     fn row(index: usize) -> Row {
         let wave = |speed: f64| (speed * index as f64 + 0.3).sin();
         Row {
             job: format!("{index}"),
-            design: HingeDesign {
-                w_lig: 15.0 + 9.0 * wave(1.3),
-                alpha: 1.5 + 0.7 * wave(2.9),
-                fillet_ratio: 0.16,
-                kerf: 0.2,
-                r_win: 100.0,
-            },
+            design: HingeConstants::PAPER.hinge(15.0 + 9.0 * wave(1.3), 1.5 + 0.7 * wave(2.9)),
             sample: HingeSample {
                 a: 2.0 * wave(0.7),
                 s: 2.0 * wave(1.9),
@@ -71,15 +63,7 @@ mod tests {
                 d_peak: Some(0.2),
                 ..HingeSample::default()
             },
-            failure: String::new(),
-            material: String::new(),
-            material_hash: String::new(),
-            settings_hash: String::new(),
-            tier: String::new(),
-            solved_tier: String::new(),
-            gmsh: String::new(),
-            ccx: String::new(),
-            cpu_s: 0.0,
+            ..Row::default()
         }
     }
 
@@ -98,15 +82,11 @@ mod tests {
             energy_scale: scales.energy,
             damage_scale: scales.damage,
             peak_scale: scales.peak,
-            damage_sharpness: SHARPNESS,
+            damage_sharpness: DAMAGE_SHARPNESS,
             fine_tuned_from: None,
             distillation: None,
             domain,
-            hinge: HingeConstants {
-                fillet_ratio: 0.16,
-                kerf: 0.2,
-                r_win: 100.0,
-            },
+            hinge: HingeConstants::PAPER,
             material: String::new(),
             material_hash: None,
             settings_hash: None,
@@ -124,14 +104,12 @@ mod tests {
     }
 
     /// |burn - kernel| / |kernel| over all rows, for W, F_a, F_s, M_theta, D and D_peak.
-    fn disagreement(backend: Backend, dtype: DType, several_holes: bool) -> [f64; 6] {
+    fn disagreement(dtype: DType, several_holes: bool) -> [f64; 6] {
         let features = feature_names(several_holes).len();
-        let options = TensorCreationOptions::new(backend.device()).with_dtype(dtype);
+        let options = options(dtype);
         let config = TrainingConfig {
             seed: 1,
             embedding: vec![64, 64, 32],
-            damage: vec![64, 64],
-            mirror: true,
             ..config()
         };
         let networks = Networks::new(&config, features, true, &options);
@@ -141,16 +119,12 @@ mod tests {
                 row.design.fillet_ratio = 0.2 + 0.15 * (2.3 * i as f64).sin();
             }
         }
-        let scales = Scales::new(&rows, 0.16, feature_names(several_holes), false).unwrap();
+        let scales = Scales::new(&rows, 0.16, feature_names(several_holes)).unwrap();
         let samples: Vec<_> = rows
             .iter()
             .map(|row| scales.sample(&row.design, &row.sample))
             .collect();
-        let predicted = predict(
-            &networks,
-            &Batch::new(&samples, features, &options),
-            SHARPNESS,
-        );
+        let predicted = predict(&networks, &Batch::new(&samples, features, &options));
         let column = |tensor: &burn::tensor::Tensor<2>, k: usize, scale: f64| -> Vec<f64> {
             let column = tensor.clone().inner().narrow(1, k, 1);
             let values: Vec<f64> = column.try_into_vec_as().unwrap();
@@ -182,13 +156,11 @@ mod tests {
 
     #[test]
     fn the_kernel_agrees_with_burn_in_both_precisions() {
-        for &backend in Backend::ALL {
-            for (dtype, tolerance) in [(DType::F32, 1e-6), (DType::F64, 1e-14)] {
-                for several_holes in [false, true] {
-                    let errors = disagreement(backend, dtype, several_holes);
-                    let close = errors.iter().all(|&error| error < tolerance);
-                    assert!(close, "{backend} {dtype:?} {several_holes}: {errors:?}");
-                }
+        for (dtype, tolerance) in [(DType::F32, 1e-6), (DType::F64, 1e-14)] {
+            for several_holes in [false, true] {
+                let errors = disagreement(dtype, several_holes);
+                let close = errors.iter().all(|&error| error < tolerance);
+                assert!(close, "{dtype:?} {several_holes}: {errors:?}");
             }
         }
     }

@@ -10,15 +10,14 @@
 //!
 //! Apart from these factors and from rounding, the function of the networks is that of the pretrained ones.
 
-use crate::backend::Backend;
-use crate::config::TrainingConfig;
+use crate::config::{DAMAGE_SHARPNESS, TrainingConfig};
 use crate::error::TrainError;
 use crate::export::layers;
 use crate::mirror;
-use crate::networks::Networks;
+use crate::networks::{Networks, options};
 use crate::samples::Scales;
 use crate::validation::Parity;
-use burn::tensor::{DType, TensorCreationOptions};
+use burn::tensor::DType;
 use dataset::{Manifest, Row};
 use hinge::HingeConstants;
 use surrogate::{Card, Layer, Layers, Standardisation, Surrogate, feature_names};
@@ -30,13 +29,11 @@ pub(crate) struct Initial {
 }
 
 impl Initial {
-    /// The pretrained weights for the windows of a database, fitted to the training rows, which include their mirror images if
-    /// `symmetric`.
+    /// The pretrained weights for the windows of a database, fitted to the training rows, which include their mirror images.
     pub fn new(
         pretrained: &Surrogate,
         rows: &[Row],
         manifest: &Manifest,
-        symmetric: bool,
     ) -> Result<Self, TrainError> {
         if pretrained.card().domain.holes.is_some() && manifest.domain.holes.is_none() {
             return Err(TrainError::OneHole);
@@ -44,7 +41,7 @@ impl Initial {
         let pretrained = at_size_of(pretrained, &manifest.hinge);
         let parity = Parity::new(&pretrained, rows);
         let names = feature_names(manifest.domain.holes.is_some());
-        let own = Scales::new(rows, manifest.hinge.fillet_ratio, names, symmetric)?;
+        let own = Scales::new(rows, manifest.hinge.fillet_ratio, names)?;
         let card = pretrained.card();
         let mut layers = pretrained.layers();
         let (from, to) = (&card.standardisation, &own.standardisation);
@@ -92,14 +89,10 @@ pub(crate) fn inherit(card: &mut Card, pretrained: &Surrogate, rows: &[Row]) {
 }
 
 /// Rejects initial weights whose sizes, sharpness or symmetry are not those of the configuration.
-pub fn check_pretrained(
-    pretrained: &Surrogate,
-    config: &TrainingConfig,
-    backend: Backend,
-) -> Result<(), TrainError> {
+pub fn check_pretrained(pretrained: &Surrogate, config: &TrainingConfig) -> Result<(), TrainError> {
     let given = pretrained.layers();
     let heads = 1 + usize::from(given.chi_p.is_some());
-    let damage = std::iter::repeat_n(config.damage.clone(), heads);
+    let damage = std::iter::repeat_n(config.damage().to_vec(), heads);
     let expected: Vec<_> = std::iter::once(config.embedding.clone())
         .chain(damage)
         .collect();
@@ -108,13 +101,13 @@ pub fn check_pretrained(
         return Err(TrainError::OtherSizes { expected, found });
     }
     let found = pretrained.card().damage_sharpness;
-    if found != config.damage_sharpness {
+    if found != DAMAGE_SHARPNESS {
         return Err(TrainError::OtherSharpness { found });
     }
-    let exact = TensorCreationOptions::new(backend.device()).with_dtype(DType::F64);
-    let folded = Networks::from_layers(&given, config.mirror, &exact);
+    let exact = options(DType::F64);
+    let folded = Networks::from_layers(&given, &exact);
     let unchanged = layers(&folded)? == given;
-    let centred = !config.mirror || mirror::is_centred(&pretrained.card().standardisation);
+    let centred = mirror::is_centred(&pretrained.card().standardisation);
     if unchanged && centred {
         Ok(())
     } else {

@@ -8,11 +8,11 @@
 //! ```no_run
 //! use dataset::Database;
 //! use std::path::Path;
-//! use train::{Backend, TrainingConfig, train};
+//! use train::{TrainingConfig, train};
 //!
 //! let database = Database::read(Path::new("data/pet-0.5mm/reference.parquet"))?;
 //! let config: TrainingConfig = support::toml_file::read(Path::new("configs/training/small.toml"))?;
-//! let trained = train(&database, &config, Backend::ALL[0], &mut |epoch| println!("{epoch:?}"))?;
+//! let trained = train(&database, &config, &mut |epoch| println!("{epoch:?}"))?;
 //! trained.surrogate.save(Path::new("runs/small.safetensors"))?;
 //! # Ok::<_, Box<dyn std::error::Error>>(())
 //! ```
@@ -20,11 +20,9 @@
 #![warn(missing_docs)]
 
 mod affine;
-mod backend;
 mod bins;
 mod config;
 mod distillation;
-mod ensemble;
 mod epoch;
 mod error;
 mod error_interval;
@@ -37,19 +35,15 @@ mod networks;
 mod optimiser;
 mod samples;
 mod state;
-mod stiffness;
 mod training;
 mod validation;
 
-pub use backend::{Backend, UnknownBackend};
-pub use config::{InvalidConfig, Precision, TrainingConfig};
+pub use config::{InvalidConfig, TrainingConfig};
 pub use distillation::{Distillation, TrainingData};
-pub use ensemble::{Disagreement, EnsembleCheck, disagreements};
 pub use epoch::Epoch;
 pub use error::TrainError;
 pub use error_interval::ErrorInterval;
 pub use fine_tuning::check_pretrained;
 pub use state::StateError;
-pub use stiffness::StiffnessCheck;
 pub use training::{Start, Trained, Training, train};
 pub use validation::{Parity, spot_check};

@@ -27,8 +27,6 @@ const ALPHA: usize = 4;
 /// How a layer is determined by its trained part.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Fold {
-    /// The whole layer is trained; no symmetry.
-    Whole,
     /// The inputs are features; half of the columns are trained.
     First,
     /// The inputs and outputs are pairs; half of the columns are trained.
@@ -41,7 +39,6 @@ impl Fold {
     /// (inputs, outputs) of the trained part of a layer of this shape.
     pub fn shape(self, [inputs, outputs]: [usize; 2]) -> [usize; 2] {
         match self {
-            Self::Whole => [inputs, outputs],
             Self::First | Self::Hidden => [inputs, outputs / 2],
             Self::Invariant => [inputs / 2, outputs],
         }
@@ -52,7 +49,6 @@ impl Fold {
         let Affine { weight, bias } = part;
         let paired = |bias: Tensor<1>| Tensor::cat(vec![bias.clone(), bias.flip([0])], 0);
         match self {
-            Self::Whole => Affine { weight, bias },
             Self::First => {
                 let options = (&weight.device(), weight.dtype());
                 let [features, _] = weight.dims();

@@ -4,7 +4,7 @@ use crate::affine::Affine;
 use crate::config::TrainingConfig;
 use crate::mirror::Fold;
 use burn::module::{Module, Param};
-use burn::tensor::{Tensor, TensorCreationOptions, TensorData};
+use burn::tensor::{DType, Device, Tensor, TensorCreationOptions, TensorData};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use surrogate::{Layer, Layers};
@@ -24,13 +24,18 @@ pub(crate) struct Mlp {
     pub layers: Vec<Dense>,
 }
 
-/// The trained part of a layer: the whole layer, or the half that determines it by mirror symmetry.
+/// The trained half of a layer, which determines the layer by mirror symmetry.
 #[derive(Module, Debug)]
 pub(crate) struct Dense {
     pub weight: Param<Tensor<2>>,
     pub bias: Param<Tensor<1>>,
     #[module(skip)]
     fold: Fold,
+}
+
+/// Tensors of a number type on the processor, recording gradients.
+pub(crate) fn options(dtype: DType) -> TensorCreationOptions {
+    TensorCreationOptions::new(Device::flex().autodiff()).with_dtype(dtype)
 }
 
 impl Networks {
@@ -42,9 +47,10 @@ impl Networks {
         with_peak: bool,
         options: &TensorCreationOptions,
     ) -> Self {
-        let (embedding, symmetric) = (&config.embedding, config.mirror);
+        let embedding = &config.embedding;
         let mut rng = ChaCha8Rng::seed_from_u64(config.seed);
-        let head: Vec<usize> = config.damage.iter().copied().chain([1]).collect();
+        let [first, second] = config.damage();
+        let head = [first, second, 1];
         let mut network = |widths: &[usize], folds: Vec<Fold>| {
             let inputs = std::iter::once(features).chain(widths.iter().copied());
             let layers = inputs
@@ -58,14 +64,14 @@ impl Networks {
             }
         };
         Self {
-            chi: network(embedding, folds(embedding.len(), symmetric)),
-            chi_d: network(&head, head_folds(head.len(), symmetric)),
-            chi_p: with_peak.then(|| network(&head, head_folds(head.len(), symmetric))),
+            chi: network(embedding, folds(embedding.len())),
+            chi_d: network(&head, head_folds(head.len())),
+            chi_p: with_peak.then(|| network(&head, head_folds(head.len()))),
         }
     }
 
     /// The networks of a weight file.
-    pub fn from_layers(layers: &Layers, symmetric: bool, options: &TensorCreationOptions) -> Self {
+    pub fn from_layers(layers: &Layers, options: &TensorCreationOptions) -> Self {
         let network = |layers: &[Layer], folds: Vec<Fold>| {
             let layers = layers.iter().zip(folds);
             Mlp {
@@ -74,10 +80,10 @@ impl Networks {
                     .collect(),
             }
         };
-        let head = |layers: &[Layer]| network(layers, head_folds(layers.len(), symmetric));
+        let head = |layers: &[Layer]| network(layers, head_folds(layers.len()));
         let Layers { chi, chi_d, chi_p } = layers;
         Self {
-            chi: network(chi, folds(chi.len(), symmetric)),
+            chi: network(chi, folds(chi.len())),
             chi_d: head(chi_d),
             chi_p: chi_p.as_deref().map(head),
         }
@@ -110,21 +116,16 @@ impl Networks {
 }
 
 /// The folds of the layers of chi.
-fn folds(layers: usize, symmetric: bool) -> Vec<Fold> {
+fn folds(layers: usize) -> Vec<Fold> {
     let mut folds = vec![Fold::Hidden; layers];
     folds[..1].fill(Fold::First);
-    if !symmetric {
-        folds.fill(Fold::Whole);
-    }
     folds
 }
 
 /// The folds of the layers of a damage head, whose output is not a pair.
-fn head_folds(layers: usize, symmetric: bool) -> Vec<Fold> {
-    let mut folds = folds(layers, symmetric);
-    if symmetric {
-        folds[layers - 1..].fill(Fold::Invariant);
-    }
+fn head_folds(layers: usize) -> Vec<Fold> {
+    let mut folds = folds(layers);
+    folds[layers - 1..].fill(Fold::Invariant);
     folds
 }
 

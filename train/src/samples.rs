@@ -66,14 +66,9 @@ pub(crate) struct Batch {
 impl Scales {
     /// Computes the scales; an error if a feature is constant, or a target is zero or has outliers.
     ///
-    /// `hole` is that of the hinges that the networks see, over w_lig, and `names` are their features. `symmetric`: the rows
-    /// include their mirror images.
-    pub fn new(
-        rows: &[Row],
-        hole: f64,
-        names: &[&'static str],
-        symmetric: bool,
-    ) -> Result<Self, TrainError> {
+    /// `hole` is that of the hinges that the networks see, over w_lig, and `names` are their features. The rows include their
+    /// mirror images.
+    pub fn new(rows: &[Row], hole: f64, names: &[&'static str]) -> Result<Self, TrainError> {
         let count = rows.len() as f64;
         let root_mean_square = |target: &'static str, value: fn(&Row) -> f64| {
             let sum: f64 = rows.iter().map(|row| value(row).powi(2)).sum();
@@ -116,9 +111,7 @@ impl Scales {
             .count();
         let peak_weight = count / (with_peak as f64).max(1.0);
         let mut standardisation = Standardisation { mean, std };
-        if symmetric {
-            mirror::centre(&mut standardisation);
-        }
+        mirror::centre(&mut standardisation);
         Ok(Self {
             standardisation,
             hole,
@@ -140,7 +133,7 @@ impl Scales {
     }
 
     /// The scales of trained weights; those of the forces are computed from the rows.
-    pub fn from_card(card: &Card, rows: &[Row], symmetric: bool) -> Result<Self, TrainError> {
+    pub fn from_card(card: &Card, rows: &[Row]) -> Result<Self, TrainError> {
         Ok(Self {
             standardisation: card.standardisation.clone(),
             energy: card.energy_scale,
@@ -150,7 +143,6 @@ impl Scales {
                 rows,
                 card.hinge.fillet_ratio,
                 feature_names(card.domain.holes.is_some()),
-                symmetric,
             )?
         })
     }

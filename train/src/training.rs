@@ -1,20 +1,18 @@
 //! The training loop: optimiser steps with a cosine learning-rate schedule. Each network is taken from the epoch of its
 //! minimum validation error.
 
-use crate::backend::Backend;
 use crate::bins::error_bins;
-use crate::config::{Precision, TrainingConfig};
+use crate::config::{DAMAGE_SHARPNESS, TrainingConfig};
 use crate::distillation::TrainingData;
 use crate::epoch::Epoch;
 use crate::error::TrainError;
 use crate::export::layers;
 use crate::fine_tuning::{Initial, check_pretrained, inherit};
 use crate::loss::loss;
-use crate::networks::Networks;
+use crate::networks::{Networks, options};
 use crate::optimiser::{learning_rate, optimiser};
 use crate::samples::{Batch, Sample, Scales};
 use crate::state::{self, Progress, State};
-use crate::stiffness::StiffnessCheck;
 use crate::validation::Parity;
 use burn::optim::{GradientsParams, ModuleOptimizer};
 use burn::tensor::{DType, TensorCreationOptions};
@@ -42,8 +40,6 @@ pub struct Trained {
     pub test_errors: TestErrors,
     /// Targets and predictions on the test part.
     pub parity: Parity,
-    /// Check of the learned tangent on the test part.
-    pub stiffness: StiffnessCheck,
 }
 
 /// The starting point of a training.
@@ -93,10 +89,9 @@ struct Parts {
 pub fn train(
     database: &Database,
     config: &TrainingConfig,
-    backend: Backend,
     progress: &mut dyn FnMut(&Epoch),
 ) -> Result<Trained, TrainError> {
-    let mut training = Training::new(database, config, backend, Start::Fresh)?;
+    let mut training = Training::new(database, config, Start::Fresh)?;
     while !training.is_finished() {
         progress(&training.epoch()?);
     }
@@ -108,7 +103,6 @@ impl Training {
     pub fn new<'a>(
         data: impl Into<TrainingData<'a>>,
         config: &TrainingConfig,
-        backend: Backend,
         start: Start,
     ) -> Result<Self, TrainError> {
         config.validate()?;
@@ -116,29 +110,25 @@ impl Training {
         let data: TrainingData = data.into();
         let parts = Parts::new(data.database)?;
         let manifest = data.database.manifest();
-        let rows = if config.mirror {
-            with_mirrored(&parts.training)
-        } else {
-            parts.training.clone()
-        };
+        let rows = with_mirrored(&parts.training);
         let state = match start {
             Start::State { state, .. } => Some(State::read(state)?),
             Start::Fresh | Start::Weights(_) => None,
         };
         let (layers, scales) = match (start, &state) {
             (Start::Weights(pretrained), _) => {
-                check_pretrained(pretrained, config, backend)?;
-                let initial = Initial::new(pretrained, &rows, manifest, config.mirror)?;
+                check_pretrained(pretrained, config)?;
+                let initial = Initial::new(pretrained, &rows, manifest)?;
                 (Some(initial.layers), initial.scales)
             }
             (_, Some(state)) => {
                 let card = &state.progress.card;
-                (None, Scales::from_card(card, &rows, config.mirror)?)
+                (None, Scales::from_card(card, &rows)?)
             }
             (_, None) => {
                 let hole = manifest.hinge.fillet_ratio;
                 let names = feature_names(manifest.domain.holes.is_some());
-                (None, Scales::new(&rows, hole, names, config.mirror)?)
+                (None, Scales::new(&rows, hole, names)?)
             }
         };
         let mut card = card(manifest, &rows, &scales, config)?;
@@ -150,9 +140,9 @@ impl Training {
                 card.fine_tuned_from = pretrained.map(Surrogate::hash);
             }
         }
-        let options = options(config, backend);
+        let options = options(DType::F32);
         let networks = match &layers {
-            Some(layers) => Networks::from_layers(layers, config.mirror, &options),
+            Some(layers) => Networks::from_layers(layers, &options),
             None => Networks::new(config, scales.features(), scales.peak.is_some(), &options),
         };
         let solved = parts.training.iter().map(|row| (&row.design, &row.sample));
@@ -168,7 +158,7 @@ impl Training {
             parts,
             scales,
             card,
-            optimiser: optimiser(config),
+            optimiser: optimiser(),
             best: networks.clone(),
             networks,
             history: Vec::new(),
@@ -182,16 +172,9 @@ impl Training {
         Ok(training)
     }
 
-    /// Whether all epochs have been run, or the number of epochs without improvement has reached the patience.
+    /// Whether all epochs have been run.
     pub fn is_finished(&self) -> bool {
-        let since_best = self
-            .history
-            .iter()
-            .rev()
-            .take_while(|epoch| !epoch.best)
-            .count();
-        let patience = self.config.patience.unwrap_or(usize::MAX);
-        self.history.len() >= self.config.epochs || since_best >= patience
+        self.history.len() >= self.config.epochs
     }
 
     /// The epochs run so far.
@@ -213,7 +196,7 @@ impl Training {
         }
         let surrogate = export(&self.networks, &self.card)?;
         let validation = Parity::new(&surrogate, &self.parts.validation);
-        let validation_loss = validation.loss(&self.scales, &self.config);
+        let validation_loss = validation.loss(&self.scales);
         if !validation_loss.is_finite() {
             return Err(diverged);
         }
@@ -261,7 +244,6 @@ impl Training {
         let last = export(&self.networks, &self.card)?;
         let last_errors = Parity::new(&last, &self.parts.test).errors();
         Ok(Trained {
-            stiffness: StiffnessCheck::new(&best, &self.parts.test),
             surrogate: best.with_test_errors(test_errors, bins),
             last: last.with_test_errors(last_errors, Vec::new()),
             history: self.history,
@@ -300,7 +282,7 @@ impl Training {
         for (step, batch) in order.chunks(self.config.batch_size).enumerate() {
             let samples: Vec<Sample> = batch.iter().map(|&index| self.samples[index]).collect();
             let batch = Batch::new(&samples, self.scales.features(), &self.options);
-            let value = loss(&networks, &batch, &self.config);
+            let value = loss(&networks, &batch);
             let gradients = GradientsParams::from_grads(value.backward(), &networks);
             sum += value.try_into_scalar::<f64>()? * samples.len() as f64;
             let rate = self.learning_rate(first + step);
@@ -315,11 +297,8 @@ impl Training {
     }
 
     fn learning_rate(&self, step: usize) -> f64 {
-        learning_rate(
-            &self.config,
-            step,
-            self.config.epochs * self.steps_per_epoch(),
-        )
+        let steps = self.config.epochs * self.steps_per_epoch();
+        learning_rate(self.config.learning_rate, step, steps)
     }
 }
 
@@ -335,15 +314,6 @@ impl Parts {
             test: part(Part::Test, "test")?,
         })
     }
-}
-
-/// Where and in which number type the tensors are.
-fn options(config: &TrainingConfig, backend: Backend) -> TensorCreationOptions {
-    let dtype = match config.precision {
-        Precision::F32 => DType::F32,
-        Precision::F64 => DType::F64,
-    };
-    TensorCreationOptions::new(backend.device()).with_dtype(dtype)
 }
 
 /// The card before training; the test errors are added at the end.
@@ -368,7 +338,7 @@ fn card(
         energy_scale: scales.energy,
         damage_scale: scales.damage,
         peak_scale: scales.peak,
-        damage_sharpness: config.damage_sharpness,
+        damage_sharpness: DAMAGE_SHARPNESS,
         domain: domain.ok_or(TrainError::NoRows { part: "training" })?,
         hinge: manifest.hinge,
         material: manifest.material.clone(),

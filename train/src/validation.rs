@@ -1,6 +1,6 @@
 //! Errors of a surrogate on rows that are not used in training, measured with the exported float64 networks.
 
-use crate::config::TrainingConfig;
+use crate::config::{DAMAGE_WEIGHT, ENERGY_WEIGHT};
 use crate::samples::Scales;
 use dataset::{ComparedState, Row};
 use support::statistics::root_mean_square;
@@ -88,13 +88,13 @@ impl Parity {
     }
 
     /// The loss (15) in the scales of the training rows.
-    pub(crate) fn loss(&self, scales: &Scales, config: &TrainingConfig) -> f64 {
+    pub(crate) fn loss(&self, scales: &Scales) -> f64 {
         let [f_a, f_s, m_theta] = scales.forces;
-        let force_weight = (1.0 - config.energy_weight) / 3.0;
+        let force_weight = (1.0 - ENERGY_WEIGHT) / 3.0;
         let damages = 1 + usize::from(scales.peak.is_some());
-        let damage_weight = config.damage_weight / damages as f64;
+        let damage_weight = DAMAGE_WEIGHT / damages as f64;
         let terms = [
-            (scales.energy, config.energy_weight),
+            (scales.energy, ENERGY_WEIGHT),
             (f_a, force_weight),
             (f_s, force_weight),
             (m_theta, force_weight),

@@ -177,10 +177,8 @@ fn solve_first<S: LearningSteps>(
         time_limit: (task.deadline)
             .map(|deadline| deadline.saturating_duration_since(Instant::now())),
     };
-    let first = Campaign {
-        count: rays,
-        ..task.campaign.clone()
-    };
+    let mut first = task.campaign.clone();
+    first.count = rays;
     let progress = &mut |progress: &Progress| steps.solving(progress);
     let tally = run(
         &first,

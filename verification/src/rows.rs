@@ -2,7 +2,7 @@
 //! kinds of failure, tiers and versions are written to it and read from it.
 
 use crate::verification_error::VerificationError;
-use dataset::{Database, Gates, Row, SplitPlan};
+use dataset::{Database, Row, SplitPlan};
 use fe_driver::{
     CollectedWindow, FailureKind, Solved, ToolVersions, UnknownFailure, finished_windows,
 };
@@ -45,11 +45,7 @@ pub fn collected(folder: &Path) -> Result<Database, VerificationError> {
         let window = window.map_err(fe_driver::CampaignError::from)?;
         all.extend(rows(&window, window.samples.iter().copied()));
     }
-    Ok(Database::collect(
-        all,
-        &Gates::default(),
-        &SplitPlan::default(),
-    )?)
+    Ok(Database::collect(all, &SplitPlan::default())?)
 }
 
 /// A row that is not of a solved window.

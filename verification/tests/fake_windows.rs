@@ -1,11 +1,15 @@
 //! Sheets, weights and campaigns judged by a fake solver with a closed-form hinge: exact, and with windows that fail.
 
+#[path = "../../fe_driver/tests/common/fake_solver.rs"]
+mod fake_solver;
+
 use design::objective::design_problem::Deployment;
 use design::pattern::design_vector::DesignVector;
 use design::scene::{Scene, SceneConfig};
+use fake_solver::{FakeSolver, Fault};
 use fe_driver::{
-    Campaign, FakeSolver, Fault, Progress, Solution, SolveError, SolveService, SolveStore, Solver,
-    ToolVersions, WindowSolve,
+    Campaign, Progress, Solution, SolveError, SolveService, SolveStore, Solver, ToolVersions,
+    WindowSolve,
 };
 use mesher::Tier;
 use std::path::{Path, PathBuf};

@@ -254,8 +254,7 @@ fn ligaments_at_the_limits_of_plasticity() {
         density_kg_m3: 900.0,
         fracture_strain: 1.0,
         plastic: vec![[stress, 0.0]],
-        stress_deviation: None,
-        creep: None,
+        ..SheetMaterial::default()
     };
     let constants = HingeConstants {
         r_win: 12.0,

@@ -1,18 +1,12 @@
 //! Rows of ten jobs, each with five increments.
 
-use dataset::{Database, DatasetError, Gates, Row, SplitPlan};
-use hinge::{HingeDesign, HingeSample};
+use dataset::{Database, DatasetError, Row, SplitPlan};
+use hinge::{HingeConstants, HingeSample};
 
 pub fn row(job: usize, lambda: f64) -> Row {
     Row {
         job: format!("job-{job:02}"),
-        design: HingeDesign {
-            w_lig: 5.0 + job as f64,
-            alpha: 0.8 + 0.05 * job as f64,
-            fillet_ratio: 0.16,
-            kerf: 0.2,
-            r_win: 100.0,
-        },
+        design: HingeConstants::PAPER.hinge(5.0 + job as f64, 0.8 + 0.05 * job as f64),
         sample: HingeSample {
             lambda,
             a: 0.1 * lambda,
@@ -43,5 +37,5 @@ pub fn rows() -> Vec<Row> {
 }
 
 pub fn collect(rows: Vec<Row>) -> Result<Database, DatasetError> {
-    Database::collect(rows, &Gates::default(), &SplitPlan::default())
+    Database::collect(rows, &SplitPlan::default())
 }

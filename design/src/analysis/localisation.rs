@@ -47,8 +47,7 @@ mod tests {
             density_kg_m3,
             fracture_strain: 1.0,
             plastic: vec![[1.0, 0.0]],
-            stress_deviation: None,
-            creep: None,
+            ..SheetMaterial::default()
         }
     }
 

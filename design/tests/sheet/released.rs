@@ -52,8 +52,7 @@ fn release(stiffness: [f64; 3], scale: f64) -> Release {
         density_kg_m3: 900.0,
         fracture_strain: 1.0,
         plastic: vec![[30.0, 0.0]],
-        stress_deviation: None,
-        creep: None,
+        ..SheetMaterial::default()
     };
     Release::new(
         Springback::fit(&rows, &[], &material, "tiny").unwrap(),

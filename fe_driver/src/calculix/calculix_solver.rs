@@ -6,7 +6,6 @@ use crate::calculix::ccx::Ccx;
 use crate::calculix::dat::{Frame, Layout, read_dat};
 use crate::calculix::deck::deck;
 use crate::calculix::deck_run::{DeckRun, read_if_there, time_reached};
-use crate::calculix::flanks::Flanks;
 use crate::calculix::model::WindowModel;
 use crate::calculix::response::samples;
 use crate::solve::solve_error::{MAX_ENERGY_RESIDUAL, SolveError};
@@ -62,20 +61,6 @@ impl CalculiX {
         let model = self.model(solve, &mesh);
         let last = model.frames(folder)?.pop();
         Ok(last.map(|frame| model.grid(&frame)))
-    }
-
-    /// The least distance between the flanks of the main cut where both are at one height (mm), in every converged increment of
-    /// an attempt in `folder`: negative where they pass through each other, since a window has no contact; `None` if they are
-    /// nowhere at one height.
-    pub fn flank_gaps(
-        &self,
-        solve: &WindowSolve,
-        folder: &Path,
-    ) -> Result<Vec<Option<f64>>, SolveError> {
-        let mesh = shape(solve).read(folder)?;
-        let flanks = Flanks::new(&mesh);
-        let frames = self.model(solve, &mesh).frames(folder)?;
-        Ok(frames.iter().map(|frame| flanks.gap(frame)).collect())
     }
 
     /// The versions of the programs.

@@ -15,27 +15,36 @@ use std::time::Duration;
 use support::file_error::FileError;
 use support::toml_file::{self, ConfigError};
 
-/// A campaign as configured, with its material.
-#[derive(Clone, Debug, PartialEq)]
+/// A campaign with its material, from a TOML file of `configs/campaigns/`.
+#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
 pub struct Campaign {
-    /// Name of the campaign; a results folder belongs to the campaign with this name.
+    /// Name of the campaign; it is stored in the results folder.
     pub name: String,
+    /// TOML file of the material, relative to this file.
+    #[serde(rename = "material")]
+    material_file: PathBuf,
     /// The sheet material.
+    #[serde(skip)]
     pub material: SheetMaterial,
     /// Mesh of the windows.
     pub tier: Tier,
-    /// Number of rays of the box, one job each.
+    /// Number of rays of the box, 1 to 1 000 000, or 0 if `extra_rays` is given.
     pub count: usize,
-    /// Seed of the rays of the box.
+    /// Seed of the rays; a larger campaign with the same seed begins with the smaller one.
     pub seed: u64,
     /// Time limit of one solve.
+    #[serde(skip)]
     pub time_limit: Duration,
+    /// CSV file of rays in addition to the sampled ones, relative to this file; written by `kirigami campaign extend`.
+    extra_rays: Option<PathBuf>,
+    /// Rays in addition to those of the box, solved after them.
+    #[serde(skip)]
+    pub further: Vec<Ray>,
     /// Constants of all hinges.
     pub design: HingeConstants,
     /// The region of designs and ray ends.
     pub rays: RayBox,
-    /// Rays in addition to those of the box, solved after them.
-    pub further: Vec<Ray>,
 }
 
 /// Why a campaign cannot be read, planned, run or collected.
@@ -94,36 +103,10 @@ pub enum CampaignError {
     Foreign(String),
 }
 
-/// The TOML file; see `configs/campaigns/`.
-#[derive(Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-struct CampaignFile {
-    /// Name of the campaign; it is stored in the results folder.
-    name: String,
-    /// TOML file of the material, relative to this file.
-    material: PathBuf,
-    /// Mesh of the windows.
-    tier: Tier,
-    /// Number of rays of the box, 1 to 1 000 000, or 0 if `extra_rays` is given.
-    count: usize,
-    /// Seed of the rays; a larger campaign with the same seed begins with the smaller one.
-    seed: u64,
-    /// Time limit of one solve (s), 1 to 86 400.
-    time_limit_s: f64,
-    /// CSV file of rays in addition to the sampled ones, relative to this file; written by `kirigami campaign extend`.
-    extra_rays: Option<PathBuf>,
-    /// Constants of all hinges.
-    design: HingeConstants,
-    /// The region of designs and ray ends.
-    rays: RayBox,
-}
-
 /// Maximum number of rays; a larger number is a typing error.
 const MAX_COUNT: usize = 1_000_000;
-/// Maximum time limit of a solve (s): one day.
-const MAX_TIME_LIMIT: f64 = 86_400.0;
 
-impl CampaignFile {
+impl Campaign {
     /// The first defect of the file; `None` if it is valid.
     fn defect(&self) -> Option<String> {
         if self.name.is_empty() || self.name.chars().any(char::is_control) {
@@ -136,12 +119,6 @@ impl CampaignFile {
                 "count = {count} violates {minimum} <= count <= {MAX_COUNT}"
             ));
         }
-        let seconds = self.time_limit_s;
-        if !(1.0..=MAX_TIME_LIMIT).contains(&seconds) {
-            return Some(format!(
-                "time_limit_s = {seconds} violates 1 <= time_limit_s <= {MAX_TIME_LIMIT}"
-            ));
-        }
         self.rays.defect().or_else(|| {
             Some(format!(
                 "a corner of the box is not a valid design: {}",
@@ -151,8 +128,8 @@ impl CampaignFile {
     }
 
     /// What is wrong if the tier is not for all ligaments of the box.
-    fn other_regime(&self, material: &SheetMaterial) -> Option<String> {
-        let regime = self.tier.regime();
+    fn other_regime(&self) -> Option<String> {
+        let (regime, material) = (self.tier.regime(), &self.material);
         let other = |w_lig: &f64| material.regime(*w_lig) != regime;
         let w_lig = self.rays.w_lig.into_iter().find(other)?;
         let (tier, thickness) = (self.tier, material.thickness);
@@ -176,46 +153,27 @@ impl CampaignFile {
             design.validate().err()
         })
     }
-}
 
-impl Campaign {
-    /// Schema of a campaign's TOML file.
-    pub fn file_schema() -> schemars::Schema {
-        schemars::schema_for!(CampaignFile)
-    }
-
-    /// Reads a campaign and its material. The material's path is relative to the campaign's file.
+    /// Reads a campaign, its material and its further rays.
     pub fn load(path: &Path) -> Result<Self, CampaignError> {
-        let file: CampaignFile = toml_file::read(path)?;
-        if let Some(reason) = file.defect() {
-            return Err(CampaignError::Invalid {
-                path: path.to_owned(),
-                reason,
-            });
+        let mut campaign: Self = toml_file::read(path)?;
+        let invalid = |reason| CampaignError::Invalid {
+            path: path.to_owned(),
+            reason,
+        };
+        if let Some(reason) = campaign.defect() {
+            return Err(invalid(reason));
         }
         let folder = path.parent().unwrap_or(Path::new(""));
-        let material = SheetMaterial::load(&folder.join(&file.material))?;
-        if let Some(reason) = file.other_regime(&material) {
-            return Err(CampaignError::Invalid {
-                path: path.to_owned(),
-                reason,
-            });
+        campaign.material = SheetMaterial::load(&folder.join(&campaign.material_file))?;
+        campaign.time_limit = campaign.tier.time_limit();
+        if let Some(reason) = campaign.other_regime() {
+            return Err(invalid(reason));
         }
-        let further = match &file.extra_rays {
-            Some(rays) => read_extra_rays(&folder.join(rays), &file.design)?,
-            None => Vec::new(),
-        };
-        Ok(Self {
-            name: file.name,
-            material,
-            tier: file.tier,
-            count: file.count,
-            seed: file.seed,
-            time_limit: Duration::from_secs_f64(file.time_limit_s),
-            design: file.design,
-            rays: file.rays,
-            further,
-        })
+        if let Some(rays) = &campaign.extra_rays {
+            campaign.further = read_extra_rays(&folder.join(rays), &campaign.design)?;
+        }
+        Ok(campaign)
     }
 
     /// Number of jobs.
@@ -315,7 +273,6 @@ mod tests {
         assert!(message("count = 40", "count = 0").contains("mine.toml: count = 0"));
         assert!(message("kerf =", "kerv =").contains("did you mean `kerf`"));
         assert!(message("r_win = 100.0", "r_win = 50.0").contains("r_win > 2.5 w_lig"));
-        assert!(message("limit_s = 120.0", "limit_s = nan").contains("time_limit_s = NaN"));
         assert!(message("tier = \"tiny\"", "tier = \"huge\"").contains("huge"));
         let plate = message("tier = \"tiny\"", "tier = \"plate\"");
         assert!(plate.contains("ligaments of up to 0.5 mm"), "{plate}");

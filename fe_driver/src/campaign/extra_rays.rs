@@ -200,11 +200,7 @@ fn acute(ray: Ray) -> Ray {
 mod tests {
     use super::*;
 
-    const COMMON: HingeConstants = HingeConstants {
-        fillet_ratio: 0.16,
-        kerf: 0.2,
-        r_win: 100.0,
-    };
+    const COMMON: HingeConstants = HingeConstants::PAPER;
 
     fn ray(alpha_deg: f64) -> Ray {
         Ray {

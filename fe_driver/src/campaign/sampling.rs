@@ -235,11 +235,7 @@ mod tests {
         full_range_deg: 50.0,
         full_range_w_lig: 8.0,
     };
-    const COMMON: HingeConstants = HingeConstants {
-        fillet_ratio: 0.16,
-        kerf: 0.2,
-        r_win: 100.0,
-    };
+    const COMMON: HingeConstants = HingeConstants::PAPER;
 
     #[test]
     fn a_block_is_a_latin_hypercube() {

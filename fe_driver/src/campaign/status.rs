@@ -209,8 +209,8 @@ pub fn status(folder: &Path) -> Result<Status, CampaignError> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::solve::fake_solver::tests::solve_on;
     use crate::solve::solve_folder::SolveFolder;
+    use crate::solve::tests::solve_on;
 
     fn solved(cpu_seconds: f64, wall_seconds: f64) -> Option<SolveRecord> {
         Some(SolveRecord {

@@ -101,13 +101,12 @@ impl<S: Solve> SolveService<'_, S> {
 mod tests {
     use super::*;
     use crate::solve::failure::FailureKind;
-    use crate::solve::fake_solver::tests::{STIFFNESS, healthy, solve_to};
-    use crate::solve::fake_solver::{FakeSolver, Fault};
     use crate::solve::ladder::AttemptKind;
     use crate::solve::problem::SolvedPath;
     use crate::solve::solve_error::SolveError;
     use crate::solve::solver::Solution;
     use crate::solve::step_control::StepControl;
+    use crate::solve::tests::{FakeSolver, Fault, STIFFNESS, healthy, solve_to};
     use mesher::Tier;
     use serde::{Deserialize, Serialize};
     use std::io;

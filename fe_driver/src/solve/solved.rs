@@ -75,11 +75,6 @@ impl<S: Solve> Solved<S> {
             })),
         }
     }
-
-    /// Fraction of the wall time, from mesh to samples, in which the solver did not run.
-    pub fn overhead(&self) -> f64 {
-        1.0 - self.record.solver_seconds / self.record.wall_seconds
-    }
 }
 
 impl<S: Solve> fmt::Display for Unsolved<S> {

@@ -170,7 +170,7 @@ impl Solve for WindowSolve {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::solve::fake_solver::tests::solve_on;
+    use crate::solve::tests::solve_on;
     use strum::VariantNames;
 
     #[test]

@@ -7,7 +7,7 @@ use fe_driver::{
     CalculiX, Campaign, CampaignError, Ccx, Ray, RunOptions, Shard, Solved, Tally, WindowProblem,
     finished_windows, run,
 };
-use hinge::{HingeDeformation, HingeDesign, SheetMaterial};
+use hinge::{HingeConstants, HingeDeformation, HingeDesign, SheetMaterial};
 use mesher::Tier;
 use std::io::ErrorKind;
 use std::os::unix::fs::PermissionsExt;
@@ -26,13 +26,7 @@ pub fn film() -> SheetMaterial {
 
 /// The paper's hinge with the cut angle `alpha_deg`.
 pub fn design(alpha_deg: f64) -> HingeDesign {
-    HingeDesign {
-        w_lig: 18.0,
-        alpha: alpha_deg.to_radians(),
-        fillet_ratio: 0.16,
-        kerf: 0.2,
-        r_win: 100.0,
-    }
+    HingeConstants::PAPER.hinge(18.0, alpha_deg.to_radians())
 }
 
 /// A ray of the paper's hinge on the coarsest mesh.

@@ -174,32 +174,6 @@ mod tests {
     }
 
     #[test]
-    fn an_unloading_loop_and_the_rows_after_the_break_are_dropped() {
-        let mut values: Vec<[f64; 2]> = (0..20).map(|i| [0.01 * f64::from(i), 10.0]).collect();
-        values.extend([[0.18, 4.0], [0.17, 1.0], [0.18, 5.0]]);
-        values.extend((20..40).map(|i| [0.01 * f64::from(i), 10.0]));
-        values.extend([[0.40, 9.5], [0.40, 8.0], [0.41, 3.0], [0.41, 0.1]]);
-        let cleaned = cleaned(&rows(&values)).unwrap();
-        let count = |cause| {
-            cleaned
-                .dropped
-                .iter()
-                .filter(|row| row.cause == cause)
-                .count()
-        };
-        assert_eq!(count(Cause::Unloading), 3);
-        assert_eq!(count(Cause::Broken), 3);
-        assert_eq!(cleaned.curve.len(), 41);
-        assert!(cleaned.curve.windows(2).all(|pair| pair[1][0] > pair[0][0]));
-    }
-
-    #[test]
-    fn a_falling_strain_is_an_error_at_its_line() {
-        let values: Vec<[f64; 2]> = (0..20).map(|i| [-0.001 * f64::from(i), 1.0]).collect();
-        assert_eq!(cleaned(&rows(&values)).unwrap_err(), 3);
-    }
-
-    #[test]
     fn shaking_strains_are_averaged() {
         // A deterministic noise of about the standard deviation 0.29.
         let shake = |i: i32| 1e-3 * ((f64::from(i) * 0.618_034).fract() - 0.5);

@@ -232,16 +232,6 @@ mod tests {
     }
 
     #[test]
-    fn the_draw_of_a_film_is_found() {
-        let found = draw(&curve(3.5, 3500, drawn), 10, 0.0, None)
-            .unwrap()
-            .unwrap();
-        assert!((found.upper_yield - 44.0).abs() < 1e-9);
-        assert!((found.plateau - 34.0).abs() < 0.1, "{found:?}");
-        assert!((found.draw_ratio - 3.28).abs() < 0.02, "{found:?}");
-    }
-
-    #[test]
     fn a_plateau_without_a_rise_needs_the_ratio() {
         let short = curve(1.5, 1500, drawn);
         let missing = draw(&short, 10, 0.0, None).unwrap_err();
@@ -267,19 +257,6 @@ mod tests {
     }
 
     #[test]
-    fn a_metal_necks_at_its_maximum_and_does_not_draw() {
-        let metal = |x: f64| match x {
-            x if x < 0.2 => 300.0 + 100.0 * (1.0 - (1.0 - x / 0.2).powi(2)),
-            x => 400.0 - 4000.0 * (x - 0.2) * (x - 0.2),
-        };
-        let metal = curve(0.35, 700, metal);
-        assert_eq!(draw(&metal, 0, 0.0, None), Ok(None));
-        let (row, necks) = uniform_end(&metal, 0, 0.0);
-        assert!((metal[row][0] - 0.2).abs() < 1e-3 && necks);
-        assert_eq!(uniform_end(&metal[..300], 0, 0.0), (299, false));
-    }
-
-    #[test]
     fn a_lueders_band_is_a_draw_and_a_serration_is_none() {
         let steel = |x: f64| match x {
             x if x < 0.0012 => 210e3 * x,
@@ -294,17 +271,5 @@ mod tests {
         let serrated =
             |x: f64| 100.0 + 500.0 * x - if (0.05..0.052).contains(&x) { 5.0 } else { 0.0 };
         assert_eq!(draw(&curve(0.1, 1000, serrated), 0, 0.0, None), Ok(None));
-    }
-
-    #[test]
-    fn the_offset_yield_is_the_crossing_of_the_offset_line() {
-        let hardening = curve(0.1, 10_000, |x| (1000.0 * x).min(10.0 + 100.0 * (x - 0.01)));
-        let found = offset_yield(&hardening, 1000.0, 50).unwrap();
-        // 1000 (e - 0.002) = 10 + 100 (e - 0.01)
-        assert!(
-            (found - (1000.0 * (11.0 / 900.0 - 0.002))).abs() < 1e-6,
-            "{found}"
-        );
-        assert_eq!(offset_yield(&hardening[..900], 1000.0, 50), None);
     }
 }

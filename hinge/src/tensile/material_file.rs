@@ -38,7 +38,7 @@ impl MaterialFit {
                 .map(|row| [row.stress, row.strain])
                 .collect(),
             stress_deviation: self.stress_deviation(),
-            creep: None,
+            ..SheetMaterial::default()
         };
         material.validate()?;
         Ok(material)

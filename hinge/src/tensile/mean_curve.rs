@@ -35,33 +35,3 @@ pub(super) fn mean_curve(curves: &[&[[f64; 2]]], end: f64) -> Vec<[f64; 2]> {
     }
     rows
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_mean_of_parts_of_one_law_is_the_law() {
-        let law = |strain: f64| 100.0 + 50.0 * strain.sqrt();
-        let curve = |end: f64| -> Vec<[f64; 2]> {
-            let strains = (0..=2000).map(|i| end * f64::from(i) / 2000.0);
-            strains.map(|strain| [law(strain), strain]).collect()
-        };
-        let curves = [curve(0.1), curve(0.5), curve(1.0)];
-        let borrowed: Vec<&[[f64; 2]]> = curves.iter().map(Vec::as_slice).collect();
-        let mean = mean_curve(&borrowed, 0.8);
-        for [stress, strain] in mean {
-            assert!((stress - law(strain)).abs() < 0.5, "{strain}");
-        }
-    }
-
-    #[test]
-    fn the_mean_of_two_constants_is_between_them() {
-        let curves = [
-            vec![[10.0, 0.0], [10.0, 1.0]],
-            vec![[20.0, 0.0], [20.0, 0.5]],
-        ];
-        let borrowed: Vec<&[[f64; 2]]> = curves.iter().map(Vec::as_slice).collect();
-        assert!(mean_curve(&borrowed, 1.0).iter().all(|row| row[0] == 15.0));
-    }
-}

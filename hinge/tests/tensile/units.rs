@@ -84,17 +84,7 @@ fn forces_lengths_stresses_and_strains_are_read_in_their_units() {
         ("Lbs", LBF),
         ("kip", 1e3 * LBF),
     ] {
-        for (length, mm) in [
-            ("mm", 1.0),
-            ("cm", 10.0),
-            ("m", 1e3),
-            ("um", 1e-3),
-            ("\u{b5}m", 1e-3),
-            ("\u{3bc}m", 1e-3),
-            ("in", 25.4),
-            ("Inch", 25.4),
-            ("inches", 25.4),
-        ] {
+        for (length, mm) in [("mm", 1.0), ("um", 1e-3), ("Inch", 25.4)] {
             let header = format!("Time (s),Stroke ({length}),Load ({unit}),");
             let text = text(&POLYMER, &header, mm / LENGTH, newton / AREA);
             is_polymer(&text, &specimen());
@@ -117,17 +107,7 @@ fn forces_lengths_stresses_and_strains_are_read_in_their_units() {
         ("psi", LBF / 645.16),
         ("ksi", 6.894_757_293_168),
     ] {
-        for (strain, ratio) in [
-            ("-", 1.0),
-            ("1", 1.0),
-            ("mm/mm", 1.0),
-            ("in/in", 1.0),
-            ("%", 0.01),
-            ("\u{b5}ε", 1e-6),
-            ("\u{3bc}ε", 1e-6),
-            ("ue", 1e-6),
-            ("microstrain", 1e-6),
-        ] {
+        for (strain, ratio) in [("-", 1.0), ("%", 0.01), ("\u{b5}ε", 1e-6)] {
             let header = format!("Time (s),Strain ({strain}),Stress ({unit}),");
             let text = text(&POLYMER, &header, ratio, mpa);
             is_polymer(&text, &RecordOptions::default());

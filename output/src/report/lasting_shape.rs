@@ -110,13 +110,9 @@ fn creep(known: Option<&Creep>) -> String {
         return "not modelled, and not known: the material file has no figure ([creep]). Polymers under a load that stays keep deforming"
             .into();
     };
-    let Creep {
-        ratio,
-        years,
-        source,
-    } = creep;
+    let Creep { ratio, years } = creep;
     format!(
         "not modelled: under a load that stays the stiffness of the material falls to about 1/{ratio} in {years} years, by order of \
-         magnitude. A dead load opens the sheet further, and at a held stroke the force falls. From: {source}"
+         magnitude. A dead load opens the sheet further, and at a held stroke the force falls"
     )
 }

@@ -36,8 +36,7 @@ fn material() -> SheetMaterial {
         density_kg_m3: 1390.0,
         fracture_strain: 1.784,
         plastic: vec![[44.0, 0.0]],
-        stress_deviation: None,
-        creep: None,
+        ..SheetMaterial::default()
     }
 }
 

@@ -3,7 +3,7 @@
 use crate::commands::campaign::campaign_args::CampaignArgs;
 use anyhow::{Context, Result, bail};
 use clap::Args;
-use dataset::{Collected, Gates, SplitPlan};
+use dataset::{Collected, SplitPlan};
 use fe_driver::{Tally, finished_windows};
 use std::path::PathBuf;
 use verification::rows;
@@ -61,8 +61,8 @@ impl CollectCommand {
             let window = window?;
             anyhow::Ok(rows(&window, window.samples.iter().copied()).collect())
         });
-        let (gates, plan) = (Gates::default(), SplitPlan::default());
-        let collected = Collected::write(rays, &gates, &plan, &out, self.replace)?;
+        let plan = SplitPlan::default();
+        let collected = Collected::write(rays, &plan, &out, self.replace)?;
         println!("{collected}\n{missing}\nwritten to {}", out.display());
         Ok(())
     }

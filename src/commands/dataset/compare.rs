@@ -11,7 +11,7 @@ use verification::{SCALE, each_relative, spread_table};
 
 /// Compare a database with a finer one of the same rays
 ///
-/// Writes compare.md, compare.csv (one row per ray), tradeoff.md and a chart, and prints the differences
+/// Writes compare.md, compare.csv (one row per ray) and a chart, and prints the differences
 /// that `dataset correct` would leave. Example, the default tier against the reference tier: kirigami dataset
 /// compare data/pet-0.5mm/hinges.parquet data/pet-0.5mm/reference.parquet
 #[derive(Args)]
@@ -26,9 +26,6 @@ pub struct CompareCommand {
     #[arg(long, value_name = "FOLDER", default_value = "runs/compare")]
     out: PathBuf,
 }
-
-/// Number of rays listed individually: those with the largest difference in W.
-const WORST: usize = 8;
 
 impl CompareCommand {
     pub fn run(&self) -> Result<()> {
@@ -53,12 +50,7 @@ impl CompareCommand {
             }
         }
         run_folder::write(&self.out, "compare.csv", &csv(&rays, &states)?)?;
-        run_folder::write(
-            &self.out,
-            "compare.md",
-            &format!("{summary}{}", worst(&rays, &states)?),
-        )?;
-        run_folder::write(&self.out, "tradeoff.md", &summary)?;
+        run_folder::write(&self.out, "compare.md", &summary)?;
         let axes = [tiers[1].as_str(), &tiers[0]];
         compared_states::draw(&groups(&states), axes, &self.out.join("compare"))?;
         println!("{summary}\nwritten to {}", self.out.display());
@@ -105,31 +97,6 @@ pub fn correction(judged: &LeftOut) -> Result<String> {
 
 fn groups(states: &[Vec<ComparedState>]) -> Vec<&[ComparedState]> {
     states.iter().map(Vec::as_slice).collect()
-}
-
-/// The rays with the largest differences in W.
-fn worst(rays: &[ComparedRay], states: &[Vec<ComparedState>]) -> Result<String> {
-    let differences = each_relative(&groups(states));
-    let mut ranked: Vec<_> = differences.into_iter().zip(rays).collect();
-    ranked.sort_by(|(x, _), (y, _)| y[0].total_cmp(&x[0]));
-    let mut text = format!(
-        "\nThe {} rays with the largest difference in W:\n\n| w_lig, mm | alpha, deg | eta_a | eta_s | theta, deg \
-         | W, N mm | {} |\n|---|---|---|---|---|---|{}\n",
-        WORST.min(ranked.len()),
-        COMPARED.join(" | "),
-        "---|".repeat(COMPARED.len())
-    );
-    for (differences, ray) in ranked.iter().take(WORST) {
-        let [w_lig, alpha, eta_a, eta_s, theta] = place(ray);
-        let differences = differences.map(|x| format!("{:.1} %", 100.0 * x));
-        writeln!(
-            text,
-            "| {w_lig:.1} | {alpha:.0} | {eta_a:.2} | {eta_s:.2} | {theta:.0} | {:.1} | {} |",
-            ray.end().sample.w,
-            differences.join(" | ")
-        )?;
-    }
-    Ok(text)
 }
 
 fn csv(rays: &[ComparedRay], states: &[Vec<ComparedState>]) -> Result<String> {

@@ -19,10 +19,10 @@ use crate::ui::interrupt;
 use crate::ui::progress::duration;
 use crate::ui::run_folder;
 use crate::ui::with_unit::{percent, time};
-use ::train::{Backend, TrainingConfig, check_pretrained};
+use ::train::{TrainingConfig, check_pretrained};
 use anyhow::{Context, Result, bail, ensure};
 use clap::Args;
-use dataset::{Database, Gates, SplitPlan};
+use dataset::{Database, SplitPlan};
 use fe_driver::{CalculiX, Campaign, Progress};
 use hinge::{Regime, SheetMaterial, TrainingDomain};
 use mesher::Tier;
@@ -129,8 +129,7 @@ impl LearnCommand {
                 file.display(),
                 from[0].display()
             );
-            check_pretrained(parent, &config, Backend::default())
-                .with_context(|| format!("{}", file.display()))?;
+            check_pretrained(parent, &config).with_context(|| format!("{}", file.display()))?;
         }
         let campaign = self.campaign(&material, tier)?;
         let region = region(&campaign).ok_or(VerificationError::NoRegion)?;
@@ -236,7 +235,7 @@ impl LearnCommand {
             println!("not solved: {unsolved}");
         }
         let states = check.rows.len();
-        let database = Database::collect(check.rows, &Gates::default(), &SplitPlan::default())
+        let database = Database::collect(check.rows, &SplitPlan::default())
             .context("the solver followed too few rays of the spot check: increase --spot-rays")?;
         database.write(&self.out.join("spot-check.parquet"), true)?;
         println!(

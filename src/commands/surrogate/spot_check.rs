@@ -10,7 +10,7 @@ use crate::ui::run_folder;
 use crate::ui::with_unit::percent;
 use anyhow::{Context, Result, ensure};
 use clap::Args;
-use dataset::{Database, Gates, SplitPlan};
+use dataset::{Database, SplitPlan};
 use mesher::Tier;
 use std::path::PathBuf;
 use surrogate::Surrogate;
@@ -124,7 +124,7 @@ impl SpotCheckCommand {
             "no state was solved; see {}",
             self.out.display()
         );
-        let database = Database::collect(check.rows, &Gates::default(), &SplitPlan::default())?;
+        let database = Database::collect(check.rows, &SplitPlan::default())?;
         let path = self.out.join("spot-check.parquet");
         database.write(&path, true)?;
         println!(

@@ -3,7 +3,7 @@
 use crate::commands::train::fit;
 use crate::ui::exit::Unfinished;
 use crate::ui::output_file;
-use ::train::{Backend, Start, TrainError, Trained, TrainingConfig, TrainingData};
+use ::train::{Start, TrainError, Trained, TrainingConfig, TrainingData};
 use anyhow::Result;
 use std::path::Path;
 use surrogate::{Card, Surrogate};
@@ -35,8 +35,7 @@ pub fn kept_fit<'a>(
         return Ok(kept);
     }
     let state = path.with_extension("state");
-    let backend = Backend::default();
-    let trained = continued_fit(data, config, backend, pretrained, &state, true);
+    let trained = continued_fit(data, config, pretrained, &state, true);
     let trained = trained.map_err(|error| match error.downcast::<Unfinished>() {
         // Here the same command continues without --resume.
         Ok(Unfinished { left, what, .. }) => Unfinished::new(left, what).into(),
@@ -67,12 +66,11 @@ pub(super) fn is_of(
 pub(super) fn continued_fit(
     data: TrainingData,
     config: &TrainingConfig,
-    backend: Backend,
     pretrained: Option<&Surrogate>,
     state: &Path,
     discard: bool,
 ) -> Result<Trained> {
-    let fit = |start| fit(data, config, backend, start, state);
+    let fit = |start| fit(data, config, start, state);
     let first = pretrained.map_or(Start::Fresh, Start::Weights);
     if !state.exists() {
         return fit(first);

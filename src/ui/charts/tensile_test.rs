@@ -115,7 +115,7 @@ fn hardening(area: &Area, fit: &MaterialFit) -> ChartResult {
     for (origin, name, colour) in [
         (Origin::Measured, "measured", POINT),
         (Origin::Drawn, "neck: equal work", VALIDATION),
-        (Origin::Extrapolated, "Considere's tangent", SLICES[2]),
+        (Origin::Extrapolated, "Considere's tangent", COLOURS[2]),
     ] {
         for (index, part) in parts(&fit.curve, origin).into_iter().enumerate() {
             let points = part.iter().map(|row| (row.strain, row.stress));
@@ -136,7 +136,7 @@ fn hardening(area: &Area, fit: &MaterialFit) -> ChartResult {
         .label(format!("table, {} rows", fit.table.len()))
         .legend(|(x, y)| Circle::new((x + 9, y), 3, BLACK));
     let fracture = [(fit.fracture_strain, 0.0), (fit.fracture_strain, 0.8 * top)];
-    let colour = SLICES[4];
+    let colour = COLOURS[4];
     chart
         .draw_series(DashedLineSeries::new(
             fracture,

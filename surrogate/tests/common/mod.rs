@@ -1,6 +1,6 @@
 //! Surrogates with random weights, and a hinge design.
 
-use hinge::HingeDesign;
+use hinge::{HingeConstants, HingeDesign};
 use std::path::{Path, PathBuf};
 use surrogate::Surrogate;
 
@@ -19,11 +19,5 @@ pub fn with_peak() -> Surrogate {
 }
 
 pub fn design(w_lig: f64, alpha: f64) -> HingeDesign {
-    HingeDesign {
-        w_lig,
-        alpha,
-        fillet_ratio: 0.16,
-        kerf: 0.2,
-        r_win: 100.0,
-    }
+    HingeConstants::PAPER.hinge(w_lig, alpha)
 }

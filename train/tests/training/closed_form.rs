@@ -7,10 +7,10 @@
 //!
 //! The energy is positive and has the mirror symmetry.
 
-use dataset::{Database, Gates, Row, SplitPlan};
-use hinge::{HingeDeformation, HingeDesign, HingeSample};
+use dataset::{Database, Row, SplitPlan};
+use hinge::{HingeConstants, HingeDeformation, HingeDesign, HingeSample};
 use surrogate::{Order, Surrogate};
-use train::{Backend, Precision, Trained, Training, TrainingConfig, train};
+use train::{Trained, Training, TrainingConfig, train};
 
 pub fn sample(design: &HingeDesign, eps: HingeDeformation, lambda: f64) -> HingeSample {
     let w = design.w_lig;
@@ -42,13 +42,10 @@ pub fn rows(jobs: usize) -> Vec<Row> {
     let mut rows = Vec::new();
     for job in 0..jobs {
         let spread = |step: f64| (step * (job + 1) as f64).fract();
-        let design = HingeDesign {
-            w_lig: 5.0 + 20.0 * spread(0.754_877_666),
-            alpha: 0.8 + 0.77 * spread(0.569_840_291),
-            fillet_ratio: 0.16,
-            kerf: 0.2,
-            r_win: 100.0,
-        };
+        let design = HingeConstants::PAPER.hinge(
+            5.0 + 20.0 * spread(0.754_877_666),
+            0.8 + 0.77 * spread(0.569_840_291),
+        );
         let eta_a = 0.6 * spread(0.414_213_562) - 0.3;
         let eta_s = 0.5 * spread(0.732_050_808) - 0.25;
         let end =
@@ -59,15 +56,10 @@ pub fn rows(jobs: usize) -> Vec<Row> {
                 job: format!("job-{job:03}"),
                 design,
                 sample: sample(&design, end.at(lambda), lambda),
-                failure: String::new(),
                 material: "closed form".into(),
-                material_hash: String::new(),
-                settings_hash: String::new(),
                 tier: "exact".into(),
                 solved_tier: "exact".into(),
-                gmsh: "none".into(),
-                ccx: "none".into(),
-                cpu_s: 0.0,
+                ..Row::default()
             });
         }
     }
@@ -75,31 +67,22 @@ pub fn rows(jobs: usize) -> Vec<Row> {
 }
 
 pub fn database(rows: Vec<Row>) -> Database {
-    Database::collect(rows, &Gates::default(), &SplitPlan::default()).unwrap()
+    Database::collect(rows, &SplitPlan::default()).unwrap()
 }
 
 pub fn config(epochs: usize) -> TrainingConfig {
     TrainingConfig {
         seed: 4,
         embedding: vec![32, 32, 16],
-        damage: vec![32, 32],
-        mirror: true,
         epochs,
         batch_size: 64,
-        precision: Precision::F32,
         learning_rate: 5e-3,
-        learning_rate_end: 1e-5,
-        gradient_norm_max: 1.0,
-        energy_weight: 0.5,
-        damage_weight: 0.5,
-        damage_sharpness: 8.0,
-        patience: None,
         frozen_layers: 0,
     }
 }
 
-pub fn trained(epochs: usize, backend: Backend) -> Trained {
-    train(&database(rows(60)), &config(epochs), backend, &mut |_| {}).unwrap()
+pub fn trained(epochs: usize) -> Trained {
+    train(&database(rows(60)), &config(epochs), &mut |_| {}).unwrap()
 }
 
 /// The energies of a surrogate at some states.

@@ -5,27 +5,9 @@ use dataset::Row;
 use hinge::{HingeDeformation, HingeDesign};
 use surrogate::Surrogate;
 use train::{
-    Backend, Distillation, EnsembleCheck, Parity, Start, StateError, TrainError, Training,
-    TrainingConfig, TrainingData, disagreements, train,
+    Distillation, Parity, Start, StateError, TrainError, Training, TrainingConfig, TrainingData,
+    train,
 };
-
-#[test]
-fn equal_members_of_an_ensemble_agree_and_different_ones_deviate() {
-    let rows = rows(20);
-    let database = database(rows.clone());
-    let member = |seed| {
-        let config = TrainingConfig { seed, ..config(3) };
-        train(&database, &config, Backend::default(), &mut |_| {})
-            .unwrap()
-            .surrogate
-    };
-    let first = member(1);
-    let same = EnsembleCheck::new(&disagreements(&[first.clone(), first.clone()], &rows));
-    assert!(same.deviation < 1e-12 && same.error > 0.0, "{same:?}");
-    let different = EnsembleCheck::new(&disagreements(&[first, member(2)], &rows));
-    assert!(different.deviation > 0.01, "{different:?}");
-    assert!(different.error_in_top_tenth > 0.0 && different.error_in_top_tenth < 1.0);
-}
 
 #[test]
 fn an_outlier_is_an_error_that_names_job_and_target() {
@@ -39,8 +21,7 @@ fn an_outlier_is_an_error_that_names_job_and_target() {
         let mut rows = rows(20);
         // Every second ray has an outlier, so that the training part contains some.
         rows.iter_mut().step_by(20).for_each(change);
-        let error =
-            train(&database(rows), &config(1), Backend::default(), &mut |_| {}).unwrap_err();
+        let error = train(&database(rows), &config(1), &mut |_| {}).unwrap_err();
         match error {
             TrainError::Outlier { target, job, .. } => {
                 assert_eq!(target, name);
@@ -55,12 +36,7 @@ fn an_outlier_is_an_error_that_names_job_and_target() {
 fn ensemble() -> ([Surrogate; 2], Vec<(HingeDesign, HingeDeformation)>) {
     let members = [1, 2].map(|seed| {
         let config = TrainingConfig { seed, ..config(20) };
-        let trained = train(
-            &database(rows(20)),
-            &config,
-            Backend::default(),
-            &mut |_| {},
-        );
+        let trained = train(&database(rows(20)), &config, &mut |_| {});
         trained.unwrap().surrogate
     });
     let others = rows(120).split_off(200);
@@ -81,7 +57,7 @@ fn a_network_learns_the_median_of_several() {
             distillation,
         };
         let start = Start::Weights(&members[0]);
-        finished(Training::new(data, &config(40), Backend::default(), start).unwrap()).surrogate
+        finished(Training::new(data, &config(40), start).unwrap()).surrogate
     };
     let [distilled, alone] = [Some(&distillation), None].map(student);
     // On rays of neither.
@@ -135,7 +111,7 @@ fn a_training_with_a_distillation_continues_only_with_it() {
             database: &database,
             distillation: Some(&distillation),
         };
-        Training::new(data, &config(2), Backend::default(), start)
+        Training::new(data, &config(2), start)
     };
     let mut training = begun(&members, &states, Start::Fresh).unwrap();
     training.epoch().unwrap();

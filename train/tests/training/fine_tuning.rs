@@ -4,9 +4,7 @@ use crate::closed_form::{config, database, finished, rows, trained};
 use dataset::{Database, Part, Row};
 use hinge::HingeSample;
 use surrogate::Surrogate;
-use train::{
-    Backend, Parity, Precision, Start, StateError, TrainError, Training, TrainingConfig, train,
-};
+use train::{Parity, Start, StateError, TrainError, Training, TrainingConfig, train};
 
 /// The rows in a sheet of `factor` times the thickness, whose material is `stiffness` times as stiff.
 fn similar(rows: Vec<Row>, factor: f64, stiffness: f64) -> Vec<Row> {
@@ -27,23 +25,22 @@ fn similar(rows: Vec<Row>, factor: f64, stiffness: f64) -> Vec<Row> {
     rows.into_iter().map(row).collect()
 }
 
-/// The training of `epochs` epochs in float64 on the rows of a sheet of another thickness and stiffness, which starts from
+/// The training of `epochs` epochs on the rows of a sheet of another thickness and stiffness, which starts from
 /// `pretrained`.
 fn tuned(pretrained: &Surrogate, epochs: usize) -> (Database, Training) {
     let database = database(similar(rows(30), 0.4, 3.0));
     let config = TrainingConfig {
-        precision: Precision::F64,
         learning_rate: 1e-3,
         ..config(epochs)
     };
     let start = Start::Weights(pretrained);
-    let training = Training::new(&database, &config, Backend::default(), start).unwrap();
+    let training = Training::new(&database, &config, start).unwrap();
     (database, training)
 }
 
 #[test]
 fn fine_tuning_starts_with_the_function_of_the_given_weights() {
-    let pretrained = trained(40, Backend::default()).surrogate;
+    let pretrained = trained(40).surrogate;
     let (database, training) = tuned(&pretrained, 1);
     let start = training.finish().unwrap().surrogate;
     let scaled = pretrained.clone().scaled(0.4);
@@ -71,16 +68,16 @@ fn fine_tuning_starts_with_the_function_of_the_given_weights() {
             .fold(0.0, f64::max);
         for (expected, found) in expected.iter().zip(found) {
             let difference = (factor * expected[1] - found[1]).abs();
-            assert!(difference < 1e-10 * factor * size, "{difference}");
+            assert!(difference < 1e-5 * factor * size, "{difference}");
         }
     }
 }
 
 #[test]
 fn a_fine_tuned_network_is_closer_than_one_from_scratch() {
-    let pretrained = trained(40, Backend::default()).surrogate;
+    let pretrained = trained(40).surrogate;
     let (database, training) = tuned(&pretrained, 10);
-    let scratch = train(&database, &config(10), Backend::default(), &mut |_| {}).unwrap();
+    let scratch = train(&database, &config(10), &mut |_| {}).unwrap();
     let tuned = finished(training);
     for k in 0..4 {
         let [tuned, scratch] = [&tuned, &scratch].map(|it| it.test_errors.percents()[k]);
@@ -98,23 +95,15 @@ fn weights_of_the_same_law_keep_their_domain_and_sizes() {
         database(rows.into_iter().map(with_law).collect())
     };
     let whole = of_law(rows(40), "film");
-    let pretrained = train(&whole, &config(1), Backend::default(), &mut |_| {})
-        .unwrap()
-        .surrogate;
+    let pretrained = train(&whole, &config(1), &mut |_| {}).unwrap().surrogate;
     let few: Vec<Row> = whole.part(Part::Training).into_iter().take(80).collect();
     let start = |rows: &Database| {
         let other = TrainingConfig {
             embedding: vec![4],
-            damage: vec![4],
             ..config(1)
         };
         let config = other.with_sizes_of(&pretrained);
-        let training = Training::new(
-            rows,
-            &config,
-            Backend::default(),
-            Start::Weights(&pretrained),
-        );
+        let training = Training::new(rows, &config, Start::Weights(&pretrained));
         training.unwrap().finish().unwrap().surrogate
     };
     let domain = |surrogate: &Surrogate| surrogate.card().domain.clone();
@@ -137,7 +126,7 @@ fn weights_of_the_same_law_keep_their_domain_and_sizes() {
 
 #[test]
 fn frozen_layers_are_not_trained() {
-    let pretrained = trained(2, Backend::default()).surrogate;
+    let pretrained = trained(2).surrogate;
     let database = database(rows(20));
     let config = TrainingConfig {
         frozen_layers: 1,
@@ -145,7 +134,7 @@ fn frozen_layers_are_not_trained() {
     };
     let folder = tempfile::tempdir().unwrap();
     let state = folder.path().join("chi.state");
-    let begun = |start| Training::new(&database, &config, Backend::default(), start).unwrap();
+    let begun = |start| Training::new(&database, &config, start).unwrap();
     let start = Start::Weights(&pretrained);
     let initial = begun(start).finish().unwrap().last.layers();
     let mut training = begun(start);
@@ -157,7 +146,7 @@ fn frozen_layers_are_not_trained() {
         pretrained,
     };
     let last = finished(begun(resumed(Some(&pretrained)))).last.layers();
-    let without = Training::new(&database, &config, Backend::default(), resumed(None));
+    let without = Training::new(&database, &config, resumed(None));
     assert!(matches!(
         without.err(),
         Some(TrainError::State(StateError::Other { what, .. })) if what.contains("start from")
@@ -177,11 +166,11 @@ fn frozen_layers_are_not_trained() {
 
 #[test]
 fn unsuitable_initial_weights_are_errors() {
-    let base = trained(1, Backend::default()).surrogate;
+    let base = trained(1).surrogate;
     let database = database(rows(20));
     let refusal = |pretrained: &Surrogate, config: &TrainingConfig| {
         let start = Start::Weights(pretrained);
-        let training = Training::new(&database, config, Backend::default(), start);
+        let training = Training::new(&database, config, start);
         training.err().unwrap()
     };
     let wider = TrainingConfig {
@@ -190,20 +179,17 @@ fn unsuitable_initial_weights_are_errors() {
     };
     let error = refusal(&base, &wider);
     assert!(matches!(error, TrainError::OtherSizes { .. }), "{error}");
-    let sharper = TrainingConfig {
-        damage_sharpness: 9.0,
-        ..config(1)
-    };
-    let error = refusal(&base, &sharper);
+    let mut card = base.card().clone();
+    card.damage_sharpness = 9.0;
+    let sharper = Surrogate::from_parts(base.layers(), card).unwrap();
+    let error = refusal(&sharper, &config(1));
     assert!(
         matches!(error, TrainError::OtherSharpness { .. }),
         "{error}"
     );
-    let plain = TrainingConfig {
-        mirror: false,
-        ..config(1)
-    };
-    let plain = train(&database, &plain, Backend::default(), &mut |_| {}).unwrap();
-    let error = refusal(&plain.surrogate, &config(1));
+    let mut layers = base.layers();
+    layers.chi[0].bias.values[0] += 0.1;
+    let plain = Surrogate::from_parts(layers, base.card().clone()).unwrap();
+    let error = refusal(&plain, &config(1));
     assert!(matches!(error, TrainError::NotSymmetric), "{error}");
 }

@@ -8,14 +8,15 @@ mod resuming;
 use crate::closed_form::{config, database, energies, rows, sample, trained};
 use dataset::{Part, Row};
 use hinge::{HingeDeformation, HingeDesign, HingeSample};
+use std::f64::consts::FRAC_PI_2;
 use surrogate::{Order, Surrogate};
-use train::{Backend, Epoch, Parity, Start, TrainError, Training, TrainingConfig, train};
+use train::{Epoch, Parity, Start, TrainError, Training, TrainingConfig, train};
 
 #[test]
 fn an_energy_in_closed_form_is_learned() {
     let mut reported: Vec<Epoch> = Vec::new();
     let database = database(rows(200));
-    let trained = train(&database, &config(100), Backend::default(), &mut |epoch| {
+    let trained = train(&database, &config(100), &mut |epoch| {
         reported.push(*epoch);
     })
     .unwrap();
@@ -64,14 +65,14 @@ fn a_damage_head_without_a_known_error_is_that_of_the_last_epoch() {
     let config = config(3);
     let folder = tempfile::tempdir().unwrap();
     let state = folder.path().join("state");
-    let mut training = Training::new(&database, &config, Backend::default(), Start::Fresh).unwrap();
+    let mut training = Training::new(&database, &config, Start::Fresh).unwrap();
     training.epoch().unwrap();
     training.save(&state).unwrap();
     let start = Start::State {
         state: &state,
         pretrained: None,
     };
-    let mut training = Training::new(&database, &config, Backend::default(), start).unwrap();
+    let mut training = Training::new(&database, &config, start).unwrap();
     while !training.is_finished() {
         training.epoch().unwrap();
     }
@@ -91,7 +92,7 @@ fn a_damage_head_without_a_known_error_is_that_of_the_last_epoch() {
 
 #[test]
 fn mirror_images_give_the_same_energy_and_damage() {
-    let surrogate = trained(2, Backend::default()).surrogate;
+    let surrogate = trained(2).surrogate;
     let (designs, states): (Vec<_>, Vec<_>) = rows(7)
         .iter()
         .map(|row| (row.design, row.sample.deformation()))
@@ -121,37 +122,21 @@ fn mirror_images_give_the_same_energy_and_damage() {
 
 #[test]
 fn equal_seeds_give_equal_weights_and_different_seeds_different_ones() {
-    let first = energies(&trained(2, Backend::default()).surrogate);
-    assert_eq!(first, energies(&trained(2, Backend::default()).surrogate));
+    let first = energies(&trained(2).surrogate);
+    assert_eq!(first, energies(&trained(2).surrogate));
     let other = TrainingConfig {
         seed: 5,
         ..config(2)
     };
-    let other = train(&database(rows(60)), &other, Backend::default(), &mut |_| {}).unwrap();
+    let other = train(&database(rows(60)), &other, &mut |_| {}).unwrap();
     assert_ne!(first, energies(&other.surrogate));
-}
-
-#[test]
-fn backends_agree_on_the_first_steps() {
-    let all: Vec<Vec<f64>> = Backend::ALL
-        .iter()
-        .map(|&backend| energies(&trained(1, backend).surrogate))
-        .collect();
-    for energies in &all[1..] {
-        for (left, right) in energies.iter().zip(&all[0]) {
-            assert!(
-                (left - right).abs() <= 1e-4 * left.abs().max(1.0),
-                "{left} and {right}"
-            );
-        }
-    }
 }
 
 #[test]
 fn a_trained_surrogate_round_trips_through_its_files() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("chi.safetensors");
-    let trained = trained(1, Backend::default());
+    let trained = trained(1);
     trained.surrogate.save(&path).unwrap();
     let loaded = Surrogate::load(&path).unwrap();
     assert_eq!(loaded.card(), trained.surrogate.card());
@@ -163,14 +148,9 @@ fn constant_features_and_zero_targets_are_errors() {
     let refusal = |change: fn(&mut Row)| {
         let mut rows = rows(12);
         rows.iter_mut().for_each(change);
-        // With mirror images, alpha would not be constant.
-        let config = TrainingConfig {
-            mirror: false,
-            ..config(1)
-        };
-        train(&database(rows), &config, Backend::default(), &mut |_| {}).unwrap_err()
+        train(&database(rows), &config(1), &mut |_| {}).unwrap_err()
     };
-    let error = refusal(|row| row.design.alpha = 1.0);
+    let error = refusal(|row| row.design.alpha = FRAC_PI_2);
     assert!(
         matches!(
             error,
@@ -205,29 +185,11 @@ fn a_loss_that_overflows_float32_is_an_error() {
     for row in &mut rows {
         row.sample.f_a *= 1e-60;
     }
-    let error = train(&database(rows), &config(2), Backend::default(), &mut |_| {}).unwrap_err();
+    let error = train(&database(rows), &config(2), &mut |_| {}).unwrap_err();
     assert!(
         matches!(error, TrainError::Diverged { epoch: 1, .. }),
         "{error}"
     );
-}
-
-#[test]
-fn a_training_that_no_longer_improves_stops_after_the_patience() {
-    let config = TrainingConfig {
-        patience: Some(2),
-        learning_rate: 1e-30,
-        learning_rate_end: 1e-30,
-        ..config(50)
-    };
-    let trained = train(
-        &database(rows(20)),
-        &config,
-        Backend::default(),
-        &mut |_| {},
-    )
-    .unwrap();
-    assert_eq!(trained.history.len(), 3);
 }
 
 #[test]
@@ -243,13 +205,7 @@ fn a_database_without_compression_and_without_d_peak_can_be_trained_on() {
             ..sample(&row.design, end, row.sample.lambda)
         };
     }
-    let trained = train(
-        &database(tension),
-        &config(2),
-        Backend::default(),
-        &mut |_| {},
-    )
-    .unwrap();
+    let trained = train(&database(tension), &config(2), &mut |_| {}).unwrap();
     let card = trained.surrogate.card();
     assert!(card.domain.bounds()[0][0] >= -0.1);
     assert_eq!(card.peak_scale, None);

@@ -2,12 +2,12 @@
 
 use crate::closed_form::{config, database, energies, finished, rows};
 use std::path::Path;
-use train::{Backend, Start, StateError, TrainError, Trained, Training, TrainingConfig};
+use train::{Start, StateError, TrainError, Trained, Training, TrainingConfig};
 
 /// A training of `epochs` epochs after `run` of them.
-fn begun(epochs: usize, run: usize, backend: Backend) -> Training {
+fn begun(epochs: usize, run: usize) -> Training {
     let database = database(rows(20));
-    let mut training = Training::new(&database, &config(epochs), backend, Start::Fresh).unwrap();
+    let mut training = Training::new(&database, &config(epochs), Start::Fresh).unwrap();
     for _ in 0..run {
         training.epoch().unwrap();
     }
@@ -20,41 +20,39 @@ fn resumed(state: &Path, config: &TrainingConfig) -> Result<Training, TrainError
         state,
         pretrained: None,
     };
-    Training::new(&database, config, Backend::default(), start)
+    Training::new(&database, config, start)
 }
 
 #[test]
 fn a_resumed_training_is_bit_exact() {
     let folder = tempfile::tempdir().unwrap();
     let state = folder.path().join("chi.state");
-    for &backend in Backend::ALL {
-        let straight = finished(begun(5, 0, backend));
-        begun(5, 2, backend).save(&state).unwrap();
-        let database = database(rows(20));
-        let start = Start::State {
-            state: &state,
-            pretrained: None,
-        };
-        let training = Training::new(&database, &config(5), backend, start).unwrap();
-        assert_eq!(training.history().len(), 2);
-        let resumed = finished(training);
-        assert_eq!(energies(&straight.surrogate), energies(&resumed.surrogate));
-        assert_eq!(energies(&straight.last), energies(&resumed.last));
-        let losses = |trained: &Trained| -> Vec<_> {
-            let epochs = trained.history.iter();
-            epochs
-                .map(|it| (it.training_loss, it.validation_loss, it.best))
-                .collect()
-        };
-        assert_eq!(losses(&straight), losses(&resumed));
-    }
+    let straight = finished(begun(5, 0));
+    begun(5, 2).save(&state).unwrap();
+    let database = database(rows(20));
+    let start = Start::State {
+        state: &state,
+        pretrained: None,
+    };
+    let training = Training::new(&database, &config(5), start).unwrap();
+    assert_eq!(training.history().len(), 2);
+    let resumed = finished(training);
+    assert_eq!(energies(&straight.surrogate), energies(&resumed.surrogate));
+    assert_eq!(energies(&straight.last), energies(&resumed.last));
+    let losses = |trained: &Trained| -> Vec<_> {
+        let epochs = trained.history.iter();
+        epochs
+            .map(|it| (it.training_loss, it.validation_loss, it.best))
+            .collect()
+    };
+    assert_eq!(losses(&straight), losses(&resumed));
 }
 
 #[test]
 fn a_damaged_or_foreign_state_is_an_error() {
     let folder = tempfile::tempdir().unwrap();
     let state = folder.path().join("chi.state");
-    begun(3, 1, Backend::default()).save(&state).unwrap();
+    begun(3, 1).save(&state).unwrap();
     let other = TrainingConfig {
         batch_size: 32,
         ..config(3)
