@@ -4,12 +4,11 @@ use crate::database::Database;
 use crate::database_files::read_bytes;
 use crate::error::DatasetError;
 use crate::rows::Row;
-use crate::schema::{self, D_PEAK, NUMBERS, TEXTS};
-use polars::prelude::{CsvReadOptions, CsvWriter, DataFrame, SerReader, SerWriter};
+use crate::schema::{D_PEAK, NUMBERS, RATIOS, TEXTS};
+use csv::StringRecord;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
-use std::io::Cursor;
 use std::path::Path;
 
 /// The mapping from the columns of a foreign table to those of a database, read from a TOML file.
@@ -58,9 +57,18 @@ const REQUIRED: [&str; 13] = [
 impl Database {
     /// The table as CSV, in full precision.
     pub fn to_csv(&self) -> Result<Vec<u8>, DatasetError> {
-        let mut bytes = Vec::new();
-        CsvWriter::new(&mut bytes).finish(&mut schema::to_frame(&self.rows)?)?;
-        Ok(bytes)
+        let mut writer = csv::Writer::from_writer(Vec::new());
+        let texts = TEXTS.iter().map(|column| column.name);
+        let numbers = NUMBERS.iter().map(|column| column.name);
+        writer.write_record(texts.chain(numbers).chain([D_PEAK]).chain(RATIOS))?;
+        for row in &self.rows {
+            let texts = TEXTS.iter().map(|column| (column.get)(row).to_owned());
+            let numbers = NUMBERS.iter().map(|column| (column.get)(row).to_string());
+            let d_peak = row.sample.d_peak.map_or(String::new(), |d| d.to_string());
+            let ratios = row.eta().map(|ratio| ratio.to_string());
+            writer.write_record(texts.chain(numbers).chain([d_peak]).chain(ratios))?;
+        }
+        Ok(writer.into_inner().expect("a vector takes every byte"))
     }
 }
 
@@ -76,12 +84,13 @@ pub fn rows_from_csv(path: &Path, map: &ColumnMap) -> Result<Vec<Row>, DatasetEr
 
 fn rows_of(bytes: &[u8], map: &ColumnMap) -> Result<Vec<Row>, DatasetError> {
     // Every column is read as text: numbers are parsed below, where errors can name the row.
-    let frame = CsvReadOptions::default()
-        .with_infer_schema_length(Some(0))
-        .into_reader_with_file_handle(Cursor::new(bytes))
-        .finish()?;
-    let table = ForeignTable { frame, map };
-    let mut rows = vec![Row::default(); table.frame.height()];
+    let mut reader = csv::Reader::from_reader(bytes);
+    let table = ForeignTable {
+        names: reader.headers()?.clone(),
+        records: reader.into_records().collect::<Result<_, _>>()?,
+        map,
+    };
+    let mut rows = vec![Row::default(); table.records.len()];
     for (index, row) in rows.iter_mut().enumerate() {
         row.job = format!("row-{index:06}");
         row.sample.lambda = 1.0;
@@ -140,7 +149,8 @@ fn refuse_degrees(rows: &[Row]) -> Result<(), DatasetError> {
 
 /// A table of texts, and where it has the columns of a database.
 struct ForeignTable<'a> {
-    frame: DataFrame,
+    names: StringRecord,
+    records: Vec<StringRecord>,
     map: &'a ColumnMap,
 }
 
@@ -148,18 +158,19 @@ impl ForeignTable<'_> {
     /// The cells of a column of a database; `None` if the table lacks it.
     fn cells(&self, name: &str) -> Result<Option<Vec<Option<String>>>, DatasetError> {
         let source = self.map.columns.get(name);
-        match (
-            self.frame.column(source.map_or(name, String::as_str)),
-            source,
-        ) {
-            (Ok(column), _) => {
-                let cells = column.str()?.iter().map(|cell| cell.map(str::to_owned));
-                Ok(Some(cells.collect()))
+        let wanted = source.map_or(name, String::as_str);
+        match (self.names.iter().position(|name| name == wanted), source) {
+            (Some(at), _) => {
+                let cell = |record: &StringRecord| {
+                    let cell = record.get(at).filter(|cell| !cell.is_empty());
+                    cell.map(str::to_owned)
+                };
+                Ok(Some(self.records.iter().map(cell).collect()))
             }
-            (Err(_), Some(column)) => Err(DatasetError::NoColumn {
+            (None, Some(column)) => Err(DatasetError::NoColumn {
                 column: column.clone(),
             }),
-            (Err(_), None) => Ok(None),
+            (None, None) => Ok(None),
         }
     }
 
@@ -167,7 +178,7 @@ impl ForeignTable<'_> {
     fn numbers(&self, name: &'static str) -> Result<Option<Vec<f64>>, DatasetError> {
         let mut values = match (self.cells(name)?, self.map.constants.get(name)) {
             (Some(cells), _) => parsed(name, &cells)?,
-            (None, Some(Constant::Number(value))) => vec![*value; self.frame.height()],
+            (None, Some(Constant::Number(value))) => vec![*value; self.records.len()],
             (None, _) => return Ok(None),
         };
         let factor = self.map.factors.get(name).copied().unwrap_or(1.0);
@@ -182,7 +193,7 @@ impl ForeignTable<'_> {
             texts.collect()
         });
         Ok(texts.or_else(|| match self.map.constants.get(name) {
-            Some(Constant::Text(text)) => Some(vec![text.clone(); self.frame.height()]),
+            Some(Constant::Text(text)) => Some(vec![text.clone(); self.records.len()]),
             _ => None,
         }))
     }

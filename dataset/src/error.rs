@@ -140,4 +140,6 @@ pub enum DatasetError {
     },
     #[error("the table is not a valid database: {0}")]
     Table(#[from] polars::error::PolarsError),
+    #[error("the table cannot be read or written as CSV: {0}")]
+    Csv(#[from] csv::Error),
 }

@@ -18,7 +18,7 @@ pub(crate) const D_PEAK: &str = "D_peak";
 /// A column of text.
 pub(crate) struct Text {
     pub name: &'static str,
-    get: fn(&Row) -> &str,
+    pub get: fn(&Row) -> &str,
     pub set: fn(&mut Row, String),
 }
 
@@ -71,7 +71,7 @@ pub(crate) const TEXTS: [Text; 9] = texts! {
 };
 
 /// The ratios of (13). They are written for readers of the table and recomputed when it is read.
-const RATIOS: [&str; 2] = ["eta_a", "eta_s"];
+pub(crate) const RATIOS: [&str; 2] = ["eta_a", "eta_s"];
 
 /// The unit of every column that has a unit.
 pub(crate) fn units() -> impl Iterator<Item = (&'static str, &'static str)> {

@@ -33,9 +33,15 @@ pub(crate) struct Dense {
     fold: Fold,
 }
 
-/// Tensors of a number type on the processor, recording gradients.
+/// Tensors of a number type on the processor, recording gradients: of Burn's backend flex, or of the slower ndarray in a build with
+/// that feature.
 pub(crate) fn options(dtype: DType) -> TensorCreationOptions {
-    TensorCreationOptions::new(Device::flex().autodiff()).with_dtype(dtype)
+    #[cfg(not(feature = "ndarray"))]
+    let device = Device::flex();
+    #[cfg(feature = "ndarray")]
+    #[expect(deprecated, reason = "Burn recommends flex; both can be compared")]
+    let device = Device::ndarray();
+    TensorCreationOptions::new(device.autodiff()).with_dtype(dtype)
 }
 
 impl Networks {
