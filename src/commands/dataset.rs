@@ -6,7 +6,7 @@ use crate::ui::output_file;
 use anyhow::{Result, ensure};
 use clap::{Args, Subcommand};
 use dataset::{ColumnMap, Database, Details, Gates, Mixing, SplitPlan, rows_from_csv};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Summarise, join, split, correct and compare hinge databases, and exchange them as CSV
 #[derive(Args)]
@@ -72,6 +72,15 @@ struct SplitCommand {
     /// on this database can then be fine-tuned without having seen the test geometries
     #[arg(long, value_name = "DATABASE", conflicts_with_all = ["seed", "validation", "test"])]
     like: Option<PathBuf>,
+    /// Seed of the split
+    #[arg(long, value_name = "N", default_value_t = SplitPlan::default().seed)]
+    seed: u64,
+    /// Fraction of the geometries for validation, which selects the checkpoint
+    #[arg(long, value_name = "FRACTION", default_value_t = SplitPlan::default().validation)]
+    validation: f64,
+    /// Fraction of the geometries for the test errors
+    #[arg(long, value_name = "FRACTION", default_value_t = SplitPlan::default().test)]
+    test: f64,
     #[command(flatten)]
     out: OutArgs,
 }
@@ -85,9 +94,6 @@ struct ImportCommand {
     /// Column names, unit factors and constants of the table (TOML); see configs/import
     #[arg(long, value_name = "FILE")]
     columns: Option<PathBuf>,
-    /// Maximum energy residual of an accepted row (relative), if the table has that column
-    #[arg(long, value_name = "FRACTION", default_value_t = Gates::default().energy_residual_max)]
-    energy_residual_max: f64,
     #[command(flatten)]
     out: OutArgs,
 }
@@ -98,12 +104,8 @@ struct ExportCommand {
     /// Database (Parquet with its manifest)
     #[arg(value_name = "DATABASE")]
     database: PathBuf,
-    /// CSV file to write
-    #[arg(long, value_name = "FILE")]
-    out: PathBuf,
-    /// Replace an existing file
-    #[arg(long)]
-    replace: bool,
+    #[command(flatten)]
+    out: OutArgs,
 }
 
 /// Correct a database to a finer mesh, by those of its rays that were also solved on that mesh
@@ -122,32 +124,19 @@ struct CorrectCommand {
     /// Database with some of its rays on a finer mesh (Parquet with its manifest)
     #[arg(value_name = "REFERENCE")]
     reference: PathBuf,
-    /// Parquet file to write
-    #[arg(long, value_name = "FILE")]
-    out: PathBuf,
-    /// Replace an existing file
-    #[arg(long)]
-    replace: bool,
+    #[command(flatten)]
+    out: OutArgs,
 }
 
-/// The database to write, and the split of its geometries.
+/// The file to write.
 #[derive(Args)]
 struct OutArgs {
-    /// Parquet file to write
+    /// File to write
     #[arg(long, value_name = "FILE")]
     out: PathBuf,
     /// Replace an existing file
     #[arg(long)]
     replace: bool,
-    /// Seed of the split
-    #[arg(long, value_name = "N", default_value_t = SplitPlan::default().seed)]
-    seed: u64,
-    /// Fraction of the geometries for validation, which selects the checkpoint
-    #[arg(long, value_name = "FRACTION", default_value_t = SplitPlan::default().validation)]
-    validation: f64,
-    /// Fraction of the geometries for the test errors
-    #[arg(long, value_name = "FRACTION", default_value_t = SplitPlan::default().test)]
-    test: f64,
 }
 
 impl DatasetCommand {
@@ -213,7 +202,7 @@ impl MergeCommand {
             Mixing::Refused
         };
         self.out
-            .write(&Database::merge(&databases?, &self.out.plan(), mixing)?)
+            .write(&Database::merge(&databases?, &SplitPlan::default(), mixing)?)
     }
 }
 
@@ -222,7 +211,11 @@ impl SplitCommand {
         let database = Database::read(&self.database)?;
         let split = match &self.like {
             Some(other) => database.split_like(&Database::read(other)?)?,
-            None => database.split(&self.out.plan())?,
+            None => database.split(&SplitPlan {
+                seed: self.seed,
+                validation: self.validation,
+                test: self.test,
+            })?,
         };
         self.out.write(&split)
     }
@@ -234,24 +227,22 @@ impl ImportCommand {
             Some(path) => support::toml_file::read(path)?,
             None => ColumnMap::default(),
         };
-        let gates = Gates {
-            energy_residual_max: self.energy_residual_max,
-        };
         let rows = rows_from_csv(&self.table, &map)?;
-        self.out
-            .write(&Database::collect(rows, &gates, &self.out.plan())?)
+        let (gates, plan) = (Gates::default(), SplitPlan::default());
+        self.out.write(&Database::collect(rows, &gates, &plan)?)
     }
 }
 
 impl ExportCommand {
     fn run(&self) -> Result<()> {
-        if !self.replace {
-            output_file::refuse_existing(&self.out)?;
+        let OutArgs { out, replace } = &self.out;
+        if !replace {
+            output_file::refuse_existing(out)?;
         }
         let csv = Database::read(&self.database)?.to_csv()?;
-        output_file::create_folder_of(&self.out)?;
-        output_file::write(&self.out, csv)?;
-        println!("written to {}", self.out.display());
+        output_file::create_folder_of(out)?;
+        output_file::write(out, csv)?;
+        println!("written to {}", out.display());
         Ok(())
     }
 }
@@ -261,29 +252,17 @@ impl CorrectCommand {
         let database = Database::read(&self.database)?;
         let reference = Database::read(&self.reference)?;
         let (corrected, judged) = database.corrected(&reference)?;
-        write(&corrected, &self.out, self.replace)?;
+        self.out.write(&corrected)?;
         println!("{}", compare::correction(&judged)?);
         Ok(())
     }
 }
 
 impl OutArgs {
-    fn plan(&self) -> SplitPlan {
-        SplitPlan {
-            seed: self.seed,
-            validation: self.validation,
-            test: self.test,
-        }
-    }
-
     fn write(&self, database: &Database) -> Result<()> {
-        write(database, &self.out, self.replace)
+        output_file::create_folder_of(&self.out)?;
+        database.write(&self.out, self.replace)?;
+        println!("{database}\nwritten to {}", self.out.display());
+        Ok(())
     }
-}
-
-fn write(database: &Database, out: &Path, replace: bool) -> Result<()> {
-    output_file::create_folder_of(out)?;
-    database.write(out, replace)?;
-    println!("{database}\nwritten to {}", out.display());
-    Ok(())
 }

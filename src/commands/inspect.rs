@@ -1,7 +1,5 @@
 //! `kirigami inspect`: the numbers of the stages of a design.
 
-#[cfg(feature = "pipeline")]
-pub(crate) mod judged_design;
 pub mod scene_args;
 
 use crate::commands::inspect::scene_args::Listed;
@@ -11,7 +9,6 @@ use anyhow::{Context, Result};
 use clap::{Args, Subcommand};
 use output::listing::{self, SpringbackListing, ToleranceListing, ToleranceQuestion};
 use std::path::PathBuf;
-use surrogate::Springback;
 
 /// Print the numbers of one stage of a design: pattern, deploy, equilibrium, gradient, tolerances, springback
 #[derive(Args)]
@@ -41,8 +38,7 @@ enum Stage {
     /// Print what errors of cutting do to the deployed sheet, and which tolerances keep it within an error
     ///
     /// Each ligament, the kerf and the thickness are changed by one standard deviation, half of their tolerance, and the
-    /// sheet is deployed again; then sheets with all errors at random. Tolerances are those of the scene ([tolerances]) unless
-    /// they are named. Example: kirigami inspect tolerances runs/a4-plate --ligament 0.05 --kerf 0.05 --samples 200
+    /// sheet is deployed again; then sheets with all errors at random. Tolerances are those of the scene ([tolerances]). Example: kirigami inspect tolerances runs/a4-plate --ligament 0.05 --samples 200
     /// --picture runs/a4-plate/tolerances.svg
     Tolerances(ToleranceArgs),
     /// Print what stays of the opening when the loads are taken off
@@ -57,9 +53,6 @@ enum Stage {
 struct SpringbackArgs {
     #[command(flatten)]
     listed: Listed,
-    /// Law of released hinges (JSON) [default: that of the scene, surrogate.springback]
-    #[arg(long, value_name = "FILE")]
-    law: Option<PathBuf>,
     /// Draw the sheet without loads to this file (SVG)
     #[arg(long, value_name = "FILE")]
     picture: Option<PathBuf>,
@@ -69,21 +62,12 @@ struct SpringbackArgs {
 struct ToleranceArgs {
     #[command(flatten)]
     listed: Listed,
-    /// Tolerance +- of the width of every ligament by itself, two standard deviations (mm)
+    /// Tolerance +- of the width of every ligament by itself, two standard deviations (mm) [default: that of the scene]
     #[arg(long, value_name = "MM", value_parser = length)]
     ligament: Option<f64>,
-    /// Tolerance +- of the width that the cutter removes (mm)
-    #[arg(long, value_name = "MM", value_parser = length)]
-    kerf: Option<f64>,
-    /// Tolerance +- of the thickness of the sheet (mm)
-    #[arg(long, value_name = "MM", value_parser = length)]
-    thickness: Option<f64>,
     /// Number of sheets with errors at random; 0 for none
     #[arg(long, value_name = "N", default_value_t = 100)]
     samples: usize,
-    /// Seed of the random sheets
-    #[arg(long, value_name = "SEED", default_value_t = 0)]
-    seed: u64,
     /// Movement of the corners that is allowed, root mean square, one standard deviation (mm) [default: that of the known errors of
     /// the model]
     #[arg(long, value_name = "MM", value_parser = length)]
@@ -146,12 +130,12 @@ impl InspectCommand {
 impl SpringbackArgs {
     fn run(&self) -> Result<()> {
         let (scene, design, name) = self.listed.read()?;
-        let named = self.law.as_deref().map(Springback::load).transpose()?;
-        let law = named.or_else(|| scene.springback.clone()).context(
-            "the scene names no law of released hinges: name one (--law), or set surrogate.springback",
-        )?;
+        let law = scene
+            .springback
+            .as_ref()
+            .context("the scene names no law of released hinges: set surrogate.springback")?;
         let problem = scene.problem()?;
-        let listing = SpringbackListing::new(&scene, &problem, &design, &law)?;
+        let listing = SpringbackListing::new(&scene, &problem, &design, law)?;
         if let Some(path) = &self.picture {
             output_file::write(path, listing.picture(&scene))?;
         }
@@ -163,17 +147,10 @@ impl ToleranceArgs {
     fn run(&self) -> Result<()> {
         let (scene, design, name) = self.listed.read()?;
         let mut tolerances = scene.config.tolerances;
-        for (given, named) in [
-            (&mut tolerances.ligament, self.ligament),
-            (&mut tolerances.kerf, self.kerf),
-            (&mut tolerances.thickness, self.thickness),
-        ] {
-            *given = named.or(*given);
-        }
+        tolerances.ligament = self.ligament.or(tolerances.ligament);
         let question = ToleranceQuestion {
             tolerances,
             samples: self.samples,
-            seed: self.seed,
             within: self.within,
         };
         let bar = Progress::new(0, "sheets");

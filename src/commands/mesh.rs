@@ -11,7 +11,7 @@ use std::time::Duration;
 
 /// Mesh one hinge window and draw it
 ///
-/// Writes gmsh's script and mesh and a picture of the plane mesh; prints the size and quality of the
+/// Writes gmsh's script and mesh, mesh.vtu for ParaView and meshio, and a picture of the plane mesh; prints the size and quality of the
 /// mesh. Example: kirigami mesh --w-lig 18 --alpha-deg 60 --tier default
 #[derive(Args)]
 #[command(allow_negative_numbers = true)]
@@ -27,9 +27,6 @@ pub struct MeshCommand {
     /// Folder for the script, the mesh and the picture
     #[arg(long, value_name = "FOLDER", default_value = "runs/mesh")]
     out: PathBuf,
-    /// Also write mesh.vtu, for ParaView or meshio
-    #[arg(long)]
-    vtu: bool,
     /// Print JSON instead of text
     #[arg(long)]
     json: bool,
@@ -48,9 +45,7 @@ impl MeshCommand {
         let mesh = shape.mesh(&self.out, &gmsh, Duration::MAX, interrupt::stop_flag()?)?;
         let quality = mesh.quality()?;
         let pictures = picture::save(&plane_mesh_svg(&mesh), &self.out.join("mesh"), 1600)?;
-        if self.vtu {
-            run_folder::write(&self.out, "mesh.vtu", &vtk_grid(&mesh).to_vtu())?;
-        }
+        run_folder::write(&self.out, "mesh.vtu", &vtk_grid(&mesh).to_vtu())?;
         if self.json {
             let description = json!({
                 "tier": self.tier.name(),

@@ -20,7 +20,6 @@ use std::fs::File;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
-use support::shard::Shard;
 use support::table::number_or_dash;
 use surrogate::{ErrorBin, Surrogate, TestErrors};
 use train::{
@@ -35,7 +34,7 @@ use verification::distillation_states;
 /// plot and slices of the energy, and prints the errors on hinge geometries that were not used for
 /// training. A stopped training continues with --resume; of several seeds, with the same command. Examples:
 /// kirigami train runs/demo/hinges.parquet --config configs/training/demo.toml;
-/// kirigami train runs/demo/hinges.parquet --config configs/training/demo.toml --seeds 8 --shard 1/4
+/// kirigami train runs/demo/hinges.parquet --config configs/training/demo.toml --seeds 8
 #[derive(Args)]
 pub struct TrainCommand {
     /// Database as written by `kirigami campaign collect` (Parquet with its manifest)
@@ -72,10 +71,6 @@ pub struct TrainCommand {
     /// not trained again
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..=64))]
     seeds: u64,
-    /// Part of the seeds, as I/N: every N-th seed from the I-th; shards may run at the same time. The weights are written
-    /// by the shard that ends last, or by the same command without --shard
-    #[arg(long, value_name = "I/N", default_value_t = Shard::WHOLE)]
-    shard: Shard,
     /// Replace existing weights; of several seeds, those of another training
     #[arg(long)]
     replace: bool,
@@ -109,7 +104,6 @@ impl TrainCommand {
             teachers: Vec::new(),
             resume: false,
             seeds: 1,
-            shard: Shard::WHOLE,
             replace: true,
         }
     }
@@ -138,10 +132,6 @@ impl TrainCommand {
         if self.seeds > 1 {
             return self.train_seeds(&database, &config, base.as_ref());
         }
-        ensure!(
-            self.shard == Shard::WHOLE,
-            "--shard divides the trainings of several seeds: pass --seeds N"
-        );
         self.refuse_existing()?;
         let _held = hold(&self.out)?;
         let state = self.state();

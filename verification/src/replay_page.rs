@@ -32,9 +32,6 @@ impl fmt::Display for Replay {
             spread_table(&groups, "hinge"),
             100.0 * (learned / solved - 1.0),
         )?;
-        if hinges.iter().any(|hinge| !hinge.spread.is_empty()) {
-            write!(f, "\n{}", estimate(hinges))?;
-        }
         write!(f, "\nAt full load:\n\n{}", ends_table(hinges))?;
         if !self.unsolved.is_empty() {
             writeln!(
@@ -77,38 +74,6 @@ fn ends_table(hinges: &[ReplayedHinge]) -> String {
         .column("D", |(_, end)| damage(end.value[4]))
         .column("by FE", |(_, end)| Cell::fixed(end.reference[4], 5));
     table.markdown(&ends)
-}
-
-/// How often the error is within one, two and three standard deviations of the ensemble.
-fn estimate(replayed: &[ReplayedHinge]) -> String {
-    let mut text = "Fraction of the states with an error within so many standard deviations of the ensemble:\n\n\
-        | quantity | one | two | three |\n|---|---|---|---|\n"
-        .to_owned();
-    let pairs = || {
-        replayed
-            .iter()
-            .flat_map(|hinge| hinge.states.iter().zip(&hinge.spread))
-    };
-    for (i, name) in COMPARED.iter().enumerate() {
-        if pairs().any(|(_, spread)| spread[i].is_nan()) {
-            text += &format!("| {name} | not predicted by all | | |\n");
-            continue;
-        }
-        let known = || pairs().filter(|(state, _)| state.is_known(i));
-        if known().next().is_none() {
-            text += &format!("| {name} | not known | | |\n");
-            continue;
-        }
-        let within = |count: f64| {
-            let met = known().filter(|(state, spread)| {
-                (state.value[i] - state.reference[i]).abs() <= count * spread[i]
-            });
-            100.0 * met.count() as f64 / known().count() as f64
-        };
-        let [one, two, three] = [1.0, 2.0, 3.0].map(within);
-        text += &format!("| {name} | {one:.0} % | {two:.0} % | {three:.0} % |\n");
-    }
-    text
 }
 
 impl Replay {

@@ -38,6 +38,9 @@ pub struct ToleranceListing {
     designed: (Sheet, LoadStep),
 }
 
+/// Seed of the sheets at random.
+const SEED: u64 = 0;
+
 /// What is asked.
 #[derive(Clone, Copy, Debug)]
 pub struct ToleranceQuestion {
@@ -45,8 +48,6 @@ pub struct ToleranceQuestion {
     pub tolerances: ToleranceConfig,
     /// Number of sheets at random.
     pub samples: usize,
-    /// Their seed.
-    pub seed: u64,
     /// The movement that is allowed (mm); by default that of the model's known errors.
     pub within: Option<f64>,
 }
@@ -64,7 +65,6 @@ impl ToleranceListing {
         let ToleranceQuestion {
             tolerances,
             samples,
-            seed,
             within,
         } = question;
         let errors = CuttingErrors::new(scene, problem, design, tolerances)?;
@@ -76,7 +76,7 @@ impl ToleranceListing {
         };
         let first_order = errors.first_order(&mut tick)?;
         let samples = (samples > 0)
-            .then(|| errors.sampled(samples, seed, &mut tick))
+            .then(|| errors.sampled(samples, SEED, &mut tick))
             .transpose()?;
         let model = || {
             let budget = ErrorBudget::new(scene, problem, errors.designed(), None)?;

@@ -12,7 +12,6 @@ use crate::commands::init;
 use crate::commands::material::learn::conclusion::conclusion;
 use crate::commands::material::learn::fine_tuning::FineTuning;
 use crate::commands::solve_args::{SolveArgs, task_error};
-use crate::ui::count::jobs;
 use crate::ui::exit::Unfinished;
 use crate::ui::interrupt;
 use crate::ui::progress::duration;
@@ -25,7 +24,6 @@ use dataset::{Database, Gates, SplitPlan};
 use fe_driver::{CalculiX, Campaign, Progress};
 use hinge::{Regime, SheetMaterial, TrainingDomain};
 use mesher::Tier;
-use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 use surrogate::Surrogate;
@@ -66,18 +64,11 @@ pub struct LearnCommand {
     /// 2 mm of thickness on, below it default]
     #[arg(long, value_name = "TIER")]
     tier: Option<Tier>,
-    /// Number of rays of the first round
-    #[arg(long, value_name = "N", default_value_t = 25, value_parser = clap::value_parser!(u16).range(6..))]
-    rays: u16,
-    /// Number of rays of the spot check, each with 4 states
-    #[arg(long, value_name = "N", default_value_t = 16, value_parser = clap::value_parser!(u16).range(3..))]
-    spot_rays: u16,
     /// Seed of the states of the spot check. Errors that led to a choice are measured again with another seed
     #[arg(long, value_name = "SEED", default_value_t = 1)]
     spot_seed: u64,
-    /// Number of solves in parallel [default: one per processor]
-    #[arg(long, value_name = "N", value_parser = jobs::<NonZeroUsize>)]
-    jobs: Option<NonZeroUsize>,
+    #[command(flatten)]
+    solve: SolveArgs,
     /// Folder for the results; a folder of a stopped run is continued. Its weights are those of the last round of this command
     #[arg(long, value_name = "FOLDER")]
     out: PathBuf,
@@ -87,7 +78,9 @@ pub struct LearnCommand {
 const FILM_PARENTS: &str = "data/pet-0.5mm";
 const PLATE_PARENTS: &str = "data/polypropylene-3mm";
 const PARENTS: [&str; 4] = ["medium", "medium-1", "medium-2", "medium-3"];
-/// States on a ray of the spot check.
+/// Number of rays of the first round, of the spot check, and states on each of the latter.
+const FIRST_RAYS: usize = 25;
+const SPOT_RAYS: usize = 16;
 const STATES_PER_RAY: usize = 4;
 /// The shipped training, and its copy in the folder. `kirigami init` writes another training to the same folder.
 const TRAINING_FILE: &str = "fine-tuning.toml";
@@ -136,8 +129,8 @@ impl LearnCommand {
             campaign: &campaign,
             folder: &self.out.join("campaign"),
             solver: &CalculiX::find()?,
-            workers: self.solve_args(&campaign).workers(),
-            first_rays: usize::from(self.rays),
+            workers: self.solve.workers(),
+            first_rays: FIRST_RAYS,
             spot: spot.rows(),
             accuracy,
             deadline: began.checked_add(self.time),
@@ -150,7 +143,7 @@ impl LearnCommand {
             progress: None,
         };
         let end = learn(task, &mut steps)?;
-        let workers = self.solve_args(&campaign).workers();
+        let workers = self.solve.workers();
         let (material, weights) = (self.out.join("material.toml"), weights_file(&self.out));
         let files = [&*material, &*weights];
         println!("{}", conclusion(&steps.rounds, accuracy, workers, files));
@@ -204,16 +197,15 @@ impl LearnCommand {
 
     /// The states on which weights are tested, drawn uniformly inside the region of the campaign.
     fn spot_check(&self, campaign: &Campaign, region: &TrainingDomain) -> Result<Database> {
-        let count = STATES_PER_RAY * usize::from(self.spot_rays);
+        let count = STATES_PER_RAY * SPOT_RAYS;
         let paths = random_paths(
             drawn(campaign, region),
             count,
             STATES_PER_RAY,
             self.spot_seed,
         );
-        let windows = self
-            .solve_args(campaign)
-            .service(&self.out.join("spot-check"))?;
+        let mut windows = self.solve.service(&self.out.join("spot-check"))?;
+        windows.limit = campaign.time_limit;
         let check = spot_check(&windows, &paths, &campaign.material, campaign.tier);
         let check = check.map_err(task_error)?;
         for unsolved in &check.unsolved {
@@ -221,7 +213,7 @@ impl LearnCommand {
         }
         let states = check.rows.len();
         let database = Database::collect(check.rows, &Gates::default(), &SplitPlan::default())
-            .context("the solver followed too few rays of the spot check: increase --spot-rays")?;
+            .context("the solver followed too few rays of the spot check: choose another --spot-seed")?;
         database.write(&self.out.join("spot-check.parquet"), true)?;
         println!(
             "spot check: {} rays, {states} of {count} states on rays followed to their end, {:.0} s of CPU time",
@@ -229,10 +221,6 @@ impl LearnCommand {
             check.cpu_seconds
         );
         Ok(database)
-    }
-
-    fn solve_args(&self, campaign: &Campaign) -> SolveArgs {
-        SolveArgs::new(self.jobs, campaign.time_limit)
     }
 }
 
