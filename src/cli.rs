@@ -1,8 +1,8 @@
 //! The command line: one subcommand per module of [`crate::commands`].
 
-#[cfg(feature = "pipeline")]
-use crate::commands::pipeline;
 use crate::commands::{compare, completions, cut, design, export, inspect, man, material};
+#[cfg(feature = "pipeline")]
+use crate::commands::{demo, pipeline};
 use crate::ui::progress;
 use anyhow::Result;
 use clap::{CommandFactory, Parser, Subcommand};
@@ -38,6 +38,8 @@ enum Command {
     Compare(compare::CompareCommand),
     Export(export::ExportCommand),
     #[cfg(feature = "pipeline")]
+    Demo(demo::DemoCommand),
+    #[cfg(feature = "pipeline")]
     #[command(flatten)]
     Pipeline(pipeline::PipelineCommand),
     Completions(completions::CompletionsCommand),
@@ -60,6 +62,8 @@ impl Cli {
             Command::Inspect(command) => command.run(),
             Command::Compare(command) => command.run(),
             Command::Export(command) => command.run(),
+            #[cfg(feature = "pipeline")]
+            Command::Demo(command) => command.run(|words| Self::try_parse_from(words)?.run()),
             #[cfg(feature = "pipeline")]
             Command::Pipeline(command) => command.run(),
             Command::Completions(command) => command.run(Self::command()),

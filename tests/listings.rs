@@ -299,11 +299,13 @@ fn tolerances() {
         "{text}"
     );
     let text = std::fs::read_to_string(format!("{root}/configs/scenes/a4-polyester.toml"));
-    let text = text.unwrap().replace("../", &format!("{root}/configs/scenes/../"));
+    let text = text
+        .unwrap()
+        .replace("../", &format!("{root}/configs/scenes/../"));
     let with_kerf = text + "\n[tolerances]\nkerf = 0.1\n";
     std::fs::write(work.path("kerf.toml"), with_kerf).unwrap();
-    let refused = work
-        .error("inspect tolerances kerf.toml --design start --samples 0 --picture kerf.svg");
+    let refused =
+        work.error("inspect tolerances kerf.toml --design start --samples 0 --picture kerf.svg");
     assert!(refused.contains("give their tolerance"), "{refused}");
     assert!(!work.path("kerf.svg").exists());
 }

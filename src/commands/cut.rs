@@ -86,7 +86,9 @@ impl CutCommand {
     pub(crate) fn run(&self) -> Result<()> {
         let (machines, out) = (Machines::shipped(), self.out.as_deref());
         let machine = self.machine.as_deref();
-        let machine = machine.map(|name| self::machine(&machines, name)).transpose()?;
+        let machine = machine
+            .map(|name| self::machine(&machines, name))
+            .transpose()?;
         let checked = Checked::new(&self.designed, self.force)?;
         match machine {
             None => self.print(&checked.cut(self.paper, out)?),

@@ -4,7 +4,7 @@ mod compare;
 
 use crate::ui::output_file;
 use anyhow::{Result, ensure};
-use clap::{Args, Subcommand};
+use clap::Args;
 use dataset::{ColumnMap, Database, Details, Gates, Mixing, SplitPlan, rows_from_csv};
 use std::path::PathBuf;
 
@@ -15,16 +15,17 @@ pub struct DatasetCommand {
     action: Action,
 }
 
-#[derive(Subcommand)]
-enum Action {
-    Summary(SummaryCommand),
-    Check(CheckCommand),
-    Merge(MergeCommand),
-    Split(SplitCommand),
-    Import(ImportCommand),
-    Export(ExportCommand),
-    Compare(compare::CompareCommand),
-    Correct(CorrectCommand),
+subcommands! {
+    enum Action {
+        Summary(SummaryCommand),
+        Check(CheckCommand),
+        Merge(MergeCommand),
+        Split(SplitCommand),
+        Import(ImportCommand),
+        Export(ExportCommand),
+        Compare(compare::CompareCommand),
+        Correct(CorrectCommand),
+    }
 }
 
 /// Print counts, ranges, histograms, rejected rows, energy residuals and coverage
@@ -141,16 +142,7 @@ struct OutArgs {
 
 impl DatasetCommand {
     pub(crate) fn run(&self) -> Result<()> {
-        match &self.action {
-            Action::Summary(command) => command.run(),
-            Action::Check(command) => command.run(),
-            Action::Merge(command) => command.run(),
-            Action::Split(command) => command.run(),
-            Action::Import(command) => command.run(),
-            Action::Export(command) => command.run(),
-            Action::Compare(command) => command.run(),
-            Action::Correct(command) => command.run(),
-        }
+        self.action.run()
     }
 }
 
@@ -201,8 +193,11 @@ impl MergeCommand {
         } else {
             Mixing::Refused
         };
-        self.out
-            .write(&Database::merge(&databases?, &SplitPlan::default(), mixing)?)
+        self.out.write(&Database::merge(
+            &databases?,
+            &SplitPlan::default(),
+            mixing,
+        )?)
     }
 }
 

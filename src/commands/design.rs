@@ -65,20 +65,6 @@ const FRAME_WIDTH: u32 = 640;
 const MOST_FRAMES: usize = 40;
 
 impl DesignCommand {
-    /// A run of the scene without changes, from its start design.
-    pub fn afresh(scene: PathBuf) -> Self {
-        Self {
-            scenes: vec![scene],
-            weights: None,
-            out: None,
-            seeds: 1,
-            steps: None,
-            restart: true,
-            force: false,
-            json: false,
-        }
-    }
-
     pub(crate) fn run(&self) -> Result<()> {
         let out = self.out.as_deref().map(std::path::absolute).transpose()?;
         match &self.scenes[..] {

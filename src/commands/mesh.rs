@@ -5,7 +5,6 @@ use crate::ui::{interrupt, picture, run_folder};
 use anyhow::Result;
 use clap::Args;
 use mesher::{Gmsh, Tier, WindowShape, plane_mesh_svg, vtk_grid};
-use serde_json::json;
 use std::path::PathBuf;
 use std::time::Duration;
 
@@ -27,9 +26,6 @@ pub struct MeshCommand {
     /// Folder for the script, the mesh and the picture
     #[arg(long, value_name = "FOLDER", default_value = "runs/mesh")]
     out: PathBuf,
-    /// Print JSON instead of text
-    #[arg(long)]
-    json: bool,
 }
 
 impl MeshCommand {
@@ -46,20 +42,6 @@ impl MeshCommand {
         let quality = mesh.quality()?;
         let pictures = picture::save(&plane_mesh_svg(&mesh), &self.out.join("mesh"), 1600)?;
         run_folder::write(&self.out, "mesh.vtu", &vtk_grid(&mesh).to_vtu())?;
-        if self.json {
-            let description = json!({
-                "tier": self.tier.name(),
-                "elements": mesh.elements.len(),
-                "nodes": mesh.nodes.len(),
-                "area_mm2": quality.area,
-                "area_error": quality.area_error,
-                "jacobian_ratio": quality.jacobian_ratio,
-                "aspect": quality.aspect,
-                "picture": pictures[1],
-            });
-            println!("{description:#}");
-            return Ok(());
-        }
         println!(
             "{} tier: {} elements ({}), {} nodes, {} layers through {} mm",
             self.tier,

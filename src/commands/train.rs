@@ -2,7 +2,6 @@
 
 mod kept_fits;
 mod seeds;
-mod slices;
 
 pub use kept_fits::kept_fit;
 
@@ -30,8 +29,8 @@ use verification::distillation_states;
 
 /// Train the surrogate hinge energy on a database
 ///
-/// Writes the weights (of the best epoch and of the last), their card, the learning curve, a parity
-/// plot and slices of the energy, and prints the errors on hinge geometries that were not used for
+/// Writes the weights (of the best epoch and of the last), their card, the learning curve and a parity
+/// plot, and prints the errors on hinge geometries that were not used for
 /// training. A stopped training continues with --resume; of several seeds, with the same command. Examples:
 /// kirigami train runs/demo/hinges.parquet --config configs/training/demo.toml;
 /// kirigami train runs/demo/hinges.parquet --config configs/training/demo.toml --seeds 8
@@ -79,35 +78,10 @@ pub struct TrainCommand {
 /// The data on which test errors are measured.
 pub const UNSEEN: &str = "samples of unseen geometries";
 
-/// Titles of the parity charts.
-const CHART_TITLES: [&str; 6] = [
-    "energy W (N mm)",
-    "axial force F_a (N)",
-    "shear force F_s (N)",
-    "moment M (N mm)",
-    "damage D",
-    "damage D_peak",
-];
-
 /// Maximum training time that is lost if the process is killed.
 const SAVE_EVERY: Duration = Duration::from_secs(30);
 
 impl TrainCommand {
-    /// With the default backend; existing weights are replaced.
-    pub fn new(database: PathBuf, config: PathBuf, out: PathBuf) -> Self {
-        Self {
-            database,
-            config: Some(config),
-            out,
-            backend: Backend::default(),
-            from: None,
-            teachers: Vec::new(),
-            resume: false,
-            seeds: 1,
-            replace: true,
-        }
-    }
-
     pub(crate) fn run(&self) -> Result<()> {
         input_file::require(self.config(), "--config")?;
         let base = self.from.as_deref().map(Surrogate::load).transpose()?;
@@ -148,7 +122,7 @@ impl TrainCommand {
             distillation: distillation.as_ref(),
         };
         let trained = fit(data, &config, self.backend, start, &state)?;
-        self.write(&trained, &database)?;
+        self.write(&trained)?;
         std::fs::remove_file(&state).ok();
         Ok(())
     }
@@ -218,17 +192,13 @@ impl TrainCommand {
     }
 
     /// Writes weights, last weights, curves and plots of one training, and prints its errors.
-    fn write(&self, trained: &Trained, database: &Database) -> Result<()> {
+    fn write(&self, trained: &Trained) -> Result<()> {
         trained.surrogate.save(&self.out)?;
         trained.last.save(&self.beside("last.safetensors"))?;
         self.write_curve(&trained.history)?;
         let axes = ["finite elements", "surrogate"];
-        let parity = charts::parity(&trained.parity.states, CHART_TITLES, axes)?;
+        let parity = charts::parity(&trained.parity.states, QUANTITIES, axes)?;
         picture::save(&parity, &self.beside("parity"), 2000)?;
-        let slices = slices::rotations(&trained.surrogate, database);
-        if !slices.is_empty() {
-            picture::save(&charts::slices(&slices)?, &self.beside("slices"), 1200)?;
-        }
         println!("{}\n", error_table(&trained.test_errors, UNSEEN));
         println!("{}\n", bin_table(&trained.surrogate.card().error_bins));
         print_stiffness(&trained.stiffness);
@@ -365,10 +335,10 @@ pub fn error_table(errors: &TestErrors, what: &str) -> Table {
 
 /// The quantities of [`TestErrors::by_quantity`].
 const QUANTITIES: [&str; 6] = [
-    "energy W",
-    "axial force F_a",
-    "shear force F_s",
-    "moment M_theta",
+    "energy W (N mm)",
+    "axial force F_a (N)",
+    "shear force F_s (N)",
+    "moment M_theta (N mm)",
     "damage D",
     "damage D_peak",
 ];

@@ -130,8 +130,7 @@ impl VerifyCommand {
         let Some(law) = law else {
             return self.print(&equilibrium);
         };
-        let released =
-            released_by_elements(scene, &found, &problem, &law, &windows, self.rounds);
+        let released = released_by_elements(scene, &found, &problem, &law, &windows, self.rounds);
         let released = released.map_err(task_error)?;
         run_folder::write(&self.out, "released.md", &released.to_string())?;
         self.print(&Released {

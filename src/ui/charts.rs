@@ -4,13 +4,11 @@ pub mod axes;
 mod learning_curve;
 #[cfg(feature = "pipeline")]
 mod parity;
-mod slices;
 mod tensile_test;
 
 pub use learning_curve::learning_curve;
 #[cfg(feature = "pipeline")]
 pub use parity::parity;
-pub use slices::{Slice, slices};
 pub use tensile_test::tensile_test;
 
 use anyhow::{Result, anyhow};

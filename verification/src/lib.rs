@@ -78,9 +78,7 @@ pub use released_sheet::{ReleasedByElements, released_by_elements};
 pub use releases::{Releases, first_guess, releases};
 pub use replay::{ElementWindows, Replay, ReplayedHinge, UnsolvedHinge};
 pub use rows::{InvalidRow, collected, collected_windows, rows};
-pub use sheet_check::{
-    HingeCheck, PanelCheck, SheetCheck, SheetFinding, SheetTask, StateCheck,
-};
+pub use sheet_check::{HingeCheck, PanelCheck, SheetCheck, SheetFinding, SheetTask, StateCheck};
 pub use sheet_cost::SheetCost;
 pub use sheet_errors::SheetErrors;
 pub use spot_check::{DrawnStates, SpotCheck, SpotPath, random_paths, spot_check};

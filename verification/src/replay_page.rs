@@ -1,6 +1,7 @@
 //! The page of a replay, and its table of states.
 
 use crate::compared_states::{SCALE, spread_table};
+use crate::recorded_path::RecordedPath;
 use crate::replay::{Replay, ReplayedHinge};
 use dataset::{COMPARED, ComparedState};
 use std::fmt;
@@ -79,35 +80,38 @@ fn ends_table(hinges: &[ReplayedHinge]) -> String {
 impl Replay {
     /// One row per state; a cell is empty if its value is not known.
     pub fn csv(&self) -> String {
-        let columns = |prefix: &str| COMPARED.map(|name| format!("{prefix}_{name}")).join(",");
-        let mut text = format!(
-            "hinge,w_lig_mm,alpha_deg,step,eta_a,eta_s,theta_deg,{},{}\n",
-            columns("surrogate"),
-            columns("fe")
-        );
-        for hinge in &self.hinges {
-            let design = &hinge.path.design;
-            let states = hinge.path.states.iter().zip(&hinge.states);
-            for (step, (state, ComparedState { value, reference })) in states.enumerate() {
-                let [eta_a, eta_s] = state.eta(design.w_lig);
-                text += &format!(
-                    "{},{:.4},{:.4},{},{eta_a:.6},{eta_s:.6},{:.4}",
-                    hinge.path.hinge,
-                    design.w_lig,
-                    design.alpha.to_degrees(),
-                    step + 1,
-                    state.theta.to_degrees(),
-                );
-                for number in value.iter().chain(reference) {
-                    if number.is_nan() {
-                        text.push(',');
-                    } else {
-                        text += &format!(",{number:.6}");
-                    }
-                }
-                text += "\n";
-            }
+        type State<'a> = (&'a RecordedPath, usize, &'a ComparedState);
+        let state = |(path, k, _): &State| path.states[*k];
+        let mut table = Table::new()
+            .column("hinge", |(path, ..): &State| Cell::text(path.hinge))
+            .column("w_lig_mm", |(path, ..)| number(path.design.w_lig))
+            .column("alpha_deg", |(path, ..)| {
+                number(path.design.alpha.to_degrees())
+            })
+            .column("step", |(_, k, _)| Cell::text(k + 1))
+            .column("eta_a", move |of| {
+                number(state(of).eta(of.0.design.w_lig)[0])
+            })
+            .column("eta_s", move |of| {
+                number(state(of).eta(of.0.design.w_lig)[1])
+            })
+            .column("theta_deg", move |of| number(state(of).theta.to_degrees()));
+        for (i, name) in COMPARED.iter().enumerate() {
+            table = table.column(format!("surrogate_{name}"), move |of| number(of.2.value[i]));
         }
-        text
+        for (i, name) in COMPARED.iter().enumerate() {
+            table = table.column(format!("fe_{name}"), move |of| number(of.2.reference[i]));
+        }
+        let states = self.hinges.iter().flat_map(|hinge| {
+            let states = hinge.states.iter().enumerate();
+            states.map(|(k, state)| (&hinge.path, k, state))
+        });
+        table.csv(&states.collect::<Vec<State>>())
     }
+}
+
+/// A number with six decimals; an empty cell if it is not known.
+fn number(value: f64) -> Cell {
+    let known = (!value.is_nan()).then(|| Cell::text(format!("{value:.6}")));
+    Cell::known(known, "")
 }

@@ -375,13 +375,18 @@ fn findings(check: &SheetCheck) -> Vec<SheetFinding> {
         let reason = reason.unwrap_or("no increment converged");
         let message = format!("the sheet was not solved: {reason}");
         let unsolved = finding(Severity::Error, message);
-        return std::iter::once(unsolved).chain(outside_domain(check)).collect();
+        return std::iter::once(unsolved)
+            .chain(outside_domain(check))
+            .collect();
     };
     let stopped = check.stopped.as_ref().map(|reason| {
-        finding(Severity::Error, format!(
-            "the path was followed to {:.1} % only; what happens beyond is not known: {reason}",
-            100.0 * last.fraction
-        ))
+        finding(
+            Severity::Error,
+            format!(
+                "the path was followed to {:.1} % only; what happens beyond is not known: {reason}",
+                100.0 * last.fraction
+            ),
+        )
     });
     let found = [
         stopped,

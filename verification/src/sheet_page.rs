@@ -51,17 +51,15 @@ impl fmt::Display for SheetCheck {
         }
         writeln!(
             f,
-            "\nNot modelled here: contact of the flanks of the cuts, friction, creep. Corners: distance in space between the rigid \
-             motion that the nodes of a panel follow best and its place by law; per cent of the longer side of the flat sheet, {:.0} mm.\n\n\
-             | reached | load, N | by law | mean opening, deg | by law | corners, mm | max | % | tilt, deg | lift, mm | \
-             bending, mm | unknowns | CPU s |\n|---|---|---|---|---|---|---|---|---|---|---|---|---|",
-            self.size
+            "\nNot modelled here: contact of the flanks of the cuts, friction, creep. {} unknowns, {:.0} CPU s{}.",
+            self.unknowns,
+            self.cpu_seconds,
+            if self.dynamic { ", dynamic" } else { "" },
         )?;
-        self.write_end(f)?;
-        if self.path.len() > 1 {
-            self.write_path(f)?;
+        match self.last() {
+            Some(last) => self.write_path(f, last),
+            None => Ok(()),
         }
-        Ok(())
     }
 }
 
@@ -74,37 +72,17 @@ fn known(pair: Option<[f64; 2]>, decimals: usize) -> [String; 2] {
 }
 
 impl SheetCheck {
-    fn write_end(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        let Some(last) = self.last() else {
-            return writeln!(
-                f,
-                "| 0 % | - | - | - | - | - | - | - | - | - | - | {} | {:.0} |",
-                self.unknowns, self.cpu_seconds
-            );
-        };
-        let [load, found] = known(last.load, 4);
-        let [opening, opened] = last.opening_deg;
-        let ([rms, most], [_, high]) = (last.corners, last.z);
-        writeln!(
-            f,
-            "| {:.0} %{} | {found} | {load} | {opened:.2} | {opening:.2} | {rms:.3} | {most:.3} | {:.3} | {:.2} | {high:.2} | \
-             {:.3} | {} | {:.0} |",
-            100.0 * last.fraction,
-            if self.dynamic { ", dynamic" } else { "" },
-            100.0 * rms / self.size,
-            last.tilt_deg,
-            last.bending,
-            self.unknowns,
-            self.cpu_seconds,
-        )
-    }
-
-    fn write_path(&self, f: &mut fmt::Formatter) -> fmt::Result {
+    fn write_path(&self, f: &mut fmt::Formatter, last: &StateCheck) -> fmt::Result {
         writeln!(
             f,
             "\n## Along the path\n\n\
+             Corners: distance in space between the rigid motion that the nodes of a panel follow best and its place by law; at the end \
+             {:.3} % of the longer side of the flat sheet, {:.0} mm, in the root mean square. Panels bend by {:.3} mm at most.\n\n\
              | path, % | stroke, mm | by law | load, N | by law | mean opening, deg | by law | corners, mm | max | tilt, deg | lift, mm |\n\
-             |---|---|---|---|---|---|---|---|---|---|---|"
+             |---|---|---|---|---|---|---|---|---|---|---|",
+            100.0 * last.corners[0] / self.size,
+            self.size,
+            last.bending
         )?;
         let stride = self.path.len().div_ceil(ROWS).max(1);
         let kept = (self.path.iter().enumerate())

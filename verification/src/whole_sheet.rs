@@ -237,11 +237,7 @@ pub(crate) fn meshed_radii(sheet: &Sheet) -> Result<Vec<f64>, VerificationError>
 }
 
 /// The finished sheet with its windows, whose bumps are all on one side.
-fn sheet_shape(
-    sheet: &Sheet,
-    thickness: f64,
-    tier: Tier,
-) -> Result<SheetShape, VerificationError> {
+fn sheet_shape(sheet: &Sheet, thickness: f64, tier: Tier) -> Result<SheetShape, VerificationError> {
     let PlaneRecipe::Structured(plane) = tier.recipe().plane else {
         return Err(VerificationError::NoSheetTier(tier));
     };

@@ -8,7 +8,7 @@ use crate::ui::progress::Progress;
 use anyhow::{Result, bail, ensure};
 use clap::Args;
 use fe_driver::{CalculiX, RunOptions, Shard, Tally};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::Duration;
 use verification::VerificationError;
 
@@ -31,19 +31,6 @@ pub struct RunCommand {
 }
 
 impl RunCommand {
-    pub(crate) fn new(campaign: PathBuf, folder: PathBuf) -> Self {
-        let campaign = CampaignArgs {
-            campaign,
-            folder: Some(folder),
-        };
-        Self {
-            campaign,
-            solve: SolveArgs::default(),
-            shard: Shard::WHOLE,
-            time_limit: None,
-        }
-    }
-
     pub(crate) fn run(&self) -> Result<()> {
         let folder = self.campaign.folder();
         let options = RunOptions {

@@ -1,13 +1,11 @@
-//! The command line arguments that select a scene and a design, and the printing of their numbers.
+//! The command line arguments that select a scene and a design.
 
 use anyhow::{Context, Result};
 use clap::Args;
 use design::pattern::design_vector::DesignVector;
+use design::scene::Scene;
 use design::scene::design_run::{design_of_run, stored_design};
 use design::scene::run_inputs::{STATE_FILE, scene_file};
-use design::scene::Scene;
-use serde::Serialize;
-use std::fmt::Display;
 use std::path::{Path, PathBuf};
 
 /// The value of `--design` that names no file.
@@ -23,24 +21,6 @@ pub struct Inspected {
     /// scene's run]
     #[arg(long, value_name = "FILE")]
     design: Option<PathBuf>,
-}
-
-/// A scene and a design whose numbers are printed.
-#[derive(Args)]
-pub struct Listed {
-    #[command(flatten)]
-    inspected: Inspected,
-    /// Print every number as JSON
-    #[arg(long)]
-    json: bool,
-}
-
-/// A listing with the design that it is of.
-#[derive(Serialize)]
-struct Of<T> {
-    design: String,
-    #[serde(flatten)]
-    listing: T,
 }
 
 /// A design and its name for a person.
@@ -105,21 +85,4 @@ impl Inspected {
 
 fn design_in(path: &Path) -> String {
     format!("design {}", path.display())
-}
-
-impl Listed {
-    pub(crate) fn read(&self) -> Result<(Scene, DesignVector, String)> {
-        self.inspected.read()
-    }
-
-    /// Prints the numbers of the design with this name.
-    pub(crate) fn print(&self, design: String, listing: impl Serialize + Display) -> Result<()> {
-        if self.json {
-            let of = Of { design, listing };
-            println!("{}", serde_json::to_string_pretty(&of)?);
-        } else {
-            print!("{design}\n\n{listing}");
-        }
-        Ok(())
-    }
 }

@@ -64,6 +64,12 @@ pub struct LearnCommand {
     /// 2 mm of thickness on, below it default]
     #[arg(long, value_name = "TIER")]
     tier: Option<Tier>,
+    /// Number of rays of the first round
+    #[arg(long, value_name = "N", default_value_t = 25, value_parser = clap::value_parser!(u16).range(6..))]
+    rays: u16,
+    /// Number of rays of the spot check, each with 4 states
+    #[arg(long, value_name = "N", default_value_t = 16, value_parser = clap::value_parser!(u16).range(3..))]
+    spot_rays: u16,
     /// Seed of the states of the spot check. Errors that led to a choice are measured again with another seed
     #[arg(long, value_name = "SEED", default_value_t = 1)]
     spot_seed: u64,
@@ -78,9 +84,7 @@ pub struct LearnCommand {
 const FILM_PARENTS: &str = "data/pet-0.5mm";
 const PLATE_PARENTS: &str = "data/polypropylene-3mm";
 const PARENTS: [&str; 4] = ["medium", "medium-1", "medium-2", "medium-3"];
-/// Number of rays of the first round, of the spot check, and states on each of the latter.
-const FIRST_RAYS: usize = 25;
-const SPOT_RAYS: usize = 16;
+/// States on a ray of the spot check.
 const STATES_PER_RAY: usize = 4;
 /// The shipped training, and its copy in the folder. `kirigami init` writes another training to the same folder.
 const TRAINING_FILE: &str = "fine-tuning.toml";
@@ -130,7 +134,7 @@ impl LearnCommand {
             folder: &self.out.join("campaign"),
             solver: &CalculiX::find()?,
             workers: self.solve.workers(),
-            first_rays: FIRST_RAYS,
+            first_rays: usize::from(self.rays),
             spot: spot.rows(),
             accuracy,
             deadline: began.checked_add(self.time),
@@ -197,7 +201,7 @@ impl LearnCommand {
 
     /// The states on which weights are tested, drawn uniformly inside the region of the campaign.
     fn spot_check(&self, campaign: &Campaign, region: &TrainingDomain) -> Result<Database> {
-        let count = STATES_PER_RAY * SPOT_RAYS;
+        let count = STATES_PER_RAY * usize::from(self.spot_rays);
         let paths = random_paths(
             drawn(campaign, region),
             count,
@@ -213,7 +217,7 @@ impl LearnCommand {
         }
         let states = check.rows.len();
         let database = Database::collect(check.rows, &Gates::default(), &SplitPlan::default())
-            .context("the solver followed too few rays of the spot check: choose another --spot-seed")?;
+            .context("the solver followed too few rays of the spot check: increase --spot-rays")?;
         database.write(&self.out.join("spot-check.parquet"), true)?;
         println!(
             "spot check: {} rays, {states} of {count} states on rays followed to their end, {:.0} s of CPU time",

@@ -5,7 +5,6 @@ use crate::commands::surrogate::errors::StateErrors;
 use crate::commands::surrogate::trained_material;
 use crate::ui::count::count;
 use crate::ui::run_folder;
-use crate::ui::with_unit::percent;
 use anyhow::{Result, ensure};
 use clap::Args;
 use dataset::{Database, Gates, SplitPlan};
@@ -17,8 +16,6 @@ use verification::{judging_tier, random_paths, spot_check};
 
 /// States on a ray: more need fewer solves but cover fewer hinges.
 const STATES_PER_RAY: usize = 4;
-/// Rays before the first look at the intervals of --within.
-const FIRST_RAYS: usize = 16;
 /// Minimum number of rays of a database, which is split in three parts.
 const MIN_RAYS: usize = 3;
 
@@ -26,20 +23,16 @@ const MIN_RAYS: usize = 3;
 ///
 /// The states lie on no training ray. Solves them by finite elements and writes them as a database, which
 /// must not be used for training, so that `surrogate test` can test other weights on it. Prints the
-/// distribution of the errors, their 95 % intervals over other rays, and the worst states. With --within rays are added until
-/// these intervals are narrow enough. Example:
-/// kirigami surrogate spot-check runs/weights/surrogate.safetensors --count 400 --within 33% --tier default
+/// distribution of the errors, their 95 % intervals over other rays, and the worst states. Example:
+/// kirigami surrogate spot-check runs/weights/surrogate.safetensors --count 400 --tier default
 #[derive(Args)]
 pub struct SpotCheckCommand {
     /// Weights (safetensors with their card)
     #[arg(value_name = "WEIGHTS")]
     weights: PathBuf,
-    /// Number of states; with --within at most
+    /// Number of states, four on a ray
     #[arg(long, value_name = "N", default_value_t = 200, value_parser = count::<usize>)]
     count: usize,
-    /// Stop as soon as the 95 % intervals of the errors of W and of the forces are within this part of them, such as 33%
-    #[arg(long, value_name = "PERCENT", value_parser = percent)]
-    within: Option<f64>,
     /// Seed of the random states
     #[arg(long, value_name = "SEED", default_value_t = 0)]
     seed: u64,
@@ -75,28 +68,8 @@ impl SpotCheckCommand {
         );
         let _held = run_folder::hold(&self.out)?;
         let windows = self.solve.service(&self.out)?;
-        let mut rays = match self.within {
-            Some(_) => FIRST_RAYS.min(paths.len()),
-            None => paths.len(),
-        };
-        let (check, intervals) = loop {
-            let check =
-                spot_check(&windows, &paths[..rays], &material, tier).map_err(task_error)?;
-            let intervals = ErrorInterval::of(&surrogate, &check.rows);
-            let is_known = self.within.is_none_or(|within| {
-                intervals.is_some_and(|found| {
-                    let mut widths = found.iter().map(ErrorInterval::relative_half_width);
-                    widths.all(|width| width <= within / 100.0)
-                })
-            });
-            if is_known || rays == paths.len() {
-                if !is_known {
-                    println!("the intervals are wider than --within: increase --count");
-                }
-                break (check, intervals);
-            }
-            rays = (rays + rays.div_ceil(2)).min(paths.len());
-        };
+        let check = spot_check(&windows, &paths, &material, tier).map_err(task_error)?;
+        let intervals = ErrorInterval::of(&surrogate, &check.rows);
         for unsolved in &check.unsolved {
             println!("not solved: {unsolved}");
         }
@@ -111,7 +84,7 @@ impl SpotCheckCommand {
         println!(
             "{} states of {} rays on tier {tier}; {} states on rays that the solver did not follow to their end",
             database.rows().len(),
-            rays,
+            paths.len(),
             check.unknown_states
         );
         if let Some([w, forces]) = intervals {

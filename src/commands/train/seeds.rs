@@ -5,10 +5,9 @@
 //! and the comparison.
 
 use crate::commands::train::kept_fits::{continued_fit, is_of};
-use crate::commands::train::{QUANTITIES, TrainCommand, hold};
+use crate::commands::train::{TrainCommand, hold};
 use crate::ui::exit::Unfinished;
 use crate::ui::progress::announce;
-use crate::ui::table::{Table, table};
 use crate::ui::{comparison, interrupt, output_file};
 use ::train::{EnsembleCheck, Trained, TrainingConfig, disagreements};
 use anyhow::{Context, Result, bail, ensure};
@@ -16,7 +15,7 @@ use dataset::{Database, Part};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
 use support::table::number_or_dash;
-use surrogate::{Surrogate, TestErrors};
+use surrogate::Surrogate;
 
 /// What all seeds of one command have in common.
 #[derive(Clone, Copy)]
@@ -138,7 +137,7 @@ impl TrainCommand {
         let name = name.file_name().unwrap_or_default().to_string_lossy();
         println!("{}\n", comparison::write(folder, &name, COLUMNS, rows)?);
         print_spread(&members, shared.database);
-        self.write(&members[best], shared.database)
+        self.write(&members[best])
     }
 
     /// The cells of one seed in the comparison.
@@ -204,10 +203,8 @@ fn validation_error(trained: &Trained) -> f64 {
     [w, d].into_iter().filter(|error| !error.is_nan()).product()
 }
 
-/// Prints the spread of the errors of the seeds, and what it implies for the error.
+/// Prints the spread of the forces of the seeds, and what it implies for the error.
 fn print_spread(members: &[Trained], database: &Database) {
-    let errors: Vec<TestErrors> = members.iter().map(|member| member.test_errors).collect();
-    println!("{}\n", spread_table(&errors));
     let surrogates = members.iter().map(|member| member.surrogate.clone());
     let surrogates: Vec<Surrogate> = surrogates.collect();
     let check = EnsembleCheck::new(&disagreements(&surrogates, &database.part(Part::Test)));
@@ -221,25 +218,4 @@ fn print_spread(members: &[Trained], database: &Database) {
         100.0 * check.error_in_top_tenth,
         check.correlation
     );
-}
-
-/// Minimum, mean and maximum relative root mean square error over the trainings.
-fn spread_table(errors: &[TestErrors]) -> Table {
-    let header = format!("relative RMSE (%) of {} seeds", errors.len());
-    let mut table = table([header.as_str(), "minimum", "mean", "maximum"]);
-    for (quantity, name) in QUANTITIES.into_iter().enumerate() {
-        let values: Vec<f64> = errors
-            .iter()
-            .map(|errors| errors.percents()[quantity])
-            .collect();
-        let fold =
-            |pick: fn(f64, f64) -> f64| values.iter().copied().reduce(pick).unwrap_or(f64::NAN);
-        table.add_row([
-            name.to_owned(),
-            number_or_dash(fold(f64::min), 2),
-            number_or_dash(values.iter().sum::<f64>() / values.len() as f64, 2),
-            number_or_dash(fold(f64::max), 2),
-        ]);
-    }
-    table
 }
