@@ -299,9 +299,9 @@ fn tolerances() {
         "{text}"
     );
     let text = std::fs::read_to_string(format!("{root}/configs/scenes/a4-polyester.toml"));
-    let text = text
-        .unwrap()
-        .replace("../", &format!("{root}/configs/scenes/../"));
+    let text = (text.unwrap())
+        .replace("../../data", &format!("{root}/data"))
+        .replace("../materials", "configs/materials");
     let with_kerf = text + "\n[tolerances]\nkerf = 0.1\n";
     std::fs::write(work.path("kerf.toml"), with_kerf).unwrap();
     let refused =

@@ -13,7 +13,7 @@ const TOLERANCE: f64 = 2.0;
 pub struct ToleranceConfig {
     /// Tolerance +- of the width of every ligament by itself, from where the cutter ends its cuts (mm): an option of `kirigami
     /// inspect tolerances`, no key.
-    #[serde(skip_deserializing)]
+    #[serde(skip)]
     pub ligament: Option<f64>,
     /// Tolerance +- of the width that the cutter removes (mm): half of it moves the edge of a ligament and that of its hole.
     #[schemars(range(min = 0.0, max = 1.0))]

@@ -11,7 +11,8 @@ use design::objective::design_problem::DesignProblem;
 use design::pattern::design_vector::DesignVector;
 use design::scene::{Scene, ToleranceConfig};
 use design::sheet::cut_sheet::Sheet;
-use serde::Serialize;
+use serde::{Serialize, Serializer};
+use serde_json::json;
 use std::fmt;
 use support::table::number_or_dash;
 
@@ -22,6 +23,7 @@ const SHOWN: usize = 8;
 #[derive(Clone, Debug, Serialize)]
 pub struct ToleranceListing {
     /// Two standard deviations each (mm).
+    #[serde(serialize_with = "with_ligament")]
     pub tolerances: ToleranceConfig,
     /// To first order.
     pub first_order: FirstOrder,
@@ -32,10 +34,22 @@ pub struct ToleranceListing {
     /// Whether it is that of the known errors of the model.
     within_model: bool,
     /// The tolerance of the ligaments, the kerf and the thickness, each alone, that moves the corners by that (mm).
+    #[serde(serialize_with = "with_ligament")]
     pub allowed: Option<ToleranceConfig>,
     /// The designed sheet, and its state at full load.
     #[serde(skip)]
     designed: (Sheet, LoadStep),
+}
+
+/// Tolerances with that of the ligaments, which is no key of a scene.
+fn with_ligament<S: Serializer>(
+    of: &(impl Into<Option<ToleranceConfig>> + Copy),
+    serializer: S,
+) -> Result<S::Ok, S::Error> {
+    let of: Option<ToleranceConfig> = (*of).into();
+    let all =
+        of.map(|of| json!({ "ligament": of.ligament, "kerf": of.kerf, "thickness": of.thickness }));
+    all.serialize(serializer)
 }
 
 /// Seed of the sheets at random.
