@@ -1,10 +1,10 @@
 //! The command line: one subcommand per module of [`crate::commands`].
 
-#[cfg(feature = "pipeline")]
-use crate::commands::pipeline;
 use crate::commands::{
     compare, completions, cut, design, export, init, inspect, man, material, studio,
 };
+#[cfg(feature = "pipeline")]
+use crate::commands::{demo, pipeline};
 use crate::ui::progress;
 use anyhow::Result;
 use clap::{CommandFactory, Parser, Subcommand};
@@ -42,6 +42,8 @@ enum Command {
     Init(init::InitCommand),
     Studio(studio::StudioCommand),
     #[cfg(feature = "pipeline")]
+    Demo(demo::DemoCommand),
+    #[cfg(feature = "pipeline")]
     #[command(flatten)]
     Pipeline(pipeline::PipelineCommand),
     Completions(completions::CompletionsCommand),
@@ -66,6 +68,8 @@ impl Cli {
             Command::Export(command) => command.run(),
             Command::Init(command) => command.run(),
             Command::Studio(command) => command.run(),
+            #[cfg(feature = "pipeline")]
+            Command::Demo(command) => command.run(|words| Self::try_parse_from(words)?.run()),
             #[cfg(feature = "pipeline")]
             Command::Pipeline(command) => command.run(),
             Command::Completions(command) => command.run(Self::command()),

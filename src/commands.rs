@@ -1,5 +1,23 @@
 //! The subcommands, one per file.
 
+/// Subcommands, each run by its own command.
+macro_rules! subcommands {
+    ($visible:vis enum $name:ident { $($(#[$of:meta])* $variant:ident($command:ty),)* }) => {
+        #[derive(clap::Subcommand)]
+        $visible enum $name {
+            $($(#[$of])* $variant($command),)*
+        }
+
+        impl $name {
+            pub(crate) fn run(&self) -> anyhow::Result<()> {
+                match self {
+                    $($(#[$of])* Self::$variant(command) => command.run(),)*
+                }
+            }
+        }
+    };
+}
+
 #[cfg(feature = "pipeline")]
 pub mod campaign;
 pub mod compare;

@@ -89,17 +89,6 @@ fn a_sheet_is_cut_for_a_machine() {
     assert_eq!(json["services"], serde_json::json!([]));
     let unknown = work.error(&format!("cut {SCENE} --for nife --design start"));
     assert!(unknown.contains("did you mean knife?"), "{unknown}");
-
-    // A table of one's own: a tool wider than the slits cannot follow their contours.
-    std::fs::write(
-        work.path("own.toml"),
-        "[[machine]]\nname = \"mine\"\nsays = \"mine\"\ncuts = \"slots\"\ntool_kerf = 0.3\nmarks = false\n",
-    )
-    .unwrap();
-    let wide = work.error(&format!(
-        "cut {SCENE} --for mine --machines own.toml --design start"
-    ));
-    assert!(wide.contains("increase process.kerf"), "{wide}");
 }
 
 #[test]

@@ -298,7 +298,14 @@ fn tolerances() {
         text.contains("ligament of hinge") && text.contains("all, 4 sheets"),
         "{text}"
     );
-    let refused = work.error(&format!("{scene} --kerf 0.1 --picture kerf.svg"));
+    let text = std::fs::read_to_string(format!("{root}/configs/scenes/a4-polyester.toml"));
+    let text = (text.unwrap())
+        .replace("../../data", &format!("{root}/data"))
+        .replace("../materials", "configs/materials");
+    let with_kerf = text + "\n[tolerances]\nkerf = 0.1\n";
+    std::fs::write(work.path("kerf.toml"), with_kerf).unwrap();
+    let refused =
+        work.error("inspect tolerances kerf.toml --design start --samples 0 --picture kerf.svg");
     assert!(refused.contains("give their tolerance"), "{refused}");
     assert!(!work.path("kerf.svg").exists());
 }

@@ -149,8 +149,6 @@ fn mistakes_in_a_measurement_name_their_line_and_column() {
     );
     assert!(message("cm", "inch").contains("column `unit`: `inch` is none of mm, cm, m, px"));
     assert!(message("cm", "px").contains("pixels and lengths are mixed"));
-    let given = work.error(&format!("compare {SCENE} points.csv --unit mm"));
-    assert!(given.contains("leave out --unit"), "{given}");
     std::fs::remove_file(work.path("runs/linear-7x7/state.json")).unwrap();
     let without = work.error(&format!("compare {SCENE} points.csv"));
     assert!(without.contains("kirigami design"), "{without}");

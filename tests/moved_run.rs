@@ -63,10 +63,6 @@ fn a_run_is_replayed_from_its_folder_alone() {
     work.output("cut moved --force");
     let written = |name: &str| std::fs::read(work.path("moved").join(name)).unwrap();
     assert_eq!(written("cut/cut.dxf"), written("cut.dxf"));
-    // Other weights are asked for in so many words, and are not those of the run.
-    let shipped = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/pet-0.5mm/small.safetensors");
-    let other = format!("export moved --weights {}", shipped.display());
-    work.output(&other);
     work.output("export moved --out exported");
     assert!(work.path("exported/sheet.pvd").exists());
 

@@ -298,21 +298,18 @@ fn compared(work: &Workplace, name: &str) -> Vec<String> {
 }
 
 #[test]
-fn shards_train_all_seeds_and_the_last_one_chooses() {
+fn seeds_that_are_stopped_continue_and_one_is_chosen() {
     let work = workplace();
     work.edit(
         "configs/training/demo.toml",
         &[("epochs = 150", "epochs = 40")],
     );
     let train = format!("train {DATABASE} --config configs/training/demo.toml");
-    let alone = work.error(&format!("{train} --shard 1/2 --out runs/alone.safetensors"));
-    assert!(alone.contains("--seeds"), "{alone}");
     work.output(&format!("{train} --seeds 3 --out runs/whole.safetensors"));
 
+    // Stopped in the first training.
     let seeds = format!("{train} --seeds 3 --out runs/array.safetensors");
-    // The first shard is stopped in its first training: it continues later, at the same time as the other shard.
-    let first = || work.program(&format!("{seeds} --shard 1/2"));
-    let mut stopped = first().stdout(Stdio::null()).spawn().unwrap();
+    let mut stopped = work.program(&seeds).stdout(Stdio::null()).spawn().unwrap();
     let deadline = Instant::now() + Duration::from_secs(60);
     while !work.path("runs/array-seed-0.lock").exists() {
         assert!(Instant::now() < deadline, "no training begins");
@@ -322,13 +319,7 @@ fn shards_train_all_seeds_and_the_last_one_chooses() {
     assert_eq!(stopped.wait().unwrap().code(), Some(75));
     assert!(work.path("runs/array-seed-0.state").exists());
     assert!(!work.path("runs/array-seed-0.safetensors").exists());
-    let mut shards = ["1/2", "2/2"].map(|shard| {
-        let mut command = work.program(&format!("{seeds} --shard {shard}"));
-        command.stdout(Stdio::null()).spawn().unwrap()
-    });
-    for shard in &mut shards {
-        assert!(shard.wait().unwrap().success());
-    }
+    work.output(&seeds);
     let table = compared(&work, "array");
     assert_eq!(table, compared(&work, "whole"));
     let chosen: Vec<&String> = table.iter().filter(|row| row.contains(",yes,")).collect();
@@ -345,7 +336,7 @@ fn shards_train_all_seeds_and_the_last_one_chooses() {
         assert!(work.path("runs").join(name).exists(), "{name}");
     }
 
-    // The same command trains nothing again; a seed whose files are lost is trained again by its shard.
+    // The same command trains nothing again; a seed whose files are lost is trained again.
     let files = [
         "array-seed-0.state",
         "array-seed-2.safetensors",
@@ -356,9 +347,7 @@ fn shards_train_all_seeds_and_the_last_one_chooses() {
     assert!(files.map(read) == before);
     std::fs::remove_file(work.path("runs/array-seed-1.safetensors")).unwrap();
     std::fs::remove_file(work.path("runs/array-seed-1.state")).unwrap();
-    let others = work.output(&format!("{seeds} --shard 1/2"));
-    assert!(others.contains("2 of 3 seeds are trained"), "{others}");
-    work.output(&format!("{seeds} --shard 2/2"));
+    work.output(&seeds);
     assert_eq!(compared(&work, "array"), table);
 
     // Weights of another training are replaced on request only.

@@ -24,14 +24,14 @@ fn four_panels(work: &Workplace, name: &str, replacements: &[(&str, &str)]) {
 }
 
 fn springback(scene: &str, options: &str) -> String {
-    let law = repository("data/polypropylene-3mm/springback.json");
-    format!("inspect springback {scene} --design start --law {law} {options}")
+    format!("inspect springback {scene} --design start {options}")
 }
 
 #[test]
 fn a_plate_springs_back_and_one_of_twice_the_thickness_twice_as_far() {
     let work = Workplace::new();
-    four_panels(&work, "three.toml", &[]);
+    let (weights, named) = weights_with(&repository("data/polypropylene-3mm/springback.json"));
+    four_panels(&work, "three.toml", &[(weights, &named)]);
     let doubled = [
         ("thickness = 3.0 ", "thickness = 6.0 "),
         ("[120.0, 120.0]", "[240.0, 240.0]"),
@@ -41,6 +41,7 @@ fn a_plate_springs_back_and_one_of_twice_the_thickness_twice_as_far() {
         ("kerf = 0.2", "kerf = 0.4"),
         ("r_win = 12.0", "r_win = 24.0"),
         ("stroke = 22.0", "stroke = 44.0"),
+        (weights, &named),
     ];
     four_panels(&work, "six.toml", &doubled);
     let [three, six] = ["three.toml", "six.toml"].map(|scene| -> Value {
@@ -142,7 +143,7 @@ fn the_report_says_what_stays_by_the_law_that_the_scene_names() {
     assert!(text().contains(unknown), "{}", text());
     assert!(
         work.error("inspect springback run")
-            .contains("name one (--law)")
+            .contains("set surrogate.springback")
     );
 }
 
@@ -169,19 +170,10 @@ fn a_scene_with_a_law_for_another_sheet_is_refused() {
 }
 
 #[test]
-fn laws_that_are_not_for_the_sheet_are_refused() {
+fn weights_that_are_not_for_the_sheet_are_refused() {
     let work = Workplace::new();
-    four_panels(&work, "scene.toml", &[("r_win = 12.0", "r_win = 12.0")]);
-    let refused = |law: &str| {
-        work.error(&format!(
-            "inspect springback scene.toml --design start --law {law}"
-        ))
-    };
-    let film = repository("data/pet-0.5mm/medium.json");
-    assert!(refused(&film).contains("is not a law of released hinges"));
-    assert!(refused("nowhere.json").contains("cannot read nowhere.json"));
     let error = work.error(&springback("configs/scenes/linear-7x7.toml", ""));
-    assert!(error.contains("hinge = \"surrogate\""), "{error}");
+    assert!(error.contains("set surrogate.springback"), "{error}");
     let film = "configs/materials/polypropylene-3mm.toml";
     let weights = repository("data/pet-0.5mm/medium.safetensors");
     let error = work.error(&format!("surrogate release {weights} --material {film}"));

@@ -31,7 +31,7 @@ fi
 # tasks: a task is named by both numbers. A task that was cancelled is not running any more and stays cancelled.
 task=${SLURM_ARRAY_JOB_ID}_$SLURM_ARRAY_TASK_ID
 state=$(squeue --noheader --format=%T --jobs="$task")
-if [ $code -eq 75 ] && [ "$state" = RUNNING ] && [ "${SLURM_RESTART_COUNT:-0}" -lt @requeues@ ]; then
+if [ $code -eq 75 ] && [ "$state" = RUNNING ] && [ "${SLURM_RESTART_COUNT:-0}" -lt 20 ]; then
     scontrol requeue "$task"
 fi
 exit $code

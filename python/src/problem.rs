@@ -444,7 +444,7 @@ impl Problem {
     fn stored<'py>(&self, py: Python<'py>, file: Option<PathBuf>) -> PyResult<Doubles<'py>> {
         let design = match file {
             Some(file) => stored_design(&file, &self.scene).map_err(errors::scene)?,
-            None => design_of_run(&self.scene, false)
+            None => design_of_run(&self.scene)
                 .map_err(errors::scene)?
                 .ok_or_else(|| {
                     errors::scene(format!(

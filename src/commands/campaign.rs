@@ -11,12 +11,10 @@ mod run;
 mod status;
 mod submit;
 
-pub use collect::CollectCommand;
 pub(crate) use run::RayProgress;
-pub use run::RunCommand;
 
 use anyhow::Result;
-use clap::{Args, Subcommand};
+use clap::Args;
 
 /// Regenerate the hinge database: a campaign of window solves
 ///
@@ -28,31 +26,22 @@ pub struct CampaignCommand {
     action: Action,
 }
 
-#[derive(Subcommand)]
-enum Action {
-    Plan(plan::PlanCommand),
-    Run(RunCommand),
-    Submit(submit::SubmitCommand),
-    Status(status::StatusCommand),
-    Retry(retry::RetryCommand),
-    Check(check::CheckCommand),
-    Collect(CollectCommand),
-    Restore(restore::RestoreCommand),
-    Extend(extend::ExtendCommand),
+subcommands! {
+    enum Action {
+        Plan(plan::PlanCommand),
+        Run(run::RunCommand),
+        Submit(submit::SubmitCommand),
+        Status(status::StatusCommand),
+        Retry(retry::RetryCommand),
+        Check(check::CheckCommand),
+        Collect(collect::CollectCommand),
+        Restore(restore::RestoreCommand),
+        Extend(extend::ExtendCommand),
+    }
 }
 
 impl CampaignCommand {
     pub(crate) fn run(&self) -> Result<()> {
-        match &self.action {
-            Action::Plan(command) => command.run(),
-            Action::Run(command) => command.run(),
-            Action::Submit(command) => command.run(),
-            Action::Status(command) => command.run(),
-            Action::Retry(command) => command.run(),
-            Action::Check(command) => command.run(),
-            Action::Collect(command) => command.run(),
-            Action::Restore(command) => command.run(),
-            Action::Extend(command) => command.run(),
-        }
+        self.action.run()
     }
 }

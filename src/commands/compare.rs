@@ -1,7 +1,7 @@
 //! `kirigami compare`: points measured on a deployed sheet, compared with its predicted equilibrium path.
 
-use crate::commands::inspect::scene_args::{DESIGN_OF_RUN, Inspected};
-use crate::commands::points_file::PointArgs;
+use crate::commands::inspect::scene_args::Inspected;
+use crate::commands::points_file::PointsFile;
 use crate::ui::{picture, run_folder};
 use anyhow::{Context, Result, ensure};
 use clap::Args;
@@ -18,13 +18,13 @@ use std::path::{Path, PathBuf};
 
 /// Compare points measured on a deployed sheet with the prediction
 ///
-/// MEASURED is a CSV file with the columns panel, corner, x, y; without a corner the point is the panel's centre.
+/// MEASURED is a CSV file with the columns panel, corner, x, y and, unless they are in mm, unit (mm, cm, m, or px of a picture, whose
+/// scale is fitted); without a corner the point is the panel's centre.
 /// Corners count 0 to 3 counter-clockwise from the lower left one in the flat sheet. Rows may be missing; position and
 /// rotation of the measurement are free. Writes report, tables and a picture; see docs/MEASURING.md. Examples:
 /// kirigami compare configs/scenes/pet-3x3.toml --template;
-/// kirigami compare configs/scenes/pet-3x3.toml points.csv --unit cm
+/// kirigami compare configs/scenes/pet-3x3.toml points.csv --y-down
 #[derive(Args)]
-#[command(mut_arg("design", |arg| arg.help(DESIGN_OF_RUN)))]
 pub struct CompareCommand {
     #[command(flatten)]
     designed: Inspected,
@@ -35,8 +35,9 @@ pub struct CompareCommand {
     /// one frame, the slip of the supports
     #[arg(long, value_name = "FILE")]
     closed: Option<PathBuf>,
-    #[command(flatten)]
-    points: PointArgs,
+    /// y counts downwards, as in the pixels of a picture
+    #[arg(long)]
+    y_down: bool,
     /// Write an empty table of all points and a picture of their numbers, and compare nothing
     #[arg(long, conflicts_with_all = ["measured", "closed"])]
     template: bool,
@@ -102,8 +103,8 @@ impl CompareCommand {
     }
 
     fn fit(&self, file: &Path, path: &ShapePath) -> Result<MeasuredSheet> {
-        let (file, scale) = self.points.read(file)?;
-        MeasuredSheet::new(path, &file.points, scale).map_err(|error| file.located(error))
+        let file = PointsFile::read(file, self.y_down)?;
+        MeasuredSheet::new(path, &file.points, file.scale()).map_err(|error| file.located(error))
     }
 
     /// Writes `template.csv`, to be filled, and `numbering.svg`.

@@ -1,6 +1,6 @@
 //! `kirigami cut`: the cut files of a designed sheet, and tiles of paper.
 
-use crate::commands::inspect::scene_args::{DESIGN_OF_RUN, Inspected};
+use crate::commands::inspect::scene_args::Inspected;
 use crate::ui::run_folder;
 use anyhow::{Context, Result, ensure};
 use clap::Args;
@@ -25,7 +25,6 @@ use support::severity::Severity;
 /// kirigami cut configs/scenes/demo.toml --paper a4;
 /// kirigami cut configs/scenes/a4-plate.toml --for laser-service
 #[derive(Args)]
-#[command(mut_arg("design", |arg| arg.help(DESIGN_OF_RUN)))]
 pub struct CutCommand {
     #[command(flatten)]
     designed: Inspected,
@@ -35,13 +34,10 @@ pub struct CutCommand {
     /// Write tiles for this paper: a5 to a0, letter or tabloid
     #[arg(long, value_name = "PAPER", value_parser = paper)]
     paper: Option<Paper>,
-    /// Write one DXF and one SVG for this machine: laser-service, lightburn, knife, plain or one of --machines; for a service
+    /// Write one DXF and one SVG for this machine: laser-service, lightburn, knife or plain; for a service
     /// list which refuse the sheet, and why. With --design start before the search
     #[arg(long = "for", value_name = "MACHINE", conflicts_with = "paper")]
     machine: Option<String>,
-    /// Table of machines and services (TOML) [default: the shipped configs/machines.toml]
-    #[arg(long, value_name = "FILE", requires = "machine")]
-    machines: Option<PathBuf>,
     /// Write the files even if the design has errors
     #[arg(long)]
     force: bool,
@@ -68,152 +64,37 @@ struct SheetFiles {
     written: Written,
 }
 
+/// Writes tiles for a paper, besides the usual files, in the run in a folder.
+pub(crate) fn tiles_of_run(run: &Path, paper: &str) -> Result<Written> {
+    let paper = self::paper(paper).map_err(anyhow::Error::msg)?;
+    let run = Checked::new(&Inspected::of(run), false)?;
+    Ok(run.cut(Some(paper), None)?.written)
+}
+
+/// Writes the file of a machine in the run in a folder.
+pub(crate) fn machine_file_of_run(run: &Path, name: &str) -> Result<(Written, Vec<Verdict>)> {
+    let machines = Machines::shipped();
+    let machine = self::machine(&machines, name)?;
+    let run = Checked::new(&Inspected::of(run), false)?;
+    let file = run.cut_for(&machines, machine, None)?;
+    Ok((file.written, file.verdicts))
+}
+
 impl CutCommand {
-    /// Writes tiles for a paper, besides the usual files, in the run in a folder.
-    pub(crate) fn tiles_of_run(run: &Path, paper: &str) -> Result<Written> {
-        let paper = Some(self::paper(paper).map_err(anyhow::Error::msg)?);
-        let files = Self {
-            paper,
-            ..Self::of_run(run)
-        };
-        Ok(files.cut()?.written)
-    }
-
-    /// Writes the file of a machine in the run in a folder.
-    pub(crate) fn machine_file_of_run(run: &Path, name: &str) -> Result<(Written, Vec<Verdict>)> {
-        let machines = Machines::read(None)?;
-        let machine = machine(&machines, name)?;
-        let file = Self::of_run(run).cut_for(&machines, machine)?;
-        Ok((file.written, file.verdicts))
-    }
-
-    fn of_run(run: &Path) -> Self {
-        Self {
-            designed: Inspected {
-                scene: run.to_owned(),
-                design: None,
-                weights: None,
-            },
-            out: None,
-            paper: None,
-            machine: None,
-            machines: None,
-            force: false,
-            json: false,
-        }
-    }
-
     pub(crate) fn run(&self) -> Result<()> {
-        let Some(name) = self.machine.as_deref() else {
-            self.print(&self.cut()?);
-            return Ok(());
-        };
-        let machines = Machines::read(self.machines.as_deref())?;
-        let machine = machine(&machines, name)?;
-        ensure!(
-            Path::new(name).file_name().is_some_and(|file| file == name),
-            "the machine {name} cannot name a folder: give it a name without slashes"
-        );
-        self.print_file(machine, &self.cut_for(&machines, machine)?);
+        let (machines, out) = (Machines::shipped(), self.out.as_deref());
+        let machine = self.machine.as_deref();
+        let machine = machine
+            .map(|name| self::machine(&machines, name))
+            .transpose()?;
+        let checked = Checked::new(&self.designed, self.force)?;
+        match machine {
+            None => self.print(&checked.cut(self.paper, out)?),
+            Some(machine) => {
+                self.print_file(machine, &checked.cut_for(&machines, machine, out)?);
+            }
+        }
         Ok(())
-    }
-
-    /// Reads and deploys the design; an error if it has any, unless it is forced.
-    fn checked(&self) -> Result<Checked> {
-        let (scene, design, named) = self.designed.read_run()?;
-        let deployment = scene.problem()?.deploy(&design)?;
-        let cuts = CutLines::of(&scene, &deployment);
-        let found = warnings(&scene, &deployment, &cuts);
-        let errors = found.iter().filter(|it| it.severity == Severity::Error);
-        let errors: Vec<String> = errors.map(Warning::to_string).collect();
-        let cuts = cuts?;
-        ensure!(
-            self.force || errors.is_empty(),
-            "no cut file: {}; --force writes one",
-            errors.join("; ")
-        );
-        Ok(Checked {
-            scene,
-            named,
-            deployment,
-            cuts,
-            errors,
-        })
-    }
-
-    /// Writes the cut files, and tiles.
-    fn cut(&self) -> Result<SheetFiles> {
-        let Checked {
-            scene,
-            deployment: Deployment { sheet, .. },
-            cuts,
-            errors,
-            ..
-        } = self.checked()?;
-        let mut whole = SheetDrawing::new(&cuts, &sheet, &scene.material);
-        let mut annotated = whole.annotated();
-        for drawing in [&mut annotated, &mut whole.numbered] {
-            mark_errors(drawing, &errors);
-        }
-        let tiles = self.paper.map(|paper| {
-            let tiling = Tiling::new(paper, whole.numbered.bounds())?;
-            Ok::<_, FabricationError>((paper, tiling))
-        });
-        let tiles = tiles.transpose()?;
-        let out = self.out_or(&scene, "cut");
-        let _held = run_folder::hold(&out)?;
-        remove_earlier(&out)?;
-        let mut written = Written::to(&out)?;
-        written.drawing(&annotated)?;
-        written.file("cut-list.csv", &cut_list(&sheet, &cuts))?;
-        written.file("attachments.csv", &attachment_list(&cuts))?;
-        written.file("cut-summary.csv", &cut_summary(&cuts, &whole.totals))?;
-        if let Some((paper, tiling)) = &tiles {
-            let title = &scene.config.title;
-            let pdf = tiles_pdf(&whole.numbered, tiling, title, &whole.notes);
-            written.file(&tiles_name(*paper), &pdf)?;
-        }
-        Ok(SheetFiles {
-            totals: whole.totals,
-            tiling: tiles.map(|(_, tiling)| tiling),
-            written,
-        })
-    }
-
-    /// Writes the file of a machine.
-    fn cut_for(&self, machines: &Machines, machine: &Machine) -> Result<MachineFile> {
-        let Checked {
-            scene,
-            named,
-            cuts,
-            errors,
-            ..
-        } = self.checked()?;
-        let mut drawing = machine.drawing(&cuts)?;
-        mark_errors(&mut drawing, &errors);
-        let out = self.out_or(&scene, &format!("cut/{}", machine.name));
-        let _held = run_folder::hold(&out)?;
-        let mut written = Written::to(&out)?;
-        written.drawing(&drawing)?;
-        let features = cuts.features();
-        let services = machines.service.iter().filter(|_| machine.services);
-        let verdicts = services.map(|service| Verdict {
-            name: service.name.clone(),
-            source: service.source.clone(),
-            refuses: service.refusals(&features, scene.material.thickness),
-        });
-        Ok(MachineFile {
-            verdicts: verdicts.collect(),
-            features,
-            named,
-            written,
-        })
-    }
-
-    /// The folder of the files: by default one in the run folder of the scene.
-    fn out_or(&self, scene: &Scene, folder: &str) -> PathBuf {
-        let out = self.out.clone();
-        out.unwrap_or_else(|| scene.output().join(folder))
     }
 
     fn print(&self, files: &SheetFiles) {
@@ -262,6 +143,98 @@ impl CutCommand {
             }
         }
         println!("written to {}", written.folder.display());
+    }
+}
+
+impl Checked {
+    /// Reads and deploys the design; an error if it has errors, unless it is forced.
+    fn new(designed: &Inspected, force: bool) -> Result<Self> {
+        let (scene, design, named) = designed.read_run()?;
+        let deployment = scene.problem()?.deploy(&design)?;
+        let cuts = CutLines::of(&scene, &deployment);
+        let found = warnings(&scene, &deployment, &cuts);
+        let errors = found.iter().filter(|it| it.severity == Severity::Error);
+        let errors: Vec<String> = errors.map(Warning::to_string).collect();
+        let cuts = cuts?;
+        ensure!(
+            force || errors.is_empty(),
+            "no cut file: {}; --force writes one",
+            errors.join("; ")
+        );
+        Ok(Self {
+            scene,
+            named,
+            deployment,
+            cuts,
+            errors,
+        })
+    }
+
+    /// Writes the cut files, and tiles.
+    fn cut(&self, paper: Option<Paper>, out: Option<&Path>) -> Result<SheetFiles> {
+        let Self { scene, cuts, .. } = self;
+        let sheet = &self.deployment.sheet;
+        let mut whole = SheetDrawing::new(cuts, sheet, &scene.material);
+        let mut annotated = whole.annotated();
+        for drawing in [&mut annotated, &mut whole.numbered] {
+            mark_errors(drawing, &self.errors);
+        }
+        let tiles = paper.map(|paper| {
+            let tiling = Tiling::new(paper, whole.numbered.bounds())?;
+            Ok::<_, FabricationError>((paper, tiling))
+        });
+        let tiles = tiles.transpose()?;
+        let out = self.out_or(out, "cut");
+        let _held = run_folder::hold(&out)?;
+        remove_earlier(&out)?;
+        let mut written = Written::to(&out)?;
+        written.drawing(&annotated)?;
+        written.file("cut-list.csv", &cut_list(sheet, cuts))?;
+        written.file("attachments.csv", &attachment_list(cuts))?;
+        written.file("cut-summary.csv", &cut_summary(cuts, &whole.totals))?;
+        if let Some((paper, tiling)) = &tiles {
+            let title = &scene.config.title;
+            let pdf = tiles_pdf(&whole.numbered, tiling, title, &whole.notes);
+            written.file(&tiles_name(*paper), &pdf)?;
+        }
+        Ok(SheetFiles {
+            totals: whole.totals,
+            tiling: tiles.map(|(_, tiling)| tiling),
+            written,
+        })
+    }
+
+    /// Writes the file of a machine.
+    fn cut_for(
+        &self,
+        machines: &Machines,
+        machine: &Machine,
+        out: Option<&Path>,
+    ) -> Result<MachineFile> {
+        let mut drawing = machine.drawing(&self.cuts)?;
+        mark_errors(&mut drawing, &self.errors);
+        let out = self.out_or(out, &format!("cut/{}", machine.name));
+        let _held = run_folder::hold(&out)?;
+        let mut written = Written::to(&out)?;
+        written.drawing(&drawing)?;
+        let features = self.cuts.features();
+        let services = machines.service.iter().filter(|_| machine.services);
+        let verdicts = services.map(|service| Verdict {
+            name: service.name.clone(),
+            source: service.source.clone(),
+            refuses: service.refusals(&features, self.scene.material.thickness),
+        });
+        Ok(MachineFile {
+            verdicts: verdicts.collect(),
+            features,
+            named: self.named.clone(),
+            written,
+        })
+    }
+
+    /// The folder of the files: by default one in the run folder of the scene.
+    fn out_or(&self, out: Option<&Path>, folder: &str) -> PathBuf {
+        out.map_or_else(|| self.scene.output().join(folder), Path::to_owned)
     }
 }
 

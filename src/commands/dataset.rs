@@ -4,9 +4,9 @@ mod compare;
 
 use crate::ui::output_file;
 use anyhow::{Result, ensure};
-use clap::{Args, Subcommand};
+use clap::Args;
 use dataset::{ColumnMap, Database, Mixing, SplitPlan, rows_from_csv};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Summarise, join, split, correct and compare hinge databases, and exchange them as CSV
 #[derive(Args)]
@@ -15,16 +15,17 @@ pub struct DatasetCommand {
     action: Action,
 }
 
-#[derive(Subcommand)]
-enum Action {
-    Summary(SummaryCommand),
-    Check(CheckCommand),
-    Merge(MergeCommand),
-    Split(SplitCommand),
-    Import(ImportCommand),
-    Export(ExportCommand),
-    Compare(compare::CompareCommand),
-    Correct(CorrectCommand),
+subcommands! {
+    enum Action {
+        Summary(SummaryCommand),
+        Check(CheckCommand),
+        Merge(MergeCommand),
+        Split(SplitCommand),
+        Import(ImportCommand),
+        Export(ExportCommand),
+        Compare(compare::CompareCommand),
+        Correct(CorrectCommand),
+    }
 }
 
 /// Print counts, rejected rows and the range of every column
@@ -72,6 +73,15 @@ struct SplitCommand {
     /// on this database can then be fine-tuned without having seen the test geometries
     #[arg(long, value_name = "DATABASE", conflicts_with_all = ["seed", "validation", "test"])]
     like: Option<PathBuf>,
+    /// Seed of the split
+    #[arg(long, value_name = "N", default_value_t = SplitPlan::default().seed)]
+    seed: u64,
+    /// Fraction of the geometries for validation, which selects the checkpoint
+    #[arg(long, value_name = "FRACTION", default_value_t = SplitPlan::default().validation)]
+    validation: f64,
+    /// Fraction of the geometries for the test errors
+    #[arg(long, value_name = "FRACTION", default_value_t = SplitPlan::default().test)]
+    test: f64,
     #[command(flatten)]
     out: OutArgs,
 }
@@ -95,12 +105,8 @@ struct ExportCommand {
     /// Database (Parquet with its manifest)
     #[arg(value_name = "DATABASE")]
     database: PathBuf,
-    /// CSV file to write
-    #[arg(long, value_name = "FILE")]
-    out: PathBuf,
-    /// Replace an existing file
-    #[arg(long)]
-    replace: bool,
+    #[command(flatten)]
+    out: OutArgs,
 }
 
 /// Correct a database to a finer mesh, by those of its rays that were also solved on that mesh
@@ -119,46 +125,24 @@ struct CorrectCommand {
     /// Database with some of its rays on a finer mesh (Parquet with its manifest)
     #[arg(value_name = "REFERENCE")]
     reference: PathBuf,
-    /// Parquet file to write
-    #[arg(long, value_name = "FILE")]
-    out: PathBuf,
-    /// Replace an existing file
-    #[arg(long)]
-    replace: bool,
+    #[command(flatten)]
+    out: OutArgs,
 }
 
-/// The database to write, and the split of its geometries.
+/// The file to write.
 #[derive(Args)]
 struct OutArgs {
-    /// Parquet file to write
+    /// File to write
     #[arg(long, value_name = "FILE")]
     out: PathBuf,
     /// Replace an existing file
     #[arg(long)]
     replace: bool,
-    /// Seed of the split
-    #[arg(long, value_name = "N", default_value_t = SplitPlan::default().seed)]
-    seed: u64,
-    /// Fraction of the geometries for validation, which selects the checkpoint
-    #[arg(long, value_name = "FRACTION", default_value_t = SplitPlan::default().validation)]
-    validation: f64,
-    /// Fraction of the geometries for the test errors
-    #[arg(long, value_name = "FRACTION", default_value_t = SplitPlan::default().test)]
-    test: f64,
 }
 
 impl DatasetCommand {
     pub(crate) fn run(&self) -> Result<()> {
-        match &self.action {
-            Action::Summary(command) => command.run(),
-            Action::Check(command) => command.run(),
-            Action::Merge(command) => command.run(),
-            Action::Split(command) => command.run(),
-            Action::Import(command) => command.run(),
-            Action::Export(command) => command.run(),
-            Action::Compare(command) => command.run(),
-            Action::Correct(command) => command.run(),
-        }
+        self.action.run()
     }
 }
 
@@ -209,8 +193,11 @@ impl MergeCommand {
         } else {
             Mixing::Refused
         };
-        self.out
-            .write(&Database::merge(&databases?, &self.out.plan(), mixing)?)
+        self.out.write(&Database::merge(
+            &databases?,
+            &SplitPlan::default(),
+            mixing,
+        )?)
     }
 }
 
@@ -219,7 +206,11 @@ impl SplitCommand {
         let database = Database::read(&self.database)?;
         let split = match &self.like {
             Some(other) => database.split_like(&Database::read(other)?)?,
-            None => database.split(&self.out.plan())?,
+            None => database.split(&SplitPlan {
+                seed: self.seed,
+                validation: self.validation,
+                test: self.test,
+            })?,
         };
         self.out.write(&split)
     }
@@ -232,19 +223,21 @@ impl ImportCommand {
             None => ColumnMap::default(),
         };
         let rows = rows_from_csv(&self.table, &map)?;
-        self.out.write(&Database::collect(rows, &self.out.plan())?)
+        self.out
+            .write(&Database::collect(rows, &SplitPlan::default())?)
     }
 }
 
 impl ExportCommand {
     fn run(&self) -> Result<()> {
-        if !self.replace {
-            output_file::refuse_existing(&self.out)?;
+        let OutArgs { out, replace } = &self.out;
+        if !replace {
+            output_file::refuse_existing(out)?;
         }
         let csv = Database::read(&self.database)?.to_csv()?;
-        output_file::create_folder_of(&self.out)?;
-        output_file::write(&self.out, csv)?;
-        println!("written to {}", self.out.display());
+        output_file::create_folder_of(out)?;
+        output_file::write(out, csv)?;
+        println!("written to {}", out.display());
         Ok(())
     }
 }
@@ -254,29 +247,17 @@ impl CorrectCommand {
         let database = Database::read(&self.database)?;
         let reference = Database::read(&self.reference)?;
         let (corrected, judged) = database.corrected(&reference)?;
-        write(&corrected, &self.out, self.replace)?;
+        self.out.write(&corrected)?;
         println!("{}", compare::correction(&judged)?);
         Ok(())
     }
 }
 
 impl OutArgs {
-    fn plan(&self) -> SplitPlan {
-        SplitPlan {
-            seed: self.seed,
-            validation: self.validation,
-            test: self.test,
-        }
-    }
-
     fn write(&self, database: &Database) -> Result<()> {
-        write(database, &self.out, self.replace)
+        output_file::create_folder_of(&self.out)?;
+        database.write(&self.out, self.replace)?;
+        println!("{database}\nwritten to {}", self.out.display());
+        Ok(())
     }
-}
-
-fn write(database: &Database, out: &Path, replace: bool) -> Result<()> {
-    output_file::create_folder_of(out)?;
-    database.write(out, replace)?;
-    println!("{database}\nwritten to {}", out.display());
-    Ok(())
 }

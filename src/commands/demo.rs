@@ -1,8 +1,5 @@
 //! `kirigami demo`: the whole chain once, at a small scale.
 
-use crate::commands::campaign::{CollectCommand, RunCommand};
-use crate::commands::design::DesignCommand;
-use crate::commands::train::TrainCommand;
 use crate::ui::table::{Table, table};
 use anyhow::{Result, ensure};
 use clap::Args;
@@ -22,48 +19,39 @@ const SCENE: &str = "configs/scenes/demo.toml";
 const FOLDER: &str = "runs/demo";
 
 impl DemoCommand {
-    pub(crate) fn run(&self) -> Result<()> {
+    /// `run` runs the command line that consists of some words.
+    pub(crate) fn run(&self, run: impl Fn(Vec<&str>) -> Result<()>) -> Result<()> {
         ensure!(
             Path::new(CAMPAIGN).exists(),
             "there is no {CAMPAIGN} here: run the demo in the root folder of the repository"
         );
-        let file = |name: &str| Path::new(FOLDER).join(name);
-        let (jobs, database, weights) = (
-            file("campaign"),
-            file("hinges.parquet"),
-            file("surrogate.safetensors"),
+        let (jobs, database) = (
+            format!("{FOLDER}/campaign"),
+            format!("{FOLDER}/hinges.parquet"),
         );
-        let (jobs_, database_, weights_) = (jobs.display(), database.display(), weights.display());
-
+        let weights = format!("{FOLDER}/surrogate.safetensors");
         let mut times = Vec::new();
-        let mut step = |what: &'static str, command: String, run: &dyn Fn() -> Result<()>| {
+        for (what, command) in [
+            (
+                "solve 40 hinge windows (gmsh, CalculiX)",
+                format!("campaign run {CAMPAIGN} --folder {jobs}"),
+            ),
+            (
+                "collect the database",
+                format!("campaign collect {CAMPAIGN} --folder {jobs} --out {database} --replace"),
+            ),
+            (
+                "train the hinge energy",
+                format!("train {database} --config {TRAINING} --out {weights} --replace"),
+            ),
+            ("design the sheet", format!("design {SCENE} --restart")),
+        ] {
             println!("\n$ kirigami {command}");
             let start = Instant::now();
-            run()?;
+            let words = std::iter::once("kirigami").chain(command.split(' '));
+            run(words.collect())?;
             times.push((what, start.elapsed().as_secs_f64()));
-            Ok::<_, anyhow::Error>(())
-        };
-        step(
-            "solve 40 hinge windows (gmsh, CalculiX)",
-            format!("campaign run {CAMPAIGN} --folder {jobs_}"),
-            &|| RunCommand::new(CAMPAIGN.into(), jobs.clone()).run(),
-        )?;
-        step(
-            "collect the database",
-            format!("campaign collect {CAMPAIGN} --folder {jobs_} --out {database_} --replace"),
-            &|| CollectCommand::new(CAMPAIGN.into(), jobs.clone(), database.clone()).run(),
-        )?;
-        step(
-            "train the hinge energy",
-            format!("train {database_} --config {TRAINING} --out {weights_} --replace"),
-            &|| TrainCommand::new(database.clone(), TRAINING.into(), weights.clone()).run(),
-        )?;
-        step(
-            "design the sheet",
-            format!("design {SCENE} --restart"),
-            &|| DesignCommand::afresh(SCENE.into()).run(),
-        )?;
-
+        }
         println!("\n{}\n{}", time_table(&times), product_table());
         Ok(())
     }

@@ -20,7 +20,6 @@ use output::run_files::{ANIMATION, RUN_FILES, Writer};
 use output::run_results::{remove_run, write_results};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
-use support::shard::Shard;
 
 /// Design a sheet: cut pattern and ligament widths for a target shape
 ///
@@ -28,7 +27,7 @@ use support::shard::Shard;
 /// that shows the run in a browser (run.html) to the scene's output folder. A stopped run continues when it is started again.
 /// Several scenes or seeds are designed one after the other, each in a folder of its own, and compared in a table.
 /// Examples: kirigami design configs/scenes/linear-7x7.toml;
-/// kirigami design configs/scenes/*7x7.toml --out runs/sheets --shard 1/4
+/// kirigami design configs/scenes/*7x7.toml --out runs/sheets
 #[derive(Args)]
 pub struct DesignCommand {
     /// Scene (TOML); see configs/scenes. Or the folder of a run, which holds its scene, material and weights
@@ -45,9 +44,6 @@ pub struct DesignCommand {
     /// folder. The scene needs a random start: optimiser.start_noise
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..=10_000))]
     seeds: u64,
-    /// Part of the runs, as I/N: every N-th run from the I-th; shards may run at the same time
-    #[arg(long, value_name = "I/N", default_value_t = Shard::WHOLE)]
-    shard: Shard,
     /// Number of search steps, instead of the scene's
     #[arg(long, value_name = "N")]
     steps: Option<usize>,
@@ -69,25 +65,10 @@ const FRAME_WIDTH: u32 = 640;
 const MOST_FRAMES: usize = 40;
 
 impl DesignCommand {
-    /// A run of the scene without changes, from its start design.
-    pub fn afresh(scene: PathBuf) -> Self {
-        Self {
-            scenes: vec![scene],
-            weights: None,
-            out: None,
-            seeds: 1,
-            shard: Shard::WHOLE,
-            steps: None,
-            restart: true,
-            force: false,
-            json: false,
-        }
-    }
-
     pub(crate) fn run(&self) -> Result<()> {
         let out = self.out.as_deref().map(std::path::absolute).transpose()?;
         match &self.scenes[..] {
-            [file] if self.seeds == 1 && self.shard == Shard::WHOLE => {
+            [file] if self.seeds == 1 => {
                 let scene = self.scene(file, |config| {
                     config.output = out.unwrap_or_else(|| config.output.clone());
                 })?;
@@ -110,7 +91,7 @@ impl DesignCommand {
         }
     }
 
-    /// The runs of all shards; with `out` in folders there.
+    /// All runs; with `out` in folders there.
     fn runs(&self, out: Option<&Path>) -> Result<Vec<Run>> {
         let mut runs = Vec::new();
         for file in &self.scenes {
@@ -147,17 +128,14 @@ impl DesignCommand {
         Ok(runs)
     }
 
-    /// Designs the runs of the shard one after the other, and compares all.
+    /// Designs the runs one after the other, and compares them.
     fn run_many(&self, mut runs: Vec<Run>) -> Result<()> {
         let stop = interrupt::stop_flag()?;
         let folder = self.out.clone().unwrap_or("runs/designs".into());
         std::fs::create_dir_all(&folder)
             .with_context(|| format!("cannot create the folder {}", folder.display()))?;
         let (mut left, mut failed) = (0, 0);
-        for (place, run) in runs.iter_mut().enumerate() {
-            if !self.shard.holds(place) {
-                continue;
-            }
+        for run in &mut runs {
             if stop.load(Ordering::Relaxed) {
                 left += 1;
                 continue;

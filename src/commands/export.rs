@@ -1,6 +1,6 @@
 //! `kirigami export`: the deployment of a designed sheet for other programs.
 
-use crate::commands::inspect::scene_args::{DESIGN_OF_RUN, Inspected};
+use crate::commands::inspect::scene_args::Inspected;
 use crate::ui::run_folder;
 use anyhow::{Context, Result};
 use clap::Args;
@@ -14,7 +14,6 @@ use support::vtk;
 /// (filter Warp By Vector). Lengths in mm, forces in N, angles in rad unless the name says deg.
 /// Example: kirigami export configs/scenes/pet-3x3.toml
 #[derive(Args)]
-#[command(mut_arg("design", |arg| arg.help(DESIGN_OF_RUN)))]
 pub struct ExportCommand {
     #[command(flatten)]
     designed: Inspected,

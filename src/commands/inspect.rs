@@ -1,97 +1,73 @@
 //! `kirigami inspect`: the numbers of the stages of a design.
 
-#[cfg(feature = "pipeline")]
-pub(crate) mod judged_design;
 pub mod scene_args;
 
-use crate::commands::inspect::scene_args::Listed;
-use crate::ui::output_file;
+use crate::commands::inspect::scene_args::Inspected;
 use crate::ui::progress::Progress;
+use crate::ui::{exit, output_file};
 use anyhow::{Context, Result};
-use clap::{Args, Subcommand};
+use clap::error::ErrorKind;
+use clap::{Args, ValueEnum};
+use design::pattern::design_vector::DesignVector;
+use design::scene::Scene;
 use output::listing::{self, SpringbackListing, ToleranceListing, ToleranceQuestion};
+use serde::Serialize;
+use std::fmt::Display;
 use std::path::PathBuf;
-use surrogate::Springback;
 
-/// Print the numbers of one stage of a design: pattern, deploy, equilibrium, gradient, tolerances, springback
+/// Print the numbers of one stage of a design
+///
+/// Examples: kirigami inspect equilibrium configs/scenes/linear-7x7.toml --json;
+/// kirigami inspect deploy configs/scenes/linear-7x7.toml --opening-deg 60;
+/// kirigami inspect tolerances runs/a4-plate --ligament 0.05 --samples 200 --picture runs/a4-plate/tolerances.svg;
+/// kirigami inspect springback runs/a4-plate --picture runs/a4-plate/released.svg
 #[derive(Args)]
 pub struct InspectCommand {
-    #[command(subcommand)]
+    /// The stage
+    #[arg(value_name = "STAGE")]
     stage: Stage,
-}
-
-#[derive(Subcommand)]
-enum Stage {
-    /// Print cut endpoints, panels and hinges of a scene's sheet, and whether it is valid
-    ///
-    /// Example: kirigami inspect pattern configs/scenes/linear-7x7.toml --json
-    Pattern(Listed),
-    /// Print the kinematic deployment of a scene's sheet, with the same opening angle at every hinge
-    ///
-    /// Example: kirigami inspect deploy configs/scenes/linear-7x7.toml --opening-deg 60 --json
-    Deploy(DeployArgs),
-    /// Print the equilibria of a scene's sheet along its equilibrium path, and how each was solved
-    ///
-    /// Example: kirigami inspect equilibrium configs/scenes/linear-7x7.toml --json
-    Equilibrium(Listed),
-    /// Print the objective of a scene's sheet, term by term, and its gradient
-    ///
-    /// Example: kirigami inspect gradient configs/scenes/linear-7x7.toml --json
-    Gradient(Listed),
-    /// Print what errors of cutting do to the deployed sheet, and which tolerances keep it within an error
-    ///
-    /// Each ligament, the kerf and the thickness are changed by one standard deviation, half of their tolerance, and the
-    /// sheet is deployed again; then sheets with all errors at random. Tolerances are those of the scene ([tolerances]) unless
-    /// they are named. Example: kirigami inspect tolerances runs/a4-plate --ligament 0.05 --kerf 0.05 --samples 200
-    /// --picture runs/a4-plate/tolerances.svg
-    Tolerances(ToleranceArgs),
-    /// Print what stays of the opening when the loads are taken off
-    ///
-    /// Every hinge springs back elastically towards the deformation that stays by the law of `kirigami surrogate release`, and the sheet
-    /// finds its equilibrium without loads, under its weight if it has one. Example: kirigami inspect springback runs/a4-plate
-    /// --picture runs/a4-plate/released.svg
-    Springback(SpringbackArgs),
-}
-
-#[derive(Args)]
-struct SpringbackArgs {
     #[command(flatten)]
-    listed: Listed,
-    /// Law of released hinges (JSON) [default: that of the scene, surrogate.springback]
-    #[arg(long, value_name = "FILE")]
-    law: Option<PathBuf>,
-    /// Draw the sheet without loads to this file (SVG)
-    #[arg(long, value_name = "FILE")]
-    picture: Option<PathBuf>,
-}
-
-#[derive(Args)]
-struct ToleranceArgs {
-    #[command(flatten)]
-    listed: Listed,
-    /// Tolerance +- of the width of every ligament by itself, two standard deviations (mm)
+    inspected: Inspected,
+    /// Print every number as JSON
+    #[arg(long)]
+    json: bool,
+    /// deploy: opening angle of the hinges (deg) [default: that of the design, if the scene has pin hinges]
+    #[arg(long, value_name = "DEG", allow_negative_numbers = true)]
+    opening_deg: Option<f64>,
+    /// tolerances: +- of the width of every ligament by itself, two standard deviations (mm) [default: that of the scene]
     #[arg(long, value_name = "MM", value_parser = length)]
     ligament: Option<f64>,
-    /// Tolerance +- of the width that the cutter removes (mm)
-    #[arg(long, value_name = "MM", value_parser = length)]
-    kerf: Option<f64>,
-    /// Tolerance +- of the thickness of the sheet (mm)
-    #[arg(long, value_name = "MM", value_parser = length)]
-    thickness: Option<f64>,
-    /// Number of sheets with errors at random; 0 for none
-    #[arg(long, value_name = "N", default_value_t = 100)]
-    samples: usize,
-    /// Seed of the random sheets
-    #[arg(long, value_name = "SEED", default_value_t = 0)]
-    seed: u64,
-    /// Movement of the corners that is allowed, root mean square, one standard deviation (mm) [default: that of the known errors of
-    /// the model]
+    /// tolerances: number of sheets with errors at random; 0 for none [default: 100]
+    #[arg(long, value_name = "N")]
+    samples: Option<usize>,
+    /// tolerances: movement of the corners that is allowed, root mean square, one standard deviation (mm) [default: that of the
+    /// known errors of the model]
     #[arg(long, value_name = "MM", value_parser = length)]
     within: Option<f64>,
-    /// Draw the deployed sheet to this file, its hinges coloured by the share of their ligament in the variance of the corners
-    /// (SVG); needs a tolerance of the ligaments
+    /// springback: draw the sheet without loads to this file (SVG). tolerances: the deployed sheet, its hinges coloured by the
+    /// share of their ligament in the variance of the corners
     #[arg(long, value_name = "FILE")]
     picture: Option<PathBuf>,
+}
+
+#[derive(Clone, Copy, PartialEq, ValueEnum)]
+enum Stage {
+    /// Cut endpoints, panels and hinges of the sheet, and whether it is valid
+    Pattern,
+    /// The kinematic deployment, with the same opening angle at every hinge
+    Deploy,
+    /// The equilibria along the equilibrium path, and how each was solved
+    Equilibrium,
+    /// The objective, term by term, and its gradient
+    Gradient,
+    /// What errors of cutting do to the deployed sheet, and which tolerances keep it within an error: each ligament, the kerf
+    /// and the thickness are changed by one standard deviation, half of their tolerance, and the sheet is deployed again; then
+    /// sheets with all errors at random
+    Tolerances,
+    /// What stays of the opening when the loads are taken off: every hinge springs back elastically towards the deformation
+    /// that stays by the law of `kirigami surrogate release`, and the sheet finds its equilibrium without loads, under its
+    /// weight if it has one
+    Springback,
 }
 
 fn length(text: &str) -> Result<f64, String> {
@@ -102,78 +78,84 @@ fn length(text: &str) -> Result<f64, String> {
     length.ok_or_else(|| "must be a length above 0 (mm)".into())
 }
 
-#[derive(Args)]
-struct DeployArgs {
-    #[command(flatten)]
-    listed: Listed,
-    /// Opening angle of the hinges (deg) [default: that of the design, if the scene has pin hinges]
-    #[arg(long, value_name = "DEG", allow_negative_numbers = true)]
-    opening_deg: Option<f64>,
+/// A listing with the design that it is of.
+#[derive(Serialize)]
+struct Of<T> {
+    design: String,
+    #[serde(flatten)]
+    listing: T,
 }
 
 impl InspectCommand {
     pub(crate) fn run(&self) -> Result<()> {
-        match &self.stage {
-            Stage::Pattern(listed) => {
-                let (scene, design, name) = listed.read()?;
-                listed.print(name, listing::pattern(&scene.problem()?, &design)?)
-            }
-            Stage::Deploy(DeployArgs {
-                listed,
-                opening_deg,
-            }) => {
-                let (scene, design, name) = listed.read()?;
-                let problem = scene.problem()?;
-                let opening = (opening_deg.map(f64::to_radians))
+        self.refuse_options_of_other_stages();
+        let (scene, design, name) = self.inspected.read()?;
+        let problem = || scene.problem();
+        match self.stage {
+            Stage::Pattern => self.print(name, listing::pattern(&problem()?, &design)?),
+            Stage::Deploy => {
+                let problem = problem()?;
+                let opening = (self.opening_deg.map(f64::to_radians))
                     .or(problem.opening(&design))
                     .context("this scene's hinges are not pins: pass --opening-deg")?;
-                listed.print(name, listing::deployment(&problem, &design, opening)?)
+                self.print(name, listing::deployment(&problem, &design, opening)?)
             }
-            Stage::Equilibrium(listed) => {
-                let (scene, design, name) = listed.read()?;
-                listed.print(name, listing::equilibrium(&scene.problem()?, &design)?)
-            }
-            Stage::Tolerances(args) => args.run(),
-            Stage::Springback(args) => args.run(),
-            Stage::Gradient(listed) => {
-                let (scene, design, name) = listed.read()?;
-                listed.print(name, listing::gradient(&scene, &scene.problem()?, &design)?)
-            }
+            Stage::Equilibrium => self.print(name, listing::equilibrium(&problem()?, &design)?),
+            Stage::Gradient => self.print(name, listing::gradient(&scene, &problem()?, &design)?),
+            Stage::Tolerances => self.print(name, self.tolerances(&scene, &design)?),
+            Stage::Springback => self.print(name, self.springback(&scene, &design)?),
         }
     }
-}
 
-impl SpringbackArgs {
-    fn run(&self) -> Result<()> {
-        let (scene, design, name) = self.listed.read()?;
-        let named = self.law.as_deref().map(Springback::load).transpose()?;
-        let law = named.or_else(|| scene.springback.clone()).context(
-            "the scene names no law of released hinges: name one (--law), or set surrogate.springback",
-        )?;
-        let problem = scene.problem()?;
-        let listing = SpringbackListing::new(&scene, &problem, &design, &law)?;
-        if let Some(path) = &self.picture {
-            output_file::write(path, listing.picture(&scene))?;
-        }
-        self.listed.print(name, listing)
-    }
-}
-
-impl ToleranceArgs {
-    fn run(&self) -> Result<()> {
-        let (scene, design, name) = self.listed.read()?;
-        let mut tolerances = scene.config.tolerances;
-        for (given, named) in [
-            (&mut tolerances.ligament, self.ligament),
-            (&mut tolerances.kerf, self.kerf),
-            (&mut tolerances.thickness, self.thickness),
+    /// Ends the program if an option is not of the stage.
+    fn refuse_options_of_other_stages(&self) {
+        use Stage::{Deploy, Springback, Tolerances};
+        for (option, is_given, stages) in [
+            ("--opening-deg", self.opening_deg.is_some(), &[Deploy][..]),
+            ("--ligament", self.ligament.is_some(), &[Tolerances]),
+            ("--samples", self.samples.is_some(), &[Tolerances]),
+            ("--within", self.within.is_some(), &[Tolerances]),
+            (
+                "--picture",
+                self.picture.is_some(),
+                &[Tolerances, Springback],
+            ),
         ] {
-            *given = named.or(*given);
+            if is_given && !stages.contains(&self.stage) {
+                let message = format!("{option} is not an option of this stage\n");
+                exit::print_answer(&clap::Error::raw(ErrorKind::ArgumentConflict, message));
+            }
         }
+    }
+
+    fn print(&self, design: String, listing: impl Serialize + Display) -> Result<()> {
+        if self.json {
+            let of = Of { design, listing };
+            println!("{}", serde_json::to_string_pretty(&of)?);
+        } else {
+            print!("{design}\n\n{listing}");
+        }
+        Ok(())
+    }
+
+    fn springback(&self, scene: &Scene, design: &DesignVector) -> Result<SpringbackListing> {
+        let law = scene
+            .springback
+            .as_ref()
+            .context("the scene names no law of released hinges: set surrogate.springback")?;
+        let listing = SpringbackListing::new(scene, &scene.problem()?, design, law)?;
+        if let Some(path) = &self.picture {
+            output_file::write(path, listing.picture(scene))?;
+        }
+        Ok(listing)
+    }
+
+    fn tolerances(&self, scene: &Scene, design: &DesignVector) -> Result<ToleranceListing> {
+        let mut tolerances = scene.config.tolerances;
+        tolerances.ligament = self.ligament.or(tolerances.ligament);
         let question = ToleranceQuestion {
             tolerances,
-            samples: self.samples,
-            seed: self.seed,
+            samples: self.samples.unwrap_or(100),
             within: self.within,
         };
         let bar = Progress::new(0, "sheets");
@@ -182,14 +164,14 @@ impl ToleranceArgs {
             bar.show(done, None, "");
         };
         let problem = scene.problem()?;
-        let listing = ToleranceListing::new(&scene, &problem, &design, question, &mut progress)?;
+        let listing = ToleranceListing::new(scene, &problem, design, question, &mut progress)?;
         bar.finish();
         if let Some(path) = &self.picture {
-            let picture = listing.picture(&scene).context(
+            let picture = listing.picture(scene).context(
                 "--picture colours hinges by the errors of their ligaments: give their tolerance, --ligament or [tolerances] ligament (mm)",
             )?;
             output_file::write(path, picture)?;
         }
-        self.listed.print(name, listing)
+        Ok(listing)
     }
 }

@@ -6,7 +6,7 @@ mod fit;
 mod learn;
 
 use anyhow::Result;
-use clap::{Args, Subcommand};
+use clap::Args;
 
 /// Fit a material file to tensile tests, check a material, and learn its hinge energy
 #[derive(Args)]
@@ -15,21 +15,17 @@ pub struct MaterialCommand {
     action: Action,
 }
 
-#[derive(Subcommand)]
-enum Action {
-    Fit(fit::FitCommand),
-    Check(check::CheckCommand),
-    #[cfg(feature = "pipeline")]
-    Learn(learn::LearnCommand),
+subcommands! {
+    enum Action {
+        Fit(fit::FitCommand),
+        Check(check::CheckCommand),
+        #[cfg(feature = "pipeline")]
+        Learn(learn::LearnCommand),
+    }
 }
 
 impl MaterialCommand {
     pub(crate) fn run(&self) -> Result<()> {
-        match &self.action {
-            Action::Fit(command) => command.run(),
-            Action::Check(command) => command.run(),
-            #[cfg(feature = "pipeline")]
-            Action::Learn(command) => command.run(),
-        }
+        self.action.run()
     }
 }

@@ -5,13 +5,12 @@ use crate::ui::{interrupt, picture, run_folder};
 use anyhow::Result;
 use clap::Args;
 use mesher::{Gmsh, Tier, WindowShape, plane_mesh_svg, vtk_grid};
-use serde_json::json;
 use std::path::PathBuf;
 use std::time::Duration;
 
 /// Mesh one hinge window and draw it
 ///
-/// Writes gmsh's script and mesh and a picture of the plane mesh; prints the size and quality of the
+/// Writes gmsh's script and mesh, mesh.vtu for ParaView and meshio, and a picture of the plane mesh; prints the size and quality of the
 /// mesh. Example: kirigami mesh --w-lig 18 --alpha-deg 60 --tier default
 #[derive(Args)]
 #[command(allow_negative_numbers = true)]
@@ -27,12 +26,6 @@ pub struct MeshCommand {
     /// Folder for the script, the mesh and the picture
     #[arg(long, value_name = "FOLDER", default_value = "runs/mesh")]
     out: PathBuf,
-    /// Also write mesh.vtu, for ParaView or meshio
-    #[arg(long)]
-    vtu: bool,
-    /// Print JSON instead of text
-    #[arg(long)]
-    json: bool,
 }
 
 impl MeshCommand {
@@ -48,23 +41,7 @@ impl MeshCommand {
         let mesh = shape.mesh(&self.out, &gmsh, Duration::MAX, interrupt::stop_flag()?)?;
         let quality = mesh.quality()?;
         let pictures = picture::save(&plane_mesh_svg(&mesh), &self.out.join("mesh"), 1600)?;
-        if self.vtu {
-            run_folder::write(&self.out, "mesh.vtu", &vtk_grid(&mesh).to_vtu())?;
-        }
-        if self.json {
-            let description = json!({
-                "tier": self.tier.name(),
-                "elements": mesh.elements.len(),
-                "nodes": mesh.nodes.len(),
-                "area_mm2": quality.area,
-                "area_error": quality.area_error,
-                "jacobian_ratio": quality.jacobian_ratio,
-                "aspect": quality.aspect,
-                "picture": pictures[1],
-            });
-            println!("{description:#}");
-            return Ok(());
-        }
+        run_folder::write(&self.out, "mesh.vtu", &vtk_grid(&mesh).to_vtu())?;
         println!(
             "{} tier: {} elements ({}), {} nodes, {} layers through {} mm",
             self.tier,

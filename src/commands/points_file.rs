@@ -1,7 +1,7 @@
-//! The CSV file of measured points, and the arguments that say how to read it; errors name file, line and column.
+//! The CSV file of measured points; errors name file, line and column.
 
-use anyhow::{Context, Error, Result, anyhow, bail, ensure};
-use clap::{Args, ValueEnum};
+use anyhow::{Context, Error, Result, anyhow, bail};
+use clap::ValueEnum;
 use design::analysis::marks::{Mark, MeasuredPoint};
 use design::analysis::measured_sheet::{MeasurementError, PointFault};
 use design::geometry::similarity::Scale;
@@ -33,44 +33,6 @@ enum Unit {
     Px,
 }
 
-/// How a file of measured points is read.
-#[derive(Args)]
-pub(super) struct PointArgs {
-    /// Unit of x and y, if the file has no column `unit` [default: mm]
-    #[arg(long, value_name = "UNIT")]
-    unit: Option<Unit>,
-    /// Whether the scale of the measurement is known or fitted [default: free for px, given otherwise]
-    #[arg(long, value_name = "SCALE")]
-    scale: Option<ScaleArg>,
-    /// y counts downwards, as in the pixels of a picture
-    #[arg(long)]
-    y_down: bool,
-}
-
-/// Whether the scale of the measurement is known.
-#[derive(Clone, Copy, ValueEnum)]
-enum ScaleArg {
-    /// Lengths are measured in a known unit.
-    Given,
-    /// The scale is fitted.
-    Free,
-}
-
-impl PointArgs {
-    /// The points of a file, and whether their scale is known.
-    pub fn read(&self, file: &Path) -> Result<(PointsFile, Scale)> {
-        let file = PointsFile::read(file, self.unit, self.y_down)?;
-        let scale = match (self.scale, file.unit) {
-            (Some(ScaleArg::Given), Unit::Px) => {
-                bail!("pixels have no known scale: use --scale free, or convert the file to mm")
-            }
-            (None, Unit::Px) | (Some(ScaleArg::Free), _) => Scale::Free,
-            (None | Some(ScaleArg::Given), _) => Scale::Given,
-        };
-        Ok((file, scale))
-    }
-}
-
 /// The points of a file.
 #[derive(Debug)]
 pub(super) struct PointsFile {
@@ -94,24 +56,19 @@ impl Unit {
 }
 
 impl PointsFile {
-    /// Reads a file whose lengths are in `unit`, mm by default, or in that of its column `unit`.
-    fn read(path: &Path, unit: Option<Unit>, y_down: bool) -> Result<Self> {
+    /// Reads a file whose lengths are in mm, or in the unit of its column `unit`.
+    pub fn read(path: &Path, y_down: bool) -> Result<Self> {
         let (mut reader, separator) =
             csv_table::open(path).with_context(|| format!("cannot read {}", path.display()))?;
         let broken = |error: csv::Error| Error::from(error).context(path.display().to_string());
         let header = reader.headers().map_err(broken)?.clone();
         let columns = Columns::new(&header, separator != b',')
             .with_context(|| format!("{}:{}", path.display(), line_of(&header)))?;
-        ensure!(
-            unit.is_none() || columns.unit.is_none(),
-            "{} has a column `unit`: leave out --unit",
-            path.display()
-        );
         let mut file = Self {
             path: path.to_owned(),
             points: Vec::new(),
             lines: Vec::new(),
-            unit: unit.unwrap_or(Unit::Mm),
+            unit: Unit::Mm,
         };
         for record in reader.records() {
             let record = record.map_err(broken)?;
@@ -134,6 +91,14 @@ impl PointsFile {
             file.lines.push(line);
         }
         Ok(file)
+    }
+
+    /// Whether the scale of the points is known: that of pixels is not.
+    pub fn scale(&self) -> Scale {
+        match self.unit {
+            Unit::Px => Scale::Free,
+            _ => Scale::Given,
+        }
     }
 
     /// The error with the name of the file, and the line of the point that it concerns.

@@ -1,6 +1,7 @@
 //! `kirigami solve`: one window solved along one ray or recorded path, printed as a table.
 
 use crate::commands::input_file;
+use crate::commands::solve_args::LIMIT;
 use crate::commands::window_args::WindowArgs;
 use crate::ui::exit::Unfinished;
 use crate::ui::progress::watched;
@@ -15,12 +16,12 @@ use hinge::{HingeDeformation, HingeSample, SheetMaterial};
 use mesher::Tier;
 use serde_json::json;
 use std::path::PathBuf;
-use std::time::Duration;
 
 /// Solve one hinge window by finite elements and print its ray
 ///
 /// Panel A is fixed. Panel B is driven from the undeformed state straight to the given deformation,
-/// or along a recorded path. Every converged increment is one row. Example, the paper's hinge folded
+/// or along a recorded path. Every converged increment is one row. Writes window.vtu for ParaView and meshio: displacements,
+/// plastic strain and stress of the last increment. Example, the paper's hinge folded
 /// to 45 degrees: kirigami solve --theta-deg 45 --tier tiny
 #[derive(Args)]
 #[command(allow_negative_numbers = true)]
@@ -53,12 +54,6 @@ pub struct SolveCommand {
     /// Folder for the mesh, the input deck, the log and the solver's output
     #[arg(long, value_name = "FOLDER", default_value = "runs/solve")]
     out: PathBuf,
-    /// Time limit of the solver (s)
-    #[arg(long, value_name = "SECONDS", default_value_t = 600, value_parser = clap::value_parser!(u64).range(1..=86_400))]
-    time_limit_s: u64,
-    /// Also write window.vtu, for ParaView or meshio: displacements, plastic strain and stress of the last increment
-    #[arg(long)]
-    vtu: bool,
     /// Print JSON instead of a table
     #[arg(long)]
     json: bool,
@@ -80,10 +75,9 @@ impl SolveCommand {
         input_file::require(&self.material, "--material")?;
         let material = SheetMaterial::load(&self.material)?;
         let _held = run_folder::hold(&self.out)?;
-        let limit = Duration::from_secs(self.time_limit_s);
         let stop = interrupt::stop_flag()?;
         let solver = CalculiX {
-            print_all: self.vtu,
+            print_all: true,
             ..CalculiX::find()?
         };
         let problem = WindowProblem::new(HingePath { design, path }, &material, self.tier);
@@ -91,15 +85,13 @@ impl SolveCommand {
         let solution = watched(
             1,
             || reached(&self.out),
-            || solver.attempt(&solve, &self.out, limit, stop),
+            || solver.attempt(&solve, &self.out, LIMIT, stop),
         )
         .map_err(|error| match error.is_stop() {
             true => Unfinished::new(1, "ray").into(),
             false => Error::from(error),
         })?;
-        if self.vtu
-            && let Some(grid) = solver.fields(&solve, &self.out)?
-        {
+        if let Some(grid) = solver.fields(&solve, &self.out)? {
             run_folder::write(&self.out, "window.vtu", &grid.to_vtu())?;
         }
         if self.json {

@@ -14,26 +14,18 @@ use std::path::Path;
 use std::time::Duration;
 use verification::VerificationError;
 
+/// Time limit of a window solve, unless a campaign states another.
+pub const LIMIT: Duration = Duration::from_secs(3600);
+
 /// Options of window solves.
-#[derive(Args)]
+#[derive(Args, Clone, Copy, Default)]
 pub struct SolveArgs {
     /// Number of solves in parallel [default: one per processor]
     #[arg(long, value_name = "N", value_parser = jobs::<NonZeroUsize>)]
     jobs: Option<NonZeroUsize>,
-    /// Time limit of each solve (s)
-    #[arg(long, value_name = "SECONDS", default_value_t = 3600, value_parser = clap::value_parser!(u64).range(1..=86_400))]
-    time_limit_s: u64,
 }
 
 impl SolveArgs {
-    /// With one processor for each of `jobs` solves, each limited to `time_limit`.
-    pub fn new(jobs: Option<NonZeroUsize>, time_limit: Duration) -> Self {
-        Self {
-            jobs,
-            time_limit_s: time_limit.as_secs(),
-        }
-    }
-
     /// Number of solves in parallel.
     pub fn workers(&self) -> usize {
         self.jobs.map_or_else(processors, NonZeroUsize::get)
@@ -51,7 +43,7 @@ impl SolveArgs {
                 bar.finish();
             }
         };
-        self.service_of(CalculiX::find()?, folder, Box::new(progress))
+        self.service_of(CalculiX::find()?, folder, progress)
     }
 
     /// Solves problems of one kind, and keeps them in the folder `solves` of `folder`.
@@ -59,15 +51,15 @@ impl SolveArgs {
         &self,
         solver: impl Solver<S> + 'static,
         folder: &Path,
-        progress: Box<dyn Fn(usize, usize)>,
+        progress: impl Fn(usize, usize) + 'static,
     ) -> Result<SolveService<'static, S>> {
         Ok(SolveService {
             solver: Box::new(solver),
             store: SolveStore(folder.join("solves")),
             workers: self.workers(),
-            limit: Duration::from_secs(self.time_limit_s),
+            limit: LIMIT,
             stop: interrupt::stop_flag()?,
-            progress,
+            progress: Box::new(progress),
         })
     }
 }
@@ -78,7 +70,6 @@ pub fn task_error(error: VerificationError) -> anyhow::Error {
         VerificationError::Solve(SolveListError::Stopped { left }) => {
             Unfinished::new(left, "solves").into()
         }
-        VerificationError::Stopped { left } => Unfinished::new(left, "steps").into(),
         error => error.into(),
     }
 }

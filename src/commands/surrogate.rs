@@ -10,7 +10,7 @@ mod test;
 use crate::commands::input_file;
 use ::surrogate::Surrogate;
 use anyhow::{Result, ensure};
-use clap::{Args, Subcommand};
+use clap::Args;
 use hinge::SheetMaterial;
 use std::path::Path;
 
@@ -42,23 +42,18 @@ fn trained_material(
     Ok(sheet)
 }
 
-#[derive(Subcommand)]
-enum Action {
-    Eval(eval::EvalCommand),
-    Card(card::CardCommand),
-    Test(test::TestCommand),
-    SpotCheck(spot_check::SpotCheckCommand),
-    Release(release::ReleaseCommand),
+subcommands! {
+    enum Action {
+        Eval(eval::EvalCommand),
+        Card(card::CardCommand),
+        Test(test::TestCommand),
+        SpotCheck(spot_check::SpotCheckCommand),
+        Release(release::ReleaseCommand),
+    }
 }
 
 impl SurrogateCommand {
     pub(crate) fn run(&self) -> Result<()> {
-        match &self.action {
-            Action::Eval(command) => command.run(),
-            Action::Card(command) => command.run(),
-            Action::Test(command) => command.run(),
-            Action::SpotCheck(command) => command.run(),
-            Action::Release(command) => command.run(),
-        }
+        self.action.run()
     }
 }

@@ -19,7 +19,6 @@ use std::fs::File;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
-use support::shard::Shard;
 use support::table::number_or_dash;
 use surrogate::{ErrorBin, Surrogate, TestErrors};
 use train::{Distillation, Epoch, Start, Trained, Training, TrainingConfig, TrainingData};
@@ -27,11 +26,11 @@ use verification::distillation_states;
 
 /// Train the surrogate hinge energy on a database
 ///
-/// Writes the weights (of the best epoch and of the last), their card, the learning curve, and a parity
+/// Writes the weights (of the best epoch and of the last), their card, the learning curve and a parity
 /// plot, and prints the errors on hinge geometries that were not used for
 /// training. A stopped training continues with --resume; of several seeds, with the same command. Examples:
 /// kirigami train runs/demo/hinges.parquet --config configs/training/demo.toml;
-/// kirigami train runs/demo/hinges.parquet --config configs/training/demo.toml --seeds 8 --shard 1/4
+/// kirigami train runs/demo/hinges.parquet --config configs/training/demo.toml --seeds 8
 #[derive(Args)]
 pub struct TrainCommand {
     /// Database as written by `kirigami campaign collect` (Parquet with its manifest)
@@ -65,10 +64,6 @@ pub struct TrainCommand {
     /// not trained again
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..=64))]
     seeds: u64,
-    /// Part of the seeds, as I/N: every N-th seed from the I-th; shards may run at the same time. The weights are written
-    /// by the shard that ends last, or by the same command without --shard
-    #[arg(long, value_name = "I/N", default_value_t = Shard::WHOLE)]
-    shard: Shard,
     /// Replace existing weights; of several seeds, those of another training
     #[arg(long)]
     replace: bool,
@@ -77,35 +72,10 @@ pub struct TrainCommand {
 /// The data on which test errors are measured.
 pub const UNSEEN: &str = "samples of unseen geometries";
 
-/// Titles of the parity charts.
-const CHART_TITLES: [&str; 6] = [
-    "energy W (N mm)",
-    "axial force F_a (N)",
-    "shear force F_s (N)",
-    "moment M (N mm)",
-    "damage D",
-    "damage D_peak",
-];
-
 /// Maximum training time that is lost if the process is killed.
 const SAVE_EVERY: Duration = Duration::from_secs(30);
 
 impl TrainCommand {
-    /// Existing weights are replaced.
-    pub fn new(database: PathBuf, config: PathBuf, out: PathBuf) -> Self {
-        Self {
-            database,
-            config: Some(config),
-            out,
-            from: None,
-            teachers: Vec::new(),
-            resume: false,
-            seeds: 1,
-            shard: Shard::WHOLE,
-            replace: true,
-        }
-    }
-
     pub(crate) fn run(&self) -> Result<()> {
         input_file::require(self.config(), "--config")?;
         let base = self.from.as_deref().map(Surrogate::load).transpose()?;
@@ -130,10 +100,6 @@ impl TrainCommand {
         if self.seeds > 1 {
             return self.train_seeds(&database, &config, base.as_ref());
         }
-        ensure!(
-            self.shard == Shard::WHOLE,
-            "--shard divides the trainings of several seeds: pass --seeds N"
-        );
         self.refuse_existing()?;
         let _held = hold(&self.out)?;
         let state = self.state();
@@ -225,7 +191,7 @@ impl TrainCommand {
         trained.last.save(&self.beside("last.safetensors"))?;
         self.write_curve(&trained.history)?;
         let axes = ["finite elements", "surrogate"];
-        let parity = charts::parity(&trained.parity.states, CHART_TITLES, axes)?;
+        let parity = charts::parity(&trained.parity.states, QUANTITIES, axes)?;
         picture::save(&parity, &self.beside("parity"), 2000)?;
         println!("{}\n", error_table(&trained.test_errors, UNSEEN));
         println!("{}\n", bin_table(&trained.surrogate.card().error_bins));
@@ -360,10 +326,10 @@ pub fn error_table(errors: &TestErrors, what: &str) -> Table {
 
 /// The quantities of [`TestErrors::by_quantity`].
 const QUANTITIES: [&str; 6] = [
-    "energy W",
-    "axial force F_a",
-    "shear force F_s",
-    "moment M_theta",
+    "energy W (N mm)",
+    "axial force F_a (N)",
+    "shear force F_s (N)",
+    "moment M_theta (N mm)",
     "damage D",
     "damage D_peak",
 ];

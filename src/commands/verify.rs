@@ -1,10 +1,8 @@
 //! `kirigami verify`: the hinges of a designed sheet solved by finite elements, compared with the surrogate.
 
-mod polished;
 mod whole_sheet;
 
 use crate::commands::compared_states;
-use crate::commands::inspect::judged_design::DESIGN_TO_JUDGE;
 use crate::commands::inspect::scene_args::Inspected;
 use crate::commands::solve_args::{SolveArgs, task_error};
 use crate::ui::count::count;
@@ -22,28 +20,22 @@ use std::num::NonZeroUsize;
 use std::path::PathBuf;
 use surrogate::{Springback, Surrogate};
 use verification::{
-    ElementWindows, PolishTask, ReleasedByElements, Replay, SheetErrors, balanced, ensemble,
-    judging_tier, recorded_paths, released_by_elements,
+    ElementWindows, ReleasedByElements, Replay, SheetErrors, balanced, judging_tier,
+    recorded_paths, released_by_elements,
 };
 
 /// Solve the hinges of a design by finite elements, along their paths in the sheet
 ///
 /// Compares energy, forces and damage of the surrogate with CalculiX on the same paths, hinge by hinge: the
 /// error of the whole chain on one design. Writes replay.md, replay.csv and a chart. With --equilibrium the sheet is
-/// balanced with the forces of the finite elements: the error of its deployed shape. Writes equilibrium.md. With
-/// --polish N the design is searched for N more steps with these forces. Writes polish.md, design.json and the files of
-/// a run. With --sheet the whole sheet is solved: whether its panels stay in their plane, and what that changes. Writes sheet.md.
+/// balanced with the forces of the finite elements: the error of its deployed shape. Writes equilibrium.md.
+/// With --sheet the whole sheet is solved: whether its panels stay in their plane, and what that changes. Writes sheet.md.
 /// Without --design the design of the scene's run is verified, or the start design if the scene has no run.
 /// Example: kirigami verify configs/scenes/demo.toml --equilibrium
 #[derive(Args)]
-#[command(mut_arg("design", |arg| arg.help(DESIGN_TO_JUDGE)))]
 pub struct VerifyCommand {
     #[command(flatten)]
     judged: Inspected,
-    /// Weights of further networks of the same training (train --seeds), whose spread estimates the error [default: the
-    /// ensemble of the scene, none with --weights]
-    #[arg(long, value_name = "FILE", num_args = 1..)]
-    ensemble: Vec<PathBuf>,
     /// Number of hinges to solve, spread evenly over the sheet [default: all]
     #[arg(long, value_name = "N", value_parser = count::<NonZeroUsize>)]
     sample: Option<NonZeroUsize>,
@@ -52,40 +44,23 @@ pub struct VerifyCommand {
     #[arg(long, value_name = "TIER")]
     tier: Option<Tier>,
     /// Deploy the sheet with finite elements for its hinges, which are solved several times
-    #[arg(long, group = "of_sheet", conflicts_with_all = ["ensemble", "sample"])]
+    #[arg(long, group = "of_sheet", conflicts_with = "sample")]
     equilibrium: bool,
     /// Maximum number of times that all hinges are solved on the mesh of --tier; before `reference` and `plate-reference` the
     /// sheet is balanced on the cheaper `default` and `plate`
     #[arg(long, value_name = "N", default_value_t = 6, requires = "equilibrium", value_parser = count::<usize>)]
     rounds: usize,
-    /// Search for N more steps with the hinge law corrected to the finite elements, from the design on; judge the design that
-    /// is found by finite elements again, and write it with its cut files
-    #[arg(long, value_name = "N", requires = "equilibrium", value_parser = count::<NonZeroUsize>)]
-    polish: Option<NonZeroUsize>,
     /// Then take the loads off, with the law of released hinges (JSON, `kirigami surrogate release`) and finite elements. Writes released.md
-    #[arg(
-        long,
-        value_name = "LAW",
-        requires = "equilibrium",
-        conflicts_with = "polish"
-    )]
+    #[arg(long, value_name = "LAW", requires = "equilibrium")]
     released: Option<PathBuf>,
-    /// Write the cut files of a polished design even if its report has errors
-    #[arg(long, requires = "polish")]
-    force: bool,
     /// Solve the whole sheet, every window and every panel: minutes to an hour. Compares corners, load, openings and energies,
     /// and says whether the panels stay in their plane. Writes sheet.md, sheet.vtu and pictures from above and from the side
-    #[arg(long, group = "of_sheet", conflicts_with_all = ["ensemble", "sample"])]
+    #[arg(long, group = "of_sheet", conflicts_with = "sample")]
     sheet: bool,
     /// What keeps the panels of the whole sheet in their plane: held-flat, lying (on a table), hanging, free [default: the
     /// posture of the scene]
     #[arg(long, value_name = "SUPPORT", requires = "sheet", value_parser = whole_sheet::support)]
     support: Option<Posture>,
-    /// Number of patterns of the imperfection that the whole sheet is solved with, from 1 to 4: ligaments that buckle to
-    /// other sides may lead to another state
-    #[arg(long, value_name = "N", requires = "sheet", default_value_t = 1,
-        value_parser = clap::value_parser!(u8).range(1..=4))]
-    branches: u8,
     /// Solve the panel COLUMN,ROW and those around it instead of the whole sheet, for sheets that are too large; the other panels
     /// move as the hinge law predicts
     #[arg(long, value_name = "COLUMN,ROW", requires = "sheet", value_parser = whole_sheet::panel)]
@@ -115,7 +90,7 @@ impl Display for Released {
 
 impl VerifyCommand {
     pub(crate) fn run(&self) -> Result<()> {
-        let (scene, design, name) = self.judged.read_judged()?;
+        let (scene, design, name) = self.judged.read()?;
         if self.sheet {
             return self.whole_sheet(&scene, &design, &name);
         }
@@ -124,16 +99,16 @@ impl VerifyCommand {
             .context("only a surrogate can be verified: set hinge = \"surrogate\" in the scene")?;
         let tier = judging_tier(self.tier, surrogate)?;
         if self.equilibrium {
-            self.balance(scene, &design, name, tier)
+            self.balance(&scene, &design, name, tier)
         } else {
             self.replay(&scene, &design, &name, surrogate, tier)
         }
     }
 
-    /// The equilibrium with finite elements, and the polish from there.
+    /// The equilibrium with finite elements, and the sheet let go from there.
     fn balance(
         &self,
-        mut scene: Scene,
+        scene: &Scene,
         design: &DesignVector,
         name: String,
         tier: Tier,
@@ -141,45 +116,27 @@ impl VerifyCommand {
         let _held = run_folder::hold(&self.out)?;
         let service = &self.solve.service(&self.out)?;
         let windows = ElementWindows { tier, service };
-        match self.polish {
-            None => {
-                let law = self.released.as_deref().map(Springback::load).transpose()?;
-                if let Some(law) = &law {
-                    scene.check_springback(law)?;
-                }
-                let found = balanced(&scene, design, &windows, self.rounds);
-                let (found, problem) = found.map_err(task_error)?;
-                let end = found.by_elements();
-                let picture = drawing::deployed(&scene, end);
-                run_folder::write(&self.out, "deployed.svg", &picture)?;
-                let budget = found.budget(&scene)?;
-                let errors = SheetErrors::new(&found, name, budget.as_ref());
-                run_folder::write(&self.out, "equilibrium.md", &errors.to_string())?;
-                let Some(law) = law else {
-                    return self.print(&errors);
-                };
-                let rounds = self.rounds;
-                let released =
-                    released_by_elements(&scene, &found, &problem, &law, &windows, rounds);
-                let released = released.map_err(task_error)?;
-                run_folder::write(&self.out, "released.md", &released.to_string())?;
-                self.print(&Released {
-                    equilibrium: errors,
-                    released,
-                })
-            }
-            Some(steps) => {
-                scene.config.output = std::path::absolute(&self.out)?;
-                let task = PolishTask {
-                    scene: &scene,
-                    design,
-                    name: &name,
-                    rounds: self.rounds,
-                    steps: steps.get(),
-                };
-                self.print(&polished::run(task, &windows, &self.out, self.force)?)
-            }
+        let law = self.released.as_deref().map(Springback::load).transpose()?;
+        if let Some(law) = &law {
+            scene.check_springback(law)?;
         }
+        let found = balanced(scene, design, &windows, self.rounds);
+        let (found, problem) = found.map_err(task_error)?;
+        let picture = drawing::deployed(scene, found.by_elements());
+        run_folder::write(&self.out, "deployed.svg", &picture)?;
+        let budget = found.budget(scene)?;
+        let equilibrium = SheetErrors::new(&found, name, budget.as_ref());
+        run_folder::write(&self.out, "equilibrium.md", &equilibrium.to_string())?;
+        let Some(law) = law else {
+            return self.print(&equilibrium);
+        };
+        let released = released_by_elements(scene, &found, &problem, &law, &windows, self.rounds);
+        let released = released.map_err(task_error)?;
+        run_folder::write(&self.out, "released.md", &released.to_string())?;
+        self.print(&Released {
+            equilibrium,
+            released,
+        })
     }
 
     fn print(&self, found: &(impl Serialize + Display)) -> Result<()> {
@@ -200,7 +157,6 @@ impl VerifyCommand {
         surrogate: &Surrogate,
         tier: Tier,
     ) -> Result<()> {
-        let networks = ensemble(scene, surrogate, &self.ensemble)?;
         let mut paths = recorded_paths(scene, design)?;
         if let Some(sample) = self.sample {
             let (all, sample) = (paths.len(), sample.get());
@@ -211,7 +167,7 @@ impl VerifyCommand {
         let service = &self.solve.service(&self.out)?;
         let windows = ElementWindows { tier, service };
         let of_design = (paths, name);
-        let replay = Replay::new(&windows, of_design, &scene.material, surrogate, &networks);
+        let replay = Replay::new(&windows, of_design, &scene.material, surrogate);
         let replay = replay.map_err(task_error)?;
         run_folder::write(&self.out, "replay.md", &replay.to_string())?;
         run_folder::write(&self.out, "replay.csv", &replay.csv())?;

@@ -1,6 +1,6 @@
 //! The scene that is shown, and the answers to requests.
 
-use crate::commands::cut::{CutCommand, Verdict};
+use crate::commands::cut::{Verdict, machine_file_of_run, tiles_of_run};
 use crate::commands::design::write_run;
 use crate::studio::draft::{Draft, Steps, draft};
 use crate::studio::event::{Event, Kind};
@@ -318,13 +318,13 @@ impl Session {
         let folder = run.scene.output();
         let mut refused = Vec::new();
         if let Some(paper) = &files.paper {
-            match CutCommand::tiles_of_run(&folder, paper) {
+            match tiles_of_run(&folder, paper) {
                 Ok(written) => said.push(written.to_string()),
                 Err(error) => refused.push(format!("tiles: {}", message(&error))),
             }
         }
         if let Some(machine) = &files.machine {
-            match CutCommand::machine_file_of_run(&folder, machine) {
+            match machine_file_of_run(&folder, machine) {
                 Ok((written, verdicts)) => {
                     said.push(written.to_string());
                     run.verdicts.insert(machine.clone(), verdicts);

@@ -34,7 +34,7 @@ struct Offered {
 impl Shop {
     /// What the shipped files offer, in the working folder.
     pub fn open() -> Result<Self> {
-        let machines = Machines::read(None)?.machine;
+        let machines = Machines::shipped().machine;
         let mut materials = Vec::new();
         for weights in WEIGHTS
             .iter()

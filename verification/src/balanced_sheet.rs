@@ -345,19 +345,6 @@ impl Balanced {
         &self.deployments[0]
     }
 
-    /// The hinges for which the law stands in the last round: what finite elements would change there is not known.
-    pub fn unsolved(&self) -> &[UnsolvedHinge] {
-        self.rounds.last().map_or(&[], |round| &round.unsolved)
-    }
-
-    /// The movement of every panel corner in the last round (mm); `None` if a hinge was not solved in it.
-    pub fn residual(&self) -> Option<Vec<f64>> {
-        let [.., before, last] = &self.deployments[..] else {
-            return None;
-        };
-        self.unsolved().is_empty().then(|| movements(before, last))
-    }
-
     /// The error budget of the deployment by the hinge law alone, before finite elements: see [`ErrorBudget::new`].
     pub fn budget(&self, scene: &Scene) -> Result<Option<ErrorBudget>, VerificationError> {
         let problem = scene.problem()?;

@@ -5,10 +5,9 @@
 //! | rows of a database from solved windows, and back | [`rows`], [`collected`], [`collected_windows`] |
 //! | the hinges of a sheet solved along their paths, against a surrogate | [`recorded_paths`], [`Replay`] |
 //! | a sheet in equilibrium with the forces of finite elements | [`balanced`], [`SheetErrors`] |
-//! | a design searched on with these forces | [`polish`] |
 //! | the whole sheet, every window and every panel | [`SheetTask`], [`SheetCheck`] |
 //! | errors of weights at random states | [`random_paths`], [`spot_check`] |
-//! | rays where the training data is thin | [`rays_on_paths`], [`doubtful_states`], [`rays_through`] |
+//! | rays where the training data is thin | [`rays_on_paths`] |
 //! | rays of a campaign solved in rounds until weights are accurate | [`learn`] |
 //!
 //! Windows are solved by a [`SolveService`](fe_driver::SolveService). One that fails ends no task: it is named in the
@@ -46,12 +45,10 @@
 
 mod balanced_sheet;
 mod compared_states;
-mod doubtful_states;
 mod extension;
 mod learning;
 mod networks;
 mod patch;
-mod polish;
 mod recorded_path;
 mod region;
 mod released_sheet;
@@ -72,22 +69,18 @@ pub use balanced_sheet::{
     BALANCED, BALANCED_FORCES, BalanceEnd, Balanced, Round, balanced, movements, size,
 };
 pub use compared_states::{SCALE, each_relative, spread_table};
-pub use doubtful_states::{DoubtfulState, doubtful_states, rays_through};
-pub use extension::{PathRays, rays_on_paths};
+pub use extension::rays_on_paths;
 pub use learning::{Accuracy, LearningEnd, LearningRound, LearningSteps, LearningTask, learn};
-pub use networks::{ensemble, judging_tier};
-pub use polish::{PolishGain, PolishTask, Polished, polish};
+pub use networks::judging_tier;
 pub use recorded_path::{RecordedPath, paths_of, recorded_paths};
 pub use region::{distillation_states, drawn, region};
 pub use released_sheet::{ReleasedByElements, released_by_elements};
 pub use releases::{Releases, first_guess, releases};
 pub use replay::{ElementWindows, Replay, ReplayedHinge, UnsolvedHinge};
 pub use rows::{InvalidRow, collected, collected_windows, rows};
-pub use sheet_check::{
-    BranchCheck, HingeCheck, PanelCheck, SheetCheck, SheetFinding, SheetTask, StateCheck,
-};
+pub use sheet_check::{HingeCheck, PanelCheck, SheetCheck, SheetFinding, SheetTask, StateCheck};
 pub use sheet_cost::SheetCost;
 pub use sheet_errors::SheetErrors;
 pub use spot_check::{DrawnStates, SpotCheck, SpotPath, random_paths, spot_check};
 pub use verification_error::VerificationError;
-pub use whole_sheet::{Branch, sheet_problem, usual_sheet_tier};
+pub use whole_sheet::usual_sheet_tier;

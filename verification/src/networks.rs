@@ -1,32 +1,9 @@
-//! The networks that are judged, and the mesh that judges them.
+//! The mesh that judges weights.
 
 use crate::verification_error::VerificationError;
 use dataset::Fidelity;
-use design::scene::Scene;
 use mesher::Tier;
-use std::path::PathBuf;
 use surrogate::Surrogate;
-
-/// The other networks of an ensemble with the scene's `surrogate`, whose spread estimates its error: `files`, trained on
-/// the same data, or those that the scene names.
-pub fn ensemble(
-    scene: &Scene,
-    surrogate: &Surrogate,
-    files: &[PathBuf],
-) -> Result<Vec<Surrogate>, VerificationError> {
-    if files.is_empty() {
-        return Ok(scene.networks().iter().skip(1).cloned().collect());
-    }
-    let load = |path: &PathBuf| {
-        let network = scene.network(path)?;
-        let (own, other) = (surrogate.card(), network.card());
-        if own.dataset_hash != other.dataset_hash || own.split_hash != other.split_hash {
-            return Err(VerificationError::OtherData(path.clone()));
-        }
-        Ok(network)
-    };
-    files.iter().map(load).collect()
-}
 
 /// The mesh tier to test weights on: `requested`, or that of the database they were trained on, or the finer tier
 /// that the database was corrected to.

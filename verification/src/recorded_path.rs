@@ -46,17 +46,6 @@ pub fn paths_of(deployment: &Deployment) -> Vec<RecordedPath> {
 }
 
 impl RecordedPath {
-    /// The similar path of the hinge in a sheet of `factor` times the thickness.
-    #[must_use]
-    pub fn scaled(&self, factor: f64) -> Self {
-        let states = self.states.iter();
-        Self {
-            hinge: self.hinge,
-            design: self.design.scaled(factor),
-            states: states.map(|state| state.scaled(factor)).collect(),
-        }
-    }
-
     /// The last state.
     pub fn end(&self) -> HingeDeformation {
         self.states.last().copied().unwrap_or_default()

@@ -166,27 +166,23 @@ fn share(deployed: &Deployment, found: &Balanced, forces: &[Option<[f64; 3]>]) -
 
 impl fmt::Display for ReleasedByElements {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        let mean = |stays: &WhatStays, i: usize| stays.mean_rotations()[i].to_degrees();
         let [law, elements] = [&self.by_law, &self.by_elements];
-        writeln!(f, "# The sheet let go\n")?;
-        writeln!(f, "| | by the law | by finite elements |\n|---|---|---|")?;
+        let rotations = |stays: &WhatStays| stays.mean_rotations().map(f64::to_degrees);
+        let [loaded, stay] = std::array::from_fn(|i| [law, elements].map(|of| rotations(of)[i]));
         writeln!(
             f,
-            "| mean rotation of the hinges under load, deg | {:.2} | {:.2} |",
-            mean(law, 0),
-            mean(elements, 0)
+            "# The sheet let go\n\n| | by the law | by finite elements |\n|---|---|---|"
         )?;
-        writeln!(
-            f,
-            "| mean rotation that stays, deg | {:.2} | {:.2} |",
-            mean(law, 1),
-            mean(elements, 1)
-        )?;
-        writeln!(
-            f,
-            "| movement of the panel corners, root mean square, mm | {:.2} | {:.2} |",
-            law.corners[0], elements.corners[0]
-        )?;
+        for (what, [law, elements]) in [
+            ("mean rotation of the hinges under load, deg", loaded),
+            ("mean rotation that stays, deg", stay),
+            (
+                "movement of the panel corners, root mean square, mm",
+                [law.corners[0], elements.corners[0]],
+            ),
+        ] {
+            writeln!(f, "| {what} | {law:.2} | {elements:.2} |")?;
+        }
         if let (Some([_, by_law]), Some([_, by_elements])) =
             (law.displacement, elements.displacement)
         {

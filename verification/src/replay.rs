@@ -8,7 +8,7 @@ use hinge::{HingeDeformation, HingeSample, SheetMaterial};
 use mesher::Tier;
 use serde::Serialize;
 use std::fmt;
-use surrogate::{Surrogate, mean_and_variance};
+use surrogate::Surrogate;
 
 /// One hinge, by the surrogate and by finite elements.
 pub struct ReplayedHinge {
@@ -16,8 +16,6 @@ pub struct ReplayedHinge {
     pub path: RecordedPath,
     /// Its states, in the order of the load steps.
     pub states: Vec<ComparedState>,
-    /// Standard deviation over the ensemble at every state, in the order of [`dataset::COMPARED`]; empty without one.
-    pub spread: Vec<[f64; 6]>,
     /// Fraction of the states inside the training domain.
     pub inside: f64,
 }
@@ -77,19 +75,18 @@ impl ElementWindows<'_> {
 
 impl Replay {
     /// Compares a surrogate with the solved windows of hinges of the scene along their paths in the design, which has a
-    /// name for a person. `networks` are the others of the surrogate's ensemble.
+    /// name for a person.
     pub fn new(
         windows: &ElementWindows,
         (paths, name): (Vec<RecordedPath>, &str),
         material: &SheetMaterial,
         surrogate: &Surrogate,
-        networks: &[Surrogate],
     ) -> Result<Self, VerificationError> {
         let solved = windows.solve(&paths, material)?;
         let (mut hinges, mut unsolved) = (Vec::new(), Vec::new());
         for (path, window) in paths.into_iter().zip(&solved) {
             match window.complete() {
-                Ok(samples) => hinges.push(ReplayedHinge::new(path, samples, surrogate, networks)),
+                Ok(samples) => hinges.push(ReplayedHinge::new(path, samples, surrogate)),
                 Err(failed) => unsolved.push(UnsolvedHinge {
                     hinge: path.hinge,
                     reason: failed.to_string(),
@@ -116,15 +113,11 @@ impl Replay {
 }
 
 impl ReplayedHinge {
-    fn new(
-        path: RecordedPath,
-        solved: &[HingeSample],
-        surrogate: &Surrogate,
-        networks: &[Surrogate],
-    ) -> Self {
+    fn new(path: RecordedPath, solved: &[HingeSample], surrogate: &Surrogate) -> Self {
         let count = path.states.len();
         let computed = (1..=count).map(|k| HingeSample::at(solved, k as f64 / count as f64));
-        let predicted = predicted(surrogate, &path);
+        let designs = vec![path.design; count];
+        let predicted = surrogate.samples(&designs, &path.states);
         let domain = surrogate.domain();
         let inside = |state: &HingeDeformation| domain.contains(&path.design, state);
         // Damage grows along the path: it is not known once a state was outside the training domain.
@@ -137,43 +130,14 @@ impl ReplayedHinge {
             },
             _ => *value,
         };
-        let states: Vec<_> = (predicted.iter().enumerate().map(known))
+        let states = (predicted.iter().enumerate().map(known))
             .zip(computed)
             .filter_map(|(value, reference)| Some(ComparedState::new(&value, &reference?)))
             .collect();
-        let others: Vec<_> = networks
-            .iter()
-            .map(|network| self::predicted(network, &path))
-            .collect();
-        let spread = if others.is_empty() {
-            Vec::new()
-        } else {
-            let states = 0..states.len();
-            states.map(|k| deviation(&predicted, &others, k)).collect()
-        };
         Self {
             inside: path.states.iter().filter(|state| inside(state)).count() as f64 / count as f64,
             path,
             states,
-            spread,
         }
     }
-}
-
-/// The predictions of a surrogate at every state of a path.
-fn predicted(surrogate: &Surrogate, path: &RecordedPath) -> Vec<HingeSample> {
-    let designs = vec![path.design; path.states.len()];
-    surrogate.samples(&designs, &path.states)
-}
-
-/// Standard deviation over all networks at the state `k`.
-fn deviation(first: &[HingeSample], others: &[Vec<HingeSample>], k: usize) -> [f64; 6] {
-    let all = std::iter::once(first).chain(others.iter().map(Vec::as_slice));
-    let values: Vec<_> = all
-        .map(|samples| ComparedState::new(&samples[k], &samples[k]).value)
-        .collect();
-    std::array::from_fn(|i| {
-        let [_, variance] = mean_and_variance(values.iter().map(|value| value[i]));
-        variance.sqrt()
-    })
 }

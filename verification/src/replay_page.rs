@@ -1,6 +1,7 @@
 //! The page of a replay, and its table of states.
 
 use crate::compared_states::{SCALE, spread_table};
+use crate::recorded_path::RecordedPath;
 use crate::replay::{Replay, ReplayedHinge};
 use dataset::{COMPARED, ComparedState};
 use std::fmt;
@@ -32,9 +33,6 @@ impl fmt::Display for Replay {
             spread_table(&groups, "hinge"),
             100.0 * (learned / solved - 1.0),
         )?;
-        if hinges.iter().any(|hinge| !hinge.spread.is_empty()) {
-            write!(f, "\n{}", estimate(hinges))?;
-        }
         write!(f, "\nAt full load:\n\n{}", ends_table(hinges))?;
         if !self.unsolved.is_empty() {
             writeln!(
@@ -79,70 +77,41 @@ fn ends_table(hinges: &[ReplayedHinge]) -> String {
     table.markdown(&ends)
 }
 
-/// How often the error is within one, two and three standard deviations of the ensemble.
-fn estimate(replayed: &[ReplayedHinge]) -> String {
-    let mut text = "Fraction of the states with an error within so many standard deviations of the ensemble:\n\n\
-        | quantity | one | two | three |\n|---|---|---|---|\n"
-        .to_owned();
-    let pairs = || {
-        replayed
-            .iter()
-            .flat_map(|hinge| hinge.states.iter().zip(&hinge.spread))
-    };
-    for (i, name) in COMPARED.iter().enumerate() {
-        if pairs().any(|(_, spread)| spread[i].is_nan()) {
-            text += &format!("| {name} | not predicted by all | | |\n");
-            continue;
-        }
-        let known = || pairs().filter(|(state, _)| state.is_known(i));
-        if known().next().is_none() {
-            text += &format!("| {name} | not known | | |\n");
-            continue;
-        }
-        let within = |count: f64| {
-            let met = known().filter(|(state, spread)| {
-                (state.value[i] - state.reference[i]).abs() <= count * spread[i]
-            });
-            100.0 * met.count() as f64 / known().count() as f64
-        };
-        let [one, two, three] = [1.0, 2.0, 3.0].map(within);
-        text += &format!("| {name} | {one:.0} % | {two:.0} % | {three:.0} % |\n");
-    }
-    text
-}
-
 impl Replay {
     /// One row per state; a cell is empty if its value is not known.
     pub fn csv(&self) -> String {
-        let columns = |prefix: &str| COMPARED.map(|name| format!("{prefix}_{name}")).join(",");
-        let mut text = format!(
-            "hinge,w_lig_mm,alpha_deg,step,eta_a,eta_s,theta_deg,{},{}\n",
-            columns("surrogate"),
-            columns("fe")
-        );
-        for hinge in &self.hinges {
-            let design = &hinge.path.design;
-            let states = hinge.path.states.iter().zip(&hinge.states);
-            for (step, (state, ComparedState { value, reference })) in states.enumerate() {
-                let [eta_a, eta_s] = state.eta(design.w_lig);
-                text += &format!(
-                    "{},{:.4},{:.4},{},{eta_a:.6},{eta_s:.6},{:.4}",
-                    hinge.path.hinge,
-                    design.w_lig,
-                    design.alpha.to_degrees(),
-                    step + 1,
-                    state.theta.to_degrees(),
-                );
-                for number in value.iter().chain(reference) {
-                    if number.is_nan() {
-                        text.push(',');
-                    } else {
-                        text += &format!(",{number:.6}");
-                    }
-                }
-                text += "\n";
-            }
+        type State<'a> = (&'a RecordedPath, usize, &'a ComparedState);
+        let state = |(path, k, _): &State| path.states[*k];
+        let mut table = Table::new()
+            .column("hinge", |(path, ..): &State| Cell::text(path.hinge))
+            .column("w_lig_mm", |(path, ..)| number(path.design.w_lig))
+            .column("alpha_deg", |(path, ..)| {
+                number(path.design.alpha.to_degrees())
+            })
+            .column("step", |(_, k, _)| Cell::text(k + 1))
+            .column("eta_a", move |of| {
+                number(state(of).eta(of.0.design.w_lig)[0])
+            })
+            .column("eta_s", move |of| {
+                number(state(of).eta(of.0.design.w_lig)[1])
+            })
+            .column("theta_deg", move |of| number(state(of).theta.to_degrees()));
+        for (i, name) in COMPARED.iter().enumerate() {
+            table = table.column(format!("surrogate_{name}"), move |of| number(of.2.value[i]));
         }
-        text
+        for (i, name) in COMPARED.iter().enumerate() {
+            table = table.column(format!("fe_{name}"), move |of| number(of.2.reference[i]));
+        }
+        let states = self.hinges.iter().flat_map(|hinge| {
+            let states = hinge.states.iter().enumerate();
+            states.map(|(k, state)| (&hinge.path, k, state))
+        });
+        table.csv(&states.collect::<Vec<State>>())
     }
+}
+
+/// A number with six decimals; an empty cell if it is not known.
+fn number(value: f64) -> Cell {
+    let known = (!value.is_nan()).then(|| Cell::text(format!("{value:.6}")));
+    Cell::known(known, "")
 }

@@ -2,7 +2,7 @@
 
 use crate::patch::SheetPart;
 use crate::verification_error::VerificationError;
-use crate::whole_sheet::{Branch, sheet_problem, with_support};
+use crate::whole_sheet::{sheet_problem, with_support};
 use design::analysis::actuation_curve::ActuationCurve;
 use design::analysis::flatness::Flatness;
 use design::hinge_law::{DamageMeasure, Order};
@@ -31,7 +31,6 @@ pub struct SheetTask {
     /// What keeps the panels in their plane.
     support: Posture,
     tier: Tier,
-    branches: Vec<Branch>,
     /// The panels and hinges that are solved.
     part: SheetPart,
     /// Displacement and load by the law, before the loads and at every load step.
@@ -61,26 +60,8 @@ pub struct SheetCheck {
     pub outside: Vec<usize>,
     /// Whether the stroke is prescribed; otherwise loads are.
     pub driven: bool,
-    /// One result a branch, in the order of the task.
-    pub branches: Vec<BranchCheck>,
     /// What a person should know.
     pub findings: Vec<SheetFinding>,
-}
-
-/// A finding about a sheet.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct SheetFinding {
-    /// The consequence.
-    pub severity: Severity,
-    /// In words.
-    pub message: String,
-}
-
-/// One solve, with one pattern of bumps.
-#[derive(Debug, Serialize)]
-pub struct BranchCheck {
-    /// To which sides the bumps of the hinges point.
-    pub bumps: &'static str,
     /// Why the path was not followed to its end; `None` if it was.
     pub stopped: Option<String>,
     /// Whether inertia was needed to follow it.
@@ -102,6 +83,15 @@ pub struct BranchCheck {
     /// The middle surface at its end.
     #[serde(skip)]
     pub surface: SheetSurface,
+}
+
+/// A finding about a sheet.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct SheetFinding {
+    /// The consequence.
+    pub severity: Severity,
+    /// In words.
+    pub message: String,
 }
 
 /// A state of a path. Pairs are by the hinge law and by finite elements.
@@ -158,14 +148,12 @@ pub struct PanelCheck {
 }
 
 impl SheetTask {
-    /// The design of a scene, kept in its plane as `support` says, or as its posture does. The first `branches` patterns of
-    /// bumps are tried. Of a `patch`, the panel [column, row] and those around it are solved.
+    /// The design of a scene, kept in its plane as `support` says, or as its posture does. Of a `patch`, the panel [column, row] and those around it are solved.
     pub fn new(
         scene: &Scene,
         design: &DesignVector,
         support: Option<Posture>,
         tier: Tier,
-        branches: usize,
         patch: Option<[usize; 2]>,
     ) -> Result<Self, VerificationError> {
         let scene = with_support(scene, support)?;
@@ -179,7 +167,6 @@ impl SheetTask {
         Ok(Self {
             support: support.or(posture).ok_or(VerificationError::NoPosture)?,
             tier,
-            branches: Branch::ALL.into_iter().take(branches).collect(),
             part: match patch {
                 Some(panel) => SheetPart::around(&deployment.sheet, panel)?,
                 None => SheetPart::whole(&deployment.sheet),
@@ -191,25 +178,26 @@ impl SheetTask {
         })
     }
 
-    /// The solves, one a branch.
-    pub fn solves(&self, versions: &ToolVersions) -> Result<Vec<SheetSolve>, VerificationError> {
-        let solve = |branch: &Branch| {
-            let (scene, sheet) = (&self.scene, &self.deployment.sheet);
-            let problem = sheet_problem(scene, sheet, self.support, self.tier, *branch)?;
-            let problem = self.part.of(problem, &self.deployment)?;
-            Ok(SheetSolve::new(problem, versions))
-        };
-        self.branches.iter().map(solve).collect()
+    /// The solve.
+    pub fn solve(&self, versions: &ToolVersions) -> Result<SheetSolve, VerificationError> {
+        let (scene, sheet) = (&self.scene, &self.deployment.sheet);
+        let problem = sheet_problem(scene, sheet, self.support, self.tier)?;
+        let problem = self.part.of(problem, &self.deployment)?;
+        Ok(SheetSolve::new(problem, versions))
     }
 
-    /// Compares the solved sheets, one a branch, with the deployment by the law; `design` is its name for a person.
-    pub fn check(&self, design: &str, solved: &[Solved<SheetSolve>]) -> SheetCheck {
+    /// Compares the solved sheet with the deployment by the law; `design` is its name for a person.
+    pub fn check(&self, design: &str, solved: &Solved<SheetSolve>) -> SheetCheck {
         let sheet = &self.deployment.sheet;
         let thickness = self.scene.material.thickness;
         let widths = sheet.hinges.iter().map(|hinge| hinge.w_lig / thickness);
-        let branches: Vec<BranchCheck> = std::iter::zip(&self.branches, solved)
-            .map(|(branch, solved)| self.branch(*branch, solved))
-            .collect();
+        let samples = &solved.samples;
+        // Before the loads, while the weight comes on, the law has no state beside.
+        let loaded = samples.states.iter().filter(|state| state.fraction > 0.0);
+        let problem = &solved.solve.problem;
+        let path = loaded.map(|state| self.state(state, problem.total_load()));
+        let last = samples.states.last();
+        let (hinges, panels) = last.map_or_else(Default::default, |last| self.end(last));
         let mut check = SheetCheck {
             design: design.to_owned(),
             support: self.support,
@@ -218,11 +206,9 @@ impl SheetTask {
             is_patch: self.is_patch(),
             size: sheet.outline.size(),
             radius: [
-                (solved
-                    .iter()
-                    .flat_map(|solved| &solved.solve.problem.shape.windows))
-                .map(|window| window.design.r_win)
-                .fold(f64::INFINITY, f64::min),
+                (problem.shape.windows.iter())
+                    .map(|window| window.design.r_win)
+                    .fold(f64::INFINITY, f64::min),
                 sheet.options.process.r_win,
             ],
             slenderness: [
@@ -233,28 +219,6 @@ impl SheetTask {
                 .filter(|h| self.deployment.path.iter().any(|step| !step.inside[*h]))
                 .collect(),
             driven: self.scene.config.drive.is_some(),
-            branches,
-            findings: Vec::new(),
-        };
-        check.findings = findings(&check);
-        check
-    }
-
-    /// Whether only a part of the sheet is solved.
-    fn is_patch(&self) -> bool {
-        self.part.panels.len() < self.deployment.sheet.panels.len()
-    }
-
-    fn branch(&self, branch: Branch, solved: &Solved<SheetSolve>) -> BranchCheck {
-        let samples = &solved.samples;
-        // Before the loads, while the weight comes on, the law has no state beside.
-        let loaded = samples.states.iter().filter(|state| state.fraction > 0.0);
-        let full_load = solved.solve.problem.total_load();
-        let path = loaded.map(|state| self.state(state, full_load));
-        let last = samples.states.last();
-        let (hinges, panels) = last.map_or_else(Default::default, |last| self.end(last));
-        BranchCheck {
-            bumps: branch.name(),
             stopped: (solved.complete().err()).map(|unsolved| unsolved.to_string()),
             dynamic: last.is_some_and(|last| last.kinetic_energy != 0.0),
             unknowns: samples.unknowns,
@@ -267,7 +231,15 @@ impl SheetTask {
                 last.panel_energy / last.internal_energy().max(f64::MIN_POSITIVE)
             }),
             surface: samples.surface.clone().unwrap_or_default(),
-        }
+            findings: Vec::new(),
+        };
+        check.findings = findings(&check);
+        check
+    }
+
+    /// Whether only a part of the sheet is solved.
+    fn is_patch(&self) -> bool {
+        self.part.panels.len() < self.deployment.sheet.panels.len()
     }
 
     /// What the law predicts at a fraction of the loads: motions of the panels, and (displacement, load).
@@ -385,7 +357,7 @@ impl SheetTask {
     }
 }
 
-impl BranchCheck {
+impl SheetCheck {
     /// The last state of the path.
     pub fn last(&self) -> Option<&StateCheck> {
         self.path.last()
@@ -398,46 +370,39 @@ fn finding(severity: Severity, message: String) -> SheetFinding {
 
 /// All findings, the most severe first.
 fn findings(check: &SheetCheck) -> Vec<SheetFinding> {
-    let branches = check.branches.iter();
-    let mut found: Vec<SheetFinding> = branches
-        .flat_map(|branch| of_branch(check, branch))
-        .chain(outside_domain(check))
-        .collect();
+    let Some(last) = check.last() else {
+        let reason = check.stopped.as_deref();
+        let reason = reason.unwrap_or("no increment converged");
+        let message = format!("the sheet was not solved: {reason}");
+        let unsolved = finding(Severity::Error, message);
+        return std::iter::once(unsolved)
+            .chain(outside_domain(check))
+            .collect();
+    };
+    let stopped = check.stopped.as_ref().map(|reason| {
+        finding(
+            Severity::Error,
+            format!(
+                "the path was followed to {:.1} % only; what happens beyond is not known: {reason}",
+                100.0 * last.fraction
+            ),
+        )
+    });
+    let found = [
+        stopped,
+        flatness(check.support, check.size, &check.path),
+        other_load(check, last),
+        tearing(check),
+        still_moving(last),
+        outside_domain(check),
+    ];
+    let mut found: Vec<SheetFinding> = found.into_iter().flatten().collect();
     found.sort_by_key(|finding| std::cmp::Reverse(finding.severity));
     found
 }
 
-/// The findings about one solve.
-fn of_branch(check: &SheetCheck, branch: &BranchCheck) -> Vec<SheetFinding> {
-    let of = if check.branches.len() > 1 {
-        format!(" (bumps {})", branch.bumps)
-    } else {
-        String::new()
-    };
-    let Some(last) = branch.last() else {
-        let reason = branch.stopped.as_deref();
-        let reason = reason.unwrap_or("no increment converged");
-        let message = format!("the sheet was not solved{of}: {reason}");
-        return vec![finding(Severity::Error, message)];
-    };
-    let stopped = branch.stopped.as_ref().map(|reason| {
-        finding(Severity::Error, format!(
-            "the path was followed to {:.1} % only{of}; what happens beyond is not known: {reason}",
-            100.0 * last.fraction
-        ))
-    });
-    let found = [
-        stopped,
-        flatness(check.support, check.size, &branch.path, &of),
-        other_load(check, last, &of),
-        tearing(branch, &of),
-        still_moving(last, &of),
-    ];
-    found.into_iter().flatten().collect()
-}
-
 /// Whether a sheet of a size (mm) is flat, by the rule of a design, where it is least so: on the way or at the end.
-fn flatness(support: Posture, size: f64, path: &[StateCheck], of: &str) -> Option<SheetFinding> {
+fn flatness(support: Posture, size: f64, path: &[StateCheck]) -> Option<SheetFinding> {
     let most = |value: fn(&StateCheck) -> f64| {
         path.iter()
             .max_by(|one, other| value(one).total_cmp(&value(other)))
@@ -463,7 +428,7 @@ fn flatness(support: Posture, size: f64, path: &[StateCheck], of: &str) -> Optio
         severity,
         format!(
             "the sheet {what}: the panels tilt by up to {tilt:.1} deg, {}, and the corners are {rms:.2} mm (root mean square) from where \
-             the hinge law has them, {largest:.2} mm at most, {}: {:.2} % of the sheet{of}",
+             the hinge law has them, {largest:.2} mm at most, {}: {:.2} % of the sheet",
             at(tilted),
             at(off),
             100.0 * error
@@ -471,33 +436,33 @@ fn flatness(support: Posture, size: f64, path: &[StateCheck], of: &str) -> Optio
     ))
 }
 
-fn other_load(check: &SheetCheck, last: &StateCheck, of: &str) -> Option<SheetFinding> {
+fn other_load(check: &SheetCheck, last: &StateCheck) -> Option<SheetFinding> {
     let [by_law, by_elements] = last.load.filter(|_| check.driven)?;
     let differs = (by_law - by_elements).abs() > OTHER_LOAD * by_elements.abs();
     differs.then(|| {
         finding(Severity::Warning, format!(
-            "the load is {by_elements:.4} N by finite elements and {by_law:.4} N by the hinge law{of}"
+            "the load is {by_elements:.4} N by finite elements and {by_law:.4} N by the hinge law"
         ))
     })
 }
 
-fn tearing(branch: &BranchCheck, of: &str) -> Option<SheetFinding> {
+fn tearing(check: &SheetCheck) -> Option<SheetFinding> {
     let tears = |hinge: &&HingeCheck| hinge.d_peak[1].is_some_and(|peak| peak >= 1.0);
-    let torn = branch.hinges.iter().filter(tears).map(|hinge| hinge.hinge);
+    let torn = check.hinges.iter().filter(tears).map(|hinge| hinge.hinge);
     let torn: Vec<String> = torn.map(|hinge| hinge.to_string()).collect();
     (!torn.is_empty()).then(|| {
         let hinges = torn.join(", ");
         finding(
             Severity::Error,
-            format!("ligaments tear{of}: D_peak is 1 or more (hinges {hinges})"),
+            format!("ligaments tear: D_peak is 1 or more (hinges {hinges})"),
         )
     })
 }
 
-fn still_moving(last: &StateCheck, of: &str) -> Option<SheetFinding> {
+fn still_moving(last: &StateCheck) -> Option<SheetFinding> {
     (last.kinetic > AT_REST).then(|| {
         finding(Severity::Warning, format!(
-            "the sheet still moves at the end of its dynamic path{of}: kinetic energy is {:.1} % of the internal energy",
+            "the sheet still moves at the end of its dynamic path: kinetic energy is {:.1} % of the internal energy",
             100.0 * last.kinetic
         ))
     })
@@ -537,7 +502,7 @@ mod tests {
                 state(0.4, on_the_way[0], on_the_way[1]),
                 state(1.0, 0.4, 0.3),
             ];
-            flatness(support, 200.0, &path, "").unwrap()
+            flatness(support, 200.0, &path).unwrap()
         };
         // 0.3 and 5 % of the sheet are 0.6 and 10 mm.
         for (on_the_way, severity, what) in [
@@ -564,6 +529,6 @@ mod tests {
         ] {
             assert!(held.message.contains(part), "{held:?}");
         }
-        assert_eq!(flatness(Posture::Free, 200.0, &[], ""), None);
+        assert_eq!(flatness(Posture::Free, 200.0, &[]), None);
     }
 }

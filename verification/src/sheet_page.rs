@@ -1,6 +1,6 @@
 //! The page of a whole sheet by finite elements.
 
-use crate::sheet_check::{BranchCheck, SheetCheck, StateCheck};
+use crate::sheet_check::{SheetCheck, StateCheck};
 use design::scene::Posture;
 use std::fmt;
 
@@ -51,19 +51,15 @@ impl fmt::Display for SheetCheck {
         }
         writeln!(
             f,
-            "\nNot modelled here: contact of the flanks of the cuts, friction, creep. Corners: distance in space between the rigid \
-             motion that the nodes of a panel follow best and its place by law; per cent of the longer side of the flat sheet, {:.0} mm.\n\n\
-             | bumps of the hinges | reached | load, N | by law | mean opening, deg | by law | corners, mm | max | % | tilt, deg | lift, mm | \
-             bending, mm | unknowns | CPU s |\n|---|---|---|---|---|---|---|---|---|---|---|---|---|---|",
-            self.size
+            "\nNot modelled here: contact of the flanks of the cuts, friction, creep. {} unknowns, {:.0} CPU s{}.",
+            self.unknowns,
+            self.cpu_seconds,
+            if self.dynamic { ", dynamic" } else { "" },
         )?;
-        for branch in &self.branches {
-            self.write_branch(f, branch)?;
+        match self.last() {
+            Some(last) => self.write_path(f, last),
+            None => Ok(()),
         }
-        for branch in self.branches.iter().filter(|branch| branch.path.len() > 1) {
-            self.write_path(f, branch)?;
-        }
-        Ok(())
     }
 }
 
@@ -76,43 +72,21 @@ fn known(pair: Option<[f64; 2]>, decimals: usize) -> [String; 2] {
 }
 
 impl SheetCheck {
-    fn write_branch(&self, f: &mut fmt::Formatter, branch: &BranchCheck) -> fmt::Result {
-        let Some(last) = branch.last() else {
-            return writeln!(
-                f,
-                "| {} | 0 % | - | - | - | - | - | - | - | - | - | - | {} | {:.0} |",
-                branch.bumps, branch.unknowns, branch.cpu_seconds
-            );
-        };
-        let [load, found] = known(last.load, 4);
-        let [opening, opened] = last.opening_deg;
-        let ([rms, most], [_, high]) = (last.corners, last.z);
+    fn write_path(&self, f: &mut fmt::Formatter, last: &StateCheck) -> fmt::Result {
         writeln!(
             f,
-            "| {}{} | {:.0} % | {found} | {load} | {opened:.2} | {opening:.2} | {rms:.3} | {most:.3} | {:.3} | {:.2} | {high:.2} | \
-             {:.3} | {} | {:.0} |",
-            branch.bumps,
-            if branch.dynamic { ", dynamic" } else { "" },
-            100.0 * last.fraction,
-            100.0 * rms / self.size,
-            last.tilt_deg,
-            last.bending,
-            branch.unknowns,
-            branch.cpu_seconds,
-        )
-    }
-
-    fn write_path(&self, f: &mut fmt::Formatter, branch: &BranchCheck) -> fmt::Result {
-        writeln!(
-            f,
-            "\n## Bumps {}\n\n\
+            "\n## Along the path\n\n\
+             Corners: distance in space between the rigid motion that the nodes of a panel follow best and its place by law; at the end \
+             {:.3} % of the longer side of the flat sheet, {:.0} mm, in the root mean square. Panels bend by {:.3} mm at most.\n\n\
              | path, % | stroke, mm | by law | load, N | by law | mean opening, deg | by law | corners, mm | max | tilt, deg | lift, mm |\n\
              |---|---|---|---|---|---|---|---|---|---|---|",
-            branch.bumps
+            100.0 * last.corners[0] / self.size,
+            self.size,
+            last.bending
         )?;
-        let stride = branch.path.len().div_ceil(ROWS).max(1);
-        let kept = (branch.path.iter().enumerate())
-            .filter(|(i, _)| (branch.path.len() - 1 - i).is_multiple_of(stride));
+        let stride = self.path.len().div_ceil(ROWS).max(1);
+        let kept = (self.path.iter().enumerate())
+            .filter(|(i, _)| (self.path.len() - 1 - i).is_multiple_of(stride));
         for (_, state) in kept {
             let StateCheck {
                 fraction,
@@ -135,9 +109,9 @@ impl SheetCheck {
             f,
             "\nPanels outside of the windows hold {:.2} % of the energy.\n\n\
              | hinge | w_lig, mm | theta, deg | by law | W, N mm | by law | D_peak | by law |\n|---|---|---|---|---|---|---|---|",
-            100.0 * branch.panel_energy
+            100.0 * self.panel_energy
         )?;
-        for hinge in &branch.hinges {
+        for hinge in &self.hinges {
             let ([theta, opened], [energy, found]) = (hinge.theta_deg, hinge.energy);
             let [peak, found_peak] = hinge
                 .d_peak
@@ -152,7 +126,7 @@ impl SheetCheck {
             f,
             "\n| panel | tilt, deg | corner furthest off, mm | lowest, mm | highest, mm | bending, mm |\n|---|---|---|---|---|---|"
         )?;
-        for panel in &branch.panels {
+        for panel in &self.panels {
             let [low, high] = panel.z;
             writeln!(
                 f,

@@ -41,12 +41,6 @@ pub enum VerificationError {
     NoHinge(String),
     #[error("no hinge was solved: {0}")]
     NoHingeReplayed(String),
-    #[error("stopped with {left} steps left")]
-    Stopped { left: usize },
-    #[error(
-        "{0} was not trained on the data of the scene's weights and cannot be in an ensemble with them"
-    )]
-    OtherData(PathBuf),
     #[error(
         "the weights were trained on the tier `{trained_on}`, which is no mesh tier: pass the \
          tier to compare with as --tier"

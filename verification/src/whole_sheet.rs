@@ -1,9 +1,9 @@
 //! A designed sheet as a finite-element problem: every window and every panel.
 
 use crate::verification_error::VerificationError;
-use design::pattern::grid::{Endpoint, Grid};
+use design::pattern::grid::Grid;
 use design::scene::{Attachment, Posture, PostureConfig, Scene, SupportKind};
-use design::sheet::cut_sheet::{Hinge, PanelPoint, Sheet};
+use design::sheet::cut_sheet::{PanelPoint, Sheet};
 use design::sheet::hinge_window::Window;
 use fe_driver::{Held, Keeping, Place, Pulled, SheetProblem};
 use hinge::{HingeDesign, Regime};
@@ -23,46 +23,6 @@ const LAYERS: usize = 2;
 /// thicknesses are of no law's regime: they bend in the plane first and tip over later, and a bump as high as the sheet is
 /// thick would make them softer than they are (docs/results/plates).
 const IN_PLANE: f64 = 2.0;
-
-/// To which sides the bumps of the hinges point: each pattern may lead to another branch.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Branch {
-    /// All to one side.
-    OneSide,
-    /// The neighbours along and across to opposite sides.
-    Alternating,
-    /// Those at the two ends of each cut to opposite sides.
-    Pairs,
-    /// Rows of cuts to opposite sides in turn.
-    Rows,
-}
-
-impl Branch {
-    /// All patterns, in the order in which they are tried.
-    pub const ALL: [Self; 4] = [Self::OneSide, Self::Alternating, Self::Pairs, Self::Rows];
-
-    /// The pattern in words.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::OneSide => "all to one side",
-            Self::Alternating => "alternating",
-            Self::Pairs => "the two ends of a cut to opposite sides",
-            Self::Rows => "rows in turn",
-        }
-    }
-
-    fn sign(self, hinge: &Hinge) -> f64 {
-        let [i, j] = hinge.site.vertex;
-        let end = usize::from(hinge.site.endpoint != Endpoint::X);
-        let other = match self {
-            Self::OneSide => 0,
-            Self::Alternating => i + j + end,
-            Self::Pairs => end,
-            Self::Rows => j,
-        };
-        if other % 2 == 0 { 1.0 } else { -1.0 }
-    }
-}
 
 /// The tier on which a whole sheet is solved unless another one is named.
 pub fn usual_sheet_tier(scene: &Scene) -> Tier {
@@ -96,7 +56,6 @@ pub fn sheet_problem(
     sheet: &Sheet,
     support: Posture,
     tier: Tier,
-    branch: Branch,
 ) -> Result<SheetProblem, VerificationError> {
     let (pulled, held) = (pulled(scene, sheet)?, held(scene, sheet)?);
     let down = match support {
@@ -112,7 +71,7 @@ pub fn sheet_problem(
         Posture::Lying => Keeping::Table,
         Posture::Hanging | Posture::Free => Keeping::Nothing,
     };
-    let mut shape = sheet_shape(sheet, scene.material.thickness, tier, branch)?;
+    let mut shape = sheet_shape(sheet, scene.material.thickness, tier)?;
     for pulled in &pulled {
         shape.panels[pulled.panel].mark(pulled.at);
     }
@@ -277,13 +236,8 @@ pub(crate) fn meshed_radii(sheet: &Sheet) -> Result<Vec<f64>, VerificationError>
     }
 }
 
-/// The finished sheet with its windows.
-fn sheet_shape(
-    sheet: &Sheet,
-    thickness: f64,
-    tier: Tier,
-    branch: Branch,
-) -> Result<SheetShape, VerificationError> {
+/// The finished sheet with its windows, whose bumps are all on one side.
+fn sheet_shape(sheet: &Sheet, thickness: f64, tier: Tier) -> Result<SheetShape, VerificationError> {
     let PlaneRecipe::Structured(plane) = tier.recipe().plane else {
         return Err(VerificationError::NoSheetTier(tier));
     };
@@ -307,7 +261,7 @@ fn sheet_shape(
                     e_x: window.e_sec,
                 },
                 panels: [Some(hinge.site.a), Some(hinge.site.b)],
-                bump: branch.sign(hinge) * Imperfection::of(regime).amplitude,
+                bump: Imperfection::of(regime).amplitude,
             }
         },
     );

@@ -59,13 +59,13 @@ learning_rate = 0.1
 const AS_IT_IS: [&str; 2] = ["", ""];
 
 fn task(scene: &Scene, support: Option<Posture>) -> Result<SheetTask, VerificationError> {
-    SheetTask::new(scene, &scene.start(), support, Tier::Tiny, 1, None)
+    SheetTask::new(scene, &scene.start(), support, Tier::Tiny, None)
 }
 
 fn checked(task: &SheetTask, limit: Duration) -> SheetCheck {
     let folder = tempfile::tempdir().unwrap();
     let calculix = CalculiX::find().unwrap();
-    let solves = task.solves(&calculix.versions()).unwrap();
+    let solve = task.solve(&calculix.versions()).unwrap();
     let service = SolveService {
         solver: Box::new(calculix),
         store: SolveStore(folder.path().to_owned()),
@@ -74,14 +74,14 @@ fn checked(task: &SheetTask, limit: Duration) -> SheetCheck {
         stop: &AtomicBool::new(false),
         progress: Box::new(|_, _| {}),
     };
-    task.check("test", &service.solve(&solves).unwrap())
+    task.check("test", &service.solve(&[solve]).unwrap()[0])
 }
 
 #[test]
 fn panels_held_flat_go_where_the_law_has_them() {
     let task = task(&scene(AS_IT_IS), None).unwrap();
     let check = checked(&task, Duration::from_secs(300));
-    let branch = &check.branches[0];
+    let branch = &check;
     let last = branch.last().unwrap();
     assert_eq!((last.fraction, &branch.stopped), (1.0, &None));
     // Windows of the coarsest tier are 9 % too stiff in W; the shape hardly depends on that.
@@ -124,11 +124,11 @@ fn a_patch_of_a_sheet_is_where_the_law_has_it() {
         let mut scene = scene(six);
         scene.config.sheet.size = Some([140.0, 210.0]);
         scene.config.supports[0].panel = [0, 2];
-        SheetTask::new(&scene, &scene.start(), None, Tier::Tiny, 1, Some(panel))
+        SheetTask::new(&scene, &scene.start(), None, Tier::Tiny, Some(panel))
     };
     let check = checked(&task_of([1, 2]).unwrap(), Duration::from_secs(300));
     assert!(check.is_patch && check.counts[0] == 4, "{:?}", check.counts);
-    let branch = &check.branches[0];
+    let branch = &check;
     let last = branch.last().unwrap();
     assert_eq!((last.fraction, last.load), (1.0, None));
     assert!(last.corners[0] < 0.003 * check.size, "{last:?}");
@@ -138,7 +138,7 @@ fn a_patch_of_a_sheet_is_where_the_law_has_it() {
     assert!(check.to_string().contains("A patch of a larger sheet"));
 
     let versions = CalculiX::find().unwrap().versions();
-    let pulled = task_of([1, 0]).unwrap().solves(&versions).unwrap_err();
+    let pulled = task_of([1, 0]).unwrap().solve(&versions).unwrap_err();
     assert!(
         pulled.to_string().contains("pulled by a prescribed stroke"),
         "{pulled}"
@@ -152,7 +152,7 @@ fn a_patch_of_a_sheet_is_where_the_law_has_it() {
 fn a_path_that_ends_early_is_reported_as_far_as_it_goes() {
     let task = task(&scene(AS_IT_IS), Some(Posture::Free)).unwrap();
     let check = checked(&task, Duration::from_secs(8));
-    let branch = &check.branches[0];
+    let branch = &check;
     let reason = branch.stopped.as_deref().unwrap();
     assert!(
         reason.contains("Nothing") && reason.contains("time limit"),
@@ -172,7 +172,7 @@ fn what_has_no_counterpart_is_refused() {
     let refused = |change: [&str; 2], support: Option<Posture>| {
         let found = task(&scene(change), support).and_then(|task| {
             let versions = CalculiX::find().unwrap().versions();
-            task.solves(&versions).map(|_| ())
+            task.solve(&versions).map(|_| ())
         });
         found
             .err()
@@ -201,11 +201,10 @@ fn what_has_no_counterpart_is_refused() {
         &scene(AS_IT_IS).start(),
         None,
         Tier::Paper,
-        1,
         None,
     );
     let versions = CalculiX::find().unwrap().versions();
-    let error = unstructured.unwrap().solves(&versions).unwrap_err();
+    let error = unstructured.unwrap().solve(&versions).unwrap_err();
     assert!(error.to_string().contains("no structured mesh"), "{error}");
 }
 
@@ -213,7 +212,7 @@ fn what_has_no_counterpart_is_refused() {
 fn the_cost_is_that_of_measured_sheets() {
     let task = task(&scene(AS_IT_IS), None).unwrap();
     let calculix = CalculiX::find().unwrap();
-    let solve = task.solves(&calculix.versions()).unwrap().remove(0);
+    let solve = task.solve(&calculix.versions()).unwrap();
     let folder = tempfile::tempdir().unwrap();
     let (limit, stop) = (Duration::from_secs(60), AtomicBool::new(false));
     let shape = &solve.problem.shape;

@@ -5,7 +5,7 @@ use crate::objective::target::Target;
 use crate::objective::terms::TARGET_POINTS;
 use crate::scene::checks;
 use crate::scene::keys::{SceneConfig, beside, folder};
-use crate::scene::loaded_hinge::{LoadedHinge, network};
+use crate::scene::loaded_hinge::LoadedHinge;
 use crate::scene::posture::PostureConfig;
 use crate::scene::scene_error::SceneError;
 use crate::scene::springback_file::{self, SpringbackMismatch};
@@ -27,10 +27,9 @@ pub(super) const MODEL_PARTS: [&str; 5] = [
     "version of kirigami",
     "material",
     "target",
-    WEIGHTS,
+    "weights",
     "law of released hinges",
 ];
-pub(super) const WEIGHTS: &str = "weights";
 
 /// A scene with checked values, its material and its sampled target.
 #[derive(Clone, Debug)]
@@ -118,11 +117,6 @@ impl Scene {
     /// The learned hinge law and the other networks of its ensemble; empty if the scene uses none.
     pub fn networks(&self) -> &[Surrogate] {
         self.hinge.predictors()
-    }
-
-    /// Further weights for the hinges of this scene, at the thickness of its sheet.
-    pub fn network(&self, weights: &Path) -> Result<Surrogate, SceneError> {
-        network(&self.config, &self.measured, &self.path, weights)
     }
 
     /// The keys of the scene for a file in another folder: its paths are absolute.

@@ -8,7 +8,7 @@ use crate::objective::scores::Scores;
 use crate::objective::terms::panel_width::thinnest_panel;
 use crate::optimise::outer_loop::{Ended, SearchState, StepRecord, optimise};
 use crate::pattern::design_vector::DesignVector;
-use crate::scene::checked_scene::{MODEL_PARTS, Scene, WEIGHTS};
+use crate::scene::checked_scene::{MODEL_PARTS, Scene};
 use crate::scene::keys::SceneConfig;
 use crate::scene::run_inputs::{self, InputHashes, RunInputsError, STATE_FILE};
 use crate::scene::scene_error::SceneError;
@@ -129,20 +129,13 @@ pub fn stored_design(path: &Path, scene: &Scene) -> Result<DesignVector, Inverse
 
 /// The best design of the run in the scene's run folder; `None` if there is no run.
 ///
-/// It is an error if the run is of another scene or model. Only its weights may be others, with `other_weights`.
-pub fn design_of_run(
-    scene: &Scene,
-    other_weights: bool,
-) -> Result<Option<DesignVector>, InverseDesignError> {
+/// It is an error if the run is of another scene or model.
+pub fn design_of_run(scene: &Scene) -> Result<Option<DesignVector>, InverseDesignError> {
     let path = scene.output().join(STATE_FILE);
     let Some(state) = State::load(&path)? else {
         return Ok(None);
     };
-    let weights = other_weights.then_some(WEIGHTS);
-    if let Some(changed) = state.changes(
-        scene,
-        &Vec::from_iter(SEARCH_KEYS.into_iter().chain(weights)),
-    ) {
+    if let Some(changed) = state.changes(scene, &SEARCH_KEYS) {
         return Err(InverseDesignError::Outdated { path, changed });
     }
     if state.search.fits(&scene.start()) {

@@ -147,7 +147,7 @@ fn networks(
 
 /// Weights at the thickness of the sheet of the scene at `path`, or an error if they are not for its hinges. `measured`
 /// is the material in the thickness of its file.
-pub(super) fn network(
+fn network(
     config: &SceneConfig,
     measured: &SheetMaterial,
     path: &Path,

@@ -26,8 +26,6 @@ pub struct ArrayScript {
     pub cores: usize,
     /// Time limit of a task (min).
     pub minutes: u64,
-    /// How often a task that was stopped is queued again.
-    pub requeues: u32,
 }
 
 /// Why there is no script.
@@ -62,7 +60,7 @@ impl ArrayScript {
     }
 
     /// The keys of a template and what replaces them.
-    fn keys(&self) -> [(&'static str, String); 11] {
+    fn keys(&self) -> [(&'static str, String); 10] {
         let quoted = |path: &PathBuf| quoted(&operand(path));
         let stem = self.campaign.file_stem().unwrap_or_default();
         let name = |c: char| if c.is_alphanumeric() { c } else { '-' };
@@ -82,7 +80,6 @@ impl ArrayScript {
             ("minutes", minutes.to_string()),
             ("hms", format!("{:02}:{:02}:00", minutes / 60, minutes % 60)),
             ("grace", self.grace().to_string()),
-            ("requeues", self.requeues.to_string()),
             (
                 "run",
                 command("run") + &format!(" --jobs {cores} --time-limit {limit}"),
@@ -185,7 +182,6 @@ mod tests {
             shards: 32,
             cores: 4,
             minutes,
-            requeues: 20,
         }
     }
 

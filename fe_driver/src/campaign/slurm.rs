@@ -142,7 +142,6 @@ pub fn submit_array(
     campaign_folder: &Path,
     script: &str,
     tasks: usize,
-    partition: Option<&str>,
 ) -> Result<Submission, SlurmError> {
     let folder = slurm_folder(campaign_folder);
     std::fs::create_dir_all(&folder).map_err(FileError::at(&folder))?;
@@ -157,7 +156,6 @@ pub fn submit_array(
     let sbatch = |options: &str, argument: Option<&str>| {
         let mut command = Command::new("sbatch");
         command.arg("--parsable").arg(options);
-        command.args(partition.map(|name| format!("--partition={name}")));
         command.arg(&path).args(argument);
         // It may outlive this process, and holds the lock until it has submitted.
         let held = lock.try_clone().map_err(FileError::at(&folder))?;

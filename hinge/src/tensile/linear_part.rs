@@ -70,13 +70,6 @@ impl LinearPart {
         Some(line.part(curve))
     }
 
-    /// The line through the rows between two strains from the toe, which are those of a test standard.
-    pub(super) fn between(curve: &[[f64; 2]], toe: f64, range: [f64; 2]) -> Option<Self> {
-        let first = curve.iter().position(|row| row[0] >= toe + range[0])?;
-        let last = curve.iter().rposition(|row| row[0] <= toe + range[1])?;
-        Self::through(curve, first, last)
-    }
-
     /// The line through the rows `first` to `last`, if it rises.
     pub(super) fn through(curve: &[[f64; 2]], first: usize, last: usize) -> Option<Self> {
         let line = (last > first).then(|| Line::fitted(curve, first, last))??;

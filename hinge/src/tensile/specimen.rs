@@ -24,8 +24,6 @@ use std::path::PathBuf;
 pub struct SpecimenOptions {
     /// Young's modulus (MPa), instead of the slope of the linear part.
     pub young: Option<f64>,
-    /// Strains from the toe between which the slope is measured, instead of those found.
-    pub modulus_range: Option<[f64; 2]>,
     /// Natural draw ratio, measured on the neck: initial over drawn section.
     pub draw_ratio: Option<f64>,
 }
@@ -230,7 +228,7 @@ impl Compensated {
         let half = half_window(curve, noise[1]);
         let noise = [noise[0], noise[1] / (2.0 * half as f64 + 1.0).sqrt()];
         let mut rows = smoothed(curve, half);
-        let (linear, toe) = linear_part(&mut rows, noise, options).ok_or(
+        let (linear, toe) = linear_part(&mut rows, noise).ok_or(
             "has no linear part: the stress does not rise with the strain; are the columns swapped?",
         )?;
         let young = check_modulus(record, &linear, options)?;
@@ -290,15 +288,8 @@ fn nominal(record: &Record, [strain, stress]: [f64; 2]) -> [f64; 2] {
 
 /// The linear part and the toe, which is subtracted from the curve. Its rows are found on the nominal curve, whose slope
 /// is largest at the start; its modulus is the slope of the true stress over the logarithmic strain, as the solver reads it.
-fn linear_part(
-    curve: &mut [[f64; 2]],
-    noise: [f64; 2],
-    options: &SpecimenOptions,
-) -> Option<(LinearPart, f64)> {
-    let mut nominal = LinearPart::find(curve, noise)?;
-    if let Some(range) = options.modulus_range {
-        nominal = LinearPart::between(curve, nominal.toe, range)?;
-    }
+fn linear_part(curve: &mut [[f64; 2]], noise: [f64; 2]) -> Option<(LinearPart, f64)> {
+    let nominal = LinearPart::find(curve, noise)?;
     curve.iter_mut().for_each(|row| row[0] -= nominal.toe);
     let last = nominal.first + nominal.rows - 1;
     let true_curve: Vec<[f64; 2]> = curve[..=last].iter().map(true_row).collect();

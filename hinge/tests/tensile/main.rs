@@ -16,7 +16,6 @@ use synthetic::{FILM, HEADER, LINEAR, Law, Noise, RAMBERG_OSGOOD, VOCE, at, csv,
 const OPTIONS: FitOptions = FitOptions {
     specimen: SpecimenOptions {
         young: None,
-        modulus_range: None,
         draw_ratio: None,
     },
     fracture_strain: None,

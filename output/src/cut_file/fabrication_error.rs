@@ -32,8 +32,6 @@ pub enum FabricationError {
          ligaments or a larger hole (process.fillet_ratio or hole_diameter) in the scene"
     )]
     HoleBelowTool { diameter: f64, kerf: f64 },
-    #[error("machine: {0}")]
-    Machine(#[from] support::key_limits::OutOfRange),
     #[error(
         "the cuts at the hinges {} and {} leave {gap:.3} mm between them, less than the kerf of {least} mm: move them \
          apart (objective.panel_shape) or narrow the ligaments",

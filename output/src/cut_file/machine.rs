@@ -6,12 +6,10 @@ use crate::cut_file::fabrication_error::FabricationError;
 use crate::cut_file::sheet_drawing::registration_marks;
 use crate::display::Shape;
 use design::geometry::polygon::{bounds, distance, nearest_on_outline};
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::path::Path;
-use support::key_limits;
-use support::toml_file::{self, ConfigError};
+use support::toml_file;
 
 /// The shipped table.
 const SHIPPED: &str = include_str!("../../../configs/machines.toml");
@@ -29,7 +27,7 @@ pub struct Machines {
 }
 
 /// What the file for a machine holds.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Machine {
     /// The name on the command line, which is also that of the folder of its files.
@@ -39,14 +37,11 @@ pub struct Machine {
     /// How a slit is drawn.
     cuts: Cuts,
     /// Width that the tool removes and the paths allow for (mm); `None`: the kerf of the scene.
-    #[schemars(range(min = 0.0, max = 50.0))]
     tool_kerf: Option<f64>,
     /// Length by which an open slit is cut beyond the outline (mm); `None`: that of the scene.
-    #[schemars(range(min = 0.0, max = 50.0))]
     over_run: Option<f64>,
     /// Diameter of the smallest hole that the tool cuts (mm).
     #[serde(default)]
-    #[schemars(range(min = 0.0, max = 1e3))]
     least_hole: f64,
     /// Whether services that publish limits are listed.
     #[serde(default)]
@@ -56,7 +51,7 @@ pub struct Machine {
 }
 
 /// How a slit is drawn.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 enum Cuts {
     /// A line.
@@ -108,12 +103,13 @@ pub struct Features {
 }
 
 impl Machines {
-    /// The machines of a file, or those shipped.
-    pub fn read(file: Option<&Path>) -> Result<Self, ConfigError> {
-        match file {
-            Some(file) => toml_file::read(file),
-            None => toml_file::parse(SHIPPED, Path::new("configs/machines.toml")),
-        }
+    /// The shipped machines and services.
+    ///
+    /// # Panics
+    /// Never: a test reads the table.
+    pub fn shipped() -> Self {
+        let table = toml_file::parse(SHIPPED, Path::new("configs/machines.toml"));
+        table.expect("the shipped table is valid")
     }
 }
 
@@ -176,7 +172,6 @@ impl Machine {
 
     /// The paths in a sheet and the marks on it, in the order of the pattern; an error if they do not exist.
     fn paths(&self, cuts: &CutLines) -> Result<CutDrawing, FabricationError> {
-        key_limits::check::<Self>(self)?;
         let kerf = self.tool_kerf.unwrap_or(match self.cuts {
             Cuts::Lines => cuts.kerf,
             Cuts::Slots => 0.0,
@@ -309,7 +304,7 @@ mod tests {
 
     #[test]
     fn every_service_names_its_source_and_refuses_what_is_too_small() {
-        let machines = Machines::read(None).unwrap();
+        let machines = Machines::shipped();
         assert!(machines.service.len() >= 5);
         let coarse = Features {
             hole: 10.0,

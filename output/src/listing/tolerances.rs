@@ -11,7 +11,8 @@ use design::objective::design_problem::DesignProblem;
 use design::pattern::design_vector::DesignVector;
 use design::scene::{Scene, ToleranceConfig};
 use design::sheet::cut_sheet::Sheet;
-use serde::Serialize;
+use serde::{Serialize, Serializer};
+use serde_json::json;
 use std::fmt;
 use support::table::number_or_dash;
 
@@ -22,6 +23,7 @@ const SHOWN: usize = 8;
 #[derive(Clone, Debug, Serialize)]
 pub struct ToleranceListing {
     /// Two standard deviations each (mm).
+    #[serde(serialize_with = "with_ligament")]
     pub tolerances: ToleranceConfig,
     /// To first order.
     pub first_order: FirstOrder,
@@ -32,11 +34,26 @@ pub struct ToleranceListing {
     /// Whether it is that of the known errors of the model.
     within_model: bool,
     /// The tolerance of the ligaments, the kerf and the thickness, each alone, that moves the corners by that (mm).
+    #[serde(serialize_with = "with_ligament")]
     pub allowed: Option<ToleranceConfig>,
     /// The designed sheet, and its state at full load.
     #[serde(skip)]
     designed: (Sheet, LoadStep),
 }
+
+/// Tolerances with that of the ligaments, which is no key of a scene.
+fn with_ligament<S: Serializer>(
+    of: &(impl Into<Option<ToleranceConfig>> + Copy),
+    serializer: S,
+) -> Result<S::Ok, S::Error> {
+    let of: Option<ToleranceConfig> = (*of).into();
+    let all =
+        of.map(|of| json!({ "ligament": of.ligament, "kerf": of.kerf, "thickness": of.thickness }));
+    all.serialize(serializer)
+}
+
+/// Seed of the sheets at random.
+const SEED: u64 = 0;
 
 /// What is asked.
 #[derive(Clone, Copy, Debug)]
@@ -45,8 +62,6 @@ pub struct ToleranceQuestion {
     pub tolerances: ToleranceConfig,
     /// Number of sheets at random.
     pub samples: usize,
-    /// Their seed.
-    pub seed: u64,
     /// The movement that is allowed (mm); by default that of the model's known errors.
     pub within: Option<f64>,
 }
@@ -64,7 +79,6 @@ impl ToleranceListing {
         let ToleranceQuestion {
             tolerances,
             samples,
-            seed,
             within,
         } = question;
         let errors = CuttingErrors::new(scene, problem, design, tolerances)?;
@@ -76,7 +90,7 @@ impl ToleranceListing {
         };
         let first_order = errors.first_order(&mut tick)?;
         let samples = (samples > 0)
-            .then(|| errors.sampled(samples, seed, &mut tick))
+            .then(|| errors.sampled(samples, SEED, &mut tick))
             .transpose()?;
         let model = || {
             let budget = ErrorBudget::new(scene, problem, errors.designed(), None)?;

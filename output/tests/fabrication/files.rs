@@ -355,7 +355,7 @@ fn the_tiles_are_true_to_scale() {
 fn the_files_of_every_machine_leave_the_solved_ligaments() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.dxf");
-    let machines = Machines::read(None).unwrap();
+    let machines = Machines::shipped();
     for (sheet, cuts, _) in irregular_sheets() {
         let caliper: Vec<f64> = (0..sheet.hinges.len())
             .map(|hinge| cuts.caliper(hinge))

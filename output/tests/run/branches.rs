@@ -34,7 +34,7 @@ fn a_search_keeps_a_design_whose_path_was_followed() {
         assert!(designed.contradicted, "{start:?}");
         assert!(designed.best.loss < 0.5 * designed.start.loss, "{start:?}");
         // The design in the run folder has the loss that the report states, and no step found a lower one.
-        let stored = design_of_run(&scene, false).unwrap().unwrap();
+        let stored = design_of_run(&scene).unwrap().unwrap();
         let problem = scene.problem().unwrap();
         assert_eq!(problem.loss(&stored).unwrap(), designed.best.loss);
         let least = designed.history.iter().map(|step| step.scores.loss);

@@ -207,7 +207,7 @@ fn the_largest_load_of_a_driven_path_is_stated() {
     assert!(peak.load > 1.2 * reached.load && peak.displacement < 0.05 * reached.displacement);
 
     // The same path at a thousand load steps.
-    let stored = design::scene::design_run::design_of_run(&scene, false).unwrap();
+    let stored = design::scene::design_run::design_of_run(&scene).unwrap();
     let mut config = scene.config.clone();
     config.load_steps = 1000;
     let scene = Scene::new(config, &shipped("steel-1250x1500")).unwrap();

@@ -25,19 +25,6 @@ pub struct CollectCommand {
 }
 
 impl CollectCommand {
-    pub(crate) fn new(campaign: PathBuf, folder: PathBuf, out: PathBuf) -> Self {
-        let campaign = CampaignArgs {
-            campaign,
-            folder: Some(folder),
-        };
-        Self {
-            campaign,
-            out: Some(out),
-            partial: false,
-            replace: true,
-        }
-    }
-
     pub(crate) fn run(&self) -> Result<()> {
         let folder = self.campaign.folder();
         fe_driver::refuse_changed(&self.campaign.load()?, &folder)?;

@@ -1,16 +1,14 @@
 //! `kirigami campaign run`
 
 use crate::commands::campaign::campaign_args::{CampaignArgs, print_tally};
-use crate::ui::count::jobs;
+use crate::commands::solve_args::SolveArgs;
 use crate::ui::exit::Unfinished;
 use crate::ui::interrupt;
-use crate::ui::processors;
 use crate::ui::progress::Progress;
 use anyhow::{Result, bail, ensure};
 use clap::Args;
 use fe_driver::{CalculiX, RunOptions, Shard, Tally};
-use std::num::NonZeroUsize;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::Duration;
 use verification::VerificationError;
 
@@ -22,9 +20,8 @@ use verification::VerificationError;
 pub struct RunCommand {
     #[command(flatten)]
     campaign: CampaignArgs,
-    /// Number of solves in parallel [default: one per processor]
-    #[arg(long, value_name = "N", value_parser = jobs::<NonZeroUsize>)]
-    jobs: Option<NonZeroUsize>,
+    #[command(flatten)]
+    solve: SolveArgs,
     /// Solve only part I of N; parts of the same folder can run at the same time
     #[arg(long, value_name = "I/N", default_value_t = Shard::WHOLE)]
     shard: Shard,
@@ -34,24 +31,11 @@ pub struct RunCommand {
 }
 
 impl RunCommand {
-    pub(crate) fn new(campaign: PathBuf, folder: PathBuf) -> Self {
-        let campaign = CampaignArgs {
-            campaign,
-            folder: Some(folder),
-        };
-        Self {
-            campaign,
-            jobs: None,
-            shard: Shard::WHOLE,
-            time_limit: None,
-        }
-    }
-
     pub(crate) fn run(&self) -> Result<()> {
         let folder = self.campaign.folder();
         let options = RunOptions {
             shard: self.shard,
-            workers: self.jobs.map_or_else(processors, NonZeroUsize::get),
+            workers: self.solve.workers(),
             time_limit: self.time_limit,
         };
         let (campaign, solver) = (self.campaign.load()?, CalculiX::find()?);

@@ -29,12 +29,6 @@ pub struct SubmitCommand {
     /// Number of solves in parallel in each task, and of its processors
     #[arg(long, value_name = "N", default_value = "1", value_parser = jobs::<NonZeroUsize>)]
     jobs: NonZeroUsize,
-    /// Partition of the cluster
-    #[arg(long, value_name = "NAME")]
-    partition: Option<String>,
-    /// How often a task that was stopped is queued again
-    #[arg(long, value_name = "N", default_value_t = 20, value_parser = clap::value_parser!(u32).range(..=10_000))]
-    requeues: u32,
     /// Template of the script [default: that of configs/cluster/slurm.sh]
     #[arg(long, value_name = "FILE")]
     template: Option<PathBuf>,
@@ -60,8 +54,7 @@ impl SubmitCommand {
         }
         let tasks = self.shards.get();
         fe_driver::prepare(&campaign, &folder, &versions)?;
-        let partition = self.partition.as_deref();
-        let submission = submit_array(&folder, &script, tasks, partition)?;
+        let submission = submit_array(&folder, &script, tasks)?;
         println!(
             "{rays} rays to solve with {versions}, about {} on each of {} processors\n\
              array {} with {tasks} tasks; job {} then collects the database\n\
@@ -90,7 +83,6 @@ impl SubmitCommand {
             shards: self.shards.get(),
             cores: self.jobs.get(),
             minutes: self.time,
-            requeues: self.requeues,
         };
         let named = || match &self.template {
             None => "the shipped template".to_owned(),

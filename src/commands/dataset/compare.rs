@@ -5,8 +5,8 @@ use crate::ui::{output_file, run_folder};
 use anyhow::{Result, ensure};
 use clap::Args;
 use dataset::{COMPARED, ComparedRay, ComparedState, Database, LeftOut, compare, left_out};
-use std::fmt::Write;
 use std::path::PathBuf;
+use support::table::{Cell, Table};
 use verification::{SCALE, each_relative, spread_table};
 
 /// Compare a database with a finer one of the same rays
@@ -49,7 +49,8 @@ impl CompareCommand {
                 eprintln!("cannot evaluate what `dataset correct` would leave: {reason}")
             }
         }
-        run_folder::write(&self.out, "compare.csv", &csv(&rays, &states)?)?;
+        let csv = table().csv(&ranked(&rays, &states));
+        run_folder::write(&self.out, "compare.csv", &csv)?;
         run_folder::write(&self.out, "compare.md", &summary)?;
         let axes = [tiers[1].as_str(), &tiers[0]];
         compared_states::draw(&groups(&states), axes, &self.out.join("compare"))?;
@@ -99,29 +100,46 @@ fn groups(states: &[Vec<ComparedState>]) -> Vec<&[ComparedState]> {
     states.iter().map(Vec::as_slice).collect()
 }
 
-fn csv(rays: &[ComparedRay], states: &[Vec<ComparedState>]) -> Result<String> {
-    let mut text = format!(
-        "w_lig_mm,alpha_deg,eta_a,eta_s,theta_deg,w_end_n_mm,cpu_s,reference_cpu_s,{}\n",
-        COMPARED
-            .map(|name| format!("difference_{name}"))
-            .join(",")
-            .to_lowercase()
-    );
-    for (ray, differences) in rays.iter().zip(each_relative(&groups(states))) {
-        let place = place(ray).map(|x| format!("{x:.5}"));
-        let differences = differences.map(|x| format!("{x:.5}"));
-        writeln!(
-            text,
-            "{},{:.4},{:.2},{:.2},{}",
-            place.join(","),
-            ray.end().sample.w,
-            ray.cpu_s[0],
-            ray.cpu_s[1],
-            differences.join(",")
-        )?;
-    }
-    Ok(text)
+/// A ray with its relative differences.
+type Judged<'a> = (&'a ComparedRay<'a>, [f64; 6]);
+
+/// The rays with their differences, those with the largest in W first.
+fn ranked<'a>(rays: &'a [ComparedRay<'a>], states: &[Vec<ComparedState>]) -> Vec<Judged<'a>> {
+    let mut ranked: Vec<Judged> = rays.iter().zip(each_relative(&groups(states))).collect();
+    ranked.sort_by(|(_, x), (_, y)| y[0].total_cmp(&x[0]));
+    ranked
 }
+
+/// A ray a row.
+fn table<'a>() -> Table<'a, Judged<'a>> {
+    let mut table = Table::new();
+    for (i, (name, decimals)) in PLACE.into_iter().enumerate() {
+        table = table.column(name, move |(ray, _): &Judged| {
+            Cell::fixed(place(ray)[i], decimals)
+        });
+    }
+    table = table
+        .column("W, N mm", |(ray, _)| Cell::fixed(ray.end().sample.w, 1))
+        .column("CPU s", |(ray, _)| Cell::fixed(ray.cpu_s[0], 1))
+        .column("CPU s of the reference", |(ray, _)| {
+            Cell::fixed(ray.cpu_s[1], 1)
+        });
+    for (i, name) in COMPARED.into_iter().enumerate() {
+        table = table.column(name, move |(_, differences)| {
+            Cell::percent(differences[i], 1)
+        });
+    }
+    table
+}
+
+/// The names of [`place`], and their decimals on a page.
+const PLACE: [(&str, usize); 5] = [
+    ("w_lig, mm", 1),
+    ("alpha, deg", 0),
+    ("eta_a", 2),
+    ("eta_s", 2),
+    ("theta, deg", 0),
+];
 
 /// w_lig (mm), alpha (deg), and the end of the ray: eta_a, eta_s, theta (deg).
 fn place(ray: &ComparedRay) -> [f64; 5] {

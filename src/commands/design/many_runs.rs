@@ -16,7 +16,7 @@ pub(super) struct Run {
     pub file: PathBuf,
     /// The scene, with the seed and the folder of the run.
     pub scene: Scene,
-    /// Why this command did not design a sheet that can be cut; `None` if it did, or left the run to another shard.
+    /// Why this command did not design a sheet that can be cut; `None` if it did.
     pub failure: Option<String>,
 }
 
@@ -34,8 +34,7 @@ pub(super) fn refuse_shared_folders(runs: &[Run]) -> Result<()> {
     Ok(())
 }
 
-/// Writes `designs.csv` and `designs.md` to `folder`, and returns the table. Runs of other shards are listed as far as
-/// they are.
+/// Writes `designs.csv` and `designs.md` to `folder`, and returns the table.
 pub(super) fn compare(runs: &[Run], folder: &Path) -> Result<Table> {
     let rows: Result<Vec<_>> = runs.iter().map(cells).collect();
     comparison::write(folder, "designs", COLUMNS, rows?)

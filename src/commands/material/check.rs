@@ -18,7 +18,6 @@ use support::toml_file;
 /// verdict is an error. Example: kirigami material check configs/materials/pet-0.5mm.toml
 /// configs/scenes/pet-7x7.toml
 #[derive(Args)]
-#[command(allow_negative_numbers = true)]
 pub struct CheckCommand {
     /// Material (TOML); see configs/materials
     #[arg(value_name = "MATERIAL")]
@@ -26,15 +25,6 @@ pub struct CheckCommand {
     /// Scene (TOML), or the folder of a run, whose ligament widths and panels are intended; its own material is not read
     #[arg(value_name = "SCENE")]
     scene: Option<PathBuf>,
-    /// Ligament widths (mm) [default: those of the scene, or 10 and 50 thicknesses]
-    #[arg(long, value_name = "MIN,MAX", value_delimiter = ',')]
-    w_lig: Vec<f64>,
-    /// Panel pitch (mm) [default: that of the scene]
-    #[arg(long, value_name = "MM")]
-    pitch: Option<f64>,
-    /// Rotation of the hinges (deg)
-    #[arg(long, value_name = "DEG", default_value_t = 60.0)]
-    theta_deg: f64,
     /// Print JSON instead of text
     #[arg(long)]
     json: bool,
@@ -52,7 +42,12 @@ impl CheckCommand {
             thickness: thickness.unwrap_or(measured.thickness),
             ..measured
         };
-        let intended = self.intended(&material, scene.as_ref())?;
+        let intended = intended(&material, scene.as_ref());
+        let [min, max] = intended.w_lig;
+        ensure!(
+            min > 0.0 && min <= max && max.is_finite(),
+            "the ligament widths {min} to {max} violate 0 < minimum <= maximum (mm)"
+        );
         let check = MaterialCheck::new(&material, &intended);
         if self.json {
             println!("{}", serde_json::to_string_pretty(&check)?);
@@ -69,37 +64,21 @@ impl CheckCommand {
             count => bail!("the material has {count} errors for this use"),
         }
     }
+}
 
-    /// The use that options and scene state.
-    fn intended(&self, material: &SheetMaterial, scene: Option<&SceneConfig>) -> Result<Intended> {
-        let w_lig = match (&self.w_lig[..], scene) {
-            (&[min, max], _) => [min, max],
-            ([_, ..], _) => bail!("--w-lig takes two widths, such as 5,25 (mm)"),
-            (_, Some(scene)) => scene.ligament.range,
-            _ => [10.0, 50.0].map(|ratio| ratio * material.thickness),
-        };
-        let pitch = self.pitch.or(scene.map(|scene| {
-            let panels = scene.sheet.grid().panel_count();
-            (scene.sheet.outline().area() / panels as f64).sqrt()
-        }));
-        ensure!(
-            w_lig[0] > 0.0 && w_lig[0] <= w_lig[1] && w_lig[1].is_finite(),
-            "the ligament widths {w_lig:?} violate 0 < minimum <= maximum (mm)"
-        );
-        ensure!(
-            pitch.is_none_or(|pitch| pitch > 0.0 && pitch.is_finite()),
-            "the panel pitch must be positive (mm)"
-        );
-        ensure!(
-            self.theta_deg > 0.0 && self.theta_deg <= 180.0,
-            "--theta-deg {} violates 0 < theta <= 180 deg",
-            self.theta_deg
-        );
-        Ok(Intended {
-            w_lig,
-            pitch,
-            theta: self.theta_deg.to_radians(),
-        })
+/// The use that a scene states, and without a scene ligaments of 10 to 50 thicknesses.
+fn intended(material: &SheetMaterial, scene: Option<&SceneConfig>) -> Intended {
+    /// Rotation of the hinges (deg).
+    const OPENING: f64 = 60.0;
+    let pitch = scene.map(|scene| {
+        let panels = scene.sheet.grid().panel_count();
+        (scene.sheet.outline().area() / panels as f64).sqrt()
+    });
+    let usual = [10.0, 50.0].map(|ratio| ratio * material.thickness);
+    Intended {
+        w_lig: scene.map_or(usual, |scene| scene.ligament.range),
+        pitch,
+        theta: OPENING.to_radians(),
     }
 }
 

@@ -79,21 +79,16 @@ struct EvaluationArgs {
     /// Young's modulus (MPa), if it is known better than from these records; the compliance of the machine is removed
     #[arg(long, value_name = "MPA")]
     young: Option<f64>,
-    /// Strains from the toe between which the modulus is measured (%), such as 0.05,0.25 of ISO 527-1 [default: the
-    /// linear part that is found]
-    #[arg(long, value_name = "FROM,TO", value_delimiter = ',')]
-    modulus_range_percent: Vec<f64>,
     /// Natural draw ratio, measured on the neck: initial over drawn section [default: where the stress rises again]
     #[arg(long, value_name = "RATIO")]
     draw_ratio: Option<f64>,
     /// True plastic strain at fracture, measured on the broken section: ln(A0 / A) [default: from the records]
     #[arg(long, value_name = "STRAIN")]
     fracture_strain: Option<f64>,
-    /// Maximum number of rows of the hardening table, 2 to 200
-    #[arg(long, value_name = "N", default_value_t = 30)]
-    rows: usize,
 }
 
+/// Maximum number of rows of the hardening table.
+const ROWS: usize = 30;
 /// Poisson's ratio if none is given.
 const ASSUMED_POISSON: f64 = 0.35;
 /// Width of the picture (px).
@@ -181,10 +176,8 @@ impl FitCommand {
     fn options(&self) -> Result<FitOptions> {
         let EvaluationArgs {
             young,
-            ref modulus_range_percent,
             draw_ratio,
             fracture_strain,
-            rows,
         } = self.evaluation;
         let within = |option: &str, value: Option<f64>, [min, max]: [f64; 2]| match value {
             Some(value) if !(min..=max).contains(&value) => Err(anyhow::anyhow!(
@@ -195,29 +188,10 @@ impl FitCommand {
         within("young", young, [10.0, 1e6])?;
         within("draw-ratio", draw_ratio, [1.001, 50.0])?;
         within("fracture-strain", fracture_strain, [1e-3, 10.0])?;
-        ensure!(
-            (2..=200).contains(&rows),
-            "--rows {rows} violates 2 <= rows <= 200"
-        );
-        let modulus_range = match modulus_range_percent[..] {
-            [from, to] => {
-                ensure!(
-                    0.0 <= from && from < to && to <= 20.0,
-                    "--modulus-range-percent {from},{to} violates 0 <= from < to <= 20 %"
-                );
-                Some([from / 100.0, to / 100.0])
-            }
-            [] => None,
-            _ => anyhow::bail!("--modulus-range-percent takes two strains, such as 0.05,0.25"),
-        };
         Ok(FitOptions {
-            specimen: SpecimenOptions {
-                young,
-                modulus_range,
-                draw_ratio,
-            },
+            specimen: SpecimenOptions { young, draw_ratio },
             fracture_strain,
-            rows,
+            rows: ROWS,
         })
     }
 }

@@ -13,7 +13,6 @@ use crate::commands::init::{self, edited};
 use crate::commands::material::learn::conclusion::conclusion;
 use crate::commands::material::learn::fine_tuning::FineTuning;
 use crate::commands::solve_args::{SolveArgs, task_error};
-use crate::ui::count::jobs;
 use crate::ui::exit::Unfinished;
 use crate::ui::interrupt;
 use crate::ui::progress::duration;
@@ -26,7 +25,6 @@ use dataset::{Database, SplitPlan};
 use fe_driver::{CalculiX, Campaign, Progress};
 use hinge::{Regime, SheetMaterial, TrainingDomain};
 use mesher::Tier;
-use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 use surrogate::Surrogate;
@@ -77,9 +75,8 @@ pub struct LearnCommand {
     /// Seed of the states of the spot check. Errors that led to a choice are measured again with another seed
     #[arg(long, value_name = "SEED", default_value_t = 1)]
     spot_seed: u64,
-    /// Number of solves in parallel [default: one per processor]
-    #[arg(long, value_name = "N", value_parser = jobs::<NonZeroUsize>)]
-    jobs: Option<NonZeroUsize>,
+    #[command(flatten)]
+    solve: SolveArgs,
     /// Folder for the results; a folder of a stopped run is continued. Its weights are those of the last round of this command
     #[arg(long, value_name = "FOLDER")]
     out: PathBuf,
@@ -149,7 +146,7 @@ impl LearnCommand {
             campaign: &campaign,
             folder: &self.out.join("campaign"),
             solver: &CalculiX::find()?,
-            workers: self.solve_args(&campaign).workers(),
+            workers: self.solve.workers(),
             first_rays: usize::from(self.rays),
             spot: spot.rows(),
             accuracy,
@@ -163,7 +160,7 @@ impl LearnCommand {
             progress: None,
         };
         let end = learn(task, &mut steps)?;
-        let workers = self.solve_args(&campaign).workers();
+        let workers = self.solve.workers();
         let (material, weights) = (self.out.join("material.toml"), weights_file(&self.out));
         let files = [&*material, &*weights];
         println!("{}", conclusion(&steps.rounds, accuracy, workers, files));
@@ -226,9 +223,8 @@ impl LearnCommand {
             STATES_PER_RAY,
             self.spot_seed,
         );
-        let windows = self
-            .solve_args(campaign)
-            .service(&self.out.join("spot-check"))?;
+        let mut windows = self.solve.service(&self.out.join("spot-check"))?;
+        windows.limit = campaign.time_limit;
         let check = spot_check(&windows, &paths, &campaign.material, campaign.tier);
         let check = check.map_err(task_error)?;
         for unsolved in &check.unsolved {
@@ -244,10 +240,6 @@ impl LearnCommand {
             check.cpu_seconds
         );
         Ok(database)
-    }
-
-    fn solve_args(&self, campaign: &Campaign) -> SolveArgs {
-        SolveArgs::new(self.jobs, campaign.time_limit)
     }
 }
 

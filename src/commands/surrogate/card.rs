@@ -7,24 +7,19 @@ use std::path::PathBuf;
 use surrogate::{Surrogate, Teacher};
 
 /// Print what weights were trained on, and their test errors
+///
+/// All numbers are in the JSON file beside the weights.
 #[derive(Args)]
 pub struct CardCommand {
     /// Weights (safetensors with their card)
     #[arg(value_name = "WEIGHTS")]
     weights: PathBuf,
-    /// Print the card as JSON
-    #[arg(long)]
-    json: bool,
 }
 
 impl CardCommand {
     pub fn run(&self) -> Result<()> {
         let surrogate = Surrogate::load(&self.weights)?;
         let card = surrogate.card();
-        if self.json {
-            println!("{}", serde_json::to_string_pretty(card)?);
-            return Ok(());
-        }
         println!("material {}, tier {}", card.material, card.tier);
         let known = |hash: &Option<String>| hash.clone().unwrap_or_else(|| "not known".into());
         println!("material law      {}", known(&card.material_hash));

@@ -25,18 +25,12 @@ pub struct ReleaseCommand {
     /// Weights (safetensors with their card)
     #[arg(value_name = "WEIGHTS")]
     weights: PathBuf,
-    /// Number of hinges
+    /// Number of hinges; the law is judged by the last 30 of them, and not fitted to these
     #[arg(long, value_name = "N", default_value = "80", value_parser = count::<NonZeroUsize>)]
     count: NonZeroUsize,
-    /// Number of hinges of these, the last ones, that the law is judged by and not fitted to
-    #[arg(long, value_name = "N", default_value_t = 30, value_parser = count::<usize>)]
-    unseen: usize,
     /// Seed of the random states
     #[arg(long, value_name = "SEED", default_value_t = 0)]
     seed: u64,
-    /// Judge this law (JSON) by all of the hinges instead of fitting one; draw them with another seed than its own
-    #[arg(long, value_name = "LAW", conflicts_with = "unseen")]
-    judge: Option<PathBuf>,
     /// Sheet material that the weights were trained on (TOML)
     #[arg(long, value_name = "FILE")]
     material: PathBuf,
@@ -51,6 +45,9 @@ pub struct ReleaseCommand {
     solve: SolveArgs,
 }
 
+/// Number of hinges that the law is judged by.
+const UNSEEN: usize = 30;
+
 impl ReleaseCommand {
     pub fn run(&self) -> Result<()> {
         let surrogate = Surrogate::load(&self.weights)?;
@@ -60,20 +57,11 @@ impl ReleaseCommand {
             "{} are for holes of several radii, and a law knows one: use weights for holes of one radius",
             self.weights.display()
         );
-        let judged = self.judge.as_deref().map(Springback::load).transpose()?;
-        if let Some(law) = &judged {
-            ensure!(
-                law.material_hash == material.law_hash() && law.hinge == surrogate.card().hinge,
-                "the law is for {} with other hinges than those of {}: judge it with the weights whose hinges it was fitted to",
-                law.material,
-                self.weights.display()
-            );
-        }
         ensure!(
-            judged.is_some() || self.count.get() >= self.unseen + FEWEST,
+            self.count.get() >= UNSEEN + FEWEST,
             "--count {} leaves {} hinges to fit the law to, and it needs {FEWEST}: increase --count",
             self.count,
-            self.count.get().saturating_sub(self.unseen)
+            self.count.get().saturating_sub(UNSEEN)
         );
         let tier = judging_tier(self.tier, &surrogate)?;
         let _held = run_folder::hold(&self.out)?;
@@ -102,12 +90,7 @@ impl ReleaseCommand {
             found.windows,
             found.cpu_seconds
         );
-        if let Some(mut law) = judged {
-            law.errors = Some(law.errors_at(&found.rows));
-            println!("{}", SpringbackCard(&law));
-            return Ok(());
-        }
-        let fitted = found.rows.len().saturating_sub(self.unseen);
+        let fitted = found.rows.len().saturating_sub(UNSEEN);
         let (fitted, unseen) = found.rows.split_at(fitted);
         let law = Springback::fit(fitted, unseen, &material, &tier.to_string())?;
         let path = self.out.join("springback.json");

@@ -1,8 +1,8 @@
-//! Trainings that differ only in their seed, also as the tasks of an array on a cluster, and the choice among them.
+//! Trainings that differ only in their seed, and the choice among them.
 //!
 //! Every seed has its own files beside the weights `X`: `X-seed-S.safetensors`, and `X-seed-S.state`, from which a stopped
 //! training continues. The states remain: from them the command that finds all seeds trained writes the weights, the curves
-//! and the comparison. Two commands that do so at the same time write the same contents.
+//! and the comparison.
 
 use crate::commands::train::kept_fits::{continued_fit, is_of};
 use crate::commands::train::{TrainCommand, hold};
@@ -34,7 +34,7 @@ impl Shared<'_> {
 }
 
 impl TrainCommand {
-    /// Trains the seeds of the shard that are not trained yet, and chooses among all seeds if all are trained.
+    /// Trains the seeds that are not trained yet, and chooses among all.
     pub(super) fn train_seeds(
         &self,
         database: &Database,
@@ -49,17 +49,7 @@ impl TrainCommand {
         let configs: Vec<TrainingConfig> = seeds.map(with).collect();
         let shared = Shared { database, base };
         self.refuse_other_weights(&configs, shared)?;
-        self.train_shard(&configs, shared)?;
-        let trained = (configs.iter()).filter(|config| self.is_trained(config, shared));
-        let (trained, all) = (trained.count(), configs.len());
-        if trained < all {
-            println!(
-                "{trained} of {all} seeds are trained; the shard that ends last, or the same command without --shard, \
-                 writes {}",
-                self.out.display()
-            );
-            return Ok(());
-        }
+        self.train_each(&configs, shared)?;
         self.choose(&configs, shared)
     }
 
@@ -80,14 +70,11 @@ impl TrainCommand {
         Ok(())
     }
 
-    /// Trains the seeds of the shard. A seed that fails does not end the others.
-    fn train_shard(&self, configs: &[TrainingConfig], shared: Shared) -> Result<()> {
+    /// Trains the seeds. One that fails does not end the others.
+    fn train_each(&self, configs: &[TrainingConfig], shared: Shared) -> Result<()> {
         let stop = interrupt::stop_flag()?;
         let (mut left, mut failed) = (0, 0);
-        for (place, config) in configs.iter().enumerate() {
-            if !self.shard.holds(place) {
-                continue;
-            }
+        for config in configs {
             if stop.load(Ordering::Relaxed) {
                 left += 1;
                 continue;

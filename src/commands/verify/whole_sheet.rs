@@ -15,6 +15,8 @@ use verification::{SheetCheck, SheetCost, SheetTask, usual_sheet_tier};
 
 /// Width of the pictures (px).
 const WIDTH: u32 = 1400;
+/// Time limit of the solve.
+const LIMIT: Duration = Duration::from_secs(86_400);
 
 /// Reads the value of `--support`.
 pub(super) fn support(text: &str) -> Result<Posture, String> {
@@ -40,28 +42,25 @@ impl VerifyCommand {
         name: &str,
     ) -> Result<()> {
         let tier = self.tier.unwrap_or_else(|| usual_sheet_tier(scene));
-        let branches = usize::from(self.branches);
-        let task = SheetTask::new(scene, design, self.support, tier, branches, self.patch);
+        let task = SheetTask::new(scene, design, self.support, tier, self.patch);
         let task = task.map_err(task_error)?;
         let calculix = CalculiX::find()?;
-        let solves = task.solves(&calculix.versions()).map_err(task_error)?;
+        let solve = task.solve(&calculix.versions()).map_err(task_error)?;
         let _held = run_folder::hold(&self.out)?;
-        self.state_cost(&calculix, &solves)?;
-        let service = self
-            .solve
-            .service_of(calculix, &self.out, Box::new(|_, _| {}))?;
-        let ids = solves.iter().map(Solve::id);
-        let folders: Vec<_> = ids.map(|id| service.store.solve(&id)).collect();
-        let reached = || folders.iter().map(sheet_reached).sum();
-        let solved = watched(solves.len(), reached, || service.solve(&solves));
+        self.state_cost(&calculix, &solve)?;
+        let mut service = self.solve.service_of(calculix, &self.out, |_, _| {})?;
+        service.limit = LIMIT;
+        let folder = service.store.solve(&solve.id());
+        let solves = [solve];
+        let solved = watched(1, || sheet_reached(&folder), || service.solve(&solves));
         let solved = solved.map_err(|error| task_error(error.into()))?;
-        let check = task.check(name, &solved);
+        let check = task.check(name, &solved[0]);
         run_folder::write(&self.out, "sheet.md", &check.to_string())?;
         let json = serde_json::to_string_pretty(&check)?;
         run_folder::write(&self.out, "sheet.json", &json)?;
         self.draw(scene, &check)?;
         self.print(&check)?;
-        if check.branches.iter().all(|branch| branch.path.is_empty()) {
+        if check.path.is_empty() {
             bail!(
                 "no increment of the sheet converged; see {}",
                 self.out.display()
@@ -71,69 +70,56 @@ impl VerifyCommand {
     }
 
     /// Meshes the sheet once, and says what its solves cost before they begin.
-    fn state_cost(&self, calculix: &CalculiX, solves: &[SheetSolve]) -> Result<()> {
+    fn state_cost(&self, calculix: &CalculiX, solve: &SheetSolve) -> Result<()> {
         let folder = self.out.join("mesh");
         output_file::create_folder(&folder)?;
         let limit = Duration::from_secs(600);
         let stop = interrupt::stop_flag()?;
-        let problem = &solves[0].problem;
+        let problem = &solve.problem;
         let mesh = problem.shape.mesh(&folder, &calculix.gmsh, limit, stop)?;
         let cost = SheetCost::of(&mesh, problem.keeping);
-        let together = self.solve.workers().min(solves.len());
+        let needed = cost.memory_mib;
         announce(&format!(
-            "{} unknowns; about {} of CPU time and {:.0} MiB of memory for each of {} solves, {together} at a time; kept in {}",
+            "{} unknowns; about {} of CPU time and {needed:.0} MiB of memory; kept in {}",
             cost.unknowns,
             duration(cost.cpu_seconds),
-            cost.memory_mib,
-            solves.len(),
             self.out.join("solves").display()
         ));
-        let needed = cost.memory_mib * together as f64;
         match memory::available_mib() {
             Some(available) if needed > available => Err(anyhow!(
-                "the solves need about {needed:.0} MiB of memory, and {available:.0} MiB are available: use a coarser --tier, fewer \
-                 --jobs, or a part of the sheet"
+                "the solve needs about {needed:.0} MiB of memory, and {available:.0} MiB are available: use a coarser --tier, or \
+                 a part of the sheet"
             )),
             _ => Ok(()),
         }
     }
 
-    /// Pictures and the ParaView file of every branch.
+    /// Pictures and the ParaView file of the end of the path.
     fn draw(&self, scene: &Scene, check: &SheetCheck) -> Result<()> {
-        for (i, branch) in check.branches.iter().enumerate() {
-            let Some(last) = branch.last() else {
-                continue;
-            };
-            let suffix = if i == 0 {
-                String::new()
-            } else {
-                format!("-{}", i + 1)
-            };
-            let (points, tilts) = (branch.surface.deformed(), branch.surface.tilts_deg());
-            let seen = Surface {
-                points: &points,
-                faces: &branch.surface.faces,
-                values: &tilts,
-                name: "tilt (deg)",
-            };
-            let subtitle = format!(
-                "Whole sheet by finite elements, {}, {:.0} % of the path: panels tilt by up to {:.1}\u{b0}",
-                check.kept(),
-                100.0 * last.fraction,
-                last.tilt_deg
-            );
-            for (view, name) in [
-                (View::Above, "above"),
-                (View::Front, "front"),
-                (View::Side, "side"),
-            ] {
-                let svg = surface(&seen, view, &scene.config.title, &subtitle);
-                let stem = self.out.join(format!("sheet-{name}{suffix}"));
-                picture::save(&svg, &stem, WIDTH)?;
-            }
-            let vtu = branch.surface.grid().to_vtu();
-            run_folder::write(&self.out, &format!("sheet{suffix}.vtu"), &vtu)?;
+        let Some(last) = check.last() else {
+            return Ok(());
+        };
+        let (points, tilts) = (check.surface.deformed(), check.surface.tilts_deg());
+        let seen = Surface {
+            points: &points,
+            faces: &check.surface.faces,
+            values: &tilts,
+            name: "tilt (deg)",
+        };
+        let subtitle = format!(
+            "Whole sheet by finite elements, {}, {:.0} % of the path: panels tilt by up to {:.1}\u{b0}",
+            check.kept(),
+            100.0 * last.fraction,
+            last.tilt_deg
+        );
+        for (view, name) in [
+            (View::Above, "above"),
+            (View::Front, "front"),
+            (View::Side, "side"),
+        ] {
+            let svg = surface(&seen, view, &scene.config.title, &subtitle);
+            picture::save(&svg, &self.out.join(format!("sheet-{name}")), WIDTH)?;
         }
-        Ok(())
+        run_folder::write(&self.out, "sheet.vtu", &check.surface.grid().to_vtu())
     }
 }
