@@ -1,0 +1,313 @@
+//! Collecting, writing and reading a database, and the errors on the way.
+
+use crate::common::{collect, row, rows};
+use dataset::{Database, DatasetError, Part, Rejection, Row, SplitPlan, with_mirrored};
+use std::path::{Path, PathBuf};
+use support::sealed_json;
+use tempfile::TempDir;
+
+type Change = fn(&mut Row);
+
+fn written() -> (TempDir, PathBuf, Database) {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("film.parquet");
+    let database = collect(rows()).unwrap();
+    database.write(&path, false).unwrap();
+    (folder, path, database)
+}
+
+fn files(folder: &Path) -> Vec<String> {
+    let entries = std::fs::read_dir(folder).unwrap();
+    let mut names: Vec<String> = entries
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .collect();
+    names.sort();
+    names
+}
+
+#[test]
+fn a_written_database_is_read_back_bit_exactly() {
+    let (folder, path, database) = written();
+    let read = Database::read(&path).unwrap();
+    assert_eq!(read.rows(), database.rows());
+    assert_eq!(read.manifest(), database.manifest());
+    assert_eq!(read.rows().len(), 50);
+    assert_eq!(files(folder.path()), ["film.json", "film.parquet"]);
+    let manifest = read.manifest();
+    assert_eq!(
+        (manifest.rays, manifest.partial_rays, manifest.geometries),
+        (10, 1, 10)
+    );
+    assert_eq!(manifest.domain.w_lig, [5.0, 14.0]);
+    assert_eq!(manifest.cpu_s, 95.0);
+    assert_eq!(manifest.units["F_a"], "N");
+}
+
+/// Holes of several radii are a range, beside the paper's hole, in whose measures the domain is.
+#[test]
+fn holes_of_several_radii_are_a_range() {
+    let one = collect(rows()).unwrap();
+    assert_eq!(one.manifest().domain.holes, None);
+    let several: Vec<Row> = (rows().into_iter())
+        .map(|mut row| {
+            let odd = row.job.ends_with(['1', '3', '5', '7', '9']);
+            row.design.fillet_ratio = if odd { 0.3 } else { 0.05 };
+            row
+        })
+        .collect();
+    let several = collect(several).unwrap();
+    assert_eq!(several.manifest().domain.holes, Some([0.05, 0.3]));
+    assert_eq!(several.manifest().hinge.fillet_ratio, 0.16);
+    assert_ne!(several.manifest().domain, one.manifest().domain);
+}
+
+#[test]
+fn rows_are_sorted_by_job_and_lambda_so_that_the_file_is_the_same() {
+    let database = collect(rows()).unwrap();
+    let mut shuffled = rows();
+    shuffled.reverse();
+    let again = collect(shuffled).unwrap();
+    assert_eq!(database.manifest().hash, again.manifest().hash);
+    let lambdas: Vec<f64> = database.rows()[..5]
+        .iter()
+        .map(|row| row.sample.lambda)
+        .collect();
+    assert_eq!(lambdas, [0.2, 0.4, 0.6, 0.8, 1.0]);
+}
+
+#[test]
+fn the_parts_contain_every_row_exactly_once() {
+    let database = collect(rows()).unwrap();
+    let parts = [Part::Training, Part::Validation, Part::Test].map(|part| database.part(part));
+    assert_eq!(parts.each_ref().map(Vec::len), [40, 5, 5]);
+    let mut all: Vec<Row> = parts.into_iter().flatten().collect();
+    all.sort_by(|a, b| a.job.cmp(&b.job));
+    assert_eq!(all, database.rows());
+}
+
+#[test]
+fn rejected_rows_are_counted_and_printed() {
+    let mut rows = rows();
+    rows[3].sample.w = -1.0;
+    rows[4].sample.energy_residual = 0.5;
+    rows[5].sample.energy_residual = 0.5;
+    rows[6].sample.m_theta = f64::NAN;
+    let database = collect(rows).unwrap();
+    assert_eq!(database.rows().len(), 46);
+    let rejected: Vec<_> = database.manifest().rejected.iter().collect();
+    assert_eq!(
+        rejected,
+        [
+            (&Rejection::NotFinite, &1),
+            (&Rejection::Negative, &1),
+            (&Rejection::EnergyResidual, &2)
+        ]
+    );
+    let summary = database.to_string();
+    assert!(
+        summary.contains("rejected 2 rows: the energy is not the work of the forces"),
+        "{summary}"
+    );
+    assert!(
+        summary.contains("46 rows of 10 rays (1 partial)"),
+        "{summary}"
+    );
+}
+
+#[test]
+fn an_empty_database_is_an_error() {
+    let message = |rows| collect(rows).unwrap_err().to_string();
+    assert_eq!(
+        message(vec![]),
+        "no rows: run the campaign before collecting it"
+    );
+    let bad = vec![Row {
+        cpu_s: f64::NAN,
+        ..row(0, 1.0)
+    }];
+    assert_eq!(
+        message(bad),
+        "no rows: 1 were rejected since a number is not finite"
+    );
+}
+
+#[test]
+fn inconsistent_rows_are_an_error() {
+    let changes: [(Change, &str); 4] = [
+        (|row| row.material = "steel".into(), "material"),
+        (|row| row.tier = "tiny".into(), "tier"),
+        (|row| row.design.kerf = 0.1, "kerf"),
+        (|row| row.design.r_win = 70.0, "r_win"),
+    ];
+    for (change, expected) in changes {
+        let mut rows = rows();
+        change(&mut rows[0]);
+        match collect(rows).unwrap_err() {
+            DatasetError::Mixed { column, job, .. } => {
+                assert_eq!((column, job.as_str()), (expected, "job-09"));
+            }
+            other => panic!("{other}"),
+        }
+    }
+    let twice = rows().into_iter().chain([row(3, 0.4)]).collect();
+    let error = collect(twice).unwrap_err();
+    assert!(
+        matches!(error, DatasetError::Duplicate { lambda: 0.4, .. }),
+        "{error}"
+    );
+}
+
+#[test]
+fn an_existing_database_is_replaced_only_on_request() {
+    let (_folder, path, database) = written();
+    let error = database.write(&path, false).unwrap_err();
+    assert!(matches!(error, DatasetError::Exists { .. }), "{error}");
+    database.write(&path, true).unwrap();
+}
+
+#[test]
+fn a_file_that_does_not_match_its_manifest_is_an_error() {
+    let (_folder, path, _) = written();
+    let mut bytes = std::fs::read(&path).unwrap();
+    bytes[100] ^= 1;
+    std::fs::write(&path, bytes).unwrap();
+    let error = Database::read(&path).unwrap_err();
+    assert!(matches!(error, DatasetError::Hash { .. }), "{error}");
+}
+
+#[test]
+fn a_missing_malformed_or_newer_manifest_is_an_error() {
+    let (_folder, path, _) = written();
+    let manifest = path.with_extension("json");
+    let text = std::fs::read_to_string(&manifest).unwrap();
+    for version in [3, 9] {
+        let other = text.replace(
+            "\"format_version\": 4",
+            &format!("\"format_version\": {version}"),
+        );
+        std::fs::write(&manifest, other).unwrap();
+        let error = Database::read(&path).unwrap_err();
+        assert!(
+            matches!(error, DatasetError::UnknownVersion { found, .. } if found == version),
+            "{error}"
+        );
+    }
+    std::fs::write(&manifest, &text[..100]).unwrap();
+    assert!(matches!(
+        Database::read(&path),
+        Err(DatasetError::Manifest { .. })
+    ));
+    std::fs::remove_file(&manifest).unwrap();
+    assert!(matches!(Database::read(&path), Err(DatasetError::Read(_))));
+}
+
+fn dealt_with_another_seed(database: &Database) -> Database {
+    let plan = SplitPlan {
+        seed: 5,
+        ..SplitPlan::default()
+    };
+    database.split(&plan).unwrap()
+}
+
+#[test]
+fn a_split_like_another_database_gives_each_geometry_its_part() {
+    let whole = collect(rows()).unwrap();
+    let other = dealt_with_another_seed(&whole);
+    assert_ne!(whole.manifest().split, other.manifest().split);
+    let alike = whole.split_like(&other).unwrap();
+    assert_eq!(alike.manifest().split, other.manifest().split);
+    assert_eq!(alike.manifest().split_hash, other.manifest().split_hash);
+    assert_eq!(alike.rows(), whole.rows());
+    // Mirrored hinges, of other jobs, have the same geometry.
+    let mut mirrored = with_mirrored(whole.rows()).split_off(whole.rows().len());
+    for row in &mut mirrored {
+        row.job.push_str("-image");
+    }
+    let mirrored = collect(mirrored).unwrap().split_like(&other).unwrap();
+    for part in [Part::Training, Part::Validation, Part::Test] {
+        let expected = other
+            .manifest()
+            .split
+            .jobs(part)
+            .iter()
+            .map(|job| format!("{job}-image"));
+        assert!(
+            mirrored
+                .manifest()
+                .split
+                .jobs(part)
+                .iter()
+                .cloned()
+                .eq(expected)
+        );
+    }
+    // Without a geometry of the test part there is nothing to measure errors on.
+    let test = other.manifest().split.jobs(Part::Test);
+    let rows = whole.rows().iter().filter(|row| !test.contains(&row.job));
+    let untested = collect(rows.cloned().collect()).unwrap();
+    let error = untested.split_like(&other).unwrap_err();
+    assert!(matches!(error, DatasetError::NotAlike), "{error}");
+}
+
+#[test]
+fn a_material_law_without_a_hash_is_not_known() {
+    let law = |rows: Vec<Row>| collect(rows).unwrap().to_string();
+    let unknown = rows().into_iter().map(|row| Row {
+        material_hash: String::new(),
+        ..row
+    });
+    assert!(law(unknown.collect()).contains("material law not known"));
+    assert!(law(rows()).contains("material law f11f"));
+}
+
+/// The error of reading these bytes with a manifest that contains their hash.
+fn vouched(path: &Path, bytes: &[u8]) -> DatasetError {
+    std::fs::write(path, bytes).unwrap();
+    let Err(DatasetError::Hash {
+        expected, found, ..
+    }) = Database::read(path)
+    else {
+        panic!("other bytes have another hash");
+    };
+    let manifest = path.with_extension("json");
+    let text = std::fs::read_to_string(&manifest).unwrap();
+    let text: serde_json::Value = serde_json::from_str(&text.replace(&expected, &found)).unwrap();
+    std::fs::write(&manifest, sealed_json::to_vec(&text).unwrap()).unwrap();
+    Database::read(path).unwrap_err()
+}
+
+#[test]
+fn a_malformed_file_is_an_error_even_if_its_hash_is_correct() {
+    let (_folder, path, _) = written();
+    let bytes = std::fs::read(&path).unwrap();
+    let length = bytes.len();
+    let mut headless = bytes.clone();
+    headless[..200].fill(0);
+    let mut tail = bytes.clone();
+    tail[length - 8..length - 4].fill(0xff);
+    let truncated = [12, length / 2, length - 1].map(|length| bytes[..length].to_vec());
+    for broken in truncated.into_iter().chain([tail]) {
+        let error = vouched(&path, &broken);
+        assert!(matches!(error, DatasetError::In { .. }), "{error}");
+    }
+    // Without the first bytes of a Parquet file the manifest is not read.
+    let table = b"job,a,s\n1,2,3\n".to_vec();
+    for other in [vec![], b"PAR".to_vec(), vec![0; 4096], table, headless] {
+        std::fs::write(&path, other).unwrap();
+        let error = Database::read(&path).unwrap_err();
+        assert!(matches!(error, DatasetError::NoDatabase { .. }), "{error}");
+    }
+}
+
+#[test]
+fn a_single_geometry_is_an_error() {
+    let mut one = rows();
+    one.iter_mut().for_each(|row| row.design = rows()[0].design);
+    for rows in [one, vec![row(0, 1.0)]] {
+        let error = collect(rows).unwrap_err();
+        assert!(
+            matches!(error, DatasetError::TooFewGeometries { found: 1 }),
+            "{error}"
+        );
+    }
+}

@@ -1,0 +1,4 @@
+//! Meshes by gmsh.
+
+mod vtk_grid;
+mod window_meshes;

@@ -1,0 +1,406 @@
+//! Invalid input: the message names the file, the key or the program, and the exit code is 1.
+
+use crate::common::{Workplace, failure};
+use crate::failing_ccx::failing_ccx;
+use std::os::unix::fs::PermissionsExt;
+use std::path::{Path, PathBuf};
+use support::sealed_json;
+
+const DEMO: &str = "configs/campaigns/demo.toml";
+const SCENE: &str = "configs/scenes/linear-7x7.toml";
+
+/// The message of `command` after one edit of a new copy of the configurations.
+fn after(edited: &str, old: &str, new: &str, command: &str) -> String {
+    let work = Workplace::new();
+    work.edit(edited, &[(old, new)]);
+    work.error(command)
+}
+
+#[test]
+fn a_wrong_key_names_line_and_nearest_key() {
+    let message = after(DEMO, "kerf =", "kurf =", &format!("campaign plan {DEMO}"));
+    assert!(
+        message.contains("demo.toml:") && message.contains("did you mean `kerf`"),
+        "{message}"
+    );
+    let message = after(SCENE, "load_steps", "load_step", &format!("design {SCENE}"));
+    assert!(message.contains("did you mean `load_steps`"), "{message}");
+}
+
+#[test]
+fn a_wrong_type_and_a_wrong_sign_name_the_value() {
+    let message = after(
+        DEMO,
+        "seed = 1",
+        "seed = \"one\"",
+        &format!("campaign plan {DEMO}"),
+    );
+    assert!(message.contains("demo.toml:"), "{message}");
+    let material = "configs/materials/pet-0.5mm.toml";
+    let message = after(
+        material,
+        "young = 3000.0",
+        "young = -3000.0",
+        "solve --tier tiny",
+    );
+    assert!(message.contains("young = -3000"), "{message}");
+}
+
+#[test]
+fn wrong_units_are_suspected() {
+    let work = Workplace::new();
+    assert!(
+        work.error("solve --w-lig 0.018")
+            .contains("did you mean 18 mm")
+    );
+    let material = "configs/materials/pet-0.5mm.toml";
+    let message = after(
+        material,
+        "young = 3000.0",
+        "young = 3.0",
+        "solve --tier tiny",
+    );
+    assert!(message.contains("did you mean 3000 MPa"), "{message}");
+}
+
+#[test]
+fn a_target_far_from_the_sheet_is_refused_by_every_command() {
+    let (work, centre) = (Workplace::new(), "centre = [1400.0, 1400.0]");
+    work.edit(SCENE, &[(centre, "centre = [1e300, 1400.0]")]);
+    for command in ["design", "inspect gradient", "inspect equilibrium"] {
+        let message = work.error(&format!("{command} {SCENE}"));
+        assert!(
+            message.contains("distance of the target from the sheet"),
+            "{message}"
+        );
+    }
+}
+
+#[test]
+fn missing_files_are_named() {
+    let work = Workplace::new();
+    for command in [
+        "campaign plan nowhere.toml",
+        "train nowhere.parquet",
+        "design nowhere.toml",
+    ] {
+        assert!(work.error(command).contains("nowhere"));
+    }
+    // The file itself, not its manifest.
+    assert!(
+        work.error("train nowhere.parquet")
+            .contains("nowhere.parquet")
+    );
+}
+
+#[test]
+fn weights_and_databases_are_not_taken_for_each_other() {
+    let work = Workplace::new();
+    let shipped = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/pet-0.5mm");
+    let shipped = shipped.display();
+    for command in ["train", "dataset summary"] {
+        let message = work.error(&format!("{command} {shipped}/medium.safetensors"));
+        assert!(
+            message.contains("medium.safetensors holds weights: a database is"),
+            "{message}"
+        );
+    }
+    for command in [
+        "init sheet --material configs/materials/pet-0.5mm.toml",
+        "design configs/scenes/pet-3x3.toml",
+    ] {
+        let message = work.error(&format!("{command} --weights {shipped}/reference.parquet"));
+        assert!(
+            message.contains("reference.parquet is a database"),
+            "{message}"
+        );
+    }
+}
+
+#[test]
+fn the_message_about_a_missing_program_states_how_to_install_it() {
+    let work = Workplace::new();
+    for (variable, package) in [("KIRIGAMI_GMSH", "gmsh"), ("KIRIGAMI_CCX", "calculix-ccx")] {
+        let mut command = work.program("solve --tier tiny");
+        let message = failure(command.env(variable, "/no/such/program"));
+        assert!(message.contains(variable), "{message}");
+        assert!(
+            message.contains(&format!("apt-get install {package}")),
+            "{message}"
+        );
+    }
+    let doctor = |ccx: &str| {
+        let mut doctor = work.program("doctor");
+        let output = doctor.env("KIRIGAMI_CCX", work.path(ccx)).output().unwrap();
+        assert_eq!(output.status.code(), Some(1), "{ccx}");
+        String::from_utf8(output.stdout).unwrap()
+    };
+    assert!(doctor("/no/such/program").contains("was not found"));
+    // A program that cannot be loaded, and another one, which prints a number.
+    for (status, printed) in [(127, "libspooles.so.2.2: cannot open"), (0, "line 4, in x")] {
+        let script = format!("#!/bin/sh\necho '{printed}' >&2\nexit {status}\n");
+        std::fs::write(work.path("ccx"), script).unwrap();
+        std::fs::set_permissions(work.path("ccx"), PermissionsExt::from_mode(0o755)).unwrap();
+        let text = doctor("ccx");
+        assert!(text.contains(printed), "{text}");
+    }
+}
+
+#[test]
+fn the_output_of_a_failing_solver_is_quoted_and_the_deck_kept() {
+    let work = Workplace::new();
+    let ccx = failing_ccx(&work.path(""), "echo ' *ERROR reading *SOLID SECTION'");
+    let message = failure(work.program("solve --tier tiny").env("KIRIGAMI_CCX", &ccx));
+    assert!(
+        message.contains("*ERROR reading *SOLID SECTION"),
+        "{message}"
+    );
+    assert!(
+        work.path("runs/solve/window.inp").exists(),
+        "the deck is kept"
+    );
+}
+
+#[test]
+fn files_that_are_not_weights_are_refused() {
+    let work = Workplace::new();
+    let scene = "configs/scenes/demo.toml";
+    let message = work.error(&format!("design {scene}"));
+    assert!(message.contains("surrogate.safetensors"), "{message}");
+
+    std::fs::create_dir_all(work.path("runs/demo")).unwrap();
+    let weights = work.path("runs/demo/surrogate.safetensors");
+    std::fs::write(&weights, b"not weights").unwrap();
+    let message = work.error(&format!("design {scene}"));
+    assert!(
+        message.contains("surrogate.safetensors is not a safetensors file"),
+        "{message}"
+    );
+
+    // A valid file whose last number, the energy scale, is NaN.
+    let cases = Path::new(env!("CARGO_MANIFEST_DIR")).join("surrogate/tests/cases");
+    let mut bytes = std::fs::read(cases.join("chi_tiny.safetensors")).unwrap();
+    let last = bytes.len() - 8;
+    bytes[last..].copy_from_slice(&f64::NAN.to_le_bytes());
+    std::fs::write(&weights, &bytes).unwrap();
+    let message = work.error(&format!("design {scene}"));
+    assert!(
+        message.contains("surrogate.json"),
+        "the message names the card: {message}"
+    );
+    let card = std::fs::read(cases.join("chi_tiny.json")).unwrap();
+    let mut card: serde_json::Value = sealed_json::from_slice(&card).unwrap();
+    card["weights_hash"] = blake3::hash(&bytes).to_hex().to_string().into();
+    let card = sealed_json::to_vec(&card).unwrap();
+    std::fs::write(weights.with_extension("json"), card).unwrap();
+    let message = work.error(&format!("design {scene}"));
+    assert!(message.contains("w_scale"), "{message}");
+}
+
+/// Neither the environment nor the home of the user reaches the solver.
+#[test]
+fn the_solver_runs_in_its_own_environment() {
+    let work = Workplace::new();
+    let ccx = failing_ccx(&work.path(""), "env > environment.txt");
+    let mut solve = work.program("solve --tier tiny");
+    solve.env("KIRIGAMI_CCX", ccx);
+    solve
+        .env("CCX_NPROC_STIFFNESS", "4")
+        .env("OMP_NUM_THREADS", "4");
+    failure(solve.env("HOME", "/somewhere").env("SECRET", "1"));
+    let seen = std::fs::read_to_string(work.path("runs/solve/environment.txt")).unwrap();
+    for line in ["CCX_NPROC_STIFFNESS=1", "OMP_NUM_THREADS=1"] {
+        assert!(seen.lines().any(|it| it == line), "{seen}");
+    }
+    assert!(
+        !seen.contains("SECRET") && !seen.contains("/somewhere"),
+        "{seen}"
+    );
+}
+
+#[test]
+fn every_command_has_a_help_text() {
+    let work = Workplace::new();
+    for command in [
+        "",
+        "demo",
+        "doctor",
+        "mesh",
+        "solve",
+        "campaign",
+        "campaign run",
+        "train",
+        "design",
+        "inspect pattern",
+        "inspect deploy",
+        "inspect equilibrium",
+        "inspect gradient",
+        "verify",
+    ] {
+        assert!(
+            work.output(&format!("{command} --help"))
+                .contains("Usage: kirigami")
+        );
+    }
+}
+
+/// As `kirigami ... > /dev/full`, and as into a pipe that is full and does not block.
+#[test]
+fn output_that_cannot_be_written_is_an_error_and_no_panic() {
+    let work = Workplace::new();
+    let full = std::fs::File::options().write(true).open("/dev/full");
+    let message = failure(work.program("completions bash").stdout(full.unwrap()));
+    assert!(message.contains("No space left"), "{message}");
+    let full = std::fs::File::options().write(true).open("/dev/full");
+    let message = failure(
+        work.program(&format!("campaign plan {DEMO}"))
+            .stdout(full.unwrap()),
+    );
+    assert!(
+        message.starts_with("error: cannot write to stdout: No space left")
+            && message.lines().count() == 1,
+        "{message}"
+    );
+    for arguments in ["--help", "--version", "design --help", "help"] {
+        let full = std::fs::File::options().write(true).open("/dev/full");
+        let message = failure(work.program(arguments).stdout(full.unwrap()));
+        assert!(
+            message.contains("cannot write to stdout") && message.lines().count() == 1,
+            "{arguments}: {message}"
+        );
+    }
+}
+
+#[test]
+fn counts_have_an_upper_bound() {
+    let work = Workplace::new();
+    for arguments in [
+        format!("campaign run {DEMO} --jobs 1025"),
+        format!("campaign check {DEMO} --every 0"),
+        format!("campaign submit {DEMO} --shards 1000001 --time 1"),
+        format!("campaign submit {DEMO} --shards 1 --time 525601"),
+        format!("verify {SCENE} --sample 1000001"),
+    ] {
+        let output = work.program(&arguments).output().unwrap();
+        assert_eq!(output.status.code(), Some(2), "{arguments}");
+    }
+}
+
+#[test]
+fn a_missing_default_file_names_the_current_folder() {
+    let work = Workplace::new();
+    std::fs::remove_dir_all(work.path("configs")).unwrap();
+    for (command, option) in [
+        ("solve --tier tiny", "--material"),
+        ("init sheet", "--material"),
+        ("train hinges.parquet", "--config"),
+    ] {
+        let message = work.error(command);
+        assert!(
+            message.contains("the current folder") && message.contains(option),
+            "{command}: {message}"
+        );
+    }
+}
+
+#[test]
+fn a_refused_thread_is_an_error_and_no_panic() {
+    let work = Workplace::new();
+    let weights = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/pet-0.5mm/medium.safetensors");
+    let scene = "configs/scenes/pet-3x3.toml";
+    let fault = "starts no further thread";
+    for command in [
+        format!(
+            "inspect equilibrium {}/{scene} --design start",
+            env!("CARGO_MANIFEST_DIR")
+        ),
+        format!("design {scene} --weights {} --steps 1", weights.display()),
+        format!("campaign run {DEMO} --folder campaign"),
+    ] {
+        // No machine has memory for stacks of this size.
+        let message = failure(
+            work.program(&command)
+                .env("RUST_MIN_STACK", "1000000000000000"),
+        );
+        assert!(message.contains(fault), "{command}: {message}");
+    }
+}
+
+#[test]
+fn a_pipe_in_place_of_a_file_is_refused() {
+    let work = Workplace::new();
+    for kind in ["toml", "json", "safetensors", "parquet", "csv", "svg"] {
+        let pipe = work.path("pipe").with_extension(kind);
+        let made = std::process::Command::new("mkfifo").arg(pipe).status();
+        assert!(made.unwrap().success());
+    }
+    std::fs::copy(
+        work.path("configs/scenes/pin-7x7.toml"),
+        work.path("target.toml"),
+    )
+    .unwrap();
+    work.edit(
+        "target.toml",
+        &[
+            ("../materials", "configs/materials"),
+            ("[target.circle]", "[target.svg]\nfile = \"pipe.svg\""),
+            ("radius", "height"),
+        ],
+    );
+    let weights = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/pet-0.5mm/medium.safetensors");
+    for command in [
+        "campaign plan pipe.toml",
+        "train pipe.parquet",
+        "surrogate card pipe.safetensors",
+        "solve --path pipe.toml --tier tiny",
+        "design pipe.toml",
+        "design target.toml",
+        "material fit pipe.csv --name film --thickness 0.1 --density-kg-m3 1000",
+        "init sheet --material pipe.toml",
+        &format!("surrogate eval {} pipe.csv", weights.display()),
+    ] {
+        let message = work.error(command);
+        assert!(
+            message.contains("not a regular file"),
+            "{command}: {message}"
+        );
+    }
+}
+
+/// A limit that is lower than the program's own cannot be raised.
+#[test]
+fn a_lower_limit_of_the_file_size_remains() {
+    let kirigami = env!("CARGO_BIN_EXE_kirigami");
+    let limited = format!("ulimit -f 100000; exec {kirigami} doctor");
+    let output = std::process::Command::new("sh")
+        .args(["-c", &limited])
+        .output();
+    let output = output.unwrap();
+    let text = String::from_utf8_lossy(&output.stdout);
+    assert!(
+        output.status.success() && text.contains("ccx"),
+        "{output:?}"
+    );
+}
+
+/// A median of networks of another material is no target of this one.
+#[test]
+fn teachers_of_another_material_are_refused() {
+    let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("data");
+    let work = Workplace::new();
+    let message = work.error(&format!(
+        "train {} --teachers {}",
+        data.join("pet-0.5mm/reference.parquet").display(),
+        find_weights(&data.join("polypropylene-0.8mm")).display()
+    ));
+    assert!(message.contains("--teachers"), "{message}");
+    assert!(message.contains("is not of the material"), "{message}");
+}
+
+fn find_weights(folder: &Path) -> PathBuf {
+    let files = std::fs::read_dir(folder).unwrap();
+    let mut files = files.map(|file| file.unwrap().path());
+    files
+        .find(|file| file.extension().is_some_and(|end| end == "safetensors"))
+        .unwrap()
+}

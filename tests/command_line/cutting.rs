@@ -1,0 +1,129 @@
+//! `kirigami cut`: files of a finished run, and what it refuses.
+
+use crate::common::Workplace;
+
+const SCENE: &str = "configs/scenes/pin-7x7.toml";
+
+#[test]
+fn a_design_of_another_scene_is_not_cut_unless_it_is_named() {
+    let work = Workplace::new();
+    work.output(&format!("design {SCENE} --steps 1"));
+    work.output(&format!("cut {SCENE}"));
+    work.edit(SCENE, &[("steps = 150", "steps = 3")]);
+    work.output(&format!("cut {SCENE}"));
+    work.edit(SCENE, &[("kerf = 0.2", "kerf = 0.3")]);
+    for command in ["cut", "export", "compare --template"] {
+        let message = work.error(&format!("{command} {SCENE}"));
+        assert!(message.contains("the key `process` changed"), "{message}");
+    }
+    // The run has its own copy of the scene.
+    work.output("cut runs/pin-7x7");
+    work.output(&format!("cut {SCENE} --design runs/pin-7x7/state.json"));
+}
+
+#[test]
+fn a_designed_sheet_is_cut_on_paper() {
+    let work = Workplace::new();
+    let missing = work.error(&format!("cut {SCENE}"));
+    assert!(missing.contains("run `kirigami design` first"), "{missing}");
+    work.output(&format!("design {SCENE} --steps 3 --out run"));
+    let cut = format!("cut {SCENE} --design run/state.json --out files");
+    let text = work.output(&format!("{cut} --paper a3"));
+    assert!(
+        text.contains("84 holes, 48 slits") && text.contains("rows x "),
+        "{text}"
+    );
+    for name in [
+        "cut.dxf",
+        "cut.svg",
+        "cut-list.csv",
+        "attachments.csv",
+        "cut-summary.csv",
+        "tiles-a3.pdf",
+    ] {
+        assert!(work.path("files").join(name).exists(), "{name}");
+    }
+    // Files of the last call do not remain, and settings of the scene reach the files.
+    work.edit(
+        SCENE,
+        &[("[process]", "[cutting]\nover_run = 3.0\n\n[process]")],
+    );
+    let json = work.output(&format!("{cut} --json"));
+    let json: serde_json::Value = serde_json::from_str(&json).unwrap();
+    assert_eq!(json["totals"]["holes"], 84);
+    assert!(!work.path("files/tiles-a3.pdf").exists());
+    let summary = std::fs::read_to_string(work.path("files/cut-summary.csv")).unwrap();
+    assert!(summary.contains("over-run,3,mm"), "{summary}");
+    // Other cutting settings are not another run.
+    work.output(&format!("design {SCENE} --steps 3 --out run"));
+
+    work.edit(SCENE, &[("over_run = 3.0", "over_run = 300.0")]);
+    assert!(work.error(&cut).contains("cutting.over_run"));
+}
+
+/// The files of the machines are measured in output/tests/fabrication; here they are asked for.
+#[test]
+fn a_sheet_is_cut_for_a_machine() {
+    let work = Workplace::new();
+    // Before the search.
+    let said = work.output(&format!("cut {SCENE} --for laser-service --design start"));
+    assert!(
+        said.contains("SendCutSend: ") && said.contains("(process.kerf)"),
+        "{said}"
+    );
+    let root = env!("CARGO_MANIFEST_DIR");
+    let said = work.output(&format!(
+        "cut {root}/configs/scenes/a4-plate-service.toml --for laser-service --design start --out drilled"
+    ));
+    assert!(said.contains("SendCutSend: no published limit"), "{said}");
+    assert!(said.contains("smallest hole 1.60 mm"), "{said}");
+    let folder = "runs/pin-7x7/cut/laser-service";
+    for name in ["cut.dxf", "cut.svg"] {
+        assert!(work.path(folder).join(name).exists(), "{name}");
+    }
+    let json = work.output(&format!("cut {SCENE} --for knife --design start --json"));
+    let json: serde_json::Value = serde_json::from_str(&json).unwrap();
+    assert_eq!(json["features"]["slot"], 0.2);
+    assert_eq!(json["services"], serde_json::json!([]));
+    let unknown = work.error(&format!("cut {SCENE} --for nife --design start"));
+    assert!(unknown.contains("did you mean knife?"), "{unknown}");
+}
+
+#[test]
+fn a_sheet_larger_than_its_stock_is_a_warning() {
+    let work = Workplace::new();
+    let design = format!("design {SCENE} --steps 1 --restart");
+    let stock =
+        |width: f64| format!("[cutting]\nstock = [{width}, 2900.0]\nmargin = 10.0\n\n[process]");
+    work.edit(SCENE, &[("[process]", &stock(2823.0))]);
+    assert!(!work.output(&design).contains("the stock has"));
+    work.edit(SCENE, &[("2823", "2821")]);
+    let said = work.output(&design);
+    assert!(said.contains("the stock has 2801.0 x 2880.0 mm"), "{said}");
+}
+
+/// The stock of a scene is also the name of a paper.
+#[test]
+fn a_stock_is_a_paper_or_two_sides() {
+    let work = Workplace::new();
+    let stock = |text: &str| format!("[cutting]\nstock = {text}\n\n[process]");
+    work.edit(SCENE, &[("[process]", &stock("\"a0\""))]);
+    let said = work.output(&format!("design {SCENE} --steps 1"));
+    assert!(said.contains("the stock has 841.0 x 1189.0 mm"), "{said}");
+    for (before, wrong) in [
+        ("\"a0\"", "\"a7\""),
+        ("\"a7\"", "[300.0]"),
+        ("[300.0]", "420.0"),
+    ] {
+        work.edit(SCENE, &[(before, wrong)]);
+        let message = work.error(&format!("design {SCENE} --steps 1"));
+        assert!(message.contains("pin-7x7.toml:"), "{message}");
+        assert!(message.contains("\"letter\""), "{message}");
+    }
+    work.edit(SCENE, &[("420.0", "[300.0, 0.2]")]);
+    let message = work.error(&format!("design {SCENE} --steps 1"));
+    assert!(
+        message.contains("cutting.stock = 0.2 mm violates 1 <= cutting.stock"),
+        "{message}"
+    );
+}

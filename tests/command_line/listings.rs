@@ -1,0 +1,291 @@
+//! The output of `inspect` `pattern`, `deploy`, `equilibrium` and `gradient` with `--json`, against the reference
+//! cases, and that of `tolerances`. The panels of the cases are 1 x 1; here they are 100 mm wide, with the constants of (11) that
+//! give the same shape.
+
+use crate::common::Workplace;
+use serde_json::Value;
+use std::path::Path;
+
+/// Size of a panel (mm).
+const SIZE: f64 = 100.0;
+
+fn case(name: &str) -> Value {
+    let cases = Path::new(env!("CARGO_MANIFEST_DIR")).join("design/tests/cases");
+    let text = std::fs::read_to_string(cases.join(format!("{name}.json"))).unwrap();
+    serde_json::from_str(&text).unwrap()
+}
+
+/// The output of a command for a scene with the given sections.
+fn printed(work: &Workplace, command: &str, sections: &str, options: &str) -> Value {
+    let scene = format!(
+        "title = \"Case\"\nmaterial = \"configs/materials/pet-0.5mm.toml\"\noutput = \"run\"\n{sections}\n\
+         [process]\nfillet_ratio = 0.16\nkerf = 0.2\nr_win = 100.0\n\
+         [ligament]\nstart = 15.0\nrange = [5.0, 25.0]\n\
+         [optimiser]\nsteps = 1\nlearning_rate = 0.1\n"
+    );
+    std::fs::write(work.path("case.toml"), scene).unwrap();
+    let text = work.output(&format!("inspect {command} case.toml --json {options}"));
+    serde_json::from_str(&text).unwrap()
+}
+
+/// Asserts that every number of `found` is `scale` times that of `expected`, to `error` of `scale`.
+fn assert_close(found: &Value, expected: &Value, scale: f64, error: f64, place: &str) {
+    match (found, expected) {
+        (Value::Array(found), Value::Array(expected)) => {
+            assert_eq!(found.len(), expected.len(), "{place}");
+            for (i, (found, expected)) in std::iter::zip(found, expected).enumerate() {
+                assert_close(found, expected, scale, error, &format!("{place}[{i}]"));
+            }
+        }
+        (Value::Number(found), Value::Number(expected)) => {
+            let (found, expected) = (found.as_f64().unwrap(), expected.as_f64().unwrap());
+            assert!(
+                (found - scale * expected).abs() <= error * scale,
+                "{place}: {found} {expected}"
+            );
+        }
+        _ => assert_eq!(found, expected, "{place}"),
+    }
+}
+
+/// (u_x, u_y, phi) of panels: lengths are scaled, angles are not.
+fn assert_motions(found: &Value, expected: &Value, error: f64) {
+    let all = |value: &Value| value.as_array().unwrap().clone();
+    assert_eq!(all(found).len(), all(expected).len());
+    for (found, expected) in std::iter::zip(all(found), all(expected)) {
+        for (d, scale) in [SIZE, SIZE, 1.0].into_iter().enumerate() {
+            assert_close(&found[d], &expected[d], scale, error, "q");
+        }
+    }
+}
+
+fn sheet(case: &Value, start: &Value) -> String {
+    let corners = case["outline_corners"].as_array().unwrap().iter();
+    let corners: Vec<[f64; 2]> = corners
+        .map(|corner| [0, 1].map(|axis| SIZE * corner[axis].as_f64().unwrap()))
+        .collect();
+    let (m, n) = (&case["M"], &case["N"]);
+    let numbers = |value: &Value| -> Vec<f64> { serde_json::from_value(value.clone()).unwrap() };
+    let r: Vec<f64> = (numbers(&start["z"]).iter())
+        .map(|z| 1.0 / (1.0 + (-z).exp()))
+        .collect();
+    let edges = start["ell"].as_array().unwrap().iter();
+    let tau: Vec<Vec<f64>> = edges.map(|ell| positions(&numbers(ell))).collect();
+    format!(
+        "[sheet]\ncorners = {corners:?}\npanels = [{m}, {n}]\n[start]\nr = {r:?}\ntau = {tau:?}"
+    )
+}
+
+/// The positions of the cuts on an edge from the logits of their intervals; (5).
+fn positions(ell: &[f64]) -> Vec<f64> {
+    let total: f64 = ell.iter().map(|logit| logit.exp()).sum();
+    let sums = ell.iter().scan(0.0, |sum, logit| {
+        *sum += logit.exp() / total;
+        Some(*sum)
+    });
+    sums.take(ell.len() - 1).collect()
+}
+
+#[test]
+fn patterns_and_deployments() {
+    let work = Workplace::new();
+    for name in ["p0_3x3_uniform", "p1_3x3_random", "p2_4x7_random"] {
+        let case = case(name);
+        let sections = format!(
+            "hinge = \"pin\"\n{}\n[pin]\nopening_deg = 30.0\n\
+             [target.circle]\ncentre = [150.0, 150.0]\nradius = 200.0\n",
+            sheet(&case, &case)
+        );
+        let pattern = printed(&work, "pattern", &sections, "");
+        assert!(
+            work.error("inspect equilibrium case.toml")
+                .contains("hinge = \"pin\"")
+        );
+        let (length, area) = (SIZE, SIZE * SIZE);
+        for (key, scale) in [
+            ("M", 1.0),
+            ("N", 1.0),
+            ("r", 1.0),
+            ("tau", 1.0),
+            ("points_x", length),
+            ("points_xp", length),
+            ("panel_corners", length),
+            ("panel_centroid", length),
+            ("panel_area", area),
+            ("void_sides", length),
+        ] {
+            assert_close(&pattern[key], &case[key], scale, 1e-12, key);
+        }
+        let hinges = |value: &Value| value["hinges"].as_array().unwrap().clone();
+        for (found, expected) in std::iter::zip(hinges(&pattern), hinges(&case)) {
+            for (key, scale) in [
+                ("k", 1.0),
+                ("l", 1.0),
+                ("corner_k", 1.0),
+                ("corner_l", 1.0),
+                ("vertex", 1.0),
+                ("endpoint", 1.0),
+                ("position", length),
+                ("e_sec", 1.0),
+                ("m_hat", 1.0),
+                ("alpha", 1.0),
+            ] {
+                assert_close(&found[key], &expected[key], scale, 1e-12, key);
+            }
+        }
+        for expected in case["deployments"].as_array().unwrap() {
+            let opening = format!("--opening-deg {}", expected["theta_deg"]);
+            let found = printed(&work, "deploy", &sections, &opening);
+            assert_motions(&found["q"], &expected["q"], 1e-12);
+            for (key, scale) in [
+                ("theta_deg", 1.0),
+                ("outline_vertices", length),
+                ("outline_panel_corner", 1.0),
+                ("outline_free_panel_corner", 1.0),
+            ] {
+                assert_close(&found[key], &expected[key], scale, 1e-12, key);
+            }
+        }
+    }
+}
+
+/// That they are those of an independent implementation is tested in `design`, without contact, as that has none.
+#[test]
+fn equilibria_objective_and_gradient() {
+    let work = Workplace::new();
+    let case = case("g0_3x3_linear_path");
+    let theta = &case["theta"];
+    let widths = case["w_lig"].as_array().unwrap().iter();
+    let widths: Vec<f64> = widths.map(|w| SIZE * w.as_f64().unwrap()).collect();
+    let sections = format!(
+        "hinge = \"linear\"\nload_steps = 5\n{}\nw_lig = {widths:?}\n\
+         [linear]\nk_a = 1.0\nk_s = 0.6\nk_theta = 100.0\n\
+         [[supports]]\npanel = [0, 1]\nkind = \"clamp\"\n\
+         [[loads]]\npanel = [2, 1]\nforce = [1.2, 0.0]\n\
+         [target.circle]\ncentre = [170.0, 150.0]\nradius = 220.0\n\
+         [objective]\ncompression = 0.3\nshear = 0.2\n",
+        sheet(&case, theta)
+    );
+    let equilibrium = printed(&work, "equilibrium", &sections, "");
+    let steps = equilibrium["steps"].as_array().unwrap();
+    assert_eq!(steps.len(), 5);
+    assert!(steps.iter().all(|step| step["status"] == "converged"));
+    assert!(
+        work.error("inspect deploy case.toml")
+            .contains("--opening-deg")
+    );
+    let gradient = printed(&work, "gradient", &sections, "");
+    work.edit("case.toml", &[("force = [1.2, 0.0]", "force = [1.2, nan]")]);
+    assert!(
+        work.error("inspect gradient case.toml")
+            .contains("loads[0].force")
+    );
+    let number = |of: &Value| of.as_f64().unwrap();
+    let terms = gradient["terms"].as_object().unwrap().iter();
+    let sum: f64 = terms
+        .map(|(name, value)| number(value) * number(&gradient["weights"][name]))
+        .sum();
+    assert!((sum / number(&gradient["loss"]) - 1.0).abs() < 1e-12);
+    for key in ["compression", "shear"] {
+        assert!(number(&gradient["terms"][key]) > 0.0, "{key}");
+    }
+    let omega = gradient["grad"]["omega"].as_array().unwrap();
+    assert!(omega.len() == 12 && omega.iter().all(|slope| number(slope) != 0.0));
+}
+
+/// Every hinge is coloured by its share of the variance, in both halves of its window, and the eight that matter most are numbered.
+#[test]
+fn hinges_are_coloured_by_their_share_of_the_variance() {
+    let work = Workplace::new();
+    let root = env!("CARGO_MANIFEST_DIR");
+    let text = work.output(&format!(
+        "inspect tolerances {root}/configs/scenes/a4-polyester.toml --design start --ligament 0.1 --samples 0 --json --picture \
+         hinges.svg"
+    ));
+    let listed: Value = serde_json::from_str(&text).unwrap();
+    let picture = std::fs::read_to_string(work.path("hinges.svg")).unwrap();
+    let marks: Vec<&str> = (picture.lines())
+        .filter(|line| line.contains("fill-opacity=\"0.85\""))
+        .collect();
+    let errors = listed["first_order"]["errors"].as_array().unwrap();
+    assert_eq!((marks.len(), errors.len()), (34, 17));
+    let fill = |hinge: usize| {
+        let [one, other] = [0, 1].map(|half| {
+            let mark = marks[2 * hinge + half];
+            mark.split("fill=\"")
+                .nth(1)
+                .unwrap()
+                .split('"')
+                .next()
+                .unwrap()
+        });
+        assert_eq!(one, other);
+        one
+    };
+    // The errors are in descending order of their shares; the brightest colour is that of the largest one.
+    let hinge = |place: usize| errors[place]["error"]["ligament"].as_u64().unwrap() as usize;
+    let brightness = |place: usize| {
+        let colour = u32::from_str_radix(&fill(hinge(place))[1..], 16).unwrap();
+        (colour >> 8) & 0xff
+    };
+    for place in 1..17 {
+        assert!(brightness(place) <= brightness(place - 1), "{place}");
+    }
+    assert!(brightness(16) < brightness(0));
+    for place in 0..8 {
+        assert!(picture.contains(&format!(">{}<", hinge(place))), "{place}");
+    }
+}
+
+#[test]
+fn tolerances() {
+    let work = Workplace::new();
+    let root = env!("CARGO_MANIFEST_DIR");
+    let scene =
+        format!("inspect tolerances {root}/configs/scenes/a4-polyester.toml --design start");
+    let message = work.error(&scene);
+    assert!(
+        message.contains("[tolerances] ligament, kerf or thickness"),
+        "{message}"
+    );
+    let listed = |ligament: f64| -> Value {
+        let options = format!("--ligament {ligament} --samples 4 --json");
+        serde_json::from_str(&work.output(&format!("{scene} {options}"))).unwrap()
+    };
+    let (one, two) = (listed(0.02), listed(0.04));
+    let number = |of: &Value, path: &str| of.pointer(path).unwrap().as_f64().unwrap();
+    let rms = |of: &Value| number(of, "/first_order/corners/0");
+    assert!((rms(&two) / rms(&one) - 2.0).abs() < 0.01);
+    let allowed = |of: &Value| number(of, "/allowed/ligament");
+    assert!((allowed(&two) / allowed(&one) - 1.0).abs() < 0.01);
+    assert_eq!(number(&one, "/samples/deployed"), 4.0);
+    // The sheet as drawn has the loss of the design; small errors hardly change its outline.
+    let gradient = work.output(&format!(
+        "{} --json",
+        scene.replace("tolerances", "gradient")
+    ));
+    let gradient: Value = serde_json::from_str(&gradient).unwrap();
+    let ratio = number(&one, "/samples/loss/drawn") / number(&gradient, "/loss");
+    assert!((ratio - 1.0).abs() < 1e-9, "{ratio}");
+    let [drawn, mean, most] =
+        ["drawn", "mean", "most"].map(|of| number(&one, &format!("/samples/outline_error/{of}")));
+    assert!(
+        (mean / drawn - 1.0).abs() < 0.01 && most >= mean,
+        "{drawn} {mean} {most}"
+    );
+    let text = work.output(&format!("{scene} --ligament 0.02 --samples 4"));
+    assert!(
+        text.contains("ligament of hinge") && text.contains("all, 4 sheets"),
+        "{text}"
+    );
+    let text = std::fs::read_to_string(format!("{root}/configs/scenes/a4-polyester.toml"));
+    let text = (text.unwrap())
+        .replace("../../data", &format!("{root}/data"))
+        .replace("../materials", "configs/materials");
+    let with_kerf = text + "\n[tolerances]\nkerf = 0.1\n";
+    std::fs::write(work.path("kerf.toml"), with_kerf).unwrap();
+    let refused =
+        work.error("inspect tolerances kerf.toml --design start --samples 0 --picture kerf.svg");
+    assert!(refused.contains("give their tolerance"), "{refused}");
+    assert!(!work.path("kerf.svg").exists());
+}

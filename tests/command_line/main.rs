@@ -1,0 +1,20 @@
+//! The command line without external programs: what is printed and written, refusals, and what the project says of itself.
+
+mod architecture;
+mod bad_input;
+#[path = "../common/mod.rs"]
+mod common;
+mod cutting;
+#[path = "../common/failing_ccx.rs"]
+mod failing_ccx;
+mod foreign_files;
+mod golden;
+mod keys;
+mod listings;
+mod materials;
+mod measuring;
+mod moved_run;
+mod new_project;
+mod notes;
+mod several_sheets;
+mod springback;

@@ -1,0 +1,170 @@
+//! `kirigami material`: the shipped records become a material that the other commands read.
+
+use crate::common::Workplace;
+use serde_json::Value;
+
+/// The command of docs/MATERIALS.md.
+const FIT: &str = "material fit configs/tensile/strip-1.csv configs/tensile/strip-2.csv configs/tensile/strip-3.csv \
+                   --name film --thickness 0.5 --width 10 --gauge-length 50 --density-kg-m3 1390 --poisson 0.4";
+
+fn number(json: &Value, path: &str) -> f64 {
+    let value = json.pointer(path).and_then(Value::as_f64);
+    value.unwrap_or_else(|| panic!("no number {path}: {json:#}"))
+}
+
+/// Mean of the factors of the three records.
+const FACTOR: f64 = (1.0 + 0.975 + 1.03) / 3.0;
+
+/// The records are those of sigma = 46 - 12 exp(-p / 0.003) + 8 (L^2 - 1 / L) with L = exp(p) and E = 3000 MPa, times 1,
+/// 0.975 and 1.03. The expected numbers are those of this law; plateau and natural draw ratio by Maxwell's rule.
+#[test]
+fn records_of_a_film_become_a_material_file_that_is_checked() {
+    let work = Workplace::new();
+    let printed = work.output(FIT);
+    for text in [
+        "strip-2.csv",
+        "natural draw ratio",
+        "note: between the plastic strains",
+        "material check",
+    ] {
+        assert!(printed.contains(text), "{text}: {printed}");
+    }
+    let message = work.error(FIT);
+    assert!(
+        message.contains("film.toml exists") && message.contains("--replace"),
+        "{message}"
+    );
+    let json = work.output(&format!("{FIT} --replace --json"));
+    let json: Value = serde_json::from_str(&json).unwrap();
+    for (path, expected, tolerance) in [
+        ("/fit/young/mean", 3000.0, 0.03),
+        ("/fit/offset_yield/mean", FACTOR * 38.654, 0.02),
+        ("/fit/upper_yield/mean", FACTOR * 44.896, 0.01),
+        ("/fit/plateau/mean", FACTOR * 37.529, 0.01),
+        ("/fit/draw_ratio/mean", 3.3157, 0.02),
+    ] {
+        let found = number(&json, path);
+        assert!(
+            (found / expected - 1.0).abs() < tolerance,
+            "{path}: {found} {expected}"
+        );
+    }
+    let scatter =
+        number(&json, "/fit/offset_yield/deviation") / number(&json, "/fit/offset_yield/mean");
+    // The standard deviation of 1, 0.975 and 1.03.
+    assert!((scatter / 0.0275 - 1.0).abs() < 0.4, "{scatter}");
+    let causes = json["fit"]["specimens"][1]["dropped"].as_array().unwrap();
+    for cause in ["toe", "unloading", "broken"] {
+        assert!(causes.iter().any(|row| row["cause"] == cause), "{cause}");
+    }
+    for picture in ["film.svg", "film.png"] {
+        assert!(work.path("runs/material").join(picture).exists());
+    }
+
+    let check = "material check runs/material/film.toml configs/scenes/pet-7x7.toml";
+    let printed = work.output(check);
+    assert!(
+        printed.contains("*PLASTIC") && printed.contains("Gamma"),
+        "{printed}"
+    );
+    let checked: Value = serde_json::from_str(&work.output(&format!("{check} --json"))).unwrap();
+    assert_eq!(checked["law_hash"], json["law_hash"]);
+    // The panels of the scene: 4200 mm over 7.
+    let [edge, gamma] =
+        ["critical_edge", "gamma"].map(|key| number(&checked, &format!("/ligaments/0/{key}")));
+    assert!(((600.0 / edge).powi(3) / gamma - 1.0).abs() < 1e-9);
+}
+
+/// The same force is in N by the file, in kN by an option, and in no stated unit.
+#[test]
+fn the_unit_of_every_column_is_printed() {
+    let work = Workplace::new();
+    let row = |printed: &str, quantity: &str| -> Vec<String> {
+        let line = printed.lines().find(|line| line.contains(quantity));
+        let words = line
+            .unwrap_or_else(|| panic!("{printed}"))
+            .split_whitespace();
+        words.map(str::to_owned).collect()
+    };
+    let printed = work.output(FIT);
+    let force = row(&printed, " force ");
+    let expected = ["strip-1.csv", "force", "3", "Load", "(N)", "N", "1", "N"];
+    assert_eq!(force, expected);
+    let extension = row(&printed, " extension ");
+    assert_eq!(extension[1..3], ["extension", "2"]);
+    assert!(!printed.contains("note: no unit"), "{printed}");
+
+    work.edit("configs/tensile/strip-1.csv", &[("(s);(mm);(N)\n", "")]);
+    let printed = work.output(&format!("{FIT} --replace"));
+    let force = row(&printed, " force ");
+    assert_eq!(force[4..], ["not", "stated", "1", "N"]);
+    let note = "note: no unit of the force is stated in strip-1.csv: taken as N; --units force=UNIT states another";
+    assert!(printed.contains(note), "{printed}");
+
+    let error = work.error(&format!("{FIT} --replace --units force=tons"));
+    assert!(
+        error.contains("strip-1.csv has the force in column 3 `Load`: `tons`"),
+        "{error}"
+    );
+}
+
+#[test]
+fn a_brittle_material_fails_its_check() {
+    let work = Workplace::new();
+    let message = work.error("material check configs/materials/paper-0.2mm.toml");
+    assert!(message.contains("1 error"), "{message}");
+    let output = work
+        .program("material check configs/materials/paper-0.2mm.toml")
+        .output()
+        .unwrap();
+    let printed = String::from_utf8(output.stdout).unwrap();
+    assert!(
+        printed.contains("error: a fold of 60 deg") && printed.contains("tears"),
+        "{printed}"
+    );
+    work.output("material check configs/materials/s235-1.5mm.toml");
+    work.edit(
+        "configs/materials/s235-1.5mm.toml",
+        &[("fracture_strain = 0.92", "fracture_strain = 0.02")],
+    );
+    work.error("material check configs/materials/s235-1.5mm.toml");
+}
+
+#[test]
+fn wrong_options_name_the_option() {
+    let work = Workplace::new();
+    let strip =
+        "material fit configs/tensile/strip-1.csv --name a --thickness 0.5 --density-kg-m3 1390";
+    for (options, expected) in [
+        ("", "give --width"),
+        ("--width 10", "give --gauge-length"),
+        (
+            "--width 10,11 --gauge-length 50",
+            "--width has 2 values for 1 files",
+        ),
+        ("--width=-1 --gauge-length 50", "positive --width"),
+        (
+            "--width 10 --gauge-length 50 --young 3",
+            "--young 3 violates",
+        ),
+        ("--columns extension=2,force=9", "has no column `9`"),
+        ("--width 10 --gauge-length 50 --units force=mm", "`mm`"),
+        (
+            "--width 10 --gauge-length 50 --fracture-strain 0.1",
+            "less than the plastic strain",
+        ),
+    ] {
+        let message = work.error(&format!("{strip} {options}"));
+        assert!(message.contains(expected), "{options}: {message}");
+    }
+    assert!(!work.path("runs/material/a.toml").exists());
+    let message = work.error(&format!("{} --name ../a", strip.replace(" --name a", "")));
+    assert!(message.contains("--name"), "{message}");
+    work.edit(
+        "configs/scenes/pet-7x7.toml",
+        &[("[10.0, 25.0]", "[25.0, 10.0]")],
+    );
+    let message =
+        work.error("material check configs/materials/pet-0.5mm.toml configs/scenes/pet-7x7.toml");
+    assert!(message.contains("minimum <= maximum"), "{message}");
+}

@@ -1,0 +1,213 @@
+//! A project of one's own: its files, for a material with weights and for one without.
+
+use crate::common::Workplace;
+use std::path::Path;
+
+/// A folder with the film's weights, for a sheet of another thickness.
+fn weights() -> String {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let weights = root.join("data/pet-0.5mm/medium.safetensors");
+    weights.display().to_string()
+}
+
+/// The keys of a scene as a table.
+fn keys(work: &Workplace, scene: &str) -> toml_edit::DocumentMut {
+    let text = std::fs::read_to_string(work.path(scene)).unwrap();
+    text.parse().unwrap()
+}
+
+#[test]
+fn a_project_with_weights_is_designed_at_once() {
+    let work = Workplace::new();
+    let said = work.output(&format!(
+        "init sheet --thickness 0.1 --size 210x297 --weights {}",
+        weights()
+    ));
+    assert!(said.contains("kirigami design sheet/scene.toml"), "{said}");
+    // The shipped sheet of A4 is the project of this size.
+    let [project, shipped] =
+        ["sheet/scene.toml", "configs/scenes/a4-polyester.toml"].map(|file| keys(&work, file));
+    for (section, key) in [
+        ("sheet", "panels"),
+        ("ligament", "range"),
+        ("process", "r_win"),
+        ("supports", "panel"),
+        ("loads", "panel"),
+    ] {
+        let of = |scene: &toml_edit::DocumentMut| match scene[section].as_array_of_tables() {
+            Some(tables) => tables.get(0).unwrap()[key].to_string(),
+            None => scene[section][key].to_string(),
+        };
+        assert_eq!(of(&project), of(&shipped), "{section}.{key}");
+    }
+    // That of the rigid panels opened by 25 degrees; the shipped sheet has a target and a stroke of its own.
+    let stroke = project["drive"]["stroke"].as_float().unwrap();
+    assert!((stroke - 30.4).abs() < 0.1, "{stroke}");
+
+    work.output("design sheet/scene.toml --steps 2");
+    assert!(work.path("sheet/design/cut.dxf").exists());
+    let message = work.error("init sheet --thickness 0.1");
+    assert!(message.contains("sheet exists already"), "{message}");
+}
+
+#[test]
+fn a_project_without_weights_begins_with_its_campaign() {
+    let work = Workplace::new();
+    let steel = "--material configs/materials/s235-1.5mm.toml";
+    let message = work.error(&format!("init steel {steel} --weights no.safetensors"));
+    assert!(message.contains("there is no no.safetensors"), "{message}");
+    let message = work.error("init film --thickness 0.5 --size 210x297");
+    assert!(
+        message.contains("at most 0.10 mm for this size), or a plate from 2 mm on"),
+        "{message}"
+    );
+    let said = work.output(&format!("init steel {steel} --size 3300x4600"));
+    assert!(
+        said.contains("kirigami campaign run steel/campaign.toml"),
+        "{said}"
+    );
+    // Lengths of the campaign are those of the film, times the ratio of the thicknesses.
+    let campaign = keys(&work, "steel/campaign.toml");
+    assert_eq!(campaign["design"]["r_win"].as_float(), Some(300.0));
+    let message = work.error("design steel/scene.toml");
+    assert!(
+        message.contains("there is no file") && message.contains("weights.safetensors"),
+        "{message}"
+    );
+    let small = [
+        ("tier = \"default\"", "tier = \"tiny\""),
+        ("count = 1500", "count = 6"),
+        ("theta_deg = [-5.0, 75.0]", "theta_deg = [-5.0, 15.0]"),
+        ("median_deg = 25.0", "median_deg = 10.0"),
+    ];
+    work.edit("steel/campaign.toml", &small);
+    work.edit("steel/training.toml", &[("epochs = 80", "epochs = 2")]);
+    // Its hinges alone: an hour is not for a test.
+    let (_, campaign) = said.split_once("train weights from nothing").unwrap();
+    assert!(
+        said.contains("kirigami material learn steel/material.toml"),
+        "{said}"
+    );
+    let lines = campaign
+        .lines()
+        .filter(|line| line.starts_with("kirigami "));
+    for line in lines.filter(|line| !line.contains(" verify ")) {
+        let command = line.split(" #").next().unwrap().trim();
+        let command = command.strip_prefix("kirigami ").unwrap();
+        match command.starts_with("design") {
+            true => work.output(&format!("{command} --steps 1 --force")),
+            false => work.output(command),
+        };
+    }
+}
+
+#[test]
+fn a_drawing_becomes_the_target() {
+    let work = Workplace::new();
+    let said = work.output(&format!(
+        "init leaf --thickness 0.1 --size 420x594 --target configs/targets/leaf.svg --weights {}",
+        weights()
+    ));
+    assert!(said.contains("kirigami verify leaf/scene.toml"), "{said}");
+    let scene = keys(&work, "leaf/scene.toml");
+    let svg = &scene["target"]["svg"];
+    assert!(Path::new(svg["file"].as_str().unwrap()).is_absolute());
+    work.output("design leaf/scene.toml --steps 1 --force");
+    let message = work.error("init other --target none.svg");
+    assert!(message.contains("there is no none.svg"), "{message}");
+    assert!(!work.path("other").exists());
+}
+
+/// `init FOLDER` alone gives a project that can be designed: a plate of A4. A film of 0.5 mm is larger.
+#[test]
+fn a_project_with_all_defaults_is_designed() {
+    let work = Workplace::new();
+    let plate = weights().replace("pet-0.5mm", "polypropylene-3mm");
+    let said = work.output(&format!("init plate --weights {plate}"));
+    assert!(said.contains("Nothing holds its panels there"), "{said}");
+    work.output(&format!(
+        "init film --thickness 0.5 --weights {}",
+        weights()
+    ));
+    for (project, thickness, sides) in [
+        ("plate", 3.0, "[210.0, 297.0]"),
+        ("film", 0.5, "[1050.0, 1485.0]"),
+    ] {
+        let scene = keys(&work, &format!("{project}/scene.toml"));
+        assert_eq!(scene["thickness"].as_float(), Some(thickness));
+        let size = scene["sheet"]["size"].to_string();
+        assert!(size.contains(sides), "{size}");
+        work.output(&format!("design {project}/scene.toml --steps 1 --force"));
+    }
+}
+
+/// Weights of ligaments that buckle do not serve those that bend in the plane.
+#[test]
+fn weights_of_a_film_do_not_serve_a_plate() {
+    let work = Workplace::new();
+    let film = "--material configs/materials/pet-0.5mm.toml";
+    let said = work.output(&format!("init plate {film} --thickness 3"));
+    assert!(
+        said.contains("kirigami campaign run plate/campaign.toml"),
+        "{said}"
+    );
+    let campaign = keys(&work, "plate/campaign.toml");
+    assert_eq!(campaign["tier"].as_str(), Some("plate"));
+    // In the thickness of the film's weights, the law is theirs.
+    work.edit(
+        "plate/material.toml",
+        &[("thickness = 3.0", "thickness = 0.5")],
+    );
+    let message = work.error(&format!("design plate/scene.toml --weights {}", weights()));
+    assert!(message.contains("no law holds for both"), "{message}");
+    // Weights that are named decide what the sheet is, and it is too small for a film.
+    let message = work.error(&format!(
+        "init film {film} --thickness 3 --size 210x297 --weights {}",
+        weights()
+    ));
+    assert!(message.contains("with film ligaments"), "{message}");
+    let message = work.error(&format!(
+        "init other --material configs/materials/petg-3mm.toml --weights {}",
+        weights()
+    ));
+    assert!(message.contains("for another material"), "{message}");
+}
+
+/// A scene that is refused is written, and the reason is the message.
+#[test]
+fn a_project_that_needs_a_change_says_so() {
+    let work = Workplace::new();
+    let message = work.error(&format!(
+        "init thin --material configs/materials/polypropylene-3mm.toml --thickness 1 --weights {}",
+        weights().replace("pet-0.5mm", "polypropylene-3mm")
+    ));
+    assert!(message.contains("needs a change"), "{message}");
+    assert!(message.contains("violates 0.5 <= w_lig"), "{message}");
+    assert!(work.path("thin/scene.toml").is_file());
+}
+
+/// The sheet of a stock is smaller than the stock by its margins and by what is cut beyond its edge.
+#[test]
+fn a_project_fits_the_stock_that_it_is_cut_from() {
+    let work = Workplace::new();
+    let plate = weights().replace("pet-0.5mm", "polypropylene-3mm");
+    work.output(&format!(
+        "init plate --stock a4 --margin 5 --weights {plate}"
+    ));
+    let scene = keys(&work, "plate/scene.toml");
+    assert_eq!(
+        scene["sheet"]["size"].to_string().trim(),
+        "[197.0, 284.0]      # mm; width and height"
+    );
+    assert_eq!(scene["cutting"]["stock"].as_str(), Some("a4"));
+    let said = work.output("design plate/scene.toml --steps 1 --force");
+    assert!(!said.contains("the stock has"), "{said}");
+    let message = work.error("init none --stock a4 --margin 105");
+    assert!(
+        message.contains("leaves nothing of a stock of 210 x 297 mm"),
+        "{message}"
+    );
+    let output = work.program("init none --size a4").output().unwrap();
+    let message = String::from_utf8(output.stderr).unwrap();
+    assert!(message.contains("use --stock a4"), "{message}");
+}

@@ -1,0 +1,19 @@
+//! The program with gmsh, CalculiX, Slurm, strace and a browser.
+
+#[path = "../common/browser.rs"]
+mod browser;
+#[path = "../common/mod.rs"]
+mod common;
+#[path = "../common/failing_ccx.rs"]
+mod failing_ccx;
+mod killed_runs;
+mod learned_material;
+mod main_job;
+mod own_data;
+mod power_loss;
+#[path = "../../fe_driver/tests/common/processes.rs"]
+mod processes;
+mod run_page;
+mod scale;
+mod slurm;
+mod studio;

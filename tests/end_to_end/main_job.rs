@@ -1,0 +1,260 @@
+//! The main job from end to end with the real gmsh and CalculiX: campaign, database, weights, design, verification.
+//!
+//! One story in steps, because each needs the files of those before it. A step that fails is named before its message.
+
+use crate::common::Workplace;
+use crate::failing_ccx::failing_ccx;
+use serde_json::Value;
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+const CAMPAIGN: &str = "configs/campaigns/demo.toml";
+const RUN: &str = "campaign run configs/campaigns/demo.toml --folder runs/demo/campaign";
+const COLLECT: &str = "campaign collect configs/campaigns/demo.toml --folder runs/demo/campaign --out runs/demo/hinges.parquet";
+const STATUS: &str = "campaign status configs/campaigns/demo.toml --folder runs/demo/campaign";
+/// The scene with the design of its run.
+const DESIGN: &str = "configs/scenes/demo.toml --design runs/demo/design/state.json";
+const SPOT_CHECK: &str =
+    "surrogate spot-check runs/demo/surrogate.safetensors --count 12 --tier tiny --out spot";
+
+/// Runs the steps in order in one folder.
+macro_rules! story {
+    ($work:expr; $($step:ident)*) => {
+        let work = $work;
+        $(
+            println!("step: {}", stringify!($step));
+            $step(&work);
+        )*
+    };
+}
+
+#[test]
+fn the_whole_chain_runs_resumes_and_refuses_to_overwrite() {
+    story! { small_demo();
+        a_campaign_solves_its_rays_once
+        a_database_is_collected_and_not_overwritten
+        a_changed_campaign_is_not_collected
+        weights_are_trained_and_not_overwritten
+        a_sheet_is_designed_with_all_its_files
+        hinges_of_the_design_are_solved_once
+        the_design_is_balanced_by_finite_elements
+        a_failed_round_keeps_the_rounds_before
+        weights_are_judged_at_random_states
+        rays_are_proposed_where_hinges_leave_the_domain
+        a_folder_keeps_its_campaign_and_its_scene
+    }
+}
+
+/// Short rays of few geometries take seconds; the steps are those of a real campaign.
+fn small_demo() -> Workplace {
+    let work = Workplace::new();
+    work.edit(
+        CAMPAIGN,
+        &[
+            ("count = 40", "count = 6"),
+            ("theta_deg = [-5.0, 40.0]", "theta_deg = [-5.0, 20.0]"),
+            ("median_deg = 20.0", "median_deg = 15.0"),
+        ],
+    );
+    work.edit(
+        "configs/training/demo.toml",
+        &[("epochs = 300", "epochs = 20")],
+    );
+    work.edit("configs/scenes/demo.toml", &[("steps = 150", "steps = 3")]);
+    work
+}
+
+fn json(text: &str) -> Value {
+    serde_json::from_str(text).unwrap()
+}
+
+#[track_caller]
+fn assert_contains(text: &str, expected: &[&str]) {
+    for expected in expected {
+        assert!(text.contains(expected), "no `{expected}` in:\n{text}");
+    }
+}
+
+/// The events that the campaign has logged.
+fn events(work: &Workplace) -> Vec<u8> {
+    let hosts = std::fs::read_dir(work.path("runs/demo/campaign/hosts")).unwrap();
+    let host = hosts.map(|entry| entry.unwrap().path()).next().unwrap();
+    std::fs::read(host.join("events-1-of-1.jsonl")).unwrap()
+}
+
+fn a_campaign_solves_its_rays_once(work: &Workplace) {
+    assert_contains(&work.output(RUN), &["6 rays complete"]);
+    let first = events(work);
+    work.output(RUN);
+    assert_eq!(events(work), first, "finished jobs are not run again");
+    assert_contains(&work.output(STATUS), &["6 rays complete"]);
+}
+
+fn a_database_is_collected_and_not_overwritten(work: &Workplace) {
+    work.output(COLLECT);
+    assert_contains(&work.error(COLLECT), &["exists"]);
+    let export = "dataset export runs/demo/hinges.parquet --out runs/demo/hinges.csv";
+    work.output(export);
+    assert_contains(&work.error(export), &["--replace"]);
+    work.output(&format!("{export} --replace"));
+}
+
+fn a_changed_campaign_is_not_collected(work: &Workplace) {
+    work.edit(CAMPAIGN, &[("count = 6", "count = 7")]);
+    for command in [&format!("{COLLECT} --replace"), STATUS] {
+        assert_contains(&work.error(command), &["has changed since it was run"]);
+    }
+    work.edit(CAMPAIGN, &[("count = 7", "count = 6")]);
+}
+
+fn weights_are_trained_and_not_overwritten(work: &Workplace) {
+    let train = "train runs/demo/hinges.parquet --config configs/training/demo.toml \
+                 --out runs/demo/surrogate.safetensors";
+    assert_contains(&work.output(train), &["shear force"]);
+    assert_contains(&work.error(train), &["--replace"]);
+}
+
+fn a_sheet_is_designed_with_all_its_files(work: &Workplace) {
+    let report = json(&work.output("design configs/scenes/demo.toml --json"));
+    assert_eq!(report["hinges"].as_array().unwrap().len(), 12);
+    for file in [
+        "cut.dxf",
+        "cut.svg",
+        "flat.png",
+        "deployed.png",
+        "deployment.png",
+        "report.txt",
+        "run.html",
+    ] {
+        let written = std::fs::metadata(work.path("runs/demo/design").join(file)).unwrap();
+        assert!(written.len() > 500, "{file} is {} bytes", written.len());
+    }
+}
+
+fn hinges_of_the_design_are_solved_once(work: &Workplace) {
+    // Without --design, the design of the run.
+    let replay = "verify configs/scenes/demo.toml --tier tiny --out replay";
+    let page = work.output(replay);
+    assert_contains(
+        &page,
+        &[
+            "The design ",
+            "runs/demo/design/state.json: ",
+            "states of 12 hinges",
+            "| M_theta |",
+        ],
+    );
+    let states = std::fs::read_to_string(work.path("replay/replay.csv")).unwrap();
+    assert!(states.lines().count() > 12 * 5, "{states}");
+    // Of hinges that have left the domain of so few rays, D and D_peak are not known.
+    assert!(states.lines().any(|line| line.contains(",,")), "{states}");
+    let again = Instant::now();
+    assert_eq!(work.output(replay), page, "solved once");
+    assert!(again.elapsed() < Duration::from_secs(5), "solved once");
+}
+
+/// Six rays make no law whose corrections converge. Those of the shipped weights do, though the coarsest mesh is far
+/// from them: the panels move less in every round.
+fn balance(rounds: usize) -> String {
+    format!(
+        "verify shipped.toml --design runs/demo/design/state.json --equilibrium --rounds {rounds} --tier tiny --out balance --json"
+    )
+}
+
+fn balance_page(work: &Workplace) -> String {
+    std::fs::read_to_string(work.path("balance/equilibrium.md")).unwrap()
+}
+
+fn the_design_is_balanced_by_finite_elements(work: &Workplace) {
+    let shipped = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/pet-0.5mm/medium.safetensors");
+    let scene = std::fs::read_to_string(work.path("configs/scenes/demo.toml")).unwrap();
+    let scene = scene
+        .replace(
+            "../../runs/demo/surrogate.safetensors",
+            &shipped.to_string_lossy(),
+        )
+        .replace("../materials", "configs/materials");
+    std::fs::write(work.path("shipped.toml"), scene).unwrap();
+    let balanced = json(&work.output(&balance(2)));
+    let movement = |round: usize| balanced["rounds"][round]["movement"].as_f64().unwrap();
+    assert!(movement(1) < 0.7 * movement(0), "{balanced}");
+    let [ref errors] = balanced["errors"].as_array().unwrap()[..] else {
+        panic!("one mesh: {balanced}");
+    };
+    assert!(errors["corners"][1].as_f64().unwrap() > 0.0, "{balanced}");
+    assert!(balanced["budget"]["corners"][0].as_f64().unwrap() > 0.0);
+    assert_eq!(balanced["design"], "design runs/demo/design/state.json");
+    assert_contains(&balance_page(work), &["by finite elements"]);
+}
+
+fn a_failed_round_keeps_the_rounds_before(work: &Workplace) {
+    let diverging = "echo '1 1 1U 4 0. 0. 0.005' > window.sta";
+    let mut further = work.program(&balance(3));
+    further.env("KIRIGAMI_CCX", failing_ccx(&work.path(""), diverging));
+    assert!(further.output().unwrap().status.success());
+    assert_contains(
+        &balance_page(work),
+        &["a further round failed: ", "\n| 2 |"],
+    );
+}
+
+fn weights_are_judged_at_random_states(work: &Workplace) {
+    assert_contains(
+        &work.output(SPOT_CHECK),
+        &["12 states of 3 rays", "W within 5 %"],
+    );
+    let test = "surrogate test runs/demo/surrogate.safetensors spot/spot-check.parquet";
+    assert_contains(
+        &work.output(test),
+        &["12 of 12 states inside the training domain"],
+    );
+    // The rays of two checks are different jobs.
+    let other = format!("{SPOT_CHECK} --seed 1").replace("--out spot", "--out other");
+    work.output(&other);
+    work.output(
+        "dataset merge spot/spot-check.parquet other/spot-check.parquet --out both.parquet",
+    );
+    let rows = |file: &str| {
+        let manifest = json(&work.output(&format!("dataset summary {file} --json")));
+        manifest["rows"].as_u64().unwrap()
+    };
+    let parts = ["spot", "other"].map(|folder| rows(&format!("{folder}/spot-check.parquet")));
+    assert_eq!(rows("both.parquet"), parts[0] + parts[1]);
+}
+
+/// Six rays with small rotations do not cover the hinge states of a design.
+fn rays_are_proposed_where_hinges_leave_the_domain(work: &Workplace) {
+    let extend = format!("campaign extend {DESIGN} --rays configs/campaigns/further.csv");
+    assert_contains(&work.output(&extend), &["rays added"]);
+    let further = std::fs::read_to_string(work.path("configs/campaigns/further.csv")).unwrap();
+    let rays = further.lines().count() - 1;
+    assert!((1..=12).contains(&rays), "{further}");
+    work.edit(
+        CAMPAIGN,
+        &[("seed = 1", "seed = 1\nextra_rays = \"further.csv\"")],
+    );
+    let plan = json(&work.output(&format!(
+        "campaign plan {CAMPAIGN} --folder runs/demo/campaign --json"
+    )));
+    let open = plan["tally"]["open"].as_u64().unwrap() as usize;
+    assert_eq!(open, rays, "{plan}");
+    work.edit(CAMPAIGN, &[("\nextra_rays = \"further.csv\"", "")]);
+}
+
+fn a_folder_keeps_its_campaign_and_its_scene(work: &Workplace) {
+    let before = events(work);
+    work.edit(CAMPAIGN, &[("name = \"demo\"", "name = \"other\"")]);
+    assert_contains(
+        &work.error(RUN),
+        &["contains the campaign `demo`, not `other`"],
+    );
+    work.edit(
+        "configs/scenes/demo.toml",
+        &[("[27.85, 0.0]", "[20.0, 0.0]")],
+    );
+    assert_contains(
+        &work.error("design configs/scenes/demo.toml"),
+        &["another run, the key `loads` changed"],
+    );
+    assert_eq!(events(work), before, "a refusal changes nothing");
+}

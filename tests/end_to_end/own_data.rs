@@ -1,0 +1,359 @@
+//! Data of another solver: a CSV table becomes a database, a surrogate, and predictions.
+//!
+//! ```text
+//! W = w (20 u^2 + 10 v^2 + 3 t^2 + 4 u t),   D = t^2 / 100,   u = a / w,  v = s / w,  t = theta
+//! ```
+
+use crate::common::Workplace;
+use nix::sys::signal::{Signal, kill};
+use nix::unistd::Pid;
+use std::fmt::Write;
+use std::process::Stdio;
+use std::time::{Duration, Instant};
+
+const DATABASE: &str = "own.parquet";
+const WEIGHTS: &str = "runs/own.safetensors";
+
+/// Thirty rays of ten states, with angles in degrees.
+fn table() -> String {
+    let mut csv = String::from(
+        "ray,width_mm,alpha_deg,a,s,theta_deg,lambda,energy_mJ,F_a,F_s,moment_Nmm,D\n",
+    );
+    for ray in 0..30 {
+        let spread = |step: f64| (step * f64::from(ray + 1)).fract();
+        let (w, alpha) = (8.0 + 12.0 * spread(0.7549), 60.0 + 30.0 * spread(0.5698));
+        let end = [spread(0.4142) - 0.5, 0.5 * spread(0.732) - 0.25, 1.0];
+        for k in 1..=10 {
+            let lambda = 0.1 * f64::from(k);
+            let [u, v, t] = end.map(|value| lambda * value);
+            let energy = w * (20.0 * u * u + 10.0 * v * v + 3.0 * t * t + 4.0 * u * t);
+            let (f_a, f_s, m) = (40.0 * u + 4.0 * t, 20.0 * v, w * (6.0 * t + 4.0 * u));
+            writeln!(
+                csv,
+                "{ray},{w},{alpha},{},{},{},{lambda},{energy},{f_a},{f_s},{m},{}",
+                u * w,
+                v * w,
+                t.to_degrees(),
+                0.01 * t * t
+            )
+            .unwrap();
+        }
+    }
+    csv
+}
+
+fn workplace() -> Workplace {
+    let work = Workplace::new();
+    std::fs::write(work.path("own.csv"), table()).unwrap();
+    let import = "dataset import own.csv --columns configs/import/example.toml";
+    work.output(&format!("{import} --out {DATABASE}"));
+    work.edit(
+        "configs/training/demo.toml",
+        &[
+            ("[64, 64, 32]", "[24, 24, 12]"),
+            ("epochs = 300", "epochs = 150"),
+            ("batch_size = 64", "batch_size = 32"),
+        ],
+    );
+    work
+}
+
+#[test]
+fn a_table_becomes_weights_that_predict_it() {
+    let work = workplace();
+    let summary = work.output(&format!("dataset summary {DATABASE}"));
+    assert!(summary.contains("300 rows of 30 rays"), "{summary}");
+    assert!(summary.contains("split by geometry"), "{summary}");
+
+    let train = format!("train {DATABASE} --config configs/training/demo.toml");
+    let output = work.output(&format!("{train} --seeds 2 --out {WEIGHTS}"));
+    for expected in ["chosen", "theta_deg"] {
+        assert!(output.contains(expected), "{output}");
+    }
+    // The table has no D_peak.
+    let card = work.output(&format!("surrogate card {WEIGHTS}"));
+    let damage = card
+        .lines()
+        .find(|line| line.contains("damage D_peak"))
+        .unwrap();
+    assert!(
+        damage.trim_end().ends_with('-') && !damage.contains('%'),
+        "{damage}"
+    );
+    for name in ["own-last.safetensors", "own-seed-1.json", "own-parity.png"] {
+        assert!(work.path("runs").join(name).exists(), "{name}");
+    }
+    assert!(!work.path("runs/own.state").exists());
+
+    std::fs::write(
+        work.path("states.csv"),
+        "w_lig,alpha,a,s,theta\n12,1.3,0.6,0.3,0.5\n12,1.3,0,0,0\n12,1.3,60,0,0.5\n",
+    )
+    .unwrap();
+    let json = work.output(&format!("surrogate eval {WEIGHTS} states.csv --json"));
+    let answers: serde_json::Value = serde_json::from_str(&json).unwrap();
+    let energy = answers[0]["w"].as_f64().unwrap();
+    let exact = 12.0 * (20.0 * 0.0025 + 10.0 * 0.000_625 + 3.0 * 0.25 + 4.0 * 0.025);
+    assert!(
+        (energy - exact).abs() < 0.2 * exact,
+        "{energy} instead of {exact}"
+    );
+    assert!(answers[1]["w"].as_f64().unwrap() < 1e-20);
+    assert_eq!(answers[2]["inside"], false);
+    let csv = work.output(&format!("surrogate eval {WEIGHTS} states.csv"));
+    assert_eq!(csv.lines().count(), 4);
+
+    let judged = work.output(&format!("surrogate test {WEIGHTS} {DATABASE}"));
+    let energy = judged
+        .lines()
+        .find(|line| line.contains("W, relative to its root mean square"))
+        .unwrap();
+    let percent: f64 = energy
+        .split_whitespace()
+        .find_map(|word| word.parse().ok())
+        .unwrap();
+    assert!(
+        judged.contains("30 rays") && judged.contains("of 300 states inside") && percent < 20.0,
+        "{judged}"
+    );
+
+    let card = work.output(&format!("surrogate card {WEIGHTS}"));
+    assert!(
+        card.contains("PET film 0.5 mm") && card.contains("edge"),
+        "{card}"
+    );
+
+    let tuned = format!("{train} --from {WEIGHTS} --out runs/tuned.safetensors");
+    work.output(&tuned);
+    let card = work.output("surrogate card runs/tuned.safetensors");
+    assert!(card.contains("fine-tuned"), "{card}");
+}
+
+#[test]
+fn a_training_that_was_killed_before_it_saved_a_state_starts_again() {
+    let work = workplace();
+    let train = format!("train {DATABASE} --config configs/training/demo.toml --out {WEIGHTS}");
+    let mut killed = work.program(&train).spawn().unwrap();
+    let lock = work.path("runs/own.lock");
+    while !lock.exists() {
+        assert!(killed.try_wait().unwrap().is_none(), "it ended early");
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    killed.kill().unwrap();
+    killed.wait().unwrap();
+    assert!(!work.path("runs/own.state").exists());
+    let resume = format!("{train} --resume");
+    work.output(&resume);
+    // A training that is complete is not made again.
+    let trained = std::fs::read(work.path(WEIGHTS)).unwrap();
+    let error = work.error(&resume);
+    assert!(error.contains("own.safetensors exists"), "{error}");
+    assert_eq!(std::fs::read(work.path(WEIGHTS)).unwrap(), trained);
+}
+
+#[test]
+fn input_that_cannot_be_evaluated_gives_an_error() {
+    let work = workplace();
+    let error = work.error("dataset summary own.csv");
+    assert!(error.contains("own.csv is no Parquet file"), "{error}");
+    let absolute = work.path("own.safetensors").display().to_string();
+    for out in ["./own.safetensors", "runs/../own.safetensors", &absolute] {
+        let error = work.error(&format!("train {DATABASE} --out {out} --replace"));
+        assert!(error.contains("replace the database's manifest"), "{error}");
+    }
+    let error = work.error(&format!("train {DATABASE} --out own.safetensors --replace"));
+    assert!(error.contains("manifest"), "{error}");
+    let tiny = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/surrogate/tests/cases/chi_tiny.safetensors"
+    );
+    for (text, expected) in [
+        ("w_lig,alpha,a,s\n1,1,1,1\n", "theta"),
+        ("w_lig,alpha,a,s,theta\n", "no rows"),
+        ("w_lig,alpha,a,s,theta\n-1,1,0,0,0\n", "0 < w_lig"),
+        ("w_lig,alpha,a,s,theta\n9,75,0,0,0\n", "pi (rad)"),
+        ("w_lig,alpha,a,s,theta\n9,1,NaN,0,0\n", "not finite"),
+    ] {
+        std::fs::write(work.path("states.csv"), text).unwrap();
+        let error = work.error(&format!("surrogate eval {tiny} states.csv"));
+        assert!(error.contains(expected), "{error}");
+    }
+}
+
+/// A database, and one of the same rays whose energies and forces are 5 % higher.
+#[test]
+fn a_database_is_compared_with_another_of_the_same_rays() {
+    let work = workplace();
+    let stiffer: String = table()
+        .lines()
+        .enumerate()
+        .map(|(line, row)| {
+            let mut fields: Vec<String> = row.split(',').map(str::to_owned).collect();
+            for field in &mut fields[7..] {
+                if line > 0 {
+                    *field = (1.05 * field.parse::<f64>().unwrap()).to_string();
+                }
+            }
+            fields.join(",") + "\n"
+        })
+        .collect();
+    std::fs::write(work.path("stiff.csv"), stiffer).unwrap();
+    let import = "dataset import stiff.csv --columns configs/import/example.toml";
+    work.output(&format!("{import} --out stiff.parquet"));
+    let output = work.output(&format!(
+        "dataset compare stiff.parquet {DATABASE} --out results/tiers"
+    ));
+    assert!(output.contains("300 states of 30 rays"), "{output}");
+    assert!(
+        output.contains("| F_s | 5.00 % | 5.00 % | 5.00 % | 5.00 % |"),
+        "{output}"
+    );
+    for name in ["compare.csv", "compare.md", "compare.png"] {
+        assert!(work.path("results/tiers").join(name).exists(), "{name}");
+    }
+}
+
+/// The tensile curve of a testing machine becomes the material of a campaign.
+#[test]
+fn a_measured_curve_is_a_material() {
+    let work = Workplace::new();
+    let file = "configs/materials/s235-1.5mm.toml";
+    let mut curve = "engineering_strain,engineering_stress_mpa\n0,0\n".to_owned();
+    for i in 1..=400 {
+        let strain = 5e-4 * f64::from(i);
+        let stress = (210e3 * strain).min(235.0 + 900.0 * strain / (1.0 + 3.0 * strain));
+        writeln!(curve, "{strain},{stress}").unwrap();
+    }
+    std::fs::write(work.path("configs/materials/curve.csv"), curve).unwrap();
+    let text = std::fs::read_to_string(work.path(file)).unwrap();
+    let (head, _) = text.split_once("plastic = [").unwrap();
+    std::fs::write(
+        work.path(file),
+        format!("{head}tensile_csv = \"curve.csv\"\n"),
+    )
+    .unwrap();
+    let solve = format!("solve --material {file} --tier tiny --theta-deg 3");
+    let json = work.output(&format!("{solve} --json"));
+    let solved: serde_json::Value = serde_json::from_str(&json).unwrap();
+    let yields = solved["material"]["plastic"][0][0].as_f64().unwrap();
+    assert!((235.0..245.0).contains(&yields), "{yields}");
+
+    std::fs::remove_file(work.path("configs/materials/curve.csv")).unwrap();
+    let error = work.error(&solve);
+    assert!(error.contains("curve.csv"), "{error}");
+    std::fs::write(work.path(file), head).unwrap();
+    let error = work.error(&solve);
+    assert!(error.contains("`plastic` and `tensile_csv`"), "{error}");
+}
+
+/// The corrected rays of the default mesh have less than half the error in W of the uncorrected ones.
+#[test]
+fn a_database_is_corrected_by_some_rays_of_a_finer_mesh() {
+    let work = Workplace::new();
+    let data = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("data/pet-0.5mm");
+    let [solved, reference] = ["hinges", "reference"].map(|name| {
+        let path = data.join(format!("{name}.parquet"));
+        path.display().to_string()
+    });
+    let compared = work.output(&format!(
+        "dataset compare {solved} {reference} --out compared"
+    ));
+    let energies: Vec<f64> = (compared.lines().filter(|line| line.starts_with("| W |")))
+        .map(|line| {
+            line.split([' ', '|'])
+                .filter_map(|word| word.parse().ok())
+                .next()
+                .unwrap()
+        })
+        .collect();
+    let [before, after] = energies[..] else {
+        panic!("{compared}");
+    };
+    assert!(after < before / 2.0, "{compared}");
+
+    work.output(&format!(
+        "dataset correct {solved} {reference} --out corrected.parquet"
+    ));
+    let summary = work.output("dataset summary corrected.parquet");
+    assert!(
+        summary.contains("default corrected to reference"),
+        "{summary}"
+    );
+    // A corrected database does not contain the solver's output and cannot restore the campaign.
+    let campaign = "configs/campaigns/pet-0.5mm.toml";
+    let restore = format!("campaign restore {campaign} --from corrected.parquet --folder restored");
+    assert!(
+        work.error(&restore)
+            .contains("default corrected to reference")
+    );
+}
+
+/// The rows of the comparison of the seeds, without the last column, the names of the weights.
+fn compared(work: &Workplace, name: &str) -> Vec<String> {
+    let text = std::fs::read_to_string(work.path(&format!("runs/{name}-seeds.csv"))).unwrap();
+    let rows = text.lines().map(|line| line.rsplit_once(',').unwrap().0);
+    rows.map(str::to_owned).collect()
+}
+
+#[test]
+fn seeds_that_are_stopped_continue_and_one_is_chosen() {
+    let work = workplace();
+    work.edit(
+        "configs/training/demo.toml",
+        &[("epochs = 150", "epochs = 40")],
+    );
+    let train = format!("train {DATABASE} --config configs/training/demo.toml");
+    work.output(&format!("{train} --seeds 3 --out runs/whole.safetensors"));
+
+    // Stopped in the first training.
+    let seeds = format!("{train} --seeds 3 --out runs/array.safetensors");
+    let mut stopped = work.program(&seeds).stdout(Stdio::null()).spawn().unwrap();
+    let deadline = Instant::now() + Duration::from_secs(60);
+    while !work.path("runs/array-seed-0.lock").exists() {
+        assert!(Instant::now() < deadline, "no training begins");
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    kill(Pid::from_raw(stopped.id() as i32), Signal::SIGTERM).unwrap();
+    assert_eq!(stopped.wait().unwrap().code(), Some(75));
+    assert!(work.path("runs/array-seed-0.state").exists());
+    assert!(!work.path("runs/array-seed-0.safetensors").exists());
+    work.output(&seeds);
+    let table = compared(&work, "array");
+    assert_eq!(table, compared(&work, "whole"));
+    let chosen: Vec<&String> = table.iter().filter(|row| row.contains(",yes,")).collect();
+    assert!(table.len() == 4 && chosen.len() == 1, "{table:?}");
+    let seed = chosen[0].split(',').next().unwrap();
+    let read = |name: &str| std::fs::read(work.path(&format!("runs/{name}"))).unwrap();
+    let best = read(&format!("array-seed-{seed}.safetensors"));
+    assert!(best == read("array.safetensors"));
+    for name in [
+        "array-seeds.md",
+        "array-parity.png",
+        "array-last.safetensors",
+    ] {
+        assert!(work.path("runs").join(name).exists(), "{name}");
+    }
+
+    // The same command trains nothing again; a seed whose files are lost is trained again.
+    let files = [
+        "array-seed-0.state",
+        "array-seed-2.safetensors",
+        "array.safetensors",
+    ];
+    let before = files.map(read);
+    work.output(&seeds);
+    assert!(files.map(read) == before);
+    std::fs::remove_file(work.path("runs/array-seed-1.safetensors")).unwrap();
+    std::fs::remove_file(work.path("runs/array-seed-1.state")).unwrap();
+    work.output(&seeds);
+    assert_eq!(compared(&work, "array"), table);
+
+    // Weights of another training are replaced on request only.
+    work.edit(
+        "configs/training/demo.toml",
+        &[("epochs = 40", "epochs = 20")],
+    );
+    assert!(work.error(&seeds).contains("exists"));
+    work.output(&format!("{seeds} --replace"));
+    assert_ne!(compared(&work, "array"), table);
+}
