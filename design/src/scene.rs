@@ -43,4 +43,4 @@ pub use scene_error::SceneError;
 pub use sheet_config::{LigamentConfig, SheetConfig, StartConfig};
 pub use springback_file::{SpringbackFileError, SpringbackMismatch};
 pub use stock::{Paper, Stock};
-pub use tolerances::{ErrorDeviations, ToleranceConfig};
+pub use tolerances::ToleranceConfig;

@@ -2,7 +2,6 @@
 
 pub mod cut_sheet;
 pub mod cutting_process;
-pub mod deviation;
 pub mod hinge_window;
 pub mod ideal_deployment;
 pub mod kinematics;

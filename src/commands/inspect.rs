@@ -3,14 +3,13 @@
 pub mod scene_args;
 
 use crate::commands::inspect::scene_args::Inspected;
-use crate::ui::progress::Progress;
 use crate::ui::{exit, output_file};
 use anyhow::{Context, Result};
 use clap::error::ErrorKind;
 use clap::{Args, ValueEnum};
 use design::pattern::design_vector::DesignVector;
 use design::scene::Scene;
-use output::listing::{self, SpringbackListing, ToleranceListing, ToleranceQuestion};
+use output::listing::{self, SpringbackListing};
 use serde::Serialize;
 use std::fmt::Display;
 use std::path::PathBuf;
@@ -19,7 +18,6 @@ use std::path::PathBuf;
 ///
 /// Examples: kirigami inspect equilibrium configs/scenes/linear-7x7.toml --json;
 /// kirigami inspect deploy configs/scenes/linear-7x7.toml --opening-deg 60;
-/// kirigami inspect tolerances runs/a4-plate --ligament 0.05 --samples 200 --picture runs/a4-plate/tolerances.svg;
 /// kirigami inspect springback runs/a4-plate --picture runs/a4-plate/released.svg
 #[derive(Args)]
 pub struct InspectCommand {
@@ -34,18 +32,7 @@ pub struct InspectCommand {
     /// deploy: opening angle of the hinges (deg) [default: that of the design, if the scene has pin hinges]
     #[arg(long, value_name = "DEG", allow_negative_numbers = true)]
     opening_deg: Option<f64>,
-    /// tolerances: +- of the width of every ligament by itself, two standard deviations (mm) [default: that of the scene]
-    #[arg(long, value_name = "MM", value_parser = length)]
-    ligament: Option<f64>,
-    /// tolerances: number of sheets with errors at random; 0 for none [default: 100]
-    #[arg(long, value_name = "N")]
-    samples: Option<usize>,
-    /// tolerances: movement of the corners that is allowed, root mean square, one standard deviation (mm) [default: that of the
-    /// known errors of the model]
-    #[arg(long, value_name = "MM", value_parser = length)]
-    within: Option<f64>,
-    /// springback: draw the sheet without loads to this file (SVG). tolerances: the deployed sheet, its hinges coloured by the
-    /// share of their ligament in the variance of the corners
+    /// springback: draw the sheet without loads to this file (SVG)
     #[arg(long, value_name = "FILE")]
     picture: Option<PathBuf>,
 }
@@ -60,22 +47,10 @@ enum Stage {
     Equilibrium,
     /// The objective, term by term, and its gradient
     Gradient,
-    /// What errors of cutting do to the deployed sheet, and which tolerances keep it within an error: each ligament, the kerf
-    /// and the thickness are changed by one standard deviation, half of their tolerance, and the sheet is deployed again; then
-    /// sheets with all errors at random
-    Tolerances,
     /// What stays of the opening when the loads are taken off: every hinge springs back elastically towards the deformation
     /// that stays by the law of `kirigami surrogate release`, and the sheet finds its equilibrium without loads, under its
     /// weight if it has one
     Springback,
-}
-
-fn length(text: &str) -> Result<f64, String> {
-    let length = text
-        .parse()
-        .ok()
-        .filter(|length| *length > 0.0 && *length < 1e3);
-    length.ok_or_else(|| "must be a length above 0 (mm)".into())
 }
 
 /// A listing with the design that it is of.
@@ -102,26 +77,17 @@ impl InspectCommand {
             }
             Stage::Equilibrium => self.print(name, listing::equilibrium(&problem()?, &design)?),
             Stage::Gradient => self.print(name, listing::gradient(&scene, &problem()?, &design)?),
-            Stage::Tolerances => self.print(name, self.tolerances(&scene, &design)?),
             Stage::Springback => self.print(name, self.springback(&scene, &design)?),
         }
     }
 
     /// Ends the program if an option is not of the stage.
     fn refuse_options_of_other_stages(&self) {
-        use Stage::{Deploy, Springback, Tolerances};
-        for (option, is_given, stages) in [
-            ("--opening-deg", self.opening_deg.is_some(), &[Deploy][..]),
-            ("--ligament", self.ligament.is_some(), &[Tolerances]),
-            ("--samples", self.samples.is_some(), &[Tolerances]),
-            ("--within", self.within.is_some(), &[Tolerances]),
-            (
-                "--picture",
-                self.picture.is_some(),
-                &[Tolerances, Springback],
-            ),
+        for (option, is_given, stage) in [
+            ("--opening-deg", self.opening_deg.is_some(), Stage::Deploy),
+            ("--picture", self.picture.is_some(), Stage::Springback),
         ] {
-            if is_given && !stages.contains(&self.stage) {
+            if is_given && self.stage != stage {
                 let message = format!("{option} is not an option of this stage\n");
                 exit::print_answer(&clap::Error::raw(ErrorKind::ArgumentConflict, message));
             }
@@ -146,31 +112,6 @@ impl InspectCommand {
         let listing = SpringbackListing::new(scene, &scene.problem()?, design, law)?;
         if let Some(path) = &self.picture {
             output_file::write(path, listing.picture(scene))?;
-        }
-        Ok(listing)
-    }
-
-    fn tolerances(&self, scene: &Scene, design: &DesignVector) -> Result<ToleranceListing> {
-        let mut tolerances = scene.config.tolerances;
-        tolerances.ligament = self.ligament.or(tolerances.ligament);
-        let question = ToleranceQuestion {
-            tolerances,
-            samples: self.samples.unwrap_or(100),
-            within: self.within,
-        };
-        let bar = Progress::new(0, "sheets");
-        let mut progress = |done: usize, all: usize| {
-            bar.set_total(all);
-            bar.show(done, None, "");
-        };
-        let problem = scene.problem()?;
-        let listing = ToleranceListing::new(scene, &problem, design, question, &mut progress)?;
-        bar.finish();
-        if let Some(path) = &self.picture {
-            let picture = listing.picture(scene).context(
-                "--picture colours hinges by the errors of their ligaments: give their tolerance, --ligament or [tolerances] ligament (mm)",
-            )?;
-            output_file::write(path, picture)?;
         }
         Ok(listing)
     }

@@ -430,7 +430,7 @@ impl Deployed<'_> {
     fn kerf(&self) -> Known {
         let tolerance = self.scene.config.tolerances.kerf;
         let tolerance = tolerance.ok_or("no tolerances.kerf in the scene")?;
-        let narrower = -0.5 * self.scene.config.tolerances.deviations().kerf;
+        let narrower = -0.5 * self.scene.config.tolerances.deviations()[0];
         let errors: Vec<[f64; 3]> = (self.energies.iter())
             .zip(&self.designs)
             .map(|(energy, design)| {
@@ -447,7 +447,7 @@ impl Deployed<'_> {
     fn thickness(&self) -> Known {
         let tolerance = self.scene.config.tolerances.thickness;
         let tolerance = tolerance.ok_or("no tolerances.thickness in the scene")?;
-        let deviation = self.scene.config.tolerances.deviations().thickness;
+        let deviation = self.scene.config.tolerances.deviations()[1];
         let relative = deviation / self.scene.material.thickness;
         let states = &self.deployment.final_step().deformations;
         let hinges = self.energies.iter().zip(&self.designs).zip(states);

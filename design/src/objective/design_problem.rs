@@ -15,7 +15,6 @@ use crate::pattern::design_vector::{DesignVector, WidthChart};
 use crate::pattern::grid::Grid;
 use crate::pattern::pattern_error::PatternError;
 use crate::sheet::cut_sheet::{Sheet, SheetError, SheetOptions};
-use crate::sheet::deviation::Deviation;
 use crate::sheet::ideal_deployment::ideal_deployment;
 use crate::sheet::kinematics::deployed;
 use crate::sheet::topology::PanelCorner;
@@ -400,38 +399,6 @@ impl Mechanics {
             similar.solver.weight = self.solver.weight.map(|weight| thicker * weight);
         }
         Ok(similar)
-    }
-
-    /// The mechanics of a cut sheet; the sheet of the drawing has a thickness (mm).
-    pub(crate) fn as_cut(
-        &self,
-        deviation: &Deviation,
-        thickness: f64,
-    ) -> Result<Self, DesignError> {
-        let thicker = 1.0 + deviation.thickness / thickness;
-        self.similar(thicker, 1.0 + deviation.stress)
-    }
-
-    /// A cut sheet at full load, from the path of the sheet as `drawn`; the mechanics are those of the cut one.
-    pub(crate) fn deploy_cut(
-        &self,
-        drawn: &Deployment,
-        deviation: &Deviation,
-        known: &KnownPath,
-    ) -> Result<Deployment, DesignError> {
-        let sheet = drawn.sheet.clone().with_deviation(deviation);
-        let sheet = sheet.ok_or(DesignError::ImpossibleSheet)?;
-        let law = self.law.prepare(&sheet.designs());
-        let (path, followed) = self.path(self.hinged(&sheet, &*law, false), Some(known));
-        let deployment = Deployment {
-            pattern: drawn.pattern.clone(),
-            released: self.released(&*law, &sheet, &path)?,
-            sheet,
-            path,
-            followed,
-        };
-        deployment.at_full_load()?;
-        Ok(deployment)
     }
 
     /// The path of a sheet, corrected from a `known` one that is near enough, or else followed from the flat sheet, and whether it

@@ -3,7 +3,6 @@
 
 mod cases;
 mod closed_forms;
-mod cutting_errors;
 #[path = "../common/derivatives.rs"]
 mod derivatives;
 mod driven;
