@@ -172,7 +172,7 @@ fn a_sheet_that_is_held_in_no_way_is_refused() {
     for (from, to, expected) in [
         (
             "[posture]\nkind = \"held-flat\"",
-            "[cutting]\nover_run = 1.0 # ",
+            "[cutting]\nmargin = 1.0 # ",
             "say what keeps the panels in their plane",
         ),
         (

@@ -9,7 +9,7 @@ mod numbering;
 pub mod page;
 mod surface;
 
-pub use deployed::{deployed, deployed_by_share, deployment_frames};
+pub use deployed::{deployed, deployment_frames};
 pub use flat::flat;
 pub use measured::measured;
 pub use numbering::numbering;

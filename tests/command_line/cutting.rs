@@ -43,22 +43,20 @@ fn a_designed_sheet_is_cut_on_paper() {
     ] {
         assert!(work.path("files").join(name).exists(), "{name}");
     }
-    // Files of the last call do not remain, and settings of the scene reach the files.
+    // Files of the last call do not remain.
     work.edit(
         SCENE,
-        &[("[process]", "[cutting]\nover_run = 3.0\n\n[process]")],
+        &[("[process]", "[cutting]\nmargin = 3.0\n\n[process]")],
     );
     let json = work.output(&format!("{cut} --json"));
     let json: serde_json::Value = serde_json::from_str(&json).unwrap();
     assert_eq!(json["totals"]["holes"], 84);
     assert!(!work.path("files/tiles-a3.pdf").exists());
-    let summary = std::fs::read_to_string(work.path("files/cut-summary.csv")).unwrap();
-    assert!(summary.contains("over-run,3,mm"), "{summary}");
     // Other cutting settings are not another run.
     work.output(&format!("design {SCENE} --steps 3 --out run"));
 
-    work.edit(SCENE, &[("over_run = 3.0", "over_run = 300.0")]);
-    assert!(work.error(&cut).contains("cutting.over_run"));
+    work.edit(SCENE, &[("margin = 3.0", "margin = -3.0")]);
+    assert!(work.error(&cut).contains("cutting.margin"));
 }
 
 /// The files of the machines are measured in output/tests/fabrication; here they are asked for.

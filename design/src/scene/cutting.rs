@@ -8,11 +8,9 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct CuttingConfig {
-    /// Length by which a slit that is open on the outline is cut beyond the finished edge (mm).
-    #[schemars(range(min = 0.0, max = 50.0))]
+    /// Length by which a slit that is open on the outline is cut beyond the finished edge (mm): 1, no key; some machines have their own.
+    #[serde(skip)]
     pub over_run: f64,
-    /// Whether registration marks are drawn outside of the outline, on a layer of their own.
-    pub registration_marks: bool,
     /// The material that the sheet is cut from, in either orientation: `"a5"` to `"a0"`, `"letter"`, `"tabloid"`, or width and
     /// height (mm). The report warns of a sheet that does not fit on it.
     pub stock: Option<Stock>,
@@ -25,7 +23,6 @@ impl Default for CuttingConfig {
     fn default() -> Self {
         Self {
             over_run: 1.0,
-            registration_marks: true,
             stock: None,
             margin: 0.0,
         }

@@ -5,7 +5,6 @@ use crate::cut_file::cut_lines::CutLines;
 use crate::cut_file::numbers::numbers;
 use crate::cut_file::totals::Totals;
 use crate::display::{Shape, Text};
-use design::scene::CuttingConfig;
 use design::sheet::cut_sheet::Sheet;
 use hinge::SheetMaterial;
 
@@ -23,7 +22,7 @@ pub struct SheetDrawing {
     pub notes: Vec<String>,
     /// The amount of cutting.
     pub totals: Totals,
-    cutting: CuttingConfig,
+    over_run: f64,
 }
 
 impl SheetDrawing {
@@ -37,7 +36,7 @@ impl SheetDrawing {
         for text in panels.into_iter().chain(hinges) {
             numbered.add(Layer::Annotation, Shape::Text(text));
         }
-        let (kerf, cutting) = (cuts.kerf, &cuts.cutting);
+        let kerf = cuts.kerf;
         let notes = vec![
             format!(
                 "{}, {} mm thick, 1:1 in mm. Panels P0 to P{}, {} columns x {} rows; hinges 0 to {}.",
@@ -60,7 +59,7 @@ impl SheetDrawing {
                 } else {
                     ""
                 },
-                cutting.over_run
+                cuts.cutting.over_run
             ),
             format!("{totals}."),
         ];
@@ -68,16 +67,14 @@ impl SheetDrawing {
             numbered,
             notes,
             totals,
-            cutting: cuts.cutting,
+            over_run: cuts.cutting.over_run,
         }
     }
 
-    /// The drawing of a cut file: with scale, instructions and, if the scene has them, registration marks.
+    /// The drawing of a cut file: with scale, instructions and registration marks.
     pub fn annotated(&self) -> CutDrawing {
         let mut drawing = self.numbered.clone();
-        if self.cutting.registration_marks {
-            registration_marks(&mut drawing, self.cutting.over_run);
-        }
+        registration_marks(&mut drawing, self.over_run);
         note(&mut drawing, &self.notes);
         drawing
     }

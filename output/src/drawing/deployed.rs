@@ -1,4 +1,4 @@
-//! The deployed sheet with its target; the hinge windows are coloured by their opening angle, or by another number.
+//! The deployed sheet with its target; the hinge windows are coloured by their opening angle.
 
 use crate::deployment_states::{kept, states_before};
 use crate::display::{Anchor, Style};
@@ -41,32 +41,7 @@ pub fn deployed(scene: &Scene, deployment: &Deployment) -> String {
         }
     );
     let scale = ColourScale::covering(openings_deg.iter().copied());
-    state.drawn(state.extent(), &subtitle, &Coloured::by_opening(&scale))
-}
-
-/// The sheet of a scene in a state of its path, its hinges coloured by a share each (%), with the numbers of those that have the
-/// `numbered` largest; `of` says of what.
-pub fn deployed_by_share(
-    scene: &Scene,
-    sheet: &Sheet,
-    step: &LoadStep,
-    shares: &[f64],
-    numbered: usize,
-    of: &str,
-) -> String {
-    let state = State::new(scene, sheet, step);
-    let scale = ColourScale::covering(shares.iter().copied());
-    let mut largest: Vec<usize> = (0..shares.len()).collect();
-    largest.sort_by(|i, j| shares[*j].total_cmp(&shares[*i]));
-    largest.truncate(numbered);
-    let coloured = Coloured {
-        values: Some(shares),
-        scale: &scale,
-        name: "share (%)",
-        numbered: largest,
-    };
-    let subtitle = format!("Deployed: hinges coloured by {of}. Target dashed");
-    state.drawn(state.extent(), &subtitle, &coloured)
+    state.drawn(state.extent(), &subtitle, &scale)
 }
 
 /// The frames of the deployment of a run: at most `most` states from the flat sheet to the last one, and without its loads if the
@@ -101,32 +76,10 @@ pub fn deployment_frames(scene: &Scene, designed: &Designed, most: usize) -> Vec
         state.drawn(
             extent.clone(),
             &format!("Deployment: {place}. Target dashed"),
-            &Coloured::by_opening(&scale),
+            &scale,
         )
     };
     std::iter::zip(&index, &states).map(frame).collect()
-}
-
-/// What the colours of the hinge windows show.
-struct Coloured<'a> {
-    /// A number of every hinge; `None` for its opening angle (deg).
-    values: Option<&'a [f64]>,
-    scale: &'a ColourScale,
-    /// Name above the scale.
-    name: &'static str,
-    /// The hinges that have their numbers.
-    numbered: Vec<usize>,
-}
-
-impl<'a> Coloured<'a> {
-    fn by_opening(scale: &'a ColourScale) -> Self {
-        Self {
-            values: None,
-            scale,
-            name: "\u{3b8} (deg)",
-            numbered: Vec::new(),
-        }
-    }
 }
 
 struct State<'a> {
@@ -153,17 +106,16 @@ impl<'a> State<'a> {
     }
 
     /// The picture of the state on a page around the points `extent`.
-    fn drawn(&self, extent: Vec<[f64; 2]>, subtitle: &str, coloured: &Coloured) -> String {
+    fn drawn(&self, extent: Vec<[f64; 2]>, subtitle: &str, scale: &ColourScale) -> String {
         let mut page = Page::around(extent, &self.scene.config.title, subtitle, true);
         let sketch = &mut page.sketch;
         let ghost = sketch.dashed(MUTED, 0.8, 3.0);
         sketch.canvas.polygon(&self.sheet.outline.corners, ghost);
         self.panels(sketch);
-        self.windows(sketch, coloured);
+        self.windows(sketch, scale);
         self.target(sketch);
         self.loads(sketch);
-        self.numbers(sketch, &coloured.numbered);
-        page.colour_scale(coloured.scale, coloured.name);
+        page.colour_scale(scale, "\u{3b8} (deg)");
         page.finish()
     }
 
@@ -195,27 +147,15 @@ impl<'a> State<'a> {
     }
 
     /// Draws each window in two parts, which move with their panels.
-    fn windows(&self, sketch: &mut Sketch, coloured: &Coloured) {
-        let values = coloured.values.unwrap_or(&self.openings_deg);
+    fn windows(&self, sketch: &mut Sketch, scale: &ColourScale) {
         let hinges = self.sheet.hinges.iter().zip(Window::of_sheet(self.sheet));
-        for ((hinge, window), &value) in hinges.zip(values) {
-            let style = Style::fill(coloured.scale.colour(value)).opacity(0.85, 1.0);
+        for ((hinge, window), &value) in hinges.zip(&self.openings_deg) {
+            let style = Style::fill(scale.colour(value)).opacity(0.85, 1.0);
             for k in [hinge.panel_a(), hinge.panel_b()] {
                 let part = window.inside(&self.sheet.panels[k]);
                 let part: Vec<_> = part.into_iter().map(|point| self.moved(k, point)).collect();
                 sketch.canvas.polygon(&part, style);
             }
-        }
-    }
-
-    /// Writes the numbers of hinges beside their tips.
-    fn numbers(&self, sketch: &mut Sketch, hinges: &[usize]) {
-        let (size, style) = (13.0 * sketch.unit, sketch.haloed(INK).bold());
-        for &h in hinges {
-            let hinge = &self.sheet.hinges[h];
-            let [x, y] = self.moved(hinge.panel_b(), hinge.tip);
-            let middle = [x, y - 0.35 * size];
-            sketch.text(middle, size, Anchor::Middle, style, &h.to_string());
         }
     }
 

@@ -207,7 +207,7 @@ fn stock(judged: &Judged) -> Option<Warning> {
     (!fits(taken, room.map(|side| side + ROUNDING))).then(|| {
         Concern::StockTooSmall.of_sheet(format!(
             "the cuts take {:.1} x {:.1} mm with kerf and over-run, but the stock has {:.1} x {:.1} mm inside its margin: use a smaller \
-             sheet.size or a smaller cutting.over_run",
+             sheet.size",
             taken[0], taken[1], room[0], room[1]
         ))
     })

@@ -1,10 +1,10 @@
 //! DXF, SVG and PDF read back by other libraries: the sheet that they describe is the one that was simulated.
 
-use super::{FILLET_RATIO, KERF, distance, irregular_sheets, length, uniform_cuts};
+use super::{FILLET_RATIO, KERF, distance, irregular_sheets, length};
 use design::geometry::polygon::{distance_to_segment, edges};
 use design::scene::Paper;
 use design::sheet::cut_sheet::Sheet;
-use output::cut_file::{CutLines, Layer, Machines, SheetDrawing, Tiling, dxf, svg, tiles_pdf};
+use output::cut_file::{CutLines, Layer, Machines, Tiling, dxf, svg, tiles_pdf};
 use serde::Deserialize;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -248,23 +248,6 @@ fn the_svg_holds_the_simulated_sheet_at_one_to_one() {
         assert!((read.slit_length() / tool_length(&cuts) - 1.0).abs() < 1e-6);
         assert!(paths.contains_key("REGISTRATION") && paths.contains_key("ANNOTATION"));
     }
-}
-
-#[test]
-fn a_scene_without_registration_marks_has_none() {
-    let mut cuts = uniform_cuts();
-    cuts.cutting.registration_marks = false;
-    let (_, sheet) = super::uniform(super::W_LIG);
-    let drawing = SheetDrawing::new(&cuts, &sheet, &super::material()).annotated();
-    let layers: BTreeSet<_> = drawing
-        .shapes
-        .iter()
-        .map(|(layer, _)| layer.name())
-        .collect();
-    assert_eq!(
-        layers,
-        BTreeSet::from(["ANNOTATION", "CUT", "HOLES", "OUTLINE"])
-    );
 }
 
 #[test]

@@ -136,7 +136,7 @@ fn the_design_of_a_run_is_that_of_the_same_scene_and_model() {
     let two_steps = ("steps = 25", "steps = 2");
     let best = run(&scene(&[two_steps]), None).unwrap().design;
     // Title, cutting, objective and optimiser change neither the sheet nor how it deploys.
-    let allowed = ("title = \"", "cutting.over_run = 1.0\ntitle = \"another ");
+    let allowed = ("title = \"", "cutting.margin = 1.0\ntitle = \"another ");
     let found = design_of_run(&scene(&[allowed, LBFGS])).unwrap();
     assert_eq!(found, Some(best));
     let message = |scene: &Scene| design_of_run(scene).unwrap_err().to_string();
