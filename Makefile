@@ -1,7 +1,7 @@
 # Two commands: `make demo` runs the main job, `make test` passes all tests.
 # Both first install what is missing.
 
-.PHONY: demo test lint python python-torch tools test-tools python-tools
+.PHONY: demo test test-fast lint python python-torch tools test-tools python-tools
 
 # With the features of the whole workspace, so that `make test` compiles no dependency again.
 demo: tools
@@ -10,6 +10,11 @@ demo: tools
 
 test: test-tools
 	cargo test --release --locked --workspace
+
+# The tests that need no external program: no gmsh, CalculiX, Slurm, browser, strace or ezdxf.
+test-fast:
+	cargo test --release --locked --workspace --lib --bins --test actuations --test command_line --test data \
+	    --test measured_sheet --test reference --test run --test scene --test sheet --test tensile --test vtk_sheet --test weights
 
 lint:
 	cargo fmt --all --check

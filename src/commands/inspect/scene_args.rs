@@ -28,7 +28,6 @@ type Named = (DesignVector, String);
 
 impl Inspected {
     /// A scene, or the folder of a run, with its own design.
-    #[cfg(feature = "pipeline")]
     pub(crate) fn of(scene: &Path) -> Self {
         Self {
             scene: scene.to_owned(),
