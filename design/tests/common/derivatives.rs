@@ -53,6 +53,13 @@ impl TaylorRemainders {
             .map(|pair| (pair[0] / pair[1]).log2())
             .collect()
     }
+
+    #[track_caller]
+    pub fn assert_orders(&self, expected: std::ops::Range<f64>) {
+        let orders = self.orders();
+        let exact = orders.iter().all(|order| expected.contains(order));
+        assert!(exact, "orders {orders:?} of {self:?}");
+    }
 }
 
 /// The slope of `f` at `x` along `direction`, by central differences with the step `h`.
@@ -63,4 +70,33 @@ pub fn central_slope(f: impl Fn(&[f64]) -> f64, x: &[f64], direction: &[f64], h:
             .collect()
     };
     (f(&beside(h)) - f(&beside(-h))) / (2.0 * h)
+}
+
+/// Fails unless each entry of a gradient is the slope of `f` along its coordinate; the error that is allowed depends on the slope.
+#[track_caller]
+pub fn assert_gradient(
+    f: impl Fn(&[f64]) -> f64,
+    x: &[f64],
+    gradient: &[f64],
+    h: f64,
+    allowed: impl Fn(f64) -> f64,
+) {
+    for (i, found) in gradient.iter().enumerate() {
+        let unit: Vec<f64> = (0..x.len()).map(|j| f64::from(i == j)).collect();
+        let slope = central_slope(&f, x, &unit, h);
+        let error = (found - slope).abs();
+        assert!(error < allowed(slope), "{i}: {found} instead of {slope}");
+    }
+}
+
+#[track_caller]
+pub fn assert_close(found: f64, expected: f64, tolerance: f64) {
+    let close = (found - expected).abs() < tolerance;
+    assert!(close, "{found} instead of {expected}");
+}
+
+#[track_caller]
+pub fn assert_ratio(found: f64, expected: f64, tolerance: f64) {
+    let close = (found / expected - 1.0).abs() < tolerance;
+    assert!(close, "{found} instead of {expected}");
 }

@@ -1,9 +1,12 @@
 //! What errors of a cut sheet do to it.
 
 use crate::error_budget::{effect, film};
-use design::analysis::cutting_errors::{CuttingError, CuttingErrors, CuttingErrorsError};
+use crate::prelude::*;
+use design::analysis::cutting_errors::{
+    CuttingError, CuttingErrors, CuttingErrorsError, FirstOrder,
+};
 use design::analysis::error_budget::{Cause, ErrorBudget};
-use design::scene::{Scene, ToleranceConfig};
+use design::scene::ToleranceConfig;
 
 fn tolerances(ligament: f64, kerf: f64, thickness: f64) -> ToleranceConfig {
     let given = |tolerance: f64| (tolerance > 0.0).then_some(tolerance);
@@ -20,12 +23,16 @@ fn with<T>(
     of: impl FnOnce(&CuttingErrors) -> T,
 ) -> Result<T, CuttingErrorsError> {
     let problem = scene.problem().unwrap();
-    Ok(of(&CuttingErrors::new(
-        scene,
-        &problem,
-        &scene.start(),
-        tolerances,
-    )?))
+    let errors = CuttingErrors::new(scene, &problem, &scene.start(), tolerances)?;
+    Ok(of(&errors))
+}
+
+/// The effects to first order.
+fn first_order(scene: &Scene, tolerances: ToleranceConfig) -> FirstOrder {
+    with(scene, tolerances, |errors| {
+        errors.first_order(&mut || ()).unwrap()
+    })
+    .unwrap()
 }
 
 /// Two ways to one number: two sheets on either side, and the response of one sheet to the change of its hinge forces. The tip
@@ -34,10 +41,7 @@ fn with<T>(
 fn kerf_and_thickness_have_the_effects_of_the_error_budget() {
     let small = tolerances(0.0, 2e-4, 2e-5);
     let scene = film(|config| config.tolerances = small);
-    let found = with(&scene, small, |errors| {
-        errors.first_order(&mut || ()).unwrap()
-    })
-    .unwrap();
+    let found = first_order(&scene, small);
     let problem = scene.problem().unwrap();
     let deployment = problem.deploy(&scene.start()).unwrap();
     let budget = ErrorBudget::new(&scene, &problem, &deployment, None).unwrap();
@@ -48,60 +52,42 @@ fn kerf_and_thickness_have_the_effects_of_the_error_budget() {
         let own = found.errors.iter().find(|own| own.error == error).unwrap();
         let expected = effect(&budget, cause).unwrap();
         for (own, expected) in std::iter::zip(own.corners, expected.corners) {
-            assert!(
-                (own / expected - 1.0).abs() < 1e-3,
-                "{cause:?}: {own} {expected}"
-            );
+            assert_ratio(own, expected, 1e-3);
         }
         let load = own.load.unwrap().abs();
-        assert!(
-            (load / expected.load.unwrap() - 1.0).abs() < 1e-3,
-            "{cause:?}: {load}"
-        );
+        assert_ratio(load, expected.load.unwrap(), 1e-3);
     }
     let shares: f64 = found.errors.iter().map(|own| own.share).sum();
-    assert!((shares - 1.0).abs() < 1e-12);
+    assert_close(shares, 1.0, 1e-12);
 }
 
 /// Small errors at random have the deviations of the first order, within four standard errors of so many sheets.
 #[test]
 fn small_errors_at_random_have_the_first_order() {
     let scene = film(|_| ());
-    let (first, sampled) = with(&scene, tolerances(0.02, 0.004, 2e-4), |errors| {
-        (
-            errors.first_order(&mut || ()).unwrap(),
-            errors.sampled(200, 3, &mut || ()).unwrap(),
-        )
-    })
-    .unwrap();
-    assert_eq!((sampled.deployed, sampled.failed), (200, 0));
-    let close = |found: f64, expected: f64| {
-        assert!(
-            (found / expected - 1.0).abs() < 4.0 / 400f64.sqrt(),
-            "{found} {expected}"
-        );
+    let given = tolerances(0.02, 0.004, 2e-4);
+    let first = first_order(&scene, given);
+    let sampled = || {
+        with(&scene, given, |errors| {
+            errors.sampled(200, 3, &mut || ()).unwrap()
+        })
     };
-    close(sampled.corners[0], first.corners[0]);
-    close(sampled.load.unwrap()[1], first.load.unwrap());
-    assert!(sampled.largest[0] < sampled.largest[1]);
+    let found = sampled().unwrap();
+    assert_eq!((found.deployed, found.failed), (200, 0));
+    let allowed = 4.0 / 400f64.sqrt();
+    assert_ratio(found.corners[0], first.corners[0], allowed);
+    assert_ratio(found.load.unwrap()[1], first.load.unwrap(), allowed);
+    assert!(found.largest[0] < found.largest[1]);
     // The same seed gives the same sheets.
-    let again = with(&scene, tolerances(0.02, 0.004, 2e-4), |errors| {
-        errors.sampled(200, 3, &mut || ()).unwrap()
-    });
-    assert_eq!(again.unwrap(), sampled);
+    assert_eq!(sampled().unwrap(), found);
 }
 
 /// Twice the tolerance, twice the effect; and the largest share belongs to the error that moves the corners most.
 #[test]
 fn effects_are_in_proportion_to_tolerances() {
     let scene = film(|_| ());
-    let at = |ligament: f64| {
-        with(&scene, tolerances(ligament, 0.0, 0.0), |errors| {
-            errors.first_order(&mut || ()).unwrap()
-        })
-        .unwrap()
-    };
-    let (one, two) = (at(0.01), at(0.02));
+    let [one, two] =
+        [0.01, 0.02].map(|ligament| first_order(&scene, tolerances(ligament, 0.0, 0.0)));
     assert!((two.corners[0] / one.corners[0] - 2.0).abs() < 1e-3);
     assert!(one.errors.is_sorted_by(|a, b| a.corners[0] >= b.corners[0]));
     assert_eq!(one.errors.len(), scene.grid().hinge_count());

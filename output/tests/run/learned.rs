@@ -98,7 +98,7 @@ fn a_similar_sheet_of_another_thickness_deploys_to_a_similar_shape() {
     config.ligament.range = config.ligament.range.map(|width| FACTOR * width);
     config.process.kerf *= FACTOR;
     config.process.r_win *= FACTOR;
-    config.scale_loads(FACTOR.powi(2));
+    config.loads[0].force = config.loads[0].force.map(|x| FACTOR.powi(2) * x);
     if let TargetShape::Circle { centre, radius } = &mut config.target {
         *centre = centre.map(|x| FACTOR * x);
         *radius *= FACTOR;
