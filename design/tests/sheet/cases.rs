@@ -73,17 +73,16 @@ fn by_panel(case: &Value, key: &str) -> Vec<(usize, Dof, f64)> {
 }
 
 pub fn supports(case: &Value) -> Vec<Support> {
-    let supports = by_panel(case, "supports").into_iter();
-    supports
-        .map(|(panel, dof, value)| support(panel, dof, value))
+    let to_support = |(panel, dof, value)| support(panel, dof, value);
+    by_panel(case, "supports")
+        .into_iter()
+        .map(to_support)
         .collect()
 }
 
 pub fn loads(case: &Value) -> Vec<Load> {
-    let loads = by_panel(case, "loads").into_iter();
-    loads
-        .map(|(panel, dof, value)| load(panel, dof, value))
-        .collect()
+    let to_load = |(panel, dof, value)| load(panel, dof, value);
+    by_panel(case, "loads").into_iter().map(to_load).collect()
 }
 
 /// Maximum difference between the numbers of two arrays of the same shape.

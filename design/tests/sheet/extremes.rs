@@ -165,15 +165,9 @@ fn a_snapping_sheet_reports_its_limit_point() {
     let jumps: Vec<usize> = (0..6).filter(|&i| path[i].jumps > 0).collect();
     assert!(jumps == [3] || jumps == [4], "{jumps:?}");
     for (i, step) in path.iter().enumerate().filter(|(i, _)| *i != 3) {
-        let jumped = (
-            step.status == Status::LimitPoint,
-            step.status == Status::Converged,
-        );
-        assert_eq!(
-            jumped,
-            (jumps.contains(&i), !jumps.contains(&i)),
-            "step {i}"
-        );
+        let statuses = [Status::Converged, Status::LimitPoint];
+        let expected = statuses[usize::from(jumps.contains(&i))];
+        assert_eq!(step.status, expected, "step {i}");
         assert_eq!(snapped(step), i > 3, "step {i}");
     }
 }
@@ -213,9 +207,7 @@ fn supports_are_judged_by_the_places_of_the_panels() {
     let square = sheet([[0.0, 0.0], [6.0, 0.0], [6.0, 6.0], [0.0, 6.0]]);
     let turned = sheet([[0.0, -4.0], [4.0, 0.0], [0.0, 4.0], [-4.0, 0.0]]);
     let holds = |sheet: &Sheet, supports: &[(usize, Dof)]| {
-        let supports = supports
-            .iter()
-            .map(|&(panel, dof)| support(panel, dof, 0.0));
+        let supports = (supports.iter()).map(|&(panel, dof)| support(panel, dof, 0.0));
         let solver = solver(sheet.grid, &supports.collect::<Vec<_>>(), &[], 1);
         let checked = solver.check_supports(sheet);
         assert!(matches!(

@@ -62,10 +62,8 @@ fn assert_equal_paths(name: &str, steps: &[usize], path: impl Fn(usize) -> Vec<L
         assert!(energy.abs() < 1e-9, "{at}: {energy:e}");
         for step in &path {
             let jumped = matches!(step.status, Status::LimitPoint | Status::Almost);
-            assert!(
-                jumped || step.jumps == 0 || ended(step),
-                "{at}: a silent jump"
-            );
+            let silent = step.jumps > 0 && !jumped && !ended(step);
+            assert!(!silent, "{at}: a silent jump");
         }
     }
 }
@@ -88,7 +86,7 @@ fn paths_do_not_depend_on_the_number_of_load_steps() {
 
 #[test]
 fn paths_of_learned_sheets_do_not_depend_on_the_number_of_load_steps() {
-    for seed in (0..6).chain(100..150) {
+    for seed in (0..6).chain(100..120) {
         let path = |steps| learned(seed, steps);
         assert_equal_paths(&format!("learned {seed}"), &[5, 20, 100], path);
     }
@@ -107,13 +105,8 @@ fn snapping_in_shear() -> impl HingeLaw {
 fn a_snap_in_shear_is_reported() {
     let sheet = sheet_of("p0_3x3_uniform");
     let snaps = |steps: usize| {
-        let path = path(
-            &sheet,
-            &snapping_in_shear(),
-            &clamp(3),
-            &[pull(5, 25.0)],
-            steps,
-        );
+        let law = snapping_in_shear();
+        let path = path(&sheet, &law, &clamp(3), &[pull(5, 25.0)], steps);
         assert_finite(&path);
         path
     };

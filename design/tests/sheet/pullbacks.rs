@@ -105,17 +105,16 @@ fn random_weights(sheet: &Sheet) -> SheetGradient {
 }
 
 fn weighted(sheet: &Sheet, weights: &SheetGradient) -> f64 {
-    let product = |a: &[f64], b: &[f64]| -> f64 { std::iter::zip(a, b).map(|(a, b)| a * b).sum() };
     let mut sum = 0.0;
     for (k, panel) in sheet.panels.iter().enumerate() {
         let by_corners = weights.corners[k].as_flattened();
-        sum += product(panel.corners.as_flattened(), by_corners);
-        sum += product(&panel.reference, &weights.references[k]);
-        sum += product(&panel.centroid, &weights.centroids[k]);
+        sum += dot(panel.corners.as_flattened(), by_corners);
+        sum += dot(&panel.reference, &weights.references[k]);
+        sum += dot(&panel.centroid, &weights.centroids[k]);
         sum += panel.area * weights.areas[k];
     }
     for (h, hinge) in sheet.hinges.iter().enumerate() {
-        sum += product(&hinge.attachment, &weights.attachments[h]);
+        sum += dot(&hinge.attachment, &weights.attachments[h]);
         sum += weights.frame_angles[h] * hinge.e_sec[1].atan2(hinge.e_sec[0]);
         sum += weights.alphas[h] * hinge.alpha + weights.widths[h] * hinge.w_lig;
         sum += weights.holes[h] * sheet.designs()[h].fillet_ratio;
@@ -134,9 +133,7 @@ fn the_ideal_deployment_is_pulled_back_to_the_design_and_the_opening() {
     let value = |design: &DesignVector| {
         let (_, sheet) = cut(design, given, AT_CORNER);
         let configuration = ideal_deployment(&sheet, design.opening.unwrap());
-        std::iter::zip(configuration.as_flattened(), weights.as_flattened())
-            .map(|(q, w)| q * w)
-            .sum()
+        dot(configuration.as_flattened(), weights.as_flattened())
     };
     let (pattern, sheet) = cut(&design, given, AT_CORNER);
     let mut by_sheet = SheetGradient::zeros(sheet.grid);

@@ -20,12 +20,8 @@ fn release(stiffness: [f64; 3], scale: f64) -> Release {
             let theta = 0.4 + 0.5 * theta;
             let reached = HingeDeformation::from_eta(0.2 * a, 0.2 * s, theta, w);
             let [eta_a, eta_s] = reached.eta(w);
-            let rest = HingeDeformation::from_eta(
-                0.7 * eta_a + 0.02 * theta * theta,
-                0.6 * eta_s,
-                0.7 * theta,
-                w,
-            );
+            let kept = [0.7 * eta_a + 0.02 * theta * theta, 0.6 * eta_s];
+            let rest = HingeDeformation::from_eta(kept[0], kept[1], 0.7 * theta, w);
             let lengths = [w, w, 1.0];
             let stiffer = 1.0 + 0.3 * theta + 0.2 * eta_a;
             let stiffness = from_fn(|i| {
@@ -41,8 +37,9 @@ fn release(stiffness: [f64; 3], scale: f64) -> Release {
             ReleasedSample::new(&design, &reached, &forces, None, &hinge)
         })
         .collect();
-    let film = concat!(env!("CARGO_MANIFEST_DIR"), "/../configs/materials/pet-0.5mm.toml");
-    let film = SheetMaterial::load(std::path::Path::new(film)).unwrap();
+    let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
+    let film = root.join("../configs/materials/pet-0.5mm.toml");
+    let film = SheetMaterial::load(&film).unwrap();
     Release::new(Springback::fit(&rows, &[], &film, "tiny").unwrap(), scale)
 }
 

@@ -31,27 +31,22 @@ fn largest(values: &[f64]) -> f64 {
 
 /// A vector with entries of order one that has no symmetry.
 fn wave(length: usize, phase: f64) -> Vec<f64> {
-    (0..length)
-        .map(|i| (1.7 * i as f64 + phase).sin())
-        .collect()
+    let entries = (0..length).map(|i| (1.7 * i as f64 + phase).sin());
+    entries.collect()
 }
 
 fn triples(values: &[f64]) -> Vec<[f64; 3]> {
-    values
-        .chunks(3)
-        .map(|row| [row[0], row[1], row[2]])
-        .collect()
+    values.as_chunks().0.to_vec()
 }
 
 /// A function of the outputs: linear in forces and the load factor, quadratic in the corners.
 fn value(response: &Response) -> f64 {
     let by = cotangent(response);
-    let product = |a: &[f64], b: &[f64]| -> f64 { std::iter::zip(a, b).map(|(a, b)| a * b).sum() };
     let by_corners = by.corners.as_flattened().as_flattened();
     let corners = response.corners();
     let reactions = response.reactions.as_flattened();
-    0.5 * product(by_corners, corners.as_flattened().as_flattened())
-        + product(by.reactions.as_flattened(), reactions)
+    0.5 * dot(by_corners, corners.as_flattened().as_flattened())
+        + dot(by.reactions.as_flattened(), reactions)
         + by.load_factor * response.state().load_factor
 }
 

@@ -15,13 +15,9 @@ pub const GRID: Grid = Grid { m: 3, n: 3 };
 pub const SIDE: f64 = 300.0;
 
 pub fn tiny() -> SurrogateLaw {
-    let weights = concat!(
-        env!("CARGO_MANIFEST_DIR"),
-        "/tests/cases/chi_tiny.safetensors"
-    );
-    SurrogateLaw {
-        surrogate: Surrogate::load(Path::new(weights)).unwrap(),
-    }
+    let cases = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/cases");
+    let surrogate = Surrogate::load(&cases.join("chi_tiny.safetensors")).unwrap();
+    SurrogateLaw { surrogate }
 }
 
 /// Clamped in the middle of the west edge, with a moment at a corner; in the middle of the east edge

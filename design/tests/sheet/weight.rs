@@ -37,10 +37,8 @@ const K_THETA: f64 = 0.8;
 
 fn pendulum(grips: &[Grip]) -> Pendulum {
     let grid = Grid { m: 2, n: 2 };
-    let (outline, coordinates) = (
-        Outline::rectangle(2.0, 2.0),
-        PatternCoordinates::uniform(grid),
-    );
+    let outline = Outline::rectangle(2.0, 2.0);
+    let coordinates = PatternCoordinates::uniform(grid);
     let sheet = cut(grid, outline, &coordinates, 0.1, AT_CORNER);
     let joins = |hinge: &Hinge| {
         let panels = [hinge.panel_a(), hinge.panel_b()];

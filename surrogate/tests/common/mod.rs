@@ -19,11 +19,5 @@ pub fn with_peak() -> Surrogate {
 }
 
 pub fn design(w_lig: f64, alpha: f64) -> HingeDesign {
-    HingeDesign {
-        w_lig,
-        alpha,
-        fillet_ratio: 0.16,
-        kerf: 0.2,
-        r_win: 100.0,
-    }
+    hinge::HingeConstants::PAPER.hinge(w_lig, alpha)
 }
