@@ -27,20 +27,15 @@ fn displaced_points_are_the_deployed_sheet() {
     for (state, step) in states[1..].iter().zip(&deployment.path) {
         assert_eq!(state.time, step.load_factor);
         let corners = deployed_corners(&deployment.sheet, &step.configuration);
-        for ([x, y, z], expected) in moved(&state.panels)
-            .into_iter()
-            .zip(corners.into_iter().flatten())
-        {
+        let moved = moved(&state.panels).into_iter();
+        for ([x, y, z], expected) in moved.zip(corners.into_iter().flatten()) {
             // Adding and subtracting positions of up to 3 m.
             assert!((x - expected[0]).abs() < 1e-9 && (y - expected[1]).abs() < 1e-9 && z == 0.0);
         }
         let hinges = &state.hinges.point_data;
         let values = |name: &str| {
-            &hinges
-                .iter()
-                .find(|field| field.name == name)
-                .unwrap()
-                .values
+            let mut fields = hinges.iter();
+            &fields.find(|field| field.name == name).unwrap().values
         };
         for (h, &theta_deg) in values("theta (deg)").iter().enumerate() {
             assert_eq!(theta_deg, step.deformations[h].theta.to_degrees());

@@ -226,22 +226,23 @@ mod tests {
     fn a_number_outside_its_range_is_named_with_the_range_and_the_probable_number() {
         assert_eq!(message(|_| ()), None);
         assert_eq!(message(|sheet| sheet.size = None), None);
-        assert_eq!(
-            message(|sheet| sheet.size = Some([100.0, 2.8])).unwrap(),
-            "size = 2.8 mm violates 20 <= size <= 20000 mm; did you mean 2800 mm?"
-        );
-        assert_eq!(
-            message(|sheet| sheet.steps = 0).unwrap(),
-            "steps = 0 violates 1 <= steps <= 100"
-        );
-        assert_eq!(
-            message(|sheet| sheet.loads[0].force[1] = f64::NAN).unwrap(),
-            "loads[0].force = NaN N violates loads[0].force is finite"
-        );
-        assert_eq!(
-            message(|sheet| sheet.shape = Shape::Circle { radius: 0.0 }).unwrap(),
-            "shape.circle.radius = 0 mm violates 0.1 <= shape.circle.radius mm"
-        );
+        let size = "size = 2.8 mm violates 20 <= size <= 20000 mm; did you mean 2800 mm?";
+        let force = "loads[0].force = NaN N violates loads[0].force is finite";
+        let radius = "shape.circle.radius = 0 mm violates 0.1 <= shape.circle.radius mm";
+        for (found, expected) in [
+            (message(|sheet| sheet.size = Some([100.0, 2.8])), size),
+            (
+                message(|sheet| sheet.steps = 0),
+                "steps = 0 violates 1 <= steps <= 100",
+            ),
+            (message(|sheet| sheet.loads[0].force[1] = f64::NAN), force),
+            (
+                message(|sheet| sheet.shape = Shape::Circle { radius: 0.0 }),
+                radius,
+            ),
+        ] {
+            assert_eq!(found.unwrap(), expected);
+        }
         let error = within("width", 5e3, [0.0, 10.0], "mm").unwrap_err();
         assert!(error.to_string().ends_with("did you mean 5 mm?"), "{error}");
     }

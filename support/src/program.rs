@@ -295,11 +295,9 @@ mod tests {
 
     #[test]
     fn a_run_reports_status_log_time_and_memory() {
-        let (ended, log) = run(
-            "i=0; while [ $i -lt 200000 ]; do i=$((i+1)); done; echo out; echo err >&2; exit 3",
-            LONG,
-            false,
-        );
+        let count = "i=0; while [ $i -lt 200000 ]; do i=$((i+1)); done";
+        let script = format!("{count}; echo out; echo err >&2; exit 3");
+        let (ended, log) = run(&script, LONG, false);
         let ended = ended.unwrap();
         assert_eq!(ended.status.code(), Some(3));
         assert_eq!(log, "out\nerr");
@@ -353,9 +351,8 @@ mod tests {
         std::thread::sleep(Duration::from_millis(200));
         let log = folder.path().join("log");
         let never = AtomicBool::new(false);
-        shell()
-            .run(&["-c", "true"], folder.path(), &log, LONG, &never)
-            .unwrap();
+        let next = shell().run(&["-c", "true"], folder.path(), &log, LONG, &never);
+        next.unwrap();
         assert_eq!(left.wait().unwrap().signal(), Some(9));
     }
 
@@ -392,15 +389,11 @@ mod tests {
             Tool::at(&SHELL, &program)
         };
         assert_eq!(found("echo sh 4.1").unwrap().version, "4.1");
+        let traceback = "echo 'File \"gmsh\", line 4, in <module>'; exit 1";
+        let no_library = "echo 'libGLU.so.1: cannot open' >&2; exit 127";
         for (script, said) in [
-            (
-                "echo 'File \"gmsh\", line 4, in <module>'; exit 1",
-                "line 4, in",
-            ),
-            (
-                "echo 'libGLU.so.1: cannot open' >&2; exit 127",
-                "libGLU.so.1",
-            ),
+            (traceback, "line 4, in"),
+            (no_library, "libGLU.so.1"),
             ("echo sh 4.1; exit 1", "sh 4.1"),
             ("echo bash 5", "bash 5"),
             (":", "nothing"),
@@ -413,11 +406,11 @@ mod tests {
 
     #[test]
     fn the_error_for_a_missing_program_says_how_to_install_it() {
-        let message = Tool::at(&SHELL, Path::new("/no/such/program"))
-            .unwrap_err()
-            .to_string();
-        assert!(message.contains("/no/such/program"), "{message}");
-        assert!(message.contains("apt-get install dash"), "{message}");
-        assert!(message.contains("KIRIGAMI_NO_SUCH_VARIABLE"), "{message}");
+        let missing = "/no/such/program";
+        let error = Tool::at(&SHELL, Path::new(missing)).unwrap_err();
+        let message = error.to_string();
+        for part in [missing, "apt-get install dash", "KIRIGAMI_NO_SUCH_VARIABLE"] {
+            assert!(message.contains(part), "{message}");
+        }
     }
 }

@@ -79,10 +79,8 @@ mod tests {
             let message = read(path).unwrap_err().to_string();
             assert!(message.contains("not a regular file"), "{message}");
         }
-        assert_eq!(
-            read(&folder.path().join("none")).unwrap_err().kind(),
-            ErrorKind::NotFound
-        );
+        let missing = read(&folder.path().join("none")).unwrap_err();
+        assert_eq!(missing.kind(), ErrorKind::NotFound);
         let file = folder.path().join("file");
         std::fs::write(&file, "text").unwrap();
         assert_eq!(read_to_string(&file).unwrap(), "text");

@@ -192,10 +192,8 @@ mod tests {
         for (text, shown, stored) in texts {
             let length = text.len();
             let page = table.markdown(&[text]);
-            assert!(
-                page.ends_with(&format!("| {shown} | {length} |\n")),
-                "{page}"
-            );
+            let last = format!("| {shown} | {length} |\n");
+            assert!(page.ends_with(&last), "{page}");
             assert_eq!(page.lines().count(), 3);
             let file = table.csv(&[text]);
             assert_eq!(file, format!("name,length\n{stored},{length}\n"));
@@ -211,13 +209,10 @@ mod tests {
                 Cell::known((row.1 < 1.0).then(|| Cell::percent(row.1, 0)), "-")
             });
         let rows = [("a, b", 0.25), ("c", 2.0)];
-        assert_eq!(
-            table.markdown(&rows),
-            "| choice | W, N mm | error |\n|---|---|---|\n| a, b | 0.2 | 25 % |\n| c | 2.0 | - |\n"
-        );
-        assert_eq!(
-            table.csv(&rows),
-            "choice,\"W, N mm\",error\n\"a, b\",0.25,0.25\nc,2,\n"
-        );
+        let page =
+            "| choice | W, N mm | error |\n|---|---|---|\n| a, b | 0.2 | 25 % |\n| c | 2.0 | - |\n";
+        assert_eq!(table.markdown(&rows), page);
+        let file = "choice,\"W, N mm\",error\n\"a, b\",0.25,0.25\nc,2,\n";
+        assert_eq!(table.csv(&rows), file);
     }
 }

@@ -130,9 +130,8 @@ mod tests {
     const FILM: &str = "name = \"film\"\nthickness = 0.5\npoisson = 0.4\n";
 
     fn message(text: &str) -> String {
-        parse::<Film>(text, Path::new("film.toml"))
-            .unwrap_err()
-            .to_string()
+        let refused = parse::<Film>(text, Path::new("film.toml"));
+        refused.unwrap_err().to_string()
     }
 
     #[test]
@@ -143,11 +142,8 @@ mod tests {
 
     #[test]
     fn the_error_for_an_unknown_key_names_its_line_and_the_nearest_key() {
-        let message = message(&FILM.replace("thickness", "thicknes"));
-        assert_eq!(
-            message,
-            "film.toml:2: unknown key `thicknes`; did you mean `thickness`?"
-        );
+        let unknown = "film.toml:2: unknown key `thicknes`; did you mean `thickness`?";
+        assert_eq!(message(&FILM.replace("thickness", "thicknes")), unknown);
     }
 
     #[test]
@@ -175,56 +171,33 @@ mod tests {
         assert_eq!(scene.shape, Some(Shape::Circle { centre }));
         let line = read("size = [1, 2]\nshape.line = [3]\n").unwrap();
         assert_eq!(line.shape, Some(Shape::Line([3.0])));
+        let circle = "[shape.circle]\ncentre = [1, 2]";
         for (from, to, line, counts) in [
             ("size = [1, 2]", "size = [1,5, 2,5]", 1, "of 2 has 4"),
             ("range = [0.5, 1.0]", "range = [0,5, 1]", 2, "of 2 has 3"),
             ("[3, 4], ", "[3, 4, 4], ", 3, "of 2 has 3"),
             ("centre = [1, 2]", "centre = [1, 2, 3]", 5, "of 2 has 3"),
-            (
-                "[shape.circle]\ncentre = [1, 2]",
-                "shape.line = [1, 2]",
-                4,
-                "of 1 has 2",
-            ),
+            (circle, "shape.line = [1, 2]", 4, "of 1 has 2"),
         ] {
-            let text = match to.starts_with("shape") {
-                true => format!(
-                    "{}shape.line = [1, 2]\n",
-                    &whole[..whole.find("[shape").unwrap()]
-                ),
-                false => whole.replace(from, to),
-            };
-            let message = read(&text).unwrap_err().to_string();
-            assert!(
-                message.starts_with(&format!("scene.toml:{line}: ")),
-                "{message}"
-            );
-            assert!(
-                message.contains(counts) && message.contains("40.5"),
-                "{message}"
-            );
+            let message = read(&whole.replace(from, to)).unwrap_err().to_string();
+            let place = format!("scene.toml:{line}: ");
+            assert!(message.starts_with(&place), "{message}");
+            let numbers = message.contains(counts) && message.contains("40.5");
+            assert!(numbers, "{message}");
         }
-        assert!(
-            read("size = [1]")
-                .unwrap_err()
-                .to_string()
-                .contains("length 1")
-        );
+        let short = read("size = [1]").unwrap_err().to_string();
+        assert!(short.contains("length 1"), "{short}");
     }
 
     #[test]
     fn errors_for_a_wrong_type_and_a_missing_key_name_the_file() {
         let thin = message(&FILM.replace("0.5", "\"thin\""));
-        assert_eq!(
-            thin,
-            "film.toml:2: `thickness`: invalid type: string \"thin\", expected a number"
-        );
+        let text = "film.toml:2: `thickness`: invalid type: string \"thin\", expected a number";
+        assert_eq!(thin, text);
         let comma = message(&FILM.replace("0.5", "0,5"));
         assert!(comma.starts_with("film.toml:2: `thickness`: "), "{comma}");
         assert!(comma.ends_with("(40.5, not 40,5)"), "{comma}");
-        assert_eq!(
-            message(&FILM.replace("poisson = 0.4\n", "")),
-            "film.toml:1: missing field `poisson`"
-        );
+        let missing = message(&FILM.replace("poisson = 0.4\n", ""));
+        assert_eq!(missing, "film.toml:1: missing field `poisson`");
     }
 }

@@ -174,12 +174,10 @@ mod tests {
     /// The numbers of an array, found by an XML parser.
     fn read<const N: usize>(text: &str, name: &str) -> Vec<[u8; N]> {
         let document = roxmltree::Document::parse(text).unwrap();
-        let array = document
-            .descendants()
-            .find(|node| node.attribute("Name") == Some(name));
-        let bytes = STANDARD
-            .decode(array.unwrap().text().unwrap().trim())
-            .unwrap();
+        let mut nodes = document.descendants();
+        let array = nodes.find(|node| node.attribute("Name") == Some(name));
+        let text = array.unwrap().text().unwrap().trim();
+        let bytes = STANDARD.decode(text).unwrap();
         let (length, bytes) = bytes.split_first_chunk::<8>().unwrap();
         assert_eq!(u64::from_le_bytes(*length), bytes.len() as u64);
         let (numbers, rest) = bytes.as_chunks::<N>();
@@ -204,10 +202,8 @@ mod tests {
         };
         let text = grid.to_vtu();
         let document = roxmltree::Document::parse(&text).unwrap();
-        let piece = document
-            .descendants()
-            .find(|node| node.has_tag_name("Piece"))
-            .unwrap();
+        let mut nodes = document.descendants();
+        let piece = nodes.find(|node| node.has_tag_name("Piece")).unwrap();
         assert_eq!(piece.attribute("NumberOfPoints"), Some("5"));
         assert_eq!(piece.attribute("NumberOfCells"), Some("2"));
         let numbers = |name| read(&text, name).into_iter().map(f64::from_le_bytes);
@@ -225,10 +221,8 @@ mod tests {
     fn a_collection_names_its_files_over_time() {
         let text = collection(&[(0.0, 0, "a.vtu".into()), (0.5, 1, "b.vtu".into())]);
         let document = roxmltree::Document::parse(&text).unwrap();
-        let sets: Vec<_> = document
-            .descendants()
-            .filter(|node| node.has_tag_name("DataSet"))
-            .collect();
+        let nodes = document.descendants();
+        let sets: Vec<_> = nodes.filter(|node| node.has_tag_name("DataSet")).collect();
         assert_eq!(sets.len(), 2);
         assert_eq!(sets[1].attribute("timestep"), Some("0.5"));
         assert_eq!(sets[1].attribute("file"), Some("b.vtu"));

@@ -136,10 +136,7 @@ mod tests {
                 thread::sleep(Duration::from_millis(1));
             }
         };
-        let mut fails = |item| match item {
-            2 => Err(Fault::Item(2)),
-            _ => Ok(()),
-        };
+        let mut fails = |item| (item != 2).then_some(()).ok_or(Fault::Item(item));
         let ended = work_through(1000, 2, &AtomicBool::new(false), &work, &mut fails);
         assert_eq!(ended, Err(Fault::Item(2)));
         assert!(started.into_inner() < 10);
@@ -167,9 +164,8 @@ mod tests {
     #[test]
     fn no_item_is_no_work() {
         let work = |_: usize, _: &Reports<()>| unreachable!();
-        let ended = work_through(0, 4, &AtomicBool::new(false), &work, &mut |()| {
-            Ok::<_, Fault>(())
-        });
+        let mut sink = |()| Ok::<_, Fault>(());
+        let ended = work_through(0, 4, &AtomicBool::new(false), &work, &mut sink);
         assert_eq!(ended, Ok(()));
     }
 }

@@ -27,11 +27,8 @@ fn shipped(bencher: divan::Bencher, order: Order) {
     let design = surrogate.card().hinge.hinge(18.0, 1.2);
     let states = (0..100_000).map(|i| {
         let x = f64::from(i);
-        HingeDeformation::from([
-            0.3 * (2.1 * x).sin(),
-            0.3 * (3.7 * x).sin(),
-            0.35 + 0.25 * (0.9 * x).sin(),
-        ])
+        let [a, s] = [2.1, 3.7].map(|rate| 0.3 * (rate * x).sin());
+        HingeDeformation::from([a, s, 0.35 + 0.25 * (0.9 * x).sin()])
     });
     let states: Vec<HingeDeformation> = states.collect();
     let prepared = surrogate.prepare(&vec![design; states.len()]);
@@ -51,9 +48,8 @@ fn damage(bencher: divan::Bencher) {
 }
 
 fn network(name: &str) -> Surrogate {
-    let weights = Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("../data/pet-0.5mm")
-        .join(name);
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../data/pet-0.5mm");
+    let weights = folder.join(name);
     Surrogate::load(&weights.with_extension("safetensors")).expect("shipped weights")
 }
 
@@ -61,10 +57,8 @@ fn case() -> (Surrogate, Vec<HingeDesign>, Vec<HingeDeformation>) {
     let surrogate = network("paper");
     let spread = |index: usize, step: f64| (step * index as f64).sin();
     let designs = (0..HINGES).map(|index| {
-        let (w_lig, alpha) = (
-            15.0 + 9.0 * spread(index, 0.7),
-            1.5 + 0.6 * spread(index, 1.3),
-        );
+        let w_lig = 15.0 + 9.0 * spread(index, 0.7);
+        let alpha = 1.5 + 0.6 * spread(index, 1.3);
         surrogate.card().hinge.hinge(w_lig, alpha)
     });
     let designs: Vec<HingeDesign> = designs.collect();

@@ -23,29 +23,21 @@ fn numbers(value: &Value) -> Vec<f64> {
 }
 
 fn hinges(states: &[Value]) -> (Vec<HingeDesign>, Vec<HingeDeformation>) {
-    states
-        .iter()
-        .map(|state| {
-            let eps = numbers(&state["eps"]);
-            (
-                design(
-                    state["w_lig"].as_f64().unwrap(),
-                    state["alpha"].as_f64().unwrap(),
-                ),
-                HingeDeformation::from([eps[0], eps[1], eps[2]]),
-            )
-        })
-        .unzip()
+    let hinge = |state: &Value| {
+        let eps = numbers(&state["eps"]);
+        let [w_lig, alpha] = ["w_lig", "alpha"].map(|key| state[key].as_f64().unwrap());
+        let state = HingeDeformation::from([eps[0], eps[1], eps[2]]);
+        (design(w_lig, alpha), state)
+    };
+    states.iter().map(hinge).unzip()
 }
 
 fn assert_close(what: &str, found: &[f64], expected: &[f64], tolerance: f64) {
     assert_eq!(found.len(), expected.len(), "{what}");
     for (found, expected) in found.iter().zip(expected) {
         let error = (found - expected).abs();
-        assert!(
-            error <= tolerance * expected.abs().max(1.0),
-            "{what}: {found} instead of {expected}"
-        );
+        let allowed = tolerance * expected.abs().max(1.0);
+        assert!(error <= allowed, "{what}: {found} instead of {expected}");
     }
 }
 
@@ -130,9 +122,8 @@ fn with_holes() -> Surrogate {
     let widened = |mut layers: Vec<Layer>| {
         let Tensor { shape, values } = &mut layers[0].weight;
         let rows = values.chunks(shape[1]).enumerate();
-        *values = rows
-            .flat_map(|(i, row)| [row, &[0.3 * (1.7 * i as f64).sin()]].concat())
-            .collect();
+        let rows = rows.map(|(i, row)| [row, &[0.3 * (1.7 * i as f64).sin()]].concat());
+        *values = rows.flatten().collect();
         shape[1] += 1;
         layers
     };
@@ -166,11 +157,9 @@ fn differences(
         }
         evaluate(&designs, &deformations)
     };
-    let (ahead, behind) = (moved(step), moved(-step));
-    let pairs = ahead.iter().zip(&behind);
-    pairs
-        .map(|(ahead, behind)| (ahead - behind) / (2.0 * step))
-        .collect()
+    let pairs = std::iter::zip(moved(step), moved(-step));
+    let slope = |(ahead, behind)| (ahead - behind) / (2.0 * step);
+    pairs.map(slope).collect()
 }
 
 /// The derivatives of W and of the forces in one of (a, s, theta, w_lig, alpha, rho_f), from a HingeEnergy.
@@ -225,10 +214,8 @@ fn derivatives_agree(surrogate: &Surrogate, fillet_ratio: f64, directions: usize
             |designs, deformations| {
                 let prepared = surrogate.prepare(designs);
                 let energies = surrogate.evaluate(&prepared, deformations, Order::Forces);
-                let flat = energies
-                    .iter()
-                    .flat_map(|e| [e.w, e.forces[0], e.forces[1], e.forces[2]]);
-                flat.collect()
+                let each = |e: &HingeEnergy| [e.w, e.forces[0], e.forces[1], e.forces[2]];
+                energies.iter().flat_map(each).collect()
             },
             direction,
             1e-5 * unit,
@@ -246,10 +233,8 @@ fn derivatives_agree(surrogate: &Surrogate, fillet_ratio: f64, directions: usize
             direction,
             1e-4 * unit,
         );
-        let scales = [
-            surrogate.damage_scale(),
-            surrogate.card().peak_scale.unwrap(),
-        ];
+        let peak_scale = surrogate.card().peak_scale.unwrap();
+        let scales = [surrogate.damage_scale(), peak_scale];
         for (exact, difference) in damages.iter().zip(values.as_chunks::<2>().0) {
             let exact = [exact.gradient[direction], exact.peak_gradient[direction]];
             for k in 0..2 {
@@ -285,12 +270,8 @@ fn sharpness_is_equivalent_to_a_scaled_head_and_damage_scale() {
     let (mut layers, mut card) = (sharp.layers(), sharp.card().clone());
     card.damage_sharpness = 1.0;
     card.damage_scale /= beta;
-    for tensor in layers
-        .chi_d
-        .last_mut()
-        .map(|it| [&mut it.weight, &mut it.bias])
-        .unwrap()
-    {
+    let last = layers.chi_d.last_mut().unwrap();
+    for tensor in [&mut last.weight, &mut last.bias] {
         tensor.values.iter_mut().for_each(|value| *value *= beta);
     }
     let plain = Surrogate::from_parts(layers, card).unwrap();

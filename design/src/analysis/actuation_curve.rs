@@ -299,6 +299,7 @@ pub fn holding_forces(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::derivatives::assert_close;
     use std::f64::consts::PI;
 
     fn curve(load: impl Fn(f64) -> f64, end: f64) -> ActuationCurve {
@@ -314,14 +315,10 @@ mod tests {
     fn the_maximum_lies_between_the_points() {
         for sense in [1.0, -1.0] {
             let peak = curve(|x| 10.0 * x.sin(), sense * 0.8 * PI).peak();
-            assert!((peak.load - sense * 10.0).abs() < 1e-4, "{peak:?}");
-            assert!(
-                (peak.displacement - sense * 0.5 * PI).abs() < 1e-3,
-                "{peak:?}"
-            );
+            assert_close(peak.load, sense * 10.0, 1e-4);
+            assert_close(peak.displacement, sense * 0.5 * PI, 1e-3);
             // sin 0.8 pi = sin 0.2 pi
-            let reached = peak.dead_load_reaches.unwrap();
-            assert!((reached - sense * 0.2 * PI).abs() < 1e-3, "{peak:?}");
+            assert_close(peak.dead_load_reaches.unwrap(), sense * 0.2 * PI, 1e-3);
         }
     }
 
@@ -335,25 +332,20 @@ mod tests {
         };
         assert_eq!(peak, expected);
         // Nor does a dead load stop at a maximum below that of the end.
-        assert_eq!(
-            curve(|x| x + 0.9 * (3.0 * x).sin(), 6.9)
-                .peak()
-                .dead_load_reaches,
-            None
-        );
-    }
-
-    /// The weight of a hanging sheet may hold its hook down all the way.
-    #[test]
-    fn a_load_that_only_rises_has_no_peak_before_its_end_even_if_it_is_negative() {
+        let rises = curve(|x| x + 0.9 * (3.0 * x).sin(), 6.9).peak();
+        assert_eq!(rises.dead_load_reaches, None);
+        // The weight of a hanging sheet may hold its hook down all the way.
         let peak = curve(|x| x - 3.0, 2.0).peak();
         assert_eq!((peak.load, peak.dead_load_reaches), (-1.0, None));
+        // A sheet that does not move has no load.
+        let peak = curve(|_| 0.0, 0.0).peak();
+        assert_eq!((peak.load, peak.dead_load_reaches), (0.0, None));
     }
 
     #[test]
     fn a_sheet_that_is_held_back_at_its_end_is_opened_by_no_dead_load() {
         let peak = curve(f64::sin, 1.5 * PI).peak();
-        assert!((peak.load - 1.0).abs() < 1e-4);
+        assert_close(peak.load, 1.0, 1e-4);
         assert_eq!(peak.dead_load_reaches, Some(0.0));
     }
 
@@ -367,22 +359,10 @@ mod tests {
             };
             assert!(maximum.is_maximum && !minimum.is_maximum);
             let at = 0.5 * (-1.0_f64 / 3.0).acos();
-            assert!(
-                (maximum.displacement - sense * at).abs() < 2e-3,
-                "{found:?}"
-            );
-            assert!(
-                (minimum.displacement - sense * (PI - at)).abs() < 2e-3,
-                "{found:?}"
-            );
+            assert_close(maximum.displacement, sense * at, 2e-3);
+            assert_close(minimum.displacement, sense * (PI - at), 2e-3);
         }
         assert!(curve(|x| x * x, 2.0).limit_points().is_empty());
         assert!(curve(|_| 0.0, 1.0).limit_points().is_empty());
-    }
-
-    #[test]
-    fn a_sheet_that_does_not_move_has_no_load() {
-        let peak = curve(|_| 0.0, 0.0).peak();
-        assert_eq!((peak.load, peak.dead_load_reaches), (0.0, None));
     }
 }

@@ -67,8 +67,10 @@ mod tests {
     #[test]
     fn a_hinge_that_turns_about_its_tip_opens_its_hole_and_the_mirror_image_has_the_same_gap() {
         let turned = gap_at_hole(&design(FRAC_PI_2), &[0.0, 0.0, PI].into());
-        let hole = 10.0 * HingeConstants::PAPER.fillet_ratio;
-        assert!((turned - HingeConstants::PAPER.kerf - 2.0 * hole).abs() < 1e-12);
+        let HingeConstants {
+            kerf, fillet_ratio, ..
+        } = HingeConstants::PAPER;
+        assert!((turned - kerf - 2.0 * 10.0 * fillet_ratio).abs() < 1e-12);
         let [left, right] = [(0.8, 0.3), (PI - 0.8, -0.3)]
             .map(|(alpha, s)| gap_at_hole(&design(alpha), &[-0.5, s, 0.4].into()));
         assert!((left - right).abs() < 1e-12);

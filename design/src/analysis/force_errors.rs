@@ -220,11 +220,8 @@ mod tests {
             let here = mode.iter().filter(|(hinge, _)| *hinge == h);
             here.map(|(_, force)| force[i]).sum::<f64>()
         };
-        errors
-            .modes
-            .iter()
-            .map(|mode| at(mode, h) * at(mode, k))
-            .sum()
+        let modes = errors.modes.iter();
+        modes.map(|mode| at(mode, h) * at(mode, k)).sum()
     }
 
     fn hinges() -> (Vec<HingeDesign>, Vec<HingeDeformation>) {
@@ -241,10 +238,7 @@ mod tests {
         let sizes = vec![[1.0, 2.0, 3.0]; 3];
         let errors = ForceErrors::alike(&sizes, &designs, &states);
         let arms = [1.0, 1.0, 18.0];
-        for (i, (size, sign)) in [(1.0, 1.0), (2.0, -1.0), (3.0, 1.0)]
-            .into_iter()
-            .enumerate()
-        {
+        for (i, size, sign) in [(0, 1.0, 1.0), (1, 2.0, -1.0), (2, 3.0, 1.0)] {
             let expected: f64 = f64::powi(size * arms[i], 2);
             for (other, covariance) in [(0, expected), (1, 0.0), (2, sign * expected)] {
                 let found = variance(&errors, 0, other, i);

@@ -164,10 +164,8 @@ mod tests {
             let away: Vec<f64> = pattern.diagonal(&values).iter().map(|d| -d).collect();
             let values = pattern.shifted(&values, away.into_iter());
             assert!(pattern.factorise(&values, Vec::new()).is_none());
-            let hollow = StepTangent {
-                values,
-                factor: None,
-            };
+            let factor = None;
+            let hollow = StepTangent { values, factor };
             let (residual, error) = error_of(&pattern, &hollow);
             assert!(residual < 1e-14 && error < 1e-8, "{residual} {error}");
         }
@@ -196,14 +194,11 @@ mod tests {
         let one = |i: usize| f64::from(i != 5);
         let dimension = pattern.diagonal(&values).len();
         let values = pattern.shifted(&values, (0..dimension).map(one));
-        let singular = StepTangent {
-            values,
-            factor: None,
-        };
+        let factor = None;
+        let singular = StepTangent { values, factor };
         let solve = |b: Vec<f64>| {
-            refined_solve(&pattern, &singular, None, (&b, 0.0))
-                .unwrap()
-                .error
+            let solution = refined_solve(&pattern, &singular, None, (&b, 0.0));
+            solution.unwrap().error
         };
         assert!(solve(wave(dimension)) > 1e-2);
         let solvable = std::iter::zip(wave(dimension), 0..).map(|(b, i)| b * one(i));

@@ -100,9 +100,8 @@ mod tests {
     };
 
     fn pairs(motion: Similarity) -> Vec<Pair> {
-        let points = (0..60)
-            .map(f64::from)
-            .map(|i| c64::new(37.0 * i % 101.0, 53.0 * i % 89.0));
+        let numbers = (0..60).map(f64::from);
+        let points = numbers.map(|i| c64::new(37.0 * i % 101.0, 53.0 * i % 89.0));
         points.map(|point| [point, motion.of(point)]).collect()
     }
 
@@ -135,14 +134,9 @@ mod tests {
         };
         let fit = Similarity::least_squares(&pairs, Scale::Free).unwrap();
         for step in [c64::ONE, -c64::ONE, c64::I, -c64::I] {
-            let turned = Similarity {
-                turn: fit.turn + 1e-4 * step,
-                ..fit
-            };
-            let shifted = Similarity {
-                shift: fit.shift + 1e-3 * step,
-                ..fit
-            };
+            let [mut turned, mut shifted] = [fit; 2];
+            turned.turn += 1e-4 * step;
+            shifted.shift += 1e-3 * step;
             assert!(sum(turned) > sum(fit) && sum(shifted) > sum(fit));
         }
     }

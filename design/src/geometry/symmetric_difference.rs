@@ -162,7 +162,7 @@ fn trapezoids([bottom, top]: [f64; 2], edges: &[&Edge], gradient: &mut [[f64; 2]
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::derivatives::{TaylorRemainders, central_slope};
+    use crate::derivatives::{TaylorRemainders, assert_close, assert_gradient};
     use std::convert::Infallible;
 
     type Polygon = Vec<[f64; 2]>;
@@ -209,15 +209,14 @@ mod tests {
         for (other, expected) in cases {
             for angle in [0.0, 0.3, std::f64::consts::FRAC_PI_2] {
                 let [one, other] = [&unit, &other].map(|it| moved(it, angle, [30.0, -20.0]));
-                let found = difference(&one, &other);
-                assert!((found - expected).abs() < 1e-13, "{other:?}: {found}");
+                assert_close(difference(&one, &other), expected, 1e-13);
             }
         }
         // A regular octagon is common to a square of side 2 and the same turned by 45 degrees.
         let [one, other] = [0.0, std::f64::consts::FRAC_PI_4]
             .map(|angle| moved(&square([-1.0, -1.0], 2.0), angle, [0.0; 2]));
         let octagon = 8.0 * std::f64::consts::FRAC_PI_8.tan();
-        assert!((difference(&one, &other) - 2.0 * (4.0 - octagon)).abs() < 1e-14);
+        assert_close(difference(&one, &other), 2.0 * (4.0 - octagon), 1e-14);
     }
 
     #[test]
@@ -234,11 +233,8 @@ mod tests {
 
     #[test]
     fn it_is_a_distance_that_motions_do_not_change() {
-        let [a, b, c] = [
-            star(7, 0.0),
-            star(5, 1.0),
-            moved(&star(7, 2.0), 0.4, [1.5, 0.3]),
-        ];
+        let (a, b) = (star(7, 0.0), star(5, 1.0));
+        let c = moved(&star(7, 2.0), 0.4, [1.5, 0.3]);
         for (one, other) in [(&a, &b), (&b, &c), (&c, &a)] {
             let found = difference(one, other);
             assert!(found > 1.0);
@@ -268,11 +264,7 @@ mod tests {
         let value = |x: &[f64]| difference(x.as_chunks().0, target);
         let x = outline.as_flattened();
         let (_, gradient) = symmetric_difference(outline, target);
-        for (i, found) in gradient.as_flattened().iter().enumerate() {
-            let unit: Vec<f64> = (0..x.len()).map(|j| f64::from(i == j)).collect();
-            let slope = central_slope(value, x, &unit, 1e-6);
-            assert!((found - slope).abs() < 1e-8, "{i}: {found} {slope}");
-        }
+        assert_gradient(value, x, gradient.as_flattened(), 1e-6, |_| 1e-8);
     }
 
     #[test]
@@ -295,8 +287,7 @@ mod tests {
         let value = |x: &[f64]| Ok::<_, Infallible>(difference(x.as_chunks().0, &target));
         let slopes = gradient.as_flattened();
         let Ok(remainders) = TaylorRemainders::new(value, x, slopes, &direction, 1e-3, 6);
-        let orders = remainders.orders();
-        assert!(orders.iter().all(|order| *order > 1.9), "{orders:?}");
+        remainders.assert_orders(1.9..f64::INFINITY);
     }
 
     /// Edges that lie on those of the target: the slope is one-sided, and the one of either side is found.

@@ -200,7 +200,7 @@ fn dot(x: [f64; 3], y: [f64; 3]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::derivatives::central_slope;
+    use crate::derivatives::assert_gradient;
     use crate::hinge_law::SurrogateLaw;
     use ::surrogate::Surrogate;
     use hinge::HingeConstants;
@@ -253,11 +253,8 @@ mod tests {
     fn a_smooth_error_is_predicted_between_its_measurements() {
         let error = |state: &HingeDeformation| {
             let [a, s, theta] = state.to_array();
-            [
-                10.0 * a + 2.0 * theta,
-                3.0 * s,
-                2.0 * a + 60.0 * theta * theta,
-            ]
+            let moment = 2.0 * a + 60.0 * theta * theta;
+            [10.0 * a + 2.0 * theta, 3.0 * s, moment]
         };
         let measured = [[-0.6, 0.1, 0.35], [-0.4, 0.3, 0.35], [-0.5, 0.25, 0.45]].map(|state| {
             let state = HingeDeformation::from(state);
@@ -276,8 +273,7 @@ mod tests {
     /// is 5 % larger. The rotations are 0.5 rad by the law and 0.25 rad by the measurements.
     #[test]
     fn a_law_that_is_nearly_flat_beyond_yield_is_balanced_in_a_few_rounds() {
-        let moment =
-            |yield_moment: f64, theta: f64| yield_moment * (theta / 0.02).tanh() + 2.0 * theta;
+        let moment = |yields: f64, theta: f64| yields * (theta / 0.02).tanh() + 2.0 * theta;
         let at = |theta| HingeDeformation::from([0.0, 0.0, theta]);
         let mut missing: Vec<MissingForces> = Vec::new();
         let mut theta = 0.5;
@@ -303,50 +299,33 @@ mod tests {
     fn forces_and_tangent_are_the_derivatives_of_the_energy() {
         let at = [0.3, -0.4, 0.3];
         let found = correction(&[missing()], &HingeDeformation::from(at));
-        for i in 0..3 {
-            let unit: Vec<f64> = (0..3).map(|j| f64::from(i == j)).collect();
-            let slope = |part: &dyn Fn(&HingeEnergy) -> f64| {
-                let of = |x: &[f64]| part(&correction(&[missing()], &[x[0], x[1], x[2]].into()));
-                central_slope(of, &at, &unit, 1e-4)
-            };
-            assert!((found.forces[i] - slope(&|energy| energy.w)).abs() < 1e-5);
-            for j in 0..3 {
-                let expected = slope(&|energy| energy.forces[j]);
-                assert!((found.tangent[i][j] - expected).abs() < 1e-4);
-            }
+        let of = |x: &[f64]| correction(&[missing()], &[x[0], x[1], x[2]].into());
+        assert_gradient(|x| of(x).w, &at, &found.forces, 1e-4, |_| 1e-5);
+        for j in 0..3 {
+            let column = found.tangent.map(|row| row[j]);
+            assert_gradient(|x| of(x).forces[j], &at, &column, 1e-4, |_| 1e-4);
         }
     }
 
     #[test]
     fn derivatives_in_the_design_are_those_of_energy_and_forces() {
-        let weights = concat!(
-            env!("CARGO_MANIFEST_DIR"),
-            "/../data/pet-0.5mm/small.safetensors"
-        );
-        let law = Surrogate::load(std::path::Path::new(weights)).unwrap();
-        let law: Arc<dyn HingeLaw> = Arc::new(SurrogateLaw { surrogate: law });
-        let correction = Correction::new(&design(), &[missing()]);
+        let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
+        let weights = root.join("../data/pet-0.5mm/small.safetensors");
+        let surrogate = Surrogate::load(&weights).unwrap();
         let law = CorrectedLaw {
-            law,
-            corrections: vec![correction],
+            law: Arc::new(SurrogateLaw { surrogate }),
+            corrections: vec![Correction::new(&design(), &[missing()])],
         };
         let of = |design: &HingeDesign| {
             let prepared = law.prepare(std::slice::from_ref(design));
             prepared.energies(&[state()], Order::Design)[0]
         };
         let found = of(&design());
-        for i in 0..2 {
-            let unit: Vec<f64> = (0..2).map(|j| f64::from(i == j)).collect();
-            let slope = |part: &dyn Fn(&HingeEnergy) -> f64| {
-                let at = |x: &[f64]| part(&of(&HingeConstants::PAPER.hinge(x[0], x[1])));
-                central_slope(at, &[10.0, 1.3], &unit, 1e-4)
-            };
-            let expected = slope(&|energy| energy.w);
-            assert!((found.design[i] - expected).abs() < 1e-5 * expected.abs());
-            for j in 0..3 {
-                let expected = slope(&|energy| energy.forces[j]);
-                assert!((found.mixed[j][i] - expected).abs() < 1e-5 * expected.abs());
-            }
+        let at = |x: &[f64]| of(&HingeConstants::PAPER.hinge(x[0], x[1]));
+        let (x, allowed) = ([10.0, 1.3], |slope: f64| 1e-5 * slope.abs());
+        assert_gradient(|x| at(x).w, &x, &found.design[..2], 1e-4, allowed);
+        for j in 0..3 {
+            assert_gradient(|x| at(x).forces[j], &x, &found.mixed[j][..2], 1e-4, allowed);
         }
     }
 

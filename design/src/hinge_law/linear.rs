@@ -65,16 +65,3 @@ pub(super) fn spring(deformation: [f64; 3], constants: &[f64; 3]) -> HingeEnergy
     }
     energy
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn energies_forces_and_tangents_of_three_springs() {
-        let energy = spring([0.1, -0.2, 0.5], &[100.0, 60.0, 2.0]);
-        assert!((energy.w - (0.5 + 1.2 + 0.25)).abs() < 1e-15);
-        assert_eq!(energy.forces, [10.0, -12.0, 1.0]);
-        assert_eq!(energy.tangent[1], [0.0, 60.0, 0.0]);
-    }
-}

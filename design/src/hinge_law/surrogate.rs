@@ -288,31 +288,28 @@ fn drawn_in([minimum, maximum]: [f64; 2], alpha: f64) -> [f64; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::derivatives::central_slope;
+    use crate::derivatives::assert_gradient;
     use std::path::Path;
 
+    fn law(weights: &str) -> SurrogateLaw {
+        let weights = Path::new(env!("CARGO_MANIFEST_DIR")).join(weights);
+        let surrogate = Surrogate::load(&weights.with_extension("safetensors")).unwrap();
+        SurrogateLaw { surrogate }
+    }
+
     fn tiny() -> SurrogateLaw {
-        let weights = concat!(
-            env!("CARGO_MANIFEST_DIR"),
-            "/tests/cases/chi_tiny.safetensors"
-        );
-        SurrogateLaw {
-            surrogate: Surrogate::load(Path::new(weights)).unwrap(),
-        }
+        law("tests/cases/chi_tiny")
+    }
+
+    fn design(w_lig: f64, alpha: f64) -> HingeDesign {
+        hinge::HingeConstants::PAPER.hinge(w_lig, alpha)
     }
 
     /// x = (a, s, theta, w_lig, alpha)
     fn energy(law: &SurrogateLaw, x: &[f64]) -> HingeEnergy {
-        let design = HingeDesign {
-            w_lig: x[3],
-            alpha: x[4],
-            fillet_ratio: 0.16,
-            kerf: 0.2,
-            r_win: 100.0,
-        };
         let deformation = HingeDeformation::from([x[0], x[1], x[2]]);
-        law.prepare(&[design])
-            .energies(&[deformation], Order::Design)[0]
+        let prepared = law.prepare(&[design(x[3], x[4])]);
+        prepared.energies(&[deformation], Order::Design)[0]
     }
 
     #[test]
@@ -324,28 +321,13 @@ mod tests {
             [-3.0, 1.0, 0.6, 16.0, 1.9],
         ] {
             let found = energy(&law, &x);
-            let unit = |i: usize| -> Vec<f64> { (0..5).map(|j| f64::from(i == j)).collect() };
-            let slope = |part: &dyn Fn(&HingeEnergy) -> f64, i: usize| {
-                central_slope(|x| part(&energy(&law, x)), &x, &unit(i), 1e-5)
-            };
-            let close = |found: f64, expected: f64| {
-                let scale = law.surrogate.energy_scale().max(expected.abs());
-                assert!(
-                    (found - expected).abs() < 1e-7 * scale,
-                    "{found} {expected}"
-                );
-            };
+            let allowed = |slope: f64| 1e-7 * law.surrogate.energy_scale().max(slope.abs());
+            let first = [&found.forces[..], &found.design[..2]].concat();
+            assert_gradient(|x| energy(&law, x).w, &x, &first, 1e-5, allowed);
             for i in 0..3 {
-                close(found.forces[i], slope(&|e| e.w, i));
-                for j in 0..3 {
-                    close(found.tangent[i][j], slope(&|e| e.forces[i], j));
-                }
-                for g in 0..2 {
-                    close(found.mixed[i][g], slope(&|e| e.forces[i], 3 + g));
-                }
-            }
-            for g in 0..2 {
-                close(found.design[g], slope(&|e| e.w, 3 + g));
+                let force = |x: &[f64]| energy(&law, x).forces[i];
+                let second = [&found.tangent[i][..], &found.mixed[i][..2]].concat();
+                assert_gradient(force, &x, &second, 1e-5, allowed);
             }
         }
     }
@@ -365,13 +347,7 @@ mod tests {
             }
         }
         let state = HingeDeformation::from([1.0, 1.0, 0.5]);
-        let design = HingeDesign {
-            w_lig: 18.0,
-            alpha: 1.5,
-            fillet_ratio: 0.16,
-            kerf: 0.2,
-            r_win: 100.0,
-        };
+        let design = design(18.0, 1.5);
         let surrogate = &law.surrogate;
         let bare = surrogate.evaluate(&surrogate.prepare(&[design]), &[state], Order::Design);
         assert_eq!(energy(&law, &[1.0, 1.0, 0.5, 18.0, 1.5]), bare[0]);
@@ -390,8 +366,7 @@ mod tests {
     #[test]
     fn derivatives_beyond_the_order_are_zero_outside_too() {
         let law = tiny();
-        let design = hinge::HingeConstants::PAPER.hinge(18.0, 1.4);
-        let prepared = law.prepare(&[design]);
+        let prepared = law.prepare(&[design(18.0, 1.4)]);
         let outside = HingeDeformation::from([9.0, -11.0, 1.4]);
         let at = |order| prepared.energies(&[outside], order)[0];
         let all = at(Order::Design);
@@ -410,21 +385,14 @@ mod tests {
     /// no snap. In the states of the edge of the shipped weights `small`.
     #[test]
     fn beyond_the_edge_the_force_does_not_fall() {
-        let weights = concat!(
-            env!("CARGO_MANIFEST_DIR"),
-            "/../data/pet-0.5mm/small.safetensors"
-        );
-        let law = SurrogateLaw {
-            surrogate: Surrogate::load(Path::new(weights)).unwrap(),
-        };
+        let law = law("../data/pet-0.5mm/small");
         let domain = law.surrogate.domain();
         let (centre, bounds) = (domain.centre(), domain.bounds());
         // Fractions of multiples of irrational numbers fill the intervals evenly.
         let part = |i: usize, number: f64| (i as f64 * number).fract();
         for i in 0..500 {
             let w_lig = 5.0 * 5f64.powf(part(i, 0.618_033_988_7));
-            let design =
-                hinge::HingeConstants::PAPER.hinge(w_lig, 0.8 + 1.5 * part(i, 0.414_213_562_4));
+            let design = design(w_lig, 0.8 + 1.5 * part(i, 0.414_213_562_4));
             let outwards: [f64; 3] = from_fn(|j| {
                 let number = [0.732_050_807_6, 0.236_067_977_5, 0.645_751_311_1][j];
                 (part(i, number) - 0.5) * (bounds[j][1] - bounds[j][0])
@@ -434,16 +402,13 @@ mod tests {
             let prepared = law.prepare(&[design]);
             // The derivative of W in gamma.
             let slope = |gamma: f64| {
-                let [f_a, f_s, m_theta] =
-                    prepared.energies(&[state(gamma * edge)], Order::Forces)[0].forces;
+                let energies = prepared.energies(&[state(gamma * edge)], Order::Forces);
+                let [f_a, f_s, m_theta] = energies[0].forces;
                 let [a, s, theta] = outwards;
                 edge * (w_lig * (f_a * a + f_s * s) + m_theta * theta)
             };
-            let slopes: Vec<f64> = (0..=60)
-                .map(|i| slope(1.0 + 0.005 * f64::from(i)))
-                .collect();
             let (mut peak, mut fall) = (f64::NEG_INFINITY, 0.0_f64);
-            for slope in slopes {
+            for slope in (0..=60).map(|i| slope(1.0 + 0.005 * f64::from(i))) {
                 peak = peak.max(slope);
                 fall = fall.max(peak - slope);
             }

@@ -279,6 +279,7 @@ fn point(text: &str) -> Option<[f64; 2]> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::derivatives::assert_close;
 
     fn sample(shape: TargetShape, count: usize) -> Result<Target, TargetError> {
         Target::sample(&shape, Path::new("."), count)
@@ -286,10 +287,8 @@ mod tests {
 
     /// Area of the polygon through the samples.
     fn area(points: &[[f64; 2]]) -> f64 {
-        (0..points.len())
-            .map(|i| (points[i], points[(i + 1) % points.len()]))
-            .map(|(p, q)| (p[0] * q[1] - p[1] * q[0]) / 2.0)
-            .sum()
+        let pairs = (0..points.len()).map(|i| (points[i], points[(i + 1) % points.len()]));
+        pairs.map(|(p, q)| (p[0] * q[1] - p[1] * q[0]) / 2.0).sum()
     }
 
     #[test]
@@ -298,9 +297,9 @@ mod tests {
         let centre = [1.0, 2.0];
         let circle = sample(TargetShape::Circle { centre, radius }, n).unwrap();
         assert_eq!(circle.points.len(), n);
-        assert!((circle.length - TAU * radius).abs() < 1e-9);
+        assert_close(circle.length, TAU * radius, 1e-9);
         let inscribed = 0.5 * n as f64 * radius * radius * (TAU / n as f64).sin();
-        assert!((area(&circle.points) / inscribed - 1.0).abs() < 1e-12);
+        assert_close(area(&circle.points) / inscribed, 1.0, 1e-12);
     }
 
     #[test]
@@ -311,33 +310,28 @@ mod tests {
             rotation_deg: -15.4,
         };
         let rectangle = sample(shape, 100).unwrap();
-        assert!((rectangle.length - 1000.0).abs() < 1e-9);
+        assert_close(rectangle.length, 1000.0, 1e-9);
         let (sin, cos) = 15.4_f64.to_radians().sin_cos();
-        assert!((rectangle.width() - (300.0 * cos + 200.0 * sin)).abs() < 1e-9);
+        assert_close(rectangle.width(), 300.0 * cos + 200.0 * sin, 1e-9);
         let p = &rectangle.points;
         assert_eq!(p.len(), 100);
-        assert!(
-            (area(p) - 60e3).abs() < 1e-6,
-            "corners are multiples of the spacing"
-        );
+        // Corners are multiples of the spacing.
+        assert_close(area(p), 60e3, 1e-6);
         for i in 0..100 {
             let (a, b) = (p[i], p[(i + 1) % 100]);
-            assert!((f64::hypot(b[0] - a[0], b[1] - a[1]) - 10.0).abs() < 1e-9);
+            assert_close(polygon::distance(a, b), 10.0, 1e-9);
         }
         let slope = (p[1][1] - p[0][1]).atan2(p[1][0] - p[0][0]).to_degrees();
-        assert!(
-            (slope + 15.4).abs() < 1e-9,
-            "the long side is rotated clockwise"
-        );
+        // The long side is rotated clockwise.
+        assert_close(slope, -15.4, 1e-9);
     }
 
     #[test]
     fn a_curve_passes_through_its_points_and_is_nearly_the_circle_of_many() {
         let circle = |n: usize| -> Vec<[f64; 2]> {
             let angle = |i: usize| TAU * i as f64 / n as f64;
-            (0..n)
-                .map(|i| [50.0 * angle(i).cos(), 50.0 * angle(i).sin()])
-                .collect()
+            let point = |i: usize| [50.0 * angle(i).cos(), 50.0 * angle(i).sin()];
+            (0..n).map(point).collect()
         };
         let error = |n: usize| {
             let points = circle(n);
@@ -345,34 +339,16 @@ mod tests {
             for (i, point) in points.iter().enumerate() {
                 assert!(polygon::distance(vertices[i * CHORDS], *point) < 1e-12);
             }
-            let radii = vertices
-                .iter()
-                .map(|[x, y]| (x.hypot(*y) / 50.0 - 1.0).abs());
-            radii.fold(0.0, f64::max)
+            let off = |[x, y]: &[f64; 2]| (x.hypot(*y) / 50.0 - 1.0).abs();
+            vertices.iter().map(off).fold(0.0, f64::max)
         };
         // The tangents are wrong by a factor sin(x)/x, x = TAU/n: half way the radius by the order of x^2 at least.
-        assert!(
-            error(8) < 0.02 && error(16) < error(8) / 8.0,
-            "{} {}",
-            error(8),
-            error(16)
-        );
+        assert!(error(8) < 0.02 && error(16) < error(8) / 8.0);
         let points = circle(12);
         let target = sample(TargetShape::Curve { points }, 600).unwrap();
-        assert!(
-            (target.length / (TAU * 50.0) - 1.0).abs() < 1e-2,
-            "{}",
-            target.length
-        );
-        assert!(
-            sample(
-                TargetShape::Curve {
-                    points: vec![[0.0; 2]; 2]
-                },
-                10
-            )
-            .is_err()
-        );
+        assert_close(target.length / (TAU * 50.0), 1.0, 1e-2);
+        let points = vec![[0.0; 2]; 2];
+        assert!(sample(TargetShape::Curve { points }, 10).is_err());
     }
 
     #[test]
@@ -385,12 +361,10 @@ mod tests {
         };
         let triangle = from_file("# a 3-4-5 triangle\n0,0\n40, 0 # mm\n\n0,30\n").unwrap();
         let vertices = vec![[0.0, 0.0], [40.0, 0.0], [0.0, 30.0]];
-        assert_eq!(
-            triangle,
-            sample(TargetShape::Polygon { vertices }, 24).unwrap()
-        );
-        assert!((triangle.length - 120.0).abs() < 1e-12);
-        assert!((area(&triangle.points) - 600.0).abs() < 1e-9);
+        let polygon = sample(TargetShape::Polygon { vertices }, 24).unwrap();
+        assert_eq!(triangle, polygon);
+        assert_close(triangle.length, 120.0, 1e-12);
+        assert_close(area(&triangle.points), 600.0, 1e-9);
         let error = from_file("0,0\n1;2\n").unwrap_err().to_string();
         assert!(error.contains("triangle.csv:2: `1;2`"), "{error}");
     }
@@ -411,8 +385,8 @@ mod tests {
                 height: 1.0,
             };
             let target = Target::sample(&shape, &folder, 2000).unwrap();
-            assert!((target.length - length).abs() < 1e-6, "{name}");
-            assert!((target.area() - area).abs() < 1e-6, "{name}");
+            assert_close(target.length, length, 1e-6);
+            assert_close(target.area(), area, 1e-6);
         }
     }
 
@@ -436,18 +410,14 @@ mod tests {
     fn the_crossing_of_an_outline_is_found() {
         let crossing = |vertices: &[[f64; 2]]| {
             let vertices = vertices.to_vec();
-            sample(TargetShape::Polygon { vertices }, 100)
-                .unwrap()
-                .crossing
+            let target = sample(TargetShape::Polygon { vertices }, 100);
+            target.unwrap().crossing
         };
         let square = [[0.0, 0.0], [40.0, 0.0], [40.0, 40.0], [0.0, 40.0]];
         assert_eq!(crossing(&square), None);
+        // The first vertex repeated at the end.
         let closed = [&square[..], &square[..1]].concat();
-        assert_eq!(
-            crossing(&closed),
-            None,
-            "the first vertex repeated at the end"
-        );
+        assert_eq!(crossing(&closed), None);
         // The edges from (40, 0) to (0, 40) and from (30, 40) to (0, 0) cross where x + y = 40 and y = 4/3 x.
         let bow = [[0.0, 0.0], [40.0, 0.0], [0.0, 40.0], [30.0, 40.0]];
         let [x, y] = crossing(&bow).unwrap();
@@ -457,22 +427,17 @@ mod tests {
     #[test]
     fn shapes_without_an_outline_are_refused() {
         let line = vec![[0.0, 0.0], [1.0, 1.0], [2.0, 2.0]];
-        let error = sample(TargetShape::Polygon { vertices: line }, 10).unwrap_err();
-        assert!(error.to_string().contains("no area"), "{error}");
-        let error = sample(TargetShape::Polygon { vertices: vec![] }, 10).unwrap_err();
-        assert!(error.to_string().contains("no area"), "{error}");
+        let polygon = |vertices| TargetShape::Polygon { vertices };
         let centre = [0.0, 0.0];
-        let error = sample(
-            TargetShape::Circle {
-                centre,
-                radius: -1.0,
-            },
-            10,
-        )
-        .unwrap_err();
-        assert!(error.to_string().contains("circle.radius = -1"), "{error}");
-        let radius = f64::NAN;
-        let error = sample(TargetShape::Circle { centre, radius }, 10).unwrap_err();
-        assert!(error.to_string().contains("circle.radius"), "{error}");
+        let circle = |radius| TargetShape::Circle { centre, radius };
+        for (shape, expected) in [
+            (polygon(line), "no area"),
+            (polygon(vec![]), "no area"),
+            (circle(-1.0), "circle.radius = -1"),
+            (circle(f64::NAN), "circle.radius"),
+        ] {
+            let error = sample(shape, 10).unwrap_err().to_string();
+            assert!(error.contains(expected), "{error}");
+        }
     }
 }

@@ -68,9 +68,16 @@ mod tests {
     use crate::sheet::cut_sheet::{HingePoint, SheetOptions};
     use hinge::HingeConstants;
 
-    fn problem(grid: Grid) -> DesignProblem {
+    const GRID: Grid = Grid { m: 2, n: 2 };
+
+    fn problem() -> DesignProblem {
+        let process = HingeConstants {
+            kerf: 0.01,
+            r_win: 0.3,
+            ..HingeConstants::PAPER
+        };
         DesignProblem {
-            grid,
+            grid: GRID,
             outline: Outline::rectangle(2.0, 2.0),
             widths: WidthChart {
                 w_minus: 0.05,
@@ -78,12 +85,7 @@ mod tests {
             },
             options: SheetOptions {
                 hinge_point: HingePoint::Corner,
-                process: HingeConstants {
-                    fillet_ratio: 0.16,
-                    kerf: 0.01,
-                    r_win: 0.3,
-                }
-                .into(),
+                process: process.into(),
             },
             model: Model::Ideal { opening: 0.5 },
             objective: Objective::from_shape(Shape::new(vec![[3.0, 3.0]])),
@@ -92,13 +94,12 @@ mod tests {
 
     #[test]
     fn a_proposal_without_value_is_halved_until_it_has_one() {
-        let grid = Grid { m: 2, n: 2 };
-        let good = DesignVector::uniform(grid);
+        let good = DesignVector::uniform(GRID);
         let proposed = |z: f64| {
             let mut proposal = good.clone();
             proposal.pattern.z.fill(z);
             let adam = Search::Adam(Adam::new(0, 0.1));
-            evaluate_or_back_off(&problem(grid), &adam, &good, proposal, None)
+            evaluate_or_back_off(&problem(), &adam, &good, proposal, None)
         };
         let (design, _, setback) = proposed(1.0).unwrap();
         assert_eq!((design.pattern.z[0], setback.halvings), (1.0, 0));

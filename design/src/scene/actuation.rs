@@ -249,13 +249,6 @@ impl LoadConfig {
         let [x, y] = [0, 1].map(|c| self.force[c] + down.map_or(0.0, |down| hung * down[c]));
         [x, y, self.couple]
     }
-
-    /// Multiplies force, mass and couple.
-    pub fn scale(&mut self, factor: f64) {
-        self.mass_g = self.mass_g.map(|mass| factor * mass);
-        self.force = self.force.map(|force| factor * force);
-        self.couple *= factor;
-    }
 }
 
 impl SheetEdge {

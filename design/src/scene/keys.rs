@@ -141,12 +141,4 @@ impl SceneConfig {
     pub fn has_loads(&self) -> bool {
         !(self.loads.is_empty() && self.edge_loads.is_empty() && self.opening_couples.is_empty())
     }
-
-    /// Multiplies every load: on panels, on edges and on hinges.
-    pub fn scale_loads(&mut self, factor: f64) {
-        (self.loads.iter_mut()).for_each(|load| load.scale(factor));
-        (self.edge_loads.iter_mut())
-            .for_each(|load| load.traction = load.traction.map(|traction| factor * traction));
-        (self.opening_couples.iter_mut()).for_each(|load| load.couple *= factor);
-    }
 }

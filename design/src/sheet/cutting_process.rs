@@ -135,10 +135,8 @@ mod tests {
         };
         let drilled = read("hole_diameter = 2.0").unwrap();
         assert_eq!(drilled.hinge(10.0, 1.5).fillet_ratio, 0.1);
-        assert_eq!(
-            [drilled.hole_radius(10.0), drilled.hole_radius(5.0)],
-            [1.0; 2]
-        );
+        let radii = [10.0, 5.0].map(|w_lig| drilled.hole_radius(w_lig));
+        assert_eq!(radii, [1.0; 2]);
         let papers = read("fillet_ratio = 0.16").unwrap();
         assert_eq!(papers, HingeConstants::PAPER.into());
         assert_eq!(papers.hole_radius(10.0), 1.6);

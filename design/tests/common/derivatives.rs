@@ -28,39 +28,68 @@ impl TaylorRemainders {
         count: usize,
     ) -> Result<Self, E> {
         let value = f(x)?;
-        let slope: f64 = std::iter::zip(gradient, direction)
-            .map(|(g, d)| g * d)
-            .sum();
-        let steps: Vec<f64> = std::iter::successors(Some(first), |h| Some(0.5 * h))
-            .take(count)
-            .collect();
-        let remainders = steps
-            .iter()
-            .map(|h| {
-                let beside: Vec<f64> = std::iter::zip(x, direction)
-                    .map(|(x, d)| x + h * d)
-                    .collect();
-                Ok((f(&beside)? - value - h * slope).abs())
-            })
-            .collect::<Result<_, E>>()?;
+        let slope = dot(gradient, direction);
+        let steps = std::iter::successors(Some(first), |h| Some(0.5 * h));
+        let steps: Vec<f64> = steps.take(count).collect();
+        let remainder = |h: &f64| Ok((f(&beside(x, direction, *h))? - value - h * slope).abs());
+        let remainders = steps.iter().map(remainder).collect::<Result<_, E>>()?;
         Ok(Self { steps, remainders })
     }
 
     /// The observed orders between successive steps.
     pub fn orders(&self) -> Vec<f64> {
-        self.remainders
-            .windows(2)
-            .map(|pair| (pair[0] / pair[1]).log2())
-            .collect()
+        let pairs = self.remainders.windows(2);
+        pairs.map(|pair| (pair[0] / pair[1]).log2()).collect()
+    }
+
+    #[track_caller]
+    pub fn assert_orders(&self, expected: std::ops::Range<f64>) {
+        let orders = self.orders();
+        let exact = orders.iter().all(|order| expected.contains(order));
+        assert!(exact, "orders {orders:?} of {self:?}");
     }
 }
 
 /// The slope of `f` at `x` along `direction`, by central differences with the step `h`.
 pub fn central_slope(f: impl Fn(&[f64]) -> f64, x: &[f64], direction: &[f64], h: f64) -> f64 {
-    let beside = |h: f64| -> Vec<f64> {
-        std::iter::zip(x, direction)
-            .map(|(x, d)| x + h * d)
-            .collect()
-    };
-    (f(&beside(h)) - f(&beside(-h))) / (2.0 * h)
+    (f(&beside(x, direction, h)) - f(&beside(x, direction, -h))) / (2.0 * h)
+}
+
+pub fn dot(a: &[f64], b: &[f64]) -> f64 {
+    std::iter::zip(a, b).map(|(a, b)| a * b).sum()
+}
+
+/// x + h d
+fn beside(x: &[f64], direction: &[f64], h: f64) -> Vec<f64> {
+    let pairs = std::iter::zip(x, direction);
+    pairs.map(|(x, d)| x + h * d).collect()
+}
+
+/// Fails unless each entry of a gradient is the slope of `f` along its coordinate; the error that is allowed depends on the slope.
+#[track_caller]
+pub fn assert_gradient(
+    f: impl Fn(&[f64]) -> f64,
+    x: &[f64],
+    gradient: &[f64],
+    h: f64,
+    allowed: impl Fn(f64) -> f64,
+) {
+    for (i, found) in gradient.iter().enumerate() {
+        let unit: Vec<f64> = (0..x.len()).map(|j| f64::from(i == j)).collect();
+        let slope = central_slope(&f, x, &unit, h);
+        let error = (found - slope).abs();
+        assert!(error < allowed(slope), "{i}: {found} instead of {slope}");
+    }
+}
+
+#[track_caller]
+pub fn assert_close(found: f64, expected: f64, tolerance: f64) {
+    let close = (found - expected).abs() < tolerance;
+    assert!(close, "{found} instead of {expected}");
+}
+
+#[track_caller]
+pub fn assert_ratio(found: f64, expected: f64, tolerance: f64) {
+    let close = (found / expected - 1.0).abs() < tolerance;
+    assert!(close, "{found} instead of {expected}");
 }

@@ -20,85 +20,58 @@ const SAME_LOSS: f64 = 1e-8;
 /// Sheets up to this number of hinges are searched for a better design, one in four.
 const SEARCHED: usize = 17;
 
-/// What was found at a sheet, by name.
+/// What was found at a sheet: its place in the table, its words, and whether it contradicts what the software promises.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Finding {
-    Scenes,
-    Learned,
-    Driven,
-    FullLoad,
-    Jumped,
-    Almost,
-    Corrected,
-    Searched,
-    NotCut,
-    Locked,
-    NoEquilibriumExtreme,
-    NoEquilibrium,
-    Unbalanced,
-    Unstable,
-    Mirror,
-    MirrorAfterJump,
-    Similar,
-    SimilarAfterJump,
-    LoadSteps,
-    LoadStepsAfterJump,
-    OtherLoss,
-    OtherArm,
-    OtherLossAfterJump,
-    WorseThanStart,
-    FalseBest,
-}
+pub struct Finding(u8, pub &'static str, pub bool);
 
 impl Finding {
-    /// Whether the finding contradicts what the software promises.
-    pub fn is_fault(self) -> bool {
-        use Finding::*;
-        matches!(
-            self,
-            NoEquilibrium
-                | Unbalanced
-                | Unstable
-                | Mirror
-                | Similar
-                | LoadSteps
-                | OtherLoss
-                | WorseThanStart
-                | FalseBest
-        )
-    }
-
-    pub fn words(self) -> &'static str {
-        match self {
-            Self::Scenes => "sheets",
-            Self::Learned => "with a learned law",
-            Self::Driven => "with a prescribed stroke",
-            Self::FullLoad => "full load reached",
-            Self::Jumped => "with a jump",
-            Self::Almost => "last state `almost`",
-            Self::Corrected => "paths corrected for a design beside",
-            Self::Searched => "searches",
-            Self::NotCut => "pattern without a sheet",
-            Self::Locked => "panels touch before the end of the stroke",
-            Self::NoEquilibriumExtreme => "no equilibrium found, springs of extreme ratio",
-            Self::NoEquilibrium => "no equilibrium found",
-            Self::Unbalanced => "equilibrium not balanced by full matrices",
-            Self::Unstable => "equilibrium not stable by full matrices",
-            Self::Mirror => "mirror image deploys otherwise",
-            Self::MirrorAfterJump => "mirror image deploys otherwise after a jump",
-            Self::Similar => "similar sheet deploys otherwise",
-            Self::SimilarAfterJump => "similar sheet deploys otherwise after a jump",
-            Self::LoadSteps => "another number of load steps, another state",
-            Self::LoadStepsAfterJump => "another number of load steps, another state after a jump",
-            Self::OtherLoss => "corrected path with the followed states and another loss",
-            Self::OtherArm => "corrected path with other stable states, without a jump",
-            Self::OtherLossAfterJump => {
-                "corrected path with another loss, followed path with a jump"
-            }
-            Self::WorseThanStart => "search ends above its start",
-            Self::FalseBest => "a step of a search below its best design, and no warning",
-        }
-    }
+    const SCENES: Self = Self(0, "sheets", false);
+    const LEARNED: Self = Self(1, "with a learned law", false);
+    const DRIVEN: Self = Self(2, "with a prescribed stroke", false);
+    const FULL_LOAD: Self = Self(3, "full load reached", false);
+    const JUMPED: Self = Self(4, "with a jump", false);
+    const ALMOST: Self = Self(5, "last state `almost`", false);
+    const CORRECTED: Self = Self(6, "paths corrected for a design beside", false);
+    const SEARCHED: Self = Self(7, "searches", false);
+    const NOT_CUT: Self = Self(8, "pattern without a sheet", false);
+    const LOCKED: Self = Self(9, "panels touch before the end of the stroke", false);
+    const NO_EQUILIBRIUM_EXTREME: Self =
+        Self(10, "no equilibrium found, springs of extreme ratio", false);
+    const NO_EQUILIBRIUM: Self = Self(11, "no equilibrium found", true);
+    const UNBALANCED: Self = Self(12, "equilibrium not balanced by full matrices", true);
+    const UNSTABLE: Self = Self(13, "equilibrium not stable by full matrices", true);
+    const MIRROR: Self = Self(14, "mirror image deploys otherwise", true);
+    const MIRROR_AFTER_JUMP: Self = Self(15, "mirror image deploys otherwise after a jump", false);
+    const SIMILAR: Self = Self(16, "similar sheet deploys otherwise", true);
+    const SIMILAR_AFTER_JUMP: Self =
+        Self(17, "similar sheet deploys otherwise after a jump", false);
+    const LOAD_STEPS: Self = Self(18, "another number of load steps, another state", true);
+    const LOAD_STEPS_AFTER_JUMP: Self = Self(
+        19,
+        "another number of load steps, another state after a jump",
+        false,
+    );
+    const OTHER_LOSS: Self = Self(
+        20,
+        "corrected path with the followed states and another loss",
+        true,
+    );
+    const OTHER_ARM: Self = Self(
+        21,
+        "corrected path with other stable states, without a jump",
+        false,
+    );
+    const OTHER_LOSS_AFTER_JUMP: Self = Self(
+        22,
+        "corrected path with another loss, followed path with a jump",
+        false,
+    );
+    const WORSE_THAN_START: Self = Self(23, "search ends above its start", true);
+    const FALSE_BEST: Self = Self(
+        24,
+        "a step of a search below its best design, and no warning",
+        true,
+    );
 }
 
 /// What was found, and the details of each.
@@ -107,18 +80,18 @@ pub type Findings = Vec<(Finding, String)>;
 pub fn findings(seed: u64) -> Findings {
     let drawn = Drawn::new(seed);
     let problem = drawn.problem();
-    let mut found = vec![(Finding::Scenes, String::new())];
+    let mut found = vec![(Finding::SCENES, String::new())];
     let mut add = |finding, details: String| found.push((finding, details));
     if matches!(drawn.law, DrawnLaw::Learned(..)) {
-        add(Finding::Learned, String::new());
+        add(Finding::LEARNED, String::new());
     }
     if drawn.stroke.is_some() {
-        add(Finding::Driven, String::new());
+        add(Finding::DRIVEN, String::new());
     }
     let deployment = match problem.deploy(&drawn.design()) {
         Ok(deployment) => deployment,
         Err(error) => {
-            add(Finding::NotCut, error.to_string());
+            add(Finding::NOT_CUT, error.to_string());
             return found;
         }
     };
@@ -127,12 +100,12 @@ pub fn findings(seed: u64) -> Findings {
         missed(&drawn, last, &mut add);
         return found;
     }
-    add(Finding::FullLoad, String::new());
+    add(Finding::FULL_LOAD, String::new());
     if jumps(&deployment) {
-        add(Finding::Jumped, String::new());
+        add(Finding::JUMPED, String::new());
     }
     if last.status == Status::Almost {
-        add(Finding::Almost, last.to_string());
+        add(Finding::ALMOST, last.to_string());
     }
     judged(&drawn, &problem, &deployment, &mut add);
     same_elsewhere(&drawn, &deployment, &mut add);
@@ -157,13 +130,11 @@ fn judged(
         let allowed = BALANCED.max(10.0 * step.rounding.max(judged.rounding));
         let claimed = step.status != Status::Almost;
         if claimed && judged.residual > allowed {
-            add(
-                Finding::Unbalanced,
-                format!("{:.1e}, {step}", judged.residual),
-            );
+            let details = format!("{:.1e}, {step}", judged.residual);
+            add(Finding::UNBALANCED, details);
         }
         if claimed && judged.lowest < -ROUNDING {
-            add(Finding::Unstable, format!("{:.1e}, {step}", judged.lowest));
+            add(Finding::UNSTABLE, format!("{:.1e}, {step}", judged.lowest));
         }
     }
 }
@@ -172,9 +143,9 @@ fn judged(
 fn missed(drawn: &Drawn, last: &LoadStep, add: &mut impl FnMut(Finding, String)) {
     let touching = drawn.stroke.is_some() && drawn.contact.is_some();
     let finding = match last.descent_end {
-        Some(DescentEnd::NotFinite) if touching => Finding::Locked,
-        _ if drawn.is_extreme() => Finding::NoEquilibriumExtreme,
-        _ => Finding::NoEquilibrium,
+        Some(DescentEnd::NotFinite) if touching => Finding::LOCKED,
+        _ if drawn.is_extreme() => Finding::NO_EQUILIBRIUM_EXTREME,
+        _ => Finding::NO_EQUILIBRIUM,
     };
     add(finding, format!("{:?} {last}", last.descent_end));
 }
@@ -193,15 +164,15 @@ fn same_elsewhere(drawn: &Drawn, deployment: &Deployment, add: &mut impl FnMut(F
             let [x, y, phi] = last.configuration[panel];
             [-x, y, -phi]
         });
-        let findings = [Finding::Mirror, Finding::MirrorAfterJump];
+        let findings = [Finding::MIRROR, Finding::MIRROR_AFTER_JUMP];
         cases.push((mirrored, size, images.collect(), findings));
     }
     let halves = (last.configuration.iter()).map(|[x, y, phi]| [0.5 * x, 0.5 * y, *phi]);
-    let findings = [Finding::Similar, Finding::SimilarAfterJump];
+    let findings = [Finding::SIMILAR, Finding::SIMILAR_AFTER_JUMP];
     cases.push((drawn.similar(0.5), 0.5 * size, halves.collect(), findings));
     let mut other_steps = drawn.clone();
     other_steps.steps = if drawn.steps > 5 { 3 } else { 17 };
-    let findings = [Finding::LoadSteps, Finding::LoadStepsAfterJump];
+    let findings = [Finding::LOAD_STEPS, Finding::LOAD_STEPS_AFTER_JUMP];
     cases.push((other_steps, size, last.configuration.clone(), findings));
     for (other, size, expected, [fault, after_jump]) in cases {
         let problem = other.problem();
@@ -227,13 +198,10 @@ fn same_elsewhere(drawn: &Drawn, deployment: &Deployment, add: &mut impl FnMut(F
 fn distance(found: &[[f64; 3]], expected: &[[f64; 3]], size: f64) -> f64 {
     let panels = std::iter::zip(found, expected);
     let apart = panels.flat_map(|(found, expected)| {
-        [size, size, 1.0]
-            .into_iter()
-            .zip(std::iter::zip(found, expected))
+        let pairs = std::iter::zip(found, expected);
+        std::iter::zip([size, size, 1.0], pairs).map(|(unit, (a, b))| (a - b).abs() / unit)
     });
-    apart
-        .map(|(unit, (found, expected))| (found - expected).abs() / unit)
-        .fold(0.0, f64::max)
+    apart.fold(0.0, f64::max)
 }
 
 /// The loss of a design beside, with its path corrected from that of this one and followed from the flat sheet.
@@ -253,7 +221,7 @@ fn corrected(
     if near.deployment.followed {
         return;
     }
-    add(Finding::Corrected, String::new());
+    add(Finding::CORRECTED, String::new());
     judged(drawn, problem, &near.deployment, add);
     let followed = problem.deploy(&beside).unwrap();
     let last = followed.final_step();
@@ -270,9 +238,9 @@ fn corrected(
             distance(&a.configuration, &b.configuration, size) <= SAME
         };
         let finding = match (jumps(&followed), steps.all(same)) {
-            (true, _) => Finding::OtherLossAfterJump,
-            (false, true) => Finding::OtherLoss,
-            (false, false) => Finding::OtherArm,
+            (true, _) => Finding::OTHER_LOSS_AFTER_JUMP,
+            (false, true) => Finding::OTHER_LOSS,
+            (false, false) => Finding::OTHER_ARM,
         };
         add(finding, format!("{apart:.1e}, {last}"));
     }
@@ -289,7 +257,7 @@ fn searched(
     let Ok(evaluation) = problem.evaluate(&start) else {
         return;
     };
-    add(Finding::Searched, String::new());
+    add(Finding::SEARCHED, String::new());
     let method = match (seed / 4) % 2 {
         0 => SearchMethod::Adam,
         _ => SearchMethod::Lbfgs,
@@ -301,12 +269,13 @@ fn searched(
     let steps = state.history.iter().map(|record| record.scores.loss);
     let least = steps.fold(f64::INFINITY, f64::min);
     if best > evaluation.loss * (1.0 + SAME_LOSS) {
-        add(
-            Finding::WorseThanStart,
-            format!("{best} from {}", evaluation.loss),
-        );
+        let details = format!("{best} from {}", evaluation.loss);
+        add(Finding::WORSE_THAN_START, details);
     }
     if !state.contradicted() && best > least * (1.0 + SAME_LOSS) {
-        add(Finding::FalseBest, format!("{least}, {best} when followed"));
+        add(
+            Finding::FALSE_BEST,
+            format!("{least}, {best} when followed"),
+        );
     }
 }

@@ -153,13 +153,10 @@ impl Judged {
                 !drawn.supports.iter().any(held)
             })
             .collect();
-        let unbalanced = free
-            .iter()
-            .map(|&d| as_force(d, forces[d]))
-            .fold(0.0, f64::max);
-        let held = drawn
-            .stroke
-            .map(|_| free.iter().map(|&d| loads[d]).collect::<Vec<f64>>());
+        let unbalanced = free.iter().map(|&d| as_force(d, forces[d]));
+        let unbalanced = unbalanced.fold(0.0, f64::max);
+        let along = || free.iter().map(|&d| loads[d]).collect::<Vec<f64>>();
+        let held = drawn.stroke.map(|_| along());
         let relative = |force: f64| if force == 0.0 { 0.0 } else { force / largest };
         Self {
             force: largest,
@@ -180,16 +177,9 @@ fn extent(sheet: &Sheet, step: &LoadStep) -> f64 {
 /// The lowest eigenvalue of a tangent over the free motions, orthogonal to the stroke if that is held.
 fn lowest(stiffness: &Mat<f64>, free: &[usize], stroke: Option<Vec<f64>>) -> f64 {
     let n = free.len();
-    let scale: Vec<f64> = free
-        .iter()
-        .map(|&d| {
-            stiffness[(d, d)]
-                .abs()
-                .max(f64::MIN_POSITIVE)
-                .sqrt()
-                .recip()
-        })
-        .collect();
+    let diagonal = free.iter().map(|&d| stiffness[(d, d)].abs());
+    let scale = diagonal.map(|k: f64| k.max(f64::MIN_POSITIVE).sqrt().recip());
+    let scale: Vec<f64> = scale.collect();
     let mut scaled = Mat::from_fn(n, n, |i, j| {
         scale[i] * scale[j] * stiffness[(free[i], free[j])]
     });

@@ -131,9 +131,8 @@ impl Drawn {
         };
         let middle = 0.5 * (range[0] + range[1]);
         let width = || middle + 0.45 * (range[1] - range[0]) * dice.within(-1.0, 1.0);
-        let w_lig: Vec<f64> = std::iter::repeat_with(width)
-            .take(grid.hinge_count())
-            .collect();
+        let widths = std::iter::repeat_with(width);
+        let w_lig: Vec<f64> = widths.take(grid.hinge_count()).collect();
         let supports = drawn_supports(dice, grid, panel);
         // The moment that turns a hinge by something like a radian.
         let moment = match &law {
@@ -143,11 +142,8 @@ impl Drawn {
         let loads = drawn_loads(dice, grid, &supports, [moment / panel, moment]);
         let driven = dice.chance(0.4) && !loads.is_empty();
         let length = panel * ((m * n) as f64).sqrt();
-        let stroke = if loads.iter().any(|load| load.dof != Dof::Phi) {
-            length
-        } else {
-            1.0
-        };
+        let has_force = loads.iter().any(|load| load.dof != Dof::Phi);
+        let stroke = if has_force { length } else { 1.0 };
         let weight = if dice.chance(0.15) {
             let area = panel * panel * (m * n) as f64;
             let [x, y] = turned(dice.within(0.0, TAU));
@@ -157,11 +153,8 @@ impl Drawn {
         };
         let contact = dice.chance(0.8).then(|| {
             let cut = dice.one_of(&[0.0, -0.05]);
-            [
-                moment * dice.power(-1.0, 2.0),
-                cut - dice.power(-1.5, -0.5),
-                cut,
-            ]
+            let stiffness = moment * dice.power(-1.0, 2.0);
+            [stiffness, cut - dice.power(-1.5, -0.5), cut]
         });
         Self {
             grid,
@@ -191,9 +184,8 @@ impl Drawn {
             return false;
         };
         let [k_a, k_s, k_theta] = constants[0];
-        [k_a, k_s]
-            .iter()
-            .any(|k| (k / k_theta).log10().abs() > EXPONENTS[0] + 1.0)
+        let ratios = [k_a, k_s].map(|k| (k / k_theta).log10().abs());
+        ratios.iter().any(|ratio| *ratio > EXPONENTS[0] + 1.0)
     }
 
     pub fn design(&self) -> DesignVector {
@@ -283,10 +275,8 @@ impl Drawn {
                 factor.powi(3)
             }
         };
-        other.outline.corners = self
-            .outline
-            .corners
-            .map(|corner| corner.map(|x| factor * x));
+        let corners = self.outline.corners;
+        other.outline.corners = corners.map(|corner| corner.map(|x| factor * x));
         other.w_lig.iter_mut().for_each(|w| *w *= factor);
         other.range = self.range.map(|w| factor * w);
         other.process.kerf *= factor;
@@ -296,15 +286,10 @@ impl Drawn {
             support.value *= if support.dof == Dof::Phi { 1.0 } else { factor };
         }
         for load in &mut other.loads {
-            load.value *= if load.dof == Dof::Phi {
-                energy
-            } else {
-                energy / factor
-            };
+            let way = if load.dof == Dof::Phi { 1.0 } else { factor };
+            load.value *= energy / way;
         }
-        other.weight = self
-            .weight
-            .map(|component| energy / factor.powi(3) * component);
+        other.weight = self.weight.map(|it| energy / factor.powi(3) * it);
         if self.loads.iter().any(|load| load.dof != Dof::Phi) {
             other.stroke = self.stroke.map(|stroke| factor * stroke);
         }
@@ -410,11 +395,8 @@ fn drawn_supports(dice: &mut Dice, grid: Grid, panel: f64) -> Vec<Support> {
     let first = dice.0.random_range(0..grid.panel_count());
     let second = (first + dice.0.random_range(1..grid.panel_count())) % grid.panel_count();
     let on = |panel, dofs: &[Dof]| -> Vec<Support> {
-        let support = |&dof| Support {
-            panel,
-            dof,
-            value: 0.0,
-        };
+        let value = 0.0;
+        let support = |&dof| Support { panel, dof, value };
         dofs.iter().map(support).collect()
     };
     let pin = [Dof::UX, Dof::UY];
@@ -452,11 +434,8 @@ fn drawn_loads(
     for _ in 0..dice.0.random_range(0..4) {
         let panel = dice.0.random_range(0..grid.panel_count());
         let [x, y] = turned(dice.within(0.0, TAU)).map(|component| force * component);
-        let couple = if dice.chance(0.3) {
-            couple * dice.within(-1.0, 1.0)
-        } else {
-            0.0
-        };
+        let turned = dice.chance(0.3).then(|| couple * dice.within(-1.0, 1.0));
+        let couple = turned.unwrap_or(0.0);
         push(panel, [x, y, couple], &mut loads);
     }
     if dice.chance(0.4) {
@@ -467,11 +446,8 @@ fn drawn_loads(
     if dice.chance(0.4) {
         for panel in 0..grid.panel_count() {
             let even = (panel % grid.m + panel / grid.m).is_multiple_of(2);
-            push(
-                panel,
-                [0.0, 0.0, if even { -couple } else { couple }],
-                &mut loads,
-            );
+            let couple = if even { -couple } else { couple };
+            push(panel, [0.0, 0.0, couple], &mut loads);
         }
     }
     loads

@@ -1,11 +1,6 @@
 //! Reads the reference cases, which an independent implementation computed in float64.
 
-use design::equilibrium::supports::{Dof, Load, Support};
-use design::pattern::coordinates::PatternCoordinates;
-use design::pattern::cut_pattern::{CutPattern, Outline};
-use design::pattern::grid::Grid;
-use design::sheet::cut_sheet::{HingePoint, Sheet, SheetOptions};
-use design::sheet::cutting_process::{CuttingProcess, Hole};
+use crate::prelude::*;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 
@@ -18,6 +13,11 @@ pub const PROCESS: CuttingProcess = CuttingProcess {
 
 pub const AT_CORNER: SheetOptions = SheetOptions {
     hinge_point: HingePoint::Corner,
+    process: PROCESS,
+};
+
+pub const AT_TIP: SheetOptions = SheetOptions {
+    hinge_point: HingePoint::CutTip,
     process: PROCESS,
 };
 
@@ -61,28 +61,28 @@ pub fn sheet(case: &Value) -> Sheet {
     Sheet::new(&pattern, &vec![0.1; pattern.grid.hinge_count()], AT_CORNER).unwrap()
 }
 
-fn dof(entry: &Value) -> Dof {
-    Dof::ALL[get::<usize>(entry, "dof")]
+/// (panel, degree of freedom, value) of the entries with a key.
+fn by_panel(case: &Value, key: &str) -> Vec<(usize, Dof, f64)> {
+    let entries: Vec<Value> = get(case, key);
+    let entry = |entry: &Value| {
+        let dof = Dof::ALL[get::<usize>(entry, "dof")];
+        let value = entry["value"].as_f64().unwrap_or(0.0);
+        (get(entry, "panel"), dof, value)
+    };
+    entries.iter().map(entry).collect()
 }
 
 pub fn supports(case: &Value) -> Vec<Support> {
-    let entries: Vec<Value> = get(case, "supports");
-    let support = |entry: &Value| Support {
-        panel: get(entry, "panel"),
-        dof: dof(entry),
-        value: entry["value"].as_f64().unwrap_or(0.0),
-    };
-    entries.iter().map(support).collect()
+    let to_support = |(panel, dof, value)| support(panel, dof, value);
+    by_panel(case, "supports")
+        .into_iter()
+        .map(to_support)
+        .collect()
 }
 
 pub fn loads(case: &Value) -> Vec<Load> {
-    let entries: Vec<Value> = get(case, "loads");
-    let load = |entry: &Value| Load {
-        panel: get(entry, "panel"),
-        dof: dof(entry),
-        value: get(entry, "value"),
-    };
-    entries.iter().map(load).collect()
+    let to_load = |(panel, dof, value)| load(panel, dof, value);
+    by_panel(case, "loads").into_iter().map(to_load).collect()
 }
 
 /// Maximum difference between the numbers of two arrays of the same shape.

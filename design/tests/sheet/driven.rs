@@ -1,15 +1,7 @@
 //! Displacement control: the same equilibria as under load control, and those beyond a limit point.
 
-use crate::cases::{self, case, difference};
-use crate::closed_forms::{clamp, opening_moments, path};
-use crate::extremes::{Rotational, snapping};
-use design::equilibrium::hinged_sheet::HingedSheet;
-use design::equilibrium::load_step::{LoadStep, Status};
-use design::equilibrium::settings::SolverSettings;
-use design::equilibrium::solver::EquilibriumSolver;
-use design::equilibrium::supports::{Dof, Load, Support};
-use design::hinge_law::{HingeLaw, LinearLaw};
-use design::sheet::cut_sheet::Sheet;
+use crate::extremes::{rotational, snapping};
+use crate::prelude::*;
 
 fn driven(
     sheet: &Sheet,
@@ -18,108 +10,62 @@ fn driven(
     steps: usize,
     stroke: f64,
 ) -> Vec<LoadStep> {
-    let settings = SolverSettings::default();
-    let solver = EquilibriumSolver::new(sheet.grid, supports, loads, steps, settings).unwrap();
-    let law = law.prepare(&sheet.designs());
-    solver.driven(stroke).unwrap().path(HingedSheet {
-        sheet,
-        law: &*law,
-        contact: None,
-        damage_gradient: true,
-    })
+    let solver = solver(sheet.grid, supports, loads, steps);
+    follow(&solver.driven(stroke).unwrap(), sheet, law, None)
+}
+
+/// The sum of all couples.
+fn couples(loads: &[Load]) -> f64 {
+    loads.iter().map(|load| load.value.abs()).sum()
+}
+
+fn work(loads: &[Load], step: &LoadStep) -> f64 {
+    let moved = |load: &Load| step.configuration[load.panel][load.dof.index()];
+    loads.iter().map(|load| load.value * moved(load)).sum()
 }
 
 #[test]
 fn the_stroke_of_a_load_reproduces_the_load() {
-    let sheet = cases::sheet(&case("p1_3x3_random"));
-    let law = LinearLaw::uniform([90.0, 40.0, 0.8], 12);
-    let load = |panel, dof, value| Load { panel, dof, value };
-    for loads in [
-        vec![load(5, Dof::UX, 1.5)],
-        vec![
-            load(5, Dof::UX, 0.8),
-            load(5, Dof::UY, 0.3),
-            load(7, Dof::Phi, 0.2),
-        ],
-        opening_moments(&sheet, 3, 0.5),
-    ] {
-        let loaded = path(&sheet, &law, &clamp(3), &loads, 4);
-        let end = &loaded[3];
-        let work: f64 = loads
-            .iter()
-            .map(|load| load.value * end.configuration[load.panel][load.dof as usize])
-            .sum();
-        let force = |panel| {
-            let of = |dof| {
-                let found = loads
-                    .iter()
-                    .find(|load| load.panel == panel && load.dof == dof);
-                found.map_or(0.0, |load| load.value)
-            };
-            f64::hypot(of(Dof::UX), of(Dof::UY))
-        };
-        let forces: f64 = (0..9).map(force).sum();
-        let couples: f64 = loads.iter().map(|load| load.value.abs()).sum();
-        let stroke = work / if forces > 0.0 { forces } else { couples };
-        let path = driven(&sheet, &law, (&clamp(3), &loads), 3, stroke);
-        let last = &path[2];
+    let sheet = sheet_of("p1_3x3_random");
+    let law = uniform(SPRINGS, &sheet);
+    let several = vec![pull(5, 0.8), load(5, Dof::UY, 0.3), load(7, Dof::Phi, 0.2)];
+    let opening = opening_moments(&sheet, 3, 0.5);
+    let sum = couples(&opening);
+    // Beside forces, a couple does not count.
+    let cases = [
+        (vec![pull(5, 1.5)], 1.5),
+        (several, f64::hypot(0.8, 0.3)),
+        (opening, sum),
+    ];
+    for (loads, size) in cases {
+        let end = path(&sheet, &law, &clamp(3), &loads, 4).pop().unwrap();
+        let stroke = work(&loads, &end) / size;
+        let last = &driven(&sheet, &law, (&clamp(3), &loads), 3, stroke)[2];
         assert_eq!(last.status, Status::Converged);
-        assert!(
-            (last.load_factor - 1.0).abs() < 1e-8,
-            "{}",
-            last.load_factor
-        );
+        assert_close(last.load_factor, 1.0, 1e-8);
         assert!(difference(&last.configuration, &end.configuration) < 1e-8);
-        assert!((last.potential - end.potential).abs() < 1e-9);
+        assert_close(last.potential, end.potential, 1e-9);
     }
 }
 
 /// dP/d(stroke) by central differences of the whole load P.
 #[test]
 fn the_stiffness_is_the_slope_of_the_load_over_its_stroke() {
-    let sheet = cases::sheet(&case("p1_3x3_random"));
-    let law = LinearLaw::uniform([90.0, 40.0, 0.8], 12);
-    let load = |panel, dof, value| Load { panel, dof, value };
-    for (loads, size) in [
-        (vec![load(5, Dof::UX, 1.5)], 1.5),
-        (
-            vec![
-                load(5, Dof::UX, 0.8),
-                load(5, Dof::UY, 0.6),
-                load(7, Dof::Phi, 0.2),
-            ],
-            1.0,
-        ),
-        (vec![load(5, Dof::Phi, -0.4)], 0.4),
-    ] {
+    let sheet = sheet_of("p1_3x3_random");
+    let law = uniform(SPRINGS, &sheet);
+    let several = vec![pull(5, 0.8), load(5, Dof::UY, 0.6), load(7, Dof::Phi, 0.2)];
+    let couple = vec![load(5, Dof::Phi, -0.4)];
+    for (loads, size) in [(vec![pull(5, 1.5)], 1.5), (several, 1.0), (couple, 0.4)] {
         let stroke = |factor: f64| {
-            let scaled: Vec<Load> = (loads.iter())
-                .map(|load| Load {
-                    value: factor * load.value,
-                    ..*load
-                })
-                .collect();
-            let end = path(&sheet, &law, &clamp(3), &scaled, 4);
-            let moved = |load: &Load| end[3].configuration[load.panel][load.dof.index()];
-            let work: f64 = loads.iter().map(|load| load.value * moved(load)).sum();
-            work / size
+            let scaled = |it: &Load| load(it.panel, it.dof, factor * it.value);
+            let scaled: Vec<Load> = loads.iter().map(scaled).collect();
+            work(&loads, &path(&sheet, &law, &clamp(3), &scaled, 4)[3]) / size
         };
         let step = 1e-3;
         let slope = 2.0 * step * size / (stroke(1.0 + step) - stroke(1.0 - step));
-        let settings = SolverSettings::default();
-        let solver = EquilibriumSolver::new(sheet.grid, &clamp(3), &loads, 4, settings).unwrap();
-        let prepared = law.prepare(&sheet.designs());
-        let path = solver.path(HingedSheet {
-            sheet: &sheet,
-            law: &*prepared,
-            contact: None,
-            damage_gradient: false,
-        });
-        let stiffness = path[3].stiffness(&solver).unwrap();
-        assert!(
-            (stiffness / slope - 1.0).abs() < 1e-5,
-            "{stiffness} {slope}"
-        );
+        let solver = solver(sheet.grid, &clamp(3), &loads, 4);
+        let path = follow(&solver, &sheet, &law, None);
+        assert_ratio(path[3].stiffness(&solver).unwrap(), slope, 1e-5);
     }
 }
 
@@ -128,30 +74,21 @@ fn the_stiffness_is_the_slope_of_the_load_over_its_stroke() {
 /// a hinge snaps by 0.14 rad although the stroke is prescribed, and 1.2e-3 N mm are lost.
 #[test]
 fn a_snapping_sheet_is_followed_beyond_its_maximum_load() {
-    let sheet = cases::sheet(&case("p1_3x3_random"));
+    let sheet = sheet_of("p1_3x3_random");
     let loads = opening_moments(&sheet, 4, 1.0);
-    let couples: f64 = loads.iter().map(|load| load.value.abs()).sum();
+    let couples = couples(&loads);
     let (steps, stroke) = (60, 0.15);
-    let path = driven(
-        &sheet,
-        &Rotational(snapping),
-        (&clamp(4), &loads),
-        steps,
-        stroke,
-    );
+    let (law, held) = (rotational(snapping), clamp(4));
+    let path = driven(&sheet, &law, (&held, &loads), steps, stroke);
     assert_eq!(path.len(), steps);
     let (mut worked, mut before, mut fell) = (0.0, 0.0, 0);
     for step in &path {
-        let found = (step.residual, step.negative_pivots, step.load_factor);
-        assert!(
-            step.status == Status::Converged || step.jumps > 0,
-            "{found:?}"
-        );
+        assert!(step.status == Status::Converged || step.jumps > 0, "{step}");
         worked += 0.5 * (before + step.load_factor) * couples * stroke / steps as f64;
         fell += usize::from(step.load_factor < before && step.negative_pivots == 1);
         before = step.load_factor;
         let stored: f64 = step.energies.iter().sum();
-        assert!((worked - stored).abs() < 2e-3, "{worked} {stored}");
+        assert_close(worked, stored, 2e-3);
     }
     assert!(fell > 5, "{fell}");
     let jumps: Vec<usize> = (0..steps).filter(|&i| path[i].jumps > 0).collect();
@@ -174,9 +111,9 @@ fn small_jumps_are_reported() {
             1.0 + bump(2.0 * size / width * ((1.0 + cos) * cos - sin * sin)),
         ]
     }
-    let sheet = cases::sheet(&case("p1_3x3_random"));
+    let sheet = sheet_of("p1_3x3_random");
     let loads = opening_moments(&sheet, 4, 0.6);
-    let path = path(&sheet, &Rotational(bumpy), &clamp(4), &loads, 6);
+    let path = path(&sheet, &rotational(bumpy), &clamp(4), &loads, 6);
     let jumps: Vec<usize> = path.iter().map(|step| step.jumps).collect();
     assert_eq!(jumps, [0, 0, 1, 0, 1, 0]);
     let jumped = |step: &&LoadStep| step.status == Status::LimitPoint;

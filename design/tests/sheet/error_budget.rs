@@ -1,10 +1,7 @@
 //! The error budget of a sheet against sheets that have the errors.
 
-use crate::load_steps::scene;
+use crate::prelude::*;
 use design::analysis::error_budget::{Cause, Effect, ErrorBudget};
-use design::objective::design_problem::Deployment;
-use design::scene::{Scene, SceneConfig};
-use design::sheet::kinematics::deployed_corners;
 
 pub fn film(change: impl Fn(&mut SceneConfig)) -> Scene {
     scene("a4-polyester.toml", |config| {
@@ -39,17 +36,15 @@ fn an_error_of_the_stress_is_one_of_the_load() {
     let budget = budget(&scene, None);
     let effect = effect(&budget, Cause::MaterialLaw).unwrap();
     assert!(effect.corners[1] < 1e-8, "{effect:?}");
-    assert!((effect.load.unwrap() - 0.04).abs() < 1e-9, "{effect:?}");
+    assert_close(effect.load.unwrap(), 0.04, 1e-9);
 }
 
 /// Two sheets of a thickness a little above and below.
 #[test]
 fn an_error_of_the_thickness_is_the_difference_of_two_sheets() {
     let (thickness, tolerance) = (0.1, 2e-5);
-    let budget = budget(
-        &film(|config| config.tolerances.thickness = Some(tolerance)),
-        None,
-    );
+    let toleranced = film(|config| config.tolerances.thickness = Some(tolerance));
+    let budget = budget(&toleranced, None);
     let found = effect(&budget, Cause::Thickness).unwrap();
     let [thin, thick] = [-1.0, 1.0].map(|sign| {
         deployed(&film(|config| {
@@ -61,20 +56,11 @@ fn an_error_of_the_thickness_is_the_difference_of_two_sheets() {
     });
     let load = |of: &Deployment| of.final_step().load_factor;
     let change = 0.5 * (load(&thick) - load(&thin)) / load(&deployed(&film(|_| ())));
-    let expected = change.abs();
-    assert!(
-        (found.load.unwrap() / expected - 1.0).abs() < 1e-3,
-        "{found:?} {expected}"
-    );
-    let largest = found.corners[1];
-    for ((thin, thick), found) in
-        std::iter::zip(corners(&thin), corners(&thick)).zip(&found.by_corner)
-    {
+    assert_ratio(found.load.unwrap(), change.abs(), 1e-3);
+    let pairs = std::iter::zip(corners(&thin), corners(&thick));
+    for ((thin, thick), by_corner) in pairs.zip(&found.by_corner) {
         let expected = 0.5 * f64::hypot(thick[0] - thin[0], thick[1] - thin[1]);
-        assert!(
-            (found - expected).abs() < 1e-3 * largest,
-            "{found} {expected}"
-        );
+        assert_close(*by_corner, expected, 1e-3 * found.corners[1]);
     }
 }
 
@@ -83,15 +69,12 @@ fn what_is_known_adds_in_squares_and_is_a_lower_bound_if_a_part_is_not() {
     let budget = budget(&film(|_| ()), None);
     assert!(effect(&budget, Cause::Kerf).is_none());
     assert!(budget.total.at_least);
-    let path = budget.sum(|cause| cause == Cause::LoadingPath);
-    assert!(!path.at_least);
+    assert!(!budget.sum(|cause| cause == Cause::LoadingPath).at_least);
     let square = |effect: &Effect| effect.corners[0].powi(2);
-    let known = budget
-        .contributions
-        .iter()
-        .filter_map(|part| part.effect.as_ref());
+    let parts = budget.contributions.iter();
+    let known = parts.filter_map(|part| part.effect.as_ref());
     let sum: f64 = known.map(square).sum();
-    assert!((square(&budget.total) / sum - 1.0).abs() < 1e-12);
+    assert_ratio(square(&budget.total), sum, 1e-12);
     assert!(effect(&budget, Cause::LoadingPath).unwrap().corners[0] > 0.0);
 }
 
@@ -101,9 +84,8 @@ fn a_verified_sheet_has_the_residual_of_its_rounds() {
     let scene = film(|_| ());
     let residual = vec![0.02; 4 * scene.grid().panel_count()];
     let budget = budget(&scene, Some(&residual));
-    for part in &budget.contributions {
-        assert!(!part.cause.is_seen_by_elements());
-    }
+    let mut parts = budget.contributions.iter();
+    assert!(parts.all(|part| !part.cause.is_seen_by_elements()));
     let found = effect(&budget, Cause::VerifyResidual).unwrap();
-    assert!((found.corners[0] - 0.02).abs() < 1e-15);
+    assert_close(found.corners[0], 0.02, 1e-15);
 }

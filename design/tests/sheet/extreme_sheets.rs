@@ -1,50 +1,23 @@
 //! Sheets at the limits of their design space and of their motion.
 
-use crate::cases::{self, AT_CORNER, case};
-use crate::closed_forms::{clamp, opening_moments, path};
-use crate::derivatives::TaylorRemainders;
-use crate::extremes::{Rotational, assert_finite, snapping};
-use crate::random::Random;
+use crate::extremes::{assert_finite, rotational, snapping};
+use crate::prelude::*;
 use crate::taylor::{GRID, SIDE, problem, start, tiny};
-use design::equilibrium::hinged_sheet::HingedSheet;
-use design::equilibrium::load_step::{LoadStep, Status};
-use design::equilibrium::settings::SolverSettings;
-use design::equilibrium::solver::EquilibriumSolver;
-use design::equilibrium::supports::{Dof, Load};
-use design::hinge_law::{HingeLaw, LinearLaw};
-use design::objective::design_problem::{Mechanics, Model};
-use design::pattern::coordinates::PatternCoordinates;
-use design::pattern::cut_pattern::{CutPattern, Outline};
-use design::pattern::grid::Grid;
 use design::pattern::pattern_error::PatternError;
-use design::sheet::cut_sheet::{HingePoint, Sheet, SheetError};
 use design::sheet::opening_limits::Span;
 use std::f64::consts::{FRAC_PI_2, SQRT_2};
-use std::sync::Arc;
-
-fn pull(panel: usize, value: f64) -> Load {
-    Load {
-        panel,
-        dof: Dof::UX,
-        value,
-    }
-}
 
 #[test]
 fn ten_thousand_panels_find_their_equilibrium() {
     let grid = Grid { m: 100, n: 100 };
     let mut coordinates = PatternCoordinates::uniform(grid);
-    let mut random = Random::new(29);
-    coordinates
-        .z
-        .iter_mut()
-        .for_each(|z| *z = random.number(0.5));
-    let pattern = CutPattern::new(grid, Outline::rectangle(100.0, 100.0), &coordinates).unwrap();
-    let sheet = Sheet::new(&pattern, &vec![0.1; grid.hinge_count()], AT_CORNER).unwrap();
-    let law = LinearLaw::uniform([1e4, 1e4, 1.0], grid.hinge_count());
+    coordinates.z = Random::new(29).numbers(coordinates.z.len(), 0.5);
+    let outline = Outline::rectangle(100.0, 100.0);
+    let sheet = cut(grid, outline, &coordinates, 0.1, AT_CORNER);
+    let law = uniform([1e4, 1e4, 1.0], &sheet);
     let path = path(&sheet, &law, &clamp(5000), &[pull(5099, 100.0)], 2);
     assert_finite(&path);
-    assert!(path.iter().all(|step| step.status == Status::Converged));
+    assert!(converged(&path));
 }
 
 /// Cuts that almost collide define a sheet or give an error; the sheet has equilibria or reports that it has not.
@@ -60,26 +33,21 @@ fn r_and_tau_close_to_their_limits_make_a_sheet_or_an_error() {
             let all = coordinates.z.iter_mut().chain(edges);
             all.for_each(|x| *x = size * random.number(1.0).signum() + random.number(0.5));
             let outline = Outline::rectangle(3.0, 2.0);
-            let pattern = match CutPattern::new(grid, outline, &coordinates) {
-                Ok(pattern) => pattern,
-                Err(PatternError::Collision { .. }) => {
-                    refused += 1;
-                    continue;
-                }
-                Err(other) => panic!("{other}"),
-            };
             let widths = vec![0.01; grid.hinge_count()];
-            let sheet = match Sheet::new(&pattern, &widths, AT_CORNER) {
-                Ok(sheet) => sheet,
-                Err(SheetError::PanelArea { .. } | SheetError::CutAngle { .. }) => {
+            let pattern = CutPattern::new(grid, outline, &coordinates);
+            let sheet = match pattern.map(|pattern| Sheet::new(&pattern, &widths, AT_CORNER)) {
+                Ok(Ok(sheet)) => sheet,
+                Err(PatternError::Collision { .. })
+                | Ok(Err(SheetError::PanelArea { .. } | SheetError::CutAngle { .. })) => {
                     refused += 1;
                     continue;
                 }
                 Err(other) => panic!("{other}"),
+                Ok(Err(other)) => panic!("{other}"),
             };
             let area: f64 = sheet.panels.iter().map(|panel| panel.area).sum();
-            assert!((area / outline.area() - 1.0).abs() < 1e-12);
-            let law = LinearLaw::uniform([90.0, 40.0, 0.8], grid.hinge_count());
+            assert_ratio(area, outline.area(), 1e-12);
+            let law = uniform(SPRINGS, &sheet);
             assert_finite(&path(&sheet, &law, &clamp(0), &[pull(m * n - 1, 0.5)], 3));
             cut += 1;
         }
@@ -91,65 +59,45 @@ fn r_and_tau_close_to_their_limits_make_a_sheet_or_an_error() {
 /// uniform sheet is longest, and beyond, where it becomes shorter again; for any ratio of stiffnesses.
 #[test]
 fn loads_along_the_mechanism_pass_its_dead_centre() {
-    let sheet = cases::sheet(&case("p0_3x3_uniform"));
+    let sheet = sheet_of("p0_3x3_uniform");
     let span = Span::of_sheet(&sheet)[0];
     for constants in [[90.0, 40.0, 0.8], [1e6, 1e6, 1e-3]] {
-        let (law, theta) = (LinearLaw::uniform(constants, 12), 2.6);
+        let (law, theta) = (uniform(constants, &sheet), 2.6);
         let loads = opening_moments(&sheet, 4, constants[2] * theta);
-        let path = path(&sheet, &law, &clamp(4), &loads, 13);
-        for step in &path {
+        for step in path(&sheet, &law, &clamp(4), &loads, 13) {
             assert_eq!(step.status, Status::Converged);
-            let opening = step.load_factor * theta;
-            let centre =
-                |k: usize| [0, 1].map(|c| sheet.panels[k].centroid[c] + step.configuration[k][c]);
-            let ([ax, ay], [bx, by]) = (centre(3), centre(5));
-            let stretch = f64::hypot(bx - ax, by - ay) / 2.0;
-            assert!((stretch - span.stretch(opening)).abs() < 1e-7, "{opening}");
+            let stretch = apart(&sheet, &step.configuration, [3, 5]) / 2.0;
+            assert_close(stretch, span.stretch(step.load_factor * theta), 1e-7);
         }
-        assert!((span.theta_max - FRAC_PI_2).abs() < 1e-12);
+        assert_close(span.theta_max, FRAC_PI_2, 1e-12);
     }
 }
 
 /// Beyond lambda_max only the springs deform: the sheet stiffens and remains valid.
 #[test]
 fn a_sheet_pulled_past_its_maximum_stretch_stiffens() {
-    let sheet = cases::sheet(&case("p0_3x3_uniform"));
-    let law = LinearLaw::uniform([90.0, 40.0, 0.8], 12);
-    let settings = SolverSettings::default();
-    let loads = [pull(5, 1.0)];
-    let solver = EquilibriumSolver::new(sheet.grid, &clamp(3), &loads, 12, settings).unwrap();
+    let sheet = sheet_of("p0_3x3_uniform");
+    let law = uniform(SPRINGS, &sheet);
     let stroke = 2.0 * (1.25 * SQRT_2 - 1.0);
-    let driven = solver.driven(stroke).unwrap().path(HingedSheet {
-        sheet: &sheet,
-        law: &*law.prepare(&sheet.designs()),
-        contact: None,
-        damage_gradient: true,
-    });
+    let solver = solver(sheet.grid, &clamp(3), &[pull(5, 1.0)], 12);
+    let driven = follow(&solver.driven(stroke).unwrap(), &sheet, &law, None);
     assert_finite(&driven);
+    assert!(converged(&driven));
     let stiffness = |i: usize| driven[i].load_factor - driven[i - 1].load_factor;
-    assert!(driven.iter().all(|step| step.status == Status::Converged));
     assert!(stiffness(11) > 4.0 * stiffness(1));
     // The same under load control.
     let load = driven[11].load_factor;
     let loaded = path(&sheet, &law, &clamp(3), &[pull(5, load)], 12);
     assert_finite(&loaded);
-    assert!((loaded[11].configuration[5][0] / stroke - 1.0).abs() < 1e-7);
+    assert_ratio(loaded[11].configuration[5][0], stroke, 1e-7);
 }
 
 /// A learned energy loses its digits at small deformations and leaves its domain at large ones: neither
 /// leads to a false equilibrium.
 #[test]
 fn a_learned_sheet_has_a_status_under_loads_of_any_size() {
-    let pattern = CutPattern::new(
-        Grid { m: 3, n: 3 },
-        Outline::rectangle(SIDE, SIDE),
-        &start().pattern,
-    );
-    let options = design::sheet::cut_sheet::SheetOptions {
-        hinge_point: HingePoint::CutTip,
-        process: AT_CORNER.process,
-    };
-    let sheet = Sheet::new(&pattern.unwrap(), &[16.0; 12], options).unwrap();
+    let outline = Outline::rectangle(SIDE, SIDE);
+    let sheet = cut(GRID, outline, &start().pattern, 16.0, AT_TIP);
     let law = tiny();
     let deployed = |force: f64| path(&sheet, &law, &clamp(3), &[pull(5, force)], 2);
     let compliance = |force: f64| {
@@ -163,22 +111,15 @@ fn a_learned_sheet_has_a_status_under_loads_of_any_size() {
             };
             assert_eq!(step.status, expected, "{force:e}: {}", step.residual);
         }
-        assert!(
-            force < 5e-7 || path[1].status == Status::Converged,
-            "{force:e}"
-        );
+        assert!(force < 5e-7 || path[1].status == Status::Converged);
         path[1].configuration[5][0] / force
     };
     let expected = compliance(1e-5);
     for (force, error) in [(1e-6, 1e-3), (1e-7, 1e-3), (1e-9, 0.1)] {
-        let found = compliance(force);
-        assert!(
-            (found / expected - 1.0).abs() < error,
-            "{force:e}: {found} {expected}"
-        );
+        assert_ratio(compliance(force), expected, error);
     }
     for force in [1e6, -1e6] {
-        let path: Vec<LoadStep> = deployed(force);
+        let path = deployed(force);
         assert_finite(&path);
         let last = &path[path.len() - 1];
         assert_ne!(last.status, Status::Converged);
@@ -189,8 +130,8 @@ fn a_learned_sheet_has_a_status_under_loads_of_any_size() {
 /// Weights so large that the energy of the flat sheet is not finite: the path has no beginning.
 #[test]
 fn a_sheet_without_a_finite_energy_has_no_path() {
-    let law = Rotational(|theta| [f64::INFINITY, theta, 1.0]);
-    let sheet = cases::sheet(&case("p1_3x3_random"));
+    let law = rotational(|theta| [f64::INFINITY, theta, 1.0]);
+    let sheet = sheet_of("p1_3x3_random");
     let path = path(&sheet, &law, &clamp(3), &[pull(5, 1.0)], 3);
     assert_eq!((path.len(), path[0].status), (1, Status::Diverged));
     assert_finite(&path);
@@ -203,30 +144,16 @@ fn the_gradient_is_exact_where_the_tangent_is_indefinite() {
     let driven = |steps: usize, stroke: f64| {
         let mut problem = problem(Model::Ideal { opening: 0.0 }, HingePoint::Corner);
         let (_, sheet) = problem.cut(&design).unwrap();
-        let (supports, loads) = (clamp(4), opening_moments(&sheet, 4, 1500.0));
-        let settings = SolverSettings::default();
-        let solver = EquilibriumSolver::new(GRID, &supports, &loads, steps, settings).unwrap();
-        problem.model = Model::Equilibrium(Box::new(Mechanics {
-            law: Arc::new(Rotational(|theta| {
-                snapping(theta).map(|part| 1500.0 * part)
-            })),
-            release: None,
-            contact: None,
-            solver: solver.driven(stroke).unwrap(),
-        }));
+        let solver = solver(GRID, &clamp(4), &opening_moments(&sheet, 4, 1500.0), steps);
+        let law = rotational(|theta| snapping(theta).map(|part| 1500.0 * part));
+        problem.model = mechanics(law, solver.driven(stroke).unwrap());
         problem
     };
     let path = driven(60, 0.15).deploy(&design).unwrap().path;
-    let softens = |step: &&LoadStep| step.negative_pivots == 1;
-    let past = path
-        .iter()
-        .take_while(|step| step.status == Status::Converged);
-    let steps = 1 + past
-        .enumerate()
-        .filter(|(_, step)| softens(step))
-        .last()
-        .unwrap()
-        .0;
+    let smooth = (path.iter()).take_while(|step| step.status == Status::Converged);
+    let smooth: Vec<&LoadStep> = smooth.collect();
+    let softens = smooth.iter().rposition(|step| step.negative_pivots == 1);
+    let steps = 1 + softens.unwrap();
     let problem = driven(steps, 0.15 * steps as f64 / 60.0);
     let evaluation = problem.evaluate(&design).unwrap();
     assert_eq!(evaluation.deployment.final_step().negative_pivots, 1);
@@ -234,9 +161,5 @@ fn the_gradient_is_exact_where_the_tangent_is_indefinite() {
     let direction = Random::new(37).numbers(x.len(), 1.0);
     let loss = |x: &[f64]| problem.loss(&design.with_flat(x));
     let remainders = TaylorRemainders::new(loss, &x, &gradient, &direction, 1e-3, 4).unwrap();
-    let orders = remainders.orders();
-    assert!(
-        orders.iter().all(|order| (1.95..2.05).contains(order)),
-        "{orders:?}"
-    );
+    remainders.assert_orders(1.95..2.05);
 }

@@ -1,19 +1,13 @@
 //! Objective and gradient against an independent implementation, whose Chamfer distance is that of the paper: of all corners on the
 //! outline, to the samples of the target.
 
-use crate::cases::{self, AT_CORNER, case, difference, get};
-use design::equilibrium::settings::SolverSettings;
-use design::equilibrium::solver::EquilibriumSolver;
-use design::hinge_law::{DamageMeasure, LinearLaw};
-use design::objective::design_problem::{DesignProblem, Mechanics, Model};
-use design::objective::loss::Objective;
+use crate::cases;
+use crate::prelude::*;
+use design::hinge_law::DamageMeasure;
 use design::objective::response::ResponseCotangent;
-use design::objective::shape::Shape;
 use design::objective::term::Weighted;
 use design::objective::terms::{Compression, Damage, Shear};
-use design::pattern::design_vector::{DesignVector, WidthChart};
 use serde_json::Value;
-use std::sync::Arc;
 
 /// The Chamfer distance as the paper prints it, and its gradient.
 fn sample_chamfer(points: &[[f64; 2]], target: &[[f64; 2]], coverage: f64) -> (f64, Vec<[f64; 2]>) {
@@ -44,56 +38,47 @@ fn sample_chamfer(points: &[[f64; 2]], target: &[[f64; 2]], coverage: f64) -> (f
 fn functionals(case: &Value) -> Vec<Weighted> {
     let weight = |name: &str| get(&case["weights"], name);
     let temperature = |name: &str| get(&case["softmax_temperature"], name);
-    let compression = Compression {
-        temperature: temperature("comp"),
-    };
-    let shear = Shear {
-        temperature: temperature("shear"),
+    let [compression, shear] = ["comp", "shear"].map(temperature);
+    let damage = Damage {
+        measure: DamageMeasure::Mean,
+        scale: 1.0,
+        temperature: 0.1,
     };
     vec![
+        Weighted::new(weight("damage"), damage),
         Weighted::new(
-            weight("damage"),
-            Damage {
-                measure: DamageMeasure::Mean,
-                scale: 1.0,
-                temperature: 0.1,
+            weight("comp"),
+            Compression {
+                temperature: compression,
             },
         ),
-        Weighted::new(weight("comp"), compression),
-        Weighted::new(weight("shear"), shear),
+        Weighted::new(weight("shear"), Shear { temperature: shear }),
     ]
+}
+
+/// A design or a gradient of the case.
+fn vector(case: &Value, key: &str) -> DesignVector {
+    DesignVector {
+        pattern: coordinates(&case[key]),
+        omega: get(&case[key], "omega"),
+        opening: None,
+    }
 }
 
 #[test]
 fn a_pulled_sheet_with_path_functionals() {
     let case = case("g0_3x3_linear_path");
-    let theta = &case["theta"];
-    let design = DesignVector {
-        pattern: cases::coordinates(theta),
-        omega: get(theta, "omega"),
-        opening: None,
-    };
-    let [w_minus, w_plus] = get(theta, "w_minus_plus");
+    let design = vector(&case, "theta");
+    let [w_minus, w_plus] = get(&case["theta"], "w_minus_plus");
     let grid = cases::grid(&case);
     let law = LinearLaw::uniform(get(&case, "k_a_k_s_k_theta"), grid.hinge_count());
+    let (supports, loads) = (cases::supports(&case), cases::loads(&case));
     let problem = DesignProblem {
         grid,
         outline: cases::outline(&case),
         widths: WidthChart { w_minus, w_plus },
         options: AT_CORNER,
-        model: Model::Equilibrium(Box::new(Mechanics {
-            law: Arc::new(law),
-            release: None,
-            contact: None,
-            solver: EquilibriumSolver::new(
-                grid,
-                &cases::supports(&case),
-                &cases::loads(&case),
-                get(&case, "nsteps"),
-                SolverSettings::default(),
-            )
-            .unwrap(),
-        })),
+        model: mechanics(law, solver(grid, &supports, &loads, get(&case, "nsteps"))),
         objective: Objective {
             shape: Shape {
                 target: get(&case, "target"),
@@ -107,9 +92,10 @@ fn a_pulled_sheet_with_path_functionals() {
     let evaluation = problem.evaluate(&design).unwrap();
 
     let sheet = &evaluation.deployment.sheet;
+    let [w_lig, alpha]: [Vec<f64>; 2] = ["w_lig", "alpha"].map(|key| get(&case, key));
     for (h, hinge) in sheet.hinges.iter().enumerate() {
-        assert!((hinge.w_lig - get::<Vec<f64>>(&case, "w_lig")[h]).abs() < 1e-14);
-        assert!((hinge.alpha - get::<Vec<f64>>(&case, "alpha")[h]).abs() < 1e-12);
+        assert_close(hinge.w_lig, w_lig[h], 1e-14);
+        assert_close(hinge.alpha, alpha[h], 1e-12);
     }
     let configurations: Vec<Vec<[f64; 3]>> = get(&case, "q_path");
     for (step, expected) in std::iter::zip(&evaluation.deployment.path, &configurations) {
@@ -118,7 +104,6 @@ fn a_pulled_sheet_with_path_functionals() {
 
     let close = |found: f64, expected: f64| (found - expected).abs() <= 1e-6 * expected.abs();
     let terms = &case["terms"];
-    let sheet = &evaluation.deployment.sheet;
     let (target, coverage): (Vec<[f64; 2]>, f64) = (get(&case, "target"), get(&case, "w_cov"));
     let outline = sheet.outline_corners();
     let points = evaluation.deployment.outline(&outline);
@@ -151,11 +136,7 @@ fn a_pulled_sheet_with_path_functionals() {
         .map(|(gradient, change)| gradient + change)
         .collect();
 
-    let expected = DesignVector {
-        pattern: cases::coordinates(&case["grad"]),
-        omega: get(&case["grad"], "omega"),
-        opening: None,
-    };
+    let expected = vector(&case, "grad");
     for (found, expected) in std::iter::zip(found, expected.to_flat()) {
         assert!(close(found, expected), "{found} {expected}");
     }

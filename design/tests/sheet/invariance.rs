@@ -1,39 +1,20 @@
 //! Invariances of a sheet: units, orientation, mirror image; and conservation of energy: the hinges store
 //! the work of the loads.
 
-use crate::cases::{AT_CORNER, case, coordinates, difference, outline, pattern};
-use crate::closed_forms::{clamp, path};
-use crate::random::Random;
-use crate::taylor::tiny;
-use design::equilibrium::load_step::{LoadStep, Status};
-use design::equilibrium::supports::{Dof, Load, Support};
-use design::hinge_law::{HingeLaw, LinearLaw};
-use design::pattern::coordinates::PatternCoordinates;
-use design::pattern::cut_pattern::{CutPattern, Outline};
-use design::pattern::grid::{Endpoint, Grid};
-use design::sheet::cut_sheet::{Hinge, HingePoint, Sheet, SheetOptions};
-use design::sheet::cutting_process::CuttingProcess;
+use crate::cases;
+use crate::prelude::*;
+use crate::taylor::{springs, tiny};
 use std::f64::consts::PI;
 
-const CONSTANTS: [f64; 3] = [90.0, 40.0, 0.8];
-
-/// The random 3 x 3 sheet with another outline, hinges `w_lig` wide.
-fn on(outline: Outline, w_lig: f64, hinge_point: HingePoint) -> Sheet {
-    cut(outline, w_lig, hinge_point, AT_CORNER.process.kerf)
-}
-
-fn cut(outline: Outline, w_lig: f64, hinge_point: HingePoint, kerf: f64) -> Sheet {
-    let case = case("p1_3x3_random");
-    let grid = Grid { m: 3, n: 3 };
-    let pattern = CutPattern::new(grid, outline, &coordinates(&case)).unwrap();
+/// The random 3 x 3 sheet with another outline and kerf.
+fn on(corners: [[f64; 2]; 4], w_lig: f64, hinge_point: HingePoint, kerf: f64) -> Sheet {
+    let coordinates = coordinates(&case("p1_3x3_random"));
+    let (grid, outline) = (Grid { m: 3, n: 3 }, Outline { corners });
     let options = SheetOptions {
         hinge_point,
-        process: CuttingProcess {
-            kerf,
-            ..AT_CORNER.process
-        },
+        process: CuttingProcess { kerf, ..PROCESS },
     };
-    Sheet::new(&pattern, &[w_lig; 12], options).unwrap()
+    cut(grid, outline, &coordinates, w_lig, options)
 }
 
 fn turned([x, y]: [f64; 2], angle: f64) -> [f64; 2] {
@@ -49,9 +30,8 @@ fn pulled(
     couple: f64,
     steps: usize,
 ) -> Vec<LoadStep> {
-    let load = |panel, dof, value| Load { panel, dof, value };
     let loads = [
-        load(5, Dof::UX, force[0]),
+        pull(5, force[0]),
         load(5, Dof::UY, force[1]),
         load(7, Dof::Phi, couple),
     ];
@@ -60,23 +40,16 @@ fn pulled(
 
 #[test]
 fn another_unit_of_length_or_force_gives_the_same_shape() {
-    let original = outline(&case("p1_3x3_random"));
-    let [k_a, k_s, k_theta] = CONSTANTS;
+    let original = cases::outline(&case("p1_3x3_random"));
+    let [k_a, k_s, k_theta] = SPRINGS;
     let deployed = |length: f64, force: f64| {
-        let outline = Outline {
-            corners: original.corners.map(|corner| corner.map(|x| length * x)),
-        };
-        let sheet = cut(outline, 0.1 * length, HingePoint::CutTip, 0.02 * length);
+        let corners = original.corners.map(|corner| corner.map(|x| length * x));
+        let sheet = on(corners, 0.1 * length, HingePoint::CutTip, 0.02 * length);
         let constants = [k_a / length, k_s / length, k_theta * length].map(|k| force * k);
-        let law = LinearLaw::uniform(constants, 12);
-        let path = pulled(
-            &sheet,
-            &law,
-            [1.2 * force, 0.3 * force],
-            0.2 * force * length,
-            5,
-        );
-        assert!(path.iter().all(|step| step.status == Status::Converged));
+        let law = uniform(constants, &sheet);
+        let (pull, couple) = ([1.2 * force, 0.3 * force], 0.2 * force * length);
+        let path = pulled(&sheet, &law, pull, couple, 5);
+        assert!(converged(&path));
         let last = path[4].configuration.iter();
         let scaled: Vec<[f64; 3]> = last
             .map(|[x, y, phi]| [x / length, y / length, *phi])
@@ -88,7 +61,7 @@ fn another_unit_of_length_or_force_gives_the_same_shape() {
     for (length, force) in [(1e3, 1.0), (1e-3, 1.0), (1.0, 1e-3), (1e3, 1e6)] {
         let (found, energy) = deployed(length, force);
         assert!(difference(&found, &expected) < 1e-8, "{length} {force}");
-        assert!((energy / potential - 1.0).abs() < 1e-9);
+        assert_ratio(energy, potential, 1e-9);
     }
 }
 
@@ -96,19 +69,13 @@ fn another_unit_of_length_or_force_gives_the_same_shape() {
 fn a_scene_rotated_as_a_whole_deploys_alike() {
     let square = Outline::rectangle(300.0, 300.0);
     let laws: [(&dyn HingeLaw, HingePoint, f64); 2] = [
-        (
-            &LinearLaw::uniform([20.0, 12.0, 1500.0], 12),
-            HingePoint::Corner,
-            12.0,
-        ),
+        (&springs(), HingePoint::Corner, 12.0),
         (&tiny(), HingePoint::CutTip, 1.0),
     ];
     for (law, hinge_point, force) in laws {
         let deployed = |angle: f64| {
-            let outline = Outline {
-                corners: square.corners.map(|corner| turned(corner, angle)),
-            };
-            let sheet = on(outline, 16.0, hinge_point);
+            let corners = square.corners.map(|corner| turned(corner, angle));
+            let sheet = on(corners, 16.0, hinge_point, PROCESS.kerf);
             pulled(&sheet, law, turned([force, 0.0], angle), 20.0 * force, 4)
         };
         let expected = deployed(0.0);
@@ -120,7 +87,7 @@ fn a_scene_rotated_as_a_whole_deploys_alike() {
                 };
                 let found_back: Vec<[f64; 3]> = found.configuration.iter().map(back).collect();
                 assert!(difference(&found_back, &expected.configuration) < 1e-6);
-                assert!((found.potential / expected.potential - 1.0).abs() < 1e-9);
+                assert_ratio(found.potential, expected.potential, 1e-9);
             }
         }
     }
@@ -145,11 +112,11 @@ fn a_mirrored_sheet_deploys_as_the_mirror_image() {
         ell: [reversed(bottom), left.clone(), reversed(top), right.clone()],
     };
     let stiffness: Vec<[f64; 3]> = (0..grid.hinge_count())
-        .map(|_| CONSTANTS.map(|k| k * (1.0 + random.number(0.3))))
+        .map(|_| SPRINGS.map(|k| k * (1.0 + random.number(0.3))))
         .collect();
     let sheet = |coordinates: &PatternCoordinates| {
-        let pattern = CutPattern::new(grid, Outline::rectangle(4.0, 3.0), coordinates).unwrap();
-        Sheet::new(&pattern, &vec![0.1; grid.hinge_count()], AT_CORNER).unwrap()
+        let outline = Outline::rectangle(4.0, 3.0);
+        cut(grid, outline, coordinates, 0.1, AT_CORNER)
     };
     let (one, other) = (sheet(&drawn), sheet(&mirrored));
     // For each hinge of `other`, the hinge of `one` that it is the image of.
@@ -165,20 +132,16 @@ fn a_mirrored_sheet_deploys_as_the_mirror_image() {
     };
     let images: Vec<usize> = other.hinges.iter().map(image).collect();
     for (hinge, &image) in std::iter::zip(&other.hinges, &images) {
-        assert!((hinge.alpha + one.hinges[image].alpha - PI).abs() < 1e-12);
+        assert_close(hinge.alpha + one.hinges[image].alpha, PI, 1e-12);
     }
     let mirrored_stiffness = images.iter().map(|&image| stiffness[image]).collect();
     let deployed = |sheet: &Sheet, stiffness: Vec<[f64; 3]>, [held, loaded]: [usize; 2], side| {
-        let load = |dof, value| Load {
-            panel: loaded,
-            dof,
-            value,
-        };
-        let loads = [
-            load(Dof::UX, side * 1.2),
-            load(Dof::UY, 0.4),
-            load(Dof::Phi, side * 0.1),
+        let forces = [
+            (Dof::UX, side * 1.2),
+            (Dof::UY, 0.4),
+            (Dof::Phi, side * 0.1),
         ];
+        let loads = forces.map(|(dof, value)| load(loaded, dof, value));
         let law = LinearLaw { stiffness };
         path(sheet, &law, &clamp(held), &loads, 4)
     };
@@ -203,9 +166,9 @@ fn a_mirrored_sheet_deploys_as_the_mirror_image() {
 /// f . q over zeta, computed by Simpson's rule.
 #[test]
 fn hinges_store_the_work_of_the_loads() {
-    let sheet = on(Outline::rectangle(300.0, 300.0), 16.0, HingePoint::CutTip);
-    let linear = LinearLaw::uniform([20.0, 12.0, 1500.0], 12);
-    let laws: [(&dyn HingeLaw, f64); 2] = [(&linear, 12.0), (&tiny(), 0.5)];
+    let square = Outline::rectangle(300.0, 300.0);
+    let sheet = on(square.corners, 16.0, HingePoint::CutTip, PROCESS.kerf);
+    let laws: [(&dyn HingeLaw, f64); 2] = [(&springs(), 12.0), (&tiny(), 0.5)];
     for (law, force) in laws {
         let lost = |steps: usize| {
             let path = pulled(&sheet, law, [force, 0.0], 20.0 * force, steps);
@@ -234,15 +197,10 @@ fn hinges_store_the_work_of_the_loads() {
 /// A support moved to the position that a load has reached has that load as its reaction.
 #[test]
 fn a_moved_support_has_the_load_as_its_reaction() {
-    let sheet = Sheet::new(&pattern(&case("p1_3x3_random")), &[0.1; 12], AT_CORNER).unwrap();
-    let law = LinearLaw::uniform(CONSTANTS, 12);
+    let sheet = sheet_of("p1_3x3_random");
+    let law = uniform(SPRINGS, &sheet);
     let loaded = pulled(&sheet, &law, [1.5, 0.0], 0.0, 6);
-    let way = loaded[5].configuration[5][0];
-    let moved = Support {
-        panel: 5,
-        dof: Dof::UX,
-        value: way,
-    };
+    let moved = support(5, Dof::UX, loaded[5].configuration[5][0]);
     let supports = [clamp(3).as_slice(), &[moved]].concat();
     let held = path(&sheet, &law, &supports, &[], 6);
     assert!(difference(&held[5].configuration, &loaded[5].configuration) < 1e-8);

@@ -1,29 +1,20 @@
 //! (8) and its derivatives: finite differences, objectivity, and the relation between its two reference
 //! points.
 
-use crate::cases::{AT_CORNER, case, pattern};
-use crate::derivatives::central_slope;
-use crate::random::Random;
-use design::sheet::cut_sheet::{HingePoint, Sheet, SheetOptions};
-use design::sheet::kinematics::{
-    Configuration, HingeGeometryGradient, HingeMotion, hinge_deformations,
-};
+use crate::cases;
+use crate::prelude::*;
+use design::sheet::kinematics::{Configuration, HingeGeometryGradient, HingeMotion};
 
-fn sheet(hinge_point: HingePoint) -> Sheet {
-    let pattern = pattern(&case("p1_3x3_random"));
-    let options = SheetOptions {
-        hinge_point,
-        process: AT_CORNER.process,
-    };
+fn sheet(options: SheetOptions) -> Sheet {
+    let pattern = cases::pattern(&case("p1_3x3_random"));
     let widths = Random::new(1).numbers(pattern.grid.hinge_count(), 0.05);
     let widths: Vec<f64> = widths.iter().map(|w| 0.1 + w).collect();
     Sheet::new(&pattern, &widths, options).unwrap()
 }
 
 fn deformation(sheet: &Sheet, hinge: usize, configuration: &[[f64; 3]]) -> [f64; 3] {
-    HingeMotion::new(sheet, hinge, configuration)
-        .deformation()
-        .to_array()
+    let motion = HingeMotion::new(sheet, hinge, configuration);
+    motion.deformation().to_array()
 }
 
 /// The configuration with the motions of the two panels of a hinge replaced.
@@ -43,16 +34,14 @@ fn unit<const N: usize>(i: usize) -> [f64; N] {
     std::array::from_fn(|j| f64::from(i == j))
 }
 
-fn assert_close(found: f64, expected: f64) {
-    assert!(
-        (found - expected).abs() < 1e-8 * (1.0 + expected.abs()),
-        "{found} instead of {expected}"
-    );
+/// 1e-8 of the slope, and of one.
+fn allowed(slope: f64) -> f64 {
+    1e-8 * (1.0 + slope.abs())
 }
 
 #[test]
 fn first_and_second_derivatives_in_the_panel_motions() {
-    let sheet = sheet(HingePoint::CutTip);
+    let sheet = sheet(AT_TIP);
     let mut random = Random::new(2);
     let q = random.arrays(sheet.panels.len(), 0.7);
     for h in 0..sheet.hinges.len() {
@@ -72,16 +61,16 @@ fn first_and_second_derivatives_in_the_panel_motions() {
             let motion = HingeMotion::new(&sheet, h, &q);
             motion.forces(forces_at(motion.deformation().to_array()))
         };
-        let forces = forces_at(motion.deformation().to_array());
-        for (i, row) in motion.stiffness(&tangent, forces).into_iter().enumerate() {
-            for (c, rate) in motion.rates(unit(i)).into_iter().enumerate() {
-                let slope = |x: &[f64]| deformation(&sheet, h, &with_motion(&sheet, h, &q, x))[c];
-                assert_close(rate, central_slope(slope, &x, &unit::<6>(i), 1e-6));
-                assert_close(motion.forces(unit(c))[i], rate);
-            }
-            for (j, entry) in row.into_iter().enumerate() {
-                let slope = central_slope(|x| panel_forces(x)[i], &x, &unit::<6>(j), 1e-6);
-                assert_close(entry, slope);
+        let stiffness = motion.stiffness(&tangent, forces_at(motion.deformation().to_array()));
+        for (i, row) in stiffness.iter().enumerate() {
+            assert_gradient(|x| panel_forces(x)[i], &x, row, 1e-6, allowed);
+        }
+        for c in 0..3 {
+            let rates: [f64; 6] = std::array::from_fn(|i| motion.rates(unit(i))[c]);
+            let value = |x: &[f64]| deformation(&sheet, h, &with_motion(&sheet, h, &q, x))[c];
+            assert_gradient(value, &x, &rates, 1e-6, allowed);
+            for (force, rate) in std::iter::zip(motion.forces(unit(c)), rates) {
+                assert_close(force, rate, allowed(rate));
             }
         }
     }
@@ -89,7 +78,7 @@ fn first_and_second_derivatives_in_the_panel_motions() {
 
 #[test]
 fn derivatives_in_the_flat_geometry() {
-    let flat = sheet(HingePoint::CutTip);
+    let flat = sheet(AT_TIP);
     let mut random = Random::new(3);
     let q = random.arrays(flat.panels.len(), 0.7);
     for h in 0..flat.hinges.len() {
@@ -110,24 +99,15 @@ fn derivatives_in_the_flat_geometry() {
         x[4..6].copy_from_slice(&flat.panels[b].reference);
         x[6] = e_y.atan2(e_x);
         let (weights, virtual_motion) = (random.arrays(1, 1.0)[0], random.arrays(1, 1.0)[0]);
-        let weighted = |eps: [f64; 3]| -> f64 {
-            std::iter::zip(weights, eps)
-                .map(|(w, e): (f64, f64)| w * e)
-                .sum()
-        };
+        let weighted = |eps: [f64; 3]| std::iter::zip(weights, eps).map(|(w, e): (f64, f64)| w * e);
         let motion = HingeMotion::new(&flat, h, &q);
         let by_deformation = flattened(motion.geometry_gradient(weights));
+        let value = |x: &[f64]| weighted(deformation(&moved(x), h, &q)).sum();
+        assert_gradient(value, &x, &by_deformation, 1e-6, allowed);
         let by_rates = flattened(motion.rates_geometry_gradient(weights, virtual_motion));
-        for i in 0..7 {
-            let value = |x: &[f64]| weighted(deformation(&moved(x), h, &q));
-            assert_close(
-                by_deformation[i],
-                central_slope(value, &x, &unit::<7>(i), 1e-6),
-            );
-            let value =
-                |x: &[f64]| weighted(HingeMotion::new(&moved(x), h, &q).rates(virtual_motion));
-            assert_close(by_rates[i], central_slope(value, &x, &unit::<7>(i), 1e-6));
-        }
+        let rates = |sheet: &Sheet| HingeMotion::new(sheet, h, &q).rates(virtual_motion);
+        let value = |x: &[f64]| weighted(rates(&moved(x))).sum();
+        assert_gradient(value, &x, &by_rates, 1e-6, allowed);
     }
 }
 
@@ -139,7 +119,7 @@ fn flattened(gradient: HingeGeometryGradient) -> [f64; 7] {
 
 #[test]
 fn a_rigid_motion_of_the_whole_sheet_deforms_no_hinge() {
-    let sheet = sheet(HingePoint::CutTip);
+    let sheet = sheet(AT_TIP);
     let q: Configuration = Random::new(4).arrays(sheet.panels.len(), 0.5);
     for (shift, angle) in [([3.0, -2.0], 0.0), ([0.0, 0.0], 2.5), ([-1.0, 4.0], -1.1)] {
         let (sin, cos) = f64::sin_cos(angle);
@@ -154,13 +134,10 @@ fn a_rigid_motion_of_the_whole_sheet_deforms_no_hinge() {
                 ]
             })
             .collect();
-        let pairs = std::iter::zip(
-            hinge_deformations(&sheet, &q),
-            hinge_deformations(&sheet, &turned),
-        );
-        for (before, after) in pairs {
+        let [before, after] = [&q, &turned].map(|q| hinge_deformations(&sheet, q));
+        for (before, after) in std::iter::zip(before, after) {
             for (before, after) in std::iter::zip(before.to_array(), after.to_array()) {
-                assert!((before - after).abs() < 2e-13);
+                assert_close(before, after, 2e-13);
             }
         }
     }
@@ -168,13 +145,10 @@ fn a_rigid_motion_of_the_whole_sheet_deforms_no_hinge() {
 
 #[test]
 fn tip_and_corner_measure_the_same_motion() {
-    let (at_corner, at_tip) = (sheet(HingePoint::Corner), sheet(HingePoint::CutTip));
+    let (at_corner, at_tip) = (sheet(AT_CORNER), sheet(AT_TIP));
     let q = Random::new(5).arrays(at_corner.panels.len(), 0.6);
-    let pairs = std::iter::zip(
-        hinge_deformations(&at_corner, &q),
-        hinge_deformations(&at_tip, &q),
-    );
-    for (hinge, (corner, tip)) in std::iter::zip(&at_tip.hinges, pairs) {
+    let [corners, tips] = [&at_corner, &at_tip].map(|sheet| hinge_deformations(sheet, &q));
+    for (hinge, (corner, tip)) in at_tip.hinges.iter().zip(std::iter::zip(corners, tips)) {
         let opening = 2.0 * hinge.set_back * (0.5 * corner.theta).sin();
         assert!((tip.a - corner.a - opening).abs() < 1e-13);
         assert!((tip.s - corner.s - opening / hinge.alpha.tan()).abs() < 1e-13);

@@ -1,26 +1,14 @@
 //! Limits of the ideal deployment and the validity of patterns, for several sizes, outlines, r and tau.
 
-use crate::cases::{self, AT_CORNER, case};
-use crate::random::Random;
-use design::pattern::coordinates::PatternCoordinates;
-use design::pattern::cut_pattern::{CutPattern, Outline};
-use design::pattern::grid::Grid;
-use design::sheet::cut_sheet::Sheet;
-use design::sheet::ideal_deployment::ideal_deployment;
+use crate::cases;
+use crate::prelude::*;
 use design::sheet::opening_limits::{CONTACT, Span};
 use design::sheet::validity::{Validity, overlap};
 use hinge::TrainingDomain;
 use std::f64::consts::{FRAC_PI_2, PI, SQRT_2};
 
 fn random(random: &mut Random, grid: Grid, size: f64) -> (CutPattern, Sheet) {
-    let mut coordinates = PatternCoordinates::uniform(grid);
-    let edges = coordinates.ell.iter_mut().flatten();
-    let all = coordinates.z.iter_mut().chain(edges);
-    all.for_each(|x| *x = random.number(size));
-    let outline = Outline {
-        corners: [[0.0, 0.0], [3.2, -0.3], [2.7, 2.9], [-0.4, 3.3]],
-    };
-    let pattern = CutPattern::new(grid, outline, &coordinates).unwrap();
+    let pattern = CutPattern::new(grid, TAPERED, &drawn(random, grid, size)).unwrap();
     let sheet = Sheet::new(&pattern, &vec![0.02; grid.hinge_count()], AT_CORNER).unwrap();
     (pattern, sheet)
 }
@@ -38,10 +26,7 @@ fn patterns_are_valid_and_open_without_overlap_up_to_the_second_contact() {
             assert!(min > 0.0 && max < 180.0);
             for fraction in [0.02, 0.3, 0.6, 0.98] {
                 let theta = CONTACT[0] + fraction * (CONTACT[1] - CONTACT[0]);
-                assert!(
-                    overlap(&sheet, &ideal_deployment(&sheet, theta)) < 1e-12,
-                    "{m} x {n} {fraction}"
-                );
+                assert!(overlap(&sheet, &ideal_deployment(&sheet, theta)) < 1e-12);
             }
             for beyond in [-0.05, PI + 0.05] {
                 assert!(overlap(&sheet, &ideal_deployment(&sheet, beyond)) > 0.0);
@@ -52,22 +37,20 @@ fn patterns_are_valid_and_open_without_overlap_up_to_the_second_contact() {
 
 #[test]
 fn the_maximum_stretch_is_that_of_equation_six_and_no_opening_exceeds_it() {
-    let square = cases::sheet(&case("p0_3x3_uniform"));
+    let square = sheet_of("p0_3x3_uniform");
     for span in Span::of_sheet(&square) {
-        assert!((span.lambda_max - SQRT_2).abs() < 1e-12);
-        assert!((span.theta_max - FRAC_PI_2).abs() < 1e-12);
+        assert_close(span.lambda_max, SQRT_2, 1e-12);
+        assert_close(span.theta_max, FRAC_PI_2, 1e-12);
     }
     let (_, sheet) = random(&mut Random::new(6), Grid { m: 4, n: 5 }, 1.0);
     for (from, to) in [(0, 19), (3, 16), (8, 11)] {
         let span = Span::between(&sheet, from, to);
-        assert!((span.stretch(span.theta_max) - span.lambda_max).abs() < 1e-12);
+        assert_close(span.stretch(span.theta_max), span.lambda_max, 1e-12);
         for i in 0..50 {
             let theta = f64::from(i) * PI / 50.0;
             let q = ideal_deployment(&sheet, theta);
-            let centre = |k: usize| [0, 1].map(|c| sheet.panels[k].centroid[c] + q[k][c]);
-            let ([ax, ay], [bx, by]) = (centre(from), centre(to));
-            let stretch = f64::hypot(bx - ax, by - ay) / span.flat;
-            assert!((stretch - span.stretch(theta)).abs() < 1e-12);
+            let stretch = apart(&sheet, &q, [from, to]) / span.flat;
+            assert_close(stretch, span.stretch(theta), 1e-12);
             assert!(stretch <= span.lambda_max + 1e-12);
         }
     }
@@ -88,12 +71,13 @@ fn windows_and_cut_angles_are_compared_with_the_hinges() {
     let trained = domain([1.0, 2.0], [0.05, 0.2]);
     let roomy = measured(0.3, &trained);
     assert_eq!((roomy.crowded_hinges, roomy.untrained_hinges), (0, 0));
-    assert!((roomy.trained_alpha_deg.unwrap()[0] - 1.0_f64.to_degrees()).abs() < 1e-12);
+    assert_close(
+        roomy.trained_alpha_deg.unwrap()[0],
+        1.0_f64.to_degrees(),
+        1e-12,
+    );
     assert_eq!(measured(0.8, &trained).crowded_hinges, 12);
-    for elsewhere in [
-        domain([1.6, 2.0], [0.05, 0.2]),
-        domain([1.0, 2.0], [0.2, 0.3]),
-    ] {
-        assert_eq!(measured(0.3, &elsewhere).untrained_hinges, 12);
+    for (alpha, w_lig) in [([1.6, 2.0], [0.05, 0.2]), ([1.0, 2.0], [0.2, 0.3])] {
+        assert_eq!(measured(0.3, &domain(alpha, w_lig)).untrained_hinges, 12);
     }
 }

@@ -19,6 +19,7 @@ mod limits;
 mod load_steps;
 mod nearby_paths;
 mod pattern;
+mod prelude;
 mod pullbacks;
 mod random;
 mod released;

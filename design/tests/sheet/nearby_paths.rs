@@ -1,20 +1,13 @@
 //! Paths corrected from those of designs near them are the paths that are followed, or none.
 
-use crate::cases::difference;
-use crate::load_steps::scene;
-use design::equilibrium::load_step::LoadStep;
-use design::objective::design_problem::{DesignProblem, Evaluation};
-use design::pattern::design_vector::DesignVector;
-use design::scene::Scene;
+use crate::prelude::*;
+use design::equilibrium::nearby_path::KnownPath;
 
 /// A random design of a polyester sheet with learned hinges.
 fn learned(noise: f64, seed: u64) -> Scene {
-    scene("a4-polyester.toml", |config| {
+    alone("a4-polyester.toml", |config| {
         config.optimiser.start_noise = noise;
         config.optimiser.seed = seed;
-        if let Some(surrogate) = &mut config.surrogate {
-            surrogate.ensemble.clear();
-        }
     })
 }
 
@@ -32,10 +25,6 @@ fn both(problem: &DesignProblem, start: &DesignVector, by: f64) -> [Evaluation; 
     [None, Some(&known)].map(|known| problem.evaluate_near(&near, known).unwrap())
 }
 
-fn smooth(path: &[LoadStep]) -> bool {
-    path.iter().all(|step| step.jumps == 0)
-}
-
 #[test]
 fn a_corrected_path_is_the_followed_path() {
     let mut compared = 0;
@@ -48,14 +37,14 @@ fn a_corrected_path_is_the_followed_path() {
             continue;
         }
         compared += 1;
-        assert!(followed.deployment.followed && smooth(steps[0]), "{seed}");
+        let smooth = steps[0].iter().all(|step| step.jumps == 0);
+        assert!(followed.deployment.followed && smooth, "{seed}");
         for (a, b) in std::iter::zip(steps[0], steps[1]) {
             let apart = difference(&a.configuration, &b.configuration);
             assert!(apart < 1e-7, "{seed}: {apart:e} mm");
             assert_eq!(a.status, b.status);
         }
-        let loss = corrected.loss / followed.loss - 1.0;
-        assert!(loss.abs() < 1e-10, "{seed}: {loss:e}");
+        assert_ratio(corrected.loss, followed.loss, 1e-10);
         let gradients = [&followed, &corrected].map(|evaluation| evaluation.gradient.to_flat());
         let norm = |x: &[f64]| x.iter().map(|x| x * x).sum::<f64>().sqrt();
         let apart: Vec<f64> = std::iter::zip(&gradients[0], &gradients[1])
@@ -75,13 +64,11 @@ fn the_effort_falls_with_the_change_of_the_design() {
         let paths = both(&problem, &scene.start(), by).map(|evaluation| evaluation.deployment);
         assert!(!paths[1].followed, "{by}");
         paths.map(|deployment| {
-            let efforts = deployment.path.iter().map(|step| step.effort);
-            efforts.fold([0; 2], |[iterations, factorisations], effort| {
-                [
-                    iterations + effort.iterations,
-                    factorisations + effort.factorisations,
-                ]
-            })
+            let total = |of: fn(&LoadStep) -> usize| deployment.path.iter().map(of).sum::<usize>();
+            [
+                total(|step| step.effort.iterations),
+                total(|step| step.effort.factorisations),
+            ]
         })
     };
     let [followed, far] = effort(0.05);
@@ -96,20 +83,16 @@ fn a_path_that_cannot_be_corrected_is_followed() {
     let problem = scene.problem().unwrap();
     let start = scene.start();
     let known = problem.evaluate(&start).unwrap().deployment.known_path();
-    let followed = |problem: &DesignProblem, design: &DesignVector| {
-        let evaluation = problem.evaluate_near(design, Some(&known)).unwrap();
+    let followed = |design: &DesignVector, known: &KnownPath| {
+        let evaluation = problem.evaluate_near(design, Some(known)).unwrap();
         evaluation.deployment.followed
     };
-    assert!(!followed(&problem, &beside(&start, 0.01)));
+    assert!(!followed(&beside(&start, 0.01), &known));
     // Another design altogether.
-    assert!(followed(&problem, &beside(&start, 3.0)));
+    assert!(followed(&beside(&start, 3.0), &known));
     // A known path that jumps, or ends early.
-    let mut jumps = known.clone();
+    let [mut jumps, mut short] = [known.clone(), known];
     jumps.steps[3].jumps = 1;
-    let mut short = known.clone();
     short.steps.pop();
-    for known in [jumps, short] {
-        let evaluation = problem.evaluate_near(&start, Some(&known)).unwrap();
-        assert!(evaluation.deployment.followed);
-    }
+    assert!(followed(&start, &jumps) && followed(&start, &short));
 }

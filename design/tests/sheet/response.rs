@@ -1,24 +1,16 @@
 //! The equilibrium at full load as a function: its gradient in every input by Taylor remainders, balance of loads, reactions and
 //! weight, and inputs that are refused.
 
-use crate::derivatives::TaylorRemainders;
-use design::equilibrium::load_step::{DescentEnd, Status};
-use design::equilibrium::solver::EquilibriumError;
+use crate::prelude::*;
+use design::equilibrium::load_step::DescentEnd;
 use design::objective::response::{Conditions, Response, ResponseCotangent};
-use design::{DesignError, DesignProblem, DesignVector, Scene};
-use std::path::Path;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Dead loads on a clamped film; a hanging plate, heavy and with a prescribed stroke; springs.
 const SCENES: [&str; 3] = ["pet-3x3", "a4-plate", "linear-7x7"];
 
 fn problem(scene: &str) -> (DesignProblem, DesignVector) {
-    let path = format!(
-        "{}/../configs/scenes/{scene}.toml",
-        env!("CARGO_MANIFEST_DIR")
-    );
-    let scene = Scene::read(Path::new(&path)).unwrap();
+    let scene = crate::prelude::scene(&format!("{scene}.toml"), |_| ());
     (scene.problem().unwrap(), scene.start())
 }
 
@@ -26,33 +18,35 @@ fn loads(problem: &DesignProblem) -> Vec<[f64; 3]> {
     problem.model.mechanics().unwrap().solver.loads().to_vec()
 }
 
+fn loaded(loads: Vec<[f64; 3]>) -> Conditions {
+    Conditions {
+        loads: Some(loads),
+        ..Conditions::default()
+    }
+}
+
+fn largest(values: &[f64]) -> f64 {
+    values.iter().fold(0.0, |most: f64, x| most.max(x.abs()))
+}
+
 /// A vector with entries of order one that has no symmetry.
 fn wave(length: usize, phase: f64) -> Vec<f64> {
-    (0..length)
-        .map(|i| (1.7 * i as f64 + phase).sin())
-        .collect()
+    let entries = (0..length).map(|i| (1.7 * i as f64 + phase).sin());
+    entries.collect()
 }
 
 fn triples(values: &[f64]) -> Vec<[f64; 3]> {
-    values
-        .chunks(3)
-        .map(|row| [row[0], row[1], row[2]])
-        .collect()
+    values.as_chunks().0.to_vec()
 }
 
 /// A function of the outputs: linear in forces and the load factor, quadratic in the corners.
 fn value(response: &Response) -> f64 {
     let by = cotangent(response);
+    let by_corners = by.corners.as_flattened().as_flattened();
     let corners = response.corners();
-    let corners = std::iter::zip(by.corners.as_flattened(), corners.as_flattened());
-    let forces = std::iter::zip(
-        by.reactions.as_flattened(),
-        response.reactions.as_flattened(),
-    );
-    corners
-        .map(|(by, at)| 0.5 * (by[0] * at[0] + by[1] * at[1]))
-        .sum::<f64>()
-        + forces.map(|(by, force)| by * force).sum::<f64>()
+    let reactions = response.reactions.as_flattened();
+    0.5 * dot(by_corners, corners.as_flattened().as_flattened())
+        + dot(by.reactions.as_flattened(), reactions)
         + by.load_factor * response.state().load_factor
 }
 
@@ -80,16 +74,14 @@ impl Inputs {
         let start = design.to_flat();
         let (by_design, rest) = x.split_at(start.len());
         let (by_loads, by_logarithms) = rest.split_at(3 * loads.len());
-        let moved: Vec<f64> = std::iter::zip(start, by_design)
-            .map(|(x, d)| x + d)
-            .collect();
+        let moved = std::iter::zip(start, by_design).map(|(x, d)| x + d);
         let loads: Vec<f64> = (loads.as_flattened().iter())
             .zip(by_loads)
             .zip(free.as_flattened())
             .map(|((load, d), free)| load + free * d)
             .collect();
         Self {
-            design: design.with_flat(&moved),
+            design: design.with_flat(&moved.collect::<Vec<_>>()),
             conditions: Conditions {
                 loads: Some(triples(&loads)),
                 thickness: by_logarithms[0].exp(),
@@ -114,12 +106,8 @@ fn the_gradient_in_every_input() {
         let variable = |panel: usize, d: usize| {
             let mut with = vec![[0.0; 3]; loads.len()];
             with[panel][d] = 1.0;
-            let conditions = Conditions {
-                loads: Some(with),
-                ..Conditions::default()
-            };
             let kink = driven && d < 2 && loads[panel][..2] == [0.0; 2];
-            problem.under(&conditions).is_ok() && !kink
+            problem.under(&loaded(with)).is_ok() && !kink
         };
         let free: Vec<[f64; 3]> = (0..loads.len())
             .map(|panel| [0, 1, 2].map(|d| f64::from(variable(panel, d))))
@@ -128,10 +116,7 @@ fn the_gradient_in_every_input() {
         let mut gradient = found.design.to_flat();
         gradient.extend(found.loads.as_flattened());
         gradient.extend([found.thickness.unwrap_or(0.0), found.stress.unwrap()]);
-        let load = loads
-            .as_flattened()
-            .iter()
-            .fold(0.0, |most: f64, x| most.max(x.abs()));
+        let load = largest(loads.as_flattened());
         let blocks = [
             ("design", 0..variables, 1.0),
             ("loads", variables..gradient.len() - 2, load),
@@ -144,12 +129,8 @@ fn the_gradient_in_every_input() {
                 continue;
             }
             let mut direction = vec![0.0; gradient.len()];
-            for (entry, wave) in direction[range.clone()]
-                .iter_mut()
-                .zip(wave(range.len(), 0.5))
-            {
-                *entry = size * wave;
-            }
+            let entries = wave(range.len(), 0.5).into_iter().map(|x| size * x);
+            direction.splice(range, entries);
             let free = free.as_flattened();
             for (entry, free) in direction[variables..].iter_mut().zip(free) {
                 *entry *= free;
@@ -163,11 +144,7 @@ fn the_gradient_in_every_input() {
             };
             let flat = vec![0.0; gradient.len()];
             let taylor = TaylorRemainders::new(at, &flat, &gradient, &direction, 4e-3, 4).unwrap();
-            let orders = taylor.orders();
-            assert!(
-                orders.iter().all(|order| (1.9..2.3).contains(order)),
-                "{scene}, {block}: orders {orders:?} of {taylor:?}"
-            );
+            taylor.assert_orders(1.9..2.3);
         }
     }
 }
@@ -187,17 +164,14 @@ fn a_known_configuration_gives_the_same_response() {
             let gradient = problem.response_pullback(&design, response, &by).unwrap();
             gradient.design.to_flat()
         });
-        let size = first.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+        let size = largest(&first);
         for (first, second) in std::iter::zip(first, second) {
-            assert!((first - second).abs() < 1e-8 * size, "{first} {second}");
+            assert_close(first, second, 1e-8 * size);
         }
         let mut elsewhere = configuration.clone();
         elsewhere[4][2] += 0.1;
-        let error = problem.response_at(&design, &elsewhere).err().unwrap();
-        assert!(
-            matches!(error, DesignError::NoEquilibrium { .. }),
-            "{error}"
-        );
+        let refused = problem.response_at(&design, &elsewhere);
+        assert!(matches!(refused, Err(DesignError::NoEquilibrium { .. })));
     }
 }
 
@@ -213,9 +187,8 @@ fn a_draft_is_the_equilibrium_that_a_path_leads_to_where_there_is_one() {
         let followed = problem.draft(&wider, None).unwrap();
         assert!(!draft.deployment.followed && followed.deployment.followed);
         let size = problem.outline.corners[2][0];
-        let corners = [draft.corners(), followed.corners()];
-        let corners = std::iter::zip(corners[0].as_flattened(), corners[1].as_flattened());
-        for (draft, followed) in corners {
+        let [draft, followed] = [draft, followed].map(|it| it.corners());
+        for (draft, followed) in std::iter::zip(draft.as_flattened(), followed.as_flattened()) {
             let apart = (draft[0] - followed[0]).hypot(draft[1] - followed[1]);
             assert!(apart < 1e-6 * size, "{scene}: {apart} mm");
         }
@@ -248,32 +221,26 @@ fn reactions_balance_loads_and_weight() {
             let load: f64 = loads(&problem).iter().map(|load| load[d]).sum();
             let reaction: f64 = response.reactions.iter().map(|reaction| reaction[d]).sum();
             let sum = state.load_factor * load + weight[d] * area + reaction;
-            assert!(
-                sum.abs() < 1e-6 * (1.0 + reaction.abs()),
-                "{scene}: {sum} {reaction}"
-            );
+            assert_close(sum, 0.0, 1e-6 * (1.0 + reaction.abs()));
         }
         // The path of the command line ends in the same state.
         let path = problem.deploy(&design).unwrap();
         assert_ne!(path.final_step().status, Status::Diverged);
-        let of_path = path.final_step().configuration.as_flattened();
-        for (q, expected) in std::iter::zip(state.configuration.as_flattened(), of_path) {
-            assert!((q - expected).abs() < 1e-6, "{scene}: {q} {expected}");
-        }
+        let of_path = &path.final_step().configuration;
+        assert!(difference(&state.configuration, of_path) < 1e-6, "{scene}");
     }
 }
 
 #[test]
 fn what_no_response_is_known_for_is_refused() {
-    let (springs, _) = problem("linear-7x7");
-    let thicker = Conditions {
-        thickness: 1.1,
-        ..Conditions::default()
+    let under = |thickness: f64, stress: f64| Conditions {
+        loads: None,
+        thickness,
+        stress,
     };
-    assert!(matches!(
-        springs.under(&thicker),
-        Err(DesignError::NoSimilarLaw)
-    ));
+    let (springs, _) = problem("linear-7x7");
+    let refused = springs.under(&under(1.1, 1.0));
+    assert!(matches!(refused, Err(DesignError::NoSimilarLaw)));
     let (film, design) = problem("pet-3x3");
     for (thickness, stress) in [
         (0.0, 1.0),
@@ -281,32 +248,18 @@ fn what_no_response_is_known_for_is_refused() {
         (f64::NAN, 1.0),
         (1.0, f64::INFINITY),
     ] {
-        let conditions = Conditions {
-            loads: None,
-            thickness,
-            stress,
-        };
-        assert!(matches!(
-            film.under(&conditions),
-            Err(DesignError::ImpossibleSheet)
-        ));
+        let refused = film.under(&under(thickness, stress));
+        assert!(matches!(refused, Err(DesignError::ImpossibleSheet)));
     }
     let mut on_clamp = loads(&film);
     on_clamp[3][0] = 1.0;
-    let conditions = Conditions {
-        loads: Some(on_clamp),
-        ..Conditions::default()
+    let Err(DesignError::Equilibrium(refused)) = film.under(&loaded(on_clamp)) else {
+        panic!("a load on a clamp");
     };
     assert!(matches!(
-        film.under(&conditions),
-        Err(DesignError::Equilibrium(EquilibriumError::LoadOnSupport {
-            panel: 3,
-            ..
-        }))
+        refused,
+        EquilibriumError::LoadOnSupport { panel: 3, .. }
     ));
-    let (pins, _) = problem("pin-7x7");
-    assert!(matches!(
-        pins.response(&design, None),
-        Err(DesignError::NoMechanics)
-    ));
+    let refused = problem("pin-7x7").0.response(&design, None);
+    assert!(matches!(refused, Err(DesignError::NoMechanics)));
 }

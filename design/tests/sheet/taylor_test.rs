@@ -1,6 +1,6 @@
 //! The Taylor test itself.
 
-use crate::derivatives::TaylorRemainders;
+use crate::prelude::*;
 use std::convert::Infallible;
 
 fn orders(gradient: [f64; 2]) -> Vec<f64> {

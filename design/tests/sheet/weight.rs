@@ -1,53 +1,16 @@
 //! The weight of a sheet, and forces at other points than centroids: closed forms, balances,
 //! independence of the reference point.
 
-use crate::cases::{self, AT_CORNER, case, difference};
-use crate::closed_forms::clamp;
-use design::equilibrium::hinged_sheet::HingedSheet;
-use design::equilibrium::load_step::{LoadStep, Status};
-use design::equilibrium::settings::SolverSettings;
-use design::equilibrium::solver::{EquilibriumError, EquilibriumSolver};
-use design::equilibrium::supports::{Dof, Load, Support};
-use design::hinge_law::{HingeLaw, LinearLaw};
-use design::pattern::coordinates::PatternCoordinates;
-use design::pattern::cut_pattern::{CutPattern, Outline};
-use design::pattern::grid::Grid;
-use design::sheet::cut_sheet::{Grip, PanelPoint, Sheet};
-use design::sheet::kinematics::{deployed, deployed_corners};
-
-fn pulled(panel: usize, dof: Dof, value: f64) -> Load {
-    Load { panel, dof, value }
-}
+use crate::prelude::*;
 
 fn pin(panel: usize) -> [Support; 2] {
-    [Dof::UX, Dof::UY].map(|dof| Support {
-        panel,
-        dof,
-        value: 0.0,
-    })
+    [Dof::UX, Dof::UY].map(|dof| support(panel, dof, 0.0))
 }
 
-fn solver(sheet: &Sheet, supports: &[Support], loads: &[Load], steps: usize) -> EquilibriumSolver {
-    let settings = SolverSettings::default();
-    EquilibriumSolver::new(sheet.grid, supports, loads, steps, settings).unwrap()
-}
-
-fn path(solver: &EquilibriumSolver, sheet: &Sheet, stiffness: [f64; 3]) -> Vec<LoadStep> {
-    let law = LinearLaw::uniform(stiffness, sheet.hinges.len());
-    path_with(solver, sheet, &law)
-}
-
+/// A path on which every step converges.
 fn path_with(solver: &EquilibriumSolver, sheet: &Sheet, law: &LinearLaw) -> Vec<LoadStep> {
-    let law = law.prepare(&sheet.designs());
-    let path = solver.path(HingedSheet {
-        sheet,
-        law: &*law,
-        contact: None,
-        damage_gradient: false,
-    });
-    for step in &path {
-        assert_eq!(step.status, Status::Converged, "{step}");
-    }
+    let path = follow(solver, sheet, law, None);
+    assert!(converged(&path));
     path
 }
 
@@ -74,32 +37,25 @@ const K_THETA: f64 = 0.8;
 
 fn pendulum(grips: &[Grip]) -> Pendulum {
     let grid = Grid { m: 2, n: 2 };
+    let outline = Outline::rectangle(2.0, 2.0);
     let coordinates = PatternCoordinates::uniform(grid);
-    let pattern = CutPattern::new(grid, Outline::rectangle(2.0, 2.0), &coordinates).unwrap();
-    let sheet = Sheet::new(&pattern, &[0.1; 4], AT_CORNER).unwrap();
-    let joins =
-        |panel_a, panel_b| [panel_a, panel_b].contains(&0) && [panel_a, panel_b].contains(&1);
-    let of_hinge = |(panel_a, panel_b)| {
-        if joins(panel_a, panel_b) {
-            [1e6, 1e6, K_THETA]
-        } else {
-            [0.0; 3]
-        }
+    let sheet = cut(grid, outline, &coordinates, 0.1, AT_CORNER);
+    let joins = |hinge: &Hinge| {
+        let panels = [hinge.panel_a(), hinge.panel_b()];
+        panels.contains(&0) && panels.contains(&1)
     };
-    let hinges = sheet.hinges.iter();
-    let panels = || {
-        hinges
-            .clone()
-            .map(|hinge| (hinge.panel_a(), hinge.panel_b()))
+    let of_hinge = |hinge: &Hinge| match joins(hinge) {
+        true => [1e6, 1e6, K_THETA],
+        false => [0.0; 3],
     };
-    let pivot = panels().position(|(a, b)| joins(a, b)).unwrap();
+    let pivot = sheet.hinges.iter().find(|hinge| joins(hinge)).unwrap();
     Pendulum {
         law: LinearLaw {
-            stiffness: panels().map(of_hinge).collect(),
+            stiffness: sheet.hinges.iter().map(of_hinge).collect(),
         },
-        pivot: sheet.hinges[pivot].attachment,
-        sheet: sheet.clone().gripped(grips),
+        pivot: pivot.attachment,
         supports: [0, 2, 3].into_iter().flat_map(clamp).collect(),
+        sheet: sheet.gripped(grips),
     }
 }
 
@@ -113,11 +69,12 @@ fn balance([a_x, a_y]: [f64; 2], [f_x, f_y]: [f64; 2]) -> f64 {
     let (mut low, mut high) = (-1.5_f64, 1.5_f64);
     for _ in 0..80 {
         let middle = 0.5 * (low + high);
-        if excess(middle) > 0.0 {
-            low = middle;
+        let end = if excess(middle) > 0.0 {
+            &mut low
         } else {
-            high = middle;
-        }
+            &mut high
+        };
+        *end = middle;
     }
     low
 }
@@ -125,27 +82,19 @@ fn balance([a_x, a_y]: [f64; 2], [f_x, f_y]: [f64; 2]) -> f64 {
 /// A panel that hangs from a stiff pivot with a torsion spring.
 #[test]
 fn a_pendulum_of_two_panels() {
-    let Pendulum {
-        sheet,
-        law,
-        supports,
-        pivot,
-    } = pendulum(&[]);
-    let panel = sheet.panels[1];
-    let arm = [0, 1].map(|c| panel.centroid[c] - pivot[c]);
+    let hung = pendulum(&[]);
+    let panel = hung.sheet.panels[1];
+    let arm = [0, 1].map(|c| panel.centroid[c] - hung.pivot[c]);
     for by_area in [[0.0, -1.0], [0.7, -0.4], [0.0, 2.0]] {
-        let solver = solver(&sheet, &supports, &[], 1);
+        let solver = solver(hung.sheet.grid, &hung.supports, &[], 1);
         let solver = solver.with_weight(by_area).unwrap();
-        let path = path_with(&solver, &sheet, &law);
+        let path = path_with(&solver, &hung.sheet, &hung.law);
         assert_eq!((path.len(), solver.weight_steps()), (3, 2));
         for step in &path {
             let force = by_area.map(|w| step.weight * w * panel.area);
-            let expected = balance(arm, force);
-            let found = step.configuration[1][2];
-            assert!((found - expected).abs() < 2e-6, "{found} {expected}");
+            assert_close(step.configuration[1][2], balance(arm, force), 2e-6);
         }
-        assert_eq!(path[0].weight, 0.5);
-        assert_eq!(path[0].load_factor, 0.0);
+        assert_eq!((path[0].weight, path[0].load_factor), (0.5, 0.0));
     }
 }
 
@@ -153,20 +102,13 @@ fn a_pendulum_of_two_panels() {
 #[test]
 fn a_force_at_the_middle_of_an_edge() {
     for point in [PanelPoint::Middle([1, 2]), PanelPoint::Fixed([1.7, 0.2])] {
-        let Pendulum {
-            sheet,
-            law,
-            supports,
-            pivot,
-        } = pendulum(&[Grip { panel: 1, point }]);
-        let arm = [0, 1].map(|c| sheet.panels[1].reference[c] - pivot[c]);
-        let loads = [pulled(1, Dof::UX, 0.3), pulled(1, Dof::UY, -0.7)];
-        let solver = solver(&sheet, &supports, &loads, 4);
-        for step in path_with(&solver, &sheet, &law) {
+        let gripped = pendulum(&[Grip { panel: 1, point }]);
+        let arm = [0, 1].map(|c| gripped.sheet.panels[1].reference[c] - gripped.pivot[c]);
+        let loads = [pull(1, 0.3), load(1, Dof::UY, -0.7)];
+        let solver = solver(gripped.sheet.grid, &gripped.supports, &loads, 4);
+        for step in path_with(&solver, &gripped.sheet, &gripped.law) {
             let force = [0.3, -0.7].map(|force| step.load_factor * force);
-            let expected = balance(arm, force);
-            let found = step.configuration[1][2];
-            assert!((found - expected).abs() < 2e-6, "{found} {expected}");
+            assert_close(step.configuration[1][2], balance(arm, force), 2e-6);
         }
     }
 }
@@ -175,17 +117,15 @@ fn a_force_at_the_middle_of_an_edge() {
 #[test]
 fn a_sheet_hangs_from_a_nail() {
     let point = PanelPoint::Fixed([0.3, 2.4]);
-    let sheet = cases::sheet(&case("p1_3x3_random")).gripped(&[Grip { panel: 6, point }]);
+    let sheet = sheet_of("p1_3x3_random").gripped(&[Grip { panel: 6, point }]);
     let nail = sheet.panels[6].reference;
     for by_area in [[0.0, -1.0], [0.8, 0.6], [-0.1, 1.0]] {
-        let solver = solver(&sheet, &pin(6), &[], 1);
-        assert_eq!(
-            solver.check_supports(&sheet),
-            Err(EquilibriumError::Unsupported)
-        );
+        let solver = solver(sheet.grid, &pin(6), &[], 1);
+        let unsupported = Err(EquilibriumError::Unsupported);
+        assert_eq!(solver.check_supports(&sheet), unsupported);
         let solver = solver.with_weight(by_area).unwrap();
         solver.check_supports(&sheet).unwrap();
-        let path = path(&solver, &sheet, [1e6, 1e6, 1e5]);
+        let path = path_with(&solver, &sheet, &uniform([1e6, 1e6, 1e5], &sheet));
         let [x, y] = centre_of_gravity(&sheet, &path[2].configuration);
         let below = [x - nail[0], y - nail[1]];
         let along = below[0] * by_area[0] + below[1] * by_area[1];
@@ -193,36 +133,28 @@ fn a_sheet_hangs_from_a_nail() {
         assert!(along > 0.9 && across.abs() < 1e-4, "{along} {across}");
     }
     // At its centre of gravity a sheet hangs in no definite position.
-    let at_rest = vec![[0.0; 3]; 9];
-    let middle = PanelPoint::Fixed(centre_of_gravity(&sheet, &at_rest));
-    let sheet = sheet.gripped(&[Grip {
-        panel: 4,
-        point: middle,
-    }]);
-    let balanced = solver(&sheet, &pin(4), &[], 1).with_weight([0.0, -1.0]);
-    assert_eq!(
-        balanced.unwrap().check_supports(&sheet),
-        Err(EquilibriumError::Unsupported)
-    );
+    let point = PanelPoint::Fixed(centre_of_gravity(&sheet, &[[0.0; 3]; 9]));
+    let sheet = sheet.gripped(&[Grip { panel: 4, point }]);
+    let balanced = solver(sheet.grid, &pin(4), &[], 1).with_weight([0.0, -1.0]);
+    let checked = balanced.unwrap().check_supports(&sheet);
+    assert_eq!(checked, Err(EquilibriumError::Unsupported));
 }
 
 /// The state of a sheet does not depend on which point of a free panel its motion refers to.
 #[test]
 fn the_reference_point_of_a_panel_is_a_convention() {
-    let plain = cases::sheet(&case("p1_3x3_random"));
+    let plain = sheet_of("p1_3x3_random");
     let grip = |panel, point| Grip { panel, point };
     let gripped = plain.clone().gripped(&[
         grip(4, PanelPoint::Middle([0, 1])),
         grip(7, PanelPoint::Fixed([5.0, -3.0])),
     ]);
     let corners = [plain, gripped].map(|sheet| {
-        let solver = solver(&sheet, &clamp(3), &[pulled(5, Dof::UX, 2.0)], 3);
+        let solver = solver(sheet.grid, &clamp(3), &[pull(5, 2.0)], 3);
         let solver = solver.with_weight([0.1, -0.2]).unwrap();
-        let path = path(&solver, &sheet, [90.0, 40.0, 0.8]);
-        path.iter()
-            .flat_map(|step| deployed_corners(&sheet, &step.configuration))
-            .flatten()
-            .collect::<Vec<_>>()
+        let path = path_with(&solver, &sheet, &uniform(SPRINGS, &sheet)).into_iter();
+        let corners = path.flat_map(|step| deployed_corners(&sheet, &step.configuration));
+        corners.flatten().collect::<Vec<_>>()
     });
     assert!(difference(&corners[0], &corners[1]) < 1e-9);
 }
@@ -232,20 +164,12 @@ fn the_reference_point_of_a_panel_is_a_convention() {
 #[test]
 fn the_work_of_weight_and_loads_is_stored() {
     let by_area = [0.05, -0.2];
-    let grips = [Grip {
-        panel: 5,
-        point: PanelPoint::Middle([1, 2]),
-    }];
-    let sheet = cases::sheet(&case("p1_3x3_random")).gripped(&grips);
-    let load = [pulled(5, Dof::UX, 2.0)];
-    for stroke in [None, Some(0.8)] {
-        let solver = solver(&sheet, &clamp(3), &load, 400);
-        let solver = match stroke {
-            Some(stroke) => solver.driven(stroke).unwrap(),
-            None => solver,
-        };
+    let point = PanelPoint::Middle([1, 2]);
+    let sheet = sheet_of("p1_3x3_random").gripped(&[Grip { panel: 5, point }]);
+    let loaded = solver(sheet.grid, &clamp(3), &[pull(5, 2.0)], 400);
+    for solver in [loaded.clone(), loaded.driven(0.8).unwrap()] {
         let solver = solver.with_weight(by_area).unwrap();
-        let path = path(&solver, &sheet, [90.0, 40.0, 0.8]);
+        let path = path_with(&solver, &sheet, &uniform(SPRINGS, &sheet));
         let stored = |step: &LoadStep| step.energies.iter().sum::<f64>();
         let weighed = |step: &LoadStep| -> f64 {
             let panels = std::iter::zip(&sheet.panels, &step.configuration);
@@ -269,14 +193,14 @@ fn the_work_of_weight_and_loads_is_stored() {
         assert!((work - gained).abs() < 1e-5 * gained, "{work} {gained}");
         for step in loaded {
             let expected = stored(step) - weighed(step) - step.load_factor * way(step);
-            assert!((step.potential - expected).abs() < 1e-10);
+            assert_close(step.potential, expected, 1e-10);
         }
     }
 }
 
 #[test]
 fn a_weight_that_is_no_number_is_refused() {
-    let sheet = cases::sheet(&case("p0_3x3_uniform"));
-    let result = solver(&sheet, &clamp(0), &[], 1).with_weight([0.0, f64::NAN]);
+    let sheet = sheet_of("p0_3x3_uniform");
+    let result = solver(sheet.grid, &clamp(0), &[], 1).with_weight([0.0, f64::NAN]);
     assert!(matches!(result, Err(EquilibriumError::Weight(_))));
 }

@@ -327,9 +327,7 @@ mod tests {
         }
         let whys = machines.service[0].refusals(&fine, 3.0);
         assert_eq!(whys.len(), 3, "{whys:?}");
-        assert!(
-            whys[1].contains("slits of 0.10 mm, at least 1.50 mm (process.kerf)"),
-            "{whys:?}"
-        );
+        let narrow = "slits of 0.10 mm, at least 1.50 mm (process.kerf)";
+        assert!(whys[1].contains(narrow), "{whys:?}");
     }
 }

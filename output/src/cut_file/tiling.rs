@@ -97,17 +97,18 @@ mod tests {
     #[test]
     fn the_tiles_cover_the_drawing_with_the_overlap() {
         for paper in [Paper::A4, Paper::A3, Paper::Letter] {
-            for [width, height] in [
+            let sizes = [
                 [50.0, 30.0],
                 [190.0, 261.0],
                 [300.0, 200.0],
                 [2800.0, 1234.5],
-            ] {
+            ];
+            for [width, height] in sizes {
                 let [low, high] = [[-7.0, 3.0], [width - 7.0, height + 3.0]];
                 let tiling = Tiling::new(paper, [low, high]).unwrap();
                 let [rows, columns] = tiling.counts;
-                let [bottom_left, top_right] =
-                    [tiling.tile(rows - 1, 0)[0], tiling.tile(0, columns - 1)[1]];
+                let bottom_left = tiling.tile(rows - 1, 0)[0];
+                let top_right = tiling.tile(0, columns - 1)[1];
                 for axis in 0..2 {
                     assert!(bottom_left[axis] <= low[axis] + 1e-9);
                     assert!(top_right[axis] >= high[axis] - 1e-9);
@@ -124,27 +125,17 @@ mod tests {
                 }
             }
         }
-        assert_eq!(
-            Tiling::new(Paper::A4, [[0.0; 2], [190.0, 261.0]])
-                .unwrap()
-                .pages(),
-            1
-        );
-        assert_eq!(
-            Tiling::new(Paper::A4, [[0.0; 2], [191.0, 261.0]])
-                .unwrap()
-                .pages(),
-            2
-        );
+        for (width, pages) in [(190.0, 1), (191.0, 2)] {
+            let tiling = Tiling::new(Paper::A4, [[0.0; 2], [width, 261.0]]);
+            assert_eq!(tiling.unwrap().pages(), pages);
+        }
     }
 
     #[test]
     fn a_drawing_of_too_many_pages_is_refused() {
         let error = Tiling::new(Paper::A4, [[0.0; 2], [2e4, 2e4]]).unwrap_err();
-        assert!(
-            error.to_string().contains("choose a larger paper"),
-            "{error}"
-        );
+        let message = error.to_string();
+        assert!(message.contains("choose a larger paper"), "{message}");
     }
 
     #[test]

@@ -232,10 +232,8 @@ mod tests {
         canvas.line([0.0, 0.0], [10.0, 25.00001], Style::stroke([0; 3], 1.0));
         let svg = canvas.svg([[0.0, 0.0], [200.0, 100.0]], 200.0, "mm");
         assert!(svg.contains("width=\"200mm\" height=\"100mm\" viewBox=\"0 -100 200 100\""));
-        assert!(
-            svg.contains("x1=\"0\" y1=\"0\" x2=\"10\" y2=\"-25\""),
-            "{svg}"
-        );
+        let line = "x1=\"0\" y1=\"0\" x2=\"10\" y2=\"-25\"";
+        assert!(svg.contains(line), "{svg}");
     }
 
     #[test]

@@ -242,10 +242,7 @@ mod tests {
     #[test]
     fn lengths_are_rounded_to_one_two_or_five() {
         for (value, expected) in [(1.0, 1.0), (4.9, 2.0), (600.0, 500.0), (0.03, 0.02)] {
-            assert!(
-                (round_below(value) / expected - 1.0).abs() < 1e-12,
-                "{value}"
-            );
+            assert!((round_below(value) / expected - 1.0).abs() < 1e-12);
         }
     }
 
@@ -255,16 +252,12 @@ mod tests {
         for length in [1, 30, 60, 90, 107, 108, 500] {
             let title = "n".repeat(length);
             let found = fitted(&title, 24.0, BOLD_WIDTH, 930.0);
-            assert!(
-                width(&found) <= 930.0 + 1e-9 && found.0 >= SMALLEST,
-                "{found:?}"
-            );
+            let fits = width(&found) <= 930.0 + 1e-9;
+            assert!(fits && found.0 >= SMALLEST, "{found:?}");
             assert_eq!(found.1 == title, length <= 107, "{found:?}");
         }
-        assert_eq!(
-            fitted("short", 24.0, BOLD_WIDTH, 930.0),
-            (24.0, "short".into())
-        );
+        let short = fitted("short", 24.0, BOLD_WIDTH, 930.0);
+        assert_eq!(short, (24.0, "short".into()));
     }
 
     #[test]
@@ -275,9 +268,7 @@ mod tests {
         assert!(scale.low <= -3.0 && scale.high >= 27.3);
         assert_eq!(scale.colour(1e9), [0xfd, 0xe7, 0x25]);
         // All values are zero: no division by zero.
-        assert_eq!(
-            ColourScale::covering([0.0, 0.0]).colour(0.0),
-            [0x44, 0x01, 0x54]
-        );
+        let zero = ColourScale::covering([0.0, 0.0]).colour(0.0);
+        assert_eq!(zero, [0x44, 0x01, 0x54]);
     }
 }

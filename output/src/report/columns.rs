@@ -63,15 +63,7 @@ mod tests {
 
     #[test]
     fn columns_never_collide() {
-        let extremes = [
-            0.0,
-            -1e300,
-            1e-300,
-            99_999.9,
-            -100_000.0,
-            f64::NAN,
-            f64::MAX,
-        ];
+        let extremes = [0.0, -1e300, 1e-300, 99_999.9, -1e5, f64::NAN, f64::MAX];
         let rows: Vec<Vec<String>> = (extremes.iter())
             .map(|value| vec![fixed(*value, 3), fixed(-value, 1), "x".repeat(7)])
             .collect();

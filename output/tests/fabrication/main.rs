@@ -28,16 +28,19 @@ const FILLET_RATIO: f64 = 0.16;
 const KERF: f64 = 0.2;
 
 fn material() -> SheetMaterial {
-    SheetMaterial {
-        name: "film".into(),
-        thickness: 0.5,
-        young: 3000.0,
-        poisson: 0.4,
-        density_kg_m3: 1390.0,
-        fracture_strain: 1.784,
-        plastic: vec![[44.0, 0.0]],
-        ..SheetMaterial::default()
-    }
+    let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
+    let film = root.join("../configs/materials/pet-0.5mm.toml");
+    SheetMaterial::load(&film).unwrap()
+}
+
+#[track_caller]
+fn assert_close(found: f64, expected: f64, tolerance: f64) {
+    let close = (found - expected).abs() < tolerance;
+    assert!(close, "{found} instead of {expected}");
+}
+
+fn least(values: impl Iterator<Item = f64>) -> f64 {
+    values.fold(f64::INFINITY, f64::min)
 }
 
 fn sheet(grid: Grid, coordinates: &PatternCoordinates, w_lig: f64) -> (CutPattern, Sheet) {
@@ -45,12 +48,7 @@ fn sheet(grid: Grid, coordinates: &PatternCoordinates, w_lig: f64) -> (CutPatter
     let pattern = CutPattern::new(grid, Outline::rectangle(width, height), coordinates).unwrap();
     let options = SheetOptions {
         hinge_point: HingePoint::CutTip,
-        process: HingeConstants {
-            fillet_ratio: FILLET_RATIO,
-            kerf: KERF,
-            r_win: 100.0,
-        }
-        .into(),
+        process: HingeConstants::PAPER.into(),
     };
     let widths = vec![w_lig; grid.hinge_count()];
     let sheet = Sheet::new(&pattern, &widths, options).unwrap();
@@ -83,16 +81,17 @@ fn irregular_sheets() -> impl Iterator<Item = (Sheet, CutLines, SheetDrawing)> {
 }
 
 fn irregular(grid: Grid, seed: u64) -> (CutPattern, Sheet) {
+    sheet(grid, &drawn(grid, seed, 0.4), W_LIG)
+}
+
+/// Coordinates between -`size` and `size`.
+fn drawn(grid: Grid, seed: u64, size: f64) -> PatternCoordinates {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     let mut coordinates = PatternCoordinates::uniform(grid);
-    for logit in coordinates
-        .z
-        .iter_mut()
-        .chain(coordinates.ell.iter_mut().flatten())
-    {
-        *logit = random.random_range(-0.4..0.4);
-    }
-    sheet(grid, &coordinates, W_LIG)
+    let edges = coordinates.ell.iter_mut().flatten();
+    let logits = coordinates.z.iter_mut().chain(edges);
+    logits.for_each(|logit| *logit = random.random_range(-size..size));
+    coordinates
 }
 
 fn length([a, b]: [[f64; 2]; 2]) -> f64 {
@@ -125,17 +124,15 @@ fn the_uniform_sheet_has_eight_slits_and_twelve_holes_at_their_positions() {
         [[800.0, 18.0], [800.0, 781.9]],
     ];
     for expected in by_hand {
-        let found = cuts.slits.iter().any(|slit| {
-            let [a, b] = slit.ends;
-            let same = |p: [f64; 2], q: [f64; 2]| length([p, q]) < 1e-9;
-            (same(a, expected[0]) && same(b, expected[1]))
-                || (same(a, expected[1]) && same(b, expected[0]))
-        });
+        let same = |p: [f64; 2], q: [f64; 2]| length([p, q]) < 1e-9;
+        let along = |[p, q]: [[f64; 2]; 2]| same(p, expected[0]) && same(q, expected[1]);
+        let found = |[a, b]: [[f64; 2]; 2]| along([a, b]) || along([b, a]);
+        let found = cuts.slits.iter().any(|slit| found(slit.ends));
         assert!(found, "{expected:?} is missing from {:?}", cuts.slits);
     }
     for hole in &cuts.holes {
-        assert!((hole.radius - 2.88).abs() < 1e-12);
-        assert!((cuts.tool_radius(hole) - 2.78).abs() < 1e-12);
+        assert_close(hole.radius, 2.88, 1e-12);
+        assert_close(cuts.tool_radius(hole), 2.78, 1e-12);
     }
     let outline = cuts.tool_outline();
     assert!((outline[0][0] + 0.1).abs() < 1e-12 && (outline[2][1] - 1200.1).abs() < 1e-9);
@@ -151,33 +148,26 @@ fn every_slit_ends_in_the_hole_of_its_hinge_or_on_the_outline() {
         for slit in &cuts.slits {
             for (end, hinge) in slit.ends.iter().zip(slit.hinges) {
                 match hinge {
-                    Some(hinge) => {
-                        visits[hinge] += 1;
-                        assert_eq!(*end, sheet.hinges[hinge].tip);
-                        let corner = sheet.hinges[hinge].corner;
-                        let ligament =
-                            sheet.hinges[hinge].set_back / sheet.hinges[hinge].alpha.sin();
-                        assert!((length([*end, corner]) - ligament).abs() < 1e-9);
+                    Some(h) => {
+                        visits[h] += 1;
+                        let hinge = &sheet.hinges[h];
+                        assert_eq!(*end, hinge.tip);
+                        let ligament = hinge.set_back / hinge.alpha.sin();
+                        assert_close(length([*end, hinge.corner]), ligament, 1e-9);
                     }
                     None => {
                         let [x, y] = *end;
                         let [width, height] = [m, n].map(|panels| 400.0 * panels as f64);
                         let gap = [x, y, width - x, height - y].map(f64::abs);
-                        assert!(gap.into_iter().fold(f64::MAX, f64::min) < 1e-9);
+                        assert!(least(gap.into_iter()) < 1e-9);
                     }
                 }
             }
         }
-        assert!(
-            visits.iter().all(|&count| count == 1),
-            "{m} x {n}: {visits:?}"
-        );
+        assert_eq!(visits, vec![1; cuts.holes.len()], "{m} x {n}");
         // One slit per interior cut and one per cut that is open on the outline.
-        let open = cuts
-            .slits
-            .iter()
-            .filter(|slit| slit.hinges[1].is_none())
-            .count();
+        let slits = cuts.slits.iter();
+        let open = slits.filter(|slit| slit.hinges[1].is_none()).count();
         assert_eq!(cuts.slits.len() - open, grid.aspect_ratio_count());
         assert_eq!(2 * (cuts.slits.len() - open) + open, grid.hinge_count());
     }
@@ -186,37 +176,22 @@ fn every_slit_ends_in_the_hole_of_its_hinge_or_on_the_outline() {
 #[test]
 fn no_cut_enters_a_ligament() {
     let grid = Grid { m: 3, n: 3 };
-    let sheets = (0..20)
-        .map(|seed| irregular(grid, seed))
-        .chain([uniform(W_LIG)]);
-    for (pattern, sheet) in sheets {
+    let irregular = (0..20).map(|seed| irregular(grid, seed));
+    for (pattern, sheet) in irregular.chain([uniform(W_LIG)]) {
         let cuts = cut_lines(&pattern, &sheet);
         for (h, hole) in cuts.holes.iter().enumerate() {
-            let others = cuts
-                .slits
-                .iter()
-                .filter(|slit| !slit.hinges.contains(&Some(h)));
-            let nearest = others
-                .map(|slit| distance(hole.centre, slit.ends))
-                .fold(f64::INFINITY, f64::min);
+            let slits = cuts.slits.iter();
+            let others = slits.filter(|slit| !slit.hinges.contains(&Some(h)));
+            let nearest = least(others.map(|slit| distance(hole.centre, slit.ends)));
             let left = nearest.min(cuts.clearance(h)) - hole.radius;
             let designed = (1.0 - FILLET_RATIO) * W_LIG;
-            assert!(
-                left >= designed - 1e-9,
-                "hinge {h}: {left} of {designed} mm"
-            );
+            assert!(left >= designed - 1e-9, "hinge {h}: {left} mm");
         }
         for (i, slit) in cuts.slits.iter().enumerate() {
             for other in &cuts.slits[..i] {
-                let gap = [0, 1]
-                    .map(|end| {
-                        f64::min(
-                            distance(slit.ends[end], other.ends),
-                            distance(other.ends[end], slit.ends),
-                        )
-                    })
-                    .into_iter()
-                    .fold(f64::INFINITY, f64::min);
+                let own = slit.ends.iter().map(|end| distance(*end, other.ends));
+                let others = other.ends.iter().map(|end| distance(*end, slit.ends));
+                let gap = least(own.chain(others));
                 assert!(gap >= W_LIG - 1e-9, "{gap}: {slit:?} {other:?}");
             }
         }
@@ -234,26 +209,19 @@ fn a_ligament_has_the_width_of_the_window_model() {
         let to_slits = others.map(|slit| distance(hole.centre, slit.ends) - 0.5 * KERF);
         let [x, y] = hole.centre;
         let to_outline = [x, y, 1200.0 - x, 1200.0 - y];
-        let left = to_slits.chain(to_outline).fold(f64::INFINITY, f64::min);
-        assert!((left - W_LIG).abs() < 1e-9, "hinge {h}: {left}");
-        assert!((cuts.caliper(h) - (1.0 - FILLET_RATIO) * W_LIG).abs() < 1e-9);
+        assert_close(least(to_slits.chain(to_outline)), W_LIG, 1e-9);
+        assert_close(cuts.caliper(h), (1.0 - FILLET_RATIO) * W_LIG, 1e-9);
     }
 }
 
 #[test]
 fn ligaments_that_leave_no_slit_are_refused() {
-    let (pattern, sheet) = uniform(398.0);
-    let error = CutLines::new(&pattern, &sheet, CuttingConfig::default(), &[]).unwrap_err();
-    assert!(
-        matches!(error, FabricationError::SlitVanishes { .. }),
-        "{error}"
-    );
-    let (pattern, sheet) = uniform(0.6);
-    let error = CutLines::new(&pattern, &sheet, CuttingConfig::default(), &[]).unwrap_err();
-    assert!(
-        matches!(error, FabricationError::HoleTooSmall { .. }),
-        "{error}"
-    );
+    let of = |w_lig| {
+        let (pattern, sheet) = uniform(w_lig);
+        CutLines::new(&pattern, &sheet, CuttingConfig::default(), &[]).unwrap_err()
+    };
+    assert!(matches!(of(398.0), FabricationError::SlitVanishes { .. }));
+    assert!(matches!(of(0.6), FabricationError::HoleTooSmall { .. }));
 }
 
 /// The ligament at the end of a cut shortens it: in sheets of short panels a cut may end before the ligament opposite it, or
@@ -263,21 +231,14 @@ fn cuts_that_are_too_short_for_their_ligaments_and_panels_are_refused() {
     let grid = Grid { m: 4, n: 4 };
     let mut refused = [0, 0];
     for seed in 0..300 {
-        let mut dice = ChaCha8Rng::seed_from_u64(seed);
-        let mut coordinates = PatternCoordinates::uniform(grid);
-        let logits = coordinates
-            .z
-            .iter_mut()
-            .chain(coordinates.ell.iter_mut().flatten());
-        logits.for_each(|logit| *logit = dice.random_range(-2.0..2.0));
-        let (pattern, sheet) = sheet(grid, &coordinates, 25.0);
+        let (pattern, sheet) = sheet(grid, &drawn(grid, seed, 2.0), 25.0);
         match CutLines::new(&pattern, &sheet, CuttingConfig::default(), &[]) {
             Err(FabricationError::CutEndsBeforeLigament {
-                hinge,
+                hinge: h,
                 width,
                 modelled,
             }) => {
-                assert!(width > modelled && modelled == sheet.hinges[hinge].w_lig);
+                assert!(width > modelled && modelled == sheet.hinges[h].w_lig);
                 refused[0] += 1;
             }
             Err(FabricationError::EdgeNotCut { .. }) => refused[1] += 1,
@@ -293,8 +254,8 @@ fn slits_that_are_open_on_the_outline_are_cut_beyond_it() {
     let cuts = uniform_cuts();
     for slit in &cuts.slits {
         let longer = length(cuts.tool_slit(slit)) - length(slit.ends);
-        let expected = if slit.hinges[1].is_none() { 1.0 } else { 0.0 };
-        assert!((longer - expected).abs() < 1e-9, "{longer}");
+        let expected = f64::from(slit.hinges[1].is_none());
+        assert_close(longer, expected, 1e-9);
         assert_eq!(cuts.tool_slit(slit)[0], slit.ends[0]);
     }
 }

@@ -37,8 +37,8 @@ fn deployed() -> (DesignProblem, Deployment) {
         dof: Dof::UX,
         value: 4.0,
     };
-    let solver =
-        EquilibriumSolver::new(GRID, &clamp, &[pull], 8, SolverSettings::default()).unwrap();
+    let settings = SolverSettings::default();
+    let solver = EquilibriumSolver::new(GRID, &clamp, &[pull], 8, settings).unwrap();
     let law = LinearLaw::uniform([400.0, 250.0, 300.0], GRID.hinge_count());
     let problem = DesignProblem {
         grid: GRID,
@@ -100,10 +100,6 @@ fn disturb(points: &mut [MeasuredPoint], sigma: f64, seed: u64) {
 }
 
 fn squares(sheet: &MeasuredSheet) -> f64 {
-    sheet
-        .best
-        .points
-        .iter()
-        .map(|point| point.distance().powi(2))
-        .sum()
+    let points = sheet.best.points.iter();
+    points.map(|point| point.distance().powi(2)).sum()
 }

@@ -12,13 +12,8 @@ fn centres_alone_need_a_known_scale() {
     let found = MeasuredSheet::new(&path, &points, Scale::Given).unwrap();
     assert!((found.best.position - POSITION).abs() < 1e-6);
     let panels = MeasuredPanel::all(path.sheet, &found.best);
-    assert_eq!(
-        (
-            panels.len(),
-            openings(path.sheet, &found.best, &panels).len()
-        ),
-        (50, 0)
-    );
+    let openings = openings(path.sheet, &found.best, &panels);
+    assert_eq!((panels.len(), openings.len()), (50, 0));
 }
 
 #[test]
@@ -41,29 +36,31 @@ fn points_that_cannot_be_compared_are_refused() {
         }
     };
     let first = points[2].mark;
-    assert_eq!(
-        changed(&|point| point.position[0] = f64::NAN),
-        PointFault::NotFinite
-    );
-    assert_eq!(
-        changed(&|point| point.position[1] = f64::INFINITY),
-        PointFault::NotFinite
-    );
-    assert_eq!(
-        changed(&|point| point.mark.panel = 50),
-        PointFault::NoSuchPanel { last: 49 }
-    );
-    assert_eq!(
-        changed(&|point| point.mark.corner = Some(4)),
-        PointFault::NoSuchCorner
-    );
-    assert_eq!(
-        changed(&|point| point.mark = first),
-        PointFault::Repeated { first: 2 }
-    );
+    type Change<'a> = &'a dyn Fn(&mut MeasuredPoint);
+    let faults: [(Change, PointFault); 5] = [
+        (&|point| point.position[0] = f64::NAN, PointFault::NotFinite),
+        (
+            &|point| point.position[1] = f64::INFINITY,
+            PointFault::NotFinite,
+        ),
+        (
+            &|point| point.mark.panel = 50,
+            PointFault::NoSuchPanel { last: 49 },
+        ),
+        (
+            &|point| point.mark.corner = Some(4),
+            PointFault::NoSuchCorner,
+        ),
+        (
+            &|point| point.mark = first,
+            PointFault::Repeated { first: 2 },
+        ),
+    ];
+    for (change, fault) in faults {
+        assert_eq!(changed(change), fault);
+    }
     let mut same = points.clone();
-    same.iter_mut()
-        .for_each(|point| point.position = [1.0, 2.0]);
+    (same.iter_mut()).for_each(|point| point.position = [1.0, 2.0]);
     assert_eq!(refused(&same), MeasurementError::Coincide);
 }
 
@@ -75,11 +72,8 @@ fn one_panel_determines_no_load_factor() {
     let mut points = corners(&path);
     points.truncate(4);
     disturb(&mut points, 0.5, 5);
-    assert!(
-        points
-            .iter()
-            .all(|point| point.mark.panel == points[0].mark.panel)
-    );
+    let panel = points[0].mark.panel;
+    assert!(points.iter().all(|point| point.mark.panel == panel));
     let found = MeasuredSheet::new(&path, &points, Scale::Given).unwrap();
     assert_eq!(found.load_factor_error, None);
     let page = MeasurementReport::new("one panel", path.sheet, &found, None, &[]).to_string();

@@ -1,27 +1,22 @@
 //! Load against displacement, and the forces that hold a sheet in its states.
 
-use super::{read, with};
+use super::*;
 use design::analysis::actuation_curve::{ActuationCurve, Mover, holding_forces};
 use design::equilibrium::load_step::{LoadStep, Status};
-use design::objective::design_problem::{Deployment, DesignProblem, Mechanics, Model};
-
-const LOAD: &str = "[[loads]]\npanel = [2, 1]\nforce = [2.0, 0.0]";
+use design::objective::design_problem::{Deployment, DesignProblem};
 
 /// The deployment of a scene with another actuation, in many load steps.
 fn deployed(actuation: &str) -> (DesignProblem, Deployment) {
     let folder = tempfile::tempdir().unwrap();
-    let changes = [(LOAD, actuation), ("load_steps = 4", "load_steps = 200")];
+    let changes = [(PULL, actuation), ("load_steps = 4", "load_steps = 200")];
     let scene = read(folder.path(), &with(&changes));
     let problem = scene.problem().unwrap();
     let deployment = problem.deploy(&scene.start()).unwrap();
     (problem, deployment)
 }
 
-fn mechanics(problem: &DesignProblem) -> &Mechanics {
-    match &problem.model {
-        Model::Equilibrium(mechanics) => mechanics,
-        Model::Ideal { .. } => panic!("the scene has an equilibrium"),
-    }
+fn curve((problem, deployment): &(DesignProblem, Deployment)) -> Option<ActuationCurve> {
+    ActuationCurve::new(problem.model.mechanics().unwrap(), deployment)
 }
 
 /// The area below the curve is the energy stored in the hinges, whatever moves the sheet.
@@ -29,38 +24,27 @@ fn mechanics(problem: &DesignProblem) -> &Mechanics {
 fn the_work_along_the_curve_is_the_stored_energy() {
     let load = "[[loads]]\npanel = [2, 1]\n";
     let support = "[[supports]]\npanel = [2, 1]\n";
+    let corner = "[[loads]]\npanel = [2, 2]\nforce = [0.0, 1.0]\ncouple = 90.0";
+    let moved = "kind = \"roller-y\"\ndisplacement = [40.0, 0.0]";
+    let turned = "kind = \"clamp\"\nrotation_deg = -15.0";
     for (actuation, mover, translational) in [
         (format!("{load}force = [2.0, 0.0]"), Mover::Loads, true),
         (
-            format!(
-                "{load}force = [1.0, 0.0]\n{}",
-                "[[loads]]\npanel = [2, 2]\nforce = [0.0, 1.0]\ncouple = 90.0"
-            ),
+            format!("{load}force = [1.0, 0.0]\n{corner}"),
             Mover::Loads,
             true,
         ),
         (format!("{load}couple = -300.0"), Mover::Loads, false),
-        (
-            format!("{support}kind = \"roller-y\"\ndisplacement = [40.0, 0.0]"),
-            Mover::Supports,
-            true,
-        ),
-        (
-            format!("{support}kind = \"clamp\"\nrotation_deg = -15.0"),
-            Mover::Supports,
-            false,
-        ),
+        (format!("{support}{moved}"), Mover::Supports, true),
+        (format!("{support}{turned}"), Mover::Supports, false),
     ] {
-        let (problem, deployment) = deployed(&actuation);
+        let deployed = deployed(&actuation);
+        let (curve, deployment) = (curve(&deployed).unwrap(), &deployed.1);
         // A jump past a limit point would dissipate energy.
         let smooth = |step: &LoadStep| step.status == Status::Converged;
         assert!(deployment.path.iter().all(smooth), "{actuation}");
-        let curve = ActuationCurve::new(mechanics(&problem), &deployment).unwrap();
-        assert_eq!(
-            (curve.mover, curve.translational),
-            (mover, translational),
-            "{actuation}"
-        );
+        let found = (curve.mover, curve.translational);
+        assert_eq!(found, (mover, translational), "{actuation}");
         assert_eq!((curve.points.len(), curve.points[0]), (201, [0.0; 2]));
         let trapezoids = curve.points.windows(2).map(|ends| {
             let [[x0, p0], [x1, p1]] = [ends[0], ends[1]];
@@ -69,10 +53,7 @@ fn the_work_along_the_curve_is_the_stored_energy() {
         let work: f64 = trapezoids.sum();
         let stored: f64 = deployment.final_step().energies.iter().sum();
         // The error of the trapezoids decreases with the square of their number.
-        assert!(
-            (work / stored - 1.0).abs() < 1e-3,
-            "{actuation}: {work} {stored}"
-        );
+        assert_close(work / stored, 1.0, 1e-3);
     }
 }
 
@@ -81,7 +62,7 @@ fn the_work_along_the_curve_is_the_stored_energy() {
 fn loads_and_reactions_balance() {
     let (problem, deployment) =
         deployed("[[loads]]\npanel = [2, 1]\nforce = [1.2, 0.5]\ncouple = 80.0");
-    let (mechanics, sheet) = (mechanics(&problem), &deployment.sheet);
+    let (mechanics, sheet) = (problem.model.mechanics().unwrap(), &deployment.sheet);
     let step = &deployment.path[100];
     let law = mechanics.law.prepare(&sheet.designs());
     let hinged = mechanics.hinged(sheet, &*law, false);
@@ -100,25 +81,14 @@ fn loads_and_reactions_balance() {
             _ => [0.0; 3],
         };
         for (found, expected) in std::iter::zip([x, y, m], expected) {
-            assert!(
-                (found - expected).abs() < 1e-5,
-                "panel {k}: {found} {expected}"
-            );
+            assert_close(*found, expected, 1e-5);
         }
     }
-    assert!(
-        sum[0].abs() < 1e-9 && sum[1].abs() < 1e-9 && moment.abs() < 1e-6,
-        "{sum:?} {moment}"
-    );
-    assert!(
-        (forces[3][0] + 1.2 * step.load_factor).abs() < 1e-5,
-        "{:?}",
-        forces[3]
-    );
+    assert!(sum[0].abs() < 1e-9 && sum[1].abs() < 1e-9 && moment.abs() < 1e-6);
+    assert_close(forces[3][0], -1.2 * step.load_factor, 1e-5);
 }
 
 #[test]
 fn a_sheet_that_nothing_moves_has_no_curve() {
-    let (problem, deployment) = deployed("");
-    assert_eq!(ActuationCurve::new(mechanics(&problem), &deployment), None);
+    assert_eq!(curve(&deployed("")), None);
 }

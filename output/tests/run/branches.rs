@@ -1,27 +1,25 @@
 //! Sheets with several equilibria: a search keeps designs whose path was
 //! followed from the flat sheet.
 
-use super::{SCENE, read, run};
+use super::*;
 use design::optimise::outer_loop::Ended;
 use design::scene::design_run::design_of_run;
-use design::scene::{Scene, SceneConfig};
-use output::report::Concern;
-use output::run_results::write_results;
-use std::path::Path;
 use support::severity::Severity;
-use support::toml_file;
 
-/// The scene linear-7x7 from a random start, with 40 steps of an optimiser.
-fn circle(folder: &Path, (method, noise, seed): (&str, f64, u64), follow_every: usize) -> Scene {
-    let configs = Path::new(env!("CARGO_MANIFEST_DIR")).join("../configs/scenes");
-    let file = configs.join("linear-7x7.toml");
-    let mut config: SceneConfig = toml_file::read(&file).unwrap();
-    config.optimiser.method = serde_json::from_str(&format!("\"{method}\"")).unwrap();
-    config.optimiser.start_noise = noise;
-    (config.optimiser.seed, config.optimiser.steps) = (seed, 40);
-    config.solver.follow_every = follow_every;
-    config.output = folder.join("run");
-    Scene::new(config, &file).unwrap()
+/// The scene linear-7x7 from a random start, with 40 steps of an optimiser that follows every tenth path.
+fn circle(folder: &Path, (method, noise, seed): (&str, f64, u64)) -> Scene {
+    shipped("linear-7x7", |config| {
+        config.optimiser.method = serde_json::from_str(&format!("\"{method}\"")).unwrap();
+        config.optimiser.start_noise = noise;
+        (config.optimiser.seed, config.optimiser.steps) = (seed, 40);
+        config.solver.follow_every = 10;
+        config.output = folder.join("run");
+    })
+}
+
+fn least_loss(designed: &Designed) -> f64 {
+    let losses = designed.history.iter().map(|step| step.scores.loss);
+    losses.fold(f64::INFINITY, f64::min)
 }
 
 /// Between two followed paths, the paths of these searches go on along another branch.
@@ -29,7 +27,7 @@ fn circle(folder: &Path, (method, noise, seed): (&str, f64, u64), follow_every: 
 fn a_search_keeps_a_design_whose_path_was_followed() {
     for start in [("adam", 0.5, 6), ("adam", 0.5, 18), ("lbfgs", 0.7, 7)] {
         let folder = tempfile::tempdir().unwrap();
-        let scene = circle(folder.path(), start, 10);
+        let scene = circle(folder.path(), start);
         let designed = run(&scene, None).unwrap();
         assert!(designed.contradicted, "{start:?}");
         assert!(designed.best.loss < 0.5 * designed.start.loss, "{start:?}");
@@ -37,22 +35,15 @@ fn a_search_keeps_a_design_whose_path_was_followed() {
         let stored = design_of_run(&scene).unwrap().unwrap();
         let problem = scene.problem().unwrap();
         assert_eq!(problem.loss(&stored).unwrap(), designed.best.loss);
-        let least = designed.history.iter().map(|step| step.scores.loss);
-        let least = least.fold(f64::INFINITY, f64::min);
+        let least = least_loss(&designed);
         assert!(least > (1.0 - 1e-6) * designed.best.loss, "{start:?}");
         // A settled search has settled on a followed path.
         if designed.ended == Ended::Settled {
             assert!(designed.history.last().unwrap().followed);
         }
         let report = write_results(&scene, &designed, false).unwrap();
-        let notes = report
-            .warnings
-            .iter()
-            .filter(|warning| warning.concern == Concern::OtherBranch);
-        assert_eq!(
-            notes.map(|note| note.severity).collect::<Vec<_>>(),
-            [Severity::Note]
-        );
+        let note = one(&report, Concern::OtherBranch);
+        assert_eq!(note.severity, Severity::Note);
     }
 }
 
@@ -60,16 +51,14 @@ fn a_search_keeps_a_design_whose_path_was_followed() {
 #[test]
 fn every_path_is_followed_after_a_contradiction() {
     let folder = tempfile::tempdir().unwrap();
-    let designed = run(&circle(folder.path(), ("adam", 0.5, 6), 10), None).unwrap();
+    let designed = run(&circle(folder.path(), ("adam", 0.5, 6)), None).unwrap();
     let corrected = designed.history.iter().rposition(|step| !step.followed);
     let history = &designed.history[corrected.map_or(0, |last| last + 1)..];
     assert!(history.len() > 20 && history.iter().all(|step| step.followed));
     assert_eq!(designed.history.len(), 41);
     let steps = designed.history.iter().map(|step| step.step);
-    assert!(
-        steps.eq(0..41),
-        "the discarded steps are not in the history"
-    );
+    // The discarded steps are not in the history.
+    assert!(steps.eq(0..41));
 }
 
 /// A pause has no effect on a search, not even between a false design and its discovery.
@@ -77,10 +66,10 @@ fn every_path_is_followed_after_a_contradiction() {
 fn a_stopped_search_that_is_refuted_resumes_to_the_same_trajectory() {
     for start in [("adam", 0.5, 6), ("lbfgs", 0.7, 7)] {
         let whole = tempfile::tempdir().unwrap();
-        let uninterrupted = run(&circle(whole.path(), start, 10), None).unwrap();
+        let uninterrupted = run(&circle(whole.path(), start), None).unwrap();
         for stop in [3, 7] {
             let parts = tempfile::tempdir().unwrap();
-            let scene = circle(parts.path(), start, 10);
+            let scene = circle(parts.path(), start);
             let stopped = run(&scene, Some(stop)).unwrap();
             assert_eq!(stopped.ended, Ended::Stopped);
             assert!(stopped.best.loss <= stopped.start.loss);
@@ -93,17 +82,9 @@ fn a_stopped_search_that_is_refuted_resumes_to_the_same_trajectory() {
 
 #[test]
 fn a_search_without_a_contradiction_is_not_noted() {
-    let folder = tempfile::tempdir().unwrap();
-    let scene = read(folder.path(), SCENE);
-    let designed = run(&scene, None).unwrap();
-    assert!(!designed.contradicted);
-    let report = write_results(&scene, &designed, false).unwrap();
-    assert!(
-        report
-            .warnings
-            .iter()
-            .all(|warning| warning.concern != Concern::OtherBranch)
-    );
+    let run = Finished::new(SCENE);
+    assert!(!run.designed.contradicted);
+    assert!(found(&run.report, Concern::OtherBranch).is_empty());
 }
 
 /// A search that is stopped between two followed paths returns the best design so far, not the last followed one.
@@ -112,8 +93,7 @@ fn a_stopped_search_returns_its_best_design() {
     let folder = tempfile::tempdir().unwrap();
     let designed = run(&read(folder.path(), SCENE), Some(5)).unwrap();
     assert_eq!(designed.ended, Ended::Stopped);
-    let least = designed.history.iter().map(|step| step.scores.loss);
-    let least = least.fold(f64::INFINITY, f64::min);
+    let least = least_loss(&designed);
     assert!(least < designed.start.loss);
-    assert!((designed.best.loss / least - 1.0).abs() < 1e-9);
+    assert_close(designed.best.loss / least, 1.0, 1e-9);
 }

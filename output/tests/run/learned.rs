@@ -1,14 +1,12 @@
 //! Runs with a learned hinge law of random weights: weights of another hinge are refused, every term of
 //! the objective counts, and the report shows the training domain.
 
-use super::{FILM, read, run, with};
+use super::*;
 use design::objective::design_problem::Deployment;
 use design::objective::target::TargetShape;
-use design::scene::Scene;
 use output::cut_file::CutLines;
-use output::report::{Concern, Report, warnings};
-use output::run_results::{remove_run, write_results};
-use std::path::Path;
+use output::report::warnings;
+use output::run_results::remove_run;
 use support::sealed_json;
 use support::severity::Severity;
 use surrogate::Surrogate;
@@ -16,11 +14,8 @@ use surrogate::Surrogate;
 /// Writes the random weights and their card, with changes, next to the scene.
 pub fn weights(folder: &Path, changes: &[(&str, &str)]) {
     let cases = Path::new(env!("CARGO_MANIFEST_DIR")).join("../design/tests/cases");
-    std::fs::copy(
-        cases.join("chi_tiny.safetensors"),
-        folder.join("tiny.safetensors"),
-    )
-    .unwrap();
+    let random = cases.join("chi_tiny.safetensors");
+    std::fs::copy(random, folder.join("tiny.safetensors")).unwrap();
     let card = std::fs::read_to_string(cases.join("chi_tiny.json")).unwrap();
     let changes = [("random weights", "film")].iter().chain(changes);
     let card = changes.fold(card, |card, (from, to)| {
@@ -33,12 +28,11 @@ pub fn weights(folder: &Path, changes: &[(&str, &str)]) {
 }
 
 pub fn learned(changes: &[(&str, &str)]) -> String {
+    let posture = "[posture]\nkind = \"held-flat\"";
+    let weights = format!("[surrogate]\nweights = \"tiny.safetensors\"\n\n{posture}");
     let law = [
         ("hinge = \"linear\"", "hinge = \"surrogate\""),
-        (
-            "[linear]\nk_a = 400.0\nk_s = 250.0\nk_theta = 300.0",
-            "[surrogate]\nweights = \"tiny.safetensors\"\n\n[posture]\nkind = \"held-flat\"",
-        ),
+        (LAW, &weights),
         (
             "compression = 0.01",
             "compression = 0.2\nshear = 0.1\ndamage = 0.2",
@@ -48,40 +42,33 @@ pub fn learned(changes: &[(&str, &str)]) -> String {
     with(&[&law, changes].concat())
 }
 
-fn refusal(card: &[(&str, &str)], scene: &[(&str, &str)]) -> String {
-    let folder = tempfile::tempdir().unwrap();
-    weights(folder.path(), card);
-    std::fs::write(folder.path().join("film.toml"), FILM).unwrap();
-    let path = folder.path().join("scene.toml");
-    std::fs::write(&path, learned(scene)).unwrap();
-    Scene::read(&path).unwrap_err().to_string()
-}
-
 #[test]
-pub fn weights_of_another_hinge_or_material_are_refused() {
-    let message = refusal(&[("film", "steel")], &[]);
-    assert!(
-        message.contains("the material `steel`, the scene's is `film`"),
-        "{message}"
-    );
-    let changed = (
-        "\"tier\"",
-        "\"material_hash\": \"0123456789abcdef\", \"tier\"",
-    );
-    let message = refusal(&[changed], &[]);
-    assert!(message.contains("another material law"), "{message}");
-    let message = refusal(&[], &[("fillet_ratio = 0.16", "fillet_ratio = 0.2")]);
-    assert!(
-        message.contains("a radius of 0.16 w_lig, but the scene has 0.2"),
-        "{message}"
-    );
+fn weights_of_another_hinge_or_material_are_refused() {
+    let hash = "\"material_hash\": \"0123456789abcdef\", \"tier\"";
+    let other_law = ("\"tier\"", hash);
+    let large_hole = ("fillet_ratio = 0.16", "fillet_ratio = 0.2");
     // A sheet of a fifth of the thickness has windows of a fifth of the radius.
     let thin = ("load_steps = 4", "load_steps = 4\nthickness = 0.1");
-    let message = refusal(&[], &[thin]);
-    assert!(
-        message.contains("windows of r_win = 20 mm in a sheet of this thickness, but the scene has process.r_win = 100"),
-        "{message}"
-    );
+    let windows = "windows of r_win = 20 mm in a sheet of this thickness, but the scene has process.r_win = 100";
+    let cases: [(&[_], &[_], &str); 4] = [
+        (
+            &[("film", "steel")],
+            &[],
+            "the material `steel`, the scene's is `film`",
+        ),
+        (&[other_law], &[], "another material law"),
+        (
+            &[],
+            &[large_hole],
+            "a radius of 0.16 w_lig, but the scene has 0.2",
+        ),
+        (&[], &[thin], windows),
+    ];
+    for (card, scene, expected) in cases {
+        let folder = tempfile::tempdir().unwrap();
+        weights(folder.path(), card);
+        assert_says(&refusal(folder.path(), &learned(scene)), expected);
+    }
 }
 
 /// The same scene at a fifth of every length, with a twenty-fifth of every force, deploys to the same shape.
@@ -98,7 +85,7 @@ fn a_similar_sheet_of_another_thickness_deploys_to_a_similar_shape() {
     config.ligament.range = config.ligament.range.map(|width| FACTOR * width);
     config.process.kerf *= FACTOR;
     config.process.r_win *= FACTOR;
-    config.scale_loads(FACTOR.powi(2));
+    config.loads[0].force = config.loads[0].force.map(|x| FACTOR.powi(2) * x);
     if let TargetShape::Circle { centre, radius } = &mut config.target {
         *centre = centre.map(|x| FACTOR * x);
         *radius *= FACTOR;
@@ -108,11 +95,11 @@ fn a_similar_sheet_of_another_thickness_deploys_to_a_similar_shape() {
         let deployment = scene.problem().unwrap().deploy(&scene.start()).unwrap();
         deployment.path.last().unwrap().clone()
     });
-    assert!((thin.potential / thick.potential / FACTOR.powi(3) - 1.0).abs() < 1e-9);
+    assert_close(thin.potential / thick.potential / FACTOR.powi(3), 1.0, 1e-9);
     for (thin, thick) in std::iter::zip(&thin.configuration, &thick.configuration) {
         let expected = [FACTOR * thick[0], FACTOR * thick[1], thick[2]];
         for (found, expected) in std::iter::zip(thin, expected) {
-            assert!((found - expected).abs() < 1e-6, "{found} {expected}");
+            assert_close(*found, expected, 1e-6);
         }
     }
 }
@@ -122,37 +109,30 @@ fn every_term_counts_and_the_report_names_hinges_outside_the_domain() {
     let folder = tempfile::tempdir().unwrap();
     weights(folder.path(), &[]);
     // Ligaments may be wider than the maximum of 25 mm in the card.
-    let scene = read(folder.path(), &learned(&[("start = 18.0", "start = 25.9")]));
-    let designed = run(&scene, None).unwrap();
+    let run = Finished::within(folder, &learned(&[("start = 18.0", "start = 25.9")]));
+    let (designed, report) = (&run.designed, &run.report);
     assert_eq!(designed.history.len(), 7);
     let (start, best) = (&designed.start, &designed.best);
     assert!(best.loss < start.loss, "{} {}", best.loss, start.loss);
     let (terms, area) = (&start.terms, 160e3);
     let loss = terms["chamfer"]
         + area * (0.2 * terms["damage"] + 0.2 * terms["compression"] + 0.1 * terms["shear"]);
-    assert!((start.loss / loss - 1.0).abs() < 1e-12);
+    assert_close(start.loss / loss, 1.0, 1e-12);
 
-    let report = write_results(&scene, &designed, false).unwrap();
     // Damage outside the domain of the law is unknown.
     for row in &report.hinges {
         assert_eq!(row.damage.is_some_and(|damage| damage > 0.0), row.inside);
     }
-    let ligaments = warned(&report, Concern::LigamentsOutsideDomain);
-    let wide = report
-        .hinges
-        .iter()
-        .filter(|row| row.w_lig > 25.0)
-        .map(|row| row.hinge);
-    assert!(wide.clone().count() > 0);
-    assert!(wide.into_iter().all(|hinge| ligaments.contains(&hinge)));
-    let left: Vec<usize> = report
-        .hinges
-        .iter()
-        .filter(|row| !row.inside)
-        .map(|row| row.hinge)
-        .collect();
-    assert_eq!(left, warned(&report, Concern::StatesOutsideDomain));
-    assert!(warned(&report, Concern::PathDependence).is_empty());
+    let ligaments = warned(report, Concern::LigamentsOutsideDomain);
+    let rows = report.hinges.iter();
+    let wide = rows.filter(|row| row.w_lig > 25.0).map(|row| row.hinge);
+    let wide: Vec<usize> = wide.collect();
+    assert!(!wide.is_empty() && wide.iter().all(|hinge| ligaments.contains(hinge)));
+    let rows = report.hinges.iter();
+    let left = rows.filter(|row| !row.inside).map(|row| row.hinge);
+    let outside = warned(report, Concern::StatesOutsideDomain);
+    assert_eq!(left.collect::<Vec<_>>(), outside);
+    assert!(warned(report, Concern::PathDependence).is_empty());
 }
 
 #[test]
@@ -166,9 +146,8 @@ fn a_path_that_departs_from_its_ray_is_named() {
     let named = |deployment: &Deployment| {
         let cuts = CutLines::of(&scene, deployment);
         let warnings = warnings(&scene, deployment, &cuts);
-        let bent = warnings
-            .iter()
-            .find(|warning| warning.concern == Concern::PathDependence);
+        let mut warnings = warnings.iter();
+        let bent = warnings.find(|warning| warning.concern == Concern::PathDependence);
         bent.map(|warning| (warning.severity, warning.hinges.clone()))
     };
     assert_eq!(named(&deployment), None);
@@ -202,22 +181,18 @@ fn a_ligament_that_tears_is_reported_before_the_cut_file_is_written() {
         std::fs::remove_file(scene.output().join("cut.dxf")).ok();
         std::fs::create_dir(scene.output().join("cut.dxf")).unwrap();
         let failed = write_results(&scene, &designed, false).unwrap_err();
-        assert!(failed.to_string().contains("cut.dxf"), "{failed}");
+        assert_says(&failed.to_string(), "cut.dxf");
         let text = std::fs::read_to_string(scene.output().join("report.txt")).unwrap();
         std::fs::remove_dir(scene.output().join("cut.dxf")).unwrap();
         (write_results(&scene, &designed, false).unwrap(), text)
     };
     let (torn, text) = report(1e3);
     let named = warned(&torn, Concern::Tearing);
-    let over = torn
-        .hinges
-        .iter()
-        .filter(|row| row.damage_peak.is_some_and(|peak| peak >= 1.0));
+    let rows = torn.hinges.iter();
+    let over = rows.filter(|row| row.damage_peak.is_some_and(|peak| peak >= 1.0));
     assert_eq!(named, over.map(|row| row.hinge).collect::<Vec<_>>());
-    assert!(
-        !named.is_empty() && text.contains("the ligament tears"),
-        "{text}"
-    );
+    assert!(!named.is_empty());
+    assert_says(&text, "the ligament tears");
     assert!(!torn.cut_file && text.contains("NO CUT FILE"), "{text}");
     let (whole, text) = report(1e-3);
     assert!(warned(&whole, Concern::Tearing).is_empty() && !text.contains("tears (hinge"));
@@ -232,48 +207,30 @@ fn the_report_states_how_far_the_networks_of_an_ensemble_disagree() {
         // The energy is proportional to the square of the scale of the embedding.
         let mut layers = first.layers();
         let last = layers.chi.last_mut().unwrap();
-        last.weight
-            .values
-            .iter_mut()
-            .for_each(|weight| *weight *= scale);
+        let values = last.weight.values.iter_mut();
+        values.for_each(|weight| *weight *= scale);
         let mut card = first.card().clone();
         card.dataset_hash = dataset_hash.into();
         let other = Surrogate::from_parts(layers, card).unwrap();
-        other
-            .save(&folder.path().join("other.safetensors"))
-            .unwrap();
+        let path = folder.path().join("other.safetensors");
+        other.save(&path).unwrap();
     };
     let ensemble = "weights = \"tiny.safetensors\"\nensemble = [\"other.safetensors\"]";
     let scene = learned(&[("weights = \"tiny.safetensors\"", ensemble)]);
     save(1.0, &first.card().dataset_hash);
-    let path = folder.path().join("scene.toml");
-    std::fs::write(folder.path().join("film.toml"), FILM).unwrap();
-    std::fs::write(&path, &scene).unwrap();
-    let twice = Scene::read(&path).unwrap_err().to_string();
-    assert!(twice.contains("are the same network"), "{twice}");
+    assert_says(&refusal(folder.path(), &scene), "are the same network");
+    save(1.1, "other data");
+    assert_says(&refusal(folder.path(), &scene), "surrogate.ensemble");
     save(1.1, &first.card().dataset_hash);
-    let scene_of_two = read(folder.path(), &scene);
-    let designed = run(&scene_of_two, None).unwrap();
-    let report = write_results(&scene_of_two, &designed, false).unwrap();
-    let estimate = report.estimate.unwrap();
+    let run = Finished::within(folder, &scene);
+    let report = &run.report;
+    let estimate = report.estimate.as_ref().unwrap();
     // Energies and forces with the factors 1 and 1.21: a deviation of 0.21 / sqrt(2) about a mean of 1.105.
     let expected = 0.21 / 2f64.sqrt() / 1.105;
     assert_eq!((estimate.networks, estimate.damage_peak), (2, None));
-    assert!(
-        (estimate.energy - expected).abs() < 1e-9,
-        "{}",
-        estimate.energy
-    );
-    assert!(
-        (estimate.forces - expected).abs() < 1e-9,
-        "{}",
-        estimate.forces
-    );
-    assert!(
-        report
-            .to_string()
-            .contains("2 networks; standard deviation")
-    );
+    assert_close(estimate.energy, expected, 1e-9);
+    assert_close(estimate.forces, expected, 1e-9);
+    assert_says(&report.to_string(), "2 networks; standard deviation");
     let budget = report.budget.as_ref().unwrap().rows();
     let row = |cause: &str| budget.iter().find(|row| row[0] == cause).unwrap();
     assert!(row("network")[1].parse::<f64>().unwrap() > 0.0);
@@ -284,62 +241,40 @@ fn the_report_states_how_far_the_networks_of_an_ensemble_disagree() {
     }
     // So the sum is a lower bound, with which no miss is compared.
     assert!(row("at least")[1].parse::<f64>().unwrap() > 0.0);
-    let beside = (report.warnings.iter())
-        .find(|warning| warning.message.contains("by which the known causes"));
-    assert_eq!(beside, None);
-    let text = std::fs::read_to_string(scene_of_two.output().join("report.txt")).unwrap();
+    let mut warnings = report.warnings.iter();
+    assert!(warnings.all(|it| !it.message.contains("by which the known causes")));
+    let text = run.file("report.txt");
     for cells in &budget {
         assert!(cells.iter().all(|cell| text.contains(cell)), "{cells:?}");
     }
     assert!(text.contains("not in the budget: ") && text.contains("creep"));
     // Neither creep nor springback of the film is known.
-    assert!(text.contains("the material file has no figure ([creep])"));
-    assert!(text.contains("names no law of released hinges (surrogate.springback)"));
-
-    save(1.1, "other data");
-    std::fs::write(folder.path().join("scene.toml"), &scene).unwrap();
-    let refused = Scene::read(&folder.path().join("scene.toml")).unwrap_err();
-    assert!(
-        refused.to_string().contains("surrogate.ensemble"),
-        "{refused}"
+    assert_says(&text, "the material file has no figure ([creep])");
+    assert_says(
+        &text,
+        "names no law of released hinges (surrogate.springback)",
     );
 }
 
 fn warned(report: &Report, concern: Concern) -> Vec<usize> {
-    let of_concern = report
-        .warnings
-        .iter()
-        .filter(|warning| warning.concern == concern);
-    of_concern
-        .flat_map(|warning| warning.hinges.clone())
-        .collect()
+    let found = found(report, concern).into_iter();
+    found.flat_map(|warning| warning.hinges.clone()).collect()
 }
 
 #[test]
 fn a_run_is_not_continued_with_another_model() {
     let folder = tempfile::tempdir().unwrap();
-    let run_with = |card: &[(&str, &str)]| {
-        weights(folder.path(), card);
-        run(
-            &read(folder.path(), &learned(&[("steps = 6", "steps = 1")])),
-            None,
-        )
-    };
-    run_with(&[]).unwrap();
+    let read = || read(folder.path(), &learned(&[("steps = 6", "steps = 1")]));
+    weights(folder.path(), &[]);
+    run(&read(), None).unwrap();
     // A narrower training domain: its penalty energy keeps the hinges from opening.
     let narrower = [
-        (
-            "\"centre\": [-0.125, 0.0, 0.625]",
-            "\"centre\": [-0.125, 0.0, 0.005]",
-        ),
-        (
-            "\"half_range\": [0.375, 0.35, 0.625]",
-            "\"half_range\": [0.375, 0.35, 0.005]",
-        ),
+        ("0.0, 0.625]", "0.0, 0.005]"),
+        ("0.35, 0.625]", "0.35, 0.005]"),
     ];
-    let error = run_with(&narrower).err().unwrap().to_string();
-    assert!(error.contains("the weights changed since"), "{error}");
-    let scene = read(folder.path(), &learned(&[("steps = 6", "steps = 1")]));
-    remove_run(&scene).unwrap();
-    assert_eq!(run(&scene, None).unwrap().history.len(), 2);
+    weights(folder.path(), &narrower);
+    let error = run(&read(), None).err().unwrap();
+    assert_says(&error.to_string(), "the weights changed since");
+    remove_run(&read()).unwrap();
+    assert_eq!(run(&read(), None).unwrap().history.len(), 2);
 }

@@ -11,10 +11,13 @@ mod run_page;
 mod sections;
 
 use design::optimise::outer_loop::SearchState;
-use design::scene::Scene;
 use design::scene::design_run::{Designed, InverseDesignError, inverse_design};
-use std::path::Path;
+use design::scene::{Scene, SceneConfig};
+use output::report::{Concern, Report, Warning};
+use output::run_results::write_results;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
+use tempfile::TempDir;
 
 /// A 3 x 3 sheet of a film, clamped left and pulled right, with linear hinges.
 const SCENE: &str = r#"
@@ -67,6 +70,22 @@ seed = 3
 const FILM: &str = "name = \"film\"\nthickness = 0.5\nyoung = 3000.0\npoisson = 0.4\n\
     density_kg_m3 = 1390.0\nfracture_strain = 1.784\nplastic = [[44.0, 0.0]]\n";
 
+/// Parts of the scene that tests replace.
+const SUPPORT: &str = "[[supports]]\npanel = [0, 1]\nkind = \"clamp\"";
+const PULL: &str = "[[loads]]\npanel = [2, 1]\nforce = [2.0, 0.0]";
+const LAW: &str = "[linear]\nk_a = 400.0\nk_s = 250.0\nk_theta = 300.0";
+const TARGET: &str = "[target.circle]\ncentre = [700.0, 550.0]\nradius = 750.0";
+/// As few steps as possible.
+const QUICK: (&str, &str) = ("steps = 25", "steps = 1");
+/// Panels on pins, which nothing holds and loads.
+const ON_PINS: [(&str, &str); 5] = [
+    ("hinge = \"linear\"", "hinge = \"pin\""),
+    (LAW, "[pin]\nopening_deg = 30.0"),
+    (SUPPORT, ""),
+    (PULL, ""),
+    ("compression = 0.01", ""),
+];
+
 /// The scene text with replacements, each of which must apply.
 fn with(changes: &[(&str, &str)]) -> String {
     changes.iter().fold(SCENE.to_owned(), |text, (from, to)| {
@@ -75,22 +94,112 @@ fn with(changes: &[(&str, &str)]) -> String {
     })
 }
 
-/// Writes scene and material into a folder and reads them.
-fn read(folder: &Path, text: &str) -> Scene {
+/// Writes scene and material into a folder; the path of the scene.
+fn written(folder: &Path, text: &str) -> PathBuf {
     std::fs::write(folder.join("film.toml"), FILM).unwrap();
     let path = folder.join("scene.toml");
     std::fs::write(&path, text).unwrap();
-    Scene::read(&path).unwrap()
+    path
 }
 
+fn read(folder: &Path, text: &str) -> Scene {
+    Scene::read(&written(folder, text)).unwrap()
+}
+
+/// The message for a scene that is refused.
+fn refusal(folder: &Path, text: &str) -> String {
+    let refused = Scene::read(&written(folder, text));
+    refused.unwrap_err().to_string()
+}
+
+/// A scene that was run, and its results.
+struct Finished {
+    /// Where the scene is; removed with this value.
+    folder: TempDir,
+    scene: Scene,
+    designed: Designed,
+    report: Report,
+}
+
+impl Finished {
+    fn new(text: &str) -> Self {
+        Self::within(tempfile::tempdir().unwrap(), text)
+    }
+
+    /// The same in a folder with further files, such as weights.
+    fn within(folder: TempDir, text: &str) -> Self {
+        let scene = read(folder.path(), text);
+        Self::of(folder, scene)
+    }
+
+    /// A shipped scene after a change, with as few steps as possible.
+    fn shipped(name: &str, change: impl Fn(&mut SceneConfig)) -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        let scene = shipped(name, |config| {
+            config.optimiser.steps = 1;
+            config.output = folder.path().join("run");
+            change(config);
+        });
+        Self::of(folder, scene)
+    }
+
+    fn of(folder: TempDir, scene: Scene) -> Self {
+        let designed = run(&scene, None).unwrap();
+        let report = write_results(&scene, &designed, false).unwrap();
+        Self {
+            folder,
+            scene,
+            designed,
+            report,
+        }
+    }
+
+    /// The text of a file in the run folder.
+    fn file(&self, name: &str) -> String {
+        std::fs::read_to_string(self.scene.output().join(name)).unwrap()
+    }
+}
+
+fn shipped(name: &str, change: impl FnOnce(&mut SceneConfig)) -> Scene {
+    let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("../configs/scenes");
+    let path = scenes.join(name).with_extension("toml");
+    let mut config: SceneConfig = support::toml_file::read(&path).unwrap();
+    change(&mut config);
+    Scene::new(config, &path).unwrap()
+}
+
+/// The warnings of one kind.
+fn found(report: &Report, concern: Concern) -> Vec<&Warning> {
+    let found = report.warnings.iter();
+    found.filter(|warning| warning.concern == concern).collect()
+}
+
+/// The only warning of one kind.
+#[track_caller]
+fn one(report: &Report, concern: Concern) -> &Warning {
+    let [warning] = found(report, concern)[..] else {
+        panic!("{concern:?}: {:?}", report.warnings);
+    };
+    warning
+}
+
+#[track_caller]
+fn assert_says(text: &str, part: &str) {
+    assert!(text.contains(part), "{part} is not in {text}");
+}
+
+#[track_caller]
+fn assert_close(found: f64, expected: f64, tolerance: f64) {
+    let close = (found - expected).abs() < tolerance;
+    assert!(close, "{found} instead of {expected}");
+}
+
+/// Runs a scene, which is stopped after a step.
 fn run(scene: &Scene, stop_after: Option<usize>) -> Result<Designed, InverseDesignError> {
     let stop = AtomicBool::new(false);
     let mut watch = |search: &SearchState| {
-        let record = search.last();
-        stop.store(
-            stop_after.is_some_and(|step| record.step >= step),
-            Ordering::Relaxed,
-        );
+        let enough = stop_after.is_some_and(|step| search.last().step >= step);
+        stop.store(enough, Ordering::Relaxed);
     };
     inverse_design(scene, &stop, &mut watch)
 }

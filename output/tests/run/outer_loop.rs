@@ -1,42 +1,36 @@
 //! The outer loop on a linear 3 x 3 sheet: the loss decreases, a resumed run follows the same trajectory, and
 //! designs without objective value do not end the run.
 
-use super::{SCENE, read, run, with};
+use super::*;
 use design::optimise::outer_loop::{Ended, StepRecord};
-use design::scene::Scene;
-use design::scene::design_run::{design_of_run, inverse_design};
-use std::sync::atomic::AtomicBool;
+use design::scene::design_run::design_of_run;
 use support::sealed_json;
+
+/// The run of the scene with changes.
+fn designed(changes: &[(&str, &str)]) -> Designed {
+    let folder = tempfile::tempdir().unwrap();
+    run(&read(folder.path(), &with(changes)), None).unwrap()
+}
 
 #[test]
 fn the_loss_falls_and_the_best_design_is_returned() {
-    let folder = tempfile::tempdir().unwrap();
-    let designed = run(&read(folder.path(), SCENE), None).unwrap();
+    let designed = designed(&[]);
     assert_eq!(designed.ended, Ended::Completed);
     assert_eq!(designed.history.len(), 26);
-    let first = &designed.history[0];
-    assert_eq!(first.scores.loss, designed.start.loss);
-    assert!(
-        designed.best.loss < 0.8 * first.scores.loss,
-        "{} {}",
-        designed.best.loss,
-        first.scores.loss
-    );
-    let minimum = designed
-        .history
-        .iter()
-        .map(|record| record.scores.loss)
-        .fold(f64::MAX, f64::min);
+    let losses = designed.history.iter().map(|step| step.scores.loss);
+    let losses: Vec<f64> = losses.collect();
+    assert_eq!(losses[0], designed.start.loss);
+    assert!(designed.best.loss < 0.8 * losses[0]);
+    let minimum = losses.into_iter().fold(f64::MAX, f64::min);
     // The last evaluation follows the path, the search may have corrected it: both to the tolerance of 1e-10.
-    assert!((minimum / designed.best.loss - 1.0).abs() < 1e-9);
+    assert_close(minimum / designed.best.loss, 1.0, 1e-9);
 }
 
 const LBFGS: (&str, &str) = ("steps = 25", "steps = 25\nmethod = \"lbfgs\"");
 
 #[test]
 fn every_step_of_lbfgs_lowers_the_loss() {
-    let folder = tempfile::tempdir().unwrap();
-    let designed = run(&read(folder.path(), &with(&[LBFGS])), None).unwrap();
+    let designed = designed(&[LBFGS]);
     let falls = |pair: &[StepRecord]| pair[1].scores.loss < pair[0].scores.loss;
     assert!(designed.history.windows(2).all(falls));
     assert!(designed.best.loss < 0.8 * designed.start.loss);
@@ -44,21 +38,13 @@ fn every_step_of_lbfgs_lowers_the_loss() {
 
 #[test]
 fn lbfgs_ends_at_a_minimum() {
-    let folder = tempfile::tempdir().unwrap();
     let many = ("steps = 25", "steps = 3000\nmethod = \"lbfgs\"");
     // Without a penalty the best designs are those whose cuts collide.
-    let shape = (
-        "compression = 0.01",
-        "compression = 0.01\npanel_shape = 0.1",
-    );
-    let designed = run(&read(folder.path(), &with(&[many, shape])), None).unwrap();
+    let shape = ("[objective]", "[objective]\npanel_shape = 0.1");
+    let designed = designed(&[many, shape]);
     assert_eq!(designed.ended, Ended::Settled);
-    assert!(
-        designed
-            .history
-            .iter()
-            .all(|record| record.setback.is_none())
-    );
+    let mut steps = designed.history.iter();
+    assert!(steps.all(|record| record.setback.is_none()));
 }
 
 #[test]
@@ -75,11 +61,7 @@ fn resumes(text: &str) {
     let stopped = run(&scene, Some(13)).unwrap();
     assert_eq!(stopped.ended, Ended::Stopped);
     assert_eq!(stopped.history.len(), 14);
-    let followed = uninterrupted
-        .history
-        .iter()
-        .filter(|record| record.followed);
-    assert!(followed.count() < uninterrupted.history.len());
+    assert!(uninterrupted.history.iter().any(|record| !record.followed));
     let resumed = run(&scene, None).unwrap();
     assert_eq!(resumed.history, uninterrupted.history);
     assert_eq!(resumed.design, uninterrupted.design);
@@ -97,22 +79,22 @@ fn a_run_continues_with_more_steps_but_not_with_another_scene() {
     let longer = run_with(&[("steps = 25", "steps = 4")]).unwrap();
     assert_eq!(longer.history.len(), 5);
     let harder = [("steps = 25", "steps = 4"), ("[2.0, 0.0]", "[3.0, 0.0]")];
-    let error = run_with(&harder).err().unwrap().to_string();
-    assert!(error.contains("the key `loads` changed since"), "{error}");
+    let error = |changes| run_with(changes).err().unwrap().to_string();
+    assert_says(&error(&harder), "the key `loads` changed since");
     let path = folder.path().join("run/state.json");
     let state = std::fs::read_to_string(&path).unwrap();
     let mut state: serde_json::Value = serde_json::from_str(&state).unwrap();
     state["scene"]["optimiser"]["steps"] = 25.into();
     state["search"]["adam"]["mean"] = serde_json::json!([0.0]);
-    std::fs::write(&path, state.to_string()).unwrap();
-    let error = run_with(&[]).err().unwrap().to_string();
-    assert!(error.contains("checksum"), "{error}");
-    std::fs::write(&path, sealed_json::to_vec(&state).unwrap()).unwrap();
-    let error = run_with(&[]).err().unwrap().to_string();
-    assert!(error.contains("another size"), "{error}");
-    std::fs::write(&path, "{").unwrap();
-    let error = run_with(&[]).err().unwrap().to_string();
-    assert!(error.contains("restart the run"), "{error}");
+    let sealed = sealed_json::to_vec(&state).unwrap();
+    for (file, expected) in [
+        (state.to_string().into_bytes(), "checksum"),
+        (sealed, "another size"),
+        (b"{".to_vec(), "restart the run"),
+    ] {
+        std::fs::write(&path, file).unwrap();
+        assert_says(&error(&[]), expected);
+    }
 }
 
 #[test]
@@ -142,67 +124,41 @@ fn the_design_of_a_run_is_that_of_the_same_scene_and_model() {
     let message = |scene: &Scene| design_of_run(scene).unwrap_err().to_string();
     let harder = scene(&[("[2.0, 0.0]", "[3.0, 0.0]")]);
     let loads = message(&harder);
-    assert!(loads.contains("the key `loads` changed since"), "{loads}");
-    assert!(loads.contains("--design"), "{loads}");
+    assert_says(&loads, "the key `loads` changed since");
+    assert_says(&loads, "--design");
 
     let path = folder.path().join("run/state.json");
     let state = std::fs::read(&path).unwrap();
     let mut state: serde_json::Value = serde_json::from_slice(&state).unwrap();
     let model = state["model"].as_str().unwrap().to_owned();
-    for (part, name) in ["version of kirigami", "material", "target", "weights"]
-        .into_iter()
-        .enumerate()
-    {
+    let parts = ["version of kirigami", "material", "target", "weights"];
+    for (part, name) in parts.into_iter().enumerate() {
         let mut parts: Vec<&str> = model.split('-').collect();
         parts[part] = "another";
         state["model"] = parts.join("-").into();
         std::fs::write(&path, sealed_json::to_vec(&state).unwrap()).unwrap();
         let scene = scene(&[]);
-        let error = message(&scene);
-        assert!(error.contains(&format!("the {name} changed")), "{error}");
+        assert_says(&message(&scene), &format!("the {name} changed"));
     }
 }
 
 #[test]
 fn a_step_to_a_design_without_value_is_halved_and_reported() {
-    let folder = tempfile::tempdir().unwrap();
     // A learning rate that moves the charts to their bounds, where cuts collide.
-    let wild = with(&[("learning_rate = 0.03", "learning_rate = 9.0")]);
-    let designed = run(&read(folder.path(), &wild), None).unwrap();
-    let set_back = |record: &&StepRecord| record.halvings > 0;
-    let reason = designed
-        .history
-        .iter()
-        .find(set_back)
-        .unwrap()
-        .setback
-        .as_ref();
-    assert!(!reason.unwrap().is_empty());
+    let designed = designed(&[("learning_rate = 0.03", "learning_rate = 9.0")]);
+    let mut steps = designed.history.iter();
+    let set_back = steps.find(|record| record.halvings > 0).unwrap();
+    assert!(!set_back.setback.as_ref().unwrap().is_empty());
     assert!(designed.best.loss <= designed.start.loss);
-    assert!(
-        designed
-            .history
-            .iter()
-            .all(|record| record.scores.loss.is_finite())
-    );
+    let mut steps = designed.history.iter();
+    assert!(steps.all(|record| record.scores.loss.is_finite()));
 }
 
 #[test]
 fn a_start_with_panels_below_the_minimum_width_is_refused() {
     let folder = tempfile::tempdir().unwrap();
-    let thin = with(&[
-        (
-            "compression = 0.01",
-            "compression = 0.01\nmin_panel_width = 130.0",
-        ),
-        ("start_noise = 0.05", "start_noise = 2.0"),
-    ]);
-    let error = run(&read(folder.path(), &thin), None)
-        .err()
-        .unwrap()
-        .to_string();
-    assert!(
-        error.contains("objective.min_panel_width = 130 mm"),
-        "{error}"
-    );
+    let width = ("[objective]", "[objective]\nmin_panel_width = 130.0");
+    let thin = with(&[width, ("start_noise = 0.05", "start_noise = 2.0")]);
+    let error = run(&read(folder.path(), &thin), None).err().unwrap();
+    assert_says(&error.to_string(), "objective.min_panel_width = 130 mm");
 }

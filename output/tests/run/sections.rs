@@ -1,10 +1,7 @@
 //! Sections of a scene that no shipped scene uses: each is equivalent to simpler input.
 
-use super::{read, with};
+use super::*;
 use design::equilibrium::load_step::LoadStep;
-use design::scene::Scene;
-
-const PULL: &str = "[[loads]]\npanel = [2, 1]\nforce = [2.0, 0.0]";
 
 fn path(scene: &Scene) -> Vec<LoadStep> {
     let problem = scene.problem().unwrap();
@@ -19,7 +16,7 @@ fn assert_alike(one: &str, other: &str) {
         assert_ne!(one.configuration[5], [0.0; 3]);
         let pairs = std::iter::zip(&one.configuration, &other.configuration);
         for (x, y) in pairs.flat_map(|(one, other)| std::iter::zip(one, other)) {
-            assert!((x - y).abs() < 1e-9, "{x} {y}");
+            assert_close(*x, *y, 1e-9);
         }
     }
 }
@@ -27,10 +24,8 @@ fn assert_alike(one: &str, other: &str) {
 #[test]
 fn edge_loads_are_divided_among_the_panels_of_the_edge() {
     let panels = (0..3).map(|row| format!("[[loads]]\npanel = [2, {row}]\nforce = [1.2, -0.4]\n"));
-    assert_alike(
-        "[[edge_loads]]\nedge = \"right\"\ntraction = [0.003, -0.001]",
-        &panels.collect::<String>(),
-    );
+    let edge = "[[edge_loads]]\nedge = \"right\"\ntraction = [0.003, -0.001]";
+    assert_alike(edge, &panels.collect::<String>());
 }
 
 #[test]
@@ -45,10 +40,7 @@ fn opening_couples_open_a_hinge() {
     let opened = path(&read(folder.path(), &everywhere));
     // Self-equilibrated couples open every hinge by M / k_theta.
     for deformation in &opened[3].deformations {
-        assert!(
-            (deformation.theta - 60.0 / 300.0).abs() < 1e-8,
-            "{deformation:?}"
-        );
+        assert_close(deformation.theta, 60.0 / 300.0, 1e-8);
     }
 }
 
@@ -64,30 +56,24 @@ fn a_start_is_given_by_values() {
          w_lig = [12.0, 13.0, 14.0, 15.0, 16.0, 17.0, 18.0, 19.0, 20.0, 21.0, 22.0, 23.0]\n[process]",
     );
     let logits = [0.3_f64, 0.5, 0.6, 0.9].map(|r| (r / (1.0 - r)).ln());
-    let ell: [[f64; 3]; 4] = [
+    let ell = [
         [0.2, 0.4, 0.4],
         [0.3, 0.4, 0.3],
         [0.5, 0.1, 0.4],
         [0.1, 0.1, 0.8],
     ];
-    let ell = ell.as_flattened().iter().map(|length| length.ln());
-    let found = values
-        .pattern
-        .z
-        .iter()
-        .chain(values.pattern.ell.iter().flatten());
+    let ell = ell.as_flattened().iter().map(|length: &f64| length.ln());
+    let pattern = &values.pattern;
+    let found = pattern.z.iter().chain(pattern.ell.iter().flatten());
     for (logit, expected) in found.zip(logits.into_iter().chain(ell)) {
-        assert!((logit - expected).abs() < 1e-12);
+        assert_close(*logit, expected, 1e-12);
     }
     // Widths increase with the hinge index; omitted values are uniform.
     assert!(values.omega.windows(2).all(|pair| pair[0] < pair[1]));
     let uniform = start("[process]");
     assert!(uniform.omega.windows(2).all(|pair| pair[0] == pair[1]));
     let refused = with(&[("[process]", "[start]\nr = [0.3, 0.5, 1.6, 0.9]\n[process]")]);
-    let path = folder.path().join("scene.toml");
-    std::fs::write(&path, refused).unwrap();
-    let message = Scene::read(&path).unwrap_err().to_string();
-    assert!(message.contains("r[2] = 1.6 violates"), "{message}");
+    assert_says(&refusal(folder.path(), &refused), "r[2] = 1.6 violates");
 }
 
 #[test]
@@ -95,16 +81,11 @@ fn a_target_is_drawn_in_an_svg_file() {
     let folder = tempfile::tempdir().unwrap();
     let svg = "<svg><path d=\"M 0 0 H 40 V 20 H 0 Z\"/></svg>";
     std::fs::write(folder.path().join("outline.svg"), svg).unwrap();
-    let scene = read(
-        folder.path(),
-        &with(&[(
-            "[target.circle]\ncentre = [700.0, 550.0]\nradius = 750.0",
-            "[target.svg]\nfile = \"outline.svg\"\ncentre = [700.0, 550.0]\nheight = 900.0",
-        )]),
-    );
-    assert!((scene.target.length - 2.0 * (1800.0 + 900.0)).abs() < 1e-9);
+    let drawn = "[target.svg]\nfile = \"outline.svg\"\ncentre = [700.0, 550.0]\nheight = 900.0";
+    let scene = read(folder.path(), &with(&[(TARGET, drawn)]));
+    assert_close(scene.target.length, 2.0 * (1800.0 + 900.0), 1e-9);
     for [x, y] in &scene.target.points {
         let (x, y) = ((x - 700.0).abs() / 900.0, (y - 550.0).abs() / 450.0);
-        assert!((x.max(y) - 1.0).abs() < 1e-9, "{x} {y}");
+        assert_close(x.max(y), 1.0, 1e-9);
     }
 }

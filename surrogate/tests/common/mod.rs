@@ -1,6 +1,6 @@
 //! Surrogates with random weights, and a hinge design.
 
-use hinge::{HingeConstants, HingeDesign};
+use hinge::HingeDesign;
 use std::path::{Path, PathBuf};
 use surrogate::Surrogate;
 
@@ -19,5 +19,5 @@ pub fn with_peak() -> Surrogate {
 }
 
 pub fn design(w_lig: f64, alpha: f64) -> HingeDesign {
-    HingeConstants::PAPER.hinge(w_lig, alpha)
+    hinge::HingeConstants::PAPER.hinge(w_lig, alpha)
 }
