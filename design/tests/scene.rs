@@ -14,10 +14,8 @@ fn shipped(name: &str) -> PathBuf {
 /// comments, what stands in its place, and a part of the message; `|` is a line break of the scene.
 fn assert_refused(name: &str, table: &str) {
     let scene = std::fs::read_to_string(shipped(name)).unwrap();
-    let bare = scene
-        .lines()
-        .map(|line| line.split(" #").next().unwrap().trim_end());
-    let scene = bare.collect::<Vec<_>>().join("\n");
+    let bare = |line: &str| line.split(" #").next().unwrap().trim_end().to_owned();
+    let scene = scene.lines().map(bare).collect::<Vec<_>>().join("\n");
     let folder = tempfile::tempdir().unwrap();
     for part in ["materials", "scenes"] {
         std::fs::create_dir(folder.path().join(part)).unwrap();
@@ -26,10 +24,8 @@ fn assert_refused(name: &str, table: &str) {
     std::fs::copy(shipped("..").join(film), folder.path().join(film)).unwrap();
     let path = folder.path().join("scenes").join(name);
     for row in table.trim().lines() {
-        let cells: Vec<String> = row
-            .split(" => ")
-            .map(|cell| cell.trim().replace('|', "\n"))
-            .collect();
+        let cells = row.split(" => ").map(|cell| cell.trim().replace('|', "\n"));
+        let cells: Vec<String> = cells.collect();
         let [from, to, expected] = &cells[..] else {
             panic!("{row}");
         };

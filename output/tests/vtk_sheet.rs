@@ -8,10 +8,8 @@ use support::vtk::UnstructuredGrid;
 
 fn moved(grid: &UnstructuredGrid) -> Vec<[f64; 3]> {
     let displacements = grid.point_data[0].values.as_chunks::<3>().0;
-    let points = grid.points.iter().zip(displacements);
-    points
-        .map(|(x, u)| [0, 1, 2].map(|axis| x[axis] + u[axis]))
-        .collect()
+    let sum = |(x, u): (&[f64; 3], &[f64; 3])| [0, 1, 2].map(|axis| x[axis] + u[axis]);
+    grid.points.iter().zip(displacements).map(sum).collect()
 }
 
 #[test]

@@ -111,10 +111,8 @@ fn an_undeformed_hinge_has_no_energy_and_no_forces() {
 fn with_holes() -> Surrogate {
     let one_hole = with_peak();
     let mut card = one_hole.card().clone();
-    card.features = feature_names(true)
-        .iter()
-        .map(ToString::to_string)
-        .collect();
+    let features = feature_names(true).iter();
+    card.features = features.map(ToString::to_string).collect();
     card.domain.holes = Some([0.02, 0.4]);
     card.standardisation.mean.push(0.2);
     card.standardisation.std.push(0.1);
@@ -252,8 +250,7 @@ fn a_head_for_d_peak_does_not_change_d() {
     let (mut layers, mut card) = (two.layers(), two.card().clone());
     (layers.chi_p, card.peak_scale) = (None, None);
     let one = Surrogate::from_parts(layers, card).unwrap();
-    let one = one.damage(&designs, &deformations);
-    let two = two.damage(&designs, &deformations);
+    let [one, two] = [one, two].map(|it| it.damage(&designs, &deformations));
     for (one, two) in one.iter().zip(&two) {
         assert_close("D", &[two.d], &[one.d], 1e-14);
         assert_close("dD", &two.gradient, &one.gradient, 1e-14);
@@ -275,8 +272,7 @@ fn sharpness_is_equivalent_to_a_scaled_head_and_damage_scale() {
         tensor.values.iter_mut().for_each(|value| *value *= beta);
     }
     let plain = Surrogate::from_parts(layers, card).unwrap();
-    let sharp = sharp.damage(&designs, &deformations);
-    let plain = plain.damage(&designs, &deformations);
+    let [sharp, plain] = [sharp, plain].map(|it| it.damage(&designs, &deformations));
     for (sharp, plain) in sharp.iter().zip(&plain) {
         assert_close("D", &[sharp.d], &[plain.d], 1e-15);
         assert_close("dD", &sharp.gradient, &plain.gradient, 1e-14);

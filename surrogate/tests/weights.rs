@@ -210,19 +210,12 @@ fn cards_of_other_versions_shapes_and_trainings_are_errors() {
     let error = with_card("\"energy_scale\": 85.0", "\"energy_scale\": 86.0");
     let refused = matches!(error, WeightsError::OtherCard { tensor, .. } if tensor == "w_scale");
     assert!(refused, "{error}");
+    let peak = "\"peak_scale\": 0.3, \"damage_scale\"";
     for (from, to, expected) in [
-        (
-            "\"damage_scale\"",
-            "\"peak_scale\": 0.3, \"damage_scale\"",
-            "chi_p.0.weight",
-        ),
+        ("\"damage_scale\"", peak, "chi_p.0.weight"),
         ("\"material\"", "\"materiel\"", "materiel"),
         ("[0.375,", "[-0.375,", "half_range > 0"),
-        (
-            "\"mm, N, MPa, N mm, rad\"",
-            "\"m, N, Pa, N m, rad\"",
-            "units",
-        ),
+        ("mm, N, MPa, N mm, rad", "m, N, Pa, N m, rad", "units"),
         ("\"theta\", \"log", "\"theta_deg\", \"log", "features"),
     ] {
         let error = with_card(from, to).to_string();

@@ -43,10 +43,8 @@ fn drawn(name: &str, change: impl FnOnce(&mut SceneConfig)) -> (Scene, DesignPro
 fn named(beginning: &str) -> Vec<String> {
     let files = std::fs::read_dir(folder()).unwrap();
     let names = files.map(|file| file.unwrap().file_name().into_string().unwrap());
-    let mut names: Vec<_> = names
-        .filter_map(|name| Some(name.strip_suffix(".toml")?.to_owned()))
-        .filter(|name| name.starts_with(beginning))
-        .collect();
+    let names = names.filter_map(|name| Some(name.strip_suffix(".toml")?.to_owned()));
+    let mut names: Vec<_> = names.filter(|name| name.starts_with(beginning)).collect();
     names.sort();
     assert!(!names.is_empty(), "{beginning}");
     names
@@ -65,8 +63,8 @@ fn deployed(name: &str, load_steps: usize) -> (LoadStep, f64) {
 fn apart(a: &LoadStep, b: &LoadStep, size: f64) -> f64 {
     let panels = std::iter::zip(&a.configuration, &b.configuration);
     let differences = panels.flat_map(|(a, b)| {
-        std::iter::zip([size, size, 1.0], std::iter::zip(a, b))
-            .map(|(unit, (a, b))| (a - b).abs() / unit)
+        let pairs = std::iter::zip(a, b).zip([size, size, 1.0]);
+        pairs.map(|((a, b), unit)| (a - b).abs() / unit)
     });
     differences.fold(0.0, f64::max)
 }
@@ -75,21 +73,14 @@ fn reaches_one_state_at_full_load(name: &str) {
     let mut first = None;
     for load_steps in [10, 60] {
         let (last, size) = deployed(name, load_steps);
-        assert!(
-            last.status != Status::Diverged,
-            "{name}, {load_steps} load steps: {last}"
-        );
-        assert!(
-            last.residual < 1e-6 && last.negative_pivots == 0,
-            "{name}: {last}"
-        );
-        assert_eq!(last.descent_end, None, "{name}");
+        let at = format!("{name}, {load_steps} load steps: {last}");
+        assert!(last.status != Status::Diverged, "{at}");
+        let stable = last.negative_pivots == 0;
+        assert!(last.residual < 1e-6 && stable, "{at}");
+        assert_eq!(last.descent_end, None, "{at}");
         let first = first.get_or_insert_with(|| last.clone());
         let difference = apart(first, &last, size);
-        assert!(
-            difference < SAME,
-            "{name}, {load_steps} load steps: {difference:e}, {last}"
-        );
+        assert!(difference < SAME, "{difference:e}: {at}");
     }
 }
 
@@ -97,12 +88,14 @@ fn reaches_one_state_at_full_load(name: &str) {
 fn sheets_that_have_an_equilibrium_reach_full_load_with_any_number_of_load_steps() {
     let kinds = ["branch", "false-no-equilibrium", "load", "slow"];
     let names: Vec<String> = kinds.iter().flat_map(|kind| named(kind)).collect();
+    let all = |names: &[String]| {
+        names
+            .iter()
+            .for_each(|name| reaches_one_state_at_full_load(name))
+    };
     std::thread::scope(|scope| {
         for half in names.chunks(names.len().div_ceil(2)) {
-            scope.spawn(|| {
-                half.iter()
-                    .for_each(|name| reaches_one_state_at_full_load(name))
-            });
+            scope.spawn(|| all(half));
         }
     });
 }

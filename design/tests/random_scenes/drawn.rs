@@ -202,13 +202,6 @@ impl Drawn {
         WidthChart { w_minus, w_plus }
     }
 
-    fn options(&self) -> SheetOptions {
-        SheetOptions {
-            hinge_point: self.hinge_point,
-            process: self.process.into(),
-        }
-    }
-
     fn law(&self) -> Arc<dyn HingeLaw> {
         match &self.law {
             DrawnLaw::Linear(stiffness) => Arc::new(LinearLaw {
@@ -218,11 +211,6 @@ impl Drawn {
                 surrogate: NETWORKS[*network].clone().scaled(*factor),
             }),
         }
-    }
-
-    fn contact(&self) -> Option<Contact> {
-        let contact = |[k, wall, cut]: [f64; 3]| Contact::new(k, wall, cut).unwrap();
-        self.contact.map(contact)
     }
 
     /// The sheet is to become an ellipse a little wider than itself.
@@ -235,6 +223,9 @@ impl Drawn {
             Some(stroke) => solver.driven(stroke).unwrap(),
             None => solver,
         };
+        let contact = self
+            .contact
+            .map(|[k, wall, cut]| Contact::new(k, wall, cut));
         let corners = self.outline.corners;
         let centre = [0, 1].map(|d| 0.25 * corners.iter().map(|corner| corner[d]).sum::<f64>());
         let radii = [0.6, 0.5].map(|ratio| ratio * self.outline.size());
@@ -246,11 +237,14 @@ impl Drawn {
             grid: self.grid,
             outline: self.outline,
             widths: self.chart(),
-            options: self.options(),
+            options: SheetOptions {
+                hinge_point: self.hinge_point,
+                process: self.process.into(),
+            },
             model: Model::Equilibrium(Box::new(Mechanics {
                 law: self.law(),
                 release: None,
-                contact: self.contact(),
+                contact: contact.map(Result::unwrap),
                 solver,
             })),
             objective: Objective::from_shape(Shape {

@@ -88,7 +88,6 @@ pub fn loads(case: &Value) -> Vec<Load> {
 /// Maximum difference between the numbers of two arrays of the same shape.
 pub fn difference<const N: usize>(found: &[[f64; N]], expected: &[[f64; N]]) -> f64 {
     assert_eq!(found.len(), expected.len());
-    std::iter::zip(found.as_flattened(), expected.as_flattened())
-        .map(|(a, b)| (a - b).abs())
-        .fold(0.0, f64::max)
+    let pairs = std::iter::zip(found.as_flattened(), expected.as_flattened());
+    pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
 }

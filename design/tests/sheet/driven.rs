@@ -32,12 +32,8 @@ fn the_stroke_of_a_load_reproduces_the_load() {
     let opening = opening_moments(&sheet, 3, 0.5);
     let sum = couples(&opening);
     // Beside forces, a couple does not count.
-    let cases = [
-        (vec![pull(5, 1.5)], 1.5),
-        (several, f64::hypot(0.8, 0.3)),
-        (opening, sum),
-    ];
-    for (loads, size) in cases {
+    let (one, both) = (vec![pull(5, 1.5)], f64::hypot(0.8, 0.3));
+    for (loads, size) in [(one, 1.5), (several, both), (opening, sum)] {
         let end = path(&sheet, &law, &clamp(3), &loads, 4).pop().unwrap();
         let stroke = work(&loads, &end) / size;
         let last = &driven(&sheet, &law, (&clamp(3), &loads), 3, stroke)[2];

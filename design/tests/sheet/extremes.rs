@@ -237,17 +237,13 @@ fn impossible_supports_and_loads_are_named() {
     };
     let (held, pulled) = (clamp(3), [pull(5, 1.0)]);
     let twice = [held, clamp(3)].concat();
+    let absent = "NoSuchPanel { what: \"a support\", panel: 9, panels: 9";
+    let endless = "NotFinite { what: \"a load\", panel: 5";
     for (refused, named) in [
         (new(&held, &pulled, 0), "NoSteps(0)"),
-        (
-            new(&clamp(9), &[], 1),
-            "NoSuchPanel { what: \"a support\", panel: 9, panels: 9",
-        ),
+        (new(&clamp(9), &[], 1), absent),
         (new(&clamp(5), &pulled, 1), "LoadOnSupport { panel: 5"),
-        (
-            new(&held, &[pull(5, f64::NAN)], 1),
-            "NotFinite { what: \"a load\", panel: 5",
-        ),
+        (new(&held, &[pull(5, f64::NAN)], 1), endless),
         (new(&twice, &[], 1), "SupportedTwice { panel: 3"),
     ] {
         assert_begins(refused, named);

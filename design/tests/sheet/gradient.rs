@@ -132,9 +132,8 @@ fn a_pulled_sheet_with_path_functionals() {
     let configuration = &evaluation.deployment.final_step().configuration;
     let response = problem.response_at(&design, configuration).unwrap();
     let exchanged = problem.response_pullback(&design, &response, &by).unwrap();
-    let found: Vec<f64> = std::iter::zip(evaluation.gradient.to_flat(), exchanged.design.to_flat())
-        .map(|(gradient, change)| gradient + change)
-        .collect();
+    let pairs = std::iter::zip(evaluation.gradient.to_flat(), exchanged.design.to_flat());
+    let found = pairs.map(|(gradient, change)| gradient + change);
 
     let expected = vector(&case, "grad");
     for (found, expected) in std::iter::zip(found, expected.to_flat()) {

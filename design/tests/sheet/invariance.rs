@@ -30,11 +30,8 @@ fn pulled(
     couple: f64,
     steps: usize,
 ) -> Vec<LoadStep> {
-    let loads = [
-        pull(5, force[0]),
-        load(5, Dof::UY, force[1]),
-        load(7, Dof::Phi, couple),
-    ];
+    let forces = [pull(5, force[0]), load(5, Dof::UY, force[1])];
+    let loads = [&forces[..], &[load(7, Dof::Phi, couple)]].concat();
     path(sheet, law, &clamp(3), &loads, steps)
 }
 
@@ -51,10 +48,11 @@ fn another_unit_of_length_or_force_gives_the_same_shape() {
         let path = pulled(&sheet, &law, pull, couple, 5);
         assert!(converged(&path));
         let last = path[4].configuration.iter();
-        let scaled: Vec<[f64; 3]> = last
-            .map(|[x, y, phi]| [x / length, y / length, *phi])
-            .collect();
-        (scaled, path[4].potential / (force * length))
+        let scaled = last.map(|[x, y, phi]| [x / length, y / length, *phi]);
+        (
+            scaled.collect::<Vec<_>>(),
+            path[4].potential / (force * length),
+        )
     };
     let (expected, potential) = deployed(1.0, 1.0);
     // From metres to millimetres and back, from newtons to kilonewtons and to micronewtons.
@@ -111,9 +109,8 @@ fn a_mirrored_sheet_deploys_as_the_mirror_image() {
             .collect(),
         ell: [reversed(bottom), left.clone(), reversed(top), right.clone()],
     };
-    let stiffness: Vec<[f64; 3]> = (0..grid.hinge_count())
-        .map(|_| SPRINGS.map(|k| k * (1.0 + random.number(0.3))))
-        .collect();
+    let mut springs = || SPRINGS.map(|k| k * (1.0 + random.number(0.3)));
+    let stiffness: Vec<[f64; 3]> = (0..grid.hinge_count()).map(|_| springs()).collect();
     let sheet = |coordinates: &PatternCoordinates| {
         let outline = Outline::rectangle(4.0, 3.0);
         cut(grid, outline, coordinates, 0.1, AT_CORNER)
@@ -136,12 +133,10 @@ fn a_mirrored_sheet_deploys_as_the_mirror_image() {
     }
     let mirrored_stiffness = images.iter().map(|&image| stiffness[image]).collect();
     let deployed = |sheet: &Sheet, stiffness: Vec<[f64; 3]>, [held, loaded]: [usize; 2], side| {
-        let forces = [
-            (Dof::UX, side * 1.2),
-            (Dof::UY, 0.4),
-            (Dof::Phi, side * 0.1),
-        ];
-        let loads = forces.map(|(dof, value)| load(loaded, dof, value));
+        let forces = std::iter::zip(Dof::ALL, [side * 1.2, 0.4, side * 0.1]);
+        let loads: Vec<Load> = forces
+            .map(|(dof, value)| load(loaded, dof, value))
+            .collect();
         let law = LinearLaw { stiffness };
         path(sheet, &law, &clamp(held), &loads, 4)
     };
@@ -182,10 +177,8 @@ fn hinges_store_the_work_of_the_loads() {
                 _ if i % 2 == 1 => 4.0,
                 _ => 2.0,
             };
-            let sum: f64 = (works.iter().enumerate())
-                .map(|(i, work)| weights(i) * work)
-                .sum();
-            let done = works[steps] - sum / (3.0 * steps as f64);
+            let weighted = (works.iter().enumerate()).map(|(i, work)| weights(i) * work);
+            let done = works[steps] - weighted.sum::<f64>() / (3.0 * steps as f64);
             let stored: f64 = path[steps - 1].energies.iter().sum();
             (done / stored - 1.0).abs()
         };

@@ -47,9 +47,8 @@ fn a_corrected_path_is_the_followed_path() {
         assert_ratio(corrected.loss, followed.loss, 1e-10);
         let gradients = [&followed, &corrected].map(|evaluation| evaluation.gradient.to_flat());
         let norm = |x: &[f64]| x.iter().map(|x| x * x).sum::<f64>().sqrt();
-        let apart: Vec<f64> = std::iter::zip(&gradients[0], &gradients[1])
-            .map(|(a, b)| a - b)
-            .collect();
+        let pairs = std::iter::zip(&gradients[0], &gradients[1]);
+        let apart: Vec<f64> = pairs.map(|(a, b)| a - b).collect();
         assert!(norm(&apart) < 1e-7 * norm(&gradients[0]), "{seed}");
     }
     assert!(compared >= 6, "{compared} corrected paths");

@@ -90,9 +90,7 @@ fn random_weights(sheet: &Sheet) -> SheetGradient {
     let mut random = Random::new(7);
     let (panels, hinges) = (sheet.panels.len(), sheet.hinges.len());
     SheetGradient {
-        corners: (0..panels)
-            .map(|_| std::array::from_fn(|_| random.arrays(1, 1.0)[0]))
-            .collect(),
+        corners: random.arrays(4 * panels, 1.0).as_chunks().0.to_vec(),
         references: random.arrays(panels, 1.0),
         centroids: random.arrays(panels, 1.0),
         areas: random.numbers(panels, 1.0),

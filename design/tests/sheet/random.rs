@@ -20,8 +20,7 @@ impl Random {
     }
 
     pub fn arrays<const N: usize>(&mut self, count: usize, size: f64) -> Vec<[f64; N]> {
-        (0..count)
-            .map(|_| std::array::from_fn(|_| self.number(size)))
-            .collect()
+        let mut array = || std::array::from_fn(|_| self.number(size));
+        (0..count).map(|_| array()).collect()
     }
 }

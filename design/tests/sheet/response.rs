@@ -109,9 +109,8 @@ fn the_gradient_in_every_input() {
             let kink = driven && d < 2 && loads[panel][..2] == [0.0; 2];
             problem.under(&loaded(with)).is_ok() && !kink
         };
-        let free: Vec<[f64; 3]> = (0..loads.len())
-            .map(|panel| [0, 1, 2].map(|d| f64::from(variable(panel, d))))
-            .collect();
+        let of_panel = |panel| [0, 1, 2].map(|d| f64::from(variable(panel, d)));
+        let free: Vec<[f64; 3]> = (0..loads.len()).map(of_panel).collect();
         let variables = design.to_flat().len();
         let mut gradient = found.design.to_flat();
         gradient.extend(found.loads.as_flattened());

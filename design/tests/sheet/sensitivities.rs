@@ -39,10 +39,10 @@ fn loads_and_spring_constants() {
         // In units of the constants.
         let relative: Vec<f64> = std::iter::zip(&gradient, &x).map(|(g, x)| g * x).collect();
         let value = |factors: &[f64]| {
-            let x: Vec<f64> = std::iter::zip(factors, &x)
-                .map(|(factor, x)| factor * x)
-                .collect();
-            loaded(&x, stroke).loss(&start()).unwrap()
+            let scaled = std::iter::zip(factors, &x).map(|(factor, x)| factor * x);
+            loaded(&scaled.collect::<Vec<_>>(), stroke)
+                .loss(&start())
+                .unwrap()
         };
         let allowed = |_| 1e-6 * evaluation.loss;
         assert_gradient(value, &vec![1.0; x.len()], &relative, 1e-4, allowed);

@@ -254,8 +254,7 @@ fn slits_that_are_open_on_the_outline_are_cut_beyond_it() {
     let cuts = uniform_cuts();
     for slit in &cuts.slits {
         let longer = length(cuts.tool_slit(slit)) - length(slit.ends);
-        let expected = f64::from(slit.hinges[1].is_none());
-        assert_close(longer, expected, 1e-9);
+        assert_close(longer, f64::from(slit.hinges[1].is_none()), 1e-9);
         assert_eq!(cuts.tool_slit(slit)[0], slit.ends[0]);
     }
 }

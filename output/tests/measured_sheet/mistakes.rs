@@ -36,25 +36,14 @@ fn points_that_cannot_be_compared_are_refused() {
         }
     };
     let first = points[2].mark;
+    use PointFault::{NoSuchCorner, NoSuchPanel, NotFinite, Repeated};
     type Change<'a> = &'a dyn Fn(&mut MeasuredPoint);
     let faults: [(Change, PointFault); 5] = [
-        (&|point| point.position[0] = f64::NAN, PointFault::NotFinite),
-        (
-            &|point| point.position[1] = f64::INFINITY,
-            PointFault::NotFinite,
-        ),
-        (
-            &|point| point.mark.panel = 50,
-            PointFault::NoSuchPanel { last: 49 },
-        ),
-        (
-            &|point| point.mark.corner = Some(4),
-            PointFault::NoSuchCorner,
-        ),
-        (
-            &|point| point.mark = first,
-            PointFault::Repeated { first: 2 },
-        ),
+        (&|it| it.position[0] = f64::NAN, NotFinite),
+        (&|it| it.position[1] = f64::INFINITY, NotFinite),
+        (&|it| it.mark.panel = 50, NoSuchPanel { last: 49 }),
+        (&|it| it.mark.corner = Some(4), NoSuchCorner),
+        (&|it| it.mark = first, Repeated { first: 2 }),
     ];
     for (change, fault) in faults {
         assert_eq!(changed(change), fault);

@@ -30,13 +30,11 @@ pub fn weights(folder: &Path, changes: &[(&str, &str)]) {
 pub fn learned(changes: &[(&str, &str)]) -> String {
     let posture = "[posture]\nkind = \"held-flat\"";
     let weights = format!("[surrogate]\nweights = \"tiny.safetensors\"\n\n{posture}");
+    let terms = "compression = 0.2\nshear = 0.1\ndamage = 0.2";
     let law = [
         ("hinge = \"linear\"", "hinge = \"surrogate\""),
         (LAW, &weights),
-        (
-            "compression = 0.01",
-            "compression = 0.2\nshear = 0.1\ndamage = 0.2",
-        ),
+        ("compression = 0.01", terms),
         ("steps = 25", "steps = 6"),
     ];
     with(&[&law, changes].concat())
@@ -51,17 +49,9 @@ fn weights_of_another_hinge_or_material_are_refused() {
     let thin = ("load_steps = 4", "load_steps = 4\nthickness = 0.1");
     let windows = "windows of r_win = 20 mm in a sheet of this thickness, but the scene has process.r_win = 100";
     let cases: [(&[_], &[_], &str); 4] = [
-        (
-            &[("film", "steel")],
-            &[],
-            "the material `steel`, the scene's is `film`",
-        ),
+        (&[("film", "steel")], &[], "`steel`, the scene's is `film`"),
         (&[other_law], &[], "another material law"),
-        (
-            &[],
-            &[large_hole],
-            "a radius of 0.16 w_lig, but the scene has 0.2",
-        ),
+        (&[], &[large_hole], "0.16 w_lig, but the scene has 0.2"),
         (&[], &[thin], windows),
     ];
     for (card, scene, expected) in cases {
@@ -268,10 +258,7 @@ fn a_run_is_not_continued_with_another_model() {
     weights(folder.path(), &[]);
     run(&read(), None).unwrap();
     // A narrower training domain: its penalty energy keeps the hinges from opening.
-    let narrower = [
-        ("0.0, 0.625]", "0.0, 0.005]"),
-        ("0.35, 0.625]", "0.35, 0.005]"),
-    ];
+    let narrower = [(", 0.625]", ", 0.005]")];
     weights(folder.path(), &narrower);
     let error = run(&read(), None).err().unwrap();
     assert_says(&error.to_string(), "the weights changed since");

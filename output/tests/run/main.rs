@@ -26,14 +26,8 @@ material = "film.toml"
 hinge = "linear"
 load_steps = 4
 output = "run"
-
-[sheet]
-size = [1200.0, 1200.0]
-panels = [3, 3]
-
-[ligament]
-start = 18.0
-range = [10.0, 26.0]
+sheet = { size = [1200.0, 1200.0], panels = [3, 3] }
+ligament = { start = 18.0, range = [10.0, 26.0] }
 
 [process]
 fillet_ratio = 0.16

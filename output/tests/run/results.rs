@@ -29,10 +29,11 @@ fn a_sound_design_writes_all_files_and_only_its_miss_is_a_warning() {
     let run = finished(&[("seed = 3", "seed = 12")]);
     let report = &run.report;
     let warnings = report.warnings.iter();
-    let found: Vec<_> = warnings
-        .map(|warning| (warning.concern, warning.severity))
-        .collect();
-    assert_eq!(found, [(Concern::TargetMissed, Severity::Warning)]);
+    let found = warnings.map(|warning| (warning.concern, warning.severity));
+    assert_eq!(
+        found.collect::<Vec<_>>(),
+        [(Concern::TargetMissed, Severity::Warning)]
+    );
     assert_eq!((report.steps, report.hinges.len()), (25, 12));
     assert!(report.after.loss < report.before.loss);
     assert!(report.after.outline_error < report.before.outline_error);
@@ -132,9 +133,8 @@ fn the_tutorial_lists_the_files_of_a_run() {
             _ => lines.push((name, file.contents)),
         }
     }
-    let lines = lines
-        .iter()
-        .map(|(names, contents)| format!("| {names} | {contents} |\n"));
+    let line = |(names, contents): &(String, &str)| format!("| {names} | {contents} |\n");
+    let lines = lines.iter().map(line);
     let tutorial = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/TUTORIAL.md");
     let tutorial = std::fs::read_to_string(tutorial).unwrap();
     assert!(tutorial.contains(&lines.collect::<String>()));
@@ -144,13 +144,9 @@ fn the_tutorial_lists_the_files_of_a_run() {
 fn a_restart_leaves_the_inputs_of_the_run_alone() {
     let run = finished(&[QUICK]);
     // The pictures that the program draws.
-    for name in [
-        "flat.png",
-        "deployed-start.png",
-        "deployed.png",
-        "deployment.png",
-    ] {
-        std::fs::write(run.scene.output().join(name), "").unwrap();
+    for name in ["flat", "deployed-start", "deployed", "deployment"] {
+        let picture = run.scene.output().join(name).with_extension("png");
+        std::fs::write(picture, "").unwrap();
     }
     let scene = read(run.folder.path(), &with(&[QUICK]));
     remove_run(&scene).unwrap();
