@@ -215,7 +215,7 @@ class Problem:
         self,
         start: ArrayLike | None = None,
         steps: int | None = None,
-        method: Literal["adam", "lbfgs", "gauss-newton"] | None = None,
+        method: Literal["adam", "lbfgs"] | None = None,
         learning_rate: float | None = None,
         callback: Callable[[dict[str, Any]], Any] | None = None,
     ) -> tuple[_Doubles, Any, list[dict[str, Any]]]: ...
