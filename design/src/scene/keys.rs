@@ -99,7 +99,7 @@ pub struct OptimiserConfig {
     /// Length of the first step in every chart coordinate; for Adam also of the later steps.
     #[schemars(range(min = 1e-9, max = 10.0))]
     pub learning_rate: f64,
-    /// `adam`, as in the paper, `lbfgs` or `gauss-newton`.
+    /// `adam`, as in the paper, or `lbfgs`.
     #[serde(default)]
     pub method: SearchMethod,
     /// Standard deviation of the random start about the uniform sheet, in the chart coordinates.
