@@ -152,7 +152,7 @@ const groups = {
   target: (box) => writeTarget(box),
 
   search(box) {
-    choiceField(box, "Method", "optimiser.method", [["lbfgs", "L-BFGS"], ["gauss-newton", "Gauss-Newton"], ["adam", "Adam"]]);
+    choiceField(box, "Method", "optimiser.method", [["lbfgs", "L-BFGS"], ["adam", "Adam"]]);
     numberField(box, "Steps", "optimiser.steps", (steps) => set("optimiser.steps", Math.max(1, Math.round(steps))));
     for (const [text, key] of [["Damage", "damage"], ["Compression", "compression"], ["Panel shape", "panel_shape"], ["Domain", "domain"]])
       numberField(box, text, `objective.${key}`);
