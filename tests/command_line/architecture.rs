@@ -354,14 +354,16 @@ fn long_options(command: &[&str]) -> usize {
         .unwrap();
     let help = String::from_utf8(help.stdout).unwrap();
     let of_all = ["--help", "--version", "--quiet", "--verbose"];
-    let option = |line: &str| {
+    let option = |line: &'_ str| {
         let words = line.split([' ', ',']).filter(|word| !word.is_empty());
-        let long = words.take(2).find(|word| word.starts_with("--"));
-        long.is_some_and(|long| !of_all.contains(&long.trim_end()))
+        let long = words.take(2).find(|word| word.starts_with("--"))?;
+        (!of_all.contains(&long)).then(|| long.to_owned())
     };
-    let own = help
+    let lines = help
         .lines()
-        .filter(|line| line.trim_start().starts_with('-') && option(line));
+        .filter(|line| line.trim_start().starts_with('-'));
+    // The text of an option may begin a line with its name.
+    let own: BTreeSet<String> = lines.filter_map(option).collect();
     let below = help.lines().skip_while(|line| *line != "Commands:").skip(1);
     let below = below.take_while(|line| !line.is_empty());
     let names = below.filter_map(|line| {
@@ -371,7 +373,7 @@ fn long_options(command: &[&str]) -> usize {
             .filter(|name| !name.is_empty() && *name != "help")
     });
     let of_subcommands = names.map(|name| long_options(&[command, &[name]].concat()));
-    own.count() + of_subcommands.sum::<usize>()
+    own.len() + of_subcommands.sum::<usize>()
 }
 
 #[test]
