@@ -1,7 +1,6 @@
 //! `kirigami solve`: one window solved along one ray or recorded path, printed as a table.
 
 use crate::commands::input_file;
-use crate::commands::solve_args::LIMIT;
 use crate::commands::window_args::WindowArgs;
 use crate::ui::exit::Unfinished;
 use crate::ui::progress::watched;
@@ -16,6 +15,7 @@ use hinge::{HingeDeformation, HingeSample, SheetMaterial};
 use mesher::Tier;
 use serde_json::json;
 use std::path::PathBuf;
+use std::time::Duration;
 
 /// Solve one hinge window by finite elements and print its ray
 ///
@@ -51,6 +51,9 @@ pub struct SolveCommand {
     /// Mesh tier: tiny, small, default, fine, reference or paper; for plates plate-tiny, plate or plate-reference
     #[arg(long, value_name = "TIER", default_value_t = Tier::Default)]
     tier: Tier,
+    /// Time limit of the solver (s); time in which the machine is suspended does not count
+    #[arg(long, value_name = "S", default_value_t = 3600, value_parser = clap::value_parser!(u64).range(1..=86_400))]
+    time_limit_s: u64,
     /// Folder for the mesh, the input deck, the log and the solver's output
     #[arg(long, value_name = "FOLDER", default_value = "runs/solve")]
     out: PathBuf,
@@ -82,10 +85,11 @@ impl SolveCommand {
         };
         let problem = WindowProblem::new(HingePath { design, path }, &material, self.tier);
         let solve = WindowSolve::new(problem, &solver.versions());
+        let limit = Duration::from_secs(self.time_limit_s);
         let solution = watched(
             1,
             || reached(&self.out),
-            || solver.attempt(&solve, &self.out, LIMIT, stop),
+            || solver.attempt(&solve, &self.out, limit, stop),
         )
         .map_err(|error| match error.is_stop() {
             true => Unfinished::new(1, "ray").into(),
