@@ -11,7 +11,7 @@
 //! **Identity.** The id of a solve is a hash of the problem: for a window, of hinge, path, material, tier and mesh,
 //! increments, versions of the programs and of this crate.
 //!
-//! **Solver.** A [`Solver`] makes one attempt at a solve of its kind. [`CalculiX`] is one, the deterministic [`FakeSolver`]
+//! **Solver.** A [`Solver`] makes one attempt at a solve of its kind. [`CalculiX`] is one, the deterministic `FakeSolver`
 //! of the tests another; a further program is one more implementation.
 //!
 //! **Attempts.** A solve that fails by what its solver says of the problem is attempted otherwise, depending on the
