@@ -11,10 +11,10 @@
 //! | rays of a campaign solved in rounds until weights are accurate | [`learn`] |
 //!
 //! Windows are solved by a [`SolveService`](fe_driver::SolveService). One that fails ends no task: it is named in the
-//! result, which says what it leaves unknown. The example checks weights at eight states, by a solver without a program:
+//! result, which says what it leaves unknown. The example checks weights at eight states:
 //!
-//! ```
-//! use fe_driver::{FakeSolver, SolveService, SolveStore};
+//! ```no_run
+//! use fe_driver::{CalculiX, SolveService, SolveStore};
 //! use hinge::SheetMaterial;
 //! use mesher::Tier;
 //! use std::path::Path;
@@ -28,7 +28,7 @@
 //! let weights = Surrogate::load(&repository.join("data/pet-0.5mm/small.safetensors"))?;
 //! let film = SheetMaterial::load(&repository.join("configs/materials/pet-0.5mm.toml"))?;
 //! let windows = SolveService {
-//!     solver: Box::new(FakeSolver::new([6.0, 12.0, 120.0], |_| None)),
+//!     solver: Box::new(CalculiX::find()?),
 //!     store: SolveStore(folder.path().to_owned()),
 //!     workers: 2,
 //!     limit: Duration::from_secs(60),
