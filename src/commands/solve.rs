@@ -1,6 +1,7 @@
 //! `kirigami solve`: one window solved along one ray or recorded path, printed as a table.
 
 use crate::commands::input_file;
+use crate::commands::solve_args::LIMIT;
 use crate::commands::window_args::WindowArgs;
 use crate::ui::exit::Unfinished;
 use crate::ui::progress::watched;
@@ -52,7 +53,7 @@ pub struct SolveCommand {
     #[arg(long, value_name = "TIER", default_value_t = Tier::Default)]
     tier: Tier,
     /// Time limit of the solver (s); time in which the machine is suspended does not count
-    #[arg(long, value_name = "S", default_value_t = 3600, value_parser = clap::value_parser!(u64).range(1..=86_400))]
+    #[arg(long, value_name = "S", default_value_t = LIMIT.as_secs(), value_parser = clap::value_parser!(u64).range(1..=86_400))]
     time_limit_s: u64,
     /// Folder for the mesh, the input deck, the log and the solver's output
     #[arg(long, value_name = "FOLDER", default_value = "runs/solve")]

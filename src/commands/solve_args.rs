@@ -15,7 +15,7 @@ use std::time::Duration;
 use verification::VerificationError;
 
 /// Time limit of a window solve, unless a campaign states another.
-const LIMIT: Duration = Duration::from_secs(3600);
+pub const LIMIT: Duration = Duration::from_secs(3600);
 
 /// Options of window solves.
 #[derive(Args, Clone, Copy, Default)]

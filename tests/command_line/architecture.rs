@@ -354,7 +354,7 @@ fn long_options(command: &[&str]) -> usize {
         .unwrap();
     let help = String::from_utf8(help.stdout).unwrap();
     let of_all = ["--help", "--version", "--quiet", "--verbose"];
-    let option = |line: &'_ str| {
+    let option = |line: &str| {
         let words = line.split([' ', ',']).filter(|word| !word.is_empty());
         let long = words.take(2).find(|word| word.starts_with("--"))?;
         (!of_all.contains(&long)).then(|| long.to_owned())
