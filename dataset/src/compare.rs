@@ -1,4 +1,4 @@
-//! Comparison of the rays that two databases contain: the error of a database relative to one of a finer mesh.
+//! Comparison of rays that were solved twice: the error of a mesh relative to a finer one, or of one solver to another.
 //!
 //! Two jobs are the same ray if their designs, their ends and their material laws are the same; an unknown law, as in
 //! rows of another solver, is taken for that of the other job. They are compared at the states of the first job, up to
@@ -71,10 +71,29 @@ impl ComparedState {
     }
 }
 
-/// The rays that both databases contain, in the order of their designs.
+impl Database {
+    /// The rays that were solved on the finer mesh too, each with its samples there.
+    pub fn on_both_meshes(&self) -> Vec<ComparedRay<'_>> {
+        let manifest = self.manifest();
+        let Some(finer) = &manifest.finer else {
+            return Vec::new();
+        };
+        compare_rows(self.on_tier(&manifest.tier), self.on_tier(&finer.tier))
+    }
+}
+
+/// The rays that both databases contain, in the order of their designs; of a database with a finer mesh, those on the other one.
 pub fn compare<'a>(judged: &'a Database, reference: &'a Database) -> Vec<ComparedRay<'a>> {
-    let references = rays(reference.rows());
-    let pairs = rays(judged.rows());
+    let rays = |database: &'a Database| database.on_tier(&database.manifest().tier);
+    compare_rows(rays(judged), rays(reference))
+}
+
+fn compare_rows<'a>(
+    judged: impl IntoIterator<Item = &'a Row>,
+    reference: impl IntoIterator<Item = &'a Row>,
+) -> Vec<ComparedRay<'a>> {
+    let references = rays(reference);
+    let pairs = rays(judged);
     let pairs = pairs.into_iter().filter_map(|((ray, law), rows)| {
         let mut alike = references
             .range((ray, "")..)
@@ -129,26 +148,31 @@ fn rms<'a>(
 }
 
 /// Design and end of a ray, in millionths of their units.
-type Ray = [i64; 8];
+pub(crate) type RayKey = [i64; 8];
+
+/// The ray of a row.
+pub(crate) fn ray_key(row: &Row) -> RayKey {
+    let (design, x) = (&row.design, &row.sample);
+    let [a, s, theta] = [x.a, x.s, x.theta].map(|component| component / x.lambda);
+    let ray = [
+        design.w_lig,
+        design.alpha,
+        design.fillet_ratio,
+        design.kerf,
+        design.r_win,
+        a,
+        s,
+        theta,
+    ];
+    ray.map(|number| (1e6 * number).round() as i64)
+}
 
 /// Rows by ray and hash of the material law, in order of lambda.
-fn rays(rows: &[Row]) -> BTreeMap<(Ray, &str), Vec<&Row>> {
-    let mut rays: BTreeMap<(Ray, &str), Vec<&Row>> = BTreeMap::new();
+fn rays<'a>(rows: impl IntoIterator<Item = &'a Row>) -> BTreeMap<(RayKey, &'a str), Vec<&'a Row>> {
+    let mut rays: BTreeMap<(RayKey, &str), Vec<&Row>> = BTreeMap::new();
     for row in rows {
-        let (design, x) = (&row.design, &row.sample);
-        let [a, s, theta] = [x.a, x.s, x.theta].map(|component| component / x.lambda);
-        let ray = [
-            design.w_lig,
-            design.alpha,
-            design.fillet_ratio,
-            design.kerf,
-            design.r_win,
-            a,
-            s,
-            theta,
-        ];
-        let ray = ray.map(|number| (1e6 * number).round() as i64);
-        rays.entry((ray, &row.material_hash)).or_default().push(row);
+        let ray = (ray_key(row), row.material_hash.as_str());
+        rays.entry(ray).or_default().push(row);
     }
     for rows in rays.values_mut() {
         rows.sort_by(|x, y| x.sample.lambda.total_cmp(&y.sample.lambda));
@@ -159,8 +183,7 @@ fn rays(rows: &[Row]) -> BTreeMap<(Ray, &str), Vec<&Row>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mixing::Mixing;
-    use crate::rows::tests::rows;
+    use crate::rows::tests::{finer, rows};
     use crate::split::SplitPlan;
 
     fn database(rows: Vec<Row>) -> Database {
@@ -219,13 +242,22 @@ mod tests {
             database(named.collect())
         };
         let [film, steel, unknown] = ["f11f", "57ee1", ""].map(of);
-        let both = [film.clone(), steel.clone()];
-        let both = Database::merge(&both, &SplitPlan::default(), Mixing::Allowed).unwrap();
         assert_eq!(compare(&film, &steel).len(), 0);
         assert_eq!(compare(&film, &unknown).len(), 6);
         assert_eq!(compare(&unknown, &steel).len(), 6);
-        let rays = compare(&both, &film);
-        assert_eq!(rays.len(), 6);
-        assert!(rays.iter().all(|ray| ray.end().material_hash == "f11f"));
+    }
+
+    #[test]
+    fn the_rays_of_both_meshes_are_compared_with_the_finer_one() {
+        assert_eq!(database(rows(6)).on_both_meshes().len(), 0);
+        let mut fine = finer(rows(4));
+        fine.iter_mut().for_each(|row| row.cpu_s = 70.0);
+        let both = database([rows(6), fine].concat());
+        let rays = both.on_both_meshes();
+        assert_eq!(rays.len(), 4);
+        for ray in rays {
+            assert!(ray.rows.iter().all(|row| row.tier == "default"));
+            assert_eq!((ray.rows.len(), ray.cpu_s), (10, [10.0, 70.0]));
+        }
     }
 }

@@ -4,7 +4,7 @@ use crate::database::Database;
 use crate::database_files::read_bytes;
 use crate::error::DatasetError;
 use crate::rows::Row;
-use crate::schema::{D_PEAK, NUMBERS, RATIOS, TEXTS};
+use crate::schema::{D_PEAK, NUMBERS, TEXTS, columns};
 use csv::StringRecord;
 use serde::Deserialize;
 use std::collections::BTreeMap;
@@ -58,9 +58,7 @@ impl Database {
     /// The table as CSV, in full precision.
     pub fn to_csv(&self) -> Result<Vec<u8>, DatasetError> {
         let mut writer = csv::Writer::from_writer(Vec::new());
-        let texts = TEXTS.iter().map(|column| column.name);
-        let numbers = NUMBERS.iter().map(|column| column.name);
-        writer.write_record(texts.chain(numbers).chain([D_PEAK]).chain(RATIOS))?;
+        writer.write_record(columns().map(|column| column.name))?;
         for row in &self.rows {
             let texts = TEXTS.iter().map(|column| (column.get)(row).to_owned());
             let numbers = NUMBERS.iter().map(|column| (column.get)(row).to_string());
@@ -108,7 +106,7 @@ fn rows_of(bytes: &[u8], map: &ColumnMap) -> Result<Vec<Row>, DatasetError> {
             (values, _) => set_all(&mut rows, values, text.set),
         }
     }
-    set_all(&mut rows, table.numbers(D_PEAK)?, |row, value| {
+    set_all(&mut rows, table.numbers(D_PEAK.name)?, |row, value| {
         row.sample.d_peak = Some(value).filter(|value| !value.is_nan());
     });
     for number in &NUMBERS {
@@ -216,7 +214,7 @@ impl ColumnMap {
     /// Rejects columns that a database does not have, and constants of the wrong type.
     fn check(&self) -> Result<(), DatasetError> {
         let number =
-            |name: &str| name == D_PEAK || NUMBERS.iter().any(|column| column.name == name);
+            |name: &str| name == D_PEAK.name || NUMBERS.iter().any(|column| column.name == name);
         let text = |name: &str| TEXTS.iter().any(|column| column.name == name);
         let named = self
             .columns

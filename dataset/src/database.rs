@@ -2,13 +2,11 @@
 
 use crate::digest::{Digest, by_job_and_lambda};
 use crate::error::DatasetError;
-use crate::gates::Rejection;
 use crate::manifest::Manifest;
-use crate::mixing::Mixing;
 use crate::parquet;
 use crate::rows::Row;
-use crate::split::{Part, Split, SplitPlan, geometry};
-use std::collections::{BTreeMap, BTreeSet};
+use crate::split::{Part, SplitPlan, geometry};
+use std::collections::BTreeSet;
 
 /// Rows in the order of job and lambda, with the bytes of their Parquet file and its manifest.
 #[derive(Clone, Debug)]
@@ -21,95 +19,9 @@ pub struct Database {
 impl Database {
     /// Drops and counts the rows that the gates reject, and splits the others by geometry.
     ///
-    /// Rows of different materials, tiers or hinge constants are an error.
+    /// Rows of different materials or hinge constants are an error, and rows of two tiers without a common ray.
     pub fn collect(rows: Vec<Row>, plan: &SplitPlan) -> Result<Self, DatasetError> {
-        Self::assemble(rows, plan, Mixing::Refused)
-    }
-
-    /// Merges several databases into one and splits it again.
-    ///
-    /// A job that several databases contain is taken once. Materials and tiers may be mixed if `mixing` allows it.
-    /// Hinge constants may not be mixed, because the surrogate has no feature for them.
-    pub fn merge(
-        databases: &[Self],
-        plan: &SplitPlan,
-        mixing: Mixing,
-    ) -> Result<Self, DatasetError> {
-        let mut rows: Vec<Row> = Vec::new();
-        let mut jobs: BTreeSet<&str> = BTreeSet::new();
-        let mut rejected: BTreeMap<Rejection, usize> = BTreeMap::new();
-        for database in databases {
-            let new = |row: &&Row| !jobs.contains(row.job.as_str());
-            let before = rows.len();
-            rows.extend(database.rows.iter().filter(new).cloned());
-            if rows.len() == before {
-                continue;
-            }
-            jobs.extend(database.rows.iter().map(|row| row.job.as_str()));
-            for (reason, count) in &database.manifest.rejected {
-                *rejected.entry(*reason).or_default() += count;
-            }
-        }
-        let mut merged = Self::assemble(rows, plan, mixing)?;
-        merged.manifest.rejected = rejected;
-        Ok(merged)
-    }
-
-    /// The same rows, split according to another plan.
-    pub fn split(&self, plan: &SplitPlan) -> Result<Self, DatasetError> {
-        Self::merge(std::slice::from_ref(self), plan, Mixing::Allowed)
-    }
-
-    /// The same rows, each geometry in the part that it has in `other`. A geometry that `other` lacks is for training.
-    ///
-    /// Weights that were trained on `other` can be fine-tuned on this database: its validation and test parts have no
-    /// geometry that they were trained on. It is an error if one of these parts is empty.
-    pub fn split_like(&self, other: &Self) -> Result<Self, DatasetError> {
-        let parts = [Part::Validation, Part::Test].map(|part| (part, other.geometries(part)));
-        let mut alike = self.clone().with_parts(|row| {
-            let known = parts.iter().find(|(_, of)| of.contains(&geometry(row)));
-            Some(known.map_or(Part::Training, |(part, _)| *part))
-        });
-        alike.manifest.split_plan = other.manifest.split_plan;
-        let split = &alike.manifest.split;
-        if split.validation.is_empty() || split.test.is_empty() {
-            Err(DatasetError::NotAlike)
-        } else {
-            Ok(alike)
-        }
-    }
-
-    /// A database of other rows of the same jobs, with the same split.
-    pub(crate) fn with_rows(&self, rows: Vec<Row>) -> Result<Self, DatasetError> {
-        let Manifest {
-            split_plan, split, ..
-        } = &self.manifest;
-        let mut other = Self::assemble(rows, split_plan, Mixing::Allowed)?;
-        for (reason, count) in &self.manifest.rejected {
-            *other.manifest.rejected.entry(*reason).or_default() += count;
-        }
-        Ok(other.with_parts(|row| split.part(&row.job)))
-    }
-
-    /// The same rows, each job in the part of its first row; a job without a part is not used.
-    fn with_parts(self, part: impl Fn(&Row) -> Option<Part>) -> Self {
-        let mut split = Split::default();
-        for ray in self.rays() {
-            if let Some(part) = part(&ray[0]) {
-                split.jobs_mut(part).insert(ray[0].job.clone());
-            }
-        }
-        self.with_split(split)
-    }
-
-    fn with_split(mut self, split: Split) -> Self {
-        self.manifest.split_hash = split.hash();
-        self.manifest.split = split;
-        self
-    }
-
-    fn assemble(rows: Vec<Row>, plan: &SplitPlan, mixing: Mixing) -> Result<Self, DatasetError> {
-        let mut digest = Digest::new(mixing);
+        let mut digest = Digest::new();
         let mut rows = digest.accepted(rows);
         rows.sort_by(by_job_and_lambda);
         for ray in rows.chunk_by(|left, right| left.job == right.job) {
@@ -122,6 +34,22 @@ impl Database {
             parquet,
             manifest,
         })
+    }
+
+    /// A database of other rows of the rays, with the same split. Its hash is that of this file, from which it follows.
+    pub(crate) fn with_rows(&self, rows: Vec<Row>) -> Result<Self, DatasetError> {
+        let ours = &self.manifest;
+        let mut other = Self::collect(rows, &ours.split_plan)?;
+        for (reason, count) in &ours.rejected {
+            *other.manifest.rejected.entry(*reason).or_default() += count;
+        }
+        other.manifest.hash.clone_from(&ours.hash);
+        let split = ours
+            .split
+            .of(other.rows.iter().map(|row| &row.job).collect());
+        other.manifest.split_hash = split.hash();
+        other.manifest.split = split;
+        Ok(other)
     }
 
     /// The geometries of one part of the split.
@@ -143,7 +71,12 @@ impl Database {
         first.filter(|row| !row.is_as_asked()).collect()
     }
 
-    /// All accepted rows.
+    /// The rows on a mesh.
+    pub(crate) fn on_tier<'a>(&'a self, tier: &'a str) -> impl Iterator<Item = &'a Row> {
+        self.rows.iter().filter(move |row| row.tier == tier)
+    }
+
+    /// All accepted rows, also those of the finer mesh.
     pub fn rows(&self) -> &[Row] {
         &self.rows
     }

@@ -3,12 +3,12 @@
 
 use crate::error::DatasetError;
 use crate::gates::{Gates, Rejection};
-use crate::manifest::{FORMAT_VERSION, Manifest};
-use crate::mixing::Mixing;
+use crate::manifest::{FORMAT_VERSION, FinerMesh, Manifest};
+use crate::meshes::Meshes;
 use crate::rows::Row;
 use crate::schema;
-use crate::split::{Geometries, Split, SplitPlan};
-use hinge::{HingeConstants, HingeDeformation, HingeDesign, TrainingDomain};
+use crate::split::{Split, SplitPlan};
+use hinge::{HingeConstants, TrainingDomain};
 use std::cmp::Ordering;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -20,47 +20,31 @@ pub(crate) fn by_job_and_lambda(left: &Row, right: &Row) -> Ordering {
 
 /// What is known of the rows so far.
 pub(crate) struct Digest {
-    mixing: Mixing,
     rejected: BTreeMap<Rejection, usize>,
-    /// The first accepted row.
-    first: Option<Row>,
     /// Job and lambda of the last accepted row.
     last: (String, f64),
-    rays: usize,
-    partial_rays: usize,
-    cpu_s: f64,
-    geometries: Geometries,
+    rows: usize,
+    meshes: Meshes,
     /// The different values of every column of text, in the order of [`TEXTS`].
     texts: [BTreeSet<String>; TEXTS.len()],
-    /// Designs, each with the number of successive rows that have it.
-    designs: Vec<(HingeDesign, usize)>,
-    deformations: Vec<HingeDeformation>,
 }
 
 /// The columns of text whose values the manifest lists.
-const TEXTS: [fn(&Row) -> &String; 6] = [
+const TEXTS: [fn(&Row) -> &String; 4] = [
     |row| &row.material,
-    |row| &row.tier,
     |row| &row.material_hash,
-    |row| &row.settings_hash,
     |row| &row.gmsh,
     |row| &row.ccx,
 ];
 
 impl Digest {
-    pub fn new(mixing: Mixing) -> Self {
+    pub fn new() -> Self {
         Self {
-            mixing,
             rejected: BTreeMap::new(),
-            first: None,
             last: (String::new(), f64::NEG_INFINITY),
-            rays: 0,
-            partial_rays: 0,
-            cpu_s: 0.0,
-            geometries: Geometries::default(),
+            rows: 0,
+            meshes: Meshes::default(),
             texts: Default::default(),
-            designs: Vec::new(),
-            deformations: Vec::new(),
         }
     }
 
@@ -79,29 +63,15 @@ impl Digest {
     /// Adds accepted rows of one job, in the order of lambda. The jobs must come in the order of their ids.
     pub fn add(&mut self, ray: &[Row]) -> Result<(), DatasetError> {
         for row in ray {
-            self.mixing.check(self.first.as_ref().unwrap_or(row), row)?;
             self.refuse_duplicate(row)?;
-            self.geometries.add(row);
             for (values, text) in self.texts.iter_mut().zip(TEXTS) {
                 if !values.contains(text(row)) {
                     values.insert(text(row).clone());
                 }
             }
-            match self.designs.last_mut() {
-                Some((design, count)) if *design == row.design => *count += 1,
-                _ => self.designs.push((row.design, 1)),
-            }
-            self.deformations.push(row.sample.deformation());
-            if self.first.is_none() {
-                self.first = Some(row.clone());
-            }
         }
-        if let Some(last) = ray.last() {
-            self.rays += 1;
-            self.partial_rays += usize::from(last.is_partial());
-            self.cpu_s += last.cpu_s;
-        }
-        Ok(())
+        self.rows += ray.len();
+        self.meshes.add(ray)
     }
 
     /// Rejects a row that does not come after the last one: one with the same job and lambda.
@@ -119,40 +89,44 @@ impl Digest {
 
     /// The manifest of the rows, whose Parquet file has the given hash.
     pub fn manifest(self, hash: String, plan: &SplitPlan) -> Result<Manifest, DatasetError> {
-        let designs =
-            (self.designs.iter()).flat_map(|(design, count)| std::iter::repeat_n(*design, *count));
-        let states = designs.zip(self.deformations.iter().copied());
-        let domain = TrainingDomain::covering(states);
-        let (Some(first), Some(domain)) = (self.first, domain) else {
-            return Err(DatasetError::NoRows {
-                why: reasons(&self.rejected),
-            });
+        let no_rows = |rejected| DatasetError::NoRows {
+            why: reasons(rejected),
         };
-        let mut hinge = first.design.constants();
+        let Some((rays, finer)) = self.meshes.sorted()? else {
+            return Err(no_rows(&self.rejected));
+        };
+        let Some(domain) = TrainingDomain::covering(rays.states()) else {
+            return Err(no_rows(&self.rejected));
+        };
+        let mut hinge = rays.first_design().constants();
         if domain.holes.is_some() {
             hinge.fillet_ratio = HingeConstants::PAPER.fillet_ratio;
         }
-        let split = Split::deal(&self.geometries, plan)?;
-        let joined = |values: BTreeSet<String>| Vec::from_iter(values).join(" + ");
-        let [material, tier, material_hashes, settings_hashes, gmsh, ccx] = self.texts;
+        let split = Split::deal(&rays.geometries, plan)?;
+        let [material, material_hashes, gmsh, ccx] = self.texts;
         Ok(Manifest {
             format_version: FORMAT_VERSION,
             hash,
             units: schema::units()
                 .map(|(name, unit)| (name.to_owned(), unit.to_owned()))
                 .collect(),
-            rows: self.deformations.len(),
-            rays: self.rays,
-            partial_rays: self.partial_rays,
-            geometries: self.geometries.len(),
-            cpu_s: self.cpu_s,
+            rows: self.rows,
+            rays: rays.rays,
+            partial_rays: rays.partial_rays,
+            geometries: rays.geometries.len(),
+            cpu_s: rays.cpu_s,
+            finer: finer.map(|finer| FinerMesh {
+                tier: finer.tier().to_owned(),
+                rays: finer.rays,
+                cpu_s: finer.cpu_s,
+            }),
             gates: Gates::default(),
             rejected: self.rejected,
-            material: joined(material),
-            tier: joined(tier),
+            material: Vec::from_iter(material).join(" + "),
+            tier: rays.tier().to_owned(),
             hinge,
             material_hashes,
-            settings_hashes,
+            settings_hashes: [rays.settings_hash().to_owned()].into(),
             gmsh,
             ccx,
             domain,

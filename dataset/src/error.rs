@@ -10,16 +10,11 @@ use support::file_error::FileError;
     reason = "the message of each variant is its documentation"
 )]
 pub enum DatasetError {
-    #[error(
-        "the tier `{tier}` is already corrected: use databases of solved, uncorrected rows, both for the rows and \
-         for the reference"
-    )]
-    AlreadyCorrected { tier: String },
     #[error("no rows: {why}")]
     NoRows { why: String },
     #[error(
         "job {job}: {column} = {found}, but other rows have {expected}; \
-         keep them in separate databases, or, if they differ only in material or tier, merge with `--mixed`"
+         collect them in separate databases"
     )]
     Mixed {
         job: String,
@@ -35,15 +30,8 @@ pub enum DatasetError {
     )]
     TooFewGeometries { found: usize },
     #[error(
-        "the databases have no hinge geometry of the validation part or of the test part in common: name the database \
-         that the weights were trained on"
-    )]
-    NotAlike,
-    #[error("the databases have different materials, {expected} and {found}")]
-    OtherMaterial { expected: String, found: String },
-    #[error(
-        "{found} rays are in both databases, but the correction needs at least {needed}: solve more \
-         rays of the first database on the mesh of the second"
+        "{found} rays are solved on the finer mesh too, but the correction needs at least {needed}: increase `finer` in the \
+         campaign"
     )]
     TooFewRays { found: usize, needed: usize },
     #[error("the fractions validation = {validation} and test = {test} violate 0 < fraction < 0.5")]

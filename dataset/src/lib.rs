@@ -2,7 +2,8 @@
 //!
 //! A database is `X.parquet` with its manifest `X.json`: hash, counts, units, training domain,
 //! rejected rows and the split. It is collected once with [`Database::collect`], which rejects invalid rows instead
-//! of repairing them. Rows of different materials, tiers or hinge constants are an error.
+//! of repairing them. Rows of different materials or hinge constants are an error. Some rays may be there on a finer mesh too:
+//! [`Database::corrected`] corrects the others by them.
 //!
 //! Reading a database:
 //!
@@ -10,7 +11,7 @@
 //! use dataset::{Database, Part};
 //! use std::path::Path;
 //!
-//! # let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../data/pet-0.5mm/reference.parquet");
+//! # let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../data/polypropylene-3mm/hinges.parquet");
 //! let database = Database::read(&path)?;
 //! println!("{}", database.manifest().tier);
 //! for row in database.part(Part::Test) {
@@ -32,8 +33,8 @@ mod fidelity;
 mod fidelity_correction;
 mod gates;
 mod manifest;
+mod meshes;
 mod mirror;
-mod mixing;
 mod parquet;
 mod ray_stream;
 mod rows;
@@ -49,9 +50,9 @@ pub use error::DatasetError;
 pub use fidelity::Fidelity;
 pub use fidelity_correction::{LeftOut, left_out};
 pub use gates::{Gates, Rejection};
-pub use manifest::{FORMAT_VERSION, Manifest};
+pub use manifest::{FORMAT_VERSION, FinerMesh, Manifest};
 pub use mirror::with_mirrored;
-pub use mixing::Mixing;
 pub use ray_stream::Collected;
 pub use rows::Row;
+pub use schema::{ColumnMeaning, columns};
 pub use split::{Part, Split, SplitPlan};

@@ -20,27 +20,30 @@ pub struct Manifest {
     pub hash: String,
     /// Unit of each column that has a unit.
     pub units: BTreeMap<String, String>,
-    /// Number of rows.
+    /// Number of rows, of both meshes.
     pub rows: usize,
-    /// Jobs with at least one row.
+    /// Jobs of the mesh `tier` with at least one row.
     pub rays: usize,
     /// Rays that stopped before their end.
     pub partial_rays: usize,
     /// Number of distinct (w_lig, alpha), up to mirroring.
     pub geometries: usize,
-    /// CPU time of all rays (s).
+    /// CPU time of these rays (s).
     pub cpu_s: f64,
+    /// The finer mesh on which some of the rays were solved too.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub finer: Option<FinerMesh>,
     /// The gates that all rows have passed.
     pub gates: Gates,
     /// Number of rejected rows by reason.
     pub rejected: BTreeMap<Rejection, usize>,
-    /// Name of the material; mixed materials are written "a + b".
+    /// Name of the material.
     pub material: String,
-    /// Hashes of the material laws; the set is empty, or contains an empty hash, if they are unknown.
+    /// Hash of the material law; the set is empty, or contains an empty hash, if it is unknown.
     pub material_hashes: BTreeSet<String>,
-    /// Hashes of the campaigns' settings; the set is empty, or contains an empty hash, if they are unknown.
+    /// Hash of the campaign's settings; the set is empty, or contains an empty hash, if they are unknown.
     pub settings_hashes: BTreeSet<String>,
-    /// Tier of the window mesh, as parsed by [`Fidelity::from_tier`](crate::Fidelity::from_tier); mixed tiers are written "a + b".
+    /// Tier of the window mesh, as parsed by [`Fidelity::from_tier`](crate::Fidelity::from_tier).
     pub tier: String,
     /// The constants of all hinges; if they have holes of several radii (`domain.holes`), `fillet_ratio` is the paper's.
     pub hinge: HingeConstants,
@@ -48,7 +51,7 @@ pub struct Manifest {
     pub gmsh: BTreeSet<String>,
     /// Versions of ccx that solved the rows.
     pub ccx: BTreeSet<String>,
-    /// The set of states that the rows cover.
+    /// The set of states that the rows of the mesh `tier` cover.
     pub domain: TrainingDomain,
     /// How the geometries were assigned to the parts.
     pub split_plan: SplitPlan,
@@ -56,6 +59,18 @@ pub struct Manifest {
     pub split_hash: String,
     /// The jobs of each part.
     pub split: Split,
+}
+
+/// The finer mesh of a database.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct FinerMesh {
+    /// Its tier.
+    pub tier: String,
+    /// Number of rays that were solved on it.
+    pub rays: usize,
+    /// Their CPU time (s).
+    pub cpu_s: f64,
 }
 
 impl Manifest {
@@ -69,7 +84,8 @@ impl Manifest {
         } = &self.split;
         let parts = [training, validation, test];
         let mut dealt = parts.into_iter().flatten();
-        if self.rows != rows.len() || self.rays != jobs.len() {
+        let finer = self.finer.as_ref().map_or(0, |finer| finer.rays);
+        if self.rows != rows.len() || self.rays + finer != jobs.len() {
             Some("the numbers of rows or rays differ")
         } else if self.split_hash != self.split.hash() {
             Some("the split does not match its hash")

@@ -5,7 +5,6 @@ use crate::database_files::{publish, refuse_existing, unwritable};
 use crate::digest::{Digest, by_job_and_lambda};
 use crate::error::DatasetError;
 use crate::manifest::Manifest;
-use crate::mixing::Mixing;
 use crate::parquet::{Hashing, Table};
 use crate::rows::Row;
 use crate::split::SplitPlan;
@@ -36,7 +35,7 @@ impl Collected {
         refuse_existing(path, replace)?;
         let mut file = Unnamed::beside(path).map_err(unwritable(path))?;
         let failed = |error: DatasetError| unwritable(path)(std::io::Error::other(error));
-        let mut digest = Digest::new(Mixing::Refused);
+        let mut digest = Digest::new();
         let mut contents = Contents::default();
         let mut hashing = Hashing::new(file.file());
         let mut table = Table::new(&mut hashing).map_err(failed)?;

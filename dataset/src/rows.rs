@@ -95,4 +95,16 @@ pub(crate) mod tests {
         let increments = |index| (1..=10).map(move |k| row(index, 0.1 * f64::from(k)));
         (0..jobs).flat_map(increments).collect()
     }
+
+    /// The same rays on a finer mesh.
+    pub fn finer(rows: Vec<Row>) -> Vec<Row> {
+        let solved = |row: Row| Row {
+            job: format!("fine-{}", row.job),
+            settings_hash: "f19e".into(),
+            tier: "reference".into(),
+            solved_tier: "reference".into(),
+            ..row
+        };
+        rows.into_iter().map(solved).collect()
+    }
 }

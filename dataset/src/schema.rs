@@ -1,32 +1,43 @@
-//! The columns of the database and their units.
+//! The columns of the database, their units and their meanings.
 
 use crate::error::DatasetError;
 use crate::rows::Row;
 use polars::prelude::{Column, DataFrame, IntoColumn, NamedFrom, Series};
 
+/// What a column of a database holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ColumnMeaning {
+    /// Its name.
+    pub name: &'static str,
+    /// Its unit; empty for a text and for a number without unit.
+    pub unit: &'static str,
+    /// What its values are, in a phrase.
+    pub meaning: &'static str,
+}
+
 /// A column of numbers, with a value in every row.
 pub(crate) struct Number {
     pub name: &'static str,
     pub unit: &'static str,
+    pub meaning: &'static str,
     pub get: fn(&Row) -> f64,
     pub set: fn(&mut Row, f64),
 }
 
-/// The column of D_peak, the only one of numbers that may have gaps.
-pub(crate) const D_PEAK: &str = "D_peak";
-
 /// A column of text.
 pub(crate) struct Text {
     pub name: &'static str,
+    pub meaning: &'static str,
     pub get: fn(&Row) -> &str,
     pub set: fn(&mut Row, String),
 }
 
 macro_rules! numbers {
-    ($($name:literal [$unit:literal] = $first:ident $(. $rest:ident)*;)*) => {
+    ($($name:literal [$unit:literal] = $first:ident $(. $rest:ident)*, $meaning:literal;)*) => {
         [$(Number {
             name: $name,
             unit: $unit,
+            meaning: $meaning,
             get: |row| row.$first $(.$rest)*,
             set: |row, value| row.$first $(.$rest)* = value,
         }),*]
@@ -34,9 +45,10 @@ macro_rules! numbers {
 }
 
 macro_rules! texts {
-    ($($name:ident)*) => {
+    ($($name:ident, $meaning:literal;)*) => {
         [$(Text {
             name: stringify!($name),
+            meaning: $meaning,
             get: |row| &row.$name,
             set: |row, value| row.$name = value,
         }),*]
@@ -44,39 +56,99 @@ macro_rules! texts {
 }
 
 pub(crate) const NUMBERS: [Number; 20] = numbers! {
-    "w_lig" ["mm"] = design.w_lig;
-    "alpha" ["rad"] = design.alpha;
-    "fillet_ratio" [""] = design.fillet_ratio;
-    "kerf" ["mm"] = design.kerf;
-    "r_win" ["mm"] = design.r_win;
-    "lambda" [""] = sample.lambda;
-    "a" ["mm"] = sample.a;
-    "s" ["mm"] = sample.s;
-    "theta" ["rad"] = sample.theta;
-    "W" ["N mm"] = sample.w;
-    "W_work" ["N mm"] = sample.w_work;
-    "W_elastic" ["N mm"] = sample.w_elastic;
-    "F_a" ["N"] = sample.f_a;
-    "F_s" ["N"] = sample.f_s;
-    "M_theta" ["N mm"] = sample.m_theta;
-    "plastic_integral" ["mm^3"] = sample.plastic_integral;
-    "D" [""] = sample.d;
-    "uz_max" ["mm"] = sample.uz_max;
-    "energy_residual" [""] = sample.energy_residual;
-    "cpu_s" ["s"] = cpu_s;
+    "w_lig" ["mm"] = design.w_lig, "ligament width: material between the tip of the main cut and the secondary cut";
+    "alpha" ["rad"] = design.alpha, "angle between the secondary and the main cut";
+    "fillet_ratio" [""] = design.fillet_ratio, "radius of the hole at the tip, over w_lig";
+    "kerf" ["mm"] = design.kerf, "width that the tool removes along the main cut";
+    "r_win" ["mm"] = design.r_win, "radius of the window";
+    "lambda" [""] = sample.lambda, "fraction of the ray, above 0, at most 1";
+    "a" ["mm"] = sample.a, "axial opening at the tip";
+    "s" ["mm"] = sample.s, "shear at the tip";
+    "theta" ["rad"] = sample.theta, "rotation; positive where the main cut opens";
+    "W" ["N mm"] = sample.w, "internal work, stored plus dissipated";
+    "W_work" ["N mm"] = sample.w_work, "work of the reactions along the ray, by the trapezoidal rule";
+    "W_elastic" ["N mm"] = sample.w_elastic, "elastic part of W";
+    "F_a" ["N"] = sample.f_a, "axial force";
+    "F_s" ["N"] = sample.f_s, "shear force";
+    "M_theta" ["N mm"] = sample.m_theta, "moment";
+    "plastic_integral" ["mm^3"] = sample.plastic_integral, "equivalent plastic strain integrated over the window";
+    "D" [""] = sample.d, "mean plastic strain of the ligament over the fracture strain";
+    "uz_max" ["mm"] = sample.uz_max, "largest displacement out of the plane";
+    "energy_residual" [""] = sample.energy_residual, "difference of W and W_work over the maximum W of the ray";
+    "cpu_s" ["s"] = cpu_s, "CPU time of the whole ray, repeated in each of its rows";
 };
 
 pub(crate) const TEXTS: [Text; 9] = texts! {
-    job failure material material_hash settings_hash tier solved_tier gmsh ccx
+    job, "id of the ray: one geometry, one end";
+    failure, "why the ray stopped before its end; empty if it did not";
+    material, "name of the material";
+    material_hash, "hash of the law of the material";
+    settings_hash, "hash of the settings that all rays of the campaign share";
+    tier, "requested mesh";
+    solved_tier, "mesh of the row";
+    gmsh, "version of gmsh";
+    ccx, "version of ccx";
+};
+
+/// The only column of numbers that may have gaps.
+pub(crate) const D_PEAK: ColumnMeaning = ColumnMeaning {
+    name: "D_peak",
+    unit: "",
+    meaning: "plastic strain of the most strained 1 % of the ligament over the fracture strain; may be missing",
 };
 
 /// The ratios of (13). They are written for readers of the table and recomputed when it is read.
-pub(crate) const RATIOS: [&str; 2] = ["eta_a", "eta_s"];
+pub(crate) const RATIOS: [ColumnMeaning; 2] = [
+    ColumnMeaning {
+        name: "eta_a",
+        unit: "",
+        meaning: "a / w_lig; computed from these when a table is read",
+    },
+    ColumnMeaning {
+        name: "eta_s",
+        unit: "",
+        meaning: "s / w_lig; computed from these when a table is read",
+    },
+];
+
+/// Number of columns of numbers.
+pub(crate) const NUMERIC: usize = NUMBERS.len() + 1 + RATIOS.len();
+
+/// The columns of a database, in their order: those of text, then those of numbers.
+pub fn columns() -> impl Iterator<Item = ColumnMeaning> {
+    texts().chain(numbers())
+}
+
+/// The columns of text.
+pub(crate) fn texts() -> impl Iterator<Item = ColumnMeaning> {
+    TEXTS.iter().map(|column| ColumnMeaning {
+        name: column.name,
+        unit: "",
+        meaning: column.meaning,
+    })
+}
+
+/// The columns of numbers.
+pub(crate) fn numbers() -> impl Iterator<Item = ColumnMeaning> {
+    let given = NUMBERS.iter().map(|column| ColumnMeaning {
+        name: column.name,
+        unit: column.unit,
+        meaning: column.meaning,
+    });
+    given.chain([D_PEAK]).chain(RATIOS)
+}
+
+/// The numbers of a row, in the order of [`numbers`]; NaN where it has none.
+pub(crate) fn values(row: &Row) -> impl Iterator<Item = f64> {
+    let given = NUMBERS.iter().map(|column| (column.get)(row));
+    let peak = row.sample.d_peak.unwrap_or(f64::NAN);
+    given.chain([peak]).chain(row.eta())
+}
 
 /// The unit of every column that has a unit.
 pub(crate) fn units() -> impl Iterator<Item = (&'static str, &'static str)> {
-    let numbers = NUMBERS.iter().map(|column| (column.name, column.unit));
-    numbers.filter(|(_, unit)| !unit.is_empty())
+    let units = numbers().map(|column| (column.name, column.unit));
+    units.filter(|(_, unit)| !unit.is_empty())
 }
 
 /// The table of `rows`.
@@ -91,10 +163,10 @@ pub(crate) fn to_frame(rows: &[Row]) -> Result<DataFrame, DatasetError> {
         columns.push(Series::new(column.name.into(), values).into_column());
     }
     let peaks: Vec<Option<f64>> = rows.iter().map(|row| row.sample.d_peak).collect();
-    columns.push(Series::new(D_PEAK.into(), peaks).into_column());
-    for (index, name) in RATIOS.into_iter().enumerate() {
+    columns.push(Series::new(D_PEAK.name.into(), peaks).into_column());
+    for (index, ratio) in RATIOS.iter().enumerate() {
         let values: Vec<f64> = rows.iter().map(|row| row.eta()[index]).collect();
-        columns.push(Series::new(name.into(), values).into_column());
+        columns.push(Series::new(ratio.name.into(), values).into_column());
     }
     Ok(DataFrame::new(rows.len(), columns)?)
 }
@@ -124,7 +196,7 @@ pub(crate) fn from_frame(frame: &DataFrame, most_text: usize) -> Result<Vec<Row>
         let series = frame.column(column.name)?;
         fill(&mut rows, column.name, series.f64()?.iter(), column.set)?;
     }
-    let peaks = frame.column(D_PEAK)?.f64()?.iter();
+    let peaks = frame.column(D_PEAK.name)?.f64()?.iter();
     for (row, peak) in rows.iter_mut().zip(peaks) {
         row.sample.d_peak = peak;
     }

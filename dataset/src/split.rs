@@ -100,20 +100,25 @@ impl Split {
         hasher.finalize().to_hex().to_string()
     }
 
+    /// The same split of some of the jobs.
+    pub(crate) fn of(&self, jobs: BTreeSet<&String>) -> Self {
+        let known = |part: &BTreeSet<String>| {
+            let known = part.iter().filter(|job| jobs.contains(job));
+            known.cloned().collect()
+        };
+        Self {
+            training: known(&self.training),
+            validation: known(&self.validation),
+            test: known(&self.test),
+        }
+    }
+
     /// The ids of the jobs of one part.
     pub fn jobs(&self, part: Part) -> &BTreeSet<String> {
         match part {
             Part::Training => &self.training,
             Part::Validation => &self.validation,
             Part::Test => &self.test,
-        }
-    }
-
-    pub(crate) fn jobs_mut(&mut self, part: Part) -> &mut BTreeSet<String> {
-        match part {
-            Part::Training => &mut self.training,
-            Part::Validation => &mut self.validation,
-            Part::Test => &mut self.test,
         }
     }
 

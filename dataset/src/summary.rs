@@ -1,7 +1,7 @@
 //! The summary of a database as text.
 
 use crate::database::Database;
-use crate::manifest::Manifest;
+use crate::manifest::{FinerMesh, Manifest};
 use crate::rows::Row;
 use crate::schema;
 use crate::split::Part;
@@ -12,7 +12,7 @@ use std::fmt;
 #[derive(Clone, Debug)]
 pub(crate) struct Contents {
     /// The minimum and the maximum of every column of numbers.
-    ranges: [[f64; 2]; schema::NUMBERS.len()],
+    ranges: [[f64; 2]; schema::NUMERIC],
     /// The rays that were solved on another tier than that of their campaign, with that tier.
     other_tiers: BTreeMap<String, String>,
 }
@@ -21,7 +21,7 @@ impl Default for Contents {
     /// Of no rows.
     fn default() -> Self {
         Self {
-            ranges: [[f64::INFINITY, f64::NEG_INFINITY]; schema::NUMBERS.len()],
+            ranges: [[f64::INFINITY, f64::NEG_INFINITY]; schema::NUMERIC],
             other_tiers: BTreeMap::new(),
         }
     }
@@ -31,8 +31,7 @@ impl Contents {
     /// Adds rows.
     pub fn add(&mut self, rows: &[Row]) {
         for row in rows {
-            for ([minimum, maximum], column) in self.ranges.iter_mut().zip(&schema::NUMBERS) {
-                let value = (column.get)(row);
+            for ([minimum, maximum], value) in self.ranges.iter_mut().zip(schema::values(row)) {
                 *minimum = minimum.min(value);
                 *maximum = maximum.max(value);
             }
@@ -55,7 +54,7 @@ impl fmt::Display for Database {
     }
 }
 
-/// Prints counts, rejected rows, the rays on another mesh, the split, and the range of every column of numbers.
+/// Prints counts, the finer mesh, rejected rows, the rays on another mesh, the split, and what each column holds.
 pub(crate) struct Summary<'a> {
     pub manifest: &'a Manifest,
     pub contents: &'a Contents,
@@ -63,6 +62,16 @@ pub(crate) struct Summary<'a> {
 
 impl fmt::Display for Summary<'_> {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        self.write_meshes(f)?;
+        self.write_origin(f)?;
+        self.write_split(f)?;
+        self.write_columns(f)
+    }
+}
+
+impl Summary<'_> {
+    /// What was solved, on which meshes.
+    fn write_meshes(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let manifest = self.manifest;
         writeln!(
             f,
@@ -75,37 +84,92 @@ impl fmt::Display for Summary<'_> {
             manifest.tier,
             manifest.cpu_s,
         )?;
+        if let Some(FinerMesh { tier, rays, cpu_s }) = &manifest.finer {
+            writeln!(
+                f,
+                "{rays} of the rays also on tier {tier}; {cpu_s:.0} CPU s"
+            )?;
+        }
+        match self.contents.other_tiers.len() {
+            0 => Ok(()),
+            count => {
+                let were = if count == 1 { "ray was" } else { "rays were" };
+                let tiers = counted(self.contents.other_tiers.values());
+                writeln!(
+                    f,
+                    "{count} {were} solved on another mesh after a failure: {tiers}"
+                )
+            }
+        }
+    }
+
+    /// Hashes and rejected rows.
+    fn write_origin(&self, f: &mut fmt::Formatter) -> fmt::Result {
         writeln!(
             f,
             "material law {}, campaign settings {}",
-            known(&manifest.material_hashes),
-            known(&manifest.settings_hashes),
+            known(&self.manifest.material_hashes),
+            known(&self.manifest.settings_hashes),
         )?;
-        for (reason, count) in &manifest.rejected {
+        for (reason, count) in &self.manifest.rejected {
             writeln!(f, "rejected {count} rows: {reason}")?;
         }
-        for (job, tier) in &self.contents.other_tiers {
-            writeln!(f, "ray {job} was solved on the mesh {tier}")?;
-        }
-        let rays = |part| manifest.split.jobs(part).len();
+        Ok(())
+    }
+
+    fn write_split(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let rays = |part| self.manifest.split.jobs(part).len();
         writeln!(
             f,
             "split by geometry: {} rays for training, {} for validation, {} for test",
             rays(Part::Training),
             rays(Part::Validation),
             rays(Part::Test),
-        )?;
-        writeln!(
-            f,
-            "{:18} {:>14} {:>14}  unit",
-            "column", "minimum", "maximum"
-        )?;
-        for (column, [minimum, maximum]) in schema::NUMBERS.iter().zip(self.contents.ranges) {
-            let (name, unit) = (column.name, column.unit);
-            writeln!(f, "{name:18} {minimum:14.6} {maximum:14.6}  {unit}")?;
+        )
+    }
+
+    /// The columns of numbers with their ranges, then those of text.
+    fn write_columns(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let mut line = |name: &str, range: [&str; 2], unit: &str, meaning: &str| {
+            let [minimum, maximum] = range;
+            writeln!(
+                f,
+                "{name:18} {minimum:>14} {maximum:>14}  {unit:5} {meaning}"
+            )
+        };
+        line("column", ["minimum", "maximum"], "unit", "meaning")?;
+        for (column, range) in schema::numbers().zip(self.contents.ranges) {
+            let range = range.map(limit);
+            let range = range.each_ref().map(String::as_str);
+            line(column.name, range, column.unit, column.meaning)?;
+        }
+        writeln!(f, "{:18} meaning", "column of text")?;
+        for column in schema::texts() {
+            writeln!(f, "{:18} {}", column.name, column.meaning)?;
         }
         Ok(())
     }
+}
+
+/// A limit of a range; `-` if no row has a value.
+fn limit(value: f64) -> String {
+    if value.is_finite() {
+        format!("{value:.6}")
+    } else {
+        "-".into()
+    }
+}
+
+/// Every text with the number of times that it occurs.
+fn counted<'a>(texts: impl Iterator<Item = &'a String>) -> String {
+    let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
+    for text in texts {
+        *counts.entry(text).or_default() += 1;
+    }
+    let counts = counts
+        .iter()
+        .map(|(text, count)| format!("{text} ({count})"));
+    Vec::from_iter(counts).join(", ")
 }
 
 /// Hashes as readable text.
@@ -119,5 +183,96 @@ fn known(hashes: &BTreeSet<String>) -> String {
         "not known".into()
     } else {
         known.join(" + ")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rows::tests::{finer, rows};
+    use crate::schema::columns;
+    use crate::split::SplitPlan;
+
+    fn summary(rows: Vec<Row>) -> String {
+        let database = Database::collect(rows, &SplitPlan::default());
+        database.unwrap().to_string()
+    }
+
+    #[test]
+    fn a_finer_mesh_has_a_line_of_its_own() {
+        let both = summary([rows(10), finer(rows(4))].concat());
+        let lines: Vec<&str> = both.lines().collect();
+        assert_eq!(
+            lines[..2],
+            [
+                "140 rows of 10 rays (1 partial) over 10 geometries; film, tier default; 100 CPU s",
+                "4 of the rays also on tier reference; 40 CPU s"
+            ]
+        );
+        assert!(!summary(rows(10)).contains("of the rays also on tier"));
+    }
+
+    #[test]
+    fn rays_on_another_mesh_are_counted_by_its_tier() {
+        let retried = |tiers: &[(&str, &str)]| {
+            let mut rows = rows(10);
+            for row in &mut rows {
+                if let Some((_, tier)) = tiers.iter().find(|(job, _)| row.job == *job) {
+                    row.solved_tier = (*tier).into();
+                }
+            }
+            let text = summary(rows);
+            let mut lines = text.lines().map(str::to_owned);
+            lines.find(|line| line.contains("after a failure"))
+        };
+        assert_eq!(retried(&[]), None);
+        assert_eq!(
+            retried(&[("job-007", "fine")]).unwrap(),
+            "1 ray was solved on another mesh after a failure: fine (1)"
+        );
+        let three = [
+            ("job-002", "fine"),
+            ("job-005", "plate"),
+            ("job-007", "fine"),
+        ];
+        assert_eq!(
+            retried(&three).unwrap(),
+            "3 rays were solved on another mesh after a failure: fine (2), plate (1)"
+        );
+    }
+
+    #[test]
+    fn every_column_has_a_line_with_its_unit_and_its_meaning() {
+        let text = summary(rows(10));
+        let (_, table) = text.split_once("column ").unwrap();
+        for column in columns() {
+            let name = format!("{} ", column.name);
+            let mut lines = table.lines().filter(|line| line.starts_with(&name));
+            let line = lines.next().unwrap();
+            assert!(
+                line.ends_with(column.meaning) && !column.meaning.is_empty(),
+                "{line}"
+            );
+            assert!(column.unit.is_empty() || line.contains(&format!("  {} ", column.unit)));
+            assert_eq!(lines.next(), None, "{name}");
+        }
+        let range = "0.001000       0.010000        mean plastic strain of the ligament";
+        assert!(text.contains(range), "{text}");
+    }
+
+    #[test]
+    fn a_column_without_values_has_no_range() {
+        let mut unknown = rows(10);
+        unknown[7].sample.d_peak = None;
+        let range = |rows: Vec<Row>| {
+            let text = summary(rows);
+            let mut lines = text.lines().map(str::split_whitespace);
+            let mut of_peak = lines.find(|words| words.clone().next() == Some("D_peak"));
+            let words = of_peak.as_mut().unwrap().skip(1).take(2);
+            words.map(str::to_owned).collect::<Vec<_>>()
+        };
+        assert_eq!(range(unknown.clone()), ["0.010000", "0.100000"]);
+        unknown.iter_mut().for_each(|row| row.sample.d_peak = None);
+        assert_eq!(range(unknown), ["-", "-"]);
     }
 }

@@ -44,3 +44,4 @@ pub use sheet_config::{LigamentConfig, SheetConfig, StartConfig};
 pub use springback_file::{SpringbackFileError, SpringbackMismatch};
 pub use stock::{Paper, Stock};
 pub use tolerances::ToleranceConfig;
+pub(crate) use tolerances::standard_deviation;

@@ -13,4 +13,5 @@ pub(crate) mod run;
 pub(crate) mod sampling;
 pub(crate) mod slurm;
 pub(crate) mod solve_again;
+pub(crate) mod spot_paths;
 pub(crate) mod status;

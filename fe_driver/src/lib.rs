@@ -74,7 +74,7 @@ pub use calculix::deck::deck;
 pub use calculix::model::WindowModel;
 pub use calculix::sta::{Increment, read_sta};
 pub use campaign::array_script::{ArrayScript, SLURM, ScriptError};
-pub use campaign::definition::{Campaign, CampaignError};
+pub use campaign::definition::{Campaign, CampaignError, JobPart};
 pub use campaign::extra_rays::{Added, ExtraRaysError, add_extra_rays};
 pub use campaign::finished_windows::finished_windows;
 pub use campaign::plan::{Plan, plan, prepare};
@@ -86,7 +86,8 @@ pub use campaign::slurm::{
     ArrayStates, SlurmError, Submission, array_states, slurm_folder, submit_array,
 };
 pub use campaign::solve_again::{Difference, SolvedAgain, solve_again};
-pub use campaign::status::{Status, Tally, Throughput, refuse_changed, status};
+pub use campaign::spot_paths::{DrawnStates, SpotPath, random_paths};
+pub use campaign::status::{Status, Tally, Throughput, known_parts, status};
 pub use sheet::invalid_sheet_problem::InvalidSheetProblem;
 pub use sheet::sheet_problem::{
     DrivenRim, Held, History, Keeping, Place, Pulled, SheetProblem, SheetSolve,

@@ -34,7 +34,7 @@ use std::time::Duration;
 /// | tier | bricks | CPU seconds |
 /// |---|---|---|
 /// | `plate-tiny` | 72 | 3 |
-/// | `plate` | 128 | 7 |
+/// | `plate` | 160 | 8 |
 /// | `plate-reference` | 768 | 70 |
 ///
 /// Their errors are in docs/results/plates.
@@ -73,7 +73,7 @@ pub enum Tier {
     Paper,
     /// Plates: 72 bricks in two layers; 3 CPU seconds a ray.
     PlateTiny,
-    /// Plates: 128 bricks in two layers; 7 CPU seconds a ray.
+    /// Plates: 160 bricks in two layers; 8 CPU seconds a ray.
     Plate,
     /// Plates: 768 bricks in three layers; 70 CPU seconds a ray. The errors of the other plate tiers are relative to it.
     PlateReference,
@@ -195,7 +195,7 @@ impl Tier {
                 1,
             ),
             Tier::PlateTiny => (structured(2, 8, 2, 3, 0.25), 2),
-            Tier::Plate => (structured(4, 8, 2, 4, 0.25), 2),
+            Tier::Plate => (structured(4, 8, 3, 4, 0.25), 2),
             Tier::PlateReference => (structured(8, 16, 4, 8, 0.125), 3),
         };
         MeshRecipe {
@@ -222,8 +222,20 @@ impl Tier {
             Tier::Reference => 126.0,
             Tier::Paper => 171.0,
             Tier::PlateTiny => 3.0,
-            Tier::Plate => 7.0,
+            Tier::Plate => 8.0,
             Tier::PlateReference => 70.0,
+        }
+    }
+
+    /// Resident memory of the solver (MB), measured.
+    pub fn usual_memory_mb(self) -> f64 {
+        match self {
+            Tier::Tiny | Tier::Small | Tier::PlateTiny | Tier::Plate => 25.0,
+            Tier::Default => 30.0,
+            Tier::Fine => 45.0,
+            Tier::PlateReference => 85.0,
+            Tier::Reference => 95.0,
+            Tier::Paper => 115.0,
         }
     }
 

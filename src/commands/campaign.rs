@@ -11,6 +11,7 @@ mod run;
 mod status;
 mod submit;
 
+pub(crate) use campaign_args::{DATABASE, SPOT_CHECK};
 pub(crate) use run::RayProgress;
 
 use anyhow::Result;

@@ -21,7 +21,7 @@ use hinge::{Regime, SheetMaterial};
 use std::path::{Path, PathBuf};
 use support::regular_file;
 use surrogate::Surrogate;
-use toml_edit::DocumentMut;
+use toml_edit::{Array, ArrayOfTables, DocumentMut};
 
 /// Create a folder with material, campaign, training and scene for a sheet of your own
 ///
@@ -152,7 +152,7 @@ impl InitCommand {
         for (file, contents) in [
             ("material.toml", &*text),
             ("campaign.toml", &campaign),
-            ("training.toml", template.training),
+            (TRAINING, template.training),
             ("scene.toml", &scene),
             ("README.md", &readme),
         ] {
@@ -228,6 +228,9 @@ struct Weights {
     opening: f64,
 }
 
+/// File of the training in a new folder.
+const TRAINING: &str = "training.toml";
+
 /// The shipped campaign of a regime, scaled to a sheet of `thickness` (mm); its material is `material.toml` in
 /// the same folder.
 pub(crate) fn campaign(name: &str, thickness: f64, regime: Regime) -> Result<String> {
@@ -240,14 +243,17 @@ pub(crate) fn campaign(name: &str, thickness: f64, regime: Regime) -> Result<Str
         &mut campaign,
         "# Hinge windows of the material, from which its hinge energy is trained.\n",
     );
-    for (section, key) in [
-        ("design", "kerf"),
-        ("design", "r_win"),
-        ("rays", "full_range_w_lig"),
-    ] {
-        scale(&mut campaign[section][key], factor);
+    set(&mut campaign["training"], Array::from_iter([TRAINING]));
+    campaign.remove("extra_rays");
+    for key in ["kerf", "r_win"] {
+        scale(&mut campaign["design"][key], factor);
     }
-    scale(&mut campaign["rays"]["w_lig"], factor);
+    let boxes = campaign["rays"].as_array_of_tables_mut();
+    for rays in boxes.into_iter().flat_map(ArrayOfTables::iter_mut) {
+        for key in ["w_lig", "full_range_w_lig"] {
+            scale(&mut rays[key], factor);
+        }
+    }
     Ok(campaign.to_string())
 }
 
@@ -260,7 +266,7 @@ fn readme(folder: &Path, template: &Template, regime: Regime, trained: bool) -> 
         path("material.toml"),
     );
     let (jobs, database) = (path("campaign"), path("hinges.parquet"));
-    let (weights, training) = (path("weights.safetensors"), path("training.toml"));
+    let (weights, training) = (path("weights.safetensors"), path(TRAINING));
     let (learned, learned_weights) = (path("learned"), path("learned/weights.safetensors"));
     let judge = match regime {
         Regime::Film => "--equilibrium   # the deployed sheet by finite elements of its ligaments",

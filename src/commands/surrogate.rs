@@ -4,8 +4,9 @@ mod card;
 mod errors;
 mod eval;
 mod release;
-mod spot_check;
 mod test;
+
+pub(crate) use errors::StateErrors;
 
 use crate::commands::input_file;
 use ::surrogate::Surrogate;
@@ -47,7 +48,6 @@ subcommands! {
         Eval(eval::EvalCommand),
         Card(card::CardCommand),
         Test(test::TestCommand),
-        SpotCheck(spot_check::SpotCheckCommand),
         Release(release::ReleaseCommand),
     }
 }

@@ -1,10 +1,12 @@
 //! `kirigami train`: trains the weights of the hinge energy on a hinge database.
 
+mod campaign;
 mod kept_fits;
 mod seeds;
 
 pub use kept_fits::kept_fit;
 
+use crate::commands::dataset::correction;
 use crate::commands::input_file;
 use crate::ui::charts;
 use crate::ui::exit::Unfinished;
@@ -22,7 +24,7 @@ use std::time::{Duration, Instant};
 use support::table::number_or_dash;
 use surrogate::{ErrorBin, Surrogate, TestErrors};
 use train::{Distillation, Epoch, Start, Trained, Training, TrainingConfig, TrainingData};
-use verification::distillation_states;
+use verification::{distillation_states, drawn_by};
 
 /// Train the surrogate hinge energy on a database
 ///
@@ -30,10 +32,14 @@ use verification::distillation_states;
 /// plot, and prints the errors on hinge geometries that were not used for
 /// training. A stopped training continues with --resume; of several seeds, with the same command. Examples:
 /// kirigami train runs/demo/hinges.parquet --config configs/training/demo.toml;
-/// kirigami train runs/demo/hinges.parquet --config configs/training/demo.toml --seeds 8
+/// kirigami train configs/campaigns/polypropylene-3mm.toml
+///
+/// Of a campaign, whose database is collected, it makes every training that the campaign names, each with four seeds: the best
+/// one is runs/<campaign>/weights/NAME.safetensors, the others NAME-1 to NAME-3, its ensemble. It tests them on the spot check
+/// of the campaign, and records the errors on their cards.
 #[derive(Args)]
 pub struct TrainCommand {
-    /// Database as written by `kirigami campaign collect` (Parquet with its manifest)
+    /// Database as written by `kirigami campaign collect` (Parquet with its manifest), or a campaign (TOML)
     #[arg(value_name = "DATABASE")]
     database: PathBuf,
     /// Network sizes, loss and optimiser of the training (TOML) [default: configs/training/medium.toml, with --from
@@ -77,6 +83,13 @@ const SAVE_EVERY: Duration = Duration::from_secs(30);
 
 impl TrainCommand {
     pub(crate) fn run(&self) -> Result<()> {
+        if self
+            .database
+            .extension()
+            .is_some_and(|extension| extension == "toml")
+        {
+            return self.train_campaign();
+        }
         input_file::require(self.config(), "--config")?;
         let base = self.from.as_deref().map(Surrogate::load).transpose()?;
         let config: TrainingConfig = support::toml_file::read(self.config())?;
@@ -84,17 +97,7 @@ impl TrainCommand {
             Some(weights) => config.with_sizes_of(weights),
             None => config,
         };
-        let database = Database::read(&self.database)?;
-        if let Some(leak) = database.leak() {
-            let database = self.database.display();
-            bail!("{database}: {leak}: split it again with `kirigami dataset split`");
-        }
-        let others = database.rays_on_other_tiers().len();
-        if others > 0 {
-            println!(
-                "{others} of the rays were solved on another mesh than the campaign's, and are used"
-            );
-        }
+        let database = self.read_database()?;
         output_file::create_folder_of(&self.out)?;
         self.refuse_card_of_database()?;
         if self.seeds > 1 {
@@ -121,6 +124,25 @@ impl TrainCommand {
         Ok(())
     }
 
+    /// The database, corrected to its finer mesh if it has one.
+    fn read_database(&self) -> Result<Database> {
+        let database = Database::read(&self.database)?;
+        if let Some(leak) = database.leak() {
+            bail!("{}: {leak}: collect it again", self.database.display());
+        }
+        let others = database.rays_on_other_tiers().len();
+        if others > 0 {
+            println!(
+                "{others} of the rays were solved on another mesh than the campaign's, and are used"
+            );
+        }
+        let (database, judged) = database.corrected()?;
+        if let Some(judged) = judged {
+            println!("{}\n", correction(&judged)?);
+        }
+        Ok(database)
+    }
+
     /// The median of the teachers at random states, if there are teachers.
     fn distillation(&self, database: &Database) -> Result<Option<Distillation>> {
         let teachers = self.teachers.iter().map(|file| {
@@ -138,7 +160,7 @@ impl TrainCommand {
         });
         let teachers: Vec<Surrogate> = teachers.collect::<Result<_>>()?;
         Ok(teachers.first().map(|first| {
-            let states = distillation_states(first.into());
+            let states = distillation_states(drawn_by(first));
             Distillation::new(&teachers, &states)
         }))
     }

@@ -1,6 +1,7 @@
 //! docs/KEYS.md, the reference of every configuration file, is what the types say that read the files. With `KIRIGAMI_WRITE=1` the
 //! test writes the page instead.
 
+use dataset::ColumnMeaning;
 use design::scene::SceneConfig;
 use fe_driver::Campaign;
 use hinge::SheetMaterial;
@@ -232,4 +233,36 @@ fn the_page_of_keys_is_what_the_types_say() {
         shipped == page,
         "run `KIRIGAMI_WRITE=1 cargo test --test command_line keys`"
     );
+}
+
+/// The table of columns in docs/CAMPAIGN.md.
+fn column_table() -> String {
+    let mut table = "| column | unit | meaning |\n|---|---|---|\n".to_owned();
+    for ColumnMeaning {
+        name,
+        unit,
+        meaning,
+    } in dataset::columns()
+    {
+        writeln!(table, "| `{name}` | {unit} | {meaning} |").unwrap();
+    }
+    table
+}
+
+#[test]
+fn the_guide_has_the_columns_of_a_database() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/CAMPAIGN.md");
+    let guide = std::fs::read_to_string(path).unwrap();
+    let begin = guide.find("| column | unit | meaning |").unwrap();
+    let length = guide[begin..].find("\n\n").unwrap() + 1;
+    if std::env::var_os("KIRIGAMI_WRITE").is_some() {
+        let mut guide = guide.clone();
+        guide.replace_range(begin..begin + length, &column_table());
+        std::fs::write(path, &guide).unwrap();
+    } else {
+        assert!(
+            guide[begin..begin + length] == column_table(),
+            "run `KIRIGAMI_WRITE=1 cargo test --test command_line keys`"
+        );
+    }
 }

@@ -18,15 +18,9 @@ fn the_cost_of_many_rays() {
     let count = std::env::var("RAYS").map_or(10_000, |text| text.parse().unwrap());
     let work = Workplace::new();
     let mut campaign = Campaign::load(&work.path(CAMPAIGN)).unwrap();
-    work.edit(
-        CAMPAIGN,
-        &[(
-            &format!("count = {}", campaign.count),
-            &format!("count = {count}"),
-        )],
-    );
-    campaign.count = count;
-    campaign.further.clear();
+    let boxed = format!("count = {}", campaign.boxes[0].count);
+    work.edit(CAMPAIGN, &[(&boxed, &format!("count = {count}"))]);
+    campaign.boxes[0].count = count;
     let folder = work.path("runs/pet-0.5mm");
 
     let shipped = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/pet-0.5mm/hinges.parquet");

@@ -116,12 +116,16 @@ mod tests {
     fn every_shipped_configuration_is_valid() {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../configs/training");
         let mut count = 0;
-        for entry in std::fs::read_dir(folder).unwrap() {
-            let config: TrainingConfig = support::toml_file::read(&entry.unwrap().path()).unwrap();
-            config.validate().unwrap();
-            count += 1;
+        for folder in [folder.join("plate"), folder] {
+            let entries = std::fs::read_dir(folder).unwrap();
+            let files = entries.map(|entry| entry.unwrap().path());
+            for file in files.filter(|file| file.is_file()) {
+                let config: TrainingConfig = support::toml_file::read(&file).unwrap();
+                config.validate().unwrap();
+                count += 1;
+            }
         }
-        assert_eq!(count, 6);
+        assert_eq!(count, 7);
     }
 
     #[test]

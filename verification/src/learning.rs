@@ -105,7 +105,7 @@ const LEAST_RAYS: usize = 6;
 /// early is trained on the rays that it has.
 pub fn learn<S: LearningSteps>(task: LearningTask, steps: &mut S) -> Result<LearningEnd, S::Error> {
     let solved = closed_before(task.folder)?;
-    let mut counts = counts(task.first_rays, task.campaign.count).peekable();
+    let mut counts = counts(task.first_rays, task.campaign.rays()).peekable();
     let mut trained = 0;
     while let Some(rays) = counts.next() {
         if let Some(end) = solve_first(rays, task, steps)? {
@@ -177,8 +177,7 @@ fn solve_first<S: LearningSteps>(
         time_limit: (task.deadline)
             .map(|deadline| deadline.saturating_duration_since(Instant::now())),
     };
-    let mut first = task.campaign.clone();
-    first.count = rays;
+    let first = task.campaign.first_rays(rays);
     let progress = &mut |progress: &Progress| steps.solving(progress);
     let tally = run(
         &first,

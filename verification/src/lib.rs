@@ -6,7 +6,7 @@
 //! | the hinges of a sheet solved along their paths, against a surrogate | [`recorded_paths`], [`Replay`] |
 //! | a sheet in equilibrium with the forces of finite elements | [`balanced`], [`SheetErrors`] |
 //! | the whole sheet, every window and every panel | [`SheetTask`], [`SheetCheck`] |
-//! | errors of weights at random states | [`random_paths`], [`spot_check`] |
+//! | errors of weights at random states | [`spot_check`], [`SpotCheck`] |
 //! | rays where the training data is thin | [`rays_on_paths`] |
 //! | rays of a campaign solved in rounds until weights are accurate | [`learn`] |
 //!
@@ -14,14 +14,14 @@
 //! result, which says what it leaves unknown. The example checks weights at eight states:
 //!
 //! ```no_run
-//! use fe_driver::{CalculiX, SolveService, SolveStore};
+//! use fe_driver::{CalculiX, SolveService, SolveStore, random_paths};
 //! use hinge::SheetMaterial;
 //! use mesher::Tier;
 //! use std::path::Path;
 //! use std::sync::atomic::AtomicBool;
 //! use std::time::Duration;
 //! use surrogate::Surrogate;
-//! use verification::{random_paths, spot_check};
+//! use verification::{drawn_by, spot_check};
 //!
 //! # let repository = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
 //! # let folder = tempfile::tempdir()?;
@@ -35,7 +35,7 @@
 //!     stop: &AtomicBool::new(false),
 //!     progress: Box::new(|done, all| println!("{done} of {all}")),
 //! };
-//! let paths = random_paths((&weights).into(), 8, 4, 0);
+//! let paths = random_paths(drawn_by(&weights), 8, 4, 0);
 //! let check = spot_check(&windows, &paths, &film, Tier::Tiny)?;
 //! assert_eq!((check.rows.len(), check.unsolved.len()), (8, 0));
 //! # Ok::<_, Box<dyn std::error::Error>>(())
@@ -45,12 +45,12 @@
 
 mod balanced_sheet;
 mod compared_states;
+mod distillation_states;
 mod extension;
 mod learning;
 mod networks;
 mod patch;
 mod recorded_path;
-mod region;
 mod released_sheet;
 mod releases;
 mod replay;
@@ -69,11 +69,11 @@ pub use balanced_sheet::{
     BALANCED, BALANCED_FORCES, BalanceEnd, Balanced, Round, balanced, movements, size,
 };
 pub use compared_states::{SCALE, each_relative, spread_table};
+pub use distillation_states::{distillation_states, drawn_by};
 pub use extension::rays_on_paths;
 pub use learning::{Accuracy, LearningEnd, LearningRound, LearningSteps, LearningTask, learn};
 pub use networks::judging_tier;
 pub use recorded_path::{RecordedPath, paths_of, recorded_paths};
-pub use region::{distillation_states, drawn, region};
 pub use released_sheet::{ReleasedByElements, released_by_elements};
 pub use releases::{Releases, first_guess, releases};
 pub use replay::{ElementWindows, Replay, ReplayedHinge, UnsolvedHinge};
@@ -81,6 +81,6 @@ pub use rows::{InvalidRow, collected, collected_windows, rows};
 pub use sheet_check::{HingeCheck, PanelCheck, SheetCheck, SheetFinding, SheetTask, StateCheck};
 pub use sheet_cost::SheetCost;
 pub use sheet_errors::SheetErrors;
-pub use spot_check::{DrawnStates, SpotCheck, SpotPath, random_paths, spot_check};
+pub use spot_check::{SpotCheck, spot_check};
 pub use verification_error::VerificationError;
 pub use whole_sheet::usual_sheet_tier;

@@ -1,30 +1,16 @@
-//! States drawn uniformly inside a domain, and their windows solved by finite elements.
-//!
-//! The training domain contains the flat state, and the straight ray from there to a state inside, as the rays of the training
-//! have (those of plates about their mean path, too). Draw a state x uniformly inside it; x fixes a
-//! direction with the density of uniform states. With R the distance to the boundary along it and u uniform in
-//! (0, 1), the state at the distance R u^(1/3) is again uniform. Several states can therefore lie on one ray.
+//! Windows on random rays, solved by finite elements, as rows of a database.
 
 use crate::rows::rows;
 use crate::verification_error::VerificationError;
 use dataset::Row;
-use fe_driver::{HingePath, Ray, SolveService, Solved, Unsolved, WindowProblem, WindowSolve};
-use hinge::{
-    HingeConstants, HingeDeformation, HingeDesign, HingeSample, SheetMaterial, TrainingDomain,
+use fe_driver::{
+    Campaign, JobPart, SolveService, Solved, SpotPath, Unsolved, WindowProblem, WindowSolve,
+    finished_windows,
 };
+use hinge::{HingeSample, SheetMaterial};
 use mesher::Tier;
-use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
-use surrogate::Surrogate;
-
-/// A hinge driven along a path, and the fractions of the path at which weights are compared with it.
-#[derive(Clone, Debug, PartialEq)]
-pub struct SpotPath {
-    /// The hinge and its path.
-    pub hinge: HingePath,
-    /// Fractions of the path, in (0, 1].
-    pub fractions: Vec<f64>,
-}
+use std::collections::HashMap;
+use std::path::Path;
 
 /// The states on paths that the solver followed to their end.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -37,37 +23,6 @@ pub struct SpotCheck {
     pub unknown_states: usize,
     /// Solver CPU time of the paths that it followed to their end (s).
     pub cpu_seconds: f64,
-}
-
-/// The hinges and states that are drawn.
-#[derive(Clone, Copy, Debug)]
-pub struct DrawnStates<'a> {
-    /// Widths, cut angles, holes if they have several radii, and deformations.
-    pub domain: &'a TrainingDomain,
-    /// Kerf, window and, unless several are in the domain, the hole.
-    pub constants: &'a HingeConstants,
-}
-
-impl<'a> From<&'a Surrogate> for DrawnStates<'a> {
-    fn from(weights: &'a Surrogate) -> Self {
-        Self {
-            domain: weights.domain(),
-            constants: &weights.card().hinge,
-        }
-    }
-}
-
-/// `count` states drawn uniformly, `each` of them on one ray.
-pub fn random_paths(drawn: DrawnStates, count: usize, each: usize, seed: u64) -> Vec<SpotPath> {
-    let mut random = ChaCha8Rng::seed_from_u64(seed);
-    let mut paths = Vec::new();
-    let mut left = count;
-    while left > 0 {
-        let states = each.min(left);
-        paths.push(random_path(drawn, states, &mut random));
-        left -= states;
-    }
-    paths
 }
 
 /// Solves the windows of the paths.
@@ -91,6 +46,31 @@ pub fn spot_check(
 }
 
 impl SpotCheck {
+    /// The spot check of a campaign, as far as its rays are solved in `folder`; `parts` are the jobs there.
+    pub fn collected(
+        campaign: &Campaign,
+        parts: &HashMap<String, JobPart>,
+        folder: &Path,
+    ) -> Result<Self, VerificationError> {
+        let windows = finished_windows(folder)?;
+        let windows = windows.filter(|window| {
+            let is_spot = |window: &Solved| parts.get(&window.id) == Some(&JobPart::SpotCheck);
+            window.as_ref().map_or(true, is_spot)
+        });
+        let windows: Vec<Solved> = windows
+            .collect::<Result<_, _>>()
+            .map_err(fe_driver::CampaignError::from)?;
+        let mut check = Self::default();
+        for path in campaign.spot_paths() {
+            let of_path = |window: &&Solved| window.solve.problem.hinge == path.hinge;
+            match windows.iter().find(of_path) {
+                Some(window) => check.add(&path, window),
+                None => check.unknown_states += path.fractions.len(),
+            }
+        }
+        Ok(check)
+    }
+
     /// Adds the states on a path.
     fn add(&mut self, path: &SpotPath, window: &Solved) {
         match window.complete() {
@@ -104,94 +84,6 @@ impl SpotCheck {
                 self.unknown_states += path.fractions.len();
                 self.unsolved.push(*unsolved);
             }
-        }
-    }
-}
-
-/// A random ray inside the training domain with `states` uniformly distributed states on it.
-fn random_path(drawn: DrawnStates, states: usize, random: &mut ChaCha8Rng) -> SpotPath {
-    let domain = drawn.domain;
-    let mut between = |[from, to]: [f64; 2]| from + (to - from) * random.random::<f64>();
-    let mut design = drawn.constants.hinge(
-        between(domain.w_lig.map(f64::ln)).exp(),
-        between(domain.alpha),
-    );
-    if let Some(holes) = domain.holes {
-        design.fillet_ratio = between(holes);
-    }
-    let bounds = domain.bounds();
-    let direction = loop {
-        let state = domain.state(&design, bounds.map(&mut between));
-        if domain.contains(&design, &state) {
-            break state;
-        }
-    };
-    let edge = edge(domain, &design, &direction);
-    let mut radii: Vec<f64> = (0..states).map(|_| between([0.0, 1.0]).cbrt()).collect();
-    radii.sort_by(f64::total_cmp);
-    let outermost = radii[states - 1];
-    let end = direction.at(edge * outermost);
-    SpotPath {
-        hinge: Ray { design, end }.into(),
-        fractions: radii.iter().map(|radius| radius / outermost).collect(),
-    }
-}
-
-/// The largest factor by which a state can be scaled without leaving the domain.
-fn edge(domain: &TrainingDomain, design: &HingeDesign, state: &HingeDeformation) -> f64 {
-    let inside = |factor: f64| domain.contains(design, &state.at(factor));
-    let mut outside = 2.0;
-    while inside(outside) {
-        outside *= 2.0;
-    }
-    let mut edge = 0.5 * outside;
-    for _ in 0..40 {
-        let middle = 0.5 * (edge + outside);
-        if inside(middle) {
-            edge = middle;
-        } else {
-            outside = middle;
-        }
-    }
-    edge
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn states_are_uniform_inside_the_domain() {
-        let state = [[-0.8, 0.2], [-0.4, 0.4], [-0.1, 1.3]];
-        let mut domain = TrainingDomain::from_box(state, [5.0, 25.0], [0.8, 2.3]);
-        domain.holes = Some([0.1, 0.3]);
-        let drawn = DrawnStates {
-            domain: &domain,
-            constants: &HingeConstants::PAPER,
-        };
-        let mut random = ChaCha8Rng::seed_from_u64(1);
-        let mut counts = [0; 5];
-        let mut all = 0;
-        for _ in 0..500 {
-            let spot = random_path(drawn, 4, &mut random);
-            assert_eq!(spot.fractions.last(), Some(&1.0));
-            for fraction in &spot.fractions {
-                let state = spot.hinge.path.at(*fraction);
-                assert!(domain.contains(&spot.hinge.design, &state));
-                let [eta_a, eta_s, _] = domain.coordinates(&spot.hinge.design, &state);
-                // Counts in halves of the domain.
-                counts[0] += usize::from(eta_a > -0.3);
-                counts[1] += usize::from(eta_s > 0.0);
-                counts[2] += usize::from(state.theta > 0.6);
-                counts[3] += usize::from(spot.hinge.design.w_lig > 125f64.sqrt());
-                counts[4] += usize::from(spot.hinge.design.fillet_ratio > 0.2);
-                all += 1;
-            }
-        }
-        for count in counts {
-            let fraction = f64::from(u32::try_from(count).unwrap()) / f64::from(all);
-            // Four standard deviations of 500 independent rays.
-            assert!((fraction - 0.5).abs() < 0.09, "{fraction}");
         }
     }
 }

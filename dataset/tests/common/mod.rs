@@ -36,6 +36,24 @@ pub fn rows() -> Vec<Row> {
     (0..10).rev().flat_map(increments).collect()
 }
 
+/// The first rays of [`rows`] on the mesh `reference`.
+pub fn finer(rays: usize) -> Vec<Row> {
+    on_tier("reference", &rows()[5 * (10 - rays)..])
+}
+
+/// The rays on another mesh, each under another name.
+pub fn on_tier(tier: &str, rows: &[Row]) -> Vec<Row> {
+    let solved = |row: &Row| Row {
+        job: format!("{tier}-{}", row.job),
+        settings_hash: format!("5e77-{tier}"),
+        tier: tier.into(),
+        solved_tier: tier.into(),
+        cpu_s: 40.0,
+        ..row.clone()
+    };
+    rows.iter().map(solved).collect()
+}
+
 pub fn collect(rows: Vec<Row>) -> Result<Database, DatasetError> {
     Database::collect(rows, &SplitPlan::default())
 }

@@ -1,7 +1,7 @@
 //! Collecting, writing and reading a database, and the errors on the way.
 
 use crate::common::{collect, row, rows};
-use dataset::{Database, DatasetError, Part, Rejection, Row, SplitPlan, with_mirrored};
+use dataset::{Database, DatasetError, Part, Rejection, Row};
 use std::path::{Path, PathBuf};
 use support::sealed_json;
 use tempfile::TempDir;
@@ -133,8 +133,10 @@ fn an_empty_database_is_an_error() {
 
 #[test]
 fn inconsistent_rows_are_an_error() {
-    let changes: [(Change, &str); 4] = [
+    let changes: [(Change, &str); 6] = [
         (|row| row.material = "steel".into(), "material"),
+        (|row| row.material_hash = "57ee1".into(), "material_hash"),
+        (|row| row.settings_hash = "07e4".into(), "settings_hash"),
         (|row| row.tier = "tiny".into(), "tier"),
         (|row| row.design.kerf = 0.1, "kerf"),
         (|row| row.design.r_win = 70.0, "r_win"),
@@ -199,54 +201,6 @@ fn a_missing_malformed_or_newer_manifest_is_an_error() {
     ));
     std::fs::remove_file(&manifest).unwrap();
     assert!(matches!(Database::read(&path), Err(DatasetError::Read(_))));
-}
-
-fn dealt_with_another_seed(database: &Database) -> Database {
-    let plan = SplitPlan {
-        seed: 5,
-        ..SplitPlan::default()
-    };
-    database.split(&plan).unwrap()
-}
-
-#[test]
-fn a_split_like_another_database_gives_each_geometry_its_part() {
-    let whole = collect(rows()).unwrap();
-    let other = dealt_with_another_seed(&whole);
-    assert_ne!(whole.manifest().split, other.manifest().split);
-    let alike = whole.split_like(&other).unwrap();
-    assert_eq!(alike.manifest().split, other.manifest().split);
-    assert_eq!(alike.manifest().split_hash, other.manifest().split_hash);
-    assert_eq!(alike.rows(), whole.rows());
-    // Mirrored hinges, of other jobs, have the same geometry.
-    let mut mirrored = with_mirrored(whole.rows()).split_off(whole.rows().len());
-    for row in &mut mirrored {
-        row.job.push_str("-image");
-    }
-    let mirrored = collect(mirrored).unwrap().split_like(&other).unwrap();
-    for part in [Part::Training, Part::Validation, Part::Test] {
-        let expected = other
-            .manifest()
-            .split
-            .jobs(part)
-            .iter()
-            .map(|job| format!("{job}-image"));
-        assert!(
-            mirrored
-                .manifest()
-                .split
-                .jobs(part)
-                .iter()
-                .cloned()
-                .eq(expected)
-        );
-    }
-    // Without a geometry of the test part there is nothing to measure errors on.
-    let test = other.manifest().split.jobs(Part::Test);
-    let rows = whole.rows().iter().filter(|row| !test.contains(&row.job));
-    let untested = collect(rows.cloned().collect()).unwrap();
-    let error = untested.split_like(&other).unwrap_err();
-    assert!(matches!(error, DatasetError::NotAlike), "{error}");
 }
 
 #[test]

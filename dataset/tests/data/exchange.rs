@@ -1,25 +1,9 @@
-//! Databases merged, split again, and exchanged as CSV.
+//! Databases exchanged as CSV.
 
-use crate::common::{collect, rows};
-use dataset::{ColumnMap, Constant, Database, DatasetError, Mixing, Row, SplitPlan, rows_from_csv};
+use crate::common::{collect, finer, rows};
+use dataset::{ColumnMap, Constant, columns, rows_from_csv};
 use std::path::PathBuf;
 use tempfile::TempDir;
-
-fn plan(seed: u64) -> SplitPlan {
-    SplitPlan {
-        seed,
-        ..SplitPlan::default()
-    }
-}
-
-/// The rows of all jobs, with a prefix to their names.
-fn renamed(prefix: &str) -> Vec<Row> {
-    let rename = |row: Row| Row {
-        job: format!("{prefix}-{}", row.job),
-        ..row
-    };
-    rows().into_iter().map(rename).collect()
-}
 
 fn file(text: &str) -> (TempDir, PathBuf) {
     let folder = tempfile::tempdir().unwrap();
@@ -70,68 +54,24 @@ fn foreign_map() -> ColumnMap {
 }
 
 #[test]
-fn a_merge_contains_every_job_once_and_the_counts_of_rejected_rows() {
-    let mut bad = renamed("other");
-    bad[0].sample.w = -1.0;
-    let databases = [collect(rows()).unwrap(), collect(bad).unwrap()];
-    let twice = [&databases[..], &databases[..]].concat();
-    let merged = Database::merge(&twice, &plan(0), Mixing::Refused).unwrap();
-    assert_eq!(merged.rows().len(), 99);
-    assert_eq!(merged.manifest().rays, 20);
-    assert_eq!(merged.manifest().rejected.values().sum::<usize>(), 1);
-    let once = Database::merge(&databases, &plan(0), Mixing::Refused).unwrap();
-    assert_eq!(merged.manifest(), once.manifest());
-}
-
-#[test]
-fn tiers_are_mixed_only_on_request_and_hinge_constants_never() {
-    let mut coarse = renamed("coarse");
-    coarse.iter_mut().for_each(|row| row.tier = "tiny".into());
-    let mut narrow = renamed("narrow");
-    narrow.iter_mut().for_each(|row| row.design.kerf = 0.1);
-    let [default, coarse, narrow] = [rows(), coarse, narrow].map(|rows| collect(rows).unwrap());
-    let merge = |other: &Database, mixing| {
-        Database::merge(&[default.clone(), other.clone()], &plan(0), mixing)
-    };
-    let error = merge(&coarse, Mixing::Refused).unwrap_err();
-    assert!(
-        matches!(error, DatasetError::Mixed { column: "tier", .. }),
-        "{error}"
-    );
-    let mixed = merge(&coarse, Mixing::Allowed).unwrap();
-    assert_eq!(mixed.manifest().tier, "default + tiny");
-    let error = merge(&narrow, Mixing::Allowed).unwrap_err();
-    assert!(
-        matches!(error, DatasetError::Mixed { column: "kerf", .. }),
-        "{error}"
-    );
-}
-
-#[test]
-fn another_seed_splits_the_same_rows_differently() {
-    let database = collect(rows()).unwrap();
-    let again = database.split(&plan(0)).unwrap();
-    assert_eq!(again.manifest(), database.manifest());
-    let other = database.split(&plan(1)).unwrap();
-    assert_eq!(other.rows(), database.rows());
-    assert_eq!(other.manifest().hash, database.manifest().hash);
-    assert_ne!(other.manifest().split_hash, database.manifest().split_hash);
-}
-
-#[test]
 fn rows_round_trip_through_csv_exactly() {
-    let database = collect(rows()).unwrap();
-    let (_folder, path) = file(&String::from_utf8(database.to_csv().unwrap()).unwrap());
-    let again = collect(rows_from_csv(&path, &ColumnMap::default()).unwrap()).unwrap();
-    assert_eq!(again.rows(), database.rows());
-    assert_eq!(again.manifest(), database.manifest());
+    for rows in [rows(), [rows(), finer(4)].concat()] {
+        let database = collect(rows).unwrap();
+        let text = String::from_utf8(database.to_csv().unwrap()).unwrap();
+        let names: Vec<&str> = columns().map(|column| column.name).collect();
+        assert_eq!(text.lines().next(), Some(names.join(",").as_str()));
+        let (_folder, path) = file(&text);
+        let again = collect(rows_from_csv(&path, &ColumnMap::default()).unwrap()).unwrap();
+        assert_eq!(again.rows(), database.rows());
+        assert_eq!(again.manifest(), database.manifest());
+    }
 }
 
 #[test]
 fn a_foreign_table_is_imported() {
     let (_folder, path) = file(FOREIGN);
     let rows = rows_from_csv(&path, &foreign_map()).unwrap();
-    let database = Database::collect(rows, &plan(0)).unwrap();
+    let database = collect(rows).unwrap();
     assert_eq!((database.manifest().rays, database.rows().len()), (3, 4));
     let row = &database.rows()[1];
     assert_eq!((row.job.as_str(), row.sample.lambda), ("A", 1.0));
@@ -201,7 +141,7 @@ fn rows_with_gaps_or_non_finite_numbers_are_rejected() {
     for cell in ["", "NaN", "inf"] {
         let (_folder, path) = file(&FOREIGN.replacen("20,6.0", &format!("20,{cell}"), 1));
         let rows = rows_from_csv(&path, &foreign_map()).unwrap();
-        let database = Database::collect(rows, &plan(0)).unwrap();
+        let database = collect(rows).unwrap();
         assert_eq!(database.rows().len(), 3, "{cell}");
         assert_eq!(database.manifest().rejected.values().sum::<usize>(), 1);
     }

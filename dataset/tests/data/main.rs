@@ -4,3 +4,4 @@
 mod common;
 mod database;
 mod exchange;
+mod meshes;

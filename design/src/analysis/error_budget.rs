@@ -25,7 +25,7 @@ use crate::equilibrium::force_response::ForceResponse;
 use crate::hinge_law::{HingeEnergy, Order};
 use crate::objective::design_problem::{Deployment, DesignProblem};
 use crate::objective::response::by_thickness;
-use crate::scene::Scene;
+use crate::scene::{Scene, standard_deviation};
 use hinge::{HingeDesign, Regime};
 use serde::Serialize;
 use support::statistics::rms_and_maximum;
@@ -430,7 +430,7 @@ impl Deployed<'_> {
     fn kerf(&self) -> Known {
         let tolerance = self.scene.config.tolerances.kerf;
         let tolerance = tolerance.ok_or("no tolerances.kerf in the scene")?;
-        let narrower = -0.5 * self.scene.config.tolerances.deviations()[0];
+        let narrower = -0.5 * standard_deviation(tolerance);
         let errors: Vec<[f64; 3]> = (self.energies.iter())
             .zip(&self.designs)
             .map(|(energy, design)| {
@@ -447,8 +447,7 @@ impl Deployed<'_> {
     fn thickness(&self) -> Known {
         let tolerance = self.scene.config.tolerances.thickness;
         let tolerance = tolerance.ok_or("no tolerances.thickness in the scene")?;
-        let deviation = self.scene.config.tolerances.deviations()[1];
-        let relative = deviation / self.scene.material.thickness;
+        let relative = standard_deviation(tolerance) / self.scene.material.thickness;
         let states = &self.deployment.final_step().deformations;
         let hinges = self.energies.iter().zip(&self.designs).zip(states);
         let errors: Vec<[f64; 3]> = hinges

@@ -17,7 +17,6 @@ pub use shear::Shear;
 pub use symmetric_difference::SymmetricDifference;
 
 use crate::hinge_law::{DamageMeasure, HingeLaw};
-use crate::objective::centre;
 use crate::objective::loss::Objective;
 use crate::objective::shape::{Shape, TargetState};
 use crate::objective::target::Target;
@@ -122,16 +121,13 @@ impl ObjectiveConfig {
 
     fn shape(&self, setting: &Setting) -> Shape {
         let points = &setting.target.points;
-        let centred = setting.law.is_none();
-        let [x, y] = match centred {
-            true => centre::of(points),
-            false => [0.0; 2],
-        };
-        Shape {
-            target: points.iter().map(|[px, py]| [px - x, py - y]).collect(),
+        let mut shape = Shape {
+            target: Vec::new(),
             coverage_weight: COVERAGE,
-            centred,
-        }
+            centred: setting.law.is_none(),
+        };
+        shape.target = shape.placed(points);
+        shape
     }
 }
 

@@ -19,9 +19,7 @@ pub struct ToleranceConfig {
     pub thickness: Option<f64>,
 }
 
-impl ToleranceConfig {
-    /// The standard deviations of kerf and thickness (mm); 0 without tolerance.
-    pub(crate) fn deviations(self) -> [f64; 2] {
-        [self.kerf, self.thickness].map(|tolerance| tolerance.unwrap_or(0.0) / TOLERANCE)
-    }
+/// The standard deviation of a quantity with a tolerance.
+pub(crate) fn standard_deviation(tolerance: f64) -> f64 {
+    tolerance / TOLERANCE
 }

@@ -1,12 +1,16 @@
-//! The definition of a campaign: a material, a mesh tier and a box of rays, from which the list of jobs follows.
+//! The definition of a campaign: a material, meshes and boxes of rays, from which the list of jobs follows.
+//!
+//! The jobs are the rays on the mesh `tier`, the first rays of every box on the mesh `finer_tier` again, and the rays of the spot
+//! check on the finer of the two, on which weights are tested. The spot check is drawn in the region that the rays cover.
 
 use crate::campaign::extra_rays::{ExtraRaysError, read_extra_rays};
 use crate::campaign::sampling::RayBox;
+use crate::campaign::spot_paths::{DrawnStates, SpotPath, random_paths};
 use crate::solve::attempts::SolveListError;
-use crate::solve::hinge_path::Ray;
+use crate::solve::hinge_path::{HingePath, Ray};
 use crate::solve::tool_versions::ToolVersions;
 use crate::solve::window_solve::{WindowProblem, WindowSolve};
-use hinge::{HingeConstants, InvalidDesign, MaterialError, Regime, SheetMaterial};
+use hinge::{HingeConstants, InvalidDesign, MaterialError, Regime, SheetMaterial, TrainingDomain};
 use mesher::Tier;
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -29,22 +33,28 @@ pub struct Campaign {
     pub material: SheetMaterial,
     /// Mesh of the windows.
     pub tier: Tier,
-    /// Number of rays of the box, 1 to 1 000 000, or 0 if `extra_rays` is given.
-    pub count: usize,
-    /// Seed of the rays; a larger campaign with the same seed begins with the smaller one.
-    pub seed: u64,
+    /// Finer mesh, of the rays that `finer` counts and of the spot check.
+    pub finer_tier: Option<Tier>,
+    /// Number of rays of the spot check, each with four random states, on which weights are tested. 0 for none.
+    #[serde(default)]
+    #[schemars(range(max = 10_000))]
+    pub spot_rays: usize,
+    /// TOML files of the trainings that `kirigami train` makes of the campaign, relative to this file.
+    #[serde(default)]
+    pub training: Vec<PathBuf>,
     /// Time limit of one solve.
     #[serde(skip)]
     pub time_limit: Duration,
     /// CSV file of rays in addition to the sampled ones, relative to this file; written by `kirigami campaign extend`.
     extra_rays: Option<PathBuf>,
-    /// Rays in addition to those of the box, solved after them.
+    /// Rays in addition to those of the boxes, solved after them.
     #[serde(skip)]
     pub further: Vec<Ray>,
     /// Constants of all hinges.
     pub design: HingeConstants,
-    /// The region of designs and ray ends.
-    pub rays: RayBox,
+    /// The regions of designs and ray ends.
+    #[serde(rename = "rays")]
+    pub boxes: Vec<RayBox>,
 }
 
 /// Why a campaign cannot be read, planned, run or collected.
@@ -103,8 +113,21 @@ pub enum CampaignError {
     Foreign(String),
 }
 
-/// Maximum number of rays; a larger number is a typing error.
-const MAX_COUNT: usize = 1_000_000;
+/// Number of states on a ray of the spot check: more need fewer solves but cover fewer hinges.
+const STATES_PER_RAY: usize = 4;
+/// Seed of the spot check.
+const SPOT_SEED: u64 = 5;
+
+/// What a job of a campaign is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum JobPart {
+    /// A ray on the mesh of the campaign.
+    Ray,
+    /// The same ray on the finer mesh.
+    Finer,
+    /// A ray of the spot check.
+    SpotCheck,
+}
 
 impl Campaign {
     /// The first defect of the file; `None` if it is valid.
@@ -112,14 +135,21 @@ impl Campaign {
         if self.name.is_empty() || self.name.chars().any(char::is_control) {
             return Some("name is empty or holds a control character".to_owned());
         }
-        let minimum = usize::from(self.extra_rays.is_none());
-        if !(minimum..=MAX_COUNT).contains(&self.count) {
-            let count = self.count;
-            return Some(format!(
-                "count = {count} violates {minimum} <= count <= {MAX_COUNT}"
-            ));
+        if self.boxes.is_empty() {
+            return Some("it has no [[rays]]".to_owned());
         }
-        self.rays.defect().or_else(|| {
+        let needs_finer = self.boxes.iter().any(|rays| rays.finer > 0);
+        match self.finer_tier {
+            None if needs_finer => return Some("finer needs finer_tier".to_owned()),
+            Some(finer) if finer.regime() != self.tier.regime() || finer <= self.tier => {
+                let tier = self.tier;
+                return Some(format!(
+                    "finer_tier = \"{finer}\" is no finer mesh than tier = \"{tier}\""
+                ));
+            }
+            _ => {}
+        }
+        self.boxes.iter().find_map(RayBox::defect).or_else(|| {
             Some(format!(
                 "a corner of the box is not a valid design: {}",
                 self.impossible_design()?
@@ -131,7 +161,7 @@ impl Campaign {
     fn other_regime(&self) -> Option<String> {
         let (regime, material) = (self.tier.regime(), &self.material);
         let other = |w_lig: &f64| material.regime(*w_lig) != regime;
-        let w_lig = self.rays.w_lig.into_iter().find(other)?;
+        let w_lig = (self.boxes.iter().flat_map(|rays| rays.w_lig)).find(other)?;
         let (tier, thickness) = (self.tier, material.thickness);
         let bound = Regime::WIDEST_PLATE * thickness;
         Some(format!(
@@ -141,17 +171,19 @@ impl Campaign {
         ))
     }
 
-    /// The defect of the narrowest or the widest hinge of the box, with the smallest hole; all others lie between them.
+    /// The defect of the narrowest or the widest hinge of a box, with the smallest hole; all others lie between them.
     fn impossible_design(&self) -> Option<InvalidDesign> {
-        let smallest = self.rays.fillet_ratio.map(|[smallest, _]| smallest);
-        let constants = HingeConstants {
-            fillet_ratio: smallest.unwrap_or(self.design.fillet_ratio),
-            ..self.design
+        let defect = |rays: &RayBox| {
+            let constants = HingeConstants {
+                fillet_ratio: rays.fillet_ratio[0],
+                ..self.design
+            };
+            rays.w_lig.into_iter().find_map(|w_lig| {
+                let design = constants.hinge(w_lig, rays.alpha_deg[0].to_radians());
+                design.validate().err()
+            })
         };
-        self.rays.w_lig.into_iter().find_map(|w_lig| {
-            let design = constants.hinge(w_lig, self.rays.alpha_deg[0].to_radians());
-            design.validate().err()
-        })
+        self.boxes.iter().find_map(defect)
     }
 
     /// Reads a campaign, its material and its further rays.
@@ -166,9 +198,12 @@ impl Campaign {
         }
         let folder = path.parent().unwrap_or(Path::new(""));
         campaign.material = SheetMaterial::load(&folder.join(&campaign.material_file))?;
-        campaign.time_limit = campaign.tier.time_limit();
+        campaign.time_limit = campaign.tier_of(JobPart::Finer).time_limit();
         if let Some(reason) = campaign.other_regime() {
             return Err(invalid(reason));
+        }
+        for training in &mut campaign.training {
+            *training = folder.join(&*training);
         }
         if let Some(rays) = &campaign.extra_rays {
             campaign.further = read_extra_rays(&folder.join(rays), &campaign.design)?;
@@ -176,18 +211,102 @@ impl Campaign {
         Ok(campaign)
     }
 
-    /// Number of jobs.
-    pub fn size(&self) -> usize {
-        self.count + self.further.len()
+    /// Number of rays on the mesh of the campaign.
+    pub fn rays(&self) -> usize {
+        self.boxes.iter().map(|rays| rays.count).sum::<usize>() + self.further.len()
     }
 
-    /// The solves in the order in which they are run. Any prefix of them gives a usable database.
+    /// Number of jobs.
+    pub fn size(&self) -> usize {
+        self.rays() + self.boxes.iter().map(|rays| rays.finer).sum::<usize>() + self.spot_rays
+    }
+
+    /// The campaign of its first `count` rays alone.
+    pub fn first_rays(&self, count: usize) -> Self {
+        let mut first = self.clone();
+        let mut left = count;
+        for rays in &mut first.boxes {
+            rays.count = rays.count.min(left);
+            rays.finer = 0;
+            left -= rays.count;
+        }
+        first.further.truncate(left);
+        first.spot_rays = 0;
+        first
+    }
+
+    /// The states that the rays pass through if they are solved to their ends. They do not depend on the number of rays, so
+    /// that the spot check remains the same when the campaign is enlarged. `None` if no ray passes through a state.
+    pub fn region(&self) -> Option<TrainingDomain> {
+        const RAYS: usize = 1500;
+        const STATES: u32 = 10;
+        let of_box = |rays: &RayBox| rays.rays(&self.design, self.tier.regime(), RAYS);
+        let rays = self.boxes.iter().flat_map(of_box);
+        let rays = rays.flat_map(|ray| [ray, ray.mirrored()]);
+        let states = rays.flat_map(|Ray { design, end }| {
+            (1..=STATES).map(move |k| (design, end.at(f64::from(k) / f64::from(STATES))))
+        });
+        TrainingDomain::covering(states.collect::<Vec<_>>())
+    }
+
+    /// The states of its region.
+    pub fn drawn<'a>(&'a self, region: &'a TrainingDomain) -> DrawnStates<'a> {
+        DrawnStates {
+            domain: region,
+            constants: &self.design,
+        }
+    }
+
+    /// The paths of the spot check.
+    pub fn spot_paths(&self) -> Vec<SpotPath> {
+        let region = (self.spot_rays > 0).then(|| self.region()).flatten();
+        match region {
+            Some(region) => {
+                let states = STATES_PER_RAY * self.spot_rays;
+                random_paths(self.drawn(&region), states, STATES_PER_RAY, SPOT_SEED)
+            }
+            None => Vec::new(),
+        }
+    }
+
+    /// The jobs in the order in which they are run. Any prefix of them gives a usable database.
+    pub fn jobs(&self, tools: &ToolVersions) -> Vec<(JobPart, WindowSolve)> {
+        let of_box = |rays: &RayBox, count| rays.rays(&self.design, self.tier.regime(), count);
+        let rays = self.boxes.iter().flat_map(|rays| of_box(rays, rays.count));
+        let finer = self.boxes.iter().flat_map(|rays| of_box(rays, rays.finer));
+        let spot = self.spot_paths().into_iter().map(|path| path.hinge);
+        let all = [
+            (
+                JobPart::Ray,
+                rays.chain(self.further.iter().copied())
+                    .map(HingePath::from)
+                    .collect(),
+            ),
+            (JobPart::Finer, finer.map(HingePath::from).collect()),
+            (JobPart::SpotCheck, spot.collect::<Vec<_>>()),
+        ];
+        let jobs = all.into_iter().flat_map(|(part, hinges)| {
+            let tier = self.tier_of(part);
+            let solve = move |hinge| {
+                let problem = WindowProblem::new(hinge, &self.material, tier);
+                (part, WindowSolve::new(problem, tools))
+            };
+            hinges.into_iter().map(solve)
+        });
+        jobs.collect()
+    }
+
+    /// The windows of [`jobs`](Self::jobs).
     pub fn solves(&self, tools: &ToolVersions) -> impl Iterator<Item = WindowSolve> {
-        let boxed = self.rays.rays(&self.design, self.count, self.seed);
-        let further = self.further.iter().copied();
-        boxed.into_iter().chain(further).map(move |ray| {
-            WindowSolve::new(WindowProblem::new(ray, &self.material, self.tier), tools)
-        })
+        self.jobs(tools).into_iter().map(|(_, solve)| solve)
+    }
+
+    /// The mesh of a part.
+    fn tier_of(&self, part: JobPart) -> Tier {
+        match part {
+            JobPart::Ray => self.tier,
+            JobPart::Finer | JobPart::SpotCheck => self.finer_tier.unwrap_or(self.tier),
+        }
     }
 }
 
@@ -214,10 +333,9 @@ mod tests {
         for (name, count) in [
             ("demo.toml", 40),
             ("pet-0.5mm.toml", 1500),
-            ("polypropylene-3mm.toml", 320),
-            ("polypropylene-3mm-reference.toml", 18),
-            ("petg-3mm.toml", 240),
-            ("aluminium-2mm.toml", 160),
+            ("polypropylene-3mm.toml", 840 + 80 + 25),
+            ("petg-3mm.toml", 720 + 80 + 25),
+            ("aluminium-2mm.toml", 480 + 40 + 20),
         ] {
             let campaign = Campaign::load(&shipped(name)).unwrap();
             let jobs: Vec<_> = campaign.solves(&versions()).collect();
@@ -236,7 +354,7 @@ mod tests {
     #[test]
     fn an_id_changes_with_every_input_of_the_result() {
         let mut campaign = Campaign::load(&shipped("demo.toml")).unwrap();
-        campaign.count = 1;
+        campaign.boxes[0].count = 1;
         let first =
             |campaign: &Campaign, tools: &ToolVersions| campaign.solves(tools).next().unwrap();
         let job = first(&campaign, &versions());
@@ -270,7 +388,11 @@ mod tests {
             std::fs::write(&path, demo.replace(old, new)).unwrap();
             Campaign::load(&path).unwrap_err().to_string()
         };
-        assert!(message("count = 40", "count = 0").contains("mine.toml: count = 0"));
+        let none = message("count = 40", "count = 0");
+        assert!(
+            none.contains("mine.toml: [[rays]] violates 1 <= count"),
+            "{none}"
+        );
         assert!(message("kerf =", "kerv =").contains("did you mean `kerf`"));
         assert!(message("r_win = 100.0", "r_win = 50.0").contains("r_win > 2.5 w_lig"));
         assert!(message("tier = \"tiny\"", "tier = \"huge\"").contains("huge"));

@@ -8,6 +8,7 @@ use crate::solve::problem::Solve;
 use crate::solve::solve_folder::{SolveRecord, SolveState, SolveStore};
 use crate::solve::tool_versions::ToolVersions;
 use crate::solve::window_solve::WindowSolve;
+use mesher::Tier;
 use serde::Serialize;
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::path::Path;
@@ -22,10 +23,17 @@ pub struct Plan {
     pub reasons: BTreeMap<String, usize>,
     /// Jobs in the folder that no longer belong to the campaign; they are kept.
     pub stale: usize,
-    /// Estimated time of one worker (s), from the jobs whose time is known ([`Tally::timed`]); if there is none, that of as
-    /// many jobs of the polyester film.
+    /// Estimated time of one worker (s), from the jobs of each mesh whose time is known ([`Tally::timed`]); if there is none,
+    /// that of as many jobs of the polyester film.
     pub seconds: f64,
+    /// Memory of one worker (MB): that of the largest mesh.
+    pub memory_mb: f64,
+    /// Disk space of the jobs to run (MB).
+    pub disk_mb: f64,
 }
+
+/// Disk space of a solved job (MB): three files and their folders.
+const JOB_MB: f64 = 0.05;
 
 /// Returns what [`crate::run`] would do in `folder`, without changing anything.
 pub fn plan(
@@ -38,6 +46,7 @@ pub fn plan(
     let (store, solves) = (folder.store(), || campaign.solves(versions));
     let stale = stale(&store, &solves().map(|solve| solve.id()).collect())?;
     let (mut tally, mut reasons) = (Tally::default(), BTreeMap::new());
+    let mut to_run: Vec<Tier> = Vec::new();
     for solve in solves() {
         let id = solve.id();
         let state = store.solve(&id).state()?;
@@ -50,12 +59,16 @@ pub fn plan(
         };
         if let Some(reason) = reason {
             *reasons.entry(reason).or_default() += 1;
+            to_run.push(solve.tier());
         }
     }
-    let seconds_a_job = tally.seconds_a_job();
-    let seconds_a_job = seconds_a_job.unwrap_or_else(|| campaign.tier.usual_cpu_seconds());
+    let tiers = || to_run.iter();
     Ok(Plan {
-        seconds: seconds_a_job * tally.to_run() as f64,
+        seconds: tiers().map(|tier| tally.seconds_a_job(*tier)).sum(),
+        memory_mb: tiers()
+            .map(|tier| tier.usual_memory_mb())
+            .fold(0.0, f64::max),
+        disk_mb: JOB_MB * to_run.len() as f64,
         tally,
         reasons,
         stale: stale.count,

@@ -16,12 +16,12 @@
 //!
 //! with A and S the maximum tension and shear. A compressed ligament may additionally be sheared as long as it
 //! is slack, that is, while the distance of its ends is at most the original one: (1 + eta_a)^2 + eta_s^2 <= 1.
-//! A ligament of a plate turns freely about its middle: eta_a is measured from its axial opening there, c_1 theta + c_2 theta^2.
+//! A ligament of a plate turns freely about its middle: eta_a is measured from its axial opening there, 0.5 theta + 0.16 theta^2.
 //! For the paper's film and w_full = 8 mm no ray end stores more than about 500 N mm, five times the energy of a
 //! deployed hinge.
 
 use crate::solve::hinge_path::Ray;
-use hinge::{HingeConstants, HingeDeformation, NetLigament};
+use hinge::{HingeConstants, HingeDeformation, NetLigament, Regime};
 use rand::seq::SliceRandom;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -35,27 +35,35 @@ const ROTATION_EVERY: usize = 8;
 /// Fraction of the other rays that end in tension; compared to compression, its range is narrower and its forces
 /// are larger.
 const TENSION_SHARE: f64 = 0.4;
-/// Coordinates of the hypercube: log w_lig, alpha, theta, eta_a, eta_s, fillet_ratio. The last is drawn last, so that the
-/// others are the same whether the hole is sampled or not.
+/// Maximum number of rays; a larger number is a typing error.
+const MAX_COUNT: usize = 1_000_000;
+/// Coordinates of the hypercube: log w_lig, alpha, theta, eta_a, eta_s, fillet_ratio.
 const DIMENSIONS: usize = 6;
 
-/// The region of designs and ray ends.
+/// The axial opening of a plate's ligament that turns freely, over w_lig: coefficients of theta and theta^2 (rad). It turns
+/// about its middle.
+const FREE_OPENING: [f64; 2] = [0.5, 0.16];
+
+/// A region of designs and ray ends, and how many rays are drawn in it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RayBox {
+    /// Number of rays, 1 to 1 000 000.
+    pub count: usize,
+    /// Seed of the rays; more rays with the same seed begin with the fewer ones.
+    pub seed: u64,
+    /// Number of the rays, its first ones, that are solved on `finer_tier` too. `train` corrects the others by them.
+    #[serde(default)]
+    pub finer: usize,
     /// Minimum and maximum ligament width (mm), 0.5 to 500, sampled uniformly in its logarithm.
     pub w_lig: [f64; 2],
     /// Minimum and maximum cut angle (deg), above 0 and at most 90, because mirroring gives the rest.
     pub alpha_deg: [f64; 2],
-    /// Minimum and maximum radius of the hole, over w_lig. The ends of the rays are then those of the hinge with the hole of
-    /// `[design]` and the same net ligament.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub fillet_ratio: Option<[f64; 2]>,
-    /// The axial opening of a ligament that turns freely, over w_lig: coefficients of theta and theta^2 (rad). A plate's
-    /// ligament turns about its middle, [0.5, 0.16]. Pure rotations end there, and `eta_a` is measured from there.
-    #[serde(default)]
-    pub free_opening: [f64; 2],
-    /// Maximum compression (negative) and maximum tension at the end of a ray, over w_lig; above -1 and below 1.
+    /// Minimum and maximum radius of the hole, over w_lig. Rays end where the hinge with the hole of `[design]` and the same
+    /// net ligament would.
+    pub fillet_ratio: [f64; 2],
+    /// Maximum compression (negative) and maximum tension at the end of a ray, over w_lig; above -1 and below 1. For a plate
+    /// they are measured from the free turn of its ligament, 0.5 theta + 0.16 theta^2 (rad), at which pure rotations end.
     pub eta_a: [f64; 2],
     /// Maximum shear of either sign at the end of a ray, over w_lig; at least 0 and below 1.
     pub eta_s: f64,
@@ -71,31 +79,39 @@ pub struct RayBox {
 }
 
 impl RayBox {
-    /// The first `count` rays of the campaign with this seed.
-    pub fn rays(&self, common: &HingeConstants, count: usize, seed: u64) -> Vec<Ray> {
+    /// The first `count` rays of hinges with the constants `common`, in films or in plates.
+    pub fn rays(&self, common: &HingeConstants, regime: Regime, count: usize) -> Vec<Ray> {
+        let free = match regime {
+            Regime::Film => [0.0; 2],
+            Regime::Plate => FREE_OPENING,
+        };
         (0..count.div_ceil(BLOCK) as u64)
             .flat_map(|block| {
-                let mut random = ChaCha8Rng::seed_from_u64(seed);
+                let mut random = ChaCha8Rng::seed_from_u64(self.seed);
                 random.set_stream(block);
                 latin_hypercube(&mut random)
             })
             .take(count)
             .enumerate()
-            .map(|(i, point)| self.ray(common, point, i % ROTATION_EVERY == 0))
+            .map(|(i, point)| self.ray(common, free, point, i % ROTATION_EVERY == 0))
             .collect()
     }
 
     /// The ray at a point of the unit cube.
-    fn ray(&self, common: &HingeConstants, point: [f64; DIMENSIONS], pure_rotation: bool) -> Ray {
+    fn ray(
+        &self,
+        common: &HingeConstants,
+        [first, second]: [f64; 2],
+        point: [f64; DIMENSIONS],
+        pure_rotation: bool,
+    ) -> Ray {
         let [log_w, alpha, theta, eta_a, eta_s, hole] = point;
         let between = |[from, to]: [f64; 2], share: f64| from + (to - from) * share;
         let mut design = common.hinge(
             between(self.w_lig.map(f64::ln), log_w).exp(),
             between(self.alpha_deg, alpha).to_radians(),
         );
-        if let Some(range) = self.fillet_ratio {
-            design.fillet_ratio = between(range, hole);
-        }
+        design.fillet_ratio = between(self.fillet_ratio, hole);
         let ligament = NetLigament::new(&design, common.fillet_ratio);
         let w_lig = ligament.design(&design).w_lig;
         let [eta_a, eta_s, theta_deg] = if pure_rotation {
@@ -116,18 +132,12 @@ impl RayBox {
             [eta_a, eta_s, theta]
         };
         let theta = theta_deg.to_radians();
-        let eta_a = self.free(theta) + eta_a;
+        let eta_a = theta * (first + second * theta.abs()) + eta_a;
         let end = HingeDeformation::from_eta(eta_a, eta_s, theta, w_lig);
         Ray {
             design,
             end: ligament.actual(&end),
         }
-    }
-
-    /// eta_a of a ligament that turns freely by `theta` (rad).
-    fn free(&self, theta: f64) -> f64 {
-        let [first, second] = self.free_opening;
-        theta * (first + second * theta.abs())
     }
 
     /// The quantile of the rotation (degrees): the fraction `share` of the rays ends below it.
@@ -150,6 +160,11 @@ impl RayBox {
     pub(crate) fn defect(&self) -> Option<String> {
         let rules = [
             (
+                (1..=MAX_COUNT).contains(&self.count),
+                "1 <= count <= 1000000",
+            ),
+            (self.finer <= self.count, "finer <= count"),
+            (
                 0.0 < self.w_lig[0] && self.w_lig[0] <= self.w_lig[1],
                 "0 < w_lig[0] <= w_lig[1]",
             ),
@@ -160,8 +175,9 @@ impl RayBox {
                 "0 < alpha_deg[0] <= alpha_deg[1] <= 90 (mirroring gives the rest)",
             ),
             (
-                self.fillet_ratio
-                    .is_none_or(|[from, to]| 0.0 < from && from <= to && to < 1.0),
+                0.0 < self.fillet_ratio[0]
+                    && self.fillet_ratio[0] <= self.fillet_ratio[1]
+                    && self.fillet_ratio[1] < 1.0,
                 "0 < fillet_ratio[0] <= fillet_ratio[1] < 1",
             ),
             (
@@ -178,10 +194,6 @@ impl RayBox {
             ),
             (self.eta_a[1] < 1.0, "eta_a[1] < 1"),
             ((0.0..1.0).contains(&self.eta_s), "0 <= eta_s < 1"),
-            (
-                self.free_opening.iter().all(|c| (0.0..=1.0).contains(c)),
-                "0 <= free_opening <= 1",
-            ),
             (
                 -30.0 <= self.theta_deg[0]
                     && self.theta_deg[0] <= self.median_deg
@@ -202,7 +214,7 @@ impl RayBox {
         rules
             .iter()
             .find(|(holds, _)| !holds)
-            .map(|(_, rule)| format!("[rays] violates {rule}"))
+            .map(|(_, rule)| format!("[[rays]] violates {rule}"))
     }
 }
 
@@ -224,10 +236,12 @@ mod tests {
     use super::*;
 
     const BOX: RayBox = RayBox {
+        count: 80,
+        seed: 1,
+        finer: 0,
         w_lig: [5.0, 25.0],
         alpha_deg: [45.0, 90.0],
-        fillet_ratio: None,
-        free_opening: [0.0, 0.0],
+        fillet_ratio: [0.16, 0.16],
         eta_a: [-0.8, 0.25],
         eta_s: 0.4,
         theta_deg: [-5.0, 75.0],
@@ -252,15 +266,16 @@ mod tests {
 
     #[test]
     fn a_larger_campaign_begins_with_the_smaller() {
-        let rays = BOX.rays(&COMMON, 200, 1);
-        assert_eq!(BOX.rays(&COMMON, 70, 1), rays[..70]);
-        assert_ne!(BOX.rays(&COMMON, 70, 2), rays[..70]);
+        let rays = BOX.rays(&COMMON, Regime::Film, 200);
+        assert_eq!(BOX.rays(&COMMON, Regime::Film, 70), rays[..70]);
+        let other = RayBox { seed: 2, ..BOX };
+        assert_ne!(other.rays(&COMMON, Regime::Film, 70), rays[..70]);
         assert_ne!(rays[..40], rays[40..80]);
     }
 
     #[test]
     fn rays_stay_in_their_region_and_stretch_wide_ligaments_little_at_small_rotations() {
-        let rays = BOX.rays(&COMMON, 400, 1);
+        let rays = BOX.rays(&COMMON, Regime::Film, 400);
         for (i, ray) in rays.iter().enumerate() {
             ray.design.validate().unwrap();
             let w_lig = ray.design.w_lig;
@@ -290,12 +305,9 @@ mod tests {
     /// Rays of a plate end around the axial opening of a ligament that turns freely.
     #[test]
     fn rays_of_a_plate_are_measured_from_the_free_opening() {
-        let free_opening = [0.5, 0.16];
-        let plate = RayBox {
-            free_opening,
-            ..BOX
-        };
-        let pairs = std::iter::zip(plate.rays(&COMMON, 80, 1), BOX.rays(&COMMON, 80, 1));
+        let [plate, film] =
+            [Regime::Plate, Regime::Film].map(|regime| BOX.rays(&COMMON, regime, 80));
+        let pairs = std::iter::zip(plate, film);
         for (plate, film) in pairs {
             assert_eq!(
                 (plate.design, plate.end.theta),
@@ -307,11 +319,6 @@ mod tests {
             assert!((plate[0] - film[0] - free).abs() < 1e-12);
             assert_eq!(plate[1], film[1]);
         }
-        let turned = RayBox {
-            free_opening: [0.5, 16.0],
-            ..BOX
-        };
-        assert!(turned.defect().unwrap().contains("free_opening"));
     }
 
     /// Sampling the hole changes no other coordinate of a ray, in the measures of the hinge with the same net ligament.
@@ -319,11 +326,11 @@ mod tests {
     fn the_hole_is_sampled_over_its_range() {
         let range = [0.03, 0.4];
         let sampled = RayBox {
-            fillet_ratio: Some(range),
+            fillet_ratio: range,
             ..BOX
         };
-        let rays = sampled.rays(&COMMON, 80, 1);
-        for (ray, plain) in std::iter::zip(&rays, BOX.rays(&COMMON, 80, 1)) {
+        let rays = sampled.rays(&COMMON, Regime::Film, 80);
+        for (ray, plain) in std::iter::zip(&rays, BOX.rays(&COMMON, Regime::Film, 80)) {
             assert_eq!(ray.design.w_lig, plain.design.w_lig);
             assert_eq!(ray.design.alpha, plain.design.alpha);
             assert_eq!(ray.end.theta, plain.end.theta);
@@ -338,7 +345,7 @@ mod tests {
         assert!(holes().all(|hole| (range[0]..=range[1]).contains(&hole)));
         assert!(holes().any(|hole| hole < 0.04) && holes().any(|hole| hole > 0.39));
         let turned = RayBox {
-            fillet_ratio: Some([0.4, 0.03]),
+            fillet_ratio: [0.4, 0.03],
             ..BOX
         };
         assert!(turned.defect().unwrap().contains("fillet_ratio[0] <="));
@@ -348,7 +355,7 @@ mod tests {
     /// rotation and large shear.
     #[test]
     fn every_prefix_covers_the_states_of_deployed_hinges() {
-        let rays = BOX.rays(&COMMON, 80, 1);
+        let rays = BOX.rays(&COMMON, Regime::Film, 80);
         let ends: Vec<_> = rays
             .iter()
             .map(|ray| (ray.end.eta(ray.design.w_lig), ray.end.theta.to_degrees()))

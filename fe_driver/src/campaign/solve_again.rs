@@ -3,7 +3,7 @@
 
 use crate::campaign::campaign_folder::CampaignFolder;
 use crate::campaign::definition::{Campaign, CampaignError};
-use crate::campaign::status::refuse_changed;
+use crate::campaign::status::known_parts;
 use crate::solve::attempts::SolveListError;
 use crate::solve::solved::Solved;
 use crate::solve::solver::Solver;
@@ -69,7 +69,7 @@ pub fn solve_again(
     stop: &AtomicBool,
     progress: &mut dyn FnMut(usize, usize),
 ) -> Result<Vec<SolvedAgain>, CampaignError> {
-    refuse_changed(campaign, folder)?;
+    known_parts(campaign, folder)?;
     let campaign_folder = CampaignFolder(folder.to_owned());
     let store = campaign_folder.store();
     let mut complete = Vec::new();

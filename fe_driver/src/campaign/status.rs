@@ -1,7 +1,7 @@
 //! The state of a campaign: counts, costs, throughput.
 
 use crate::campaign::campaign_folder::{CampaignFolder, Index};
-use crate::campaign::definition::{Campaign, CampaignError};
+use crate::campaign::definition::{Campaign, CampaignError, JobPart};
 use crate::solve::attempts::Job;
 use crate::solve::failure::FailureKind;
 use crate::solve::problem::Solve;
@@ -9,7 +9,7 @@ use crate::solve::solve_folder::{SolveRecord, SolveState};
 use crate::solve::window_solve::WindowSolve;
 use mesher::Tier;
 use serde::Serialize;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap};
 use std::path::Path;
 
 /// Numbers of jobs in each state, with their total cost.
@@ -41,8 +41,9 @@ pub struct Tally {
     pub solved_here: usize,
     /// Closed jobs whose time is known: the wall time of those solved here, the CPU time of restored ones.
     pub timed: usize,
+    /// Seconds and number of the timed jobs of each tier.
     #[serde(skip)]
-    timed_seconds: f64,
+    timed_by_tier: BTreeMap<Tier, (f64, usize)>,
     #[serde(skip)]
     rows_solved_here: usize,
     #[serde(skip)]
@@ -100,7 +101,9 @@ impl Tally {
             record.cpu_seconds
         };
         if seconds > 0.0 {
-            self.timed_seconds += seconds;
+            let (all, jobs) = self.timed_by_tier.entry(tier).or_default();
+            *all += seconds;
+            *jobs += usize::from(record.is_closed());
             self.timed += usize::from(record.is_closed());
         }
         if record.is_solved_here() {
@@ -122,9 +125,12 @@ impl Tally {
         self.open + self.retry
     }
 
-    /// Time of one worker per job (s); `None` before a job of known time is closed.
-    pub(crate) fn seconds_a_job(&self) -> Option<f64> {
-        (self.timed > 0).then(|| self.timed_seconds / self.timed as f64)
+    /// Time of one worker per job on a tier (s): the mean of those whose time is known, otherwise that of the polyester film.
+    pub(crate) fn seconds_a_job(&self, tier: Tier) -> f64 {
+        match self.timed_by_tier.get(&tier) {
+            Some((seconds, jobs @ 1..)) => seconds / *jobs as f64,
+            _ => tier.usual_cpu_seconds(),
+        }
     }
 
     /// The throughput so far; `None` before there are samples of jobs solved in this folder.
@@ -164,24 +170,34 @@ pub struct Status {
     pub throughput: Option<Throughput>,
 }
 
-/// Rejects a folder in which `campaign` was last run with settings other than its current ones.
+/// What each job in a folder is for, by its id; an error if `campaign` was last run there with settings other than its current
+/// ones.
 ///
 /// Tool versions are taken from the folder: neither gmsh nor ccx needs to be installed.
-pub fn refuse_changed(campaign: &Campaign, folder: &Path) -> Result<(), CampaignError> {
+pub fn known_parts(
+    campaign: &Campaign,
+    folder: &Path,
+) -> Result<HashMap<String, JobPart>, CampaignError> {
     let folder = CampaignFolder(folder.to_owned());
     folder.belongs_to(&campaign.name)?;
     let ids = folder.index()?.jobs;
     let store = folder.store();
     let mut known = ids.iter().map(|id| store.solve(id).solve::<WindowSolve>());
     let Some(known) = known.find_map(Result::transpose).transpose()? else {
-        return Ok(());
+        return Ok(HashMap::new());
     };
-    let requested = || campaign.solves(&known.tools);
-    if requested().map(|solve| solve.id()).eq(ids) {
-        return Ok(());
+    let jobs = campaign.jobs(&known.tools);
+    if jobs
+        .iter()
+        .map(|(_, solve)| solve.id())
+        .eq(ids.iter().cloned())
+    {
+        let parts = jobs.into_iter().map(|(part, _)| part);
+        return Ok(ids.into_iter().zip(parts).collect());
     }
-    let first = requested().next();
-    let changes = first.map_or(Vec::new(), |first| first.differences(&known));
+    let same_tier = jobs.iter().find(|(_, solve)| solve.tier() == known.tier());
+    let changes = same_tier.or(jobs.first());
+    let changes = changes.map_or(Vec::new(), |(_, solve)| solve.differences(&known));
     Err(CampaignError::Changed {
         folder: folder.0,
         changes: match changes.as_slice() {
@@ -239,12 +255,17 @@ mod tests {
     /// Restored jobs have no wall time, but their CPU time is that of the material.
     #[test]
     fn the_time_of_a_job_is_also_that_of_restored_ones() {
-        assert_eq!(tally(&[None]).seconds_a_job(), None);
+        let seconds = |tally: &Tally| tally.seconds_a_job(Tier::Default);
+        assert_eq!(seconds(&tally(&[None])), Tier::Default.usual_cpu_seconds());
         let restored = tally(&[solved(60.0, 0.0), solved(80.0, 0.0), None]);
-        assert_eq!((restored.timed, restored.seconds_a_job()), (2, Some(70.0)));
+        assert_eq!((restored.timed, seconds(&restored)), (2, 70.0));
+        assert_eq!(
+            restored.seconds_a_job(Tier::Fine),
+            Tier::Fine.usual_cpu_seconds()
+        );
         assert_eq!((restored.solved_here, restored.throughput()), (0, None));
         let mixed = tally(&[solved(60.0, 0.0), solved(75.0, 80.0), None]);
-        assert_eq!((mixed.timed, mixed.seconds_a_job()), (2, Some(70.0)));
+        assert_eq!((mixed.timed, seconds(&mixed)), (2, 70.0));
     }
 
     #[test]

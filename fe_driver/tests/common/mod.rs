@@ -41,8 +41,8 @@ pub fn problem(alpha_deg: f64, eta: [f64; 2], theta_deg: f64) -> WindowProblem {
 /// The first rays of the demo campaign, with small rotations only.
 pub fn campaign(count: usize) -> Campaign {
     let mut campaign = Campaign::load(&configs().join("campaigns/demo.toml")).unwrap();
-    campaign.count = count;
-    campaign.rays.theta_deg = [4.0, 8.0];
+    campaign = campaign.first_rays(count);
+    campaign.boxes[0].theta_deg = [4.0, 8.0];
     campaign
 }
 

@@ -7,6 +7,11 @@ use clap::Args;
 use fe_driver::{Campaign, Tally};
 use std::path::{Path, PathBuf};
 
+/// File of the database in the folder of a campaign.
+pub const DATABASE: &str = "hinges.parquet";
+/// File of the states on which weights are tested.
+pub const SPOT_CHECK: &str = "spot-check.parquet";
+
 /// A campaign and the folder of its jobs.
 #[derive(Args)]
 pub struct CampaignArgs {

@@ -1,19 +1,23 @@
 //! `kirigami campaign collect`
 
-use crate::commands::campaign::campaign_args::CampaignArgs;
+use crate::commands::campaign::campaign_args::{CampaignArgs, DATABASE, SPOT_CHECK};
+use crate::ui::output_file;
 use anyhow::{Context, Result, bail};
 use clap::Args;
-use dataset::{Collected, SplitPlan};
-use fe_driver::{Tally, finished_windows};
+use dataset::{Collected, Database, SplitPlan};
+use fe_driver::{JobPart, Solved, Tally, finished_windows};
 use std::path::PathBuf;
-use verification::rows;
+use verification::{SpotCheck, rows};
 
-/// Collect the samples of all finished jobs in a Parquet file with its manifest
+/// Collect the samples of all finished jobs: the database hinges.parquet, and spot-check.parquet, on which weights are tested
+///
+/// Rays on the finer mesh are in the database too; `train` corrects the others by them. Example: kirigami campaign collect
+/// configs/campaigns/demo.toml
 #[derive(Args)]
 pub struct CollectCommand {
     #[command(flatten)]
     campaign: CampaignArgs,
-    /// Parquet file to write [default: hinges.parquet in the folder of the jobs]
+    /// Parquet file to write; the spot check is written next to it [default: hinges.parquet in the folder of the jobs]
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
     /// Collect even if some jobs are not finished
@@ -27,7 +31,8 @@ pub struct CollectCommand {
 impl CollectCommand {
     pub(crate) fn run(&self) -> Result<()> {
         let folder = self.campaign.folder();
-        fe_driver::refuse_changed(&self.campaign.load()?, &folder)?;
+        let campaign = self.campaign.load()?;
+        let parts = fe_driver::known_parts(&campaign, &folder)?;
         let tally = fe_driver::status(&folder)?.tally;
         let missing = missing(&tally);
         if tally.to_run() > 0 && !self.partial {
@@ -36,21 +41,32 @@ impl CollectCommand {
                 folder.display()
             );
         }
-        let out = self
-            .out
-            .clone()
-            .unwrap_or_else(|| folder.join("hinges.parquet"));
-        if let Some(parent) = out.parent() {
-            std::fs::create_dir_all(parent)
-                .with_context(|| format!("cannot create the folder {}", parent.display()))?;
-        }
-        let rays = finished_windows(&folder)?.map(|window| {
-            let window = window?;
-            anyhow::Ok(rows(&window, window.samples.iter().copied()).collect())
-        });
+        let out = self.out.clone().unwrap_or_else(|| folder.join(DATABASE));
+        output_file::create_folder_of(&out)?;
+        let is_ray = |window: &Solved| parts.get(&window.id) != Some(&JobPart::SpotCheck);
+        let rays = finished_windows(&folder)?
+            .filter(|window| window.as_ref().map_or(true, is_ray))
+            .map(|window| {
+                let window = window?;
+                anyhow::Ok(rows(&window, window.samples.iter().copied()).collect())
+            });
         let plan = SplitPlan::default();
         let collected = Collected::write(rays, &plan, &out, self.replace)?;
         println!("{collected}\n{missing}\nwritten to {}", out.display());
+        if campaign.spot_rays > 0 {
+            let check = SpotCheck::collected(&campaign, &parts, &folder)?;
+            let path = out.with_file_name(SPOT_CHECK);
+            let states = check.rows.len();
+            let spot = Database::collect(check.rows, &plan)
+                .context("too few rays of the spot check are solved")?;
+            spot.write(&path, self.replace)?;
+            println!(
+                "spot check: {states} states of {} rays, {} states unknown, written to {}",
+                spot.manifest().rays,
+                check.unknown_states,
+                path.display()
+            );
+        }
         Ok(())
     }
 }

@@ -42,15 +42,19 @@ impl PlanCommand {
                 folder.display()
             );
         }
+        let workers = processors() as f64;
         println!(
-            "a run would solve {} rays in about {} on {} processors, {}",
+            "a run would solve {} rays in about {} of CPU time, {} on {workers} processors ({}), with {:.0} MB of memory a \
+             processor and {:.0} MB on disk",
             plan.tally.to_run(),
-            duration(plan.seconds / processors() as f64),
-            processors(),
+            duration(plan.seconds),
+            duration(plan.seconds / workers),
             match plan.tally.timed {
-                0 => "the usual time of its tier; rays of some materials take longer".into(),
+                0 => "the usual time of its meshes; rays of some materials take longer".into(),
                 timed => format!("by the time of the {timed} rays solved so far"),
-            }
+            },
+            plan.memory_mb,
+            plan.disk_mb
         );
         Ok(())
     }

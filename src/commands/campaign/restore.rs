@@ -1,7 +1,7 @@
 //! `kirigami campaign restore`
 
 use crate::commands::campaign::campaign_args::CampaignArgs;
-use anyhow::{Result, ensure};
+use anyhow::Result;
 use clap::Args;
 use dataset::Database;
 use std::path::PathBuf;
@@ -10,7 +10,8 @@ use verification::collected_windows;
 /// Restore the job folders of a campaign from the database that was collected from them
 ///
 /// A later run then solves only the rays that the database lacks. Jobs solved with other settings or
-/// other versions of gmsh and ccx do not belong to the campaign and are skipped.
+/// other versions of gmsh and ccx do not belong to the campaign and are skipped. Rays of the spot check are solved again, since
+/// its file has four states of each.
 #[derive(Args)]
 pub struct RestoreCommand {
     #[command(flatten)]
@@ -24,14 +25,6 @@ impl RestoreCommand {
     pub fn run(&self) -> Result<()> {
         let database = Database::read(&self.from)?;
         let campaign = self.campaign.load()?;
-        // A corrected database has the same jobs, but its rows are not the solver's output.
-        ensure!(
-            database.manifest().tier == campaign.tier.to_string(),
-            "{} holds rows of the tier `{}`, but the campaign solves the tier `{}`",
-            self.from.display(),
-            database.manifest().tier,
-            campaign.tier
-        );
         let windows = collected_windows(database.rows())?;
         let folder = self.campaign.folder();
         let restored = fe_driver::restore(&campaign, &folder, &windows)?;

@@ -28,7 +28,7 @@ struct Report {
 impl StatusCommand {
     pub fn run(&self) -> Result<()> {
         let folder = self.campaign.folder();
-        fe_driver::refuse_changed(&self.campaign.load()?, &folder)?;
+        fe_driver::known_parts(&self.campaign.load()?, &folder)?;
         let status = fe_driver::status(&folder)?;
         let (slurm, silent) = match fe_driver::array_states(&folder) {
             Err(error @ SlurmError::Silent { .. }) => (None, Some(error)),

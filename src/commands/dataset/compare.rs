@@ -1,4 +1,4 @@
-//! `kirigami dataset compare`: differences of a database from a finer one of the same rays.
+//! `kirigami dataset compare`: differences of a mesh from a finer one on the same rays.
 
 use crate::commands::compared_states;
 use crate::ui::{output_file, run_folder};
@@ -9,19 +9,19 @@ use std::path::PathBuf;
 use support::table::{Cell, Table};
 use verification::{SCALE, each_relative, spread_table};
 
-/// Compare a database with a finer one of the same rays
+/// Compare the rays of a database with the same rays on its finer mesh, or in another database
 ///
 /// Writes compare.md, compare.csv (one row per ray) and a chart, and prints the differences
-/// that `dataset correct` would leave. Example, the default tier against the reference tier: kirigami dataset
-/// compare data/pet-0.5mm/hinges.parquet data/pet-0.5mm/reference.parquet
+/// that a training leaves, which corrects the rays to the finer mesh. Example: kirigami dataset
+/// compare data/polypropylene-3mm/hinges.parquet
 #[derive(Args)]
 pub struct CompareCommand {
     /// Database to evaluate (Parquet with its manifest)
     #[arg(value_name = "DATABASE")]
     database: PathBuf,
-    /// Reference database (Parquet with its manifest)
+    /// Reference database (Parquet with its manifest) [default: the finer mesh of DATABASE]
     #[arg(value_name = "REFERENCE")]
-    reference: PathBuf,
+    reference: Option<PathBuf>,
     /// Folder for the tables and the chart
     #[arg(long, value_name = "FOLDER", default_value = "runs/compare")]
     out: PathBuf,
@@ -30,23 +30,33 @@ pub struct CompareCommand {
 impl CompareCommand {
     pub fn run(&self) -> Result<()> {
         let judged = Database::read(&self.database)?;
-        let reference = Database::read(&self.reference)?;
-        let rays = compare(&judged, &reference);
+        let reference = (self.reference.as_ref()).map(|file| Database::read(file));
+        let reference = reference.transpose()?;
+        let (rays, finer) = match &reference {
+            Some(reference) => (
+                compare(&judged, reference),
+                reference.manifest().tier.clone(),
+            ),
+            None => {
+                let finer = judged.manifest().finer.as_ref();
+                let finer = finer.map_or(String::new(), |finer| finer.tier.clone());
+                (judged.on_both_meshes(), finer)
+            }
+        };
         ensure!(
             !rays.is_empty(),
-            "{} and {} have no ray in common",
-            self.database.display(),
-            self.reference.display()
+            "{} has no ray on a finer mesh, or in common with the reference",
+            self.database.display()
         );
         let states: Vec<_> = rays.iter().map(ComparedRay::states).collect();
         output_file::create_folder(&self.out)?;
-        let tiers = [&judged, &reference].map(|database| database.manifest().tier.clone());
+        let tiers = [judged.manifest().tier.clone(), finer];
         let mut summary = summary(&rays, &states, &tiers)?;
         match left_out(&rays) {
             Ok(judged) => summary += &correction(&judged)?,
             // The comparison is valid without it.
             Err(reason) => {
-                eprintln!("cannot evaluate what `dataset correct` would leave: {reason}")
+                eprintln!("cannot evaluate what a correction would leave: {reason}")
             }
         }
         let csv = table().csv(&ranked(&rays, &states));
@@ -90,8 +100,7 @@ pub fn correction(judged: &LeftOut) -> Result<String> {
         ),
     };
     Ok(format!(
-        "\nRemaining differences when each of the {} rays is corrected by the others.{note} `kirigami \
-         dataset correct`.\n\n{table}",
+        "\nRemaining differences when each of the {} rays is corrected by the others.{note}\n\n{table}",
         judged.states.len()
     ))
 }

@@ -48,7 +48,7 @@ const PLATE: Template = Template {
     panel: 5.8,
     campaign: include_str!("../../../configs/campaigns/polypropylene-3mm.toml"),
     campaign_thickness: 3.0,
-    training: include_str!("../../../configs/training/plate.toml"),
+    training: include_str!("../../../configs/training/plate/medium.toml"),
     why: "The sheet is thick for its size: its ligaments are narrower than it is thick and bend in its plane. Nothing holds its \
           panels there; `kirigami verify --sheet` says how far they tilt.",
 };

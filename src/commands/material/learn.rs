@@ -22,7 +22,7 @@ use ::train::{TrainingConfig, check_pretrained};
 use anyhow::{Context, Result, bail, ensure};
 use clap::Args;
 use dataset::{Database, SplitPlan};
-use fe_driver::{CalculiX, Campaign, Progress};
+use fe_driver::{CalculiX, Campaign, Progress, random_paths};
 use hinge::{Regime, SheetMaterial, TrainingDomain};
 use mesher::Tier;
 use std::path::{Path, PathBuf};
@@ -31,7 +31,7 @@ use surrogate::Surrogate;
 use toml_edit::DocumentMut;
 use verification::{
     Accuracy, LearningEnd, LearningRound, LearningSteps, LearningTask, VerificationError,
-    distillation_states, drawn, learn, random_paths, region, spot_check,
+    distillation_states, learn, spot_check,
 };
 
 /// Solve hinge windows of a material and train its weights until they are accurate enough
@@ -129,11 +129,11 @@ impl LearnCommand {
             check_pretrained(parent, &config).with_context(|| format!("{}", file.display()))?;
         }
         let campaign = self.campaign(&material, tier)?;
-        let region = region(&campaign).ok_or(VerificationError::NoRegion)?;
+        let region = campaign.region().ok_or(VerificationError::NoRegion)?;
         let fine_tuning = FineTuning {
             parents,
             config,
-            distillation: distillation_states(drawn(&campaign, &region)),
+            distillation: distillation_states(campaign.drawn(&region)),
             fits: self.out.join("fits"),
         };
         let spot = self.spot_check(&campaign, &region)?;
@@ -174,7 +174,7 @@ impl LearnCommand {
             LearningEnd::AllRays => bail!(
                 "all {} rays of {} are solved, and the errors are above --accuracy or --forces: increase `count` there, \
                  or choose a finer tier",
-                campaign.count,
+                campaign.rays(),
                 self.out.join("campaign.toml").display()
             ),
         }
@@ -218,7 +218,7 @@ impl LearnCommand {
     fn spot_check(&self, campaign: &Campaign, region: &TrainingDomain) -> Result<Database> {
         let count = STATES_PER_RAY * usize::from(self.spot_rays);
         let paths = random_paths(
-            drawn(campaign, region),
+            campaign.drawn(region),
             count,
             STATES_PER_RAY,
             self.spot_seed,

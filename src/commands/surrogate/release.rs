@@ -6,12 +6,13 @@ use crate::ui::count::count;
 use crate::ui::run_folder;
 use anyhow::{Result, ensure};
 use clap::Args;
+use fe_driver::random_paths;
 use mesher::Tier;
 use std::fmt;
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 use surrogate::{FEWEST, Springback, Surrogate};
-use verification::{first_guess, judging_tier, random_paths, releases};
+use verification::{drawn_by, first_guess, judging_tier, releases};
 
 /// Deform hinges by finite elements, let them go, and learn what stays
 ///
@@ -66,7 +67,7 @@ impl ReleaseCommand {
         let tier = judging_tier(self.tier, &surrogate)?;
         let _held = run_folder::hold(&self.out)?;
         let windows = self.solve.service(&self.out)?;
-        let drawn = random_paths((&surrogate).into(), self.count.get(), 1, self.seed);
+        let drawn = random_paths(drawn_by(&surrogate), self.count.get(), 1, self.seed);
         let hinges: Vec<_> = drawn.into_iter().map(|path| path.hinge).collect();
         let guess = |design: &_, reached: &_| first_guess(&material, design, reached);
         let found = releases(&windows, &hinges, &material, tier, guess).map_err(task_error)?;

@@ -162,7 +162,7 @@ impl TrainCommand {
     }
 
     /// The path of the weights of one of several seeds.
-    fn member(&self, seed: u64) -> PathBuf {
+    pub(super) fn member(&self, seed: u64) -> PathBuf {
         self.beside(&format!("seed-{seed}.safetensors"))
     }
 }

@@ -9,7 +9,7 @@ use design::scene::{Scene, SceneConfig};
 use fake_solver::{FakeSolver, Fault};
 use fe_driver::{
     Campaign, Progress, Solution, SolveError, SolveService, SolveStore, Solver, ToolVersions,
-    WindowSolve,
+    WindowSolve, random_paths,
 };
 use mesher::Tier;
 use std::path::{Path, PathBuf};
@@ -19,8 +19,8 @@ use surrogate::Surrogate;
 use tempfile::TempDir;
 use verification::{
     Accuracy, BALANCED, BalanceEnd, Balanced, ElementWindows, LearningEnd, LearningRound,
-    LearningSteps, LearningTask, Replay, VerificationError, balanced, distillation_states, drawn,
-    learn, movements, random_paths, recorded_paths, region, size, spot_check,
+    LearningSteps, LearningTask, Replay, VerificationError, balanced, distillation_states,
+    drawn_by, learn, movements, recorded_paths, size, spot_check,
 };
 
 /// (k_a, k_s) (N/mm) and k_theta (N mm/rad) of the hinges of film.
@@ -269,7 +269,7 @@ fn a_replay_compares_every_state_and_names_what_failed() {
 fn a_spot_check_keeps_the_states_of_the_windows_that_are_solved() {
     let (scene, folder) = (scene(), tempfile::tempdir().unwrap());
     let surrogate = scene.surrogate().unwrap();
-    let paths = random_paths(surrogate.into(), 12, 3, 0);
+    let paths = random_paths(drawn_by(surrogate), 12, 3, 0);
     let first = paths[0].hinge.clone();
     let diverges = FakeSolver::new(STIFFNESS, |solve: &WindowSolve| {
         (solve.problem.hinge == first).then_some(Fault::Diverges(0.4))
@@ -325,12 +325,12 @@ fn rays_are_solved_in_rounds_until_the_weights_are_accurate() {
     let (scene, folder) = (scene(), tempfile::tempdir().unwrap());
     let path = repository().join("configs/campaigns/demo.toml");
     let mut campaign = Campaign::load(&path).unwrap();
-    campaign.count = 12;
-    let region = region(&campaign).unwrap();
-    assert!(!distillation_states(drawn(&campaign, &region)).is_empty());
+    campaign = campaign.first_rays(12);
+    let region = campaign.region().unwrap();
+    assert!(!distillation_states(campaign.drawn(&region)).is_empty());
     let solver = healthy();
     let windows = service(&solver, &folder);
-    let paths = random_paths(drawn(&campaign, &region), 12, 4, 1);
+    let paths = random_paths(campaign.drawn(&region), 12, 4, 1);
     let check = spot_check(&windows, &paths, &campaign.material, campaign.tier).unwrap();
     let rays = folder.path().join("campaign");
     let learned = |accuracy: f64, deadline: Option<Instant>| {

@@ -6,7 +6,7 @@ use design::scene::{Scene, SceneConfig};
 use design::sheet::kinematics::deployed_corners;
 use fe_driver::{
     CalculiX, HingePath, Ray, Solution, SolveError, SolveService, SolveStore, Solver, ToolVersions,
-    WindowSolve,
+    WindowSolve, random_paths,
 };
 use hinge::{
     HingeConstants, HingeDeformation, HingeSample, ReleasedHinge, ReleasedSample, SheetMaterial,
@@ -19,7 +19,7 @@ use std::time::Duration;
 use surrogate::Springback;
 use tempfile::TempDir;
 use verification::{
-    ElementWindows, balanced, first_guess, random_paths, released_by_elements, releases,
+    ElementWindows, balanced, drawn_by, first_guess, released_by_elements, releases,
 };
 
 /// (k_a, k_s) (N/mm) and k_theta (N mm/rad) of the hinges.
@@ -120,7 +120,7 @@ fn scene() -> Scene {
 fn rows(solver: Slipping, count: usize) -> Vec<ReleasedSample> {
     let folder = tempfile::tempdir().unwrap();
     let scene = scene();
-    let drawn = random_paths(scene.surrogate().unwrap().into(), count, 1, 5);
+    let drawn = random_paths(drawn_by(scene.surrogate().unwrap()), count, 1, 5);
     let hinges: Vec<HingePath> = drawn.into_iter().map(|path| path.hinge).collect();
     let guess = |design: &_, reached: &_| first_guess(&scene.material, design, reached);
     let windows = service(solver, &folder);

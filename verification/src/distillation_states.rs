@@ -1,32 +1,15 @@
-//! The region of states that the rays of a campaign cover, as far as it is needed before they are solved.
+//! Random states at which one network learns from several.
 
-use crate::spot_check::{DrawnStates, SpotPath, random_paths};
-use fe_driver::{Campaign, Ray};
-use hinge::{HingeDeformation, HingeDesign, TrainingDomain};
+use fe_driver::{DrawnStates, SpotPath, random_paths};
+use hinge::{HingeDeformation, HingeDesign};
+use surrogate::Surrogate;
 
-/// The states that the campaign's rays pass through if they are solved to their ends. It does not depend on the number of
-/// rays, so that the spot check remains the same when the campaign is enlarged.
-pub fn region(campaign: &Campaign) -> Option<TrainingDomain> {
-    const RAYS: usize = 1500;
-    const STATES: u32 = 10;
-    let rays = (campaign.rays).rays(&campaign.design, RAYS, campaign.seed);
-    let rays = rays.into_iter().flat_map(|ray| [ray, ray.mirrored()]);
-    let states: Vec<_> = rays.flat_map(|ray| states(ray, STATES)).collect();
-    TrainingDomain::covering(states)
-}
-
-/// The states of a campaign's region.
-pub fn drawn<'a>(campaign: &'a Campaign, region: &'a TrainingDomain) -> DrawnStates<'a> {
+/// The states of the training domain of weights.
+pub fn drawn_by(weights: &Surrogate) -> DrawnStates<'_> {
     DrawnStates {
-        domain: region,
-        constants: &campaign.design,
+        domain: weights.domain(),
+        constants: &weights.card().hinge,
     }
-}
-
-/// States at equal distances on a ray, up to its end.
-fn states(ray: Ray, count: u32) -> impl Iterator<Item = (HingeDesign, HingeDeformation)> {
-    let (design, end) = (ray.design, ray.end);
-    (1..=count).map(move |k| (design, end.at(f64::from(k) / f64::from(count))))
 }
 
 /// Number of states of the distillation. With 10 000 the errors of steel at two spot checks are a tenth to a third larger.
@@ -47,6 +30,7 @@ pub fn distillation_states(drawn: DrawnStates) -> Vec<(HingeDesign, HingeDeforma
 #[cfg(test)]
 mod tests {
     use super::*;
+    use fe_driver::Campaign;
     use std::path::Path;
 
     #[test]
@@ -54,8 +38,11 @@ mod tests {
         let file =
             Path::new(env!("CARGO_MANIFEST_DIR")).join("../configs/campaigns/pet-0.5mm.toml");
         let campaign = Campaign::load(&file).unwrap();
-        let region = region(&campaign).unwrap();
-        let states = distillation_states(drawn(&campaign, &region));
+        let region = campaign.region().unwrap();
+        let states = distillation_states(DrawnStates {
+            domain: &region,
+            constants: &campaign.design,
+        });
         assert_eq!(states.len(), DISTILLATION_STATES);
         assert!(
             states

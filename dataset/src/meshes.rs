@@ -1,0 +1,166 @@
+//! The meshes of a database: that of its rays, and the finer one on which some of them were solved too.
+//!
+//! All rows have one material, one kerf and one window radius, since a surrogate has no feature for them. The finer mesh is the
+//! one with fewer rays, or, of as many, with the longer solves.
+
+use crate::compare::{RayKey, ray_key};
+use crate::error::DatasetError;
+use crate::rows::Row;
+use crate::split::Geometries;
+use hinge::{HingeDeformation, HingeDesign};
+use std::cmp::Reverse;
+use std::collections::BTreeSet;
+
+/// The rows of one mesh.
+pub(crate) struct MeshRows {
+    /// The first of them.
+    first: Row,
+    keys: BTreeSet<RayKey>,
+    pub rays: usize,
+    pub partial_rays: usize,
+    pub cpu_s: f64,
+    pub geometries: Geometries,
+    /// Designs, each with the number of successive rows that have it.
+    designs: Vec<(HingeDesign, usize)>,
+    deformations: Vec<HingeDeformation>,
+}
+
+impl MeshRows {
+    fn new(first: &Row) -> Self {
+        Self {
+            first: first.clone(),
+            keys: BTreeSet::new(),
+            rays: 0,
+            partial_rays: 0,
+            cpu_s: 0.0,
+            geometries: Geometries::default(),
+            designs: Vec::new(),
+            deformations: Vec::new(),
+        }
+    }
+
+    fn add(&mut self, ray: &[Row]) {
+        for row in ray {
+            self.geometries.add(row);
+            match self.designs.last_mut() {
+                Some((design, count)) if *design == row.design => *count += 1,
+                _ => self.designs.push((row.design, 1)),
+            }
+            self.deformations.push(row.sample.deformation());
+        }
+        if let Some(last) = ray.last() {
+            self.keys.insert(ray_key(last));
+            self.rays += 1;
+            self.partial_rays += usize::from(last.is_partial());
+            self.cpu_s += last.cpu_s;
+        }
+    }
+
+    pub fn tier(&self) -> &str {
+        &self.first.tier
+    }
+
+    /// CPU time of a ray (s).
+    fn cost(&self) -> f64 {
+        self.cpu_s / self.rays as f64
+    }
+
+    pub fn settings_hash(&self) -> &str {
+        &self.first.settings_hash
+    }
+
+    pub fn first_design(&self) -> &HingeDesign {
+        &self.first.design
+    }
+
+    /// The design and the deformation of every row.
+    pub fn states(&self) -> impl Iterator<Item = (HingeDesign, HingeDeformation)> + Clone {
+        let designs =
+            (self.designs.iter()).flat_map(|(design, count)| std::iter::repeat_n(*design, *count));
+        designs.zip(self.deformations.iter().copied())
+    }
+}
+
+/// The rows of all meshes.
+#[derive(Default)]
+pub(crate) struct Meshes(Vec<MeshRows>);
+
+impl Meshes {
+    /// Adds accepted rows of one job.
+    pub fn add(&mut self, ray: &[Row]) -> Result<(), DatasetError> {
+        let Some(first) = ray.first() else {
+            return Ok(());
+        };
+        let known = self.0.iter().position(|mesh| mesh.tier() == first.tier);
+        let place = known.unwrap_or_else(|| {
+            self.0.push(MeshRows::new(first));
+            self.0.len() - 1
+        });
+        for row in ray {
+            refuse_other(&self.0[0].first, row, &SHARED)?;
+            refuse_other(&self.0[place].first, row, &SHARED_ON_A_MESH)?;
+        }
+        self.0[place].add(ray);
+        Ok(())
+    }
+
+    /// The mesh of the rays, and the finer one if there is one; `None` without rows.
+    pub fn sorted(self) -> Result<Option<(MeshRows, Option<MeshRows>)>, DatasetError> {
+        let mut meshes = self.0;
+        meshes.sort_by(|x, y| x.cost().total_cmp(&y.cost()));
+        meshes.sort_by_key(|mesh| Reverse(mesh.keys.len()));
+        let mut meshes = meshes.into_iter();
+        let Some(rays) = meshes.next() else {
+            return Ok(None);
+        };
+        let finer = meshes.next();
+        let is_other = |mesh: &&MeshRows| {
+            mesh.keys.is_disjoint(&rays.keys)
+                || (mesh.keys.len() == rays.keys.len() && mesh.cost() <= rays.cost())
+        };
+        let third = meshes.next();
+        match third.as_ref().or(finer.as_ref().filter(is_other)) {
+            Some(other) => Err(mixed("tier", &rays.first, &other.first, |row| {
+                row.tier.clone()
+            })),
+            None => Ok(Some((rays, finer))),
+        }
+    }
+}
+
+/// A quantity of a row as text.
+type Quantity = (&'static str, fn(&Row) -> String);
+
+/// The quantities that all rows have in common.
+const SHARED: [Quantity; 4] = [
+    ("material", |row| row.material.clone()),
+    ("material_hash", |row| row.material_hash.clone()),
+    ("kerf", |row| format!("{} mm", row.design.kerf)),
+    ("r_win", |row| format!("{} mm", row.design.r_win)),
+];
+
+/// The quantities that all rows of one mesh have in common.
+const SHARED_ON_A_MESH: [Quantity; 2] = [
+    ("settings_hash", |row| row.settings_hash.clone()),
+    ("tier", |row| row.tier.clone()),
+];
+
+/// Rejects a row that differs from `first` in one of the quantities, which are not features of the surrogate.
+fn refuse_other(first: &Row, row: &Row, quantities: &[Quantity]) -> Result<(), DatasetError> {
+    let mut different = quantities
+        .iter()
+        .filter(|(_, text)| text(first) != text(row));
+    match different.next() {
+        Some((column, text)) => Err(mixed(column, first, row, *text)),
+        None => Ok(()),
+    }
+}
+
+fn mixed(column: &'static str, first: &Row, row: &Row, text: fn(&Row) -> String) -> DatasetError {
+    DatasetError::Mixed {
+        job: row.job.clone(),
+        column,
+        expected: text(first),
+        found: text(row),
+    }
+}

@@ -1,0 +1,85 @@
+//! The trainings of a campaign: of every network that it names, four seeds, tested on its spot check.
+
+use crate::commands::campaign::{DATABASE, SPOT_CHECK};
+use crate::commands::surrogate::StateErrors;
+use crate::commands::train::TrainCommand;
+use ::train::spot_check;
+use anyhow::{Result, ensure};
+use dataset::Database;
+use fe_driver::Campaign;
+use std::path::{Path, PathBuf};
+use surrogate::Surrogate;
+
+/// Number of trainings of a network.
+const SEEDS: u64 = 4;
+
+impl TrainCommand {
+    /// Trains what the campaign names, on the database in its folder.
+    pub(super) fn train_campaign(&self) -> Result<()> {
+        let file = &self.database;
+        let campaign = Campaign::load(file)?;
+        ensure!(
+            !campaign.training.is_empty(),
+            "{} names no training: set training = [\"../training/medium.toml\"] there, or train its database with --config",
+            file.display()
+        );
+        ensure!(
+            self.config.is_none() && self.from.is_none() && self.teachers.is_empty(),
+            "--config, --from and --teachers are for a database, not for a campaign"
+        );
+        let folder = Path::new("runs").join(file.file_stem().unwrap_or_default());
+        for training in &campaign.training {
+            let stem = training.file_stem().unwrap_or_default();
+            let of_network = Self {
+                database: folder.join(DATABASE),
+                config: Some(training.clone()),
+                out: folder
+                    .join("weights")
+                    .join(stem)
+                    .with_added_extension("safetensors"),
+                from: None,
+                teachers: Vec::new(),
+                resume: false,
+                seeds: SEEDS,
+                replace: self.replace,
+            };
+            of_network.run()?;
+            of_network.name_ensemble()?;
+            if campaign.spot_rays > 0 {
+                of_network.record(&folder.join(SPOT_CHECK))?;
+            }
+        }
+        Ok(())
+    }
+
+    /// The best of the seeds and, beside it, the others.
+    fn ensemble(&self) -> impl Iterator<Item = PathBuf> {
+        let others = (1..SEEDS).map(|i| self.beside(&format!("{i}.safetensors")));
+        std::iter::once(self.out.clone()).chain(others)
+    }
+
+    /// Gives the seeds that were not chosen the names of the ensemble.
+    fn name_ensemble(&self) -> Result<()> {
+        let best = Surrogate::load(&self.out)?;
+        let seeds = (0..SEEDS).map(|seed| Surrogate::load(&self.member(seed)));
+        let seeds: Vec<Surrogate> = seeds.collect::<Result<_, _>>()?;
+        let others = seeds.iter().filter(|seed| seed.hash() != best.hash());
+        for (other, file) in std::iter::zip(others, self.ensemble().skip(1)) {
+            other.save(&file)?;
+        }
+        Ok(())
+    }
+
+    /// Tests the ensemble on a spot check and records the errors on the cards.
+    fn record(&self, spot: &Path) -> Result<()> {
+        let database = Database::read(spot)?;
+        for file in self.ensemble() {
+            let weights = Surrogate::load(&file)?;
+            let errors = StateErrors::new(&weights, database.rows());
+            let check = spot_check(&weights, database.rows(), &database.manifest().tier);
+            weights.with_spot_check(check).save(&file)?;
+            println!("{} on {}:\n{errors}", file.display(), spot.display());
+        }
+        Ok(())
+    }
+}
