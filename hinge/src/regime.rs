@@ -15,6 +15,15 @@ impl Regime {
     /// Ligament width over thickness up to which ligaments bend in the plane (docs/results/flatness).
     pub const WIDEST_PLATE: f64 = 1.0;
 
+    /// eta_a of a ligament that turns freely by theta (rad): the coefficients of theta and theta^2. The ligament of a plate turns about
+    /// its middle.
+    pub const fn free_opening(self) -> [f64; 2] {
+        match self {
+            Self::Film => [0.0; 2],
+            Self::Plate => [0.5, 0.16],
+        }
+    }
+
     /// The regime of a ligament, by its width over the thickness.
     pub fn of(width: f64) -> Self {
         if width <= Self::WIDEST_PLATE {

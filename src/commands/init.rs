@@ -362,14 +362,22 @@ mod tests {
             "name = \"thin\"",
             "tier = \"default\"",
             "r_win = 20.0        # mm; radius of the window",
-            "w_lig = [1.0, 5.0]       # mm",
-            "full_range_w_lig = 1.6    # mm, 16 thicknesses",
+            "w_lig = [1.0, 5.0]        # mm",
+            "full_range_w_lig = 1.6     # mm, 16 thicknesses",
+            "training = [\"training.toml\"] # what",
             "median_deg = 25.0",
         ] {
             assert!(text.contains(line), "{line}\n{text}");
         }
+        // Those of every box.
+        let boxes = text.matches("[[rays]]").count();
+        for scaled in ["\nw_lig = [1.0, 5.0]", "\nfull_range_w_lig = 1.6"] {
+            assert_eq!(text.matches(scaled).count(), boxes, "{text}");
+        }
         assert!(
-            text.starts_with("# Hinge windows of the material") && !text.contains("hours"),
+            text.starts_with("# Hinge windows of the material")
+                && !text.contains("Hinge database")
+                && !text.contains("extra_rays"),
             "{text}"
         );
     }

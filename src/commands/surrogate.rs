@@ -6,7 +6,7 @@ mod eval;
 mod release;
 mod test;
 
-pub(crate) use errors::StateErrors;
+pub(crate) use test::{print_errors, record};
 
 use crate::commands::input_file;
 use ::surrogate::Surrogate;

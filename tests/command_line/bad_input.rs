@@ -109,9 +109,9 @@ fn weights_and_databases_are_not_taken_for_each_other() {
         "init sheet --material configs/materials/pet-0.5mm.toml",
         "design configs/scenes/pet-3x3.toml",
     ] {
-        let message = work.error(&format!("{command} --weights {shipped}/reference.parquet"));
+        let message = work.error(&format!("{command} --weights {shipped}/hinges.parquet"));
         assert!(
-            message.contains("reference.parquet is a database"),
+            message.contains("hinges.parquet is a database"),
             "{message}"
         );
     }
@@ -390,7 +390,7 @@ fn teachers_of_another_material_are_refused() {
     let work = Workplace::new();
     let message = work.error(&format!(
         "train {} --teachers {}",
-        data.join("pet-0.5mm/reference.parquet").display(),
+        data.join("pet-0.5mm/hinges.parquet").display(),
         find_weights(&data.join("polypropylene-0.8mm")).display()
     ));
     assert!(message.contains("--teachers"), "{message}");

@@ -2,6 +2,7 @@
 
 use crate::common::Workplace;
 use std::path::Path;
+use toml_edit::{Array, value};
 
 /// A folder with the film's weights, for a sheet of another thickness.
 fn weights() -> String {
@@ -74,13 +75,23 @@ fn a_project_without_weights_begins_with_its_campaign() {
         message.contains("there is no file") && message.contains("weights.safetensors"),
         "{message}"
     );
-    let small = [
-        ("tier = \"default\"", "tier = \"tiny\""),
-        ("count = 1500", "count = 6"),
-        ("theta_deg = [-5.0, 75.0]", "theta_deg = [-5.0, 15.0]"),
-        ("median_deg = 25.0", "median_deg = 10.0"),
-    ];
-    work.edit("steel/campaign.toml", &small);
+    work.edit_campaign(
+        "steel/campaign.toml",
+        |campaign| {
+            assert_eq!(campaign["training"][0].as_str(), Some("training.toml"));
+            campaign["tier"] = value("tiny");
+            campaign.remove("finer_tier");
+            campaign["spot_rays"] = value(4);
+        },
+        |place, rays| {
+            let widest = rays["w_lig"][1].as_float();
+            assert_eq!(widest, Some(75.0), "three times that of the film");
+            rays["count"] = value(if place == 0 { 6 } else { 1 });
+            rays["finer"] = value(0);
+            rays["theta_deg"] = value(Array::from_iter([-5.0, 15.0]));
+            rays["median_deg"] = value(10.0);
+        },
+    );
     work.edit("steel/training.toml", &[("epochs = 80", "epochs = 2")]);
     // Its hinges alone: an hour is not for a test.
     let (_, campaign) = said.split_once("train weights from nothing").unwrap();

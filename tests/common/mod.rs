@@ -4,6 +4,7 @@
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use tempfile::TempDir;
+use toml_edit::{ArrayOfTables, DocumentMut, Table};
 
 const PROGRAM: &str = env!("CARGO_BIN_EXE_kirigami");
 
@@ -33,6 +34,25 @@ impl Workplace {
             text = text.replace(old, new);
         }
         std::fs::write(path, text).unwrap();
+    }
+
+    /// Changes the keys of a campaign, and those of each of its boxes of rays, which are counted from 0.
+    pub fn edit_campaign(
+        &self,
+        name: &str,
+        keys: impl FnOnce(&mut Table),
+        mut of_box: impl FnMut(usize, &mut Table),
+    ) {
+        let path = self.path(name);
+        let text = std::fs::read_to_string(&path).unwrap();
+        let mut campaign: DocumentMut = text.parse().unwrap();
+        keys(campaign.as_table_mut());
+        let boxes = campaign["rays"].as_array_of_tables_mut();
+        let boxes = boxes.into_iter().flat_map(ArrayOfTables::iter_mut);
+        for (place, rays) in boxes.enumerate() {
+            of_box(place, rays);
+        }
+        std::fs::write(path, campaign.to_string()).unwrap();
     }
 
     /// The program with arguments, ready to run in the folder.

@@ -4,6 +4,7 @@ use crate::common::{Workplace, failure};
 use std::path::{Path, PathBuf};
 use support::sealed_json;
 use surrogate::Surrogate;
+use toml_edit::{Array, value};
 
 const POLYPROPYLENE: &str = "configs/materials/polypropylene-0.8mm.toml";
 const OPTIONS: &str = "--tier tiny --rays 6 --spot-rays 3 --out learned";
@@ -27,17 +28,24 @@ fn shipped(name: &str) -> PathBuf {
     folder.join(name).with_added_extension("safetensors")
 }
 
-/// Short rays, and a short training.
+/// Twelve short rays of three boxes, and a short training.
 fn shorten(work: &Workplace) {
-    work.edit(
+    work.edit_campaign(
         "learned/campaign.toml",
-        &[
-            ("count = 1500", "count = 12"),
-            ("eta_a = [-0.95, 0.25]", "eta_a = [-0.1, 0.05]"),
-            ("eta_s = 0.4", "eta_s = 0.05"),
-            ("theta_deg = [-5.0, 75.0]", "theta_deg = [10.0, 20.0]"),
-            ("median_deg = 25.0", "median_deg = 15.0"),
-        ],
+        |campaign| {
+            // It has a spot check and trainings of its own, and one mesh.
+            for key in ["finer_tier", "spot_rays", "training"] {
+                assert!(!campaign.contains_key(key), "{key}");
+            }
+        },
+        |place, rays| {
+            assert!(!rays.contains_key("finer"));
+            rays["count"] = value(if place == 0 { 10 } else { 1 });
+            rays["eta_a"] = value(Array::from_iter([-0.1, 0.05]));
+            rays["eta_s"] = value(0.05);
+            rays["theta_deg"] = value(Array::from_iter([10.0, 20.0]));
+            rays["median_deg"] = value(15.0);
+        },
     );
     work.edit("learned/fine-tuning.toml", &[("epochs = 80", "epochs = 3")]);
 }

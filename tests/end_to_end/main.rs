@@ -6,6 +6,8 @@ mod browser;
 mod common;
 #[path = "../common/failing_ccx.rs"]
 mod failing_ccx;
+#[path = "../../fe_driver/tests/common/fake_solver.rs"]
+mod fake_solver;
 mod killed_runs;
 mod learned_material;
 mod main_job;
@@ -13,6 +15,7 @@ mod own_data;
 mod power_loss;
 #[path = "../../fe_driver/tests/common/processes.rs"]
 mod processes;
+mod regenerated;
 mod run_page;
 mod scale;
 mod slurm;

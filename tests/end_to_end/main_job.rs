@@ -4,7 +4,9 @@
 
 use crate::common::Workplace;
 use crate::failing_ccx::failing_ccx;
+use dataset::Database;
 use serde_json::Value;
+use std::collections::BTreeSet;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
@@ -14,8 +16,6 @@ const COLLECT: &str = "campaign collect configs/campaigns/demo.toml --folder run
 const STATUS: &str = "campaign status configs/campaigns/demo.toml --folder runs/demo/campaign";
 /// The scene with the design of its run.
 const DESIGN: &str = "configs/scenes/demo.toml --design runs/demo/design/state.json";
-const SPOT_CHECK: &str =
-    "surrogate spot-check runs/demo/surrogate.safetensors --count 12 --tier tiny --out spot";
 
 /// Runs the steps in order in one folder.
 macro_rules! story {
@@ -39,7 +39,7 @@ fn the_whole_chain_runs_resumes_and_refuses_to_overwrite() {
         hinges_of_the_design_are_solved_once
         the_design_is_balanced_by_finite_elements
         a_failed_round_keeps_the_rounds_before
-        weights_are_judged_at_random_states
+        weights_are_tested_on_the_spot_check
         rays_are_proposed_where_hinges_leave_the_domain
         a_folder_keeps_its_campaign_and_its_scene
     }
@@ -64,6 +64,12 @@ fn small_demo() -> Workplace {
     work
 }
 
+fn shipped_weights() -> String {
+    let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("data");
+    let weights = data.join("pet-0.5mm/medium.safetensors");
+    weights.display().to_string()
+}
+
 fn json(text: &str) -> Value {
     serde_json::from_str(text).unwrap()
 }
@@ -83,16 +89,27 @@ fn events(work: &Workplace) -> Vec<u8> {
 }
 
 fn a_campaign_solves_its_rays_once(work: &Workplace) {
-    assert_contains(&work.output(RUN), &["6 rays complete"]);
+    // Six of the box, three of the spot check.
+    assert_contains(&work.output(RUN), &["9 rays complete"]);
     let first = events(work);
     work.output(RUN);
     assert_eq!(events(work), first, "finished jobs are not run again");
-    assert_contains(&work.output(STATUS), &["6 rays complete"]);
+    assert_contains(&work.output(STATUS), &["9 rays complete"]);
 }
 
 fn a_database_is_collected_and_not_overwritten(work: &Workplace) {
-    work.output(COLLECT);
+    assert_contains(
+        &work.output(COLLECT),
+        &[
+            " rows of 6 rays",
+            "spot check: 12 states of 3 rays, 0 states unknown, written to runs/demo/spot-check.parquet",
+        ],
+    );
     assert_contains(&work.error(COLLECT), &["exists"]);
+    // Also if the spot check alone is there.
+    let beside = COLLECT.replace("hinges.parquet", "other.parquet");
+    assert_contains(&work.error(&beside), &["spot-check.parquet exists"]);
+    assert!(!work.path("runs/demo/other.parquet").exists());
     let export = "dataset export runs/demo/hinges.parquet --out runs/demo/hinges.csv";
     work.output(export);
     assert_contains(&work.error(export), &["--replace"]);
@@ -166,13 +183,9 @@ fn balance_page(work: &Workplace) -> String {
 }
 
 fn the_design_is_balanced_by_finite_elements(work: &Workplace) {
-    let shipped = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/pet-0.5mm/medium.safetensors");
     let scene = std::fs::read_to_string(work.path("configs/scenes/demo.toml")).unwrap();
     let scene = scene
-        .replace(
-            "../../runs/demo/surrogate.safetensors",
-            &shipped.to_string_lossy(),
-        )
+        .replace("../../runs/demo/surrogate.safetensors", &shipped_weights())
         .replace("../materials", "configs/materials");
     std::fs::write(work.path("shipped.toml"), scene).unwrap();
     let balanced = json(&work.output(&balance(2)));
@@ -198,28 +211,31 @@ fn a_failed_round_keeps_the_rounds_before(work: &Workplace) {
     );
 }
 
-fn weights_are_judged_at_random_states(work: &Workplace) {
-    assert_contains(
-        &work.output(SPOT_CHECK),
-        &["12 states of 3 rays", "W within 5 %"],
-    );
-    let test = "surrogate test runs/demo/surrogate.safetensors spot/spot-check.parquet";
-    assert_contains(
-        &work.output(test),
-        &["12 of 12 states inside the training domain"],
-    );
-    // The rays of two checks are different jobs.
-    let other = format!("{SPOT_CHECK} --seed 1").replace("--out spot", "--out other");
-    work.output(&other);
-    work.output(
-        "dataset merge spot/spot-check.parquet other/spot-check.parquet --out both.parquet",
-    );
-    let rows = |file: &str| {
-        let manifest = json(&work.output(&format!("dataset summary {file} --json")));
-        manifest["rows"].as_u64().unwrap()
-    };
-    let parts = ["spot", "other"].map(|folder| rows(&format!("{folder}/spot-check.parquet")));
-    assert_eq!(rows("both.parquet"), parts[0] + parts[1]);
+fn weights_are_tested_on_the_spot_check(work: &Workplace) {
+    let test = "surrogate test runs/demo/surrogate.safetensors runs/demo/spot-check.parquet";
+    let card = || json(&std::fs::read_to_string(work.path("runs/demo/surrogate.json")).unwrap());
+    // Six rays do not cover the region in which the states are drawn; those of the shipped weights cover most of it.
+    let tested = [
+        "tested on tier tiny, 3 rays",
+        " of 12 states inside the training domain",
+    ];
+    assert_contains(&work.output(test), &tested);
+    let shipped = test.replace("runs/demo/surrogate.safetensors", &shipped_weights());
+    let page = work.output(&shipped);
+    assert_contains(&page, &tested);
+    assert_contains(&page, &["W within 5 %"]);
+    assert_eq!(card()["spot_check"], Value::Null);
+    assert_contains(&work.output(&format!("{test} --record")), &tested);
+    assert_eq!(card()["spot_check"]["errors"]["rows"], 12);
+    assert_eq!(card()["spot_check"]["tier"], "tiny");
+    // No ray of the spot check is in the database.
+    let [rays, spot] = ["hinges", "spot-check"].map(|name| {
+        let database = Database::read(&work.path(&format!("runs/demo/{name}.parquet"))).unwrap();
+        let jobs = database.rows().iter().map(|row| row.job.clone());
+        jobs.collect::<BTreeSet<String>>()
+    });
+    assert_eq!((rays.len(), spot.len()), (6, 3));
+    assert!(rays.is_disjoint(&spot));
 }
 
 /// Six rays with small rotations do not cover the hinge states of a design.
@@ -231,14 +247,17 @@ fn rays_are_proposed_where_hinges_leave_the_domain(work: &Workplace) {
     assert!((1..=12).contains(&rays), "{further}");
     work.edit(
         CAMPAIGN,
-        &[("seed = 1", "seed = 1\nextra_rays = \"further.csv\"")],
+        &[(
+            "spot_rays = 3",
+            "extra_rays = \"further.csv\"\nspot_rays = 3",
+        )],
     );
     let plan = json(&work.output(&format!(
         "campaign plan {CAMPAIGN} --folder runs/demo/campaign --json"
     )));
     let open = plan["tally"]["open"].as_u64().unwrap() as usize;
     assert_eq!(open, rays, "{plan}");
-    work.edit(CAMPAIGN, &[("\nextra_rays = \"further.csv\"", "")]);
+    work.edit(CAMPAIGN, &[("extra_rays = \"further.csv\"\n", "")]);
 }
 
 fn a_folder_keeps_its_campaign_and_its_scene(work: &Workplace) {

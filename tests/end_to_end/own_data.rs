@@ -5,9 +5,11 @@
 //! ```
 
 use crate::common::Workplace;
+use dataset::{Database, Part, SplitPlan};
 use nix::sys::signal::{Signal, kill};
 use nix::unistd::Pid;
 use std::fmt::Write;
+use std::path::Path;
 use std::process::Stdio;
 use std::time::{Duration, Instant};
 
@@ -250,42 +252,48 @@ fn a_measured_curve_is_a_material() {
 #[test]
 fn a_database_is_corrected_by_some_rays_of_a_finer_mesh() {
     let work = Workplace::new();
-    let data = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("data/pet-0.5mm");
-    let [solved, reference] = ["hinges", "reference"].map(|name| {
-        let path = data.join(format!("{name}.parquet"));
-        path.display().to_string()
-    });
-    let compared = work.output(&format!(
-        "dataset compare {solved} {reference} --out compared"
-    ));
-    let energies: Vec<f64> = (compared.lines().filter(|line| line.starts_with("| W |")))
-        .map(|line| {
-            line.split([' ', '|'])
-                .filter_map(|word| word.parse().ok())
-                .next()
-                .unwrap()
-        })
-        .collect();
-    let [before, after] = energies[..] else {
-        panic!("{compared}");
-    };
-    assert!(after < before / 2.0, "{compared}");
+    let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/pet-0.5mm");
+    let [solved, reference] = ["hinges", "reference"]
+        .map(|name| Database::read(&data.join(name).with_extension("parquet")).unwrap());
+    let both = [solved.rows(), reference.rows()].concat();
+    let both = Database::collect(both, &SplitPlan::default()).unwrap();
+    both.write(&work.path("both.parquet"), false).unwrap();
 
-    work.output(&format!(
-        "dataset correct {solved} {reference} --out corrected.parquet"
-    ));
-    let summary = work.output("dataset summary corrected.parquet");
-    assert!(
-        summary.contains("default corrected to reference"),
-        "{summary}"
+    let compared = work.output("dataset compare both.parquet --out compared");
+    let [before, after] = differences(&compared, "W");
+    for quantity in ["F_a", "F_s", "M_theta", "D"] {
+        let [before, after] = differences(&compared, quantity);
+        assert!(after < before, "{quantity}: {compared}");
+    }
+    // A training corrects the rays by itself, and leaves those of the finer mesh out.
+    work.edit(
+        "configs/training/demo.toml",
+        &[
+            ("[64, 64, 32]", "[8, 8, 4]"),
+            ("epochs = 300", "epochs = 1"),
+            ("batch_size = 64", "batch_size = 1024"),
+        ],
     );
-    // A corrected database does not contain the solver's output and cannot restore the campaign.
-    let campaign = "configs/campaigns/pet-0.5mm.toml";
-    let restore = format!("campaign restore {campaign} --from corrected.parquet --folder restored");
-    assert!(
-        work.error(&restore)
-            .contains("default corrected to reference")
-    );
+    let train =
+        "train both.parquet --config configs/training/demo.toml --out runs/both.safetensors";
+    let trained = work.output(train);
+    assert_eq!(differences(&trained, "W"), [after], "{trained}");
+    let card = std::fs::read_to_string(work.path("runs/both.json")).unwrap();
+    let card: serde_json::Value = serde_json::from_str(&card).unwrap();
+    assert_eq!(card["tier"], "default corrected to reference");
+    assert_eq!(card["dataset_hash"], both.manifest().hash);
+    let training = solved.manifest().split.jobs(Part::Training);
+    assert_eq!(card["training_rays"], training.len());
+    assert!(after < before / 2.0, "{compared}");
+}
+
+/// The differences of a quantity over all states (%), in each table of a text.
+pub fn differences<const TABLES: usize>(text: &str, quantity: &str) -> [f64; TABLES] {
+    let row = format!("| {quantity} |");
+    let rows = text.lines().filter(|line| line.starts_with(&row));
+    let first = |row: &str| row.split([' ', '|']).find_map(|word| word.parse().ok());
+    let found: Vec<f64> = rows.map(|row| first(row).unwrap()).collect();
+    found.try_into().unwrap_or_else(|_| panic!("{text}"))
 }
 
 /// The rows of the comparison of the seeds, without the last column, the names of the weights.

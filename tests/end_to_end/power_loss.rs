@@ -106,6 +106,7 @@ fn a_loss_of_power_at_any_moment_leaves_whole_files_and_whole_jobs() {
         "configs/campaigns/demo.toml",
         &[
             ("count = 40", "count = 2"),
+            ("spot_rays = 3", "spot_rays = 0"),
             ("theta_deg = [-5.0, 40.0]", "theta_deg = [2.0, 4.0]"),
             ("median_deg = 20.0", "median_deg = 3.0"),
         ],

@@ -9,18 +9,32 @@ use std::os::unix::fs::MetadataExt;
 use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
+use toml_edit::value;
 
 const CAMPAIGN: &str = "configs/campaigns/pet-0.5mm.toml";
 
 #[test]
 #[ignore = "a measurement of minutes and gigabytes"]
 fn the_cost_of_many_rays() {
-    let count = std::env::var("RAYS").map_or(10_000, |text| text.parse().unwrap());
+    let count: u32 = std::env::var("RAYS").map_or(10_000, |text| text.parse().unwrap());
     let work = Workplace::new();
-    let mut campaign = Campaign::load(&work.path(CAMPAIGN)).unwrap();
-    let boxed = format!("count = {}", campaign.boxes[0].count);
-    work.edit(CAMPAIGN, &[(&boxed, &format!("count = {count}"))]);
-    campaign.boxes[0].count = count;
+    // One box alone: the shipped rows of other rays are on no finer mesh of it.
+    work.edit_campaign(
+        CAMPAIGN,
+        |campaign| {
+            for key in ["finer_tier", "spot_rays", "extra_rays"] {
+                campaign.remove(key);
+            }
+            let boxes = campaign["rays"].as_array_of_tables_mut().unwrap();
+            let mut first = true;
+            boxes.retain(|_| std::mem::take(&mut first));
+        },
+        |_, rays| {
+            rays["count"] = value(i64::from(count));
+            rays.remove("finer");
+        },
+    );
+    let campaign = Campaign::load(&work.path(CAMPAIGN)).unwrap();
     let folder = work.path("runs/pet-0.5mm");
 
     let shipped = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/pet-0.5mm/hinges.parquet");

@@ -21,7 +21,7 @@ struct Cluster {
 impl Cluster {
     fn up() -> Self {
         let (slurm, work) = (tempfile::tempdir().unwrap(), Workplace::new());
-        // 40 rays with small rotations, which are solved fast.
+        // 40 rays with small rotations, which are solved fast, and the 3 of the spot check.
         work.edit(
             CAMPAIGN,
             &[
@@ -361,7 +361,7 @@ fn hostile_names_reach_slurm_as_they_are() {
 fn a_campaign_on_slurm_gives_the_database_of_one_run() {
     let cluster = Cluster::up();
     let submitted = cluster.submit();
-    assert!(submitted.contains("40 rays to solve"), "{submitted}");
+    assert!(submitted.contains("43 rays to solve"), "{submitted}");
     let array = cluster.status()["slurm"]["array"]
         .as_str()
         .unwrap()
@@ -445,8 +445,13 @@ fn a_campaign_on_slurm_gives_the_database_of_one_run() {
 
     cluster.submit();
     cluster.until("the database is collected", || ended("completed"));
-    assert_eq!(cluster.status()["tally"]["complete"], 40);
+    assert_eq!(cluster.status()["tally"]["complete"], 43);
     assert!(timeless(&collected) == whole, "the databases differ");
+    let [spot, of_whole] = ["demo", "whole"].map(|folder| {
+        let path = format!("runs/{folder}/spot-check.parquet");
+        timeless(&cluster.work.path(&path))
+    });
+    assert!(spot == of_whole, "the spot checks differ");
     let done = cluster.submit();
     assert!(done.contains("nothing is left to solve"), "{done}");
 

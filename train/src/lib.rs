@@ -10,7 +10,7 @@
 //! use std::path::Path;
 //! use train::{TrainingConfig, train};
 //!
-//! let database = Database::read(Path::new("data/pet-0.5mm/reference.parquet"))?;
+//! let database = Database::read(Path::new("data/pet-0.5mm/hinges.parquet"))?;
 //! let config: TrainingConfig = support::toml_file::read(Path::new("configs/training/small.toml"))?;
 //! let trained = train(&database, &config, &mut |epoch| println!("{epoch:?}"))?;
 //! trained.surrogate.save(Path::new("runs/small.safetensors"))?;

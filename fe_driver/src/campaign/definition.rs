@@ -311,7 +311,7 @@ impl Campaign {
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::*;
     use crate::solve::problem::Solve;
 
@@ -330,24 +330,127 @@ mod tests {
 
     #[test]
     fn the_shipped_campaigns_are_read() {
-        for (name, count) in [
-            ("demo.toml", 40),
-            ("pet-0.5mm.toml", 1500),
-            ("polypropylene-3mm.toml", 840 + 80 + 25),
-            ("petg-3mm.toml", 720 + 80 + 25),
-            ("aluminium-2mm.toml", 480 + 40 + 20),
-        ] {
-            let campaign = Campaign::load(&shipped(name)).unwrap();
-            let jobs: Vec<_> = campaign.solves(&versions()).collect();
-            assert_eq!(jobs.len(), count);
-            let mut ids: Vec<_> = jobs.iter().map(WindowSolve::id).collect();
+        let files = std::fs::read_dir(shipped("")).unwrap();
+        let files = files.map(|file| file.unwrap().path());
+        let files: Vec<_> = files
+            .filter(|file| file.extension().is_some_and(|it| it == "toml"))
+            .collect();
+        assert!(files.len() > 5);
+        for file in files {
+            let campaign = Campaign::load(&file).unwrap();
+            let jobs = campaign.jobs(&versions());
+            let is = |part| jobs.iter().filter(|(of, _)| *of == part).count();
+            let all = |of: fn(&RayBox) -> usize| campaign.boxes.iter().map(of).sum::<usize>();
+            let rays = all(|rays| rays.count) + campaign.further.len();
+            assert_eq!(is(JobPart::Ray), rays, "{file:?}");
+            assert_eq!(is(JobPart::Finer), all(|rays| rays.finer), "{file:?}");
+            assert_eq!(is(JobPart::SpotCheck), campaign.spot_rays, "{file:?}");
+            let mut ids: Vec<_> = jobs.iter().map(|(_, job)| job.id()).collect();
             ids.sort_unstable();
             ids.dedup();
-            assert_eq!(ids.len(), count);
+            assert_eq!((ids.len(), campaign.size()), (jobs.len(), jobs.len()));
             assert!(
                 jobs.iter()
-                    .all(|job| job.problem.hinge.design.validate().is_ok())
+                    .all(|(_, job)| job.problem.hinge.design.validate().is_ok())
             );
+            assert!(campaign.training.iter().all(|file| file.is_file()));
+        }
+        let demo = Campaign::load(&shipped("demo.toml")).unwrap();
+        assert_eq!((demo.rays(), demo.size()), (40, 43));
+    }
+
+    /// Two boxes and a further ray, three rays on a finer mesh, and a spot check of two.
+    pub fn of_two_boxes() -> Campaign {
+        let mut campaign = Campaign::load(&shipped("demo.toml")).unwrap();
+        let first = RayBox {
+            count: 5,
+            finer: 2,
+            ..campaign.boxes[0]
+        };
+        let second = RayBox {
+            count: 3,
+            seed: 2,
+            finer: 1,
+            theta_deg: [-5.0, 10.0],
+            median_deg: 3.0,
+            ..first
+        };
+        campaign.boxes = vec![first, second];
+        campaign.further = first.rays(&campaign.design, Regime::Film, 6).split_off(5);
+        campaign.finer_tier = Some(Tier::Small);
+        campaign.spot_rays = 2;
+        campaign
+    }
+
+    /// The parts of the jobs with their meshes, in runs of equal ones.
+    fn parts(jobs: &[(JobPart, WindowSolve)]) -> Vec<(JobPart, Tier, usize)> {
+        let kind = |(part, solve): &(JobPart, WindowSolve)| (*part, solve.tier());
+        jobs.chunk_by(|a, b| kind(a) == kind(b))
+            .map(|run| (run[0].0, run[0].1.tier(), run.len()))
+            .collect()
+    }
+
+    fn hinges(jobs: &[(JobPart, WindowSolve)]) -> Vec<&HingePath> {
+        jobs.iter().map(|(_, solve)| &solve.problem.hinge).collect()
+    }
+
+    #[test]
+    fn the_jobs_are_the_rays_then_the_first_of_each_box_on_the_finer_mesh_then_the_spot_check() {
+        let campaign = of_two_boxes();
+        let jobs = campaign.jobs(&versions());
+        assert_eq!((campaign.rays(), campaign.size()), (9, jobs.len()));
+        let finer = (JobPart::Finer, Tier::Small, 3);
+        assert_eq!(
+            parts(&jobs),
+            [
+                (JobPart::Ray, Tier::Tiny, 9),
+                finer,
+                (JobPart::SpotCheck, Tier::Small, 2)
+            ]
+        );
+        let all = hinges(&jobs);
+        assert_eq!(all[9..12], [all[0], all[1], all[5]]);
+        let solves: Vec<WindowSolve> = campaign.solves(&versions()).collect();
+        assert!(solves.iter().eq(jobs.iter().map(|(_, solve)| solve)));
+
+        let region = campaign.region().unwrap();
+        let spot = campaign.spot_paths();
+        assert_eq!(
+            spot.iter().map(|path| &path.hinge).collect::<Vec<_>>(),
+            all[12..]
+        );
+        for path in &spot {
+            assert_eq!(path.fractions.len(), STATES_PER_RAY);
+            let mut states = path.fractions.iter().map(|at| path.hinge.path.at(*at));
+            assert!(states.all(|state| region.contains(&path.hinge.design, &state)));
+        }
+        // Neither more rays nor another mesh change the states of the spot check.
+        let mut larger = campaign.clone();
+        larger.boxes[0].count = 50;
+        larger.boxes[1].finer = 0;
+        larger.finer_tier = None;
+        larger.boxes[0].finer = 0;
+        larger.further.clear();
+        assert_eq!(larger.spot_paths(), spot);
+        assert_eq!(
+            parts(&larger.jobs(&versions())),
+            [
+                (JobPart::Ray, Tier::Tiny, 53),
+                (JobPart::SpotCheck, Tier::Tiny, 2)
+            ]
+        );
+    }
+
+    #[test]
+    fn the_first_rays_are_those_of_the_campaign_alone() {
+        let campaign = of_two_boxes();
+        let all = campaign.jobs(&versions());
+        for count in [0, 3, 5, 6, 8, 9, 100] {
+            let first = campaign.first_rays(count);
+            let rays = count.min(9);
+            assert_eq!((first.rays(), first.size()), (rays, rays));
+            assert_eq!(first.jobs(&versions()), all[..rays]);
+            assert_eq!(first.region(), campaign.region());
         }
     }
 
@@ -375,28 +478,62 @@ mod tests {
         assert_eq!(other.differences(&job), ["material", "mesh tier"]);
     }
 
-    #[test]
-    fn errors_name_the_file_and_the_rule() {
+    /// The message about a copy of the demo with changed texts.
+    fn message(changes: &[(&str, &str)]) -> String {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("mine.toml");
         let material = shipped("../materials/pet-0.5mm.toml");
-        let demo = std::fs::read_to_string(shipped("demo.toml"))
+        let mut text = std::fs::read_to_string(shipped("demo.toml"))
             .unwrap()
             .replace("../materials/pet-0.5mm.toml", material.to_str().unwrap());
-        let message = |old: &str, new: &str| {
-            assert!(demo.contains(old), "{old}");
-            std::fs::write(&path, demo.replace(old, new)).unwrap();
-            Campaign::load(&path).unwrap_err().to_string()
-        };
-        let none = message("count = 40", "count = 0");
+        for (old, new) in changes {
+            assert!(text.contains(old), "{old}");
+            text = text.replace(old, new);
+        }
+        std::fs::write(&path, text).unwrap();
+        Campaign::load(&path).unwrap_err().to_string()
+    }
+
+    #[test]
+    fn errors_name_the_file_and_the_rule() {
+        let none = message(&[("count = 40", "count = 0")]);
         assert!(
             none.contains("mine.toml: [[rays]] violates 1 <= count"),
             "{none}"
         );
-        assert!(message("kerf =", "kerv =").contains("did you mean `kerf`"));
-        assert!(message("r_win = 100.0", "r_win = 50.0").contains("r_win > 2.5 w_lig"));
-        assert!(message("tier = \"tiny\"", "tier = \"huge\"").contains("huge"));
-        let plate = message("tier = \"tiny\"", "tier = \"plate\"");
+        assert!(message(&[("kerf =", "kerv =")]).contains("did you mean `kerf`"));
+        assert!(message(&[("r_win = 100.0", "r_win = 50.0")]).contains("r_win > 2.5 w_lig"));
+        assert!(message(&[("tier = \"tiny\"", "tier = \"huge\"")]).contains("huge"));
+        let plate = message(&[("tier = \"tiny\"", "tier = \"plate\"")]);
         assert!(plate.contains("ligaments of up to 0.5 mm"), "{plate}");
+    }
+
+    #[test]
+    fn a_mesh_that_is_not_finer_and_rays_that_are_missing_are_named() {
+        let finer = ("seed = 1", "seed = 1\nfiner = 41");
+        let lone = message(&[finer]);
+        assert!(lone.contains("mine.toml: finer needs finer_tier"), "{lone}");
+        for (tier, finer) in [
+            ("tiny", "tiny"),
+            ("small", "tiny"),
+            ("tiny", "plate-reference"),
+        ] {
+            let tiers = format!("tier = \"{tier}\"\nfiner_tier = \"{finer}\"");
+            let message = message(&[("tier = \"tiny\"", &tiers)]);
+            let expected =
+                format!("finer_tier = \"{finer}\" is no finer mesh than tier = \"{tier}\"");
+            assert!(message.contains(&expected), "{message}");
+        }
+        let small = ("tier = \"tiny\"", "tier = \"tiny\"\nfiner_tier = \"small\"");
+        let many = message(&[finer, small]);
+        assert!(many.contains("[[rays]] violates finer <= count"), "{many}");
+
+        let demo = std::fs::read_to_string(shipped("demo.toml")).unwrap();
+        let (_, rays) = demo.split_once("[[rays]]").unwrap();
+        let rays = format!("[[rays]]{rays}");
+        let none = message(&[(&rays, "")]);
+        assert!(none.contains("missing field `rays`"), "{none}");
+        let none = message(&[(&rays, ""), ("[design]", "rays = []\n[design]")]);
+        assert!(none.contains("mine.toml: it has no [[rays]]"), "{none}");
     }
 }

@@ -40,10 +40,6 @@ const MAX_COUNT: usize = 1_000_000;
 /// Coordinates of the hypercube: log w_lig, alpha, theta, eta_a, eta_s, fillet_ratio.
 const DIMENSIONS: usize = 6;
 
-/// The axial opening of a plate's ligament that turns freely, over w_lig: coefficients of theta and theta^2 (rad). It turns
-/// about its middle.
-const FREE_OPENING: [f64; 2] = [0.5, 0.16];
-
 /// A region of designs and ray ends, and how many rays are drawn in it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -81,10 +77,7 @@ pub struct RayBox {
 impl RayBox {
     /// The first `count` rays of hinges with the constants `common`, in films or in plates.
     pub fn rays(&self, common: &HingeConstants, regime: Regime, count: usize) -> Vec<Ray> {
-        let free = match regime {
-            Regime::Film => [0.0; 2],
-            Regime::Plate => FREE_OPENING,
-        };
+        let free = regime.free_opening();
         (0..count.div_ceil(BLOCK) as u64)
             .flat_map(|block| {
                 let mut random = ChaCha8Rng::seed_from_u64(self.seed);

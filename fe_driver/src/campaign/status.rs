@@ -225,8 +225,14 @@ pub fn status(folder: &Path) -> Result<Status, CampaignError> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::campaign::definition::tests::of_two_boxes;
+    use crate::campaign::plan::prepare;
+    use crate::campaign::run::{RunOptions, run};
     use crate::solve::solve_folder::SolveFolder;
-    use crate::solve::tests::solve_on;
+    use crate::solve::solver::Solver;
+    use crate::solve::tests::{healthy, solve_on};
+    use std::sync::atomic::AtomicBool;
+    use support::shard::Shard;
 
     fn solved(cpu_seconds: f64, wall_seconds: f64) -> Option<SolveRecord> {
         Some(SolveRecord {
@@ -274,5 +280,53 @@ mod tests {
         assert!(tally(std::slice::from_ref(&finer)).other_tiers.is_empty());
         finer.as_mut().unwrap().tier = Tier::Fine;
         assert_eq!(tally(&[finer]).other_tiers[&job().id], Tier::Fine);
+    }
+    #[test]
+    fn every_job_in_the_folder_of_a_campaign_has_a_part() {
+        let folder = tempfile::tempdir().unwrap();
+        let (campaign, solver) = (of_two_boxes(), healthy());
+        let known = |campaign: &Campaign| known_parts(campaign, folder.path());
+        let error = known(&campaign).unwrap_err();
+        assert!(matches!(error, CampaignError::NoCampaign(_)), "{error}");
+        // Nothing is known of jobs without a file.
+        prepare(&campaign, folder.path(), &solver.versions()).unwrap();
+        assert_eq!(known(&campaign).unwrap(), HashMap::new());
+        let options = RunOptions {
+            shard: Shard::WHOLE,
+            workers: 1,
+            time_limit: None,
+        };
+        let stop = AtomicBool::new(false);
+        let progress = run(
+            &campaign,
+            folder.path(),
+            &solver,
+            &options,
+            &stop,
+            &mut |_| {},
+        );
+        assert_eq!(progress.unwrap().tally.complete, campaign.size());
+
+        let parts = known(&campaign).unwrap();
+        let jobs = campaign.jobs(&solver.versions());
+        let expected = jobs.into_iter().map(|(part, solve)| (solve.id(), part));
+        assert_eq!(parts, expected.collect());
+
+        let changes: [(fn(&mut Campaign), &str); 5] = [
+            (|campaign| campaign.boxes[0].count += 1, "its rays"),
+            (|campaign| campaign.boxes[1].finer = 0, "its rays"),
+            (|campaign| campaign.spot_rays += 1, "its rays"),
+            (|campaign| campaign.tier = Tier::Default, "mesh tier"),
+            (|campaign| campaign.material.young += 1.0, "material"),
+        ];
+        for (change, expected) in changes {
+            let mut changed = campaign.clone();
+            change(&mut changed);
+            let error = known(&changed).unwrap_err();
+            let CampaignError::Changed { changes, .. } = error else {
+                panic!("{error}");
+            };
+            assert_eq!(changes, expected);
+        }
     }
 }

@@ -42,6 +42,10 @@ impl CollectCommand {
             );
         }
         let out = self.out.clone().unwrap_or_else(|| folder.join(DATABASE));
+        let of_spot = out.with_file_name(SPOT_CHECK);
+        if campaign.spot_rays > 0 && !self.replace {
+            output_file::refuse_existing(&of_spot)?;
+        }
         output_file::create_folder_of(&out)?;
         let is_ray = |window: &Solved| parts.get(&window.id) != Some(&JobPart::SpotCheck);
         let rays = finished_windows(&folder)?
@@ -55,17 +59,21 @@ impl CollectCommand {
         println!("{collected}\n{missing}\nwritten to {}", out.display());
         if campaign.spot_rays > 0 {
             let check = SpotCheck::collected(&campaign, &parts, &folder)?;
-            let path = out.with_file_name(SPOT_CHECK);
             let states = check.rows.len();
-            let spot = Database::collect(check.rows, &plan)
-                .context("too few rays of the spot check are solved")?;
-            spot.write(&path, self.replace)?;
-            println!(
-                "spot check: {states} states of {} rays, {} states unknown, written to {}",
-                spot.manifest().rays,
-                check.unknown_states,
-                path.display()
-            );
+            let spot = Database::collect(check.rows, &plan);
+            match spot.context("too few rays of the spot check are solved") {
+                Err(error) if self.partial => println!("no spot check: {error:#}"),
+                spot => {
+                    let spot = spot?;
+                    spot.write(&of_spot, self.replace)?;
+                    println!(
+                        "spot check: {states} states of {} rays, {} states unknown, written to {}",
+                        spot.manifest().rays,
+                        check.unknown_states,
+                        of_spot.display()
+                    );
+                }
+            }
         }
         Ok(())
     }

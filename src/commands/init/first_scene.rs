@@ -31,8 +31,6 @@ pub(crate) const THINNEST_PLATE: f64 = 2.0;
 /// The largest D_peak that a first plate is designed for, and by how much less it opens until it is not above it (rad): 5 degrees.
 const SAFE_PEAK: f64 = 0.7;
 const LESS: f64 = 0.0873;
-/// eta_a of a ligament of a plate that turns freely: c_1 theta + c_2 theta^2, as in the campaigns of plates.
-const FREE_OPENING: [f64; 2] = [0.5, 0.16];
 /// Widths of the clips at the top and at the bottom over those of their edges.
 const HELD: f64 = 0.21;
 const PULLED: f64 = 0.14;
@@ -60,7 +58,8 @@ pub(super) fn safe_opening(surrogate: &Surrogate, regime: Regime) -> f64 {
     let w_lig = 0.5 * (narrowest + widest);
     let design = surrogate.card().hinge.hinge(w_lig, FRAC_PI_2);
     let tears = |theta: f64| {
-        let eta_a = FREE_OPENING[0] * theta + FREE_OPENING[1] * theta * theta;
+        let [first, second] = Regime::Plate.free_opening();
+        let eta_a = theta * (first + second * theta);
         let state = HingeDeformation::from_eta(eta_a, 0.0, theta, w_lig);
         let damage = surrogate.damage_values(&[design], &[state]);
         damage

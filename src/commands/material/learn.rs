@@ -28,7 +28,7 @@ use mesher::Tier;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 use surrogate::Surrogate;
-use toml_edit::DocumentMut;
+use toml_edit::{ArrayOfTables, DocumentMut};
 use verification::{
     Accuracy, LearningEnd, LearningRound, LearningSteps, LearningTask, VerificationError,
     distillation_states, learn, spot_check,
@@ -194,6 +194,14 @@ impl LearnCommand {
         let mut campaign: DocumentMut =
             init::campaign(&name, material.thickness, tier.regime())?.parse()?;
         edited::set(&mut campaign["tier"], tier.to_string());
+        // The rounds have one mesh, and a spot check and trainings of their own.
+        for key in ["finer_tier", "spot_rays", "training"] {
+            campaign.remove(key);
+        }
+        let boxes = campaign["rays"].as_array_of_tables_mut();
+        for rays in boxes.into_iter().flat_map(ArrayOfTables::iter_mut) {
+            rays.remove("finer");
+        }
         run_folder::write(&self.out, "campaign.toml", &campaign.to_string())
     }
 

@@ -6,17 +6,17 @@ use crate::ui::count::count;
 use crate::ui::run_folder;
 use anyhow::{Result, ensure};
 use clap::Args;
-use fe_driver::random_paths;
+use fe_driver::{DrawnStates, random_paths};
 use mesher::Tier;
 use std::fmt;
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 use surrogate::{FEWEST, Springback, Surrogate};
-use verification::{drawn_by, first_guess, judging_tier, releases};
+use verification::{first_guess, judging_tier, releases};
 
 /// Deform hinges by finite elements, let them go, and learn what stays
 ///
-/// The states are drawn uniformly inside the training domain of the weights, one a hinge. Each hinge is deformed along the straight
+/// The states are drawn uniformly inside the training domain of the weights, one a hinge, with holes of 0.16 ligament widths. Each hinge is deformed along the straight
 /// ray to its state and unloaded until it is without forces; that takes two to three windows. Writes released.csv, the
 /// deformation that stays and the stiffness about it, and springback.json, the law that `kirigami inspect springback` reads, with its
 /// errors at hinges that the fit has not seen. Example:
@@ -54,11 +54,6 @@ impl ReleaseCommand {
         let surrogate = Surrogate::load(&self.weights)?;
         let material = trained_material(&surrogate, &self.weights, &self.material)?;
         ensure!(
-            surrogate.domain().holes.is_none(),
-            "{} are for holes of several radii, and a law knows one: use weights for holes of one radius",
-            self.weights.display()
-        );
-        ensure!(
             self.count.get() >= UNSEEN + FEWEST,
             "--count {} leaves {} hinges to fit the law to, and it needs {FEWEST}: increase --count",
             self.count,
@@ -67,7 +62,14 @@ impl ReleaseCommand {
         let tier = judging_tier(self.tier, &surrogate)?;
         let _held = run_folder::hold(&self.out)?;
         let windows = self.solve.service(&self.out)?;
-        let drawn = random_paths(drawn_by(&surrogate), self.count.get(), 1, self.seed);
+        // A law knows one hole, that of reference.
+        let mut domain = surrogate.domain().clone();
+        domain.holes = None;
+        let drawn = DrawnStates {
+            domain: &domain,
+            constants: &surrogate.card().hinge,
+        };
+        let drawn = random_paths(drawn, self.count.get(), 1, self.seed);
         let hinges: Vec<_> = drawn.into_iter().map(|path| path.hinge).collect();
         let guess = |design: &_, reached: &_| first_guess(&material, design, reached);
         let found = releases(&windows, &hinges, &material, tier, guess).map_err(task_error)?;

@@ -4,7 +4,7 @@ use crate::commands::surrogate::errors::StateErrors;
 use anyhow::{Result, ensure};
 use clap::Args;
 use dataset::Database;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use surrogate::Surrogate;
 use train::{ErrorInterval, spot_check};
 
@@ -42,19 +42,33 @@ impl TestCommand {
                 manifest.material
             );
         }
-        println!(
-            "weights of tier {}, tested on tier {}, {} rays",
-            card.tier, manifest.tier, manifest.rays
-        );
-        println!("{}", StateErrors::new(&surrogate, database.rows()));
-        if let Some([w, forces]) = ErrorInterval::of(&surrogate, database.rows()) {
-            println!("all states: W {w}; forces {forces}");
-        }
+        print_errors(&surrogate, &database);
         if self.record {
-            let check = spot_check(&surrogate, database.rows(), &manifest.tier);
-            surrogate.with_spot_check(check).save(&self.weights)?;
-            println!("recorded on the card of {}", self.weights.display());
+            record(surrogate, &database, &self.weights)?;
         }
         Ok(())
     }
+}
+
+/// Prints the errors of weights at the states of a database.
+pub(crate) fn print_errors(surrogate: &Surrogate, database: &Database) {
+    let manifest = database.manifest();
+    println!(
+        "weights of tier {}, tested on tier {}, {} rays",
+        surrogate.card().tier,
+        manifest.tier,
+        manifest.rays
+    );
+    println!("{}", StateErrors::new(surrogate, database.rows()));
+    if let Some([w, forces]) = ErrorInterval::of(surrogate, database.rows()) {
+        println!("all states: W {w}; forces {forces}");
+    }
+}
+
+/// Writes the errors to the card of weights.
+pub(crate) fn record(surrogate: Surrogate, spot: &Database, weights: &Path) -> Result<()> {
+    let check = spot_check(&surrogate, spot.rows(), &spot.manifest().tier);
+    surrogate.with_spot_check(check).save(weights)?;
+    println!("recorded on the card of {}", weights.display());
+    Ok(())
 }

@@ -1,9 +1,8 @@
 //! The trainings of a campaign: of every network that it names, four seeds, tested on its spot check.
 
 use crate::commands::campaign::{DATABASE, SPOT_CHECK};
-use crate::commands::surrogate::StateErrors;
+use crate::commands::surrogate::{print_errors, record};
 use crate::commands::train::TrainCommand;
-use ::train::spot_check;
 use anyhow::{Result, ensure};
 use dataset::Database;
 use fe_driver::Campaign;
@@ -72,13 +71,11 @@ impl TrainCommand {
 
     /// Tests the ensemble on a spot check and records the errors on the cards.
     fn record(&self, spot: &Path) -> Result<()> {
-        let database = Database::read(spot)?;
+        let spot = Database::read(spot)?;
         for file in self.ensemble() {
             let weights = Surrogate::load(&file)?;
-            let errors = StateErrors::new(&weights, database.rows());
-            let check = spot_check(&weights, database.rows(), &database.manifest().tier);
-            weights.with_spot_check(check).save(&file)?;
-            println!("{} on {}:\n{errors}", file.display(), spot.display());
+            print_errors(&weights, &spot);
+            record(weights, &spot, &file)?;
         }
         Ok(())
     }
