@@ -312,7 +312,8 @@ mod tests {
         let expected = jobs.into_iter().map(|(part, solve)| (solve.id(), part));
         assert_eq!(parts, expected.collect());
 
-        let changes: [(fn(&mut Campaign), &str); 5] = [
+        type Change = fn(&mut Campaign);
+        let changes: [(Change, &str); 5] = [
             (|campaign| campaign.boxes[0].count += 1, "its rays"),
             (|campaign| campaign.boxes[1].finer = 0, "its rays"),
             (|campaign| campaign.spot_rays += 1, "its rays"),
