@@ -5,6 +5,7 @@
 //! the smaller lambda of the two; the second job is interpolated linearly in lambda.
 
 use crate::database::Database;
+use crate::rays::{RayKey, ray_key};
 use crate::rows::Row;
 use hinge::HingeSample;
 use std::collections::BTreeMap;
@@ -145,26 +146,6 @@ fn rms<'a>(
         }
     }
     std::array::from_fn(|i| (squares[i] / f64::max(counts[i], 1.0)).sqrt())
-}
-
-/// Design and end of a ray, in millionths of their units.
-pub(crate) type RayKey = [i64; 8];
-
-/// The ray of a row.
-pub(crate) fn ray_key(row: &Row) -> RayKey {
-    let (design, x) = (&row.design, &row.sample);
-    let [a, s, theta] = [x.a, x.s, x.theta].map(|component| component / x.lambda);
-    let ray = [
-        design.w_lig,
-        design.alpha,
-        design.fillet_ratio,
-        design.kerf,
-        design.r_win,
-        a,
-        s,
-        theta,
-    ];
-    ray.map(|number| (1e6 * number).round() as i64)
 }
 
 /// Rows by ray and hash of the material law, in order of lambda.

@@ -37,6 +37,7 @@ mod meshes;
 mod mirror;
 mod parquet;
 mod ray_stream;
+mod rays;
 mod rows;
 mod schema;
 mod split;
