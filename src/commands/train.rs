@@ -13,7 +13,7 @@ use crate::ui::exit::Unfinished;
 use crate::ui::progress::Progress;
 use crate::ui::table::{Table, table};
 use crate::ui::{interrupt, output_file, picture, run_folder};
-use anyhow::{Context, Result, bail, ensure};
+use anyhow::{Context, Result, bail};
 use clap::Args;
 use dataset::Database;
 use std::fmt::Write;
@@ -23,8 +23,7 @@ use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 use support::table::number_or_dash;
 use surrogate::{ErrorBin, Surrogate, TestErrors};
-use train::{Distillation, Epoch, Start, Trained, Training, TrainingConfig, TrainingData};
-use verification::{distillation_states, drawn_by};
+use train::{Epoch, Start, Trained, Training, TrainingConfig, TrainingData};
 
 /// Train the surrogate hinge energy on a database
 ///
@@ -50,19 +49,15 @@ pub struct TrainCommand {
     #[arg(
         long,
         value_name = "FILE",
-        default_value = "runs/weights/surrogate.safetensors"
+        default_value = WEIGHTS
     )]
     out: PathBuf,
     /// Fine-tune these weights of another material, thickness or mesh; the network sizes are those of the weights.
     /// docs/MATERIALS.md lists the errors over the number of rays
     #[arg(long, value_name = "WEIGHTS")]
     from: Option<PathBuf>,
-    /// Train also on the median of these weights of the same material, at 20 000 random states inside the training domain of the
-    /// first: one network that predicts what several do
-    #[arg(long, value_name = "WEIGHTS", num_args = 1.., conflicts_with = "seeds")]
-    teachers: Vec<PathBuf>,
-    /// Continue a training that was stopped, with the same --config, --from and --teachers; others are an error. One that was killed in
-    /// its first half minute left nothing, and starts from the beginning
+    /// Continue a training that was stopped, with the same --config and --from; others are an error. One that was killed in its first half
+    /// minute left nothing, and starts from the beginning
     #[arg(long, conflicts_with = "seeds")]
     resume: bool,
     /// Number of trainings, with successive seeds. The one with the smallest product of the validation errors of W and
@@ -74,6 +69,9 @@ pub struct TrainCommand {
     #[arg(long)]
     replace: bool,
 }
+
+/// The weights to write by default.
+const WEIGHTS: &str = "runs/weights/surrogate.safetensors";
 
 /// The data on which test errors are measured.
 pub const UNSEEN: &str = "samples of unseen geometries";
@@ -113,12 +111,7 @@ impl TrainCommand {
         } else {
             pretrained.map_or(Start::Fresh, Start::Weights)
         };
-        let distillation = self.distillation(&database)?;
-        let data = TrainingData {
-            database: &database,
-            distillation: distillation.as_ref(),
-        };
-        let trained = fit(data, &config, start, &state)?;
+        let trained = fit((&database).into(), &config, start, &state)?;
         self.write(&trained)?;
         std::fs::remove_file(&state).ok();
         Ok(())
@@ -141,28 +134,6 @@ impl TrainCommand {
             println!("{}\n", correction(&judged)?);
         }
         Ok(database)
-    }
-
-    /// The median of the teachers at random states, if there are teachers.
-    fn distillation(&self, database: &Database) -> Result<Option<Distillation>> {
-        let teachers = self.teachers.iter().map(|file| {
-            let teacher = Surrogate::load(file)?;
-            let (card, manifest) = (teacher.card(), database.manifest());
-            let hash = card.material_hash.as_ref();
-            ensure!(
-                card.hinge == manifest.hinge
-                    && hash.is_none_or(|hash| manifest.material_hashes.contains(hash)),
-                "--teachers: {} is not of the material, hole, kerf and window radius of {}",
-                file.display(),
-                self.database.display()
-            );
-            Ok(teacher)
-        });
-        let teachers: Vec<Surrogate> = teachers.collect::<Result<_>>()?;
-        Ok(teachers.first().map(|first| {
-            let states = distillation_states(drawn_by(first));
-            Distillation::new(&teachers, &states)
-        }))
     }
 
     fn config(&self) -> &Path {

@@ -3,7 +3,7 @@
 use crate::common::{Workplace, failure};
 use crate::failing_ccx::failing_ccx;
 use std::os::unix::fs::PermissionsExt;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use support::sealed_json;
 
 const DEMO: &str = "configs/campaigns/demo.toml";
@@ -381,26 +381,4 @@ fn a_lower_limit_of_the_file_size_remains() {
         output.status.success() && text.contains("ccx"),
         "{output:?}"
     );
-}
-
-/// A median of networks of another material is no target of this one.
-#[test]
-fn teachers_of_another_material_are_refused() {
-    let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("data");
-    let work = Workplace::new();
-    let message = work.error(&format!(
-        "train {} --teachers {}",
-        data.join("pet-0.5mm/hinges.parquet").display(),
-        find_weights(&data.join("polypropylene-0.8mm")).display()
-    ));
-    assert!(message.contains("--teachers"), "{message}");
-    assert!(message.contains("is not of the material"), "{message}");
-}
-
-fn find_weights(folder: &Path) -> PathBuf {
-    let files = std::fs::read_dir(folder).unwrap();
-    let mut files = files.map(|file| file.unwrap().path());
-    files
-        .find(|file| file.extension().is_some_and(|end| end == "safetensors"))
-        .unwrap()
 }

@@ -51,12 +51,6 @@ impl ErrorInterval {
         let is_known = |found: &Self| found.error.is_finite() && found.interval[1].is_finite();
         found.iter().all(is_known).then_some(found)
     }
-
-    /// Half of the width of the interval over the error.
-    pub fn relative_half_width(&self) -> f64 {
-        let [low, high] = self.interval;
-        0.5 * (high - low) / self.error.max(f64::MIN_POSITIVE)
-    }
 }
 
 impl fmt::Display for ErrorInterval {
@@ -135,8 +129,10 @@ mod tests {
         assert_eq!(w.interval, [w.error; 2]);
         assert!((w.error - 2.0).abs() < 1e-12);
         let mut random = ChaCha8Rng::seed_from_u64(3);
-        let [few, many] =
-            [10, 160].map(|count| intervals(&drawn(count, &mut random))[0].relative_half_width());
+        let [few, many] = [10, 160].map(|count| {
+            let [w, _] = intervals(&drawn(count, &mut random));
+            (w.interval[1] - w.interval[0]) / w.error
+        });
         let ratio = few / many;
         assert!((2.5..6.0).contains(&ratio), "{ratio}");
     }

@@ -2,15 +2,6 @@
 
 use fe_driver::{DrawnStates, SpotPath, random_paths};
 use hinge::{HingeDeformation, HingeDesign};
-use surrogate::Surrogate;
-
-/// The states of the training domain of weights.
-pub fn drawn_by(weights: &Surrogate) -> DrawnStates<'_> {
-    DrawnStates {
-        domain: weights.domain(),
-        constants: &weights.card().hinge,
-    }
-}
 
 /// Number of states of the distillation. With 10 000 the errors of steel at two spot checks are a tenth to a third larger.
 const DISTILLATION_STATES: usize = 20_000;

@@ -14,14 +14,14 @@
 //! result, which says what it leaves unknown. The example checks weights at eight states:
 //!
 //! ```no_run
-//! use fe_driver::{CalculiX, SolveService, SolveStore, random_paths};
+//! use fe_driver::{CalculiX, DrawnStates, SolveService, SolveStore, random_paths};
 //! use hinge::SheetMaterial;
 //! use mesher::Tier;
 //! use std::path::Path;
 //! use std::sync::atomic::AtomicBool;
 //! use std::time::Duration;
 //! use surrogate::Surrogate;
-//! use verification::{drawn_by, spot_check};
+//! use verification::spot_check;
 //!
 //! # let repository = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
 //! # let folder = tempfile::tempdir()?;
@@ -35,7 +35,8 @@
 //!     stop: &AtomicBool::new(false),
 //!     progress: Box::new(|done, all| println!("{done} of {all}")),
 //! };
-//! let paths = random_paths(drawn_by(&weights), 8, 4, 0);
+//! let inside = DrawnStates { domain: weights.domain(), constants: &weights.card().hinge };
+//! let paths = random_paths(inside, 8, 4, 0);
 //! let check = spot_check(&windows, &paths, &film, Tier::Tiny)?;
 //! assert_eq!((check.rows.len(), check.unsolved.len()), (8, 0));
 //! # Ok::<_, Box<dyn std::error::Error>>(())
@@ -69,7 +70,7 @@ pub use balanced_sheet::{
     BALANCED, BALANCED_FORCES, BalanceEnd, Balanced, Round, balanced, movements, size,
 };
 pub use compared_states::{SCALE, each_relative, spread_table};
-pub use distillation_states::{distillation_states, drawn_by};
+pub use distillation_states::distillation_states;
 pub use extension::rays_on_paths;
 pub use learning::{Accuracy, LearningEnd, LearningRound, LearningSteps, LearningTask, learn};
 pub use networks::judging_tier;

@@ -2,7 +2,7 @@
 
 use crate::commands::campaign::{DATABASE, SPOT_CHECK};
 use crate::commands::surrogate::{print_errors, record};
-use crate::commands::train::TrainCommand;
+use crate::commands::train::{TrainCommand, WEIGHTS};
 use anyhow::{Result, ensure};
 use dataset::Database;
 use fe_driver::Campaign;
@@ -23,8 +23,13 @@ impl TrainCommand {
             file.display()
         );
         ensure!(
-            self.config.is_none() && self.from.is_none() && self.teachers.is_empty(),
-            "--config, --from and --teachers are for a database, not for a campaign"
+            self.config.is_none()
+                && self.from.is_none()
+                && !self.resume
+                && self.seeds == 1
+                && self.out == Path::new(WEIGHTS),
+            "a campaign says what is trained, with {SEEDS} seeds, into its folder: --config, --out, --from, --resume and \
+             --seeds are for a database"
         );
         let folder = Path::new("runs").join(file.file_stem().unwrap_or_default());
         for training in &campaign.training {
@@ -37,7 +42,6 @@ impl TrainCommand {
                     .join(stem)
                     .with_added_extension("safetensors"),
                 from: None,
-                teachers: Vec::new(),
                 resume: false,
                 seeds: SEEDS,
                 replace: self.replace,

@@ -8,8 +8,8 @@ use design::pattern::design_vector::DesignVector;
 use design::scene::{Scene, SceneConfig};
 use fake_solver::{FakeSolver, Fault};
 use fe_driver::{
-    Campaign, Progress, Solution, SolveError, SolveService, SolveStore, Solver, ToolVersions,
-    WindowSolve, random_paths,
+    Campaign, DrawnStates, Progress, Solution, SolveError, SolveService, SolveStore, Solver,
+    ToolVersions, WindowSolve, random_paths,
 };
 use mesher::Tier;
 use std::path::{Path, PathBuf};
@@ -19,8 +19,8 @@ use surrogate::Surrogate;
 use tempfile::TempDir;
 use verification::{
     Accuracy, BALANCED, BalanceEnd, Balanced, ElementWindows, LearningEnd, LearningRound,
-    LearningSteps, LearningTask, Replay, VerificationError, balanced, distillation_states,
-    drawn_by, learn, movements, recorded_paths, size, spot_check,
+    LearningSteps, LearningTask, Replay, VerificationError, balanced, distillation_states, learn,
+    movements, recorded_paths, size, spot_check,
 };
 
 /// (k_a, k_s) (N/mm) and k_theta (N mm/rad) of the hinges of film.
@@ -269,7 +269,15 @@ fn a_replay_compares_every_state_and_names_what_failed() {
 fn a_spot_check_keeps_the_states_of_the_windows_that_are_solved() {
     let (scene, folder) = (scene(), tempfile::tempdir().unwrap());
     let surrogate = scene.surrogate().unwrap();
-    let paths = random_paths(drawn_by(surrogate), 12, 3, 0);
+    let paths = random_paths(
+        DrawnStates {
+            domain: surrogate.domain(),
+            constants: &surrogate.card().hinge,
+        },
+        12,
+        3,
+        0,
+    );
     let first = paths[0].hinge.clone();
     let diverges = FakeSolver::new(STIFFNESS, |solve: &WindowSolve| {
         (solve.problem.hinge == first).then_some(Fault::Diverges(0.4))

@@ -5,8 +5,8 @@ use design::objective::design_problem::Deployment;
 use design::scene::{Scene, SceneConfig};
 use design::sheet::kinematics::deployed_corners;
 use fe_driver::{
-    CalculiX, HingePath, Ray, Solution, SolveError, SolveService, SolveStore, Solver, ToolVersions,
-    WindowSolve, random_paths,
+    CalculiX, DrawnStates, HingePath, Ray, Solution, SolveError, SolveService, SolveStore, Solver,
+    ToolVersions, WindowSolve, random_paths,
 };
 use hinge::{
     HingeConstants, HingeDeformation, HingeSample, ReleasedHinge, ReleasedSample, SheetMaterial,
@@ -18,9 +18,7 @@ use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 use surrogate::Springback;
 use tempfile::TempDir;
-use verification::{
-    ElementWindows, balanced, drawn_by, first_guess, released_by_elements, releases,
-};
+use verification::{ElementWindows, balanced, first_guess, released_by_elements, releases};
 
 /// (k_a, k_s) (N/mm) and k_theta (N mm/rad) of the hinges.
 const STIFFNESS: [f64; 3] = [6.0, 12.0, 120.0];
@@ -120,7 +118,12 @@ fn scene() -> Scene {
 fn rows(solver: Slipping, count: usize) -> Vec<ReleasedSample> {
     let folder = tempfile::tempdir().unwrap();
     let scene = scene();
-    let drawn = random_paths(drawn_by(scene.surrogate().unwrap()), count, 1, 5);
+    let surrogate = scene.surrogate().unwrap();
+    let inside = DrawnStates {
+        domain: surrogate.domain(),
+        constants: &surrogate.card().hinge,
+    };
+    let drawn = random_paths(inside, count, 1, 5);
     let hinges: Vec<HingePath> = drawn.into_iter().map(|path| path.hinge).collect();
     let guess = |design: &_, reached: &_| first_guess(&scene.material, design, reached);
     let windows = service(solver, &folder);
