@@ -82,6 +82,7 @@
 
 pub mod analysis;
 pub mod equilibrium;
+pub mod fit;
 pub mod geometry;
 pub mod hinge_law;
 pub mod objective;

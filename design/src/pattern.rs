@@ -3,5 +3,6 @@
 pub mod coordinates;
 pub mod cut_pattern;
 pub mod design_vector;
+pub mod fit_variables;
 pub mod grid;
 pub mod pattern_error;

@@ -25,6 +25,7 @@ mod stock;
 mod tolerances;
 mod weights_files;
 
+pub use crate::objective::target::TargetShape;
 pub use crate::objective::terms::ObjectiveConfig;
 pub use actuation::{
     At, DriveConfig, EdgeLoadConfig, LoadConfig, NamedPoint, OpeningCoupleConfig, SheetEdge,

@@ -3,12 +3,14 @@
 mod cut_from;
 pub(crate) mod edited;
 pub(crate) mod first_scene;
+mod silhouette;
 mod size_args;
 mod template;
 
 use crate::commands::init::cut_from::CutFrom;
 use crate::commands::init::edited::{heading, scale, set};
-use crate::commands::init::first_scene::{FirstScene, THINNEST_PLATE, safe_opening};
+use crate::commands::init::first_scene::{FirstScene, THINNEST_PLATE};
+use crate::commands::init::silhouette::fitted_text;
 use crate::commands::init::size_args::{length, size, stock};
 use crate::commands::init::template::Template;
 use crate::commands::input_file;
@@ -16,6 +18,7 @@ use crate::ui::output_file;
 use crate::ui::shell_word::shell_word;
 use anyhow::{Context, Result, bail, ensure};
 use clap::Args;
+use design::fit::opening::safe_opening;
 use design::scene::{Scene, Stock};
 use hinge::{Regime, SheetMaterial};
 use std::path::{Path, PathBuf};
@@ -33,7 +36,7 @@ use toml_edit::{Array, ArrayOfTables, DocumentMut};
 /// Examples: kirigami init my-sheet --thickness 3 --size 210x297;
 /// kirigami init first --stock a4 --margin 5;
 /// kirigami init film --thickness 0.1;
-/// kirigami init leaf --thickness 0.1 --target configs/targets/leaf.svg
+/// kirigami init leaf --thickness 2 --size 300x300 --target configs/targets/leaf.svg
 #[derive(Args)]
 pub struct InitCommand {
     /// Folder to create
@@ -56,8 +59,8 @@ pub struct InitCommand {
     /// Border of the stock that the machine cannot cut (mm) [default: 0]
     #[arg(long, value_name = "MM", value_parser = length, requires = "stock")]
     margin: Option<f64>,
-    /// Outline that the sheet opens onto (SVG, one closed path), scaled to the area of the opened sheet and placed on its
-    /// centre [default: the opened sheet's rectangle]
+    /// Outline that the sheet opens onto (SVG, one closed path), in any position and of any size: outline, cuts and pulls of the sheet are
+    /// fitted to it [default: the opened sheet's rectangle]
     #[arg(long, value_name = "FILE")]
     target: Option<PathBuf>,
     /// Weights for this material [default: those for it among the shipped ones]
@@ -158,10 +161,18 @@ impl InitCommand {
         ] {
             output_file::write(&self.folder.join(file), contents)?;
         }
-        if trained {
-            self.check_scene()?;
+        if !trained {
+            return Ok(readme);
         }
-        Ok(readme)
+        let scene_file = self.folder.join("scene.toml");
+        let first = Self::checked_scene(&scene_file)?;
+        if self.target.is_none() {
+            return Ok(readme);
+        }
+        let (text, expected) = fitted_text(&first, &scene)?;
+        output_file::write(&scene_file, &text)?;
+        Self::checked_scene(&scene_file)?;
+        Ok(format!("{readme}\n{expected}"))
     }
 
     /// The file of the material that is named, or else the usual one.
@@ -173,15 +184,13 @@ impl InitCommand {
         }
     }
 
-    /// An error if the scene that was written cannot be designed as it is.
-    fn check_scene(&self) -> Result<()> {
-        let path = self.folder.join("scene.toml");
-        let scene = Scene::read(&path);
+    /// The scene that was written; an error if it cannot be designed as it is.
+    fn checked_scene(path: &Path) -> Result<Scene> {
         let refused = || {
             let path = path.display();
             format!("{path} is written, but needs a change before it runs")
         };
-        scene.map(|_| ()).with_context(refused)
+        Scene::read(path).with_context(refused)
     }
 
     /// The weights that are for the material. Weights that are named must be.
@@ -205,7 +214,15 @@ impl InitCommand {
                 fitting.push(Weights {
                     file: std::path::absolute(file)?,
                     regime,
-                    opening: safe_opening(&surrogate, regime),
+                    opening: {
+                        let [narrowest, widest] = surrogate.domain().w_lig;
+                        safe_opening(
+                            &surrogate,
+                            regime,
+                            0.5 * (narrowest + widest),
+                            first_scene::OPENING,
+                        )
+                    },
                 });
             } else if self.weights.is_some() {
                 bail!(

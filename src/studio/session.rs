@@ -14,6 +14,7 @@ use crate::ui::run_folder;
 use crate::ui::shell_word::shell_word;
 use anyhow::{Context, Result, ensure};
 use design::equilibrium::nearby_path::KnownPath;
+use design::fit::scene::fitted;
 use design::objective::target::TargetShape;
 use design::optimise::outer_loop::Ended;
 use design::scene::design_run::inverse_design;
@@ -190,13 +191,15 @@ impl Session {
             file,
             centre,
             height,
+            rotation_deg: 0.0,
         };
         let config = SceneConfig {
             target,
             ..sheet.scene.config.clone()
         };
-        let changed = sheet.scene.changed(config)?;
-        self.show(changed)?;
+        let drawn = sheet.scene.changed(config)?;
+        let fit = fitted(&drawn)?;
+        self.show(drawn.changed(fit.config)?)?;
         self.tell_scene();
         self.draft()
     }

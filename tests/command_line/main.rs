@@ -17,4 +17,5 @@ mod moved_run;
 mod new_project;
 mod notes;
 mod several_sheets;
+mod silhouettes;
 mod springback;

@@ -9,6 +9,7 @@ use crate::objective::design_problem::{
     Deployment, DesignError, DesignProblem, Evaluation, Mechanics, Sensitivities,
 };
 use crate::pattern::design_vector::DesignVector;
+use crate::pattern::fit_variables::FitVariables;
 use crate::sheet::cut_sheet::{Sheet, SheetGradient};
 use crate::sheet::ideal_deployment::ideal_deployment_pullback;
 use crate::sheet::kinematics::deployed_pullback;
@@ -29,6 +30,10 @@ pub(super) struct Partials<'a> {
     pub by_load_factor: f64,
     /// In the flat corners of every panel; `None` if all are zero.
     pub by_corners: Option<&'a [[[f64; 2]; 4]]>,
+    /// In the cut angle of every hinge; empty if all are zero.
+    pub by_angles: &'a [f64],
+    /// In size and rotation of a fitted target.
+    pub by_fit: [f64; 2],
     /// In the forces of the supports in the last step; `None` if all are zero.
     pub by_reactions: Option<Vec<[f64; 3]>>,
 }
@@ -70,6 +75,8 @@ impl DesignProblem {
             by_states: &judgement.gradient.by_states,
             by_load_factor: 0.0,
             by_corners: Some(&judgement.gradient.by_corners),
+            by_angles: &judgement.gradient.by_angles,
+            by_fit: judgement.gradient.by_fit,
             by_reactions: None,
         };
         let gradient = self.design_gradient(design, &deployment, law, partials)?;
@@ -96,6 +103,7 @@ impl DesignProblem {
         if let Some(by_corners) = partials.by_corners {
             by_sheet.corners.copy_from_slice(by_corners);
         }
+        std::iter::zip(&mut by_sheet.alphas, partials.by_angles).for_each(|(sum, by)| *sum += by);
         let by_compared = outline_pullback(sheet, deployment.compared(), &partials, &mut by_sheet);
         let (mut by_opening, mut adjoint_residual) = (None, 0.0);
         let mut virtual_motion = Vec::new();
@@ -152,6 +160,11 @@ impl DesignProblem {
                 .map(|(&omega, by_width)| by_width * self.widths.slope(omega))
                 .collect(),
             opening: by_opening,
+            fit: design.fit.map(|fit| FitVariables {
+                ln_size: partials.by_fit[0],
+                rotation: partials.by_fit[1],
+                corners: fit.pullback(&self.outline, &by_outline),
+            }),
         };
         Ok(Gradient {
             design,

@@ -12,6 +12,7 @@ use crate::objective::loss::{Judgement, Objective, TermValues};
 use crate::objective::term::Deployed;
 use crate::pattern::cut_pattern::{CutPattern, Outline};
 use crate::pattern::design_vector::{DesignVector, WidthChart};
+use crate::pattern::fit_variables::FitVariables;
 use crate::pattern::grid::Grid;
 use crate::pattern::pattern_error::PatternError;
 use crate::sheet::cut_sheet::{Sheet, SheetError, SheetOptions};
@@ -133,6 +134,8 @@ pub struct Deployment {
     pub followed: bool,
     /// The sheet after its loads were taken off at the end of the path, if the target is the shape that stays.
     pub released: Option<ReleasedSheet>,
+    /// How the sheet is fitted to its target.
+    pub fit: Option<FitVariables>,
 }
 
 /// The gradient of L with respect to quantities that are constant during the design.
@@ -269,12 +272,20 @@ impl DesignProblem {
 
     /// Lines 2-4 of Algorithm 1: cut pattern and flat sheet.
     pub fn cut(&self, design: &DesignVector) -> Result<(CutPattern, Sheet), DesignError> {
-        let pattern = CutPattern::new(self.grid, self.outline, &design.pattern)?;
+        let pattern = CutPattern::new(self.grid, self.outline_of(design), &design.pattern)?;
         let w_lig: Vec<f64> = (design.omega.iter())
             .map(|&omega| self.widths.width(omega))
             .collect();
         let sheet = self.sheet(&pattern, &w_lig)?;
         Ok((pattern, sheet))
+    }
+
+    /// The outline of the flat sheet of a design.
+    pub fn outline_of(&self, design: &DesignVector) -> Outline {
+        match design.fit {
+            None => self.outline,
+            Some(fit) => fit.outline(&self.outline),
+        }
     }
 
     /// The sheet of a pattern with the given ligament widths (mm), held and pulled where the problem's sheet is.
@@ -333,6 +344,7 @@ impl DesignProblem {
             path,
             followed,
             released,
+            fit: design.fit,
         };
         Ok((deployment, law))
     }
@@ -362,6 +374,7 @@ impl DesignProblem {
             sheet: &deployment.sheet,
             path: &deployment.path,
             outline: &deployment.outline(outline),
+            fit: deployment.fit,
         }))
     }
 }

@@ -187,6 +187,7 @@ impl DesignProblem {
                 path,
                 followed,
                 released: None,
+                fit: design.fit,
             },
             reactions,
         })
@@ -215,6 +216,8 @@ impl DesignProblem {
             by_states: &vec![vec![[0.0; 6]]; sheet.hinges.len()],
             by_load_factor: by.load_factor,
             by_corners: None,
+            by_angles: &[],
+            by_fit: [0.0; 2],
             by_reactions: of_supports.then_some(reactions),
         };
         let gradient = self.design_gradient(

@@ -49,9 +49,10 @@ pub(crate) fn outline_error_at(
 ) -> f64 {
     let shape = &objective.shape;
     let points = deployment.sheet.free_outline_corners();
-    let outline = shape.placed(&deployment.outline_at(step, &points));
+    let outline = shape.placed(&deployment.outline_at(step, &points), deployment.fit);
     let (squared, _) = chamfer(&outline, &shape.target, 0.0);
-    squared.sqrt()
+    let size = deployment.fit.map_or(1.0, |fit| fit.ln_size.exp());
+    size * squared.sqrt()
 }
 
 /// A term as text: four digits after the point, or scientific notation if these do not show it.

@@ -2,8 +2,11 @@
 //! on the outline that belong to no hinge.
 
 use crate::geometry::chamfer::chamfer;
+use crate::geometry::plane::{I, complex, dot, point};
 use crate::objective::centre;
 use crate::objective::term::{Deployed, Term, TermGradient};
+use crate::pattern::fit_variables::FitVariables;
+use faer::c64;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -40,8 +43,9 @@ impl Term for Shape {
     }
 
     fn evaluate(&self, at: &Deployed, weight: f64, gradient: &mut TermGradient) -> f64 {
-        let (chamfer, by_outline) = self.distance(at.outline);
-        gradient.add_by_outline(weight, &by_outline);
+        let placed = self.placed(at.outline, at.fit);
+        let (chamfer, by_placed) = self.distance(&placed);
+        self.pullback(at, &placed, &by_placed, weight, gradient);
         chamfer
     }
 }
@@ -56,27 +60,52 @@ impl Shape {
         }
     }
 
-    /// The points P in the position in which they are compared with the target (mm).
-    pub fn placed(&self, outline: &[[f64; 2]]) -> Vec<[f64; 2]> {
+    /// The points P in the position in which they are compared with the target (mm): centred, and in the size and the rotation of
+    /// a target that is fitted to them.
+    pub fn placed(&self, outline: &[[f64; 2]], fit: Option<FitVariables>) -> Vec<[f64; 2]> {
         let [x, y] = match self.centred {
             true => centre::of(outline),
             false => [0.0; 2],
         };
-        outline.iter().map(|[px, py]| [px - x, py - y]).collect()
+        let turn = turn(fit);
+        let place = |[px, py]: &[f64; 2]| point(turn * c64::new(px - x, py - y));
+        outline.iter().map(place).collect()
     }
 
-    /// The gradient in P from that in its placed points.
-    pub(crate) fn pullback(&self, outline: &[[f64; 2]], placed: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
-        match self.centred {
-            true => centre::pullback(outline, &placed),
-            false => placed,
+    /// Adds `weight` times the gradient in the points P, and in the fit, from that in the placed points.
+    pub(crate) fn pullback(
+        &self,
+        at: &Deployed,
+        placed: &[[f64; 2]],
+        by_placed: &[[f64; 2]],
+        weight: f64,
+        gradient: &mut TermGradient,
+    ) {
+        let back = turn(at.fit).conj();
+        let turned: Vec<_> = (by_placed.iter())
+            .map(|slope| point(back * complex(*slope)))
+            .collect();
+        let by_outline = match self.centred {
+            true => centre::pullback(at.outline, &turned),
+            false => turned,
+        };
+        gradient.add_by_outline(weight, &by_outline);
+        for (p, slope) in std::iter::zip(placed, by_placed) {
+            let (p, slope) = (complex(*p), complex(*slope));
+            gradient.by_fit[0] -= weight * dot(slope, p);
+            gradient.by_fit[1] -= weight * dot(slope, I * p);
         }
     }
 
-    /// The Chamfer distance of the points P to the target (mm^2), and its gradient in P.
-    pub fn distance(&self, outline: &[[f64; 2]]) -> (f64, Vec<[f64; 2]>) {
-        let (distance, by_placed) =
-            chamfer(&self.placed(outline), &self.target, self.coverage_weight);
-        (distance, self.pullback(outline, by_placed))
+    /// The Chamfer distance of placed points to the target (mm^2), and its gradient in them.
+    pub fn distance(&self, placed: &[[f64; 2]]) -> (f64, Vec<[f64; 2]>) {
+        chamfer(placed, &self.target, self.coverage_weight)
     }
+}
+
+/// From the sheet to the target as the scene has it: a target of twice the size has a sheet of half the size.
+fn turn(fit: Option<FitVariables>) -> c64 {
+    fit.map_or(c64::ONE, |fit| {
+        c64::cis(-fit.rotation) * (-fit.ln_size).exp()
+    })
 }

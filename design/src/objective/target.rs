@@ -1,7 +1,9 @@
 //! The target outline T of (16): a closed curve, sampled densely at equal arc lengths.
 
+use crate::geometry::plane::{complex, point};
 use crate::geometry::polygon;
 use crate::geometry::svg_path::{self, SvgPathError};
+use faer::c64;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
@@ -58,6 +60,9 @@ pub enum TargetShape {
         /// Height of the bounding box (mm); the width follows from the drawing.
         #[schemars(range(min = 1e-3))]
         height: f64,
+        /// Rotation about the centre, counter-clockwise (deg).
+        #[serde(default)]
+        rotation_deg: f64,
     },
 }
 
@@ -143,12 +148,13 @@ impl Target {
                 file,
                 centre,
                 height,
+                rotation_deg,
             } => {
                 let path = folder.join(file);
                 let svg = regular_file::read_to_string(&path).map_err(FileError::at(&path))?;
                 let drawn =
                     svg_path::vertices(&svg).map_err(|source| TargetError::Svg { path, source })?;
-                along_polygon(&placed(&drawn, *centre, *height)?, count)
+                along_polygon(&placed(&drawn, *centre, *height, *rotation_deg)?, count)
             }
         }
     }
@@ -235,19 +241,20 @@ fn curve(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
     chords.map(|(i, t)| at(i, t)).collect()
 }
 
-/// The vertices, scaled and translated so that their bounding box has the given height and centre (mm).
+/// The vertices, scaled and translated so that their bounding box has the given height and centre (mm), and turned about it.
 fn placed(
     vertices: &[[f64; 2]],
     centre: [f64; 2],
     height: f64,
+    rotation_deg: f64,
 ) -> Result<Vec<[f64; 2]>, TargetError> {
     let [[left, low], [right, high]] = polygon::bounds(vertices.iter().copied());
     if high <= low || vertices.is_empty() {
         return Err(TargetError::NoArea);
     }
-    let scale = height / (high - low);
-    let middle = [0.5 * (left + right), 0.5 * (low + high)];
-    let place = |vertex: &[f64; 2]| [0, 1].map(|c| centre[c] + scale * (vertex[c] - middle[c]));
+    let turn = c64::cis(rotation_deg.to_radians()) * (height / (high - low));
+    let middle = complex([0.5 * (left + right), 0.5 * (low + high)]);
+    let place = |vertex: &[f64; 2]| point(complex(centre) + turn * (complex(*vertex) - middle));
     Ok(vertices.iter().map(place).collect())
 }
 
@@ -258,7 +265,7 @@ fn read_points(path: &Path) -> Result<Vec<[f64; 2]>, TargetError> {
         .map(|(row, line)| (row + 1, line.split('#').next().unwrap_or_default().trim()))
         .filter(|(_, line)| !line.is_empty())
         .map(|(line, text)| {
-            point(text).ok_or_else(|| TargetError::Row {
+            row(text).ok_or_else(|| TargetError::Row {
                 path: path.to_owned(),
                 line,
                 text: text.to_owned(),
@@ -267,7 +274,7 @@ fn read_points(path: &Path) -> Result<Vec<[f64; 2]>, TargetError> {
         .collect()
 }
 
-fn point(text: &str) -> Option<[f64; 2]> {
+fn row(text: &str) -> Option<[f64; 2]> {
     let (x, y) = text.split_once(',')?;
     let point = [x.trim().parse().ok()?, y.trim().parse().ok()?];
     point
@@ -383,6 +390,7 @@ mod tests {
                 file: name.into(),
                 centre: [0.0, 0.0],
                 height: 1.0,
+                rotation_deg: 0.0,
             };
             let target = Target::sample(&shape, &folder, 2000).unwrap();
             assert_close(target.length, length, 1e-6);
@@ -399,6 +407,7 @@ mod tests {
             file: "star.svg".into(),
             centre: [0.0, 0.0],
             height: 100.0,
+            rotation_deg: 0.0,
         };
         let error = Target::sample(&shape, folder.path(), 100).unwrap_err();
         let error = error.to_string();

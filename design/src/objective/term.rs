@@ -2,6 +2,7 @@
 
 use crate::equilibrium::load_step::LoadStep;
 use crate::hinge_law::HingeGradient;
+use crate::pattern::fit_variables::FitVariables;
 use crate::sheet::cut_sheet::Sheet;
 use std::fmt::Debug;
 use std::sync::Arc;
@@ -56,6 +57,8 @@ pub struct Deployed<'a> {
     pub path: &'a [LoadStep],
     /// The deployed positions of the outline points P (mm).
     pub outline: &'a [[f64; 2]],
+    /// How the sheet is fitted to its target.
+    pub fit: Option<FitVariables>,
 }
 
 /// The gradient of weighted terms.
@@ -70,6 +73,10 @@ pub struct TermGradient {
     pub by_states: Vec<Vec<HingeGradient>>,
     /// In the flat corners of every panel.
     pub by_corners: Vec<[[f64; 2]; 4]>,
+    /// In the cut angle of every hinge.
+    pub by_angles: Vec<f64>,
+    /// In size and rotation of a fitted target.
+    pub by_fit: [f64; 2],
 }
 
 impl TermGradient {
@@ -81,6 +88,8 @@ impl TermGradient {
             by_measures: vec![vec![[0.0; 4]; steps]; hinges],
             by_states: vec![vec![[0.0; 6]; steps]; hinges],
             by_corners: vec![[[0.0; 2]; 4]; at.sheet.panels.len()],
+            by_angles: vec![0.0; hinges],
+            by_fit: [0.0; 2],
         }
     }
 

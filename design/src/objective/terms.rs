@@ -1,6 +1,7 @@
 //! The terms of the objective, a file each; their keys, and their list.
 
 mod compression;
+mod cut_angles;
 mod damage;
 mod domain;
 mod panel_shape;
@@ -9,6 +10,7 @@ mod shear;
 mod symmetric_difference;
 
 pub use compression::Compression;
+pub use cut_angles::CutAngles;
 pub use damage::Damage;
 pub use domain::DomainPenalty;
 pub use panel_shape::PanelShape;
@@ -25,7 +27,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// w_cov of the Chamfer distance, as in the paper.
-const COVERAGE: f64 = 0.5;
+pub const COVERAGE: f64 = 0.5;
 /// Number of points on the target outline.
 pub const TARGET_POINTS: usize = 1000;
 
@@ -126,7 +128,7 @@ impl ObjectiveConfig {
             coverage_weight: COVERAGE,
             centred: setting.law.is_none(),
         };
-        shape.target = shape.placed(points);
+        shape.target = shape.placed(points, None);
         shape
     }
 }
@@ -188,12 +190,15 @@ mod tests {
         };
         let state = [[-0.02, 0.03], [-0.02, 0.02], [0.0, 0.1]];
         let domain = TrainingDomain::from_box(state, [1.0, 2.5], [0.8, 1.5]);
-        config.objective(&Setting {
+        let mut objective = config.objective(&Setting {
             target: &Target::sample(&circle, Path::new(""), TARGET_POINTS).unwrap(),
             law: Some(&Law(domain)),
             mean_panel_area: 10.0,
             r_win: 10.0,
-        })
+        });
+        let angles = Weighted::new(0.8, CutAngles { least: 1.3 });
+        objective.penalties.push(angles);
+        objective
     }
 
     /// A sheet of slender panels.
@@ -248,14 +253,16 @@ mod tests {
             sheet: &sheet,
             path: &path,
             outline: outline.as_chunks().0,
+            fit: None,
         };
         let mut gradient = TermGradient::zeros(&at);
         let value = term.evaluate(&at, 1.0, &mut gradient);
         add_by_states(&at, &mut gradient);
-        let by_hinges = gradient.by_states.iter().flat_map(|steps| {
+        let by_hinges = std::iter::zip(&gradient.by_states, &gradient.by_angles);
+        let by_hinges = by_hinges.flat_map(|(steps, by_angle)| {
             let sum = |c: usize| steps.iter().map(|step| step[c]).sum::<f64>();
             let states = steps.iter().flat_map(|step| step[..3].to_vec());
-            [sum(3), sum(4)].into_iter().chain(states)
+            [sum(3), sum(4) + by_angle].into_iter().chain(states)
         });
         let by_corners = gradient.by_corners.into_flattened().into_flattened();
         let by_outline = gradient.by_outline.into_flattened();

@@ -2,6 +2,7 @@
 //! the ligament widths, w_lig = w_minus + (w_plus - w_minus) sigma(omega).
 
 use crate::pattern::coordinates::{PatternCoordinates, logistic, logit};
+use crate::pattern::fit_variables::FitVariables;
 use crate::pattern::grid::Grid;
 use serde::{Deserialize, Serialize};
 
@@ -16,6 +17,9 @@ pub struct DesignVector {
     /// The opening angle of the ideal deployment (rad), if it is a design variable.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub opening: Option<f64>,
+    /// How sheet and target are fitted to each other, if they are.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub fit: Option<FitVariables>,
 }
 
 impl DesignVector {
@@ -25,12 +29,14 @@ impl DesignVector {
             pattern: PatternCoordinates::uniform(grid),
             omega: vec![0.0; grid.hinge_count()],
             opening: None,
+            fit: None,
         }
     }
 
-    /// All coordinates as one vector: z, ell of the bottom, right, top, left edge, omega, opening.
+    /// All coordinates as one vector: z, ell of the bottom, right, top, left edge, omega, opening, fit.
     pub fn to_flat(&self) -> Vec<f64> {
-        self.blocks().flatten().copied().collect()
+        let fit = self.fit.iter().flat_map(FitVariables::to_flat);
+        self.blocks().flatten().copied().chain(fit).collect()
     }
 
     /// This design with the coordinates of a vector ordered as by [`to_flat`](Self::to_flat);
@@ -40,9 +46,11 @@ impl DesignVector {
         let mut values = flat.iter();
         let edges = design.pattern.ell.iter_mut().flatten();
         let coordinates = design.pattern.z.iter_mut().chain(edges);
+        let fit = (design.fit.as_mut()).map(FitVariables::coordinates_mut);
         for coordinate in coordinates
             .chain(&mut design.omega)
             .chain(&mut design.opening)
+            .chain(fit.into_iter().flatten())
         {
             if let Some(&value) = values.next() {
                 *coordinate = value;
@@ -53,9 +61,8 @@ impl DesignVector {
 
     /// Whether all blocks have the same lengths.
     pub fn same_shape(&self, other: &Self) -> bool {
-        self.blocks()
-            .map(<[f64]>::len)
-            .eq(other.blocks().map(<[f64]>::len))
+        let lengths = |design: &Self| -> Vec<usize> { design.blocks().map(<[f64]>::len).collect() };
+        lengths(self) == lengths(other) && self.fit.is_some() == other.fit.is_some()
     }
 
     fn blocks(&self) -> impl Iterator<Item = &[f64]> {

@@ -189,10 +189,38 @@ impl SupportKind {
 }
 
 impl SupportConfig {
+    /// A panel that is held at its centroid, where it is.
+    pub fn at_centroid(panel: [usize; 2], kind: SupportKind) -> Self {
+        Self {
+            panel,
+            kind,
+            at: At::default(),
+            hole: None,
+            clip: None,
+            displacement: [0.0; 2],
+            rotation_deg: 0.0,
+        }
+    }
+
     /// (u_x, u_y, phi) at full load (mm, mm, rad).
     pub(super) fn motion(&self) -> [f64; 3] {
         let [x, y] = self.displacement;
         [x, y, self.rotation_deg.to_radians()]
+    }
+}
+
+impl LoadConfig {
+    /// A force (N) at the centroid of a panel.
+    pub fn at_centroid(panel: [usize; 2], force: [f64; 2]) -> Self {
+        Self {
+            panel,
+            at: At::default(),
+            hole: None,
+            clip: None,
+            mass_g: None,
+            force,
+            couple: 0.0,
+        }
     }
 }
 

@@ -17,6 +17,7 @@ pub fn place_drawing(
         file: file.to_owned(),
         centre: [0.0; 2],
         height: 1.0,
+        rotation_deg: 0.0,
     };
     let outline = Target::sample(&of_height_1, Path::new(""), DRAWING_POINTS)?;
     let height = rounded((area / outline.area()).sqrt());

@@ -194,6 +194,7 @@ impl Drawn {
             pattern: self.pattern.clone(),
             omega: self.w_lig.iter().map(|w| chart.omega(*w)).collect(),
             opening: None,
+            fit: None,
         }
     }
 

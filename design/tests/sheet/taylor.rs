@@ -4,8 +4,9 @@ use crate::prelude::*;
 use design::hinge_law::DamageMeasure;
 use design::objective::term::Weighted;
 use design::objective::terms::{
-    Compression, Damage, DomainPenalty, PanelShape, Shear, SymmetricDifference,
+    Compression, CutAngles, Damage, DomainPenalty, PanelShape, Shear, SymmetricDifference,
 };
+use design::pattern::fit_variables::FitVariables;
 use hinge::TrainingDomain;
 use std::path::Path;
 use surrogate::Surrogate;
@@ -114,10 +115,11 @@ pub fn start() -> DesignVector {
         },
         omega: random.numbers(12, 1.0),
         opening: None,
+        fit: None,
     }
 }
 
-/// Asserts order 2 along a random direction in each block (z, ell, omega, opening).
+/// Asserts order 2 along a random direction in each block (z, ell, omega, opening, fit).
 pub fn assert_order_two(problem: &DesignProblem, design: &DesignVector) {
     let evaluation = problem.evaluate(design).unwrap();
     for step in &evaluation.deployment.path {
@@ -128,11 +130,13 @@ pub fn assert_order_two(problem: &DesignProblem, design: &DesignVector) {
     let (x, gradient) = (design.to_flat(), evaluation.gradient.to_flat());
     let z = design.pattern.z.len();
     let ell = design.pattern.ell.iter().flatten().count();
+    let hinges = z + ell + design.omega.len();
     let blocks = [
         ("z", 0..z),
         ("ell", z..z + ell),
-        ("omega", z + ell..z + ell + design.omega.len()),
-        ("opening", z + ell + design.omega.len()..x.len()),
+        ("omega", z + ell..hinges),
+        ("opening", hinges..hinges + design.opening.iter().count()),
+        ("fit", hinges + design.opening.iter().count()..x.len()),
     ];
     for (name, block) in blocks.into_iter().filter(|(_, block)| !block.is_empty()) {
         if gradient[block.clone()].iter().all(|slope| *slope == 0.0) {
@@ -170,6 +174,29 @@ fn taylor_rate_of_two_with_the_symmetric_difference() {
         assert!(evaluation.terms["symmetric_difference"] > 0.0);
         assert_order_two(&problem, &design);
     }
+}
+
+/// The size and the rotation of the target, and the corners of the sheet in its stock.
+#[test]
+fn a_sheet_and_its_target_are_fitted_to_each_other() {
+    let mut problem = problem(Model::Ideal { opening: 0.9 }, HingePoint::Corner);
+    problem.objective.shape.centred = true;
+    let difference = SymmetricDifference::new(problem.objective.shape.clone());
+    let angles = CutAngles { least: 1.5 };
+    problem.objective.penalties = vec![Weighted::new(1e5, difference), Weighted::new(1e4, angles)];
+    let corners = Random::new(17).numbers(8, 0.4);
+    let corners = std::array::from_fn(|i| [1.5 + corners[2 * i], 1.5 + corners[2 * i + 1]]);
+    let design = DesignVector {
+        fit: Some(FitVariables {
+            ln_size: -0.1,
+            rotation: 0.2,
+            corners,
+        }),
+        ..start()
+    };
+    let evaluation = problem.evaluate(&design).unwrap();
+    assert!(evaluation.terms["cut_angles"] > 0.0);
+    assert_order_two(&problem, &design);
 }
 
 pub fn springs() -> LinearLaw {

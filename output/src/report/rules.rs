@@ -121,16 +121,18 @@ fn about(concern: Concern, hinges: Vec<usize>, message: String) -> Option<Warnin
     })
 }
 
-/// Panels cannot lie over each other, whatever the hinge law.
+/// Panels cannot lie over each other, whatever the hinge law. On the way the edges of closed cuts, which are softer in the model than in
+/// the sheet, may let them by a little.
 fn panels_overlap(judged: &Judged) -> Option<Warning> {
-    let Deployment { sheet, path, .. } = judged.deployment;
-    let overlaps = path.iter().map(|step| overlap(sheet, &step.configuration));
-    let most = overlaps.fold(0.0, f64::max);
+    let deployment = judged.deployment;
+    let of = |step: &LoadStep| overlap(&deployment.sheet, &step.configuration);
+    let at_the_end = of(deployment.compared());
     let openings = judged.hinges.iter().map(|row| row.theta_deg.to_radians());
     let mean = openings.sum::<f64>() / judged.hinges.len() as f64;
-    if most <= OVERLAP && mean >= SHUT {
-        return None;
-    }
+    let lie = |most: f64| {
+        let most = rounded(100.0 * most, 2);
+        format!("panels lie over each other, by up to {most} % of the area of a panel")
+    };
     let mut found = Vec::new();
     if mean < SHUT {
         let mean = rounded(mean.to_degrees(), 3);
@@ -138,16 +140,24 @@ fn panels_overlap(judged: &Judged) -> Option<Warning> {
             "the cuts are closed further than in the flat sheet, by a mean opening of {mean} deg"
         ));
     }
-    if most > OVERLAP {
-        let most = rounded(100.0 * most, 2);
-        found.push(format!(
-            "panels lie over each other, by up to {most} % of the area of a panel"
-        ));
+    if at_the_end > OVERLAP {
+        found.push(lie(at_the_end));
     }
-    Some(Concern::PanelsOverlap.of_sheet(format!(
-        "{}: no sheet moves like that; use a larger target, or loads that open the cuts",
-        found.join(", and ")
-    )))
+    if !found.is_empty() {
+        return Some(Concern::PanelsOverlap.of_sheet(format!(
+            "{}: no sheet moves like that; use a larger target, or loads that open the cuts",
+            found.join(", and ")
+        )));
+    }
+    let most = deployment.path.iter().map(of).fold(0.0, f64::max);
+    (most > OVERLAP).then(|| Warning {
+        severity: Severity::Warning,
+        ..Concern::PanelsOverlap.of_sheet(format!(
+            "on the way, {}: the edges of a closed cut press against each other in the sheet, and its load is larger there; pull at \
+             more panels",
+            lie(most)
+        ))
+    })
 }
 
 fn windows_overlap(judged: &Judged) -> Option<Warning> {

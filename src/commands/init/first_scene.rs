@@ -15,10 +15,8 @@ use crate::commands::init::template::Template;
 use crate::commands::input_file;
 use anyhow::{Context, Result};
 use design::scene::{CuttingConfig, Paper, place_drawing, rounded};
-use hinge::{HingeDeformation, Regime};
-use std::f64::consts::FRAC_PI_2;
+use hinge::Regime;
 use std::path::Path;
-use surrogate::Surrogate;
 use toml_edit::{Array, DocumentMut, Item, Table, value};
 
 /// Minimum side of a panel over the radius of a window: windows of neighbouring hinges do not overlap.
@@ -28,9 +26,6 @@ pub(crate) const OPENING: f64 = 0.436;
 /// Thickness (mm) from which a sheet is a plate: the narrowest ligaments of a thinner one, a third of its thickness, would be
 /// too narrow for a hole wider than the kerf.
 pub(crate) const THINNEST_PLATE: f64 = 2.0;
-/// The largest D_peak that a first plate is designed for, and by how much less it opens until it is not above it (rad): 5 degrees.
-const SAFE_PEAK: f64 = 0.7;
-const LESS: f64 = 0.0873;
 /// Widths of the clips at the top and at the bottom over those of their edges.
 const HELD: f64 = 0.21;
 const PULLED: f64 = 0.14;
@@ -49,28 +44,6 @@ pub(super) struct FirstScene {
     cut_from: Option<CutFrom>,
     /// theta of the target (rad).
     pub(super) opening: f64,
-}
-
-/// The opening (rad) at which a ligament of the mean width that turns freely is safe by the weights of a plate, [`OPENING`] at most. A
-/// film tears at far larger ones.
-pub(super) fn safe_opening(surrogate: &Surrogate, regime: Regime) -> f64 {
-    let [narrowest, widest] = surrogate.domain().w_lig;
-    let w_lig = 0.5 * (narrowest + widest);
-    let design = surrogate.card().hinge.hinge(w_lig, FRAC_PI_2);
-    let tears = |theta: f64| {
-        let [first, second] = Regime::Plate.free_opening();
-        let eta_a = theta * (first + second * theta);
-        let state = HingeDeformation::from_eta(eta_a, 0.0, theta, w_lig);
-        let damage = surrogate.damage_values(&[design], &[state]);
-        damage
-            .iter()
-            .any(|damage| damage.d_peak.is_some_and(|peak| peak > SAFE_PEAK))
-    };
-    let mut opening = OPENING;
-    while regime == Regime::Plate && opening > 2.0 * LESS && tears(opening) {
-        opening -= LESS;
-    }
-    opening
 }
 
 impl FirstScene {
@@ -298,6 +271,8 @@ fn whole(panel: [usize; 2]) -> Array {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use design::fit::opening::safe_opening;
+    use surrogate::Surrogate;
 
     /// The published rectangle of the sheet of section 4.3, opened by 25 degrees.
     #[test]
@@ -328,7 +303,9 @@ mod tests {
         ] {
             let root = Path::new(env!("CARGO_MANIFEST_DIR"));
             let weights = root.join("data").join(material).join("medium.safetensors");
-            let opening = safe_opening(&Surrogate::load(&weights).unwrap(), Regime::Plate);
+            let weights = Surrogate::load(&weights).unwrap();
+            let w_lig = 0.5 * weights.domain().w_lig.iter().sum::<f64>();
+            let opening = safe_opening(&weights, Regime::Plate, w_lig, OPENING);
             assert!(
                 (opening.to_degrees() - degrees).abs() < 0.1,
                 "{material}: {opening}"

@@ -43,10 +43,10 @@ function writeTarget(box) {
   if (kind === "rectangle") {
     numberField(box, "Width (mm)", "target.rectangle.size.0");
     numberField(box, "Height (mm)", "target.rectangle.size.1");
-    numberField(box, "Rotation (deg)", "target.rectangle.rotation_deg");
   }
   if (kind === "circle") numberField(box, "Radius (mm)", "target.circle.radius");
   if (kind === "svg") numberField(box, "Height (mm)", "target.svg.height");
+  if (kind === "rectangle" || kind === "svg") numberField(box, "Rotation (deg)", `target.${kind}.rotation_deg`);
   if (kind === "curve") {
     const line = write(box, "div", undefined, "actions");
     button(line, "More points", () => morePoints(2));
@@ -94,11 +94,14 @@ function handles() {
   const [x, y] = target.centre;
   const list = [{ at: target.centre, centre: true, move: put(target, "centre") }];
   if (kind === "circle") list.push({ at: [x + target.radius, y], move: (to) => { target.radius = Math.max(1, Math.hypot(to[0] - x, to[1] - y)); } });
-  if (kind === "svg") list.push({ at: [x, y + target.height / 2], move: (to) => { target.height = Math.max(1, 2 * Math.abs(to[1] - y)); } });
+  const angle = (target.rotation_deg ?? 0) / DEG;
+  const [cos, sin] = [Math.cos(angle), Math.sin(angle)];
+  const place = ([a, b]) => [x + cos * a - sin * b, y + sin * a + cos * b];
+  if (kind === "svg") {
+    const move = (to) => { target.height = Math.max(1, 2 * Math.abs(cos * (to[1] - y) - sin * (to[0] - x))); };
+    list.push({ at: place([0, target.height / 2]), move });
+  }
   if (kind === "rectangle") {
-    const angle = target.rotation_deg / DEG;
-    const [cos, sin] = [Math.cos(angle), Math.sin(angle)];
-    const place = ([a, b]) => [x + cos * a - sin * b, y + sin * a + cos * b];
     const [w, h] = target.size;
     list.push({
       at: place([w / 2, h / 2]),

@@ -28,11 +28,10 @@ impl Term for SymmetricDifference {
     }
 
     fn evaluate(&self, at: &Deployed, weight: f64, gradient: &mut TermGradient) -> f64 {
-        let placed = self.shape.placed(at.outline);
+        let placed = self.shape.placed(at.outline, at.fit);
         let (difference, by_placed) = symmetric_difference(&placed, &self.target);
         let whole = area(&self.target);
-        let by_outline = self.shape.pullback(at.outline, by_placed);
-        gradient.add_by_outline(weight / whole, &by_outline);
+        (self.shape).pullback(at, &placed, &by_placed, weight / whole, gradient);
         difference / whole
     }
 }

@@ -1,0 +1,253 @@
+//! The scene of a sheet that is fitted to the target of another: what the fit, the pulls and one equilibrium decide becomes keys.
+
+use crate::fit::opening::safe_opening;
+use crate::fit::placement::place;
+use crate::fit::pulls::{Pull, candidates, pulls};
+use crate::fit::silhouette::{DIFFERENCE, Fitted, Making, fit};
+use crate::geometry::chamfer::chamfer;
+use crate::geometry::plane::{complex, point};
+use crate::geometry::polygon::bounds;
+use crate::geometry::similarity::Similarity;
+use crate::geometry::symmetric_difference::intersection_over_union;
+use crate::hinge_law::DamageMeasure;
+use crate::objective::design_problem::DesignError;
+use crate::objective::target::TargetShape;
+use crate::optimise::search::SearchMethod;
+use crate::pattern::cut_pattern::Outline;
+use crate::pattern::design_vector::WidthChart;
+use crate::scene::{
+    DriveConfig, LigamentConfig, LoadConfig, OptimiserConfig, Posture, PostureConfig, Scene,
+    SceneConfig, SceneError, StartConfig, SupportConfig, SupportKind, rounded,
+};
+use crate::sheet::validity::overlap;
+use hinge::Regime;
+
+/// The largest opening that is planned (rad): 65 degrees.
+const MOST: f64 = 1.134;
+/// The opening that is planned for a law that predicts no damage (rad): 45 degrees.
+const UNKNOWN: f64 = 0.785;
+/// The smallest angle between two cuts that is planned for such a law (rad): 30 degrees.
+const ACUTE: f64 = 0.524;
+/// By how much the cut angles stay away from the ends of the training domain (rad): two degrees.
+const INSIDE: f64 = 0.035;
+/// The largest number of pulls.
+const MOST_PULLS: usize = 4;
+/// Outline error of an equilibrium over that of the pins up to which another pull is not needed.
+const CLOSE: f64 = 1.25;
+/// The largest common area of two panels, over that of a panel, on a way on which no cut closes.
+const OVERLAP: f64 = 0.01;
+/// Steps of the search from the fitted sheet, and the length of its first step: it starts near its end.
+const STEPS: usize = 30;
+const FIRST_STEP: f64 = 0.03;
+
+/// How near an opened outline is to a silhouette.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Nearness {
+    /// Root mean square distance of the free corners of the outline from the silhouette (mm).
+    pub error: f64,
+    /// The same over the longer side of the flat sheet.
+    pub relative: f64,
+    /// The area inside both the polygon through these corners and the silhouette, over that inside one of them.
+    pub overlap: f64,
+}
+
+/// A fitted scene, and what is expected of it.
+pub struct FittedScene {
+    /// Its keys.
+    pub config: SceneConfig,
+    /// The opening of every hinge on pins (rad).
+    pub opening: f64,
+    /// The sheet on pins.
+    pub on_pins: Nearness,
+    /// Its equilibrium under the pulls before any search; `None` without a hinge law, or if none was found.
+    pub pulled: Option<Nearness>,
+}
+
+/// Why a sheet is not fitted to a target.
+#[derive(Debug, thiserror::Error)]
+#[allow(missing_docs, reason = "the message of a variant is its documentation")]
+pub enum FitError {
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+    #[error("no sheet on pins is found for the target: {0}")]
+    Design(#[from] DesignError),
+}
+
+/// Fits the sheet of a scene, a rectangle that stands for the space in its stock, to its target.
+pub fn fitted(scene: &Scene) -> Result<FittedScene, FitError> {
+    let silhouette = &scene.target.points;
+    let making = making(scene);
+    let fitted = fit(silhouette, &making)?;
+    let held = [fitted.grid.m / 2, fitted.grid.n / 2];
+    let index = held[1] * fitted.grid.m + held[0];
+    let (on_pins, place_on_pins) = fitted.opened(index);
+    let longer = extent(&fitted.outline).into_iter().fold(0.0, f64::max);
+    let nearness = |outline: &[[f64; 2]], place: Similarity| {
+        let placed: Vec<[f64; 2]> = silhouette
+            .iter()
+            .map(|p| point(place.of(complex(*p))))
+            .collect();
+        let error = chamfer(outline, &placed, 0.0).0.sqrt();
+        Nearness {
+            error,
+            relative: error / longer,
+            overlap: intersection_over_union(outline, &placed),
+        }
+    };
+    let pins = nearness(&on_pins, place_on_pins);
+    let candidates = candidates(&fitted.sheet, fitted.grid, index, making.opening);
+    let with = |count: usize, place: Similarity| {
+        fitted_keys(scene, &fitted, held, &pulls(&candidates, count), place)
+    };
+    let mut tried = Vec::new();
+    for count in 1..=MOST_PULLS {
+        let pulling = scene.changed(with(count, place_on_pins))?;
+        let Some(pulled) = pulled(&pulling, silhouette, place_on_pins) else {
+            continue;
+        };
+        let near = nearness(&pulled.outline, pulled.place);
+        let suffices = pulled.overlap <= OVERLAP && near.error <= CLOSE * pins.error;
+        tried.push((pulled.overlap > OVERLAP, near, with(count, pulled.place)));
+        if suffices {
+            break;
+        }
+    }
+    let best = tried
+        .into_iter()
+        .min_by(|(closes, near, _), (others, other, _)| {
+            closes.cmp(others).then(near.error.total_cmp(&other.error))
+        });
+    let (pulled, config) = match best {
+        Some((_, near, config)) => (Some(near), config),
+        None => (None, with(1, place_on_pins)),
+    };
+    Ok(FittedScene {
+        config,
+        opening: making.opening,
+        on_pins: pins,
+        pulled,
+    })
+}
+
+/// A sheet under its pulls.
+struct Pulled {
+    /// The free corners of its outline (mm).
+    outline: Vec<[f64; 2]>,
+    /// The place of the silhouette on it.
+    place: Similarity,
+    /// The largest common area of two panels on the way, over that of a panel.
+    overlap: f64,
+}
+
+/// The equilibrium of a scene; `None` if none is found.
+fn pulled(scene: &Scene, silhouette: &[[f64; 2]], guess: Similarity) -> Option<Pulled> {
+    let problem = scene.problem().ok()?;
+    problem.model.mechanics()?;
+    let deployment = problem.deploy(&scene.start()).ok()?;
+    deployment.at_full_load().ok()?;
+    let sheet = &deployment.sheet;
+    let outline = deployment.outline(&sheet.free_outline_corners());
+    let place = place(silhouette, &outline, guess);
+    let overlaps = deployment
+        .path
+        .iter()
+        .map(|step| overlap(sheet, &step.configuration));
+    let overlap = overlaps.fold(0.0, f64::max);
+    Some(Pulled {
+        outline,
+        place,
+        overlap,
+    })
+}
+
+/// Width and height of an outline (mm).
+fn extent(outline: &Outline) -> [f64; 2] {
+    let [low, high] = bounds(outline.corners.iter().copied());
+    [0, 1].map(|c| high[c] - low[c])
+}
+
+fn making(scene: &Scene) -> Making {
+    let config = &scene.config;
+    let [w_minus, w_plus] = config.ligament.range;
+    let learned = scene.surrogate().map(|surrogate| {
+        let w_lig = config.ligament.start / scene.scale();
+        let regime = scene.material.regime(config.ligament.start);
+        let [least, _] = surrogate.domain().alpha;
+        (safe_opening(surrogate, regime, w_lig, MOST), least + INSIDE)
+    });
+    let (opening, least_angle) = learned.unwrap_or((UNKNOWN, ACUTE));
+    Making {
+        stock: extent(&config.sheet.outline()),
+        opening,
+        least_angle,
+        widths: WidthChart { w_minus, w_plus },
+        options: scene.sheet_options(),
+    }
+}
+
+/// The keys of the scene with the fitted sheet, its supports, its pulls and the place of its target.
+fn fitted_keys(
+    scene: &Scene,
+    fitted: &Fitted,
+    held: [usize; 2],
+    pulls: &[Pull],
+    place: Similarity,
+) -> SceneConfig {
+    let mut config = scene.config.clone();
+    config.sheet.size = None;
+    config.sheet.corners = Some(fitted.outline.corners.map(|corner| corner.map(rounded)));
+    config.sheet.panels = [fitted.grid.m, fitted.grid.n];
+    let regime = scene.material.regime(config.ligament.start);
+    config.start = StartConfig::at(&fitted.pattern, widths(scene, fitted, regime));
+    config.supports = vec![SupportConfig::at_centroid(held, SupportKind::Clamp)];
+    let length = |pull: &Pull| complex(pull.displacement).norm();
+    let load = |pull: &Pull| {
+        let direction = pull.displacement.map(|x| rounded(x / length(pull)));
+        LoadConfig::at_centroid(pull.panel, direction)
+    };
+    config.loads = pulls.iter().map(load).collect();
+    config.drive = Some(DriveConfig {
+        stroke: rounded(pulls.iter().map(length).sum::<f64>() / pulls.len() as f64),
+    });
+    config.edge_loads.clear();
+    config.opening_couples.clear();
+    let kind = match regime {
+        Regime::Film => Posture::HeldFlat,
+        Regime::Plate => Posture::Lying,
+    };
+    config.posture = Some(PostureConfig { kind, down: None });
+    config.objective.symmetric_difference = DIFFERENCE;
+    config.objective.damage_measure = DamageMeasure::Peak;
+    config.optimiser = OptimiserConfig {
+        steps: STEPS,
+        learning_rate: FIRST_STEP,
+        method: SearchMethod::Lbfgs,
+        ..config.optimiser
+    };
+    if let TargetShape::Svg {
+        centre,
+        height,
+        rotation_deg,
+        ..
+    } = &mut config.target
+    {
+        *centre = point(place.of(complex(*centre))).map(rounded);
+        *height = rounded(*height * place.scale());
+        *rotation_deg = rounded(*rotation_deg + place.rotation().to_degrees());
+    }
+    config
+}
+
+/// The widths of the ligaments at the start (mm). The ligament of a plate turns about its middle, w_lig / (2 sin alpha) from the corner
+/// of its void along the main cut: if this distance is the same at every hinge, the voids remain parallelograms, and the sheet opens
+/// like that on pins.
+fn widths(scene: &Scene, fitted: &Fitted, regime: Regime) -> Vec<f64> {
+    let LigamentConfig { start, range } = scene.config.ligament;
+    let [narrowest, widest] = [1.01 * range[0], 0.99 * range[1]];
+    let width = |alpha: f64| match regime {
+        Regime::Film => start,
+        Regime::Plate => rounded(start * alpha.sin()).clamp(narrowest, widest),
+    };
+    let hinges = fitted.sheet.hinges.iter();
+    hinges.map(|hinge| width(hinge.alpha)).collect()
+}

@@ -1,0 +1,62 @@
+//! Drawings that a sheet is asked to become: nothing is edited between `init` and the cut file.
+
+use crate::common::Workplace;
+use serde_json::Value;
+use std::path::Path;
+
+/// Side of the space for the sheet (mm).
+const SIDE: f64 = 180.0;
+
+#[test]
+fn a_drawing_becomes_a_sheet_with_a_cut_file() {
+    let work = Workplace::new();
+    let weights =
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("data/polypropylene-3mm/medium.safetensors");
+    for (drawing, in_common) in [
+        ("leaf", 0.93),
+        ("vase", 0.85),
+        ("bell", 0.85),
+        ("shield", 0.85),
+    ] {
+        let said = work.output(&format!(
+            "init {drawing} --target configs/targets/{drawing}.svg --thickness 2 --size {SIDE}x{SIDE} --weights {}",
+            weights.display()
+        ));
+        assert!(
+            said.contains("on pins: within") && said.contains("before the search: within"),
+            "{said}"
+        );
+        work.output(&format!("design {drawing}/scene.toml"));
+        let run = work.path(&format!("{drawing}/design"));
+        assert!(run.join("cut.dxf").exists(), "{drawing}");
+        let report = std::fs::read_to_string(run.join("report.json")).unwrap();
+        let report: Value = serde_json::from_str(&report).unwrap();
+        let after = |key: &str| report["after"][key].as_f64().unwrap();
+        assert!(
+            after("outline_error") < 0.04 * SIDE,
+            "{drawing}: {}",
+            report["after"]
+        );
+        let apart = after("symmetric_difference");
+        assert!(
+            (2.0 - apart) / (2.0 + apart) > in_common,
+            "{drawing}: {apart}"
+        );
+    }
+}
+
+/// The fit does not depend on chance or on the number of cores: the same command writes the same scene.
+#[test]
+fn the_same_drawing_becomes_the_same_scene() {
+    let work = Workplace::new();
+    let weights =
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("data/polypropylene-3mm/medium.safetensors");
+    let scene = |folder: &str| {
+        work.output(&format!(
+            "init {folder} --target configs/targets/leaf.svg --thickness 3 --size 210x297 --weights {}",
+            weights.display()
+        ));
+        std::fs::read_to_string(work.path(&format!("{folder}/scene.toml"))).unwrap()
+    };
+    assert_eq!(scene("one"), scene("other"));
+}
