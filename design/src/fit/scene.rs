@@ -19,7 +19,7 @@ use crate::scene::{
     DriveConfig, LigamentConfig, LoadConfig, OptimiserConfig, Posture, PostureConfig, Scene,
     SceneConfig, SceneError, StartConfig, SupportConfig, SupportKind, rounded,
 };
-use crate::sheet::validity::overlap;
+use crate::sheet::validity::{OVERLAP, overlap};
 use hinge::Regime;
 
 /// The largest opening that is planned (rad): 65 degrees.
@@ -34,8 +34,6 @@ const INSIDE: f64 = 0.035;
 const MOST_PULLS: usize = 4;
 /// Outline error of an equilibrium over that of the pins up to which another pull is not needed.
 const CLOSE: f64 = 1.25;
-/// The largest common area of two panels, over that of a panel, on a way on which no cut closes.
-const OVERLAP: f64 = 0.01;
 /// Steps of the search from the fitted sheet, and the length of its first step: it starts near its end.
 const STEPS: usize = 30;
 const FIRST_STEP: f64 = 0.03;

@@ -9,7 +9,6 @@ use crate::objective::design_problem::{
     Deployment, DesignError, DesignProblem, Evaluation, Mechanics, Sensitivities,
 };
 use crate::pattern::design_vector::DesignVector;
-use crate::pattern::fit_variables::FitVariables;
 use crate::sheet::cut_sheet::{Sheet, SheetGradient};
 use crate::sheet::ideal_deployment::ideal_deployment_pullback;
 use crate::sheet::kinematics::deployed_pullback;
@@ -160,11 +159,7 @@ impl DesignProblem {
                 .map(|(&omega, by_width)| by_width * self.widths.slope(omega))
                 .collect(),
             opening: by_opening,
-            fit: design.fit.map(|fit| FitVariables {
-                ln_size: partials.by_fit[0],
-                rotation: partials.by_fit[1],
-                corners: fit.pullback(&self.outline, &by_outline),
-            }),
+            fit: (design.fit).map(|fit| fit.pullback(&self.outline, partials.by_fit, &by_outline)),
         };
         Ok(Gradient {
             design,

@@ -49,15 +49,23 @@ impl FitVariables {
         }
     }
 
-    /// The gradient in u from that in the corners of the outline.
-    pub(crate) fn pullback(&self, stock: &Outline, by: &[[f64; 2]; 4]) -> [[f64; 2]; 4] {
+    /// The gradient in the variables from those in size and rotation of the target and in the corners of the outline.
+    pub(crate) fn pullback(
+        &self,
+        stock: &Outline,
+        [ln_size, rotation]: [f64; 2],
+        by_outline: &[[f64; 2]; 4],
+    ) -> Self {
         let middle = middle(stock);
-        std::array::from_fn(|i| {
-            [0, 1].map(|c| {
-                let share = logistic(self.corners[i][c]);
-                by[i][c] * share * (1.0 - share) * (stock.corners[i][c] - middle[c])
-            })
-        })
+        let by_u = |i: usize, c: usize| {
+            let share = logistic(self.corners[i][c]);
+            by_outline[i][c] * share * (1.0 - share) * (stock.corners[i][c] - middle[c])
+        };
+        Self {
+            ln_size,
+            rotation,
+            corners: std::array::from_fn(|i| [by_u(i, 0), by_u(i, 1)]),
+        }
     }
 }
 

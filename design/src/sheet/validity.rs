@@ -71,6 +71,9 @@ impl Validity {
     }
 }
 
+/// [`overlap`] from which panels lie over each other: more than a kerf and rounding leave.
+pub const OVERLAP: f64 = 0.01;
+
 /// The maximum common area of two neighbouring panels in a configuration, relative to the mean panel
 /// area. Panels that do not even share a corner are not compared.
 pub fn overlap(sheet: &Sheet, configuration: &[[f64; 3]]) -> f64 {

@@ -19,7 +19,7 @@ use design::scene::design_run::Designed;
 use design::scene::{Actuation, FRICTION, Posture, Scene};
 use design::sheet::cut_sheet::PanelPoint;
 use design::sheet::hinge_window::Window;
-use design::sheet::validity::overlap;
+use design::sheet::validity::{OVERLAP, overlap};
 use hinge::Regime;
 use support::severity::Severity;
 
@@ -27,8 +27,6 @@ use support::severity::Severity;
 const HEAVY: f64 = 0.05;
 /// Mass of hung weights over that of the sheet from which they are probably given in another unit.
 const HUNG: f64 = 50.0;
-/// Common area of two panels over that of a panel from which they lie over each other: more than a kerf and rounding leave.
-const OVERLAP: f64 = 0.01;
 /// Mean opening of the hinges (rad) that is rounding.
 const SHUT: f64 = -1e-6;
 /// Distance of the outline from the target over the longer side of the flat sheet from which it is a note, a warning and an error.
