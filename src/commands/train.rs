@@ -34,7 +34,7 @@ use train::{Epoch, Start, Trained, Training, TrainingConfig, TrainingData};
 /// kirigami train configs/campaigns/polypropylene-3mm.toml
 ///
 /// Of a campaign, whose database is collected, it makes every training that the campaign names, each with four seeds: the best
-/// one is runs/<campaign>/weights/NAME.safetensors, the others NAME-1 to NAME-3, its ensemble. It tests them on the spot check
+/// one is runs/CAMPAIGN/weights/NAME.safetensors, the others NAME-1 to NAME-3, its ensemble. It tests them on the spot check
 /// of the campaign, and records the errors on their cards.
 #[derive(Args)]
 pub struct TrainCommand {
