@@ -3,6 +3,7 @@
 mod many_runs;
 
 use crate::commands::design::many_runs::{Run, compare, refuse_shared_folders};
+use crate::commands::fitting::fit_to_target;
 use crate::ui::exit::Unfinished;
 use crate::ui::progress::{Progress, announce};
 use crate::ui::{animation, interrupt, picture, run_folder};
@@ -47,6 +48,11 @@ pub struct DesignCommand {
     /// Number of search steps, instead of the scene's
     #[arg(long, value_name = "N")]
     steps: Option<usize>,
+    /// First fit outline, cuts and pulls of the sheet, a rectangle that stands for its stock, and the place of the target to each other,
+    /// as `init --target` does. What the scene says of these, of posture, weights of the objective and optimiser is replaced; the run's
+    /// scene.toml has what was chosen
+    #[arg(long)]
+    fit: bool,
     /// Begin at the start design even if the run folder contains a run of this scene
     #[arg(long)]
     restart: bool,
@@ -187,11 +193,21 @@ impl DesignCommand {
         if let Some(weights) = &self.weights {
             config.name_weights(weights)?;
         }
-        if let Some(steps) = self.steps {
-            config.optimiser.steps = steps;
-        }
+        self.set_steps(&mut config);
         change(&mut config);
-        Ok(Scene::new(config, &path)?)
+        let scene = Scene::new(config, &path)?;
+        if !self.fit {
+            return Ok(scene);
+        }
+        let (fit, expected) = fit_to_target(&scene)?;
+        announce(&expected);
+        let mut config = fit.config;
+        self.set_steps(&mut config);
+        Ok(scene.changed(config)?)
+    }
+
+    fn set_steps(&self, config: &mut SceneConfig) {
+        config.optimiser.steps = self.steps.unwrap_or(config.optimiser.steps);
     }
 }
 

@@ -22,10 +22,13 @@ fn a_drawing_becomes_a_sheet_with_a_cut_file() {
             "init {drawing} --target configs/targets/{drawing}.svg --thickness 2 --size {SIDE}x{SIDE} --weights {}",
             weights.display()
         ));
-        assert!(
-            said.contains("on pins: within") && said.contains("before the search: within"),
-            "{said}"
-        );
+        for figure in [
+            "on pins: within",
+            "before the search: within",
+            "on pins, from a stock twice as long and wide",
+        ] {
+            assert!(said.contains(figure), "{said}");
+        }
         work.output(&format!("design {drawing}/scene.toml"));
         let run = work.path(&format!("{drawing}/design"));
         assert!(run.join("cut.dxf").exists(), "{drawing}");
@@ -43,6 +46,30 @@ fn a_drawing_becomes_a_sheet_with_a_cut_file() {
             "{drawing}: {apart}"
         );
     }
+}
+
+/// A scene of any target is fitted before its search; its run has what was chosen, and is designed again without a fit.
+#[test]
+fn a_scene_is_fitted_to_its_target() {
+    let work = Workplace::new();
+    let weights =
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("data/polypropylene-3mm/medium.safetensors");
+    work.output(&format!(
+        "init plain --thickness 2 --size {SIDE}x{SIDE} --weights {}",
+        weights.display()
+    ));
+    work.output("design plain/scene.toml --fit --steps 2");
+    let run = work.path("plain/design");
+    let chosen = std::fs::read_to_string(run.join("scene.toml")).unwrap();
+    assert!(chosen.contains("corners") && chosen.contains("[target.rectangle]"));
+    let report = std::fs::read(run.join("report.json")).unwrap();
+    work.output(&format!("design {} --out again", run.display()));
+    let again = std::fs::read(work.path("again/report.json")).unwrap();
+    let loss = |report: &[u8]| {
+        let report: Value = serde_json::from_slice(report).unwrap();
+        report["after"]["loss"].as_f64().unwrap()
+    };
+    assert_eq!(loss(&again), loss(&report));
 }
 
 /// The fit does not depend on chance or on the number of cores: the same command writes the same scene.

@@ -3,15 +3,14 @@
 use crate::fit::opening::safe_opening;
 use crate::fit::placement::place;
 use crate::fit::pulls::{Pull, candidates, pulls};
-use crate::fit::silhouette::{DIFFERENCE, Fitted, Making, fit};
+use crate::fit::silhouette::{DIFFERENCE, Fitted, Making, ROTATIONS, fit};
 use crate::geometry::chamfer::chamfer;
 use crate::geometry::plane::{complex, point};
-use crate::geometry::polygon::bounds;
+use crate::geometry::polygon::{bounds, distance, nearest_on_outline};
 use crate::geometry::similarity::Similarity;
 use crate::geometry::symmetric_difference::intersection_over_union;
 use crate::hinge_law::DamageMeasure;
 use crate::objective::design_problem::DesignError;
-use crate::objective::target::TargetShape;
 use crate::optimise::search::SearchMethod;
 use crate::pattern::cut_pattern::Outline;
 use crate::pattern::design_vector::WidthChart;
@@ -30,6 +29,11 @@ const UNKNOWN: f64 = 0.785;
 const ACUTE: f64 = 0.524;
 /// By how much the cut angles stay away from the ends of the training domain (rad): two degrees.
 const INSIDE: f64 = 0.035;
+/// Weights of the damage and of states outside the training domain: with lower ones the ligaments of a slender shape tear.
+const DAMAGE: f64 = 0.4;
+const DOMAIN: f64 = 300.0;
+/// Distance of the silhouette from the opened outline at which a place counts as reached, over the longer side of the sheet.
+const REACHED: f64 = 0.02;
 /// The largest number of pulls.
 const MOST_PULLS: usize = 4;
 /// Outline error of an equilibrium over that of the pins up to which another pull is not needed.
@@ -49,6 +53,15 @@ pub struct Nearness {
     pub overlap: f64,
 }
 
+/// A place of a silhouette that a sheet on pins does not reach.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Missed {
+    /// Its distance from the opened outline (mm).
+    pub distance: f64,
+    /// Where it is in the drawing, as parts of its width and height from its lower left corner.
+    pub at: [f64; 2],
+}
+
 /// A fitted scene, and what is expected of it.
 pub struct FittedScene {
     /// Its keys.
@@ -57,6 +70,10 @@ pub struct FittedScene {
     pub opening: f64,
     /// The sheet on pins.
     pub on_pins: Nearness,
+    /// The places that it does not reach within `REACHED` of its longer side, the farthest first, one for each stretch of the silhouette.
+    pub missed: Vec<Missed>,
+    /// Rotation of the silhouette on it (rad).
+    rotation: f64,
     /// Its equilibrium under the pulls before any search; `None` without a hinge law, or if none was found.
     pub pulled: Option<Nearness>,
 }
@@ -75,22 +92,12 @@ pub enum FitError {
 pub fn fitted(scene: &Scene) -> Result<FittedScene, FitError> {
     let silhouette = &scene.target.points;
     let making = making(scene);
-    let fitted = fit(silhouette, &making)?;
+    let fitted = fit(silhouette, &making, &ROTATIONS)?;
     let held = [fitted.grid.m / 2, fitted.grid.n / 2];
     let index = held[1] * fitted.grid.m + held[0];
     let (on_pins, place_on_pins) = fitted.opened(index);
-    let longer = extent(&fitted.outline).into_iter().fold(0.0, f64::max);
     let nearness = |outline: &[[f64; 2]], place: Similarity| {
-        let placed: Vec<[f64; 2]> = silhouette
-            .iter()
-            .map(|p| point(place.of(complex(*p))))
-            .collect();
-        let error = chamfer(outline, &placed, 0.0).0.sqrt();
-        Nearness {
-            error,
-            relative: error / longer,
-            overlap: intersection_over_union(outline, &placed),
-        }
+        Nearness::new(outline, &placed(silhouette, place), &fitted)
     };
     let pins = nearness(&on_pins, place_on_pins);
     let candidates = candidates(&fitted.sheet, fitted.grid, index, making.opening);
@@ -123,8 +130,86 @@ pub fn fitted(scene: &Scene) -> Result<FittedScene, FitError> {
         config,
         opening: making.opening,
         on_pins: pins,
+        missed: missed(
+            silhouette,
+            &on_pins,
+            place_on_pins,
+            REACHED * fitted.longer(),
+        ),
+        rotation: fitted.rotation(),
         pulled,
     })
+}
+
+/// The numbers of panels of a sheet whose stock is `factor` times as long and as wide, fitted on pins from the rotation of a fit, and
+/// how near it comes.
+pub fn on_larger_stock(
+    scene: &Scene,
+    fit_of_stock: &FittedScene,
+    factor: f64,
+) -> Result<([usize; 2], Nearness), FitError> {
+    let making = making(scene);
+    let larger = Making {
+        stock: making.stock.map(|side| factor * side),
+        ..making
+    };
+    let silhouette = &scene.target.points;
+    let fitted = fit(silhouette, &larger, &[fit_of_stock.rotation])?;
+    let (outline, place) = fitted.opened(0);
+    let nearness = Nearness::new(&outline, &placed(silhouette, place), &fitted);
+    Ok(([fitted.grid.m, fitted.grid.n], nearness))
+}
+
+impl Nearness {
+    fn new(outline: &[[f64; 2]], placed: &[[f64; 2]], fitted: &Fitted) -> Self {
+        let error = chamfer(outline, placed, 0.0).0.sqrt();
+        Self {
+            error,
+            relative: error / fitted.longer(),
+            overlap: intersection_over_union(outline, placed),
+        }
+    }
+}
+
+impl Fitted {
+    /// The longer side of the flat sheet (mm).
+    fn longer(&self) -> f64 {
+        extent(&self.outline).into_iter().fold(0.0, f64::max)
+    }
+}
+
+fn placed(silhouette: &[[f64; 2]], place: Similarity) -> Vec<[f64; 2]> {
+    let placed = silhouette.iter().map(|p| point(place.of(complex(*p))));
+    placed.collect()
+}
+
+/// The farthest place of each stretch of a silhouette that is more than `least` (mm) from an outline.
+fn missed(
+    silhouette: &[[f64; 2]],
+    outline: &[[f64; 2]],
+    place: Similarity,
+    least: f64,
+) -> Vec<Missed> {
+    let [low, high] = bounds(silhouette.iter().copied());
+    let mut missed: Vec<Missed> = Vec::new();
+    let mut reached = true;
+    for (placed, point) in placed(silhouette, place).into_iter().zip(silhouette) {
+        let distance = distance(placed, nearest_on_outline(placed, outline));
+        let at = [0, 1].map(|c| (point[c] - low[c]) / (high[c] - low[c]));
+        if distance > least {
+            match missed.last_mut() {
+                Some(last) if !reached => {
+                    if distance > last.distance {
+                        *last = Missed { distance, at };
+                    }
+                }
+                _ => missed.push(Missed { distance, at }),
+            }
+        }
+        reached = distance <= least;
+    }
+    missed.sort_by(|one, other| other.distance.total_cmp(&one.distance));
+    missed
 }
 
 /// A sheet under its pulls.
@@ -214,25 +299,18 @@ fn fitted_keys(
         Regime::Plate => Posture::Lying,
     };
     config.posture = Some(PostureConfig { kind, down: None });
-    config.objective.symmetric_difference = DIFFERENCE;
+    // Relative to the mean area of a panel.
+    config.objective.symmetric_difference = DIFFERENCE * fitted.grid.panel_count() as f64;
+    config.objective.damage = DAMAGE;
     config.objective.damage_measure = DamageMeasure::Peak;
+    config.objective.domain = DOMAIN;
     config.optimiser = OptimiserConfig {
         steps: STEPS,
         learning_rate: FIRST_STEP,
         method: SearchMethod::Lbfgs,
         ..config.optimiser
     };
-    if let TargetShape::Svg {
-        centre,
-        height,
-        rotation_deg,
-        ..
-    } = &mut config.target
-    {
-        *centre = point(place.of(complex(*centre))).map(rounded);
-        *height = rounded(*height * place.scale());
-        *rotation_deg = rounded(*rotation_deg + place.rotation().to_degrees());
-    }
+    config.target = config.target.placed(&place, &scene.target.points);
     config
 }
 
@@ -248,4 +326,39 @@ fn widths(scene: &Scene, fitted: &Fitted, regime: Regime) -> Vec<f64> {
     };
     let hinges = fitted.sheet.hinges.iter();
     hinges.map(|hinge| width(hinge.alpha)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_part_beyond_the_outline_is_missed_once_where_it_is_farthest() {
+        let outline = [[0.0, 0.0], [40.0, 0.0], [40.0, 30.0], [0.0, 30.0]];
+        // The rectangle, with a spike at its top and a notch at its right.
+        let silhouette = [
+            [0.0, 0.0],
+            [40.0, 0.0],
+            [40.0, 10.0],
+            [35.0, 15.0],
+            [40.0, 20.0],
+            [40.0, 30.0],
+            [22.0, 30.0],
+            [21.0, 40.0],
+            [20.0, 50.0],
+            [19.0, 40.0],
+            [18.0, 30.0],
+            [0.0, 30.0],
+        ];
+        let here = Similarity {
+            turn: complex([1.0, 0.0]),
+            shift: complex([0.0; 2]),
+        };
+        let missed = missed(&silhouette, &outline, here, 4.0);
+        let expected = [(20.0, [0.5, 1.0]), (5.0, [0.875, 0.3])];
+        assert_eq!(
+            missed,
+            expected.map(|(distance, at)| Missed { distance, at })
+        );
+    }
 }

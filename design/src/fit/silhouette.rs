@@ -24,30 +24,35 @@ use crate::pattern::grid::Grid;
 use crate::sheet::cut_sheet::{Sheet, SheetOptions};
 use crate::sheet::kinematics::deployed;
 use faer::c64;
+use rayon::prelude::*;
 use std::convert::Infallible;
-use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
+use std::f64::consts::FRAC_PI_2;
 use std::sync::atomic::AtomicBool;
-use std::thread;
 
 /// Rotations of the silhouette at the starts (rad).
-const ROTATIONS: [f64; 6] = [0.0, 0.3, -0.3, FRAC_PI_4, -FRAC_PI_4, FRAC_PI_2];
-/// Steps of one search.
-const STEPS: usize = 300;
-/// Length of its first step in every coordinate.
+pub(super) const ROTATIONS: [f64; 10] = [
+    0.0, 0.26, -0.26, 0.52, -0.52, 0.785, -0.785, 1.05, -1.05, FRAC_PI_2,
+];
+/// Steps of every search, the number of searches that go on from there, and the steps that they have at their ends.
+const FIRST_STEPS: usize = 100;
+const KEPT: usize = 8;
+const STEPS: usize = 600;
+/// Length of the first step of a search in every coordinate.
 const FIRST_STEP: f64 = 0.1;
 /// Part of the stock, along one of its sides, that the sheet of a start fills.
 const FILLED: f64 = 0.9;
-/// Side of a panel over the radius of a window. With 3.6 radii most windows overlap, and the outline is no nearer.
-const PANEL: f64 = 4.4;
+/// Sides of the panels of the starts over the radius of a window. With 3.6 radii most windows overlap, and the outline is no nearer.
+const SIDES: [f64; 3] = [4.4, 4.8, 5.4];
 /// Smallest distance of two corners of a panel that is not penalised, over the radius of a window: two radii and a gap.
 const APART: f64 = 2.3;
 /// The largest number of panels.
 const MOST_PANELS: f64 = 150.0;
 /// Fewest panels along a side.
 const FEWEST: usize = 3;
-/// Weights of the penalties relative to the Chamfer distance over the mean panel area.
-pub(super) const DIFFERENCE: f64 = 10.0;
-const PANELS: f64 = 8.0;
+/// Weight of the symmetric difference relative to the Chamfer distance over the area of the sheet.
+pub(super) const DIFFERENCE: f64 = 2.2;
+/// Weights of the other penalties relative to the Chamfer distance over the area of a small panel.
+const PANEL_SHAPE: f64 = 8.0;
 const ANGLES: f64 = 3.0;
 
 /// What a sheet is cut from, and what bounds its cuts.
@@ -85,11 +90,14 @@ pub struct Fitted {
     /// Scale and rotation of the silhouette, and the centre of its area in its own coordinates.
     turn: c64,
     centre: c64,
-    /// Value of the objective over the mean panel area.
-    loss: f64,
 }
 
 impl Fitted {
+    /// Rotation of the silhouette (rad).
+    pub(super) fn rotation(&self) -> f64 {
+        self.turn.arg()
+    }
+
     /// The free corners of the outline of the opened sheet whose panel `held` stays where it is (mm), and the place of the silhouette there.
     pub fn opened(&self, held: usize) -> (Vec<[f64; 2]>, Similarity) {
         let opened = opened_about(&self.sheet, held, self.opening);
@@ -106,89 +114,117 @@ impl Fitted {
     }
 }
 
-/// Fits a sheet to a silhouette, a closed curve in any position and of any size.
-pub fn fit(silhouette: &[[f64; 2]], making: &Making) -> Result<Fitted, DesignError> {
-    let cores = thread::available_parallelism().map_or(1, usize::from);
-    let shares = ROTATIONS.chunks(ROTATIONS.len().div_ceil(cores));
-    let of_share = |rotations: &'static [f64]| {
-        let fits = rotations
-            .iter()
-            .map(|&rotation| fit_from(silhouette, making, rotation));
-        fits.collect::<Vec<_>>()
-    };
-    let fits: Vec<Result<Fitted, DesignError>> = thread::scope(|scope| {
-        let running: Vec<_> = shares
-            .map(|share| scope.spawn(move || of_share(share)))
-            .collect();
-        (running.into_iter())
-            .flat_map(|fits| fits.join().expect("a fit does not panic"))
-            .collect()
-    });
-    // A failed start does not end the others.
-    let loss =
-        |fit: &Result<Fitted, DesignError>| fit.as_ref().map_or(f64::INFINITY, |fit| fit.loss);
-    let best = fits
-        .into_iter()
-        .min_by(|one, other| loss(one).total_cmp(&loss(other)));
-    best.expect("there are starts")
-}
-
-/// The fit from one rotation.
-fn fit_from(
+/// Fits a sheet to a silhouette, a closed curve in any position and of any size, from each of some rotations of it (rad).
+pub fn fit(
     silhouette: &[[f64; 2]],
     making: &Making,
-    rotation: f64,
+    rotations: &[f64],
 ) -> Result<Fitted, DesignError> {
-    let centre = complex(centre::of(silhouette));
-    let turned = |size: f64| {
-        let turn = c64::cis(rotation) * size;
-        silhouette
-            .iter()
-            .map(move |&p| point(turn * (complex(p) - centre)))
-    };
-    let [low, high] = bounds(turned(1.0));
-    let extent = [0, 1].map(|c| high[c] - low[c]);
-    let fill = f64::min(making.stock[0] / extent[0], making.stock[1] / extent[1]);
-    let sides = extent.map(|along| FILLED * fill * along);
-    let sheet = sides[0] * sides[1];
-    let grid = making.grid(sides);
-    // The area of a uniform sheet grows by 1 + sin(theta).
-    let scale = (sheet * (1.0 + making.opening.sin()) / area(silhouette).abs()).sqrt();
-    let problem = making.problem(
-        grid,
-        turned(scale).collect(),
-        sheet / grid.panel_count() as f64,
-    );
-    let corner = [0, 1].map(|c| logit(sides[c] / making.stock[c]));
-    let mut start = DesignVector::uniform(grid);
-    start.fit = Some(FitVariables {
-        ln_size: 0.0,
-        rotation: 0.0,
-        corners: [corner; 4],
+    let starts = rotations
+        .par_iter()
+        .flat_map_iter(|&rotation| SIDES.map(|side| (rotation, side)));
+    let begun = starts.map(|(rotation, side)| {
+        Search::new(silhouette, making, rotation, side)?.advanced(FIRST_STEPS)
     });
-    let first = problem.evaluate(&start)?;
-    let mut search = SearchState::new(&problem, start, &first, SearchMethod::Lbfgs, FIRST_STEP);
-    let never = AtomicBool::new(false);
-    let Ok(_) = optimise::<Infallible>(&problem, &mut search, STEPS, &never, &mut |_| Ok(()));
-    let design = search.best;
-    let end = problem.evaluate(&design)?;
-    let variables = design.fit.unwrap_or_default();
-    Ok(Fitted {
-        grid,
-        outline: problem.outline_of(&design),
-        outline_error: outline_error(&problem.objective, &end.deployment),
-        difference: end.terms["symmetric_difference"],
-        pattern: design.pattern,
-        sheet: end.deployment.sheet,
-        opening: making.opening,
-        turn: c64::cis(rotation + variables.rotation) * (scale * variables.ln_size.exp()),
-        centre,
-        loss: end.loss / problem.objective.penalties[0].weight * DIFFERENCE,
-    })
+    // A failed start does not end the others.
+    let loss = |search: &Result<Search, DesignError>| {
+        search.as_ref().map_or(f64::INFINITY, |search| search.loss)
+    };
+    let mut searches: Vec<_> = begun.collect();
+    searches.sort_by(|one, other| loss(one).total_cmp(&loss(other)));
+    // Two sides of panels may give the same numbers of panels.
+    searches.dedup_by(|one, other| loss(one) == loss(other));
+    searches.truncate(KEPT);
+    let ends = searches
+        .into_par_iter()
+        .map(|search| search?.advanced(STEPS));
+    let best = ends.min_by(|one, other| loss(one).total_cmp(&loss(other)));
+    best.expect("there are starts")?.fitted()
+}
+
+/// The search from one rotation of the silhouette and one size of the panels.
+struct Search {
+    problem: DesignProblem,
+    state: SearchState,
+    /// Opening of every hinge (rad).
+    opening: f64,
+    /// Scale and rotation of the silhouette at the start, and the centre of its area in its own coordinates.
+    turn: c64,
+    centre: c64,
+    /// Value of the objective at the best design (mm^2).
+    loss: f64,
+}
+
+impl Search {
+    fn new(
+        silhouette: &[[f64; 2]],
+        making: &Making,
+        rotation: f64,
+        side: f64,
+    ) -> Result<Self, DesignError> {
+        let centre = complex(centre::of(silhouette));
+        let turned =
+            |turn: c64| (silhouette.iter()).map(move |&p| point(turn * (complex(p) - centre)));
+        let [low, high] = bounds(turned(c64::cis(rotation)));
+        let extent = [0, 1].map(|c| high[c] - low[c]);
+        let fill = f64::min(making.stock[0] / extent[0], making.stock[1] / extent[1]);
+        let sides = extent.map(|along| FILLED * fill * along);
+        let sheet = sides[0] * sides[1];
+        // The area of a uniform sheet grows by 1 + sin(theta).
+        let scale = (sheet * (1.0 + making.opening.sin()) / area(silhouette).abs()).sqrt();
+        let turn = c64::cis(rotation) * scale;
+        let problem = making.problem(making.grid(sides, side), turned(turn).collect(), sheet);
+        let corner = [0, 1].map(|c| logit(sides[c] / making.stock[c]));
+        let mut start = DesignVector::uniform(problem.grid);
+        start.fit = Some(FitVariables {
+            ln_size: 0.0,
+            rotation: 0.0,
+            corners: [corner; 4],
+        });
+        let first = problem.evaluate(&start)?;
+        let state = SearchState::new(&problem, start, &first, SearchMethod::Lbfgs, FIRST_STEP);
+        Ok(Self {
+            problem,
+            state,
+            opening: making.opening,
+            turn,
+            centre,
+            loss: first.loss,
+        })
+    }
+
+    /// Goes on until `steps` are made.
+    fn advanced(mut self, steps: usize) -> Result<Self, DesignError> {
+        let never = AtomicBool::new(false);
+        let Ok(_) =
+            optimise::<Infallible>(&self.problem, &mut self.state, steps, &never, &mut |_| {
+                Ok(())
+            });
+        self.loss = self.problem.evaluate(&self.state.best)?.loss;
+        Ok(self)
+    }
+
+    fn fitted(self) -> Result<Fitted, DesignError> {
+        let design = self.state.best;
+        let end = self.problem.evaluate(&design)?;
+        let variables = design.fit.unwrap_or_default();
+        Ok(Fitted {
+            grid: self.problem.grid,
+            outline: self.problem.outline_of(&design),
+            outline_error: outline_error(&self.problem.objective, &end.deployment),
+            difference: end.terms["symmetric_difference"],
+            pattern: design.pattern,
+            sheet: end.deployment.sheet,
+            opening: self.opening,
+            turn: self.turn * c64::cis(variables.rotation) * variables.ln_size.exp(),
+            centre: self.centre,
+        })
+    }
 }
 
 impl Making {
-    fn problem(&self, grid: Grid, target: Vec<[f64; 2]>, panel_area: f64) -> DesignProblem {
+    fn problem(&self, grid: Grid, target: Vec<[f64; 2]>, sheet: f64) -> DesignProblem {
+        let panel_area = (SIDES[0] * self.options.process.r_win).powi(2);
         let shape = Shape {
             target,
             coverage_weight: COVERAGE,
@@ -196,11 +232,8 @@ impl Making {
         };
         let min_distance = APART * self.options.process.r_win;
         let penalties = vec![
-            Weighted::new(
-                DIFFERENCE * panel_area,
-                SymmetricDifference::new(shape.clone()),
-            ),
-            Weighted::new(PANELS * panel_area, PanelShape { min_distance }),
+            Weighted::new(DIFFERENCE * sheet, SymmetricDifference::new(shape.clone())),
+            Weighted::new(PANEL_SHAPE * panel_area, PanelShape { min_distance }),
             Weighted::new(
                 ANGLES * panel_area,
                 CutAngles {
@@ -225,9 +258,9 @@ impl Making {
     }
 
     /// An even number of columns, so that a symmetric silhouette can have a symmetric sheet.
-    fn grid(&self, sides: [f64; 2]) -> Grid {
+    fn grid(&self, sides: [f64; 2], side: f64) -> Grid {
         let side =
-            (PANEL * self.options.process.r_win).max((sides[0] * sides[1] / MOST_PANELS).sqrt());
+            (side * self.options.process.r_win).max((sides[0] * sides[1] / MOST_PANELS).sqrt());
         let [columns, rows] = sides.map(|along| along / side);
         Grid {
             m: 2 * ((0.5 * columns).round() as usize).max(2),
@@ -277,8 +310,12 @@ mod tests {
 
     #[test]
     fn a_leaf_is_reached_wherever_it_stands_in_its_file() {
-        let fits = [leaf([0.0; 2], 100.0, 0.0), leaf([5e3, -70.0], 2e3, 0.0)]
-            .map(|silhouette| (fit(&silhouette, &MAKING).unwrap(), silhouette));
+        let fits = [leaf([0.0; 2], 100.0, 0.0), leaf([5e3, -70.0], 2e3, 0.0)].map(|silhouette| {
+            (
+                fit(&silhouette, &MAKING, &[0.0, 0.3, -0.3]).unwrap(),
+                silhouette,
+            )
+        });
         for (fit, silhouette) in &fits {
             assert!(fit.outline_error < 0.015 * 300.0, "{}", fit.outline_error);
             assert!(fit.difference < 0.03, "{}", fit.difference);

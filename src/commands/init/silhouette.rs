@@ -1,16 +1,14 @@
 //! The scene of a sheet that opens onto a drawing: what the fit has chosen, written into the first scene.
 
+use crate::commands::fitting::fit_to_target;
 use crate::commands::init::edited::{heading, set};
-use crate::ui::progress::announce;
 use anyhow::{Context, Result};
-use design::fit::scene::{FittedScene, Nearness, fitted};
 use design::scene::{Posture, Scene, SceneConfig, TargetShape};
 use toml_edit::{Array, ArrayOfTables, DocumentMut, Item, Table, Value, value};
 
 /// The text of the scene of a first sheet, fitted to its target, and what is expected of it.
 pub(super) fn fitted_text(scene: &Scene, text: &str) -> Result<(String, String)> {
-    announce("fitting the sheet and the drawing to each other, in some seconds");
-    let fit = fitted(scene)?;
+    let (fit, expected) = fit_to_target(scene)?;
     let mut document: DocumentMut = text.parse().context("the first scene is valid TOML")?;
     heading(
         &mut document,
@@ -35,6 +33,8 @@ pub(super) fn fitted_text(scene: &Scene, text: &str) -> Result<(String, String)>
     });
     document["posture"] = Item::Table(held);
     let weights = &mut document["objective"];
+    set(&mut weights["damage"], objective.damage);
+    set(&mut weights["domain"], objective.domain);
     weights["symmetric_difference"] = value(objective.symmetric_difference);
     weights["damage_measure"] = value("peak");
     set(&mut document["optimiser"]["steps"], optimiser.steps as i64);
@@ -42,7 +42,7 @@ pub(super) fn fitted_text(scene: &Scene, text: &str) -> Result<(String, String)>
         &mut document["optimiser"]["learning_rate"],
         optimiser.learning_rate,
     );
-    Ok((document.to_string(), expected(&fit)))
+    Ok((document.to_string(), expected))
 }
 
 fn write_sheet(document: &mut DocumentMut, config: &SceneConfig) {
@@ -106,33 +106,4 @@ fn write_target(document: &mut DocumentMut, target: &TargetShape) {
 
 fn numbers(values: &[f64]) -> Value {
     Array::from_iter(values.iter().copied()).into()
-}
-
-/// What a person may expect of the sheet.
-fn expected(fit: &FittedScene) -> String {
-    let [columns, rows] = fit.config.sheet.panels;
-    let within = |Nearness {
-                      error,
-                      relative,
-                      overlap,
-                  }: Nearness| {
-        format!(
-            "within {error:.1} mm, {:.1} % of the sheet; {:.1} % of the area in common",
-            100.0 * relative,
-            100.0 * overlap
-        )
-    };
-    let pulled = match (fit.pulled, fit.config.loads.len()) {
-        (None, _) => "no equilibrium under pulls was found".to_owned(),
-        (Some(near), 1) => format!("pulled at one panel, before the search: {}", within(near)),
-        (Some(near), count) => format!(
-            "pulled at {count} panels, before the search: {}",
-            within(near)
-        ),
-    };
-    format!(
-        "The sheet of {columns} x {rows} panels, opened by {:.0} deg, becomes the drawing\n  on pins: {}\n  {pulled}",
-        fit.opening.to_degrees(),
-        within(fit.on_pins)
-    )
 }
