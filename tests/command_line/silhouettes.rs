@@ -72,6 +72,19 @@ fn a_scene_is_fitted_to_its_target() {
     assert_eq!(loss(&again), loss(&report));
 }
 
+/// A sheet of springs is fitted too; one of pins is refused, since its search is the fit.
+#[test]
+fn a_fit_needs_hinges_that_carry_loads() {
+    let work = Workplace::new();
+    let refused = work.error("-q design configs/scenes/pin-7x7.toml --fit --out pins");
+    assert!(
+        refused.contains("its search is on pins already"),
+        "{refused}"
+    );
+    work.output("design configs/scenes/linear-7x7.toml --fit --steps 1 --force --out springs");
+    assert!(work.path("springs/report.json").exists());
+}
+
 /// The fit does not depend on chance or on the number of cores: the same command writes the same scene.
 #[test]
 fn the_same_drawing_becomes_the_same_scene() {

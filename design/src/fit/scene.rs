@@ -15,8 +15,8 @@ use crate::optimise::search::SearchMethod;
 use crate::pattern::cut_pattern::Outline;
 use crate::pattern::design_vector::WidthChart;
 use crate::scene::{
-    DriveConfig, LigamentConfig, LoadConfig, OptimiserConfig, Posture, PostureConfig, Scene,
-    SceneConfig, SceneError, StartConfig, SupportConfig, SupportKind, rounded,
+    DriveConfig, HingeModel, LigamentConfig, LoadConfig, OptimiserConfig, Posture, PostureConfig,
+    Scene, SceneConfig, SceneError, StartConfig, SupportConfig, SupportKind, rounded,
 };
 use crate::sheet::validity::{OVERLAP, overlap};
 use hinge::Regime;
@@ -74,7 +74,7 @@ pub struct FittedScene {
     pub missed: Vec<Missed>,
     /// Rotation of the silhouette on it (rad).
     rotation: f64,
-    /// Its equilibrium under the pulls before any search; `None` without a hinge law, or if none was found.
+    /// Its equilibrium under the pulls before any search; `None` if none was found.
     pub pulled: Option<Nearness>,
 }
 
@@ -84,12 +84,19 @@ pub struct FittedScene {
 pub enum FitError {
     #[error(transparent)]
     Scene(#[from] SceneError),
+    #[error(
+        "the sheet has pins (hinge = \"pin\"): its search is on pins already; a fit is for a sheet with a hinge law"
+    )]
+    Pins,
     #[error("no sheet on pins is found for the target: {0}")]
     Design(#[from] DesignError),
 }
 
 /// Fits the sheet of a scene, a rectangle that stands for the space in its stock, to its target.
 pub fn fitted(scene: &Scene) -> Result<FittedScene, FitError> {
+    if scene.config.hinge == HingeModel::Pin {
+        return Err(FitError::Pins);
+    }
     let silhouette = &scene.target.points;
     let making = making(scene);
     let fitted = fit(silhouette, &making, &ROTATIONS)?;
@@ -301,9 +308,11 @@ fn fitted_keys(
     config.posture = Some(PostureConfig { kind, down: None });
     // Relative to the mean area of a panel.
     config.objective.symmetric_difference = DIFFERENCE * fitted.grid.panel_count() as f64;
-    config.objective.damage = DAMAGE;
-    config.objective.damage_measure = DamageMeasure::Peak;
-    config.objective.domain = DOMAIN;
+    if scene.surrogate().is_some() {
+        config.objective.damage = DAMAGE;
+        config.objective.damage_measure = DamageMeasure::Peak;
+        config.objective.domain = DOMAIN;
+    }
     config.optimiser = OptimiserConfig {
         steps: STEPS,
         learning_rate: FIRST_STEP,
