@@ -193,21 +193,16 @@ impl DesignCommand {
         if let Some(weights) = &self.weights {
             config.name_weights(weights)?;
         }
-        self.set_steps(&mut config);
         change(&mut config);
-        let scene = Scene::new(config, &path)?;
-        if !self.fit {
-            return Ok(scene);
+        if self.fit {
+            let (fit, expected) = fit_to_target(&Scene::new(config, &path)?)?;
+            announce(&expected);
+            config = fit.config;
         }
-        let (fit, expected) = fit_to_target(&scene)?;
-        announce(&expected);
-        let mut config = fit.config;
-        self.set_steps(&mut config);
-        Ok(scene.changed(config)?)
-    }
-
-    fn set_steps(&self, config: &mut SceneConfig) {
-        config.optimiser.steps = self.steps.unwrap_or(config.optimiser.steps);
+        if let Some(steps) = self.steps {
+            config.optimiser.steps = steps;
+        }
+        Ok(Scene::new(config, &path)?)
     }
 }
 

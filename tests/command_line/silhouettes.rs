@@ -2,16 +2,18 @@
 
 use crate::common::Workplace;
 use serde_json::Value;
-use std::path::Path;
 
 /// Side of the space for the sheet (mm).
 const SIDE: f64 = 180.0;
 
+fn weights() -> String {
+    let repository = env!("CARGO_MANIFEST_DIR");
+    format!("{repository}/data/polypropylene-3mm/medium.safetensors")
+}
+
 #[test]
 fn a_drawing_becomes_a_sheet_with_a_cut_file() {
     let work = Workplace::new();
-    let weights =
-        Path::new(env!("CARGO_MANIFEST_DIR")).join("data/polypropylene-3mm/medium.safetensors");
     for (drawing, in_common) in [
         ("leaf", 0.93),
         ("vase", 0.85),
@@ -20,7 +22,7 @@ fn a_drawing_becomes_a_sheet_with_a_cut_file() {
     ] {
         let said = work.output(&format!(
             "init {drawing} --target configs/targets/{drawing}.svg --thickness 2 --size {SIDE}x{SIDE} --weights {}",
-            weights.display()
+            weights()
         ));
         for figure in [
             "on pins: within",
@@ -52,11 +54,9 @@ fn a_drawing_becomes_a_sheet_with_a_cut_file() {
 #[test]
 fn a_scene_is_fitted_to_its_target() {
     let work = Workplace::new();
-    let weights =
-        Path::new(env!("CARGO_MANIFEST_DIR")).join("data/polypropylene-3mm/medium.safetensors");
     work.output(&format!(
         "init plain --thickness 2 --size {SIDE}x{SIDE} --weights {}",
-        weights.display()
+        weights()
     ));
     work.output("design plain/scene.toml --fit --steps 2");
     let run = work.path("plain/design");
@@ -89,12 +89,10 @@ fn a_fit_needs_hinges_that_carry_loads() {
 #[test]
 fn the_same_drawing_becomes_the_same_scene() {
     let work = Workplace::new();
-    let weights =
-        Path::new(env!("CARGO_MANIFEST_DIR")).join("data/polypropylene-3mm/medium.safetensors");
     let scene = |folder: &str| {
         work.output(&format!(
             "init {folder} --target configs/targets/leaf.svg --thickness 3 --size 210x297 --weights {}",
-            weights.display()
+            weights()
         ));
         std::fs::read_to_string(work.path(&format!("{folder}/scene.toml"))).unwrap()
     };

@@ -5,7 +5,7 @@
 //! over the mean one.
 
 use crate::geometry::plane::{complex, point};
-use crate::geometry::polygon::{distance, nearest_on_outline};
+use crate::geometry::polygon::distance_to_outline;
 use crate::pattern::grid::Grid;
 use crate::sheet::cut_sheet::{Panel, Sheet};
 use crate::sheet::ideal_deployment::ideal_deployment;
@@ -67,7 +67,7 @@ pub fn candidates(sheet: &Sheet, grid: Grid, held: usize, theta: f64) -> Vec<Pul
             Pull {
                 panel: [column, row],
                 displacement: point(end),
-                room: distance(reference, nearest_on_outline(reference, &corners)) / r_win,
+                room: distance_to_outline(reference, &corners) / r_win,
                 steadiness: least * OPENINGS as f64 / end.norm().max(f64::MIN_POSITIVE),
             }
         })

@@ -6,7 +6,7 @@ use crate::fit::pulls::{Pull, candidates, pulls};
 use crate::fit::silhouette::{DIFFERENCE, Fitted, Making, ROTATIONS, fit};
 use crate::geometry::chamfer::chamfer;
 use crate::geometry::plane::{complex, point};
-use crate::geometry::polygon::{bounds, distance, nearest_on_outline};
+use crate::geometry::polygon::{bounds, distance_to_outline};
 use crate::geometry::similarity::Similarity;
 use crate::geometry::symmetric_difference::intersection_over_union;
 use crate::hinge_law::DamageMeasure;
@@ -36,7 +36,7 @@ const DOMAIN: f64 = 300.0;
 const REACHED: f64 = 0.02;
 /// The largest number of pulls.
 const MOST_PULLS: usize = 4;
-/// Outline error of an equilibrium over that of the pins up to which another pull is not needed.
+/// Outline error of an equilibrium over the outline error of the pins up to which another pull is not needed.
 const CLOSE: f64 = 1.25;
 /// Steps of the search from the fitted sheet, and the length of its first step: it starts near its end.
 const STEPS: usize = 30;
@@ -201,7 +201,7 @@ fn missed(
     let mut missed: Vec<Missed> = Vec::new();
     let mut reached = true;
     for (placed, point) in placed(silhouette, place).into_iter().zip(silhouette) {
-        let distance = distance(placed, nearest_on_outline(placed, outline));
+        let distance = distance_to_outline(placed, outline);
         let at = [0, 1].map(|c| (point[c] - low[c]) / (high[c] - low[c]));
         if distance > least {
             match missed.last_mut() {
@@ -225,7 +225,7 @@ struct Pulled {
     outline: Vec<[f64; 2]>,
     /// The place of the silhouette on it.
     place: Similarity,
-    /// The largest common area of two panels on the way, over that of a panel.
+    /// The largest common area of two panels on the way, over the area of a panel.
     overlap: f64,
 }
 

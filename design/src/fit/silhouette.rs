@@ -83,7 +83,7 @@ pub struct Fitted {
     pub sheet: Sheet,
     /// Root mean square distance of the free corners of the opened outline from the silhouette (mm).
     pub outline_error: f64,
-    /// The area inside one of outline and silhouette but not in both, over that of the silhouette.
+    /// The area inside one of outline and silhouette but not in both, over the area of the silhouette.
     pub difference: f64,
     /// Opening of every hinge (rad).
     opening: f64,
@@ -139,15 +139,13 @@ pub fn fit(
         .into_par_iter()
         .map(|search| search?.advanced(STEPS));
     let best = ends.min_by(|one, other| loss(one).total_cmp(&loss(other)));
-    best.expect("there are starts")?.fitted()
+    best.expect("there are starts")?.fitted(making.opening)
 }
 
 /// The search from one rotation of the silhouette and one size of the panels.
 struct Search {
     problem: DesignProblem,
     state: SearchState,
-    /// Opening of every hinge (rad).
-    opening: f64,
     /// Scale and rotation of the silhouette at the start, and the centre of its area in its own coordinates.
     turn: c64,
     centre: c64,
@@ -186,7 +184,6 @@ impl Search {
         Ok(Self {
             problem,
             state,
-            opening: making.opening,
             turn,
             centre,
             loss: first.loss,
@@ -204,7 +201,7 @@ impl Search {
         Ok(self)
     }
 
-    fn fitted(self) -> Result<Fitted, DesignError> {
+    fn fitted(self, opening: f64) -> Result<Fitted, DesignError> {
         let design = self.state.best;
         let end = self.problem.evaluate(&design)?;
         let variables = design.fit.unwrap_or_default();
@@ -215,7 +212,7 @@ impl Search {
             difference: end.terms["symmetric_difference"],
             pattern: design.pattern,
             sheet: end.deployment.sheet,
-            opening: self.opening,
+            opening,
             turn: self.turn * c64::cis(variables.rotation) * variables.ln_size.exp(),
             centre: self.centre,
         })

@@ -57,6 +57,11 @@ pub fn distance_to_polygon(point: [f64; 2], polygon: &[[f64; 2]]) -> f64 {
         .fold(f64::INFINITY, f64::min)
 }
 
+/// Distance from a point, inside or outside, to the outline of a polygon with at least one corner (mm).
+pub fn distance_to_outline(point: [f64; 2], polygon: &[[f64; 2]]) -> f64 {
+    distance(point, nearest_on_outline(point, polygon))
+}
+
 /// Distance between two points (mm).
 pub fn distance(p: [f64; 2], q: [f64; 2]) -> f64 {
     f64::hypot(q[0] - p[0], q[1] - p[1])

@@ -179,7 +179,7 @@ impl Target {
 
     /// Distance of a point to the curve through the samples (mm).
     pub fn distance(&self, point: [f64; 2]) -> f64 {
-        polygon::distance(point, polygon::nearest_on_outline(point, &self.points))
+        polygon::distance_to_outline(point, &self.points)
     }
 
     /// Area inside the curve through the samples (mm^2).

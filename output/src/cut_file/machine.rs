@@ -5,7 +5,7 @@ use crate::cut_file::cut_lines::CutLines;
 use crate::cut_file::fabrication_error::FabricationError;
 use crate::cut_file::sheet_drawing::registration_marks;
 use crate::display::Shape;
-use design::geometry::polygon::{bounds, distance, nearest_on_outline};
+use design::geometry::polygon::{bounds, distance_to_outline};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::path::Path;
@@ -264,8 +264,7 @@ impl CutLines {
     pub fn features(&self) -> Features {
         let least = |values: &mut dyn Iterator<Item = f64>| values.fold(f64::INFINITY, f64::min);
         let [low, high] = bounds(self.outline);
-        let to_edge =
-            |centre: [f64; 2]| distance(centre, nearest_on_outline(centre, &self.outline));
+        let to_edge = |centre: [f64; 2]| distance_to_outline(centre, &self.outline);
         let attached = (self.attachments.iter())
             .filter_map(|attachment| Some((attachment.at, 0.5 * attachment.hole?)));
         let holes: Vec<([f64; 2], f64)> = (self.holes.iter())

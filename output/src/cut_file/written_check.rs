@@ -9,7 +9,8 @@ use crate::cut_file::cut_drawing::{CutDrawing, Layer};
 use crate::cut_file::fabrication_error::FabricationError;
 use crate::display::Shape;
 use design::geometry::polygon::{
-    area, distance, distance_between_segments, distance_to_segment, edges, nearest_on_outline, side,
+    area, distance, distance_between_segments, distance_to_outline, distance_to_segment, edges,
+    side,
 };
 use design::sheet::cut_sheet::Sheet;
 use std::collections::BTreeMap;
@@ -145,7 +146,7 @@ impl Finished {
         let corners = &sheet.outline.corners;
         for hole in &self.holes {
             let [centre, _] = hole.ends;
-            let gap = distance(centre, nearest_on_outline(centre, corners)) - hole.radius;
+            let gap = distance_to_outline(centre, corners) - hole.radius;
             if gap < least {
                 let hinge = hole.hinges[0];
                 return Err(FabricationError::CutMeetsOutline { hinge, gap, least });
