@@ -1,7 +1,7 @@
 //! The command line: one subcommand per module of [`crate::commands`].
 
 use crate::commands::{
-    compare, completions, cut, design, export, init, inspect, man, material, studio,
+    compare, completions, cut, design, export, init, inspect, levels, man, material, studio,
 };
 #[cfg(feature = "pipeline")]
 use crate::commands::{demo, pipeline};
@@ -13,7 +13,7 @@ use support::verbose;
 /// Design kirigami sheets whose hinges are measured by finite elements
 ///
 /// Material: material. Hinge data: mesh, solve, campaign, dataset. Hinge model: train, surrogate.
-/// Sheets: studio, design, cut, inspect, verify, compare, export. Start with: doctor, demo, init.
+/// Sheets: studio, design, cut, inspect, levels, verify, compare, export. Start with: doctor, demo, init.
 #[derive(Parser)]
 #[command(name = "kirigami", version, propagate_version = true)]
 #[command(
@@ -37,6 +37,7 @@ enum Command {
     Design(design::DesignCommand),
     Cut(cut::CutCommand),
     Inspect(inspect::InspectCommand),
+    Levels(levels::LevelsCommand),
     Compare(compare::CompareCommand),
     Export(export::ExportCommand),
     Init(init::InitCommand),
@@ -64,6 +65,7 @@ impl Cli {
             Command::Design(command) => command.run(),
             Command::Cut(command) => command.run(),
             Command::Inspect(command) => command.run(),
+            Command::Levels(command) => command.run(),
             Command::Compare(command) => command.run(),
             Command::Export(command) => command.run(),
             Command::Init(command) => command.run(),

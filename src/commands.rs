@@ -37,6 +37,7 @@ mod fitting;
 pub mod init;
 mod input_file;
 pub mod inspect;
+pub mod levels;
 pub mod man;
 pub mod material;
 #[cfg(feature = "pipeline")]

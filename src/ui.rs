@@ -12,7 +12,6 @@ pub mod progress;
 pub mod run_folder;
 pub mod shell_word;
 pub mod table;
-#[cfg(feature = "pipeline")]
 pub(crate) mod with_unit;
 
 /// Number of processors of this machine.

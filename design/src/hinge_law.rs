@@ -4,6 +4,7 @@
 //! |---|---|---|
 //! | [`LinearLaw`] | (11), three springs | constants |
 //! | [`SurrogateLaw`] | (14), continued beyond the training domain | weights |
+//! | [`MeanLaw`] | the mean of other laws | these |
 //! | [`ReleasedLaw`] | elastic about the deformation that stays when a hinge is let go | rest deformations and stiffnesses |
 //! | [`CorrectedLaw`] | another law, corrected to forces measured at some states of each hinge | those forces |
 //!
@@ -13,6 +14,7 @@ mod contact;
 mod corrected;
 mod law;
 mod linear;
+mod mean;
 mod released;
 mod surrogate;
 
@@ -24,5 +26,6 @@ pub use law::{
     DamageMeasure, HingeDamage, HingeEnergy, HingeGradient, HingeLaw, Order, PreparedLaw,
 };
 pub use linear::LinearLaw;
+pub use mean::MeanLaw;
 pub use released::{Release, ReleasedLaw};
 pub use surrogate::{PreparedSurrogate, SurrogateLaw};

@@ -1,6 +1,6 @@
 //! The scene: all input of a design run, read from one TOML file.
 //!
-//! A scene selects the hinge model, and only that model is loaded: `hinge = "linear"` reads no
+//! A scene names its level, and only the hinge law of that level is loaded: `level = "linear"` reads no
 //! weights. Paths are relative to the scene file. The admissible values stand with their keys.
 
 mod actuation;
@@ -13,11 +13,14 @@ mod drawn_target;
 mod hinge_model;
 mod invalid_scene;
 mod keys;
+mod level;
 mod loaded_hinge;
+mod other_level;
 pub mod placement;
 mod posture;
 mod problem;
 pub mod run_inputs;
+mod rung;
 mod scene_error;
 mod sheet_config;
 mod springback_file;
@@ -35,11 +38,13 @@ pub use boundary_values::{Actuation, AppliedLoad, Attachment, SupportedPanel, pa
 pub use checked_scene::Scene;
 pub use cutting::CuttingConfig;
 pub use drawn_target::{place_drawing, rounded};
-pub use hinge_model::{HingeModel, LinearConstants, PinConfig, SurrogateFile};
+pub use hinge_model::{LinearConstants, PinConfig, SurrogateFile};
 pub use invalid_scene::{InvalidScene, WeightsMismatch};
 pub use keys::{OptimiserConfig, SceneConfig};
+pub use level::Level;
 pub use loaded_hinge::LoadedHinge;
 pub use posture::{FRICTION, Posture, PostureConfig};
+pub use rung::{LevelDifference, Rung};
 pub use scene_error::SceneError;
 pub use sheet_config::{LigamentConfig, SheetConfig, StartConfig};
 pub use springback_file::{SpringbackFileError, SpringbackMismatch};

@@ -84,12 +84,12 @@ fn a_hinge_law_without_what_it_needs_is_refused() {
     let table = r#"
 size = => size = => surrogate.weights: there is no file
 [surrogate]|weights => [ignored]|weights => unknown key `ignored`
-hinge = "surrogate" => hinge = "linear"|linear = { k_a = 400.0, k_s = 250.0, k_theta = 300.0 } => objective.domain needs
+level = "standard" => level = "linear"|linear = { k_a = 400.0, k_s = 250.0, k_theta = 300.0 } => objective.domain needs
 "#;
     assert_refused("pet-3x3.toml", table);
     let table = r#"
 [linear]|k_a = 400.0|k_s = 250.0|k_theta = 300.0|  =>  => needs the section [linear]
-hinge = "linear" => hinge = "surrogate"|posture = { kind = "free" } => needs the section [surrogate]
+level = "linear" => level = "standard"|posture = { kind = "free" } => needs the section [surrogate]
 [optimiser] => [objective]|damage = 1.0||[optimiser] => only the learned hinge law predicts damage
 "#;
     assert_refused("linear-7x7.toml", table);

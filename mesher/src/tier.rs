@@ -20,7 +20,7 @@ use std::time::Duration;
 /// CPU seconds are of one thread of a busy machine. The errors are the maximum, over hinges of 5, 18 and 25 mm width
 /// with cut angles of 60 and 90 degrees in the paper's film, rotated to 60 degrees, of the root mean square error over
 /// the ray, relative to `reference`. The error of the tier `default`
-/// over the whole box of the default campaign is in docs/SPEED-ACCURACY.md. `small`, `fine` and `reference` are `default`
+/// over the whole box of the default campaign is in docs/CHOOSE.md. `small`, `fine` and `reference` are `default`
 /// with elements of 3/2, 3/4 and 1/2 of its element size.
 ///
 /// All tiers but `paper` are layers of bricks on one structured topology. A hinge in tension and shear

@@ -30,8 +30,8 @@ use design::analysis::error_budget::ErrorBudget;
 use design::objective::design_problem::Deployment;
 use design::objective::scores::Scores;
 use design::optimise::outer_loop::Ended;
-use design::scene::Scene;
 use design::scene::design_run::Designed;
+use design::scene::{LevelDifference, Rung, Scene};
 use serde::Serialize;
 use support::severity::Severity;
 
@@ -42,6 +42,8 @@ pub struct Report {
     pub title: String,
     /// Why the run ended.
     pub ended: Ended,
+    /// The levels at which the start of the search was found, if there were any.
+    pub rungs: Vec<Rung>,
     /// Number of steps after the start.
     pub steps: usize,
     /// Number of steps that were halved because a design had no objective value.
@@ -103,6 +105,40 @@ impl Report {
         self.facts.miss(self.after.outline_error)
     }
 
+    /// The searches at coarser levels: what each is worth by the next finer one.
+    pub fn climb(&self) -> Vec<String> {
+        let rungs = self.rungs.iter().map(|rung| {
+            let percent = |load| format!(", the load by {} %", rounded(100.0 * load, 2));
+            let peak = |peak| format!(", D_peak by {}", rounded(peak, 2));
+            let LevelDifference {
+                corners,
+                load,
+                damage,
+            } = rung.difference;
+            format!(
+                "searched at the level `{}` in {} steps: its corners differ from `{}` by {} mm at most{}{}; asked for: {} mm",
+                rung.level,
+                rung.steps,
+                rung.finer,
+                rounded(corners[1], 2),
+                load.map_or(String::new(), percent),
+                damage.map_or(String::new(), peak),
+                rounded(rung.asked, 3)
+            )
+        });
+        let mut lines: Vec<String> = rungs.collect();
+        if self.rungs.last().is_some_and(|last| !last.suffices()) {
+            lines.push(match self.steps {
+                0 => "that is less than the mesh of the windows is known to: see its row of the error budget".into(),
+                _ => format!(
+                    "searched on at `{}`, and no level is finer: `kirigami verify --equilibrium` judges by finite elements",
+                    self.facts.level
+                ),
+            });
+        }
+        lines
+    }
+
     /// How the search ended.
     pub fn end_of_search(&self) -> String {
         let steps = self.steps;
@@ -150,6 +186,7 @@ impl Report {
             cut_file: false,
             title: scene.config.title.clone(),
             ended: designed.ended.clone(),
+            rungs: designed.rungs.clone(),
             steps: designed.history.len() - 1,
             setbacks: designed
                 .history
@@ -157,7 +194,10 @@ impl Report {
                 .filter(|record| record.setback.is_some())
                 .count(),
             terms: designed.problem.objective.labels(),
-            before: Scores::new(&designed.problem.objective, &designed.start),
+            before: match designed.rungs.first() {
+                Some(first) => first.start.clone(),
+                None => Scores::new(&designed.problem.objective, &designed.start),
+            },
             after,
             estimate: Estimate::new(scene.networks(), deployment),
             budget,

@@ -164,7 +164,9 @@ class State:
 
 @final
 class Problem:
-    def __new__(cls, scene: _Path | dict[str, Any], folder: _Path | None = None) -> Problem: ...
+    def __new__(
+        cls, scene: _Path | dict[str, Any], folder: _Path | None = None, level: str | None = None
+    ) -> Problem: ...
     @property
     def size(self) -> int: ...
     @property

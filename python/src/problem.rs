@@ -11,7 +11,7 @@ use design::equilibrium::nearby_path::KnownPath;
 use design::objective::response::{Conditions, Response, ResponseCotangent, ResponseGradient};
 use design::scene::design_run::{design_of_run, stored_design};
 use design::scene::run_inputs::scene_file;
-use design::scene::{Scene, SceneConfig};
+use design::scene::{Level, Scene, SceneConfig};
 use design::{
     DesignError, DesignProblem, DesignVector, Evaluation, SearchMethod, SearchState, optimise,
 };
@@ -75,8 +75,13 @@ impl Known {
 #[pymethods]
 impl Problem {
     #[new]
-    #[pyo3(signature = (scene, folder=None))]
-    fn new(py: Python, scene: &Bound<PyAny>, folder: Option<PathBuf>) -> PyResult<Self> {
+    #[pyo3(signature = (scene, folder=None, level=None))]
+    fn new(
+        py: Python,
+        scene: &Bound<PyAny>,
+        folder: Option<PathBuf>,
+        level: Option<&str>,
+    ) -> PyResult<Self> {
         let scene = if let Ok(keys) = scene.cast::<PyDict>() {
             scene_of(keys, &folder.unwrap_or_default())?
         } else {
@@ -89,6 +94,10 @@ impl Problem {
                 let path = scene_file(&path).map_err(errors::scene)?;
                 Scene::read(&path).map_err(errors::scene)
             })?
+        };
+        let scene = match level {
+            Some(name) => scene.at_level(read_level(name)?).map_err(errors::scene)?,
+            None => scene,
         };
         let mut problem = py.detach(|| scene.problem()).map_err(errors::scene)?;
         let stop = Arc::<AtomicBool>::default();
@@ -623,6 +632,13 @@ fn scene_of(keys: &Bound<PyDict>, folder: &Path) -> PyResult<Scene> {
     let config: SceneConfig = support::toml_file::parse(&text, &path).map_err(errors::scene)?;
     py.detach(|| Scene::new(config, &path))
         .map_err(errors::scene)
+}
+
+fn read_level(name: &str) -> PyResult<Level> {
+    Level::named(name).ok_or_else(|| {
+        let names = Level::ALL.map(Level::name).join(", ");
+        PyValueError::new_err(format!("`level` is \"{name}\", expected one of {names}"))
+    })
 }
 
 fn read_method(name: &str) -> PyResult<SearchMethod> {

@@ -171,11 +171,20 @@ def test_pins_have_a_kinematic_deployment_and_no_equilibrium():
     problem = kg.Problem(SCENES / "pin-7x7.toml")
     path = problem.deploy(problem.start)
     assert len(path) == 1 and np.isnan(path.damage).all()
-    with pytest.raises(kg.InvalidDesign, match='hinge = "pin" has no equilibrium'):
+    with pytest.raises(kg.InvalidDesign, match="the level `pin` has no equilibrium"):
         problem.equilibrium(problem.start)
     opening = problem.start[problem.blocks["opening"]][0]
     _, corners = problem.sheet(problem.start).deploy(opening)
     np.testing.assert_allclose(path.corners[0], corners, atol=1e-9)
+
+
+def test_a_problem_has_the_level_that_is_named():
+    plate = SCENES / "a4-plate.toml"
+    standard, draft = (kg.Problem(plate, level=level) for level in ("standard", "draft"))
+    ends = [problem.deploy(problem.start).corners[-1] for problem in (standard, draft)]
+    assert 0.0 < np.abs(ends[0] - ends[1]).max() < 0.05
+    with pytest.raises(ValueError, match="expected one of pin, linear"):
+        kg.Problem(plate, level="everyday")
 
 
 def test_patterns_and_sheets():

@@ -6,15 +6,17 @@ use crate::commands::design::many_runs::{Run, compare, refuse_shared_folders};
 use crate::commands::fitting::fit_to_target;
 use crate::ui::exit::Unfinished;
 use crate::ui::progress::{Progress, announce};
-use crate::ui::{animation, interrupt, picture, run_folder};
+use crate::ui::with_unit::Accuracy;
+use crate::ui::{animation, interrupt, picture, run_folder, with_unit};
 use anyhow::{Context, Result, bail, ensure};
 use clap::Args;
+use design::analysis::ladder::{Climbed, climb};
 use design::objective::scores::shown;
 use design::objective::term::in_words;
 use design::optimise::outer_loop::{Ended, StepRecord};
 use design::scene::design_run::{Designed, inverse_design};
 use design::scene::run_inputs::{SCENE_FILE, holds_a_run, scene_file};
-use design::scene::{Scene, SceneConfig};
+use design::scene::{Level, Scene, SceneConfig};
 use output::drawing::deployment_frames;
 use output::report::{Report, Warning};
 use output::run_files::{ANIMATION, RUN_FILES, Writer};
@@ -37,6 +39,14 @@ pub struct DesignCommand {
     /// Weights of the hinge energy, instead of the scene's
     #[arg(long, value_name = "FILE")]
     weights: Option<PathBuf>,
+    /// The level, instead of the scene's: how much of the hinges is modelled; see `kirigami levels`
+    #[arg(long, value_name = "LEVEL", value_parser = with_unit::level())]
+    level: Option<Level>,
+    /// How accurately the corners of the panels are to be known: a length such as 0.5mm, or a part of the longer side of the sheet
+    /// such as 0.2%. The search runs at the cheapest level, `draft`, and goes up until the difference to the next finer level is
+    /// smaller; that level judges the design
+    #[arg(long, value_name = "ACCURACY", value_parser = with_unit::accuracy, conflicts_with_all = ["level", "steps"])]
+    within: Option<Accuracy>,
     /// Run folder, instead of the scene's. Of several runs: the folder of the table, designs.md and designs.csv, and of the
     /// runs, each in a folder with the name of its scene [default of the table: runs/designs]
     #[arg(long, value_name = "FOLDER")]
@@ -69,6 +79,8 @@ const PICTURE_WIDTH: u32 = 1600;
 /// Width (px) and maximum number of the frames of the animation.
 const FRAME_WIDTH: u32 = 640;
 const MOST_FRAMES: usize = 40;
+/// Steps between two lines about a search on a ladder of levels.
+const SHOWN_EVERY: usize = 10;
 
 impl DesignCommand {
     pub(crate) fn run(&self) -> Result<()> {
@@ -174,6 +186,14 @@ impl DesignCommand {
         if self.restart {
             remove_run(scene)?;
         }
+        match self.within {
+            None => self.search(scene),
+            Some(accuracy) => self.climb(scene, accuracy),
+        }
+    }
+
+    /// A search at the level of the scene.
+    fn search(&self, scene: &Scene) -> Result<(Report, Ended)> {
         let stop = interrupt::stop_flag()?;
         let bar = Progress::new(scene.config.optimiser.steps, "design steps");
         let learned = scene.surrogate().is_some();
@@ -186,6 +206,48 @@ impl DesignCommand {
         Ok((report, designed.ended))
     }
 
+    /// Searches from the cheapest level to one that is accurate enough.
+    fn climb(&self, scene: &Scene, accuracy: Accuracy) -> Result<(Report, Ended)> {
+        let asked = match accuracy {
+            Accuracy::Length(mm) => mm,
+            Accuracy::Part(part) => part * scene.config.sheet.outline().size(),
+        };
+        if self.restart {
+            for level in Level::ALL {
+                let below = scene.output().join(level.name());
+                if holds_a_run(&below) {
+                    std::fs::remove_dir_all(&below)
+                        .with_context(|| format!("cannot remove {}", below.display()))?;
+                }
+            }
+        }
+        let stop = interrupt::stop_flag()?;
+        let mut at = None;
+        let climbed = climb(scene, asked, stop, &mut |level, search| {
+            if at.replace(level) != Some(level) {
+                announce(&format!("level {level}"));
+            }
+            let step = search.last();
+            if step.step % SHOWN_EVERY == 0 {
+                announce(&format!(
+                    "step {}: {}",
+                    step.step,
+                    progress_line(step, true)
+                ));
+            }
+        })?;
+        let Climbed { scene, designed } = climbed;
+        if designed.ended == Ended::Stopped {
+            let made = designed.history.len() - 1;
+            bail!(Unfinished::new(
+                scene.config.optimiser.steps - made,
+                "design steps"
+            ));
+        }
+        let report = write_run(&scene, &designed, self.force)?;
+        Ok((report, designed.ended))
+    }
+
     /// A scene with the changes of the command line, and those of `change`.
     fn scene(&self, file: &Path, change: impl FnOnce(&mut SceneConfig)) -> Result<Scene> {
         let path = scene_file(file)?;
@@ -194,6 +256,9 @@ impl DesignCommand {
             config.name_weights(weights)?;
         }
         change(&mut config);
+        if let Some(level) = self.level {
+            config = Scene::new(config, &path)?.at_level(level)?.config;
+        }
         if self.fit {
             let (fit, expected) = fit_to_target(&Scene::new(config, &path)?)?;
             announce(&expected);

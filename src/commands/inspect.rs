@@ -3,12 +3,12 @@
 pub mod scene_args;
 
 use crate::commands::inspect::scene_args::Inspected;
-use crate::ui::{exit, output_file};
+use crate::ui::{exit, output_file, with_unit};
 use anyhow::{Context, Result};
 use clap::error::ErrorKind;
 use clap::{Args, ValueEnum};
 use design::pattern::design_vector::DesignVector;
-use design::scene::Scene;
+use design::scene::{Level, Scene};
 use output::listing::{self, SpringbackListing};
 use serde::Serialize;
 use std::fmt::Display;
@@ -26,6 +26,9 @@ pub struct InspectCommand {
     stage: Stage,
     #[command(flatten)]
     inspected: Inspected,
+    /// The level, instead of the scene's: how much of the hinges is modelled; see `kirigami levels`
+    #[arg(long, value_name = "LEVEL", value_parser = with_unit::level())]
+    level: Option<Level>,
     /// Print every number as JSON
     #[arg(long)]
     json: bool,
@@ -65,6 +68,10 @@ impl InspectCommand {
     pub(crate) fn run(&self) -> Result<()> {
         self.refuse_options_of_other_stages();
         let (scene, design, name) = self.inspected.read()?;
+        let scene = match self.level {
+            Some(level) => scene.at_level(level)?,
+            None => scene,
+        };
         let problem = || scene.problem();
         match self.stage {
             Stage::Pattern => self.print(name, listing::pattern(&problem()?, &design)?),

@@ -4,11 +4,12 @@ use crate::studio::engine::Engine;
 use crate::studio::event::Post;
 use crate::studio::project::Project;
 use crate::studio::server::Studio;
-use crate::ui::interrupt;
+use crate::ui::{interrupt, with_unit};
 use anyhow::Result;
 use clap::Args;
+use design::scene::{Level, Scene};
 use rand::random;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// Draw a sheet in the browser, watch it open, and design it
@@ -24,6 +25,9 @@ pub struct StudioCommand {
     /// Scene (TOML), run folder, or folder of a sheet in the studio, whose scene is changed in place [default: a new sheet]
     #[arg(value_name = "SCENE")]
     scene: Option<PathBuf>,
+    /// The level, instead of the scene's: how much of the hinges is modelled; see `kirigami levels`
+    #[arg(long, value_name = "LEVEL", value_parser = with_unit::level(), requires = "scene")]
+    level: Option<Level>,
     /// Folder of the folders of new sheets
     #[arg(long, value_name = "FOLDER", default_value = "runs/studio")]
     folder: PathBuf,
@@ -41,11 +45,22 @@ pub struct StudioCommand {
 }
 
 impl StudioCommand {
+    /// A project for a scene, at the level of the command line.
+    fn opened(&self, path: &Path, projects: &Path) -> Result<(Project, Scene)> {
+        let (project, scene) = Project::open(path, projects)?;
+        let Some(level) = self.level else {
+            return Ok((project, scene));
+        };
+        let scene = scene.at_level(level)?;
+        project.save(&scene)?;
+        Ok((project, scene))
+    }
+
     pub(crate) fn run(&self) -> Result<()> {
         let projects = std::path::absolute(&self.folder)?;
         let opened = self.scene.as_deref();
         let opened = opened
-            .map(|path| Project::open(path, &projects))
+            .map(|path| self.opened(path, &projects))
             .transpose()?;
         let stop = interrupt::stop_flag()?;
         let post = Arc::new(Post::default());

@@ -96,7 +96,7 @@ impl VerifyCommand {
         }
         let surrogate = scene
             .surrogate()
-            .context("only a surrogate can be verified: set hinge = \"surrogate\" in the scene")?;
+            .context("only a surrogate can be verified: set level = \"standard\" in the scene")?;
         let tier = judging_tier(self.tier, surrogate)?;
         if self.equilibrium {
             self.balance(&scene, &design, name, tier)

@@ -46,7 +46,7 @@ fn encode(
     encoder.set_color(png::ColorType::Indexed);
     encoder.set_depth(png::BitDepth::Eight);
     encoder.set_palette(palette.concat());
-    encoder.set_compression(png::Compression::High);
+    encoder.set_compression(png::Compression::Balanced);
     encoder.set_filter(png::Filter::NoFilter);
     encoder.set_animated(frames.len() as u32, 0)?;
     let mut writer = encoder.write_header()?;
@@ -54,7 +54,9 @@ fn encode(
     for (i, frame) in frames.iter().enumerate() {
         let last = i + 1 == frames.len();
         writer.set_frame_delay(if last { LAST_MS } else { each }, 1000)?;
-        let indices: Vec<u8> = frame.iter().map(|colour| place[colour]).collect();
+        let runs = frame.chunk_by(|one, other| one == other);
+        let indices = runs.flat_map(|run| std::iter::repeat_n(place[&run[0]], run.len()));
+        let indices: Vec<u8> = indices.collect();
         writer.write_image_data(&indices)?;
     }
     writer.finish()?;
@@ -64,8 +66,9 @@ fn encode(
 /// The most frequent colours, and the place of every colour, or of the nearest one, among them.
 fn palette(frames: &[Vec<Colour>]) -> (Vec<Colour>, HashMap<Colour, u8>) {
     let mut counts: HashMap<Colour, usize> = HashMap::new();
-    for colour in frames.iter().flatten() {
-        *counts.entry(*colour).or_default() += 1;
+    let runs = |frame| <[Colour]>::chunk_by(frame, |one, other| one == other);
+    for run in frames.iter().flat_map(|frame| runs(frame)) {
+        *counts.entry(run[0]).or_default() += run.len();
     }
     let mut colours: Vec<Colour> = counts.keys().copied().collect();
     // Equally frequent colours in a fixed order, so that the same frames give the same file.

@@ -1,9 +1,10 @@
 //! Raster images: a PNG is written next to every SVG.
 
 use anyhow::{Context, Result};
+use resvg::usvg::fontdb::Database;
 use resvg::{tiny_skia, usvg};
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::sync::{Arc, LazyLock};
 use support::whole_file;
 
 /// Writes `<stem>.svg` and `<stem>.png`, the latter `width` pixels wide; returns both paths.
@@ -17,15 +18,19 @@ pub fn save(svg: &str, stem: &Path, width: u32) -> Result<[PathBuf; 2]> {
     Ok([vector, raster])
 }
 
-/// The pixels of a picture. Uses only the bundled DejaVu Sans, so that it is the same on every machine.
-pub(super) fn rasterise(svg: &str, width: u32) -> Result<tiny_skia::Pixmap> {
-    let mut fonts = usvg::fontdb::Database::new();
+static FONTS: LazyLock<Arc<Database>> = LazyLock::new(|| {
+    let mut fonts = Database::new();
     fonts.load_font_data(dejavu::sans::regular().to_vec());
     fonts.load_font_data(dejavu::sans::bold().to_vec());
     fonts.set_sans_serif_family("DejaVu Sans");
+    Arc::new(fonts)
+});
+
+/// The pixels of a picture. Uses only the bundled DejaVu Sans, so that it is the same on every machine.
+pub(super) fn rasterise(svg: &str, width: u32) -> Result<tiny_skia::Pixmap> {
     let options = usvg::Options {
         font_family: "DejaVu Sans".into(),
-        fontdb: Arc::new(fonts),
+        fontdb: Arc::clone(&FONTS),
         ..Default::default()
     };
     let tree = usvg::Tree::from_str(svg, &options).context("the picture is not valid SVG")?;

@@ -1,6 +1,38 @@
-//! Values of options with their units: percentages and times.
+//! Values of options with their units: percentages, accuracies and times, and levels.
 
+use clap::builder::{PossibleValuesParser, TypedValueParser};
+use design::scene::Level;
+#[cfg(feature = "pipeline")]
 use std::time::Duration;
+
+/// How accurately panel corners are to be known.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Accuracy {
+    /// A length (mm).
+    Length(f64),
+    /// A part of the longer side of the flat sheet.
+    Part(f64),
+}
+
+/// An accuracy such as `0.5mm` or `0.2%`.
+pub(crate) fn accuracy(text: &str) -> Result<Accuracy, String> {
+    let length = text.strip_suffix("mm");
+    let length = length.and_then(|number| number.trim().parse::<f64>().ok());
+    match (length, percent(text)) {
+        (Some(mm), _) if mm > 0.0 && mm.is_finite() => Ok(Accuracy::Length(mm)),
+        (_, Ok(percent)) => Ok(Accuracy::Part(percent / 100.0)),
+        _ => Err(
+            "expected a length or a percentage of the longer side of the sheet, for example 0.5mm or 0.2%"
+                .into(),
+        ),
+    }
+}
+
+/// The name of a level.
+pub(crate) fn level() -> impl TypedValueParser<Value = Level> {
+    PossibleValuesParser::new(Level::ALL.map(Level::name))
+        .map(|name| Level::named(&name).expect("the parser takes the names of levels alone"))
+}
 
 /// A percentage such as `1%`, as a percentage.
 pub(crate) fn percent(text: &str) -> Result<f64, String> {
@@ -13,6 +45,7 @@ pub(crate) fn percent(text: &str) -> Result<f64, String> {
     }
 }
 
+#[cfg(feature = "pipeline")]
 /// A time such as `1h`, `30min` or `90s`.
 pub(crate) fn time(text: &str) -> Result<Duration, String> {
     let units = [("min", 60.0), ("h", 3600.0), ("s", 1.0)];
@@ -36,6 +69,16 @@ mod tests {
         for wrong in ["1", "0.01", "0%", "101%", "%", "nan%"] {
             assert!(percent(wrong).is_err(), "{wrong}");
         }
+        assert_eq!(accuracy("0.5mm"), Ok(Accuracy::Length(0.5)));
+        assert_eq!(accuracy("0.5%"), Ok(Accuracy::Part(0.005)));
+        for wrong in ["0.5", "0mm", "-1mm", "nanmm", "1 cm", "0%"] {
+            assert!(accuracy(wrong).is_err(), "{wrong}");
+        }
+    }
+
+    #[cfg(feature = "pipeline")]
+    #[test]
+    fn times_need_their_units() {
         assert_eq!(time("1h"), Ok(Duration::from_secs(3600)));
         assert_eq!(time("1.5 min"), Ok(Duration::from_secs(90)));
         assert_eq!(time("0s"), Ok(Duration::ZERO));

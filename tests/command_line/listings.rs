@@ -92,14 +92,14 @@ fn patterns_and_deployments() {
     for name in ["p0_3x3_uniform", "p1_3x3_random", "p2_4x7_random"] {
         let case = case(name);
         let sections = format!(
-            "hinge = \"pin\"\n{}\n[pin]\nopening_deg = 30.0\n\
+            "level = \"pin\"\n{}\n[pin]\nopening_deg = 30.0\n\
              [target.circle]\ncentre = [150.0, 150.0]\nradius = 200.0\n",
             sheet(&case, &case)
         );
         let pattern = printed(&work, "pattern", &sections, "");
         assert!(
             work.error("inspect equilibrium case.toml")
-                .contains("hinge = \"pin\"")
+                .contains("the level `pin`")
         );
         let (length, area) = (SIZE, SIZE * SIZE);
         for (key, scale) in [
@@ -158,7 +158,7 @@ fn equilibria_objective_and_gradient() {
     let widths = case["w_lig"].as_array().unwrap().iter();
     let widths: Vec<f64> = widths.map(|w| SIZE * w.as_f64().unwrap()).collect();
     let sections = format!(
-        "hinge = \"linear\"\nload_steps = 5\n{}\nw_lig = {widths:?}\n\
+        "level = \"linear\"\nload_steps = 5\n{}\nw_lig = {widths:?}\n\
          [linear]\nk_a = 1.0\nk_s = 0.6\nk_theta = 100.0\n\
          [[supports]]\npanel = [0, 1]\nkind = \"clamp\"\n\
          [[loads]]\npanel = [2, 1]\nforce = [1.2, 0.0]\n\

@@ -10,6 +10,7 @@ mod failing_ccx;
 mod foreign_files;
 mod golden;
 mod keys;
+mod levels;
 mod listings;
 mod materials;
 mod measuring;

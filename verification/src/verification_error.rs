@@ -25,7 +25,7 @@ pub enum VerificationError {
     Scene(#[from] SceneError),
     #[error(transparent)]
     Design(#[from] DesignError),
-    #[error("hinge paths need a hinge law with stiffness: the scene has hinge = \"pin\"")]
+    #[error("hinge paths need a hinge law with stiffness: the scene has level = \"pin\"")]
     NoStiffness,
     #[error("hinge {0} has no states")]
     NoStates(usize),
@@ -85,7 +85,7 @@ pub enum VerificationError {
         "a patch of a hanging sheet must be held flat: its weight comes on before the loads. Use --support held-flat"
     )]
     HangingPatch,
-    #[error("whole sheets need supports and loads: the scene has hinge = \"pin\"")]
+    #[error("whole sheets need supports and loads: the scene has level = \"pin\"")]
     NoLoads,
     #[error("the campaign has no region of rays")]
     NoRegion,

@@ -15,8 +15,8 @@ use crate::optimise::search::SearchMethod;
 use crate::pattern::cut_pattern::Outline;
 use crate::pattern::design_vector::WidthChart;
 use crate::scene::{
-    DriveConfig, HingeModel, LigamentConfig, LoadConfig, OptimiserConfig, Posture, PostureConfig,
-    Scene, SceneConfig, SceneError, StartConfig, SupportConfig, SupportKind, rounded,
+    DriveConfig, Level, LigamentConfig, LoadConfig, OptimiserConfig, Posture, PostureConfig, Scene,
+    SceneConfig, SceneError, StartConfig, SupportConfig, SupportKind, rounded,
 };
 use crate::sheet::validity::{OVERLAP, overlap};
 use hinge::Regime;
@@ -85,7 +85,7 @@ pub enum FitError {
     #[error(transparent)]
     Scene(#[from] SceneError),
     #[error(
-        "the sheet has pins (hinge = \"pin\"): its search is on pins already; a fit is for a sheet with a hinge law"
+        "the sheet has pins (level = \"pin\"): its search is on pins already; a fit is for a sheet with a hinge law"
     )]
     Pins,
     #[error("no sheet on pins is found for the target: {0}")]
@@ -94,7 +94,7 @@ pub enum FitError {
 
 /// Fits the sheet of a scene, a rectangle that stands for the space in its stock, to its target.
 pub fn fitted(scene: &Scene) -> Result<FittedScene, FitError> {
-    if scene.config.hinge == HingeModel::Pin {
+    if scene.config.level == Level::Pin {
         return Err(FitError::Pins);
     }
     let silhouette = &scene.target.points;

@@ -35,7 +35,7 @@ pub enum DesignError {
     Sheet(#[from] SheetError),
     #[error(transparent)]
     Equilibrium(#[from] EquilibriumError),
-    #[error("hinge = \"pin\" has no equilibrium; set hinge = \"linear\" or \"surrogate\"")]
+    #[error("the level `pin` has no equilibrium: set level = \"linear\" or \"standard\"")]
     NoMechanics,
     #[error(
         "a sheet with these errors cannot exist: a ligament, the thickness or the stresses are not positive"
@@ -44,7 +44,7 @@ pub enum DesignError {
     #[error("the target has no points")]
     EmptyTarget,
     #[error(
-        "the hinge law does not determine the hinges of a sheet of another thickness, or of a stronger material: use hinge = \"surrogate\""
+        "the hinge law does not determine the hinges of a sheet of another thickness, or of a stronger material: use level = \"standard\""
     )]
     NoSimilarLaw,
     #[error("the opening angle {0} rad is not a finite number")]

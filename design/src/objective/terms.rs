@@ -43,7 +43,7 @@ pub struct ObjectiveConfig {
     /// the area of the target.
     #[schemars(range(min = 0.0, max = 1e9))]
     pub symmetric_difference: f64,
-    /// Weight of (17); needs `hinge = "surrogate"`.
+    /// Weight of (17); needs a learned level.
     #[schemars(range(min = 0.0, max = 1e9))]
     pub damage: f64,
     /// The damage measure of (17): `mean`, D as in the paper, or `peak`, D_peak, at which 1 means tearing.
@@ -66,7 +66,7 @@ pub struct ObjectiveConfig {
     #[schemars(range(min = 0.0))]
     pub min_panel_width: f64,
     /// Weight of the penalty on states outside the training domain of the hinge law, in squared tenths of its range,
-    /// as a mean over hinges and load steps. Needs `hinge = "surrogate"`.
+    /// as a mean over hinges and load steps. Needs a learned level.
     #[schemars(range(min = 0.0, max = 1e9))]
     pub domain: f64,
 }

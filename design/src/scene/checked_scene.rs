@@ -5,6 +5,7 @@ use crate::objective::target::Target;
 use crate::objective::terms::TARGET_POINTS;
 use crate::scene::checks;
 use crate::scene::keys::{SceneConfig, beside, folder};
+use crate::scene::level::Level;
 use crate::scene::loaded_hinge::LoadedHinge;
 use crate::scene::posture::PostureConfig;
 use crate::scene::scene_error::SceneError;
@@ -67,7 +68,7 @@ impl Scene {
             let process = config.process;
             (
                 (
-                    config.hinge,
+                    config.level,
                     config.surrogate.clone(),
                     config.material.clone(),
                 ),
@@ -134,7 +135,7 @@ impl Scene {
         for path in named.chain([&mut config.material, &mut config.output]) {
             locate(path)?;
         }
-        for weights in config.weights_files_mut() {
+        for (_, weights) in config.weights_files_mut() {
             locate(weights)?;
         }
         Ok(config)
@@ -175,7 +176,12 @@ impl Scene {
     /// target's points, the weights and, if the target is for the released sheet, the law of released hinges. It is the same
     /// on every machine, whereas the loss differs in its last digits.
     pub fn model_hash(&self) -> String {
-        let weights = self.weights().map_or(String::new(), Surrogate::hash);
+        let read = match self.config.level {
+            Level::Fine => &self.hinge.networks[..],
+            _ => &self.hinge.networks[..self.hinge.networks.len().min(1)],
+        };
+        let weights = read.iter().map(Surrogate::hash).collect::<Vec<_>>();
+        let weights = weights.join("/");
         let target = self.target.hash();
         let material = if self.weight_by_area() == [0.0; 2] {
             self.material.law_hash()

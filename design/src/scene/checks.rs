@@ -8,9 +8,9 @@ use crate::objective::target::Target;
 use crate::pattern::cut_pattern::CutPattern;
 use crate::pattern::pattern_error::PatternError;
 use crate::scene::actuation::{At, EdgeLoadConfig, SupportKind};
-use crate::scene::hinge_model::HingeModel;
 use crate::scene::invalid_scene::InvalidScene;
 use crate::scene::keys::SceneConfig;
+use crate::scene::level::Level;
 use crate::scene::posture::Posture;
 use crate::scene::sheet_config::SheetConfig;
 use crate::sheet::topology::panel_endpoints;
@@ -21,6 +21,7 @@ use support::key_limits::{self, within};
 /// Checks everything that needs no other file.
 pub(super) fn config(scene: &SceneConfig) -> Result<(), InvalidScene> {
     key_limits::check::<SceneConfig>(scene)?;
+    level(scene)?;
     title(scene)?;
     sheet(scene)?;
     ligament(scene)?;
@@ -30,6 +31,21 @@ pub(super) fn config(scene: &SceneConfig) -> Result<(), InvalidScene> {
     loads(scene)?;
     attachments(scene)?;
     objective(scene)
+}
+
+/// An error if the level reads a file that the scene does not name.
+pub(super) fn level(scene: &SceneConfig) -> Result<(), InvalidScene> {
+    if !scene.level.is_learned() {
+        return Ok(());
+    }
+    let Some(files) = &scene.surrogate else {
+        return Err(InvalidScene::NoSection("surrogate"));
+    };
+    match scene.level {
+        Level::Draft if files.draft.is_none() => Err(InvalidScene::NoDraft),
+        Level::Fine if files.ensemble.is_empty() => Err(InvalidScene::NoEnsemble),
+        _ => Ok(()),
+    }
 }
 
 /// Maximum ratio of the target's perimeter to that of the flat sheet. Panels keep their edges: a sheet of squares
@@ -57,7 +73,7 @@ pub(super) fn target(target: &Target, scene: &SceneConfig) -> Result<(), Invalid
         "mm",
     )?;
     let objective = &scene.objective;
-    let needs_area = objective.symmetric_difference > 0.0 || scene.hinge == HingeModel::Pin;
+    let needs_area = objective.symmetric_difference > 0.0 || scene.level == Level::Pin;
     if needs_area && target.area() <= NO_AREA * target.length * target.length {
         return Err(InvalidScene::TargetWithoutArea);
     }
@@ -153,7 +169,7 @@ fn start(scene: &SceneConfig) -> Result<(), InvalidScene> {
 
 fn posture(scene: &SceneConfig) -> Result<(), InvalidScene> {
     let Some(posture) = &scene.posture else {
-        let learned = scene.hinge == HingeModel::Surrogate;
+        let learned = scene.level.is_learned();
         return if learned {
             Err(InvalidScene::NoPosture)
         } else {
@@ -271,7 +287,7 @@ fn inside(scene: &SceneConfig, key: String, panel: [usize; 2], at: At) -> Result
 }
 
 fn supports(scene: &SceneConfig) -> Result<(), InvalidScene> {
-    if scene.supports.is_empty() && scene.hinge != HingeModel::Pin {
+    if scene.supports.is_empty() && scene.level != Level::Pin {
         return Err(InvalidScene::NoSupports);
     }
     for (i, support) in scene.supports.iter().enumerate() {

@@ -11,6 +11,7 @@ use crate::pattern::design_vector::DesignVector;
 use crate::scene::checked_scene::{MODEL_PARTS, Scene};
 use crate::scene::keys::SceneConfig;
 use crate::scene::run_inputs::{self, InputHashes, RunInputsError, STATE_FILE};
+use crate::scene::rung::Rung;
 use crate::scene::scene_error::SceneError;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -45,6 +46,8 @@ pub struct Designed {
     /// Movement of every panel corner in the last round of finite elements (mm), if the design was balanced with them for every
     /// hinge.
     pub residual: Option<Vec<f64>>,
+    /// The levels at which the start of the search was found; empty if the search began at the start of the scene.
+    pub rungs: Vec<Rung>,
 }
 
 /// Why a run failed.
@@ -101,6 +104,9 @@ struct State {
     /// How the search ended; `None` while it is under way.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     ended: Option<Ended>,
+    /// See [`Designed::rungs`].
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    rungs: Vec<Rung>,
     #[serde(flatten)]
     search: SearchState,
 }
@@ -177,6 +183,7 @@ impl Designed {
             history: vec![record],
             contradicted: false,
             residual: None,
+            rungs: Vec::new(),
             design,
             best: start.clone(),
             start,
@@ -196,9 +203,13 @@ impl Designed {
         let mut problem = scene.problem()?;
         problem.stop_by(stop);
         let start = (problem.evaluate(&scene.start())).map_err(InverseDesignError::Start)?;
-        let (ended, mut search) = (state.left(), state.search);
+        let ended = state.left();
+        let State {
+            rungs, mut search, ..
+        } = state;
         search.pause(&problem);
-        Self::found(problem, ended, search, start).map(Some)
+        let found = Self::found(problem, ended, search, start)?;
+        Ok(Some(Self { rungs, ..found }))
     }
 
     /// A search that has ended.
@@ -220,6 +231,7 @@ impl Designed {
             start,
             best,
             residual: None,
+            rungs: Vec::new(),
         })
     }
 }
@@ -229,6 +241,16 @@ impl Designed {
 /// `progress` is called with the state of the search after every step; the run stops at the end of the step during which `stop`
 /// becomes true.
 pub fn inverse_design(
+    scene: &Scene,
+    stop: &AtomicBool,
+    progress: &mut dyn FnMut(&SearchState),
+) -> Result<Designed, InverseDesignError> {
+    design_after(Vec::new(), scene, stop, progress)
+}
+
+/// The same for a scene whose start was found at other levels.
+pub(crate) fn design_after(
+    rungs: Vec<Rung>,
     scene: &Scene,
     stop: &AtomicBool,
     progress: &mut dyn FnMut(&SearchState),
@@ -243,8 +265,12 @@ pub fn inverse_design(
         .map_err(InverseDesignError::Start)?;
     wide_enough(scene, &start)?;
     let (optimiser, model) = (&scene.config.optimiser, scene.model_hash());
+    let mut rungs = rungs;
     let mut search = match State::read(&path, scene)? {
-        Some(state) => state.search,
+        Some(state) => {
+            rungs = state.rungs;
+            state.search
+        }
         None => {
             let (method, rate) = (optimiser.method, optimiser.learning_rate);
             let search = SearchState::new(&problem, design, &start, method, rate);
@@ -259,6 +285,7 @@ pub fn inverse_design(
             model: model.clone(),
             inputs: inputs.clone(),
             ended: ended.cloned(),
+            rungs: rungs.clone(),
             search: search.clone(),
         };
         state.write(&path)
@@ -281,7 +308,8 @@ pub fn inverse_design(
         },
     )?;
     save(&search, Some(&ended))?;
-    Designed::found(problem, ended, search, start)
+    let found = Designed::found(problem, ended, search, start)?;
+    Ok(Designed { rungs, ..found })
 }
 
 /// An error if a panel of the start is so thin that the barrier of the minimum width is infinite.

@@ -1,20 +1,8 @@
-//! The hinge law as written in a scene.
+//! The sections of a scene that its hinge laws read.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
-
-/// The hinge law of a scene; each reads the section with its name.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum HingeModel {
-    /// No law: pins that all open by the same angle, without equilibrium; section 3.1.
-    Pin,
-    /// Three uncoupled springs, (11).
-    Linear,
-    /// The learned energy, (14).
-    Surrogate,
-}
 
 /// The ideal deployment.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -50,7 +38,10 @@ pub struct SurrogateFile {
     /// Path of the weights `X.safetensors`, relative to the scene file; their card `X.json` is read from the same
     /// folder.
     pub weights: PathBuf,
-    /// Further networks trained on the same data (`train --seeds`); the report states their spread.
+    /// A smaller network of the same hinges, which the level `draft` reads.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub draft: Option<PathBuf>,
+    /// Further networks trained on the same data (`train --seeds`); the report states their spread, and the level `fine` takes their mean.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub ensemble: Vec<PathBuf>,
     /// The law of released hinges (`kirigami surrogate release`), from which the report states what stays of the opening when the

@@ -137,10 +137,20 @@ pub enum InvalidScene {
         panel: [usize; 2],
         grid: [usize; 2],
     },
-    #[error("hinge = \"{0}\" needs the section [{0}]")]
+    #[error("the level of the scene needs the section [{0}]")]
     NoSection(&'static str),
     #[error(
-        "surrogate.weights: there is no file {}: train it, or give the constants of hinge = \"linear\"",
+        "the level `draft` reads a smaller network: name it (surrogate.draft), train one (`kirigami train DATABASE --config \
+         configs/training/small.toml`), or use level = \"standard\""
+    )]
+    NoDraft,
+    #[error(
+        "the level `fine` takes the mean of several networks: name the further ones (surrogate.ensemble), train them (`kirigami train \
+         DATABASE --seeds 4`), or use level = \"standard\""
+    )]
+    NoEnsemble,
+    #[error(
+        "surrogate.weights: there is no file {}: train it, or give the constants of level = \"linear\"",
         file.display()
     )]
     NoWeights { file: PathBuf },
@@ -166,8 +176,8 @@ pub enum InvalidScene {
     #[error(transparent)]
     Contact(#[from] InvalidContact),
     #[error(
-        "supports, loads, edge_loads, opening_couples, drive: hinge = \"pin\" has no equilibrium: remove these \
-         sections, or use hinge = \"linear\""
+        "supports, loads, edge_loads, opening_couples, drive: level = \"pin\" has no equilibrium: remove these \
+         sections, or use level = \"linear\""
     )]
     HeldPins,
     #[error(
@@ -176,11 +186,11 @@ pub enum InvalidScene {
     )]
     TargetWithoutArea,
     #[error(
-        "objective.target_state = \"released\" needs the law of released hinges: hinge = \"surrogate\" and surrogate.springback, a file \
+        "objective.target_state = \"released\" needs the law of released hinges: level = \"standard\" and surrogate.springback, a file \
          that `kirigami surrogate release` writes"
     )]
     ReleasedWithoutLaw,
-    #[error("objective.domain needs hinge = \"surrogate\": no other law has a domain")]
+    #[error("objective.domain needs level = \"standard\": no other law has a domain")]
     NoDomain,
     #[error(
         "objective.damage_measure = \"peak\": the weights do not predict D_peak: use \"mean\", or train on a database \
@@ -188,7 +198,7 @@ pub enum InvalidScene {
     )]
     NoPeakDamage,
     #[error(
-        "objective.damage: only the learned hinge law predicts damage: use hinge = \"surrogate\" or damage = 0"
+        "objective.damage: only the learned hinge law predicts damage: use level = \"standard\" or damage = 0"
     )]
     NoDamage,
 }

@@ -8,7 +8,8 @@ use crate::scene::actuation::{
     DriveConfig, EdgeLoadConfig, LoadConfig, OpeningCoupleConfig, SupportConfig,
 };
 use crate::scene::cutting::CuttingConfig;
-use crate::scene::hinge_model::{HingeModel, LinearConstants, PinConfig, SurrogateFile};
+use crate::scene::hinge_model::{LinearConstants, PinConfig, SurrogateFile};
+use crate::scene::level::Level;
 use crate::scene::posture::PostureConfig;
 use crate::scene::sheet_config::{LigamentConfig, SheetConfig, StartConfig};
 use crate::scene::tolerances::ToleranceConfig;
@@ -30,8 +31,8 @@ pub struct SceneConfig {
     /// converted exactly, by similarity: ligament widths and r_win scale with the thickness.
     #[schemars(range(min = 0.02, max = 10.0))]
     pub thickness: Option<f64>,
-    /// The hinge law: `pin`, `linear` or `surrogate`.
-    pub hinge: HingeModel,
+    /// How much of the hinges is modelled: `pin`, `linear`, `draft`, `standard` or `fine`.
+    pub level: Level,
     /// N of the load steps zeta_i = i/N, where the path is read for pictures and path functionals. The solver chooses its
     /// own increments between them.
     #[schemars(range(min = 1, max = 10_000))]
@@ -54,16 +55,16 @@ pub struct SceneConfig {
     /// Tolerances of the cut sheet.
     #[serde(default)]
     pub tolerances: ToleranceConfig,
-    /// Read if `hinge = "pin"`.
+    /// Read at the level `pin`.
     pub pin: Option<PinConfig>,
-    /// Constants of (11); read if `hinge = "linear"`.
+    /// Constants of (11); read at the level `linear`.
     pub linear: Option<LinearConstants>,
-    /// Read if `hinge = "surrogate"`.
+    /// Networks of the learned energy; read at the levels `draft`, `standard` and `fine`.
     pub surrogate: Option<SurrogateFile>,
-    /// What keeps the panels in their plane; required if `hinge = "surrogate"`.
+    /// What keeps the panels in their plane; required with a learned energy.
     pub posture: Option<PostureConfig>,
     /// The supported panels; they must prevent the rigid motions of the sheet, except that a `hanging` sheet may swing about
-    /// a single pin. Empty if `hinge = "pin"`.
+    /// a single pin. Empty at the level `pin`.
     #[serde(default)]
     pub supports: Vec<SupportConfig>,
     /// Dead loads on panels.
@@ -93,8 +94,8 @@ pub struct SceneConfig {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct OptimiserConfig {
-    /// Number of steps after the start.
-    #[schemars(range(min = 1, max = 10_000_000))]
+    /// Number of steps after the start; 0 leaves the start as it is.
+    #[schemars(range(min = 0, max = 10_000_000))]
     pub steps: usize,
     /// Length of the first step in every chart coordinate; for Adam also of the later steps.
     #[schemars(range(min = 1e-9, max = 10.0))]

@@ -1,10 +1,11 @@
 //! The hinge law of a scene, loaded with the files it needs.
 
 use crate::equilibrium::tangent::MIN_PIVOT_RATIO;
-use crate::hinge_law::{Contact, DamageMeasure, HingeLaw, LinearLaw, Order, SurrogateLaw};
-use crate::scene::hinge_model::{HingeModel, LinearConstants};
+use crate::hinge_law::{Contact, DamageMeasure, HingeLaw, LinearLaw, MeanLaw, Order, SurrogateLaw};
+use crate::scene::hinge_model::LinearConstants;
 use crate::scene::invalid_scene::{InvalidScene, WeightsMismatch};
 use crate::scene::keys::{SceneConfig, beside};
+use crate::scene::level::Level;
 use crate::scene::scene_error::SceneError;
 use crate::sheet::cut_sheet::HingePoint;
 use hinge::{HingeDeformation, Regime, SheetMaterial};
@@ -20,13 +21,11 @@ use surrogate::Surrogate;
 const CONTACT_STIFFNESS: f64 = 10.0;
 const CONTACT_WALL: f64 = -0.1;
 /// Angle (rad) of the secant stiffness of a learned hinge: 20 deg, as for the linear law of section 3.
-const TYPICAL_SECANT: f64 = 0.35;
+pub(super) const TYPICAL_SECANT: f64 = 0.35;
 
 /// What a scene loads for its hinges: all that differs from law to law.
 #[derive(Clone)]
 pub struct LoadedHinge {
-    /// What the law is, for reports.
-    pub label: &'static str,
     pub(super) behaviour: HingeBehaviour,
     /// The point at which the deformation is measured.
     pub(super) hinge_point: HingePoint,
@@ -54,7 +53,7 @@ pub(super) enum HingeBehaviour {
 /// A law without its numbers.
 impl fmt::Debug for LoadedHinge {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        write!(f, "LoadedHinge({})", self.label)
+        f.debug_struct("LoadedHinge").finish_non_exhaustive()
     }
 }
 
@@ -71,10 +70,10 @@ impl LoadedHinge {
             Some(known) => known.to_vec(),
             None => networks(config, measured, path)?,
         };
-        let hinge = match config.hinge {
-            HingeModel::Pin => pinned(config),
-            HingeModel::Linear => linear(config),
-            HingeModel::Surrogate => learned(config, networks),
+        let hinge = match config.level {
+            Level::Pin => pinned(config),
+            Level::Linear => linear(config),
+            Level::Draft | Level::Standard | Level::Fine => learned(config, networks),
         };
         let hinge = hinge.map_err(SceneError::at(path))?;
         (hinge.check_objective(config)).map_err(SceneError::at(path))?;
@@ -168,16 +167,27 @@ fn learned(config: &SceneConfig, networks: Vec<Surrogate>) -> Result<LoadedHinge
     let wall = if closed < 0.0 { closed } else { CONTACT_WALL };
     let k_theta = secant_at_start(config, surrogate);
     Ok(LoadedHinge {
-        label: "learned energy (14)",
         behaviour: HingeBehaviour::Elastic {
-            law: Arc::new(SurrogateLaw {
-                surrogate: surrogate.clone(),
-            }),
+            law: law_of(config.level, &networks),
             contact: contact(k_theta.abs().max(f64::MIN_POSITIVE), wall)?,
         },
         hinge_point: HingePoint::CutTip,
         networks,
     })
+}
+
+/// The law of a learned level, of at least one network.
+fn law_of(level: Level, networks: &[Surrogate]) -> Arc<dyn HingeLaw> {
+    let law = |surrogate: &Surrogate| -> Arc<dyn HingeLaw> {
+        let surrogate = surrogate.clone();
+        Arc::new(SurrogateLaw { surrogate })
+    };
+    match level {
+        Level::Fine => Arc::new(MeanLaw {
+            laws: networks.iter().map(law).collect(),
+        }),
+        _ => law(&networks[0]),
+    }
 }
 
 /// The secant stiffness (N mm/rad) of the rotation of a hinge with the start width and cuts at a right angle.
@@ -227,7 +237,6 @@ fn pinned(config: &SceneConfig) -> Result<LoadedHinge, InvalidScene> {
         return Err(InvalidScene::HeldPins);
     }
     Ok(LoadedHinge {
-        label: "pins: kinematics without forces",
         behaviour: HingeBehaviour::Pinned {
             opening: pin.opening_deg.to_radians(),
             held: pin.held,
@@ -247,7 +256,6 @@ fn linear(config: &SceneConfig) -> Result<LoadedHinge, InvalidScene> {
         return Err(InvalidScene::Soft { ratio });
     }
     Ok(LoadedHinge {
-        label: "linear springs (11)",
         behaviour: HingeBehaviour::Elastic {
             law: Arc::new(LinearLaw::uniform([k_a, k_s, k_theta], grid.hinge_count())),
             contact: contact(k_theta, CONTACT_WALL)?,

@@ -102,10 +102,11 @@ impl Scene {
     }
 
     fn solver(&self) -> Result<EquilibriumSolver, EquilibriumError> {
-        let settings = self.config.solver;
+        let level = self.config.level;
+        let settings = level.solver(self.config.solver);
         let actuation = self.actuation();
         let (supports, loads) = (actuation.boundary_supports(), actuation.boundary_loads());
-        let steps = self.config.load_steps;
+        let steps = level.load_steps(self.config.load_steps);
         let solver = EquilibriumSolver::new(self.grid(), &supports, &loads, steps, settings)?;
         let solver = solver
             .gripping(actuation.grips())

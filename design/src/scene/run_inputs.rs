@@ -6,7 +6,7 @@
 //! | `inputs/material.toml` | the material, with its measured curve as `plastic` |
 //! | `inputs/target.csv`, `.svg` | the target, if the scene names a file |
 //! | `inputs/weights.safetensors`, `.json` | weights and card, if the hinge law reads them |
-//! | `inputs/ensemble-N.safetensors`, `.json` | the further networks, from 1 |
+//! | `inputs/ensemble-N.safetensors`, `inputs/draft.safetensors`, their `.json` | the further networks, from 1, and that of drafts |
 //! | `inputs/springback.json` | the law of released hinges, if the scene names one |
 //!
 //! The state of the run holds the BLAKE3 hash of each of them.
@@ -112,11 +112,8 @@ pub(super) fn keep(scene: &Scene) -> Result<InputHashes, FileError> {
         let name = format!("{INPUTS}/target.{kind}");
         *file = kept.copy(&beside(&scene.path, file), &name)?;
     }
-    for (i, weights) in config.weights_files_mut().into_iter().enumerate() {
-        let stem = match i {
-            0 => format!("{INPUTS}/weights"),
-            _ => format!("{INPUTS}/ensemble-{i}"),
-        };
+    for (name, weights) in config.weights_files_mut() {
+        let stem = format!("{INPUTS}/{name}");
         let original = beside(&scene.path, weights);
         kept.copy(&original.with_extension("json"), &format!("{stem}.json"))?;
         *weights = kept.copy(&original, &format!("{stem}.safetensors"))?;
@@ -166,9 +163,10 @@ impl SceneConfig {
         let mut config = self.without_unread_weights();
         if let Some(learned) = &mut config.surrogate {
             learned.ensemble.clear();
+            learned.draft = None;
             learned.springback = None;
         }
-        for path in config.weights_files_mut() {
+        for (_, path) in config.weights_files_mut() {
             *path = PathBuf::new();
         }
         if let Some((file, _)) = config.target.file_mut() {

@@ -1,6 +1,5 @@
 //! The law of released hinges that a scene names for its report.
 
-use crate::scene::hinge_model::HingeModel;
 use crate::scene::keys::{SceneConfig, beside};
 use hinge::SheetMaterial;
 use std::f64::consts::FRAC_PI_2;
@@ -26,7 +25,7 @@ pub enum SpringbackMismatch {
     )]
     Window { law: f64, sheet: f64 },
     #[error(
-        "what stays of a hinge follows from the forces of a learned law: set hinge = \"surrogate\""
+        "what stays of a hinge follows from the forces of a learned law: set level = \"standard\""
     )]
     NotLearned,
 }
@@ -65,7 +64,7 @@ pub(super) fn load(
 impl SceneConfig {
     /// The law that the scene names, if its hinges are learned.
     pub(super) fn springback(&self) -> Option<&PathBuf> {
-        let learned = (self.surrogate.as_ref()).filter(|_| self.hinge == HingeModel::Surrogate)?;
+        let learned = (self.surrogate.as_ref()).filter(|_| self.level.is_learned())?;
         learned.springback.as_ref()
     }
 }
@@ -79,7 +78,7 @@ pub(super) fn check(
     /// Relative difference of two radii that rounding may cause.
     const ROUNDED: f64 = 1e-6;
     let differ = |x: f64, y: f64| (x / y - 1.0).abs() > ROUNDED;
-    if config.hinge != HingeModel::Surrogate {
+    if !config.level.is_learned() {
         return Err(SpringbackMismatch::NotLearned);
     }
     if law.material_hash != measured.law_hash() {

@@ -9,7 +9,7 @@ use design::equilibrium::load_step::Status;
 use design::geometry::polygon::{area, bounds};
 use design::objective::design_problem::{Deployment, DesignProblem};
 use design::objective::shape::TargetState;
-use design::scene::{Attachment, HingeModel, Scene, panel_name};
+use design::scene::{Attachment, Level, Scene, panel_name};
 use design::sheet::kinematics::deployed_corners;
 use serde::Serialize;
 use surrogate::TestErrors;
@@ -19,10 +19,8 @@ use surrogate::TestErrors;
 pub struct FactSheet {
     /// Version of the program.
     pub version: &'static str,
-    /// The hinge law of the scene.
-    pub hinge: HingeModel,
-    #[serde(skip)]
-    hinge_label: &'static str,
+    /// How much of the hinges is modelled.
+    pub level: Level,
     /// Whether the hinges carry load.
     #[serde(skip)]
     carries_load: bool,
@@ -133,8 +131,7 @@ impl FactSheet {
         let reached = Reached::new(scene, problem, deployment);
         Self {
             version: env!("CARGO_PKG_VERSION"),
-            hinge: scene.config.hinge,
-            hinge_label: scene.hinge.label,
+            level: scene.config.level,
             carries_load: scene.hinge.carries_load(),
             attachments: attachments(scene, deployment),
             has_domain: scene.surrogate().is_some(),
@@ -197,7 +194,7 @@ impl FactSheet {
                         }
                     },
             ),
-            ("hinge law", self.hinge_label.to_owned()),
+            ("level", format!("{}, {}", self.level, self.level.hinges())),
         ];
         if let Some(reached) = &self.reached {
             facts.extend(reached.rows());

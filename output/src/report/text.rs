@@ -30,7 +30,13 @@ covers the target, and the terms above. Lower their weights in [objective] for a
 
 impl fmt::Display for Report {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        writeln!(f, "{}\n{}", self.title, self.miss())?;
+        writeln!(
+            f,
+            "{}: level {}\n{}",
+            self.title,
+            self.facts.level,
+            self.miss()
+        )?;
         if let Some(text) = self.about_cut_files() {
             writeln!(f, "{text}")?;
         }
@@ -57,7 +63,9 @@ impl Report {
     pub fn fact_rows(&self) -> Vec<(&'static str, String)> {
         let mut rows = self.facts.rows();
         let hashes = rows.iter().position(|(name, _)| name.starts_with("hash"));
-        let mut further = Vec::new();
+        let mut further: Vec<_> = (self.climb().into_iter())
+            .map(|line| ("ladder", line))
+            .collect();
         if let Some(estimate) = &self.estimate {
             let percent = |x: f64| format!("{:.1} %", 100.0 * x);
             let text = format!(

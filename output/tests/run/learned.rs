@@ -32,7 +32,7 @@ pub fn learned(changes: &[(&str, &str)]) -> String {
     let weights = format!("[surrogate]\nweights = \"tiny.safetensors\"\n\n{posture}");
     let terms = "compression = 0.2\nshear = 0.1\ndamage = 0.2";
     let law = [
-        ("hinge = \"linear\"", "hinge = \"surrogate\""),
+        ("level = \"linear\"", "level = \"standard\""),
         (LAW, &weights),
         ("compression = 0.01", terms),
         ("steps = 25", "steps = 6"),

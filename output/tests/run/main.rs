@@ -23,7 +23,7 @@ use tempfile::TempDir;
 const SCENE: &str = r#"
 title = "Test sheet"
 material = "film.toml"
-hinge = "linear"
+level = "linear"
 load_steps = 4
 output = "run"
 sheet = { size = [1200.0, 1200.0], panels = [3, 3] }
@@ -73,7 +73,7 @@ const TARGET: &str = "[target.circle]\ncentre = [700.0, 550.0]\nradius = 750.0";
 const QUICK: (&str, &str) = ("steps = 25", "steps = 1");
 /// Panels on pins, which nothing holds and loads.
 const ON_PINS: [(&str, &str); 5] = [
-    ("hinge = \"linear\"", "hinge = \"pin\""),
+    ("level = \"linear\"", "level = \"pin\""),
     (LAW, "[pin]\nopening_deg = 30.0"),
     (SUPPORT, ""),
     (PULL, ""),

@@ -96,7 +96,10 @@ fn ligaments_wider_than_their_slits_cannot_be_cut_and_the_report_says_so() {
     let report = &run.report;
     assert_eq!(one(report, Concern::CannotBeCut).hinges, [0; 0]);
     assert!(!report.cut_file && !run.scene.output().join("cut.dxf").exists());
-    let first = format!("Test sheet\n{}\nNO CUT FILE\n- error: ", report.miss());
+    let first = format!(
+        "Test sheet: level linear\n{}\nNO CUT FILE\n- error: ",
+        report.miss()
+    );
     let text = run.file("report.txt");
     assert!(text.starts_with(&first), "{text}");
     assert!(run.scene.output().join("deployed.svg").exists());

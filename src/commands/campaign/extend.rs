@@ -28,7 +28,7 @@ impl ExtendCommand {
     pub fn run(&self) -> Result<()> {
         let (scene, design, _) = self.inspected.read()?;
         let surrogate = scene.surrogate().context(
-            "only the data of a surrogate can be extended: set hinge = \"surrogate\" in the scene",
+            "only the data of a surrogate can be extended: set level = \"standard\" in the scene",
         )?;
         let paths = recorded_paths(&scene, &design)?;
         ensure!(!paths.is_empty(), "the sheet has no hinges");

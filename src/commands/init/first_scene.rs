@@ -31,6 +31,8 @@ const HELD: f64 = 0.21;
 const PULLED: f64 = 0.14;
 /// Name of the law of released hinges in the folder of weights.
 const SPRINGBACK: &str = "springback.json";
+/// The network of drafts beside weights.
+const DRAFT: &str = "small.safetensors";
 /// Kerf of the shipped plate, which is that of the shipped film or wider (mm).
 const WIDEST_KERF: f64 = 0.2;
 /// Fewest panels along a side: below three, no panel has a neighbour on both sides.
@@ -129,12 +131,14 @@ impl FirstScene {
         set(&mut surrogate["weights"], weights.display().to_string());
         if let Some(surrogate) = surrogate.as_table_mut() {
             surrogate.remove("ensemble");
-            // The law of released hinges stands beside the weights of its material.
-            match weights.with_file_name(SPRINGBACK) {
-                law if law.is_file() => {
-                    set(&mut surrogate["springback"], law.display().to_string())
+            // The law of released hinges and the smaller network stand beside the weights of their material.
+            for (key, name) in [("springback", SPRINGBACK), ("draft", DRAFT)] {
+                match weights.with_file_name(name) {
+                    file if file.is_file() => {
+                        set(&mut surrogate[key], file.display().to_string());
+                    }
+                    _ => _ = surrogate.remove(key),
                 }
-                _ => _ = surrogate.remove("springback"),
             }
         }
         // Clips as wide, relative to the edge that they hold, as those of the template.

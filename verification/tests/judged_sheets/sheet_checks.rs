@@ -15,7 +15,7 @@ fn scene([from, to]: [&str; 2]) -> Scene {
 title = "four panels"
 material = "configs/materials/pet-0.5mm.toml"
 thickness = 0.1
-hinge = "surrogate"
+level = "standard"
 load_steps = 10
 output = "runs/four"
 [sheet]

@@ -1,0 +1,128 @@
+//! A design that is as accurate as asked for, at the cheapest level that is.
+//!
+//! The search runs at the cheapest learned level. The difference of the design it finds to the next finer level estimates the error of
+//! the level. If it is larger than asked for, the search goes on at the finer level from that design, and so on; otherwise the finer
+//! level judges the design, which is what the run reports.
+
+use crate::analysis::error_budget::{Cause, ErrorBudget};
+use crate::analysis::level_difference::{AtLevel, LevelError};
+use crate::optimise::outer_loop::{Ended, SearchState};
+use crate::scene::design_run::{Designed, InverseDesignError, design_after, inverse_design};
+use crate::scene::{Level, Rung, Scene, SceneError};
+use std::sync::atomic::AtomicBool;
+
+/// A design found on a ladder of levels.
+pub struct Climbed {
+    /// The scene of the judging level, which starts at the design.
+    pub scene: Scene,
+    /// The design at that level.
+    pub designed: Designed,
+}
+
+/// Why no design is found.
+#[derive(Debug, thiserror::Error)]
+#[allow(missing_docs, reason = "the message of a variant is its documentation")]
+pub enum ClimbError {
+    #[error(
+        "the accuracy of a level is judged by a finer one, and the scene names networks for {found}: name a smaller network \
+         (surrogate.draft) or further ones (surrogate.ensemble), or design at one level (--level)"
+    )]
+    OneLevel { found: String },
+    #[error(
+        "{asked} mm is less than the rounding of a sheet of {size:.0} mm: ask for at least {least:.1e} mm"
+    )]
+    TooFine { asked: f64, size: f64, least: f64 },
+    #[error(transparent)]
+    Design(#[from] InverseDesignError),
+    #[error(transparent)]
+    Level(#[from] LevelError),
+}
+
+impl From<SceneError> for ClimbError {
+    fn from(error: SceneError) -> Self {
+        Self::Design(error.into())
+    }
+}
+
+/// The smallest difference that is asked for, over the size of the sheet: ten times the rounding of a path that is followed with
+/// residuals of 1e-10.
+const LEAST: f64 = 1e-8;
+
+/// Designs a scene to within `asked` (mm) of its panel corners. The searches below the judging level are runs in folders of its run
+/// folder, with the names of their levels. A search that is stopped ends the ladder: its design is the one that is returned.
+pub fn climb(
+    scene: &Scene,
+    asked: f64,
+    stop: &AtomicBool,
+    progress: &mut dyn FnMut(Level, &SearchState),
+) -> Result<Climbed, ClimbError> {
+    let levels = scene.learned_levels();
+    let size = scene.config.sheet.outline().size();
+    let least = LEAST * size;
+    if asked < least {
+        return Err(ClimbError::TooFine { asked, size, least });
+    }
+    if levels.len() < 2 {
+        let found = levels.iter().map(|level| format!("`{level}`")).collect();
+        let found: Vec<String> = found;
+        let found = match &found[..] {
+            [] => "no learned level".to_owned(),
+            all => format!("{} alone", all.join(", ")),
+        };
+        return Err(ClimbError::OneLevel { found });
+    }
+    let mut rungs = Vec::new();
+    let mut at = scene.clone();
+    for pair in levels.windows(2) {
+        let [level, finer] = [pair[0], pair[1]];
+        let mut search = at.at_level(level)?;
+        search.config.output = scene.config.output.join(level.name());
+        let designed = inverse_design(&search, stop, &mut |state| progress(level, state))?;
+        if designed.ended == Ended::Stopped {
+            return Ok(Climbed {
+                scene: search,
+                designed,
+            });
+        }
+        let judge = search.at_level(finer)?;
+        let judged = AtLevel::new(&judge, &designed.design)?;
+        let own = AtLevel {
+            level,
+            deployment: designed.best.deployment,
+            problem: designed.problem,
+        };
+        let rung = Rung {
+            level,
+            start: designed.history[0].scores.clone(),
+            steps: designed.history.len() - 1,
+            finer,
+            difference: own.difference(&judged),
+            asked,
+        };
+        let mut config = judge.starting_at(&designed.design);
+        config.output.clone_from(&scene.config.output);
+        let enough = rung.suffices()
+            || rung.difference.corners[1] <= mesh_error(&judge, &judged).unwrap_or(0.0);
+        rungs.push(rung);
+        if enough {
+            config.optimiser.steps = 0;
+            at = judge.changed(config)?;
+            break;
+        }
+        at = judge.changed(config)?;
+    }
+    let level = at.config.level;
+    let designed = design_after(rungs, &at, stop, &mut |state| progress(level, state))?;
+    Ok(Climbed {
+        scene: at,
+        designed,
+    })
+}
+
+/// The error of the panel corners by the mesh of the windows (mm, the largest), which no level lowers; `None` if it is not known.
+fn mesh_error(scene: &Scene, judged: &AtLevel) -> Option<f64> {
+    let budget = ErrorBudget::new(scene, &judged.problem, &judged.deployment, None)?;
+    let mesh = budget.contributions.into_iter();
+    let mut mesh = mesh.filter(|part| part.cause == Cause::WindowMesh);
+    Some(mesh.next()?.effect?.corners[1])
+}

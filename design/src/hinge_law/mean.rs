@@ -1,0 +1,121 @@
+//! The mean of several laws of the same hinges: of the networks of an ensemble, whose errors partly cancel.
+
+use crate::hinge_law::law::{
+    DamageMeasure, HingeDamage, HingeEnergy, HingeLaw, Order, PreparedLaw,
+};
+use hinge::{HingeDeformation, HingeDesign, TrainingDomain};
+use std::sync::Arc;
+
+/// The mean of laws with one training domain.
+pub struct MeanLaw {
+    /// At least one law.
+    pub laws: Vec<Arc<dyn HingeLaw>>,
+}
+
+/// The same for the hinges of one sheet.
+struct PreparedMean<'a> {
+    laws: Vec<Box<dyn PreparedLaw + 'a>>,
+}
+
+impl HingeLaw for MeanLaw {
+    fn prepare<'a>(&'a self, designs: &[HingeDesign]) -> Box<dyn PreparedLaw + 'a> {
+        let laws = self.laws.iter().map(|law| law.prepare(designs));
+        Box::new(PreparedMean {
+            laws: laws.collect(),
+        })
+    }
+
+    fn damage_scale(&self, measure: DamageMeasure) -> Option<f64> {
+        self.laws[0].damage_scale(measure)
+    }
+
+    fn domain(&self) -> Option<&TrainingDomain> {
+        self.laws[0].domain()
+    }
+
+    fn similar(&self, thicker: f64, stronger: f64) -> Option<Arc<dyn HingeLaw>> {
+        let laws = self.laws.iter().map(|law| law.similar(thicker, stronger));
+        Some(Arc::new(Self {
+            laws: laws.collect::<Option<_>>()?,
+        }))
+    }
+
+    fn scales(&self) -> [bool; 2] {
+        self.laws[0].scales()
+    }
+}
+
+impl PreparedLaw for PreparedMean<'_> {
+    fn energies(&self, deformations: &[HingeDeformation], order: Order) -> Vec<HingeEnergy> {
+        self.mean(
+            |law| law.energies(deformations, order),
+            |mean, part, share| {
+                mean.w += share * part.w;
+                add(&mut mean.forces, &part.forces, share);
+                add_rows(&mut mean.tangent, &part.tangent, share);
+                add(&mut mean.design, &part.design, share);
+                add_rows(&mut mean.mixed, &part.mixed, share);
+            },
+        )
+    }
+
+    fn damage(&self, deformations: &[HingeDeformation], with_gradient: bool) -> Vec<HingeDamage> {
+        self.mean(
+            |law| law.damage(deformations, with_gradient),
+            |mean, part, share| {
+                mean.d += share * part.d;
+                add(&mut mean.gradient, &part.gradient, share);
+                let peaks = mean.d_peak.zip(part.d_peak);
+                mean.d_peak = peaks.map(|(mean, part)| mean + share * part);
+                add(&mut mean.peak_gradient, &part.peak_gradient, share);
+            },
+        )
+    }
+
+    fn resolution(&self) -> f64 {
+        self.laws[0].resolution()
+    }
+
+    fn inside(&self, deformations: &[HingeDeformation]) -> Vec<bool> {
+        self.laws[0].inside(deformations)
+    }
+}
+
+impl PreparedMean<'_> {
+    /// The mean of what the laws say of every hinge; `add` adds a multiple of what one law says to a sum.
+    fn mean<T: Clone>(
+        &self,
+        of: impl Fn(&dyn PreparedLaw) -> Vec<T>,
+        add: impl Fn(&mut T, &T, f64),
+    ) -> Vec<T> {
+        let share = 1.0 / self.laws.len() as f64;
+        let mut laws = self.laws.iter().map(|law| of(&**law));
+        let mut mean = laws.next().unwrap_or_default();
+        mean.iter_mut().for_each(|first| {
+            let whole = first.clone();
+            add(first, &whole, share - 1.0);
+        });
+        for law in laws {
+            for (mean, part) in mean.iter_mut().zip(&law) {
+                add(mean, part, share);
+            }
+        }
+        mean
+    }
+}
+
+fn add<const N: usize>(sum: &mut [f64; N], part: &[f64; N], share: f64) {
+    for (sum, part) in sum.iter_mut().zip(part) {
+        *sum += share * part;
+    }
+}
+
+fn add_rows<const N: usize, const M: usize>(
+    sum: &mut [[f64; M]; N],
+    part: &[[f64; M]; N],
+    share: f64,
+) {
+    for (sum, part) in sum.iter_mut().zip(part) {
+        add(sum, part, share);
+    }
+}

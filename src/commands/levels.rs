@@ -1,0 +1,113 @@
+//! `kirigami levels`: what every level of a scene costs, and how far it is from the finest.
+
+use crate::commands::inspect::scene_args::Inspected;
+use crate::ui::progress::announce;
+use crate::ui::table::table;
+use crate::ui::{charts, interrupt, output_file};
+use anyhow::Result;
+use clap::Args;
+use design::analysis::levels::{LevelCost, Levels, levels};
+use serde::Serialize;
+use std::path::PathBuf;
+
+/// Compare the levels of a scene: seconds of a search, and the difference to the finest level
+///
+/// Deploys the design of the scene's run, or its start design, at every level for which the scene names networks and at those below,
+/// and times ten steps of the search at each. The difference to the finest level is the estimate of a level's error. What no level
+/// lowers, such as the errors of the mesh and of the material, is listed below the table. `kirigami design --within` chooses the level
+/// by itself; docs/CHOOSE.md explains the levels; `kirigami verify` judges the finest one by finite elements.
+/// Example: kirigami levels configs/scenes/a4-plate.toml --picture runs/levels.svg
+#[derive(Args)]
+pub struct LevelsCommand {
+    #[command(flatten)]
+    inspected: Inspected,
+    /// Print JSON instead of text
+    #[arg(long)]
+    json: bool,
+    /// Draw time against difference to this file (SVG)
+    #[arg(long, value_name = "FILE")]
+    picture: Option<PathBuf>,
+}
+
+/// The levels with the design that they are of.
+#[derive(Serialize)]
+struct Of {
+    design: String,
+    #[serde(flatten)]
+    levels: Levels,
+}
+
+impl LevelsCommand {
+    pub(crate) fn run(&self) -> Result<()> {
+        let (scene, design, name) = self.inspected.read()?;
+        let stop = interrupt::stop_flag()?;
+        let found = levels(&scene, &design, stop, &mut |level| {
+            announce(&format!("level {level}"));
+        })?;
+        if let Some(path) = &self.picture {
+            output_file::write(path, charts::levels(&found)?)?;
+        }
+        if self.json {
+            let of = Of {
+                design: name,
+                levels: found,
+            };
+            println!("{}", serde_json::to_string_pretty(&of)?);
+        } else {
+            println!("{name}\n\n{}", text(&found));
+        }
+        Ok(())
+    }
+}
+
+fn text(found: &Levels) -> String {
+    let mut rows = table([
+        "level",
+        "step\ns",
+        "search\ns",
+        "corners, rms\nmm",
+        "largest\nmm",
+        "load\n%",
+        "D_peak\n",
+    ]);
+    found
+        .levels
+        .iter()
+        .for_each(|level| rows.add_row(cells(level)));
+    let mut text = rows.to_string();
+    let finest = found.levels.last().map_or("", |level| level.level.name());
+    text += &format!(
+        "\n\nstep, search: of the search, at the speed of its first ten steps; corners, load, D_peak: differences to `{finest}`\n"
+    );
+    for level in &found.levels {
+        if let Some(failure) = &level.failure {
+            text += &format!("{}: {failure}\n", level.level);
+        }
+    }
+    for other in &found.others {
+        let corners = other.effect.as_ref().map_or("not known".into(), |effect| {
+            format!("{:.3} mm", effect.corners[1])
+        });
+        text += &format!("no level lowers: {}, {corners}\n", other.cause.name());
+    }
+    text
+}
+
+fn cells(level: &LevelCost) -> [String; 7] {
+    let shown = |value: Option<f64>, digits: usize| {
+        value.map_or("-".to_owned(), |value| format!("{value:.digits$}"))
+    };
+    let difference = level.difference.as_ref();
+    [
+        level.level.name().to_owned(),
+        shown(level.step, 4),
+        shown(level.search, 1),
+        shown(difference.map(|found| found.corners[0]), 3),
+        shown(difference.map(|found| found.corners[1]), 3),
+        shown(
+            difference.and_then(|found| found.load).map(|x| 100.0 * x),
+            2,
+        ),
+        shown(difference.and_then(|found| found.damage), 4),
+    ]
+}

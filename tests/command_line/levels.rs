@@ -1,0 +1,85 @@
+//! Levels: `--level`, `--within`, `kirigami levels`.
+
+use crate::common::Workplace;
+use serde_json::Value;
+
+/// The shipped plate, with its weights.
+const PLATE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/configs/scenes/a4-plate.toml");
+
+fn json(text: &str) -> Value {
+    serde_json::from_str(text).unwrap()
+}
+
+#[test]
+fn a_design_within_an_accuracy_is_searched_on_the_cheapest_level_that_has_it() {
+    let work = Workplace::new();
+    let design = format!("design {PLATE} --within 0.5mm --out plate --json --quiet");
+    let report = json(&work.output(&design));
+    let [rung] = &report["rungs"].as_array().unwrap()[..] else {
+        panic!("{}", report["rungs"]);
+    };
+    assert_eq!(
+        [&rung["level"], &rung["finer"], &report["facts"]["level"]],
+        ["draft", "standard", "standard"]
+    );
+    let largest = rung["difference"]["corners"][1].as_f64().unwrap();
+    assert!(largest > 0.0 && largest < 0.5, "{largest}");
+    let loss = |scores: &Value| scores["loss"].as_f64().unwrap();
+    assert!(loss(&report["after"]) < 0.95 * loss(&report["before"]));
+    let text = std::fs::read_to_string(work.path("plate/report.txt")).unwrap();
+    assert!(
+        text.lines().next().unwrap().ends_with("level standard"),
+        "{text}"
+    );
+    assert!(text.contains("asked for: 0.5 mm"), "{text}");
+    // The same command, and the run folder alone, are the same run.
+    for again in [&*design, "design plate --json --quiet"] {
+        let again = json(&work.output(again));
+        assert_eq!(again["after"], report["after"]);
+        assert_eq!(again["rungs"], report["rungs"]);
+    }
+}
+
+#[test]
+fn an_accuracy_that_no_level_has_is_refused_or_said() {
+    let work = Workplace::new();
+    let design = |more: &str| format!("design {PLATE} --out plate --quiet {more}");
+    let wrong = |more: &str| {
+        let output = work.program(&design(more)).output().unwrap();
+        assert_eq!(output.status.code(), Some(2), "{more}");
+        String::from_utf8(output.stderr).unwrap()
+    };
+    assert!(wrong("--within 0.5").contains("0.5mm or 0.2%"));
+    assert!(wrong("--within 1mm --level draft").contains("cannot be used with"));
+    assert!(work.error(&design("--within 1e-9mm")).contains("rounding"));
+    let springs = "design configs/scenes/linear-7x7.toml --within 1mm --out springs";
+    assert!(work.error(springs).contains("no learned level"));
+    // Below what the mesh of the windows is known to, dearer levels are not tried.
+    let report = work.output(&design("--within 0.001mm"));
+    assert!(
+        report.contains("less than the mesh of the windows"),
+        "{report}"
+    );
+}
+
+#[test]
+fn levels_are_compared_at_one_design() {
+    let work = Workplace::new();
+    let levels = format!("levels {PLATE} --design start --quiet");
+    let found = json(&work.output(&format!("{levels} --json --picture levels.svg")));
+    let names: Vec<_> = (found["levels"].as_array().unwrap().iter())
+        .map(|level| level["level"].as_str().unwrap())
+        .collect();
+    assert_eq!(names, ["pin", "linear", "draft", "standard", "fine"]);
+    let picture = std::fs::read_to_string(work.path("levels.svg")).unwrap();
+    assert!(picture.contains("draft") && picture.contains("mesh of the windows"));
+    let text = work.output(&levels);
+    assert!(text.contains("no level lowers: window mesh"), "{text}");
+    let draft = work.output(&format!(
+        "inspect equilibrium {PLATE} --design start --level draft"
+    ));
+    let lines = draft
+        .lines()
+        .filter(|line| line.trim_start().starts_with("0.") || line.contains("1.0000"));
+    assert!(lines.count() <= 6, "{draft}");
+}
