@@ -13,6 +13,8 @@ use std::time::Instant;
 
 /// Steps of a search that are timed: one whose path is followed, and those up to the next one.
 const TIMED: usize = 10;
+/// Steps of a search of a scene that has none, such as a run that judges a design.
+const USUAL: usize = 100;
 
 /// A level of a scene.
 #[derive(Clone, Debug, Serialize)]
@@ -21,7 +23,7 @@ pub struct LevelCost {
     pub level: Level,
     /// Seconds of a step of its search, the mean of the first ten; `None` if there is no search.
     pub step: Option<f64>,
-    /// Seconds of all steps of the scene, at that rate.
+    /// Seconds of all steps of the scene, or of 100 if it has none, at that rate.
     pub search: Option<f64>,
     /// Load at the end of the path (N, or N mm), where the motion is prescribed.
     pub load: Option<f64>,
@@ -66,7 +68,7 @@ pub fn levels(
         }
         let step = seconds(scene, stop).ok();
         let at = AtLevel::new(scene, &design);
-        let search = step.map(|step| step * scene.config.optimiser.steps as f64);
+        let search = step.map(|step| step * steps(scene) as f64);
         found.push(LevelCost {
             level,
             step,
@@ -86,6 +88,13 @@ pub fn levels(
     })
 }
 
+fn steps(scene: &Scene) -> usize {
+    match scene.config.optimiser.steps {
+        0 => USUAL,
+        steps => steps,
+    }
+}
+
 /// Seconds of a step of the search from the start of a scene.
 fn seconds(scene: &Scene, stop: &AtomicBool) -> Result<f64, LevelError> {
     let level = scene.config.level;
@@ -96,7 +105,7 @@ fn seconds(scene: &Scene, stop: &AtomicBool) -> Result<f64, LevelError> {
     let evaluation = problem.evaluate(&start).map_err(failed)?;
     let (method, rate) = (optimiser.method, optimiser.learning_rate);
     let mut search = SearchState::new(&problem, start, &evaluation, method, rate);
-    let last = TIMED.min(optimiser.steps).max(1) - 1;
+    let last = TIMED.min(steps(scene)) - 1;
     let searched = optimise(&problem, &mut search, last, stop, &mut |_| {
         Ok::<_, Infallible>(())
     });
