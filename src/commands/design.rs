@@ -79,8 +79,6 @@ const PICTURE_WIDTH: u32 = 1600;
 /// Width (px) and maximum number of the frames of the animation.
 const FRAME_WIDTH: u32 = 640;
 const MOST_FRAMES: usize = 40;
-/// Steps between two lines about a search on a ladder of levels.
-const SHOWN_EVERY: usize = 10;
 
 impl DesignCommand {
     pub(crate) fn run(&self) -> Result<()> {
@@ -222,20 +220,15 @@ impl DesignCommand {
             }
         }
         let stop = interrupt::stop_flag()?;
-        let mut at = None;
+        let mut shown: Option<(Level, Progress)> = None;
         let climbed = climb(scene, asked, stop, &mut |level, search| {
-            if at.replace(level) != Some(level) {
-                announce(&format!("level {level}"));
-            }
-            let step = search.last();
-            if step.step % SHOWN_EVERY == 0 {
-                announce(&format!(
-                    "step {}: {}",
-                    step.step,
-                    progress_line(step, true)
-                ));
-            }
+            let (step, total) = (search.last(), scene.config.optimiser.steps);
+            let same = shown.take().filter(|(shown, _)| *shown == level);
+            let (_, bar) =
+                shown.insert(same.unwrap_or_else(|| (level, Progress::new(total, level.name()))));
+            bar.show(step.step, None, &progress_line(step, true));
         })?;
+        shown.into_iter().for_each(|(_, bar)| bar.finish());
         let Climbed { scene, designed } = climbed;
         if designed.ended == Ended::Stopped {
             let made = designed.history.len() - 1;
@@ -256,18 +249,21 @@ impl DesignCommand {
             config.name_weights(weights)?;
         }
         change(&mut config);
-        if let Some(level) = self.level {
-            config = Scene::new(config, &path)?.at_level(level)?.config;
-        }
-        if self.fit {
-            let (fit, expected) = fit_to_target(&Scene::new(config, &path)?)?;
-            announce(&expected);
-            config = fit.config;
-        }
         if let Some(steps) = self.steps {
             config.optimiser.steps = steps;
         }
-        Ok(Scene::new(config, &path)?)
+        let mut scene = Scene::new(config, &path)?;
+        if let Some(level) = self.level {
+            scene = scene.at_level(level)?;
+        }
+        if self.fit {
+            let (fit, expected) = fit_to_target(&scene)?;
+            announce(&expected);
+            config = fit.config;
+            config.optimiser.steps = self.steps.unwrap_or(config.optimiser.steps);
+            scene = scene.changed(config)?;
+        }
+        Ok(scene)
     }
 }
 

@@ -48,6 +48,11 @@ pub struct ActuationCurve {
 }
 
 impl ActuationCurve {
+    /// Whether a motion is prescribed, so that the load is a result.
+    pub fn is_prescribed(&self, mechanics: &Mechanics) -> bool {
+        mechanics.solver.is_driven() || self.mover == Mover::Supports
+    }
+
     /// The curve through the load steps of a deployment by `mechanics`; `None` if nothing moves the sheet.
     pub fn new(mechanics: &Mechanics, deployment: &Deployment) -> Option<Self> {
         let weighed = deployment.weight_steps();

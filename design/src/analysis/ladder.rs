@@ -44,8 +44,7 @@ impl From<SceneError> for ClimbError {
     }
 }
 
-/// The smallest difference that is asked for, over the size of the sheet: ten times the rounding of a path that is followed with
-/// residuals of 1e-10.
+/// The smallest difference that is asked for, over the size of the sheet: a hundred times the residual of an equilibrium.
 const LEAST: f64 = 1e-8;
 
 /// Designs a scene to within `asked` (mm) of its panel corners. The searches below the judging level are runs in folders of its run
@@ -63,11 +62,9 @@ pub fn climb(
         return Err(ClimbError::TooFine { asked, size, least });
     }
     if levels.len() < 2 {
-        let found = levels.iter().map(|level| format!("`{level}`")).collect();
-        let found: Vec<String> = found;
-        let found = match &found[..] {
-            [] => "no learned level".to_owned(),
-            all => format!("{} alone", all.join(", ")),
+        let found = match levels.first() {
+            None => "no learned level".to_owned(),
+            Some(level) => format!("`{level}` alone"),
         };
         return Err(ClimbError::OneLevel { found });
     }

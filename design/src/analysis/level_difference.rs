@@ -1,6 +1,6 @@
 //! By how much a sheet at one level differs from the same sheet at a finer one: the estimate of the error of the coarser level.
 
-use crate::analysis::actuation_curve::{ActuationCurve, Mover};
+use crate::analysis::actuation_curve::ActuationCurve;
 use crate::geometry::plane::{complex, point};
 use crate::geometry::polygon::distance;
 use crate::geometry::similarity::{Scale, Similarity};
@@ -85,8 +85,8 @@ impl AtLevel {
     pub fn load(&self) -> Option<f64> {
         let mechanics = self.problem.model.mechanics()?;
         let curve = ActuationCurve::new(mechanics, &self.deployment)?;
-        let prescribed = mechanics.solver.is_driven() || curve.mover == Mover::Supports;
-        prescribed.then(|| curve.points.last().map(|point| point[1]))?
+        let end = curve.points.last().map(|point| point[1]);
+        end.filter(|_| curve.is_prescribed(mechanics))
     }
 
     /// The largest D_peak of a hinge along the path, if it is known of every hinge.

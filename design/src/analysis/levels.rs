@@ -67,17 +67,24 @@ pub fn levels(
             design.opening.get_or_insert(reference.mean_opening());
         }
         let step = seconds(scene, stop).ok();
-        let at = AtLevel::new(scene, &design);
+        let own;
+        let at = if level == reference.level {
+            Ok(&reference)
+        } else {
+            own = AtLevel::new(scene, &design);
+            own.as_ref()
+        };
+        let known = at.ok();
         let search = step.map(|step| step * steps(scene) as f64);
         found.push(LevelCost {
             level,
             step,
             search,
-            load: at.as_ref().ok().and_then(AtLevel::load),
-            damage: at.as_ref().ok().and_then(AtLevel::damage_peak),
-            difference: (at.as_ref().ok().filter(|_| level != reference.level))
+            load: known.and_then(AtLevel::load),
+            damage: known.and_then(AtLevel::damage_peak),
+            difference: (known.filter(|_| level != reference.level))
                 .map(|at| at.difference(&reference)),
-            failure: at.err().map(|error| error.to_string()),
+            failure: at.err().map(ToString::to_string),
         });
     }
     let budget = ErrorBudget::new(finest, &reference.problem, &reference.deployment, None);

@@ -21,7 +21,7 @@ use surrogate::Surrogate;
 const CONTACT_STIFFNESS: f64 = 10.0;
 const CONTACT_WALL: f64 = -0.1;
 /// Angle (rad) of the secant stiffness of a learned hinge: 20 deg, as for the linear law of section 3.
-pub(super) const TYPICAL_SECANT: f64 = 0.35;
+const TYPICAL_SECANT: f64 = 0.35;
 
 /// What a scene loads for its hinges: all that differs from law to law.
 #[derive(Clone)]
@@ -165,7 +165,7 @@ fn learned(config: &SceneConfig, networks: Vec<Surrogate>) -> Result<LoadedHinge
     let surrogate = surrogate.ok_or(InvalidScene::NoSection("surrogate"))?;
     let [_, _, [closed, _]] = surrogate.domain().bounds();
     let wall = if closed < 0.0 { closed } else { CONTACT_WALL };
-    let k_theta = secant_at_start(config, surrogate);
+    let k_theta = springs_at_start(config, surrogate).k_theta;
     Ok(LoadedHinge {
         behaviour: HingeBehaviour::Elastic {
             law: law_of(config.level, &networks),
@@ -190,14 +190,19 @@ fn law_of(level: Level, networks: &[Surrogate]) -> Arc<dyn HingeLaw> {
     }
 }
 
-/// The secant stiffness (N mm/rad) of the rotation of a hinge with the start width and cuts at a right angle.
-fn secant_at_start(config: &SceneConfig, surrogate: &Surrogate) -> f64 {
+/// The springs of a hinge with the start width and cuts at a right angle, turned by 20 degrees: the secant of the rotation, the tangents
+/// of the translations.
+pub(super) fn springs_at_start(config: &SceneConfig, surrogate: &Surrogate) -> LinearConstants {
     let prepared = surrogate.prepare(&[config.process.hinge(config.ligament.start, FRAC_PI_2)]);
     let turned = HingeDeformation::from([0.0, 0.0, TYPICAL_SECANT]);
-    let [energy] = &surrogate.evaluate(&prepared, &[turned], Order::Forces)[..] else {
+    let [energy] = &surrogate.evaluate(&prepared, &[turned], Order::Tangent)[..] else {
         unreachable!("one state has one energy")
     };
-    (1.0 / TYPICAL_SECANT) * energy.forces[2]
+    LinearConstants {
+        k_a: energy.tangent[0][0],
+        k_s: energy.tangent[1][1],
+        k_theta: (1.0 / TYPICAL_SECANT) * energy.forces[2],
+    }
 }
 
 /// The contact for hinges with the stiffness `k_theta`, which becomes infinite at the void angle `wall` (rad).

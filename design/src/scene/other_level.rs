@@ -1,16 +1,13 @@
 //! A scene at another level than its own.
 
-use crate::hinge_law::Order;
 use crate::objective::shape::TargetState;
 use crate::scene::checked_scene::Scene;
 use crate::scene::checks;
-use crate::scene::hinge_model::{LinearConstants, PinConfig};
+use crate::scene::hinge_model::PinConfig;
 use crate::scene::keys::SceneConfig;
 use crate::scene::level::Level;
-use crate::scene::loaded_hinge::TYPICAL_SECANT;
+use crate::scene::loaded_hinge::springs_at_start;
 use crate::scene::scene_error::SceneError;
-use hinge::HingeDeformation;
-use std::f64::consts::FRAC_PI_2;
 
 /// The opening of pins at the start (deg), where a scene names none.
 const PIN_OPENING: f64 = 25.0;
@@ -29,7 +26,7 @@ impl Scene {
     }
 
     /// The scene at another level. What the level does not have is left out: at `pin` supports, loads and drive, below `draft` what the
-    /// objective reads from a learned law. Springs, where the scene has none, are the secants of its learned law.
+    /// objective reads from a learned law. Springs, where the scene has none, are those of its learned law.
     pub fn at_level(&self, level: Level) -> Result<Self, SceneError> {
         let mut config = self.config.clone();
         config.level = level;
@@ -50,23 +47,12 @@ impl Scene {
                 config.opening_couples.clear();
                 config.drive = None;
             }
-            Level::Linear => config.linear = config.linear.or_else(|| self.springs()),
+            Level::Linear => {
+                let springs = |weights| springs_at_start(&self.config, weights);
+                config.linear = config.linear.or_else(|| self.weights().map(springs));
+            }
             _ => {}
         }
         self.changed(config)
-    }
-
-    /// The secants of the learned law at 20 degrees, of a hinge with the start width and cuts at a right angle; `None` without such a law.
-    fn springs(&self) -> Option<LinearConstants> {
-        let surrogate = self.weights()?;
-        let hinge = (self.config.process).hinge(self.config.ligament.start, FRAC_PI_2);
-        let prepared = surrogate.prepare(&[hinge]);
-        let turned = HingeDeformation::from([0.0, 0.0, TYPICAL_SECANT]);
-        let energy = &surrogate.evaluate(&prepared, &[turned], Order::Tangent)[0];
-        Some(LinearConstants {
-            k_a: energy.tangent[0][0],
-            k_s: energy.tangent[1][1],
-            k_theta: energy.forces[2] / TYPICAL_SECANT,
-        })
     }
 }

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 pub struct LevelDifference {
     /// Distance of the panel corners (mm): root mean square and maximum. Of pins, after the rigid motion that makes it smallest.
     pub corners: [f64; 2],
-    /// Difference of the load over that of the finer level; `None` if a level has no load, or dead loads open the sheet.
+    /// Difference of the load, relative to the finer level; `None` if a level has no load, or dead loads open the sheet.
     pub load: Option<f64>,
     /// Difference of the largest D_peak of the hinges along the path; `None` if a level does not predict it.
     pub damage: Option<f64>,

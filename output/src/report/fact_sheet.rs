@@ -240,8 +240,7 @@ impl Reached {
         let by_loads = last
             .stiffness(&mechanics.solver)
             .filter(|_| curve.mover == Mover::Loads);
-        let prescribed = mechanics.solver.is_driven() || curve.mover == Mover::Supports;
-        let resolved = prescribed
+        let resolved = (curve.is_prescribed(mechanics))
             .then(|| ActuationCurve::resolved(mechanics, &deployment.sheet))
             .flatten();
         Some(Self {
