@@ -13,6 +13,7 @@ pub mod localisation;
 pub mod marks;
 pub mod measured_openings;
 pub mod measured_sheet;
+pub mod out_of_plane;
 pub mod path_fit;
 pub mod path_separation;
 pub mod shape_path;

@@ -179,7 +179,6 @@ impl Report {
                 designed,
                 facts: &facts,
                 after: &after,
-                budget: budget.as_ref().map(|budget| &budget.errors),
             }),
         });
         let mut report = Self {

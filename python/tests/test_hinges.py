@@ -1,6 +1,5 @@
 """The learned hinge energy from Python: derivatives, shapes, and arguments that are refused."""
 
-import subprocess
 
 import kirigami as kg
 import numpy as np
@@ -50,19 +49,6 @@ def test_prepared_hinges_have_the_same_values_in_any_shape(film):
     alone = film(states[1, 2], widths[1, 2], ANGLE)
     assert alone.energy.shape == ()
     np.testing.assert_allclose(alone.energy, once.energy[1, 2], rtol=1e-12)
-
-
-def test_the_values_are_those_of_the_command_line(film, program, tmp_path):
-    states = random_states(4)
-    table = tmp_path / "states.csv"
-    rows = [f"{WIDTH},{ANGLE},{a},{s},{theta}" for a, s, theta in states]
-    table.write_text("\n".join(["w_lig,alpha,a,s,theta", *rows]))
-    weights = DATA / "pet-0.5mm" / "medium.safetensors"
-    printed = subprocess.run([program, "surrogate", "eval", weights, table], capture_output=True, check=True, text=True).stdout
-    at = film(states, WIDTH, ANGLE)
-    expected = np.array([row.split(",")[1:] for row in printed.splitlines()[1:]], dtype=float)
-    found = np.column_stack([at.energy, at.forces, at.damage, at.damage_peak])
-    np.testing.assert_allclose(found, expected, rtol=1e-13)
 
 
 def test_spread_and_what_is_not_known(film):

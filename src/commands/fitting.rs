@@ -2,6 +2,7 @@
 
 use crate::ui::progress::announce;
 use anyhow::Result;
+use design::analysis::out_of_plane::Stability;
 use design::fit::scene::{FittedScene, Missed, Nearness, fitted, on_larger_stock};
 use design::scene::Scene;
 
@@ -28,11 +29,27 @@ fn expected(fit: &FittedScene) -> String {
         ),
     };
     format!(
-        "The sheet of {columns} x {rows} panels, opened by {:.0} deg, becomes the target\n  on pins: {}{}\n  {pulled}",
+        "The sheet of {columns} x {rows} panels, opened by {:.0} deg, becomes the target\n  on pins: {}{}\n  {pulled}{}",
         fit.opening.to_degrees(),
         within(fit.on_pins),
-        farthest(&fit.missed)
+        farthest(&fit.missed),
+        fit.stability.map_or(String::new(), in_its_plane)
     )
+}
+
+/// Whether something must hold a plate flat.
+fn in_its_plane(Stability { margin, leaves_at }: Stability) -> String {
+    match leaves_at {
+        Some(opening) => format!(
+            "\n  its panels leave the plane where hinges open by {:.0} deg: hold it flat, such as between two boards",
+            opening.to_degrees()
+        ),
+        None if margin < Stability::SAFE => {
+            "\n  its panels nearly leave the plane: hold it flat, such as between two boards"
+                .to_owned()
+        }
+        None => "\n  its panels stay in the plane by themselves".to_owned(),
+    }
 }
 
 fn within(near: Nearness) -> String {

@@ -1,8 +1,7 @@
-//! `kirigami surrogate`: evaluate exported weights, and measure their errors.
+//! `kirigami surrogate`: the card of exported weights, and their errors.
 
 mod card;
 mod errors;
-mod eval;
 mod release;
 mod test;
 
@@ -15,7 +14,7 @@ use clap::Args;
 use hinge::SheetMaterial;
 use std::path::Path;
 
-/// Evaluate exported weights, and measure their errors against finite elements
+/// Show the card of exported weights, and measure their errors against finite elements
 #[derive(Args)]
 pub struct SurrogateCommand {
     #[command(subcommand)]
@@ -45,7 +44,6 @@ fn trained_material(
 
 subcommands! {
     enum Action {
-        Eval(eval::EvalCommand),
         Card(card::CardCommand),
         Test(test::TestCommand),
         Release(release::ReleaseCommand),

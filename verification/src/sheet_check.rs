@@ -4,13 +4,17 @@ use crate::patch::SheetPart;
 use crate::verification_error::VerificationError;
 use crate::whole_sheet::{sheet_problem, with_support};
 use design::analysis::actuation_curve::ActuationCurve;
+use design::analysis::flanks::flank_gap;
 use design::analysis::flatness::Flatness;
+use design::analysis::out_of_plane::margins;
 use design::hinge_law::{DamageMeasure, Order};
 use design::objective::design_problem::{Deployment, DesignProblem};
 use design::pattern::design_vector::DesignVector;
 use design::scene::{Posture, Scene};
+use design::sheet::cut_sheet::Panel;
 use design::sheet::kinematics::{Configuration, deployed_corners, hinge_deformations};
-use fe_driver::{SheetSolve, SheetState, SheetSurface, Solved, ToolVersions};
+use fe_driver::{PanelState, SheetSolve, SheetState, SheetSurface, Solved, ToolVersions};
+use hinge::HingeDesign;
 use mesher::Tier;
 use serde::Serialize;
 use support::severity::Severity;
@@ -20,6 +24,11 @@ use support::statistics::rms_and_maximum;
 const OTHER_LOAD: f64 = 0.05;
 /// Kinetic over internal energy up to which a dynamic path is nearly at rest.
 const AT_REST: f64 = 0.02;
+
+/// Overlap of flanks from which a finding names it (mm).
+const FLANKS_TOUCH: f64 = 0.1;
+/// Tilt of a panel up to which its flanks are measured in the plane (rad).
+const UPRIGHT: f64 = 0.02;
 
 /// A deployed sheet that finite elements solve as a whole.
 pub struct SheetTask {
@@ -35,6 +44,8 @@ pub struct SheetTask {
     part: SheetPart,
     /// Displacement and load by the law, before the loads and at every load step.
     curve: Vec<[f64; 2]>,
+    /// The margin against leaving the plane by the law at every load step; `None` for a patch, and where the law has none.
+    margins: Option<Vec<f64>>,
 }
 
 /// The result of a task.
@@ -115,6 +126,11 @@ pub struct StateCheck {
     pub bending: f64,
     /// Kinetic over internal energy; zero on a static path.
     pub kinetic: f64,
+    /// Distance of the flanks of a cut where they come nearest (mm), negative where they pass through each other; `None` for a patch, and where
+    /// panels tilt, whose flanks pass each other in space.
+    pub flank_gap: Option<f64>,
+    /// The margin against leaving the plane by the hinge law, at its next load step; `None` for a patch, and where the law has none.
+    pub margin: Option<f64>,
 }
 
 /// A hinge at the end of a path. Pairs are by the hinge law and by finite elements.
@@ -170,6 +186,10 @@ impl SheetTask {
             part: match patch {
                 Some(panel) => SheetPart::around(&deployment.sheet, panel)?,
                 None => SheetPart::whole(&deployment.sheet),
+            },
+            margins: match patch {
+                Some(_) => None,
+                None => margins(&scene, &deployment),
             },
             curve,
             deployment,
@@ -304,7 +324,35 @@ impl SheetTask {
             z: state.z(),
             bending: (state.panels.iter()).fold(0.0, |most, panel| panel.bending.max(most)),
             kinetic: state.kinetic_energy / state.internal_energy().max(f64::MIN_POSITIVE),
+            flank_gap: (whole && state.tilt() < UPRIGHT).then(|| self.flank_gap(state)),
+            margin: self.margin(state.fraction),
         }
+    }
+
+    /// The least gap of the flanks of a cut (mm), by the motion of the panels in the plane.
+    fn flank_gap(&self, state: &SheetState) -> f64 {
+        let sheet = &self.deployment.sheet;
+        let motion = |(panel, moved): (&Panel, &PanelState)| {
+            let [x, y] = panel.reference;
+            let [u, v, _] = moved.moved(panel.reference);
+            [u - x, v - y, moved.turn()]
+        };
+        let configuration: Configuration = std::iter::zip(&sheet.panels, &state.panels)
+            .map(motion)
+            .collect();
+        let states = hinge_deformations(sheet, &configuration);
+        let regime = |design: &HingeDesign| self.scene.material.regime(design.w_lig);
+        let gaps = std::iter::zip(sheet.designs(), states)
+            .map(|(design, state)| flank_gap(&design, &state, regime(&design)));
+        gaps.fold(f64::INFINITY, f64::min)
+    }
+
+    /// The margin by the law at the load step that a fraction of the loads belongs to.
+    fn margin(&self, fraction: f64) -> Option<f64> {
+        let margins = self.margins.as_ref()?;
+        let loaded = &margins[self.deployment.weight_steps().len()..];
+        let after = (fraction.clamp(0.0, 1.0) * loaded.len() as f64).ceil() as usize;
+        loaded.get(after.max(1) - 1).copied()
     }
 
     /// Rotation of a hinge in the plane by finite elements (rad); a panel that is not solved moves by the law.
@@ -391,6 +439,7 @@ fn findings(check: &SheetCheck) -> Vec<SheetFinding> {
     let found = [
         stopped,
         flatness(check.support, check.size, &check.path),
+        flanks_pass(&check.path),
         other_load(check, last),
         tearing(check),
         still_moving(last),
@@ -432,6 +481,25 @@ fn flatness(support: Posture, size: f64, path: &[StateCheck]) -> Option<SheetFin
             at(tilted),
             at(off),
             100.0 * error
+        ),
+    ))
+}
+
+/// Flanks that pass through each other, which those of a cut sheet do not.
+fn flanks_pass(path: &[StateCheck]) -> Option<SheetFinding> {
+    let gap = |state: &&StateCheck| state.flank_gap.is_some_and(|gap| gap < -FLANKS_TOUCH);
+    let first = path.iter().find(gap)?;
+    let deepest = path
+        .iter()
+        .filter_map(|state| state.flank_gap)
+        .fold(0.0, f64::min);
+    Some(finding(
+        Severity::Warning,
+        format!(
+            "flanks of cuts pass through each other, by up to {:.2} mm: these finite elements have no contact, and from {:.0} % of the \
+             path on they may go where the sheet cannot, as a hinge closes: pull other panels, or more of them",
+            -deepest,
+            100.0 * first.fraction
         ),
     ))
 }
@@ -496,6 +564,8 @@ mod tests {
             z: [0.0; 2],
             bending: 0.0,
             kinetic: 0.0,
+            flank_gap: None,
+            margin: None,
         };
         let found = |on_the_way: [f64; 2], support| {
             let path = [

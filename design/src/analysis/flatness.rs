@@ -1,19 +1,10 @@
-//! How far the corners of a sheet are from where the model has them because its panels leave the plane.
+//! Whether a sheet is flat, and how far a film on a table is from that.
 //!
-//! The criterion is from finite elements of whole sheets of 2 x 2 panels (docs/results/flatness). Panels held flat do not leave
-//! the plane. If nothing holds them, ligaments that are no wider than the sheet is thick
-//! bend in the plane, and the panels of these small sheets stay there unless the sheet is drawn taut; larger plates were found up to
-//! 1.3 % of their size off all the same. Wider ligaments buckle and tilt the panels. On a table the weight presses the panels
-//! down about the ligaments, over the elasto-gravity length.
+//! Panels of a film that nothing holds leave the plane with their ligaments, which buckle (docs/results/flatness). On a table the weight
+//! presses the panels down about the ligaments, over the elasto-gravity length. Plates: [`out_of_plane`](super::out_of_plane).
 
-use crate::analysis::error_budget::interpolated;
 use crate::analysis::localisation::elasto_gravity_length;
-use crate::scene::Posture;
 use hinge::SheetMaterial;
-
-/// (w_lig / t of the widest ligament, error of the corners over the longer side of the flat sheet), root mean square, at openings
-/// of 26 deg with nothing that holds the panels. At 65 deg it is two to three times as much.
-const NOTHING: [[f64; 2]; 4] = [[0.9, 0.001], [1.2, 0.0027], [1.8, 0.013], [3.6, 0.157]];
 
 /// Whether the panels of a sheet stay in their plane.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -41,37 +32,14 @@ impl Flatness {
 
 /// Error on a table, for each elasto-gravity length in the radius of a window.
 const TABLE: f64 = 0.01;
-/// The ratio of these lengths up to which the weight holds the panels down; a stiffer sheet counts as one that nothing holds.
+/// The number of these lengths up to which the weight holds the panels down.
 const PRESSED: f64 = 3.2;
 
-/// The expected error of the panel corners (root mean square) over the longer side of the flat sheet, for hinges that open by about 26 deg. Beyond
-/// the widest ligaments that were solved, a lower bound.
-pub fn expected_departure(
-    posture: Posture,
-    material: &SheetMaterial,
-    widest_ligament: f64,
-    r_win: f64,
-) -> f64 {
-    let free = between(widest_ligament / material.thickness);
-    match posture {
-        Posture::HeldFlat => 0.0,
-        Posture::Lying => {
-            let ratio = elasto_gravity_length(material) / r_win;
-            if ratio <= PRESSED {
-                free.min(TABLE * ratio)
-            } else {
-                free
-            }
-        }
-        Posture::Hanging | Posture::Free => free,
-    }
-}
-
-/// The error at a ratio; outside of the table that at its end.
-fn between(ratio: f64) -> f64 {
-    let [first, .., last] = NOTHING;
-    let end = if ratio < first[0] { first } else { last };
-    interpolated(&NOTHING, ratio).unwrap_or(end[1])
+/// The expected error of the panel corners (root mean square) over the longer side of a film that lies on a table, with windows of `r_win` (mm), whose
+/// hinges open by about 26 deg; `None` if its weight does not hold it down.
+pub fn error_on_table(material: &SheetMaterial, r_win: f64) -> Option<f64> {
+    let ratio = elasto_gravity_length(material) / r_win;
+    (ratio <= PRESSED).then_some(TABLE * ratio)
 }
 
 #[cfg(test)]
@@ -103,21 +71,10 @@ mod tests {
     }
 
     #[test]
-    fn plates_with_narrow_ligaments_stay_flat_and_films_do_not() {
-        let of = |posture, thickness| expected_departure(posture, &film(thickness), 3.6, 20.0);
-        for [ratio, error] in NOTHING {
-            let found = of(Posture::Free, 3.6 / ratio);
-            assert!((found / error - 1.0).abs() < 1e-12, "{ratio}");
-        }
-        assert_eq!(of(Posture::HeldFlat, 0.1), 0.0);
-        assert_eq!(of(Posture::Hanging, 40.0), 0.001);
-        assert_eq!(of(Posture::Free, 0.01), 0.157);
-        let thinner = (5..40).map(|ratio| of(Posture::Free, 36.0 / f64::from(ratio)));
-        assert!(thinner.is_sorted());
-        // On a table, a film by its weight, and a plate because it stays flat by itself.
-        assert!((of(Posture::Lying, 0.1) - 0.03).abs() < 2e-3);
-        assert_eq!(of(Posture::Lying, 4.0), 0.001);
-        // Too stiff for its weight, and too thin for its ligaments.
-        assert_eq!(of(Posture::Lying, 0.5), 0.157);
+    fn the_weight_of_a_thin_film_holds_it_down() {
+        let of = |thickness| error_on_table(&film(thickness), 20.0);
+        assert!((of(0.1).unwrap() - 0.03).abs() < 2e-3);
+        assert!(of(0.05) < of(0.1));
+        assert_eq!(of(0.5), None);
     }
 }

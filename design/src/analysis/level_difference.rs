@@ -98,8 +98,6 @@ impl AtLevel {
 
     /// The mean opening of its hinges in the last state (rad).
     pub fn mean_opening(&self) -> f64 {
-        let deformations = &self.deployment.final_step().deformations;
-        let sum: f64 = deformations.iter().map(|hinge| hinge.theta).sum();
-        sum / deformations.len() as f64
+        self.deployment.final_step().mean_opening()
     }
 }

@@ -3,13 +3,14 @@
 
 use crate::analysis::actuation_curve::{ActuationCurve, Mover};
 use crate::equilibrium::let_go::ReleasedSheet;
-use crate::hinge_law::Release;
+use crate::hinge_law::{Order, PreparedLaw, Release, ReleasedLaw};
 use crate::objective::design_problem::{Deployment, DesignError, DesignProblem, found};
 use crate::objective::scores::outline_error_at;
 use crate::scene::{Scene, SpringbackMismatch};
 use crate::sheet::kinematics::corner_distances;
-use hinge::ReleasedHinge;
+use hinge::{HingeDeformation, ReleasedHinge};
 use serde::Serialize;
+use std::array::from_fn;
 use support::statistics::rms_and_maximum;
 use surrogate::Springback;
 
@@ -120,6 +121,51 @@ pub fn let_go_in_domain(
         return Err(LetGoError::OpensFurther { loaded, free });
     }
     Ok((released, stays))
+}
+
+/// By how much a person opens a sheet too far, in parts of its opening.
+pub const TOO_FAR: f64 = 0.15;
+
+/// The work rate M theta of the hinges of a sheet that was opened [too far](TOO_FAR) and brought back, over that of one that was not: how firmly it
+/// holds. `None` if a hinge leaves the training domain on the way, or if the sheet does not open at its last load step.
+pub fn moment_after_overshoot(
+    scene: &Scene,
+    problem: &DesignProblem,
+    law: &Springback,
+    deployment: &Deployment,
+) -> Option<f64> {
+    let mechanics = problem.model.mechanics()?;
+    let designs = deployment.sheet.designs();
+    let prepared = mechanics.law.prepare(&designs);
+    let loaded = &deployment.path[deployment.weight_steps().len()..];
+    let [.., before, last] = loaded else {
+        return None;
+    };
+    // Straight on from the last load step.
+    let opens = last.mean_opening() - before.mean_opening();
+    if opens <= 0.0 {
+        return None;
+    }
+    let steps = TOO_FAR * last.mean_opening() / opens;
+    let over: Vec<HingeDeformation> = std::iter::zip(&before.deformations, &last.deformations)
+        .map(|(before, last)| {
+            let (before, last) = (before.to_array(), last.to_array());
+            HingeDeformation::from(from_fn(|i| last[i] + steps * (last[i] - before[i])))
+        })
+        .collect();
+    if prepared.inside(&over).contains(&false) {
+        return None;
+    }
+    let hinges = Release::new(law.clone(), scene.scale()).hinges(&*prepared, &designs, &over);
+    let holds = |law: &dyn PreparedLaw| -> f64 {
+        let energies = law.energies(&last.deformations, Order::Forces);
+        let hinges = std::iter::zip(&energies, &last.deformations);
+        hinges
+            .map(|(energy, state)| energy.forces[2] * state.theta)
+            .sum()
+    };
+    let share = holds(&ReleasedLaw(&hinges)) / holds(&*prepared);
+    share.is_finite().then_some(share)
 }
 
 impl DesignProblem {

@@ -151,6 +151,12 @@ impl LoadStep {
         root_mean_square(self.deformations.iter().map(|state| state.theta))
     }
 
+    /// Mean of the rotations of the hinges (rad).
+    pub fn mean_opening(&self) -> f64 {
+        let rotations = self.deformations.iter().map(|state| state.theta);
+        rotations.sum::<f64>() / self.deformations.len() as f64
+    }
+
     /// Estimate of the condition number of the tangent in the 1-norm, scaled to a unit diagonal so
     /// that it does not depend on units; infinite if the tangent could not be factorised.
     pub fn condition(&self, solver: &EquilibriumSolver) -> f64 {

@@ -1,5 +1,6 @@
 //! The scene of a sheet that is fitted to the target of another: what the fit, the pulls and one equilibrium decide becomes keys.
 
+use crate::analysis::out_of_plane::Stability;
 use crate::fit::opening::safe_opening;
 use crate::fit::placement::place;
 use crate::fit::pulls::{Pull, candidates, pulls};
@@ -20,6 +21,7 @@ use crate::scene::{
 };
 use crate::sheet::validity::{OVERLAP, overlap};
 use hinge::Regime;
+use std::cmp::Ordering;
 
 /// The largest opening that is planned (rad): 65 degrees.
 const MOST: f64 = 1.134;
@@ -76,6 +78,8 @@ pub struct FittedScene {
     rotation: f64,
     /// Its equilibrium under the pulls before any search; `None` if none was found.
     pub pulled: Option<Nearness>,
+    /// Whether it stays in its plane there by itself; `None` for a film and without an equilibrium, where the panels are held flat.
+    pub stability: Option<Stability>,
 }
 
 /// Why a sheet is not fitted to a target.
@@ -111,7 +115,7 @@ pub fn fitted(scene: &Scene) -> Result<FittedScene, FitError> {
     let with = |count: usize, place: Similarity| {
         fitted_keys(scene, &fitted, held, &pulls(&candidates, count), place)
     };
-    let mut tried = Vec::new();
+    let mut tried: Vec<(Pulled, Nearness, SceneConfig)> = Vec::new();
     for count in 1..=MOST_PULLS {
         let pulling = scene.changed(with(count, place_on_pins))?;
         let Some(pulled) = pulled(&pulling, silhouette, place_on_pins) else {
@@ -119,20 +123,36 @@ pub fn fitted(scene: &Scene) -> Result<FittedScene, FitError> {
         };
         let near = nearness(&pulled.outline, pulled.place);
         let suffices = pulled.overlap <= OVERLAP && near.error <= CLOSE * pins.error;
-        tried.push((pulled.overlap > OVERLAP, near, with(count, pulled.place)));
-        if suffices {
+        let is_flat = pulled.is_flat();
+        let config = with(count, pulled.place);
+        tried.push((pulled, near, config));
+        if suffices && is_flat {
             break;
         }
     }
-    let best = tried
-        .into_iter()
-        .min_by(|(closes, near, _), (others, other, _)| {
-            closes.cmp(others).then(near.error.total_cmp(&other.error))
+    // Of those that are as good, the one with the fewest pulls.
+    let is_close = |near: &Nearness| near.error <= CLOSE * pins.error;
+    let best = tried.into_iter().min_by(|one, other| {
+        let [first, second] = [one, other].map(|(pulled, near, _)| {
+            (pulled.overlap > OVERLAP, !is_close(near), !pulled.is_flat())
         });
-    let (pulled, config) = match best {
-        Some((_, near, config)) => (Some(near), config),
-        None => (None, with(1, place_on_pins)),
+        let by_error = || match is_close(&one.1) {
+            true => Ordering::Equal,
+            false => one.1.error.total_cmp(&other.1.error),
+        };
+        first.cmp(&second).then_with(by_error)
+    });
+    let (pulled, stability, mut config) = match best {
+        Some((pulled, near, config)) => (Some(near), pulled.stability, config),
+        None => (None, None, with(1, place_on_pins)),
     };
+    let regime = scene.material.regime(scene.config.ligament.start);
+    let stays = stability.is_some_and(Stability::is_safe);
+    let kind = match regime {
+        Regime::Plate if stays => Posture::Lying,
+        Regime::Plate | Regime::Film => Posture::HeldFlat,
+    };
+    config.posture = Some(PostureConfig { kind, down: None });
     Ok(FittedScene {
         config,
         opening: making.opening,
@@ -145,6 +165,7 @@ pub fn fitted(scene: &Scene) -> Result<FittedScene, FitError> {
         ),
         rotation: fitted.rotation(),
         pulled,
+        stability,
     })
 }
 
@@ -227,6 +248,15 @@ struct Pulled {
     place: Similarity,
     /// The largest common area of two panels on the way, over the area of a panel.
     overlap: f64,
+    /// Whether it stays in its plane by itself; `None` for a film.
+    stability: Option<Stability>,
+}
+
+impl Pulled {
+    /// Whether nothing needs to hold it flat, or always something does.
+    fn is_flat(&self) -> bool {
+        self.stability.is_none_or(Stability::is_safe)
+    }
 }
 
 /// The equilibrium of a scene; `None` if none is found.
@@ -247,6 +277,7 @@ fn pulled(scene: &Scene, silhouette: &[[f64; 2]], guess: Similarity) -> Option<P
         outline,
         place,
         overlap,
+        stability: Stability::new(scene, &deployment),
     })
 }
 
@@ -287,6 +318,11 @@ fn fitted_keys(
     config.sheet.size = None;
     config.sheet.corners = Some(fitted.outline.corners.map(|corner| corner.map(rounded)));
     config.sheet.panels = [fitted.grid.m, fitted.grid.n];
+    // For the first equilibrium: in a hanging sheet the weight would act.
+    config.posture = Some(PostureConfig {
+        kind: Posture::HeldFlat,
+        down: None,
+    });
     let regime = scene.material.regime(config.ligament.start);
     config.start = StartConfig::at(&fitted.pattern, widths(scene, fitted, regime));
     config.supports = vec![SupportConfig::at_centroid(held, SupportKind::Clamp)];
@@ -301,11 +337,6 @@ fn fitted_keys(
     });
     config.edge_loads.clear();
     config.opening_couples.clear();
-    let kind = match regime {
-        Regime::Film => Posture::HeldFlat,
-        Regime::Plate => Posture::Lying,
-    };
-    config.posture = Some(PostureConfig { kind, down: None });
     // Relative to the mean area of a panel.
     config.objective.symmetric_difference = DIFFERENCE * fitted.grid.panel_count() as f64;
     if scene.surrogate().is_some() {

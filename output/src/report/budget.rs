@@ -67,12 +67,8 @@ impl Budget {
         }));
         let [rms, maximum, load] = self.cells(Some(&self.errors.total));
         let squares = "root of the sum of the squares of what is known".to_owned();
-        let sum = if self.errors.total.at_least {
-            "at least"
-        } else {
-            "sum"
-        };
-        rows.push([sum.to_owned(), rms, maximum, load, squares]);
+        // Panels and clips bend by what is not known.
+        rows.push(["at least".to_owned(), rms, maximum, load, squares]);
         rows
     }
 

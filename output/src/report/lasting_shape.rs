@@ -1,7 +1,9 @@
 //! What becomes of the opening of a sheet: under a load that stays, and when the load is taken off.
 
 use crate::report::columns::rounded;
-use design::analysis::springback::{LetGoError, WhatStays, let_go_in_domain};
+use design::analysis::springback::{
+    LetGoError, TOO_FAR, WhatStays, let_go_in_domain, moment_after_overshoot,
+};
 use design::objective::design_problem::{Deployment, DesignProblem};
 use design::scene::Scene;
 use hinge::Creep;
@@ -27,6 +29,8 @@ pub struct Released {
     pub stays: WhatStays,
     /// Errors of the law at hinges that it has not seen; `None` if they were not measured.
     pub law: Option<SpringbackErrors>,
+    /// The moments of hinges that were opened too far and brought back, over those of the report; `None` if that is not known.
+    pub after_overshoot: Option<f64>,
 }
 
 impl LastingShape {
@@ -57,6 +61,9 @@ impl LastingShape {
     pub(super) fn rows(&self) -> Vec<(&'static str, String)> {
         let springback = self.springback.iter().cloned();
         let mut rows: Vec<_> = springback.map(|text| ("springback", text)).collect();
+        rows.extend(
+            (self.released.as_ref()).map(|released| ("opened too far", released.too_far())),
+        );
         rows.push(("creep", creep(self.creep.as_ref())));
         rows
     }
@@ -74,7 +81,22 @@ impl Released {
         Some(found.map(|(_, stays)| Self {
             stays,
             law: law.errors,
+            after_overshoot: moment_after_overshoot(scene, problem, law, deployment),
         }))
+    }
+
+    fn too_far(&self) -> String {
+        let percent = 100.0 * TOO_FAR;
+        match self.after_overshoot {
+            Some(share) => format!(
+                "do not open it further than this: {percent:.0} % further and back again, its hinges hold with {:.0} % of their moments, by the law \
+                 of released hinges",
+                100.0 * share
+            ),
+            None => format!(
+                "not known: {percent:.0} % further, hinges leave the training domain of the law"
+            ),
+        }
     }
 
     fn text(&self) -> String {

@@ -241,24 +241,23 @@ fn panels_that_lie_over_each_other_are_an_error() {
     }
 }
 
-/// Larger plates were found off although their ligaments are narrow; of one that is pushed nothing was measured.
+/// The forces on the way decide: those of a pulled plate hold it in its plane, those of a pushed one tip its panels.
 #[test]
-fn a_plate_is_not_called_flat() {
+fn a_plate_stays_in_its_plane_if_it_is_pulled_and_leaves_it_if_it_is_pushed() {
     let plate = |outwards: f64| {
         let run = Finished::shipped("a4-plate", |config| {
             let force = config.loads[0].force;
             config.loads[0].force = force.map(|component| outwards * component);
             config.drive.as_mut().unwrap().stroke = 20.0;
         });
-        run.report
+        one(&run.report, Concern::LeavesPlane).clone()
     };
     let pulled = plate(1.0);
-    let warning = one(&pulled, Concern::LeavesPlane);
-    assert_eq!(warning.severity, Severity::Warning);
-    assert_says(&warning.message, "not known");
-    assert_says(&warning.message, "1.3 % of their size off");
-    assert_says(&warning.message, "tilt by up to 8 deg");
-    assert!(found(&plate(-1.0), Concern::LeavesPlane).is_empty());
+    assert_eq!(pulled.severity, Severity::Note);
+    assert_says(&pulled.message, "by themselves they stay");
+    let pushed = plate(-1.0);
+    assert_eq!(pushed.severity, Severity::Warning);
+    assert_says(&pushed.message, "they leave it where hinges open by");
 }
 
 #[test]

@@ -40,8 +40,8 @@ const FILM: Template = Template {
 
 const PLATE: Template = Template {
     scene: include_str!("../../../configs/scenes/a4-plate.toml"),
-    says: "# Its ligaments are narrower than the plate is thick: they bend in its plane. Nothing holds its panels there: `kirigami\n\
-           # verify --sheet` says how far they tilt. It hangs from a clip at its upper edge. The clip hangs from a hook and swings: gravity and pull are along the\n\
+    says: "# Its ligaments are narrower than the plate is thick: they bend in its plane. Nothing holds its panels there:\n\
+           # the report says whether they stay. It hangs from a clip at its upper edge. The clip hangs from a hook and swings: gravity and pull are along the\n\
            # line from clip to clip of the opened sheet, in the frame of the held panel.\n",
     thickness: 3.0,
     r_win: 12.0,
@@ -50,7 +50,7 @@ const PLATE: Template = Template {
     campaign_thickness: 3.0,
     training: include_str!("../../../configs/training/plate/medium.toml"),
     why: "The sheet is thick for its size: its ligaments are narrower than it is thick and bend in its plane. Nothing holds its \
-          panels there; `kirigami verify --sheet` says how far they tilt.",
+          panels there; the report says whether they stay.",
 };
 
 impl Template {
