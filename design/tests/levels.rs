@@ -31,7 +31,7 @@ fn every_level_of_a_plate_deploys_and_nears_the_finest() {
         AtLevel::new(&scene, &design).unwrap()
     };
     let finest = at(Level::Fine);
-    let opening = Some(finest.mean_opening());
+    let opening = Some(finest.deployment.final_step().mean_opening());
     let pins = plate.at_level(Level::Pin).unwrap();
     let pins = AtLevel::new(
         &pins,

@@ -187,10 +187,9 @@ impl SheetTask {
                 Some(panel) => SheetPart::around(&deployment.sheet, panel)?,
                 None => SheetPart::whole(&deployment.sheet),
             },
-            margins: match patch {
-                Some(_) => None,
-                None => margins(&scene, &deployment),
-            },
+            margins: (patch.is_none())
+                .then(|| margins(&scene, &problem, &deployment))
+                .flatten(),
             curve,
             deployment,
             problem,
@@ -268,9 +267,7 @@ impl SheetTask {
         let loaded = &self.deployment.path[weighed.len()..];
         let flat = vec![[0.0; 3]; self.deployment.sheet.panels.len()];
         let start = weighed.last().map_or(&flat, |step| &step.configuration);
-        let place = fraction.clamp(0.0, 1.0) * loaded.len() as f64;
-        let after = (place.ceil() as usize).clamp(1, loaded.len());
-        let share = place - (after - 1) as f64;
+        let (after, share) = self.place(fraction);
         let mix = |from: f64, to: f64| from + share * (to - from);
         let from = match after {
             1 => start,
@@ -347,12 +344,18 @@ impl SheetTask {
         gaps.fold(f64::INFINITY, f64::min)
     }
 
-    /// The margin by the law at the load step that a fraction of the loads belongs to.
+    /// The margin by the law at the next load step.
     fn margin(&self, fraction: f64) -> Option<f64> {
-        let margins = self.margins.as_ref()?;
-        let loaded = &margins[self.deployment.weight_steps().len()..];
-        let after = (fraction.clamp(0.0, 1.0) * loaded.len() as f64).ceil() as usize;
-        loaded.get(after.max(1) - 1).copied()
+        let weighed = self.deployment.weight_steps().len();
+        Some(self.margins.as_ref()?[weighed + self.place(fraction).0 - 1])
+    }
+
+    /// The load step at or after a fraction of the loads, counted from 1, and the share of the way to it from the one before.
+    fn place(&self, fraction: f64) -> (usize, f64) {
+        let steps = self.deployment.path.len() - self.deployment.weight_steps().len();
+        let place = fraction.clamp(0.0, 1.0) * steps as f64;
+        let after = (place.ceil() as usize).clamp(1, steps);
+        (after, place - (after - 1) as f64)
     }
 
     /// Rotation of a hinge in the plane by finite elements (rad); a panel that is not solved moves by the law.
@@ -485,7 +488,7 @@ fn flatness(support: Posture, size: f64, path: &[StateCheck]) -> Option<SheetFin
     ))
 }
 
-/// Flanks that pass through each other, which those of a cut sheet do not.
+/// Flanks that pass through each other, as flanks of a cut sheet cannot.
 fn flanks_pass(path: &[StateCheck]) -> Option<SheetFinding> {
     let gap = |state: &&StateCheck| state.flank_gap.is_some_and(|gap| gap < -FLANKS_TOUCH);
     let first = path.iter().find(gap)?;

@@ -95,9 +95,4 @@ impl AtLevel {
         let mut peaks = hinges.map(|hinge| self.deployment.damage_max(DamageMeasure::Peak, hinge));
         peaks.try_fold(0.0, |largest: f64, peak| Some(largest.max(peak?)))
     }
-
-    /// The mean opening of its hinges in the last state (rad).
-    pub fn mean_opening(&self) -> f64 {
-        self.deployment.final_step().mean_opening()
-    }
 }

@@ -64,7 +64,9 @@ pub fn levels(
         progress(level);
         let mut design = design.clone();
         if level == Level::Pin {
-            design.opening.get_or_insert(reference.mean_opening());
+            design
+                .opening
+                .get_or_insert(reference.deployment.final_step().mean_opening());
         }
         let step = seconds(scene, stop).ok();
         let own;

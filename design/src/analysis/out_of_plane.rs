@@ -17,7 +17,7 @@ use crate::equilibrium::load_step::LoadStep;
 use crate::equilibrium::tangent::TangentPattern;
 use crate::geometry::plane::{I, complex, cross, point, turn};
 use crate::hinge_law::Order;
-use crate::objective::design_problem::Deployment;
+use crate::objective::design_problem::{Deployment, DesignProblem};
 use crate::scene::{Scene, SupportKind};
 use crate::sheet::cut_sheet::{Hinge, Sheet};
 use crate::sheet::kinematics::{Configuration, deployed};
@@ -30,10 +30,11 @@ use std::array::from_fn;
 const UNLOADING: f64 = 1.7;
 /// Stiffness of a ligament against a difference of heights over K_aa: so large that there is none.
 const RIGID: f64 = 1e3;
-/// The interval in which margins are found, and the number of halvings: to 0.2 %.
+/// The least margin that is distinguished.
 const LEAST_MARGIN: f64 = 0.05;
-/// The largest margin that is told apart.
+/// The largest margin that is distinguished.
 pub const MOST: f64 = 20.0;
+/// Number of halvings of this interval: to 0.2 %.
 const HALVINGS: usize = 12;
 /// Smallest stiffness along a ligament over that in the flat sheet.
 const LEAST: f64 = 1e-3;
@@ -60,11 +61,10 @@ impl Stability {
     }
 
     /// Of a deployed plate; `None` where [`margins`] has none.
-    pub fn new(scene: &Scene, deployment: &Deployment) -> Option<Self> {
-        let margins = margins(scene, deployment)?;
-        let openings = deployment.path.iter().map(|step| step.mean_opening());
-        let states: Vec<[f64; 2]> = std::iter::zip(margins.iter().copied(), openings)
-            .map(|(margin, opening)| [margin, opening])
+    pub fn new(scene: &Scene, problem: &DesignProblem, deployment: &Deployment) -> Option<Self> {
+        let margins = margins(scene, problem, deployment)?;
+        let states: Vec<[f64; 2]> = std::iter::zip(&margins, &deployment.path)
+            .map(|(margin, step)| [*margin, step.mean_opening()])
             .collect();
         let crossing = |pair: &[[f64; 2]]| {
             let [[before, from], [after, to]] = [pair[0], pair[1]];
@@ -83,17 +83,19 @@ impl Stability {
 /// The margin of every load step of a deployed plate, at most [`MOST`]; `None` for a sheet on pins, for a film, and for a sheet whose supports leave it
 /// free to move out of the plane. Clips and clamps of supports hold a panel against rising and tilting, other supports one of its points;
 /// what pulls a panel holds nothing.
-pub fn margins(scene: &Scene, deployment: &Deployment) -> Option<Vec<f64>> {
+pub fn margins(
+    scene: &Scene,
+    problem: &DesignProblem,
+    deployment: &Deployment,
+) -> Option<Vec<f64>> {
     let thickness = scene.material.thickness;
     let is_film = |hinge: &Hinge| scene.material.regime(hinge.w_lig) == Regime::Film;
     if deployment.sheet.hinges.iter().any(is_film) {
         return None;
     }
-    let problem = scene.problem().ok()?;
     let mechanics = problem.model.mechanics()?;
     let sheet = &deployment.sheet;
     let law = mechanics.law.prepare(&sheet.designs());
-    let hinged = mechanics.hinged(sheet, &*law, false);
     let undeformed = vec![HingeDeformation::default(); sheet.hinges.len()];
     let flat = law.energies(&undeformed, Order::Tangent);
     let mut supported = vec![[false; 3]; sheet.panels.len()];
@@ -106,8 +108,12 @@ pub fn margins(scene: &Scene, deployment: &Deployment) -> Option<Vec<f64>> {
     }
     let pattern = TangentPattern::new(sheet.grid, supported.as_flattened());
     let of_step = |step: &LoadStep| {
-        let total = hinged.energies(&step.deformations, Order::Forces);
         let elastic = law.energies(&step.deformations, Order::Tangent);
+        // Contact carries forces, but does not stiffen ligaments.
+        let mut total = elastic.clone();
+        if let Some(contact) = &mechanics.contact {
+            contact.add(&mut total, &step.deformations);
+        }
         let blocks = (0..sheet.hinges.len()).map(|h| {
             let ligament = Ligament::new(sheet, h, &step.configuration, total[h].forces);
             let theta = step.deformations[h].theta;
@@ -371,10 +377,10 @@ mod tests {
     #[test]
     fn the_plate_of_the_service_stays_in_its_plane_and_a_film_has_no_margin() {
         let (scene, deployment) = deployed_scene("a4-plate.toml");
-        let stability = Stability::new(&scene, &deployment).unwrap();
+        let stability = Stability::new(&scene, &scene.problem().unwrap(), &deployment).unwrap();
         assert!(stability.margin > Stability::SAFE, "{stability:?}");
         assert_eq!(stability.leaves_at, None);
         let (film, deployment) = deployed_scene("pet-3x3.toml");
-        assert_eq!(margins(&film, &deployment), None);
+        assert_eq!(margins(&film, &film.problem().unwrap(), &deployment), None);
     }
 }

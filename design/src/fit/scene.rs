@@ -115,6 +115,11 @@ pub fn fitted(scene: &Scene) -> Result<FittedScene, FitError> {
     let with = |count: usize, place: Similarity| {
         fitted_keys(scene, &fitted, held, &pulls(&candidates, count), place)
     };
+    // The worst first: cuts close, the outline is far, the panels leave their plane.
+    let defects = |pulled: &Pulled, near: &Nearness| {
+        let is_close = near.error <= CLOSE * pins.error;
+        [pulled.overlap > OVERLAP, !is_close, !pulled.is_flat()]
+    };
     let mut tried: Vec<(Pulled, Nearness, SceneConfig)> = Vec::new();
     for count in 1..=MOST_PULLS {
         let pulling = scene.changed(with(count, place_on_pins))?;
@@ -122,25 +127,22 @@ pub fn fitted(scene: &Scene) -> Result<FittedScene, FitError> {
             continue;
         };
         let near = nearness(&pulled.outline, pulled.place);
-        let suffices = pulled.overlap <= OVERLAP && near.error <= CLOSE * pins.error;
-        let is_flat = pulled.is_flat();
+        let defects = defects(&pulled, &near);
         let config = with(count, pulled.place);
         tried.push((pulled, near, config));
-        if suffices && is_flat {
+        if defects == [false; 3] {
             break;
         }
     }
     // Of those that are as good, the one with the fewest pulls.
-    let is_close = |near: &Nearness| near.error <= CLOSE * pins.error;
     let best = tried.into_iter().min_by(|one, other| {
-        let [first, second] = [one, other].map(|(pulled, near, _)| {
-            (pulled.overlap > OVERLAP, !is_close(near), !pulled.is_flat())
-        });
-        let by_error = || match is_close(&one.1) {
-            true => Ordering::Equal,
-            false => one.1.error.total_cmp(&other.1.error),
+        let [first, second] = [one, other].map(|(pulled, near, _)| defects(pulled, near));
+        let by_error = if first[1] {
+            one.1.error.total_cmp(&other.1.error)
+        } else {
+            Ordering::Equal
         };
-        first.cmp(&second).then_with(by_error)
+        first.cmp(&second).then(by_error)
     });
     let (pulled, stability, mut config) = match best {
         Some((pulled, near, config)) => (Some(near), pulled.stability, config),
@@ -277,7 +279,7 @@ fn pulled(scene: &Scene, silhouette: &[[f64; 2]], guess: Similarity) -> Option<P
         outline,
         place,
         overlap,
-        stability: Stability::new(scene, &deployment),
+        stability: Stability::new(scene, &problem, &deployment),
     })
 }
 

@@ -397,8 +397,9 @@ fn leaves_plane(judged: &Judged) -> Option<Warning> {
         _ => "nothing keeps the panels in the plane",
     };
     let widest = (judged.hinges.iter()).fold(0.0, |most, row| row.w_lig.max(most));
+    let stability = |problem| Stability::new(judged.scene, &problem, judged.deployment);
     Some(match judged.scene.material.regime(widest) {
-        Regime::Plate => plate_leaves_plane(kept, Stability::new(judged.scene, judged.deployment)),
+        Regime::Plate => plate_leaves_plane(kept, judged.scene.problem().ok().and_then(stability)),
         Regime::Film => film_leaves_plane(judged, posture, kept, widest),
     })
 }
@@ -409,7 +410,7 @@ fn plate_leaves_plane(kept: &str, stability: Option<Stability>) -> Warning {
     let advice = "hold it flat, such as between two boards, take narrower ligaments, or pull more panels; `kirigami verify --sheet` solves it";
     let Some(Stability { margin, leaves_at }) = stability else {
         return concern.of_sheet(format!(
-            "{kept}, and whether they stay is not known: no clip or clamp holds the sheet upright"
+            "{kept}, and whether they stay is not known: that needs a hinge law, and a clip or clamp that holds a panel"
         ));
     };
     let percent = (100.0 * margin).round();

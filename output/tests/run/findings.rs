@@ -241,7 +241,7 @@ fn panels_that_lie_over_each_other_are_an_error() {
     }
 }
 
-/// The forces on the way decide: those of a pulled plate hold it in its plane, those of a pushed one tip its panels.
+/// The forces on the way decide: in a pulled plate they hold the panels in the plane, in a pushed one they tip them.
 #[test]
 fn a_plate_stays_in_its_plane_if_it_is_pulled_and_leaves_it_if_it_is_pushed() {
     let plate = |outwards: f64| {
