@@ -34,7 +34,7 @@ pub use actuation::{
     At, DriveConfig, EdgeLoadConfig, LoadConfig, NamedPoint, OpeningCoupleConfig, SheetEdge,
     SupportConfig, SupportKind,
 };
-pub use boundary_values::{Actuation, AppliedLoad, Attachment, SupportedPanel, panel_name};
+pub use boundary_values::{Actuation, AppliedLoad, SupportedPanel, panel_name};
 pub use checked_scene::Scene;
 pub use cutting::CuttingConfig;
 pub use drawn_target::{place_drawing, rounded};

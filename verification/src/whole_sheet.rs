@@ -2,7 +2,8 @@
 
 use crate::verification_error::VerificationError;
 use design::pattern::grid::Grid;
-use design::scene::{Attachment, Posture, PostureConfig, Scene, SupportKind};
+use design::scene::{Posture, PostureConfig, Scene, SupportKind};
+use design::sheet::attachment::Attachment;
 use design::sheet::cut_sheet::{PanelPoint, Sheet};
 use design::sheet::hinge_window::Window;
 use fe_driver::{Held, Keeping, Place, Pulled, SheetProblem};

@@ -27,10 +27,8 @@ pub(super) struct Partials<'a> {
     pub by_states: &'a [Vec<HingeGradient>],
     /// In the load factor of the last step.
     pub by_load_factor: f64,
-    /// In the flat corners of every panel; `None` if all are zero.
-    pub by_corners: Option<&'a [[[f64; 2]; 4]]>,
-    /// In the cut angle of every hinge; empty if all are zero.
-    pub by_angles: &'a [f64],
+    /// In the flat sheet, at fixed states and designs of its hinges.
+    pub by_sheet: SheetGradient,
     /// In size and rotation of a fitted target.
     pub by_fit: [f64; 2],
     /// In the forces of the supports in the last step; `None` if all are zero.
@@ -73,8 +71,7 @@ impl DesignProblem {
             by_outline: &judgement.gradient.by_outline,
             by_states: &judgement.gradient.by_states,
             by_load_factor: 0.0,
-            by_corners: Some(&judgement.gradient.by_corners),
-            by_angles: &judgement.gradient.by_angles,
+            by_sheet: judgement.gradient.by_sheet,
             by_fit: judgement.gradient.by_fit,
             by_reactions: None,
         };
@@ -98,12 +95,14 @@ impl DesignProblem {
         partials: Partials,
     ) -> Result<Gradient, DesignError> {
         let sheet = &deployment.sheet;
-        let mut by_sheet = SheetGradient::zeros(self.grid);
-        if let Some(by_corners) = partials.by_corners {
-            by_sheet.corners.copy_from_slice(by_corners);
-        }
-        std::iter::zip(&mut by_sheet.alphas, partials.by_angles).for_each(|(sum, by)| *sum += by);
-        let by_compared = outline_pullback(sheet, deployment.compared(), &partials, &mut by_sheet);
+        let Partials {
+            outline,
+            by_outline,
+            mut by_sheet,
+            ..
+        } = partials;
+        let outline = std::iter::zip(outline, by_outline);
+        let by_compared = outline_pullback(sheet, deployment.compared(), outline, &mut by_sheet);
         let (mut by_opening, mut adjoint_residual) = (None, 0.0);
         let mut virtual_motion = Vec::new();
         let mut sensitivities = Sensitivities::default();
@@ -172,14 +171,14 @@ impl DesignProblem {
 
 /// The gradient, in the configuration that is compared with the target, of a function of the outline points there; its gradient
 /// with respect to the flat sheet is added to `by_sheet`.
-fn outline_pullback(
+fn outline_pullback<'a>(
     sheet: &Sheet,
     compared: &LoadStep,
-    partials: &Partials,
+    outline: impl Iterator<Item = (&'a PanelCorner, &'a [f64; 2])>,
     by_sheet: &mut SheetGradient,
 ) -> Vec<[f64; 3]> {
     let mut by_compared = vec![[0.0; 3]; sheet.panels.len()];
-    for (&(panel, corner), &gradient) in std::iter::zip(partials.outline, partials.by_outline) {
+    for (&(panel, corner), &gradient) in outline {
         let flat = sheet.panels[panel].corners[corner];
         let (by_motion, by_flat, by_reference) = deployed_pullback(
             &sheet.panels[panel],

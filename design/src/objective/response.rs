@@ -25,6 +25,7 @@ use crate::hinge_law::{HingeEnergy, Order};
 use crate::objective::design_gradient::Partials;
 use crate::objective::design_problem::{Deployment, DesignError, DesignProblem, Model, found};
 use crate::pattern::design_vector::DesignVector;
+use crate::sheet::cut_sheet::SheetGradient;
 use crate::sheet::kinematics::{HingeMotion, deployed_corners};
 use crate::sheet::panel_vectors::at_hinge;
 use hinge::HingeDeformation;
@@ -215,8 +216,7 @@ impl DesignProblem {
             by_outline: by.corners.as_flattened(),
             by_states: &vec![vec![[0.0; 6]]; sheet.hinges.len()],
             by_load_factor: by.load_factor,
-            by_corners: None,
-            by_angles: &[],
+            by_sheet: SheetGradient::zeros(sheet.grid),
             by_fit: [0.0; 2],
             by_reactions: of_supports.then_some(reactions),
         };

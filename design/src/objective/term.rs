@@ -3,7 +3,7 @@
 use crate::equilibrium::load_step::LoadStep;
 use crate::hinge_law::HingeGradient;
 use crate::pattern::fit_variables::FitVariables;
-use crate::sheet::cut_sheet::Sheet;
+use crate::sheet::cut_sheet::{Sheet, SheetGradient};
 use std::fmt::Debug;
 use std::sync::Arc;
 
@@ -71,10 +71,8 @@ pub struct TermGradient {
     pub by_measures: Vec<Vec<[f64; 4]>>,
     /// In the state and the design of each hinge at each load step.
     pub by_states: Vec<Vec<HingeGradient>>,
-    /// In the flat corners of every panel.
-    pub by_corners: Vec<[[f64; 2]; 4]>,
-    /// In the cut angle of every hinge.
-    pub by_angles: Vec<f64>,
+    /// In the flat sheet, at fixed states and designs of its hinges.
+    pub by_sheet: SheetGradient,
     /// In size and rotation of a fitted target.
     pub by_fit: [f64; 2],
 }
@@ -87,8 +85,7 @@ impl TermGradient {
             by_outline: vec![[0.0; 2]; at.outline.len()],
             by_measures: vec![vec![[0.0; 4]; steps]; hinges],
             by_states: vec![vec![[0.0; 6]; steps]; hinges],
-            by_corners: vec![[[0.0; 2]; 4]; at.sheet.panels.len()],
-            by_angles: vec![0.0; hinges],
+            by_sheet: SheetGradient::zeros(at.sheet.grid),
             by_fit: [0.0; 2],
         }
     }
@@ -102,7 +99,7 @@ impl TermGradient {
 
     /// Adds `weight` times a gradient in the flat corners of every panel.
     pub fn add_by_corners(&mut self, weight: f64, by_corners: &[[[f64; 2]; 4]]) {
-        let sums = self.by_corners.as_flattened_mut().as_flattened_mut();
+        let sums = self.by_sheet.corners.as_flattened_mut().as_flattened_mut();
         let entries = by_corners.as_flattened().as_flattened();
         std::iter::zip(sums, entries).for_each(|(sum, entry)| *sum += weight * entry);
     }

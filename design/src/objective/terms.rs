@@ -4,6 +4,7 @@ mod compression;
 mod cut_angles;
 mod damage;
 mod domain;
+mod fastenings;
 mod panel_shape;
 pub mod panel_width;
 mod shear;
@@ -13,6 +14,7 @@ pub use compression::Compression;
 pub use cut_angles::CutAngles;
 pub use damage::Damage;
 pub use domain::DomainPenalty;
+pub use fastenings::Fastenings;
 pub use panel_shape::PanelShape;
 pub use panel_width::PanelWidth;
 pub use shear::Shear;
@@ -23,11 +25,14 @@ use crate::objective::loss::Objective;
 use crate::objective::shape::{Shape, TargetState};
 use crate::objective::target::Target;
 use crate::objective::term::Weighted;
+use crate::sheet::attachment::Attachment;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// w_cov of the Chamfer distance, as in the paper.
 pub const COVERAGE: f64 = 0.5;
+/// Weight of the penalty on holes and clips without room, relative to the Chamfer distance over the area of a panel.
+const FASTENINGS: f64 = 10.0;
 /// Number of points on the target outline.
 pub const TARGET_POINTS: usize = 1000;
 
@@ -81,6 +86,8 @@ pub struct Setting<'a> {
     pub mean_panel_area: f64,
     /// Radius of the windows of the hinges (mm).
     pub r_win: f64,
+    /// The points at which panels are held or pulled.
+    pub attachments: Vec<Attachment>,
 }
 
 impl ObjectiveConfig {
@@ -105,6 +112,11 @@ impl ObjectiveConfig {
             Weighted::new(limited, PanelWidth { minimum }),
             Weighted::new(self.domain * area, DomainPenalty { domain }),
         ];
+        let is_fastened = |at: &Attachment| at.hole.or(at.clip).is_some();
+        if setting.attachments.iter().any(is_fastened) {
+            let attachments = setting.attachments.clone();
+            penalties.push(Weighted::new(FASTENINGS * area, Fastenings { attachments }));
+        }
         let shape = self.shape(setting);
         if self.symmetric_difference > 0.0 {
             let difference = SymmetricDifference::new(shape.clone());
@@ -195,6 +207,7 @@ mod tests {
             law: Some(&Law(domain)),
             mean_panel_area: 10.0,
             r_win: 10.0,
+            attachments: Vec::new(),
         });
         let angles = Weighted::new(0.8, CutAngles { least: 1.3 });
         objective.penalties.push(angles);
@@ -258,13 +271,13 @@ mod tests {
         let mut gradient = TermGradient::zeros(&at);
         let value = term.evaluate(&at, 1.0, &mut gradient);
         add_by_states(&at, &mut gradient);
-        let by_hinges = std::iter::zip(&gradient.by_states, &gradient.by_angles);
+        let by_hinges = std::iter::zip(&gradient.by_states, &gradient.by_sheet.alphas);
         let by_hinges = by_hinges.flat_map(|(steps, by_angle)| {
             let sum = |c: usize| steps.iter().map(|step| step[c]).sum::<f64>();
             let states = steps.iter().flat_map(|step| step[..3].to_vec());
             [sum(3), sum(4) + by_angle].into_iter().chain(states)
         });
-        let by_corners = gradient.by_corners.into_flattened().into_flattened();
+        let by_corners = gradient.by_sheet.corners.into_flattened().into_flattened();
         let by_outline = gradient.by_outline.into_flattened();
         let slopes = by_hinges.chain(by_corners).chain(by_outline).collect();
         (value, slopes)

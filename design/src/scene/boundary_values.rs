@@ -5,6 +5,7 @@ use crate::geometry::polygon::distance;
 use crate::pattern::grid::{EDGES, Grid};
 use crate::scene::actuation::{EdgeLoadConfig, LoadConfig, OpeningCoupleConfig, SupportConfig};
 use crate::scene::checked_scene::Scene;
+use crate::sheet::attachment::Attachment;
 use crate::sheet::cut_sheet::{Grip, PanelPoint};
 use crate::sheet::topology::{HingeSite, hinge_sites};
 use serde::Serialize;
@@ -22,21 +23,6 @@ pub struct Actuation {
     pub attachments: Vec<Attachment>,
     /// What symbols and curved arrows mean.
     pub legend: String,
-}
-
-/// A point at which a panel is held or pulled.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Attachment {
-    /// What is attached.
-    pub name: String,
-    /// Index of the panel.
-    pub panel: usize,
-    /// The point of the panel.
-    pub point: PanelPoint,
-    /// Diameter of a hole for a nail or a hook (mm).
-    pub hole: Option<f64>,
-    /// Width of a clip on an edge of the panel (mm).
-    pub clip: Option<f64>,
 }
 
 /// A supported panel.

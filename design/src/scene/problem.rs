@@ -81,6 +81,7 @@ impl Scene {
             law: model.mechanics().map(|mechanics| &*mechanics.law),
             mean_panel_area: self.config.sheet.mean_panel_area(),
             r_win: self.config.process.r_win,
+            attachments: self.actuation().attachments,
         })
     }
 

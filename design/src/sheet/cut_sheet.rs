@@ -150,6 +150,8 @@ pub struct SheetGradient {
     pub areas: Vec<f64>,
     /// With respect to the attachment point of every hinge.
     pub attachments: Vec<[f64; 2]>,
+    /// With respect to the tip of the main cut of every hinge, at a fixed attachment point.
+    pub tips: Vec<[f64; 2]>,
     /// With respect to the angle of e_sec, per hinge.
     pub frame_angles: Vec<f64>,
     /// With respect to alpha, per hinge.
@@ -170,6 +172,7 @@ impl SheetGradient {
             centroids: vec![[0.0; 2]; panels],
             areas: vec![0.0; panels],
             attachments: vec![[0.0; 2]; hinges],
+            tips: vec![[0.0; 2]; hinges],
             frame_angles: vec![0.0; hinges],
             alphas: vec![0.0; hinges],
             widths: vec![0.0; hinges],
@@ -296,17 +299,18 @@ impl Sheet {
         for (h, hinge) in self.hinges.iter().enumerate() {
             let radius_by_width = self.options.process.radius_by_width();
             widths[h] += gradient.holes[h] * (radius_by_width - hinge.fillet_ratio) / hinge.w_lig;
-            let attachment = complex(gradient.attachments[h]);
-            add(&mut points[hinge.site.corner], attachment);
-            let (mut by_alpha, mut by_main_angle) = (gradient.alphas[h], 0.0);
+            let (attachment, mut by_tip) =
+                (complex(gradient.attachments[h]), complex(gradient.tips[h]));
+            add(&mut points[hinge.site.corner], attachment + by_tip);
             if self.options.hinge_point == HingePoint::CutTip {
-                let (sin, cos) = hinge.alpha.sin_cos();
-                let main = complex(hinge.main);
-                let along = dot(attachment, main);
-                widths[h] += along / sin;
-                by_alpha -= along * hinge.set_back * cos / (sin * sin);
-                by_main_angle += dot(attachment, I * main) * hinge.set_back / sin;
+                by_tip += attachment;
             }
+            let (sin, cos) = hinge.alpha.sin_cos();
+            let main = complex(hinge.main);
+            let along = dot(by_tip, main);
+            widths[h] += along / sin;
+            let by_alpha = gradient.alphas[h] - along * hinge.set_back * cos / (sin * sin);
+            let by_main_angle = dot(by_tip, I * main) * hinge.set_back / sin;
             // alpha is the angle of e_sec minus that of m.
             let by_frame_angle = gradient.frame_angles[h] + by_alpha;
             self.angle_pullback(&mut points, hinge.site.secondary, by_frame_angle);
@@ -365,7 +369,7 @@ impl Panel {
     }
 
     /// The gradient in the corners of a function with the given gradient in a point.
-    fn pullback(&self, point: PanelPoint, gradient: [f64; 2]) -> [c64; 4] {
+    pub(super) fn pullback(&self, point: PanelPoint, gradient: [f64; 2]) -> [c64; 4] {
         match point {
             PanelPoint::Centroid => self.centroid_pullback(gradient),
             PanelPoint::Middle(ends) => {

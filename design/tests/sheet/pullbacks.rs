@@ -97,6 +97,7 @@ fn random_weights(sheet: &Sheet) -> SheetGradient {
         centroids: random.arrays(panels, 1.0),
         areas: random.numbers(panels, 1.0),
         attachments: random.arrays(hinges, 1.0),
+        tips: random.arrays(hinges, 1.0),
         frame_angles: random.numbers(hinges, 1.0),
         alphas: random.numbers(hinges, 1.0),
         widths: random.numbers(hinges, 1.0),
@@ -114,7 +115,7 @@ fn weighted(sheet: &Sheet, weights: &SheetGradient) -> f64 {
         sum += panel.area * weights.areas[k];
     }
     for (h, hinge) in sheet.hinges.iter().enumerate() {
-        sum += dot(&hinge.attachment, &weights.attachments[h]);
+        sum += dot(&hinge.attachment, &weights.attachments[h]) + dot(&hinge.tip, &weights.tips[h]);
         sum += weights.frame_angles[h] * hinge.e_sec[1].atan2(hinge.e_sec[0]);
         sum += weights.alphas[h] * hinge.alpha + weights.widths[h] * hinge.w_lig;
         sum += weights.holes[h] * sheet.designs()[h].fillet_ratio;

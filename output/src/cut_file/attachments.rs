@@ -3,9 +3,8 @@
 use crate::cut_file::cut_drawing::{CutDrawing, Layer};
 use crate::cut_file::fabrication_error::FabricationError;
 use crate::display::Shape;
-use design::geometry::polygon::{distance, distance_to_segment, edges};
-use design::scene::Attachment;
-use design::sheet::cut_sheet::{PanelPoint, Sheet};
+use design::sheet::attachment::{Attachment, Clearance, Obstacle};
+use design::sheet::cut_sheet::Sheet;
 
 /// Half the length of the arms of a mark (mm).
 const ARM: f64 = 2.0;
@@ -26,82 +25,18 @@ pub struct PlacedAttachment {
 }
 
 impl PlacedAttachment {
-    /// An attachment on its sheet; an error if its hole is too near to an edge of its panel, its hole or clip to a hinge, or
-    /// if the clip is longer than its edge.
+    /// An attachment on its sheet; an error if its hole or its clip lacks room.
     pub(super) fn new(sheet: &Sheet, attachment: &Attachment) -> Result<Self, FabricationError> {
-        let panel = &sheet.panels[attachment.panel];
-        let placed = Self {
+        let clearances = attachment.clearances(sheet);
+        if let Some(short) = clearances.iter().find(|room| room.distance < room.least) {
+            return Err(without_room(attachment.name.clone(), *short));
+        }
+        Ok(Self {
             name: attachment.name.clone(),
             panel: attachment.panel,
-            at: panel.position(attachment.point),
+            at: sheet.panels[attachment.panel].position(attachment.point),
             hole: attachment.hole,
-            clip: match (attachment.clip, attachment.point) {
-                (Some(width), PanelPoint::Middle(ends)) => {
-                    let [p, q] = ends.map(|corner| panel.corners[corner]);
-                    let room = distance(p, q);
-                    if width > room {
-                        let name = attachment.name.clone();
-                        return Err(FabricationError::ClipTooWide { name, width, room });
-                    }
-                    let part = |share: f64| [0, 1].map(|c| p[c] + share * (q[c] - p[c]));
-                    Some([-0.5, 0.5].map(|side| part(0.5 + side * width / room)))
-                }
-                _ => None,
-            },
-        };
-        placed.check_edges(sheet)?;
-        placed.check_hinges(sheet)?;
-        Ok(placed)
-    }
-
-    /// A hole leaves at least its radius to the edges of its panel.
-    fn check_edges(&self, sheet: &Sheet) -> Result<(), FabricationError> {
-        let Some(diameter) = self.hole else {
-            return Ok(());
-        };
-        let half_kerf = 0.5 * sheet.options.process.kerf;
-        let to_edges = edges(&sheet.panels[self.panel].corners)
-            .map(|(p, q)| distance_to_segment(self.at, p, q))
-            .fold(f64::INFINITY, f64::min);
-        let (gap, least) = (to_edges - half_kerf - 0.5 * diameter, 0.5 * diameter);
-        self.check("hole", "the edge of its panel".to_owned(), gap, least)
-    }
-
-    /// Hole and clip are outside of the windows of the hinges of their panel.
-    fn check_hinges(&self, sheet: &Sheet) -> Result<(), FabricationError> {
-        let hinges = sheet.hinges.iter().enumerate();
-        let of_panel =
-            hinges.filter(|(_, hinge)| [hinge.panel_a(), hinge.panel_b()].contains(&self.panel));
-        for (h, hinge) in of_panel {
-            let (what, least) = (format!("the tip of hinge {h}"), sheet.options.process.r_win);
-            if let Some(diameter) = self.hole {
-                let gap = distance(self.at, hinge.tip) - 0.5 * diameter;
-                self.check("hole", what.clone(), gap, least)?;
-            }
-            if let Some([p, q]) = self.clip {
-                self.check("clip", what, distance_to_segment(hinge.tip, p, q), least)?;
-            }
-        }
-        Ok(())
-    }
-
-    fn check(
-        &self,
-        part: &'static str,
-        what: String,
-        gap: f64,
-        least: f64,
-    ) -> Result<(), FabricationError> {
-        if gap >= least {
-            return Ok(());
-        }
-        let name = self.name.clone();
-        Err(FabricationError::TooNear {
-            part,
-            name,
-            what,
-            gap,
-            least,
+            clip: attachment.clip_ends(sheet),
         })
     }
 
@@ -121,5 +56,30 @@ impl PlacedAttachment {
                 }
             }
         }
+    }
+}
+
+/// What keeps an attachment from being made.
+fn without_room(name: String, short: Clearance) -> FabricationError {
+    let Clearance {
+        obstacle,
+        distance,
+        least,
+    } = short;
+    let (part, what) = match obstacle {
+        Obstacle::Ends(_) => {
+            let (width, room) = (least, distance);
+            return FabricationError::ClipTooWide { name, width, room };
+        }
+        Obstacle::Edge(_) => ("centre of the hole", "the edge of its panel".to_owned()),
+        Obstacle::HoleToHinge(h) => ("centre of the hole", format!("the tip of hinge {h}")),
+        Obstacle::ClipToHinge(h) => ("clip", format!("the tip of hinge {h}")),
+    };
+    FabricationError::TooNear {
+        part,
+        name,
+        what,
+        distance,
+        least,
     }
 }

@@ -48,14 +48,14 @@ pub enum FabricationError {
     )]
     CutMeetsOutline { hinge: usize, gap: f64, least: f64 },
     #[error(
-        "the {part} of {name} leaves {gap:.1} mm to {what}, less than {least:.1} mm: move its `at` away from there, or make the \
-         {part} smaller"
+        "the {part} of {name} is {distance:.1} mm from {what}, and needs {least:.1} mm: move its `at` away from there, or make \
+         it smaller"
     )]
     TooNear {
         part: &'static str,
         name: String,
         what: String,
-        gap: f64,
+        distance: f64,
         least: f64,
     },
     #[error("the clip of {name} is {width} mm wide, its edge {room:.1} mm: use a narrower clip")]

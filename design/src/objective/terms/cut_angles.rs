@@ -20,7 +20,7 @@ impl Term for CutAngles {
     fn evaluate(&self, at: &Deployed, weight: f64, gradient: &mut TermGradient) -> f64 {
         let share = 1.0 / at.sheet.hinges.len() as f64;
         let mut value = 0.0;
-        for (hinge, by_angle) in std::iter::zip(&at.sheet.hinges, &mut gradient.by_angles) {
+        for (hinge, by_angle) in std::iter::zip(&at.sheet.hinges, &mut gradient.by_sheet.alphas) {
             let (acute, sign) = if hinge.alpha > FRAC_PI_2 {
                 (PI - hinge.alpha, -1.0)
             } else {
