@@ -31,7 +31,7 @@ use design::objective::design_problem::Deployment;
 use design::objective::scores::Scores;
 use design::optimise::outer_loop::Ended;
 use design::scene::design_run::Designed;
-use design::scene::{LevelDifference, Rung, Scene};
+use design::scene::{Level, LevelDifference, Rung, Scene};
 use serde::Serialize;
 use support::severity::Severity;
 
@@ -115,11 +115,14 @@ impl Report {
                 load,
                 damage,
             } = rung.difference;
+            let judge = match rung.finer {
+                Level::Final => "finite elements of every hinge".to_owned(),
+                finer => format!("`{finer}`"),
+            };
             format!(
-                "searched at the level `{}` in {} steps: its corners differ from `{}` by {} mm at most{}{}; asked for: {} mm",
+                "searched at the level `{}` in {} steps: its corners differ from {judge} by {} mm at most{}{}; asked for: {} mm",
                 rung.level,
                 rung.steps,
-                rung.finer,
                 rounded(corners[1], 2),
                 load.map_or(String::new(), percent),
                 damage.map_or(String::new(), peak),
@@ -129,6 +132,9 @@ impl Report {
         let mut lines: Vec<String> = rungs.collect();
         if self.rungs.last().is_some_and(|last| !last.suffices()) {
             lines.push(match self.steps {
+                _ if self.facts.level == Level::Final => {
+                    "not converged: all rounds of finite elements were made".into()
+                }
                 0 => "that is less than the mesh of the windows is known to: see its row of the error budget".into(),
                 _ => format!(
                     "searched on at `{}`, and no level is finer: `kirigami verify --equilibrium` judges by finite elements",
@@ -164,7 +170,9 @@ impl Report {
         let deployment = &designed.best.deployment;
         let hinges = HingeRow::all(scene, deployment);
         let facts = FactSheet::new(scene, &designed.problem, deployment, &hinges);
-        let residual = designed.residual.as_deref();
+        let last = designed.rungs.last();
+        let by_elements = last.filter(|rung| rung.finer == Level::Final);
+        let residual = by_elements.map(|rung| rung.difference.corners[1]);
         let errors = ErrorBudget::new(scene, &designed.problem, deployment, residual);
         let dead_loads = scene.config.has_loads() && scene.config.drive.is_none();
         let budget = errors

@@ -1,5 +1,7 @@
 //! `kirigami design`: cut pattern and ligament widths for scenes, and the cut files.
 
+#[cfg(feature = "pipeline")]
+mod by_elements;
 mod many_runs;
 
 use crate::commands::design::many_runs::{Run, compare, refuse_shared_folders};
@@ -13,7 +15,7 @@ use clap::Args;
 use design::analysis::ladder::{Climbed, climb};
 use design::objective::scores::shown;
 use design::objective::term::in_words;
-use design::optimise::outer_loop::{Ended, StepRecord};
+use design::optimise::outer_loop::{Ended, SearchState, StepRecord};
 use design::scene::design_run::{Designed, inverse_design};
 use design::scene::run_inputs::{SCENE_FILE, holds_a_run, scene_file};
 use design::scene::{Level, Scene, SceneConfig};
@@ -39,7 +41,8 @@ pub struct DesignCommand {
     /// Weights of the hinge energy, instead of the scene's
     #[arg(long, value_name = "FILE")]
     weights: Option<PathBuf>,
-    /// The level, instead of the scene's: how much of the hinges is modelled; see `kirigami levels`
+    /// The level, instead of the scene's: how much of the hinges is modelled; see `kirigami levels`. At `final` the hinges are
+    /// solved by finite elements after the search, and it goes on with them: hours, which are stated first
     #[arg(long, value_name = "LEVEL", value_parser = with_unit::level())]
     level: Option<Level>,
     /// How accurately the corners of the panels are to be known: a length such as 0.5mm, or a part of the longer side of the sheet
@@ -183,11 +186,25 @@ impl DesignCommand {
         let _held = run_folder::hold(&scene.output())?;
         if self.restart {
             remove_run(scene)?;
+            remove_inner_runs(&scene.output())?;
         }
         match self.within {
+            None if self.by_elements(scene.config.level) => self.search_by_elements(scene),
             None => self.search(scene),
             Some(accuracy) => self.climb(scene, accuracy),
         }
+    }
+
+    /// Whether the hinges of a scene at a level are still to be solved.
+    fn by_elements(&self, of_scene: Level) -> bool {
+        self.level == Some(Level::Final) && of_scene != Level::Final
+    }
+
+    #[cfg(not(feature = "pipeline"))]
+    fn search_by_elements(&self, _scene: &Scene) -> Result<(Report, Ended)> {
+        bail!(
+            "the level `final` needs finite elements: install the whole program, as the README says"
+        )
     }
 
     /// A search at the level of the scene.
@@ -210,25 +227,13 @@ impl DesignCommand {
             Accuracy::Length(mm) => mm,
             Accuracy::Part(part) => part * scene.config.sheet.outline().size(),
         };
-        if self.restart {
-            for level in Level::ALL {
-                let below = scene.output().join(level.name());
-                if holds_a_run(&below) {
-                    std::fs::remove_dir_all(&below)
-                        .with_context(|| format!("cannot remove {}", below.display()))?;
-                }
-            }
-        }
         let stop = interrupt::stop_flag()?;
-        let mut shown: Option<(Level, Progress)> = None;
-        let climbed = climb(scene, asked, stop, &mut |level, search| {
-            let (step, total) = (search.last(), scene.config.optimiser.steps);
-            let same = shown.take().filter(|(shown, _)| *shown == level);
-            let (_, bar) =
-                shown.insert(same.unwrap_or_else(|| (level, Progress::new(total, level.name()))));
-            bar.show(step.step, None, &progress_line(step, true));
-        })?;
-        shown.into_iter().for_each(|(_, bar)| bar.finish());
+        let climbed = with_level_bars(scene, |progress| climb(scene, asked, stop, progress))?;
+        self.write_climbed(climbed)
+    }
+
+    /// Writes the results of a design that was found on several levels.
+    fn write_climbed(&self, climbed: Climbed) -> Result<(Report, Ended)> {
         let Climbed { scene, designed } = climbed;
         if designed.ended == Ended::Stopped {
             let made = designed.history.len() - 1;
@@ -253,7 +258,7 @@ impl DesignCommand {
             config.optimiser.steps = steps;
         }
         let mut scene = Scene::new(config, &path)?;
-        if let Some(level) = self.level {
+        if let Some(level) = self.level.filter(|_| !self.by_elements(scene.config.level)) {
             scene = scene.at_level(level)?;
         }
         if self.fit {
@@ -265,6 +270,37 @@ impl DesignCommand {
         }
         Ok(scene)
     }
+}
+
+/// Runs searches at several levels, each with a bar of its own.
+fn with_level_bars<T>(
+    scene: &Scene,
+    searches: impl FnOnce(&mut dyn FnMut(Level, &SearchState)) -> T,
+) -> T {
+    let total = scene.config.optimiser.steps;
+    let mut shown: Option<(Level, Progress)> = None;
+    let found = searches(&mut |level, search| {
+        let step = search.last();
+        let same = shown.take().filter(|(shown, _)| *shown == level);
+        let (_, bar) =
+            shown.insert(same.unwrap_or_else(|| (level, Progress::new(total, level.name()))));
+        bar.show(step.step, None, &progress_line(step, true));
+    });
+    shown.into_iter().for_each(|(_, bar)| bar.finish());
+    found
+}
+
+/// Removes the runs of other levels in the folder of a run.
+fn remove_inner_runs(folder: &Path) -> Result<()> {
+    let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
+    for inner in entries
+        .map(|entry| entry.path())
+        .filter(|path| holds_a_run(path))
+    {
+        std::fs::remove_dir_all(&inner)
+            .with_context(|| format!("cannot remove {}", inner.display()))?;
+    }
+    Ok(())
 }
 
 /// An error if a run would replace files of its folder that no run has written.

@@ -71,6 +71,11 @@ fn levels_are_compared_at_one_design() {
         .map(|level| level["level"].as_str().unwrap())
         .collect();
     assert_eq!(names, ["pin", "linear", "draft", "standard", "fine"]);
+    let without_elements = work.error(&format!("inspect equilibrium {PLATE} --level final"));
+    assert!(
+        without_elements.contains("--level final` solves the hinges"),
+        "{without_elements}"
+    );
     let picture = std::fs::read_to_string(work.path("levels.svg")).unwrap();
     assert!(picture.contains("draft") && picture.contains("mesh of the windows"));
     let text = work.output(&levels);

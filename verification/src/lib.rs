@@ -5,6 +5,7 @@
 //! | rows of a database from solved windows, and back | [`rows`], [`collected`], [`collected_windows`] |
 //! | the hinges of a sheet solved along their paths, against a surrogate | [`recorded_paths`], [`Replay`] |
 //! | a sheet in equilibrium with the forces of finite elements | [`balanced`], [`SheetErrors`] |
+//! | a design searched for with finite elements for its hinges | [`final_design`] |
 //! | the whole sheet, every window and every panel | [`SheetTask`], [`SheetCheck`] |
 //! | errors of weights at random states | [`spot_check`], [`SpotCheck`] |
 //! | rays where the training data is thin | [`rays_on_paths`] |
@@ -48,6 +49,7 @@ mod balanced_sheet;
 mod compared_states;
 mod distillation_states;
 mod extension;
+mod final_design;
 mod learning;
 mod networks;
 mod patch;
@@ -72,6 +74,7 @@ pub use balanced_sheet::{
 pub use compared_states::{SCALE, each_relative, spread_table};
 pub use distillation_states::distillation_states;
 pub use extension::rays_on_paths;
+pub use final_design::{final_design, usual_cpu_seconds};
 pub use learning::{Accuracy, LearningEnd, LearningRound, LearningSteps, LearningTask, learn};
 pub use networks::judging_tier;
 pub use recorded_path::{RecordedPath, paths_of, recorded_paths};

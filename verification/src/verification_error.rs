@@ -4,9 +4,11 @@ use dataset::DatasetError;
 use design::analysis::springback::LetGoError;
 use design::objective::design_problem::DesignError;
 use design::scene::SceneError;
+use design::scene::design_run::InverseDesignError;
 use fe_driver::{CampaignError, SolveListError};
 use mesher::Tier;
 use std::path::PathBuf;
+use support::file_error::FileError;
 
 /// Why a task has no result.
 #[derive(Debug, thiserror::Error)]
@@ -25,6 +27,10 @@ pub enum VerificationError {
     Scene(#[from] SceneError),
     #[error(transparent)]
     Design(#[from] DesignError),
+    #[error(transparent)]
+    Run(#[from] InverseDesignError),
+    #[error("cannot use {0}")]
+    File(#[from] FileError),
     #[error("hinge paths need a hinge law with stiffness: the scene has level = \"pin\"")]
     NoStiffness,
     #[error("hinge {0} has no states")]

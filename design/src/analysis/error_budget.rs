@@ -69,7 +69,7 @@ pub enum Cause {
     /// Panels and clips, which are rigid in the model.
     RigidPanels,
     /// What is left if the sheet was balanced with finite elements for its hinges.
-    VerifyResidual,
+    Balance,
 }
 
 /// One cause of errors.
@@ -129,7 +129,7 @@ impl Cause {
         Self::Kerf,
         Self::Thickness,
         Self::RigidPanels,
-        Self::VerifyResidual,
+        Self::Balance,
     ];
 
     /// Its name.
@@ -143,7 +143,7 @@ impl Cause {
             Self::Kerf => "kerf",
             Self::Thickness => "thickness",
             Self::RigidPanels => "rigid panels",
-            Self::VerifyResidual => "verify residual",
+            Self::Balance => "balance",
         }
     }
 
@@ -156,13 +156,13 @@ impl Cause {
 
 impl ErrorBudget {
     /// The budget of a deployed design of a scene with a learned hinge law; `None` for another law, if full load is not reached,
-    /// if the tangent there is singular, or for more than 2000 hinges. `residual` is the movement of every panel corner in the last
-    /// round of finite elements (mm), if the design was balanced with them.
+    /// if the tangent there is singular, or for more than 2000 hinges. `residual` is the largest movement of a panel corner in
+    /// the last balance with finite elements (mm), if the design was balanced with them.
     pub fn new(
         scene: &Scene,
         problem: &DesignProblem,
         deployment: &Deployment,
-        residual: Option<&[f64]>,
+        residual: Option<f64>,
     ) -> Option<Self> {
         scene.surrogate()?;
         let mechanics = problem.model.mechanics()?;
@@ -209,12 +209,12 @@ impl ErrorBudget {
         }
         if let Some(residual) = residual {
             let deviations = Deviations {
-                corners: residual.to_vec(),
+                corners: vec![residual; 4 * sheet.panels.len()],
                 load: None,
             };
             budget.contributions.push(Contribution {
-                cause: Cause::VerifyResidual,
-                source: "movement in the last round of finite elements of every hinge, which replace networks, mesh and path".into(),
+                cause: Cause::Balance,
+                source: "largest movement in the last balance with finite elements of every hinge, which replace networks, mesh and path".into(),
                 effect: Some(Effect::new(deviations, load)),
             });
         }
@@ -279,7 +279,7 @@ impl Deployed<'_> {
             Cause::Kerf => self.kerf(),
             Cause::Thickness => self.thickness(),
             Cause::RigidPanels => Err(RIGID_PANELS.to_owned()),
-            Cause::VerifyResidual => return None,
+            Cause::Balance => return None,
         })
     }
 

@@ -4,11 +4,13 @@ use crate::objective::shape::TargetState;
 use crate::objective::target::Target;
 use crate::objective::terms::TARGET_POINTS;
 use crate::scene::checks;
+use crate::scene::hinge_model::SurrogateFile;
 use crate::scene::keys::{SceneConfig, beside, folder};
 use crate::scene::level::Level;
 use crate::scene::loaded_hinge::LoadedHinge;
 use crate::scene::posture::PostureConfig;
 use crate::scene::scene_error::SceneError;
+use crate::scene::solved_hinges::SolvedHinges;
 use crate::scene::springback_file::{self, SpringbackMismatch};
 use crate::sheet::cut_sheet::SheetOptions;
 use hinge::SheetMaterial;
@@ -128,10 +130,10 @@ impl Scene {
             *path = (file.canonicalize()).or_else(|_| std::path::absolute(&file))?;
             Ok::<_, std::io::Error>(())
         };
-        let law = config.surrogate.as_mut();
-        let law = law.and_then(|learned| learned.springback.as_mut());
+        let further = config.surrogate.iter_mut();
+        let further = further.flat_map(SurrogateFile::further_files_mut);
         let target = config.target.file_mut().map(|(file, _)| file);
-        let named = law.into_iter().chain(target);
+        let named = further.map(|(_, file)| file).chain(target);
         for path in named.chain([&mut config.material, &mut config.output]) {
             locate(path)?;
         }
@@ -181,7 +183,9 @@ impl Scene {
             _ => 1,
         };
         let weights = self.hinge.networks.iter().take(read);
-        let weights = weights.map(Surrogate::hash).collect::<Vec<_>>().join("/");
+        let weights = weights.map(Surrogate::hash);
+        let solved = self.hinge.solved.iter().map(SolvedHinges::hash);
+        let weights = weights.chain(solved).collect::<Vec<_>>().join("/");
         let target = self.target.hash();
         let material = if self.weight_by_area() == [0.0; 2] {
             self.material.law_hash()

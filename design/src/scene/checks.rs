@@ -13,6 +13,7 @@ use crate::scene::keys::SceneConfig;
 use crate::scene::level::Level;
 use crate::scene::posture::Posture;
 use crate::scene::sheet_config::SheetConfig;
+use crate::scene::solved_hinges::SolvedHingesError;
 use crate::sheet::topology::panel_endpoints;
 use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::FRAC_PI_2;
@@ -44,6 +45,7 @@ pub(super) fn level(scene: &SceneConfig) -> Result<(), InvalidScene> {
     match scene.level {
         Level::Draft if files.draft.is_none() => Err(InvalidScene::NoDraft),
         Level::Fine if files.ensemble.is_empty() => Err(InvalidScene::NoEnsemble),
+        Level::Final if files.solved_hinges.is_none() => Err(SolvedHingesError::NoFile.into()),
         _ => Ok(()),
     }
 }

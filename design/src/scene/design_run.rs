@@ -43,9 +43,6 @@ pub struct Designed {
     /// Whether a corrected path of the search was on another branch than the followed one; see
     /// [`SearchState::contradicted`].
     pub contradicted: bool,
-    /// Movement of every panel corner in the last round of finite elements (mm), if the design was balanced with them for every
-    /// hinge.
-    pub residual: Option<Vec<f64>>,
     /// The levels at which the start of the search was found; empty if the search began at the start of the scene.
     pub rungs: Vec<Rung>,
 }
@@ -182,7 +179,6 @@ impl Designed {
             ended: Ended::Stopped,
             history: vec![record],
             contradicted: false,
-            residual: None,
             rungs: Vec::new(),
             design,
             best: start.clone(),
@@ -230,7 +226,6 @@ impl Designed {
             design: search.best,
             start,
             best,
-            residual: None,
             rungs: Vec::new(),
         })
     }
@@ -249,7 +244,7 @@ pub fn inverse_design(
 }
 
 /// The same for a scene whose start was found at other levels.
-pub(crate) fn design_after(
+pub fn design_after(
     rungs: Vec<Rung>,
     scene: &Scene,
     stop: &AtomicBool,

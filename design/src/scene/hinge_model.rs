@@ -48,4 +48,19 @@ pub struct SurrogateFile {
     /// loads are taken off. Unless `objective.target_state` is `released`, a run continues under another one, which changes its report only.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub springback: Option<PathBuf>,
+    /// The hinges of this sheet by finite elements, written by `kirigami design --level final`, to which the level `final` corrects the
+    /// learned energy.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub solved_hinges: Option<PathBuf>,
+}
+
+impl SurrogateFile {
+    /// The files that it names besides weights, each with the name of its copy in the folder of a run.
+    pub(crate) fn further_files_mut(
+        &mut self,
+    ) -> impl Iterator<Item = (&'static str, &mut PathBuf)> {
+        let springback = self.springback.iter_mut().map(|file| ("springback", file));
+        let solved = self.solved_hinges.iter_mut();
+        springback.chain(solved.map(|file| ("solved-hinges", file)))
+    }
 }

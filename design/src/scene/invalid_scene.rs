@@ -6,6 +6,7 @@ use crate::hinge_law::InvalidContact;
 use crate::objective::target::TargetError;
 use crate::pattern::pattern_error::PatternError;
 use crate::scene::posture::Posture;
+use crate::scene::solved_hinges::SolvedHingesError;
 use crate::scene::springback_file::SpringbackFileError;
 use hinge::{InvalidDesign, InvalidMaterial};
 use std::path::PathBuf;
@@ -168,6 +169,8 @@ pub enum InvalidScene {
     SameNetwork { files: [PathBuf; 2] },
     #[error(transparent)]
     Springback(#[from] SpringbackFileError),
+    #[error(transparent)]
+    SolvedHinges(#[from] SolvedHingesError),
     #[error(
         "linear.k_theta is {ratio:.0e} times the greater of linear.k_a and linear.k_s times the area of a panel: below \
          {MIN_PIVOT_RATIO:.0e} rotations are lost in the rounding of the translations. Raise k_theta, or lower k_a and k_s"

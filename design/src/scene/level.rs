@@ -7,6 +7,7 @@
 //! | `draft` | the learned energy (14) of a small network | at most 5 | 1e-3 |
 //! | `standard` | the learned energy (14) | those of the scene | 1e-10 |
 //! | `fine` | the mean of the networks of the ensemble | those of the scene | 1e-10 |
+//! | `final` | the learned energy, corrected to finite elements of every hinge | those of the scene | 1e-10 |
 
 use crate::equilibrium::settings::SolverSettings;
 use schemars::JsonSchema;
@@ -29,6 +30,8 @@ pub enum Level {
     Standard,
     /// The mean of the energies of `surrogate.weights` and `surrogate.ensemble`.
     Fine,
+    /// The energy of `standard`, corrected to the finite elements of `surrogate.solved_hinges`.
+    Final,
 }
 
 /// Load steps and residual of a draft: the shape differs by less than 1e-6 of a panel (docs/TRIED.md).
@@ -37,12 +40,13 @@ const DRAFT_TOLERANCE: f64 = 1e-3;
 
 impl Level {
     /// All levels, from the cheapest to the dearest.
-    pub const ALL: [Self; 5] = [
+    pub const ALL: [Self; 6] = [
         Self::Pin,
         Self::Linear,
         Self::Draft,
         Self::Standard,
         Self::Fine,
+        Self::Final,
     ];
 
     /// Its name in a scene.
@@ -53,6 +57,7 @@ impl Level {
             Self::Draft => "draft",
             Self::Standard => "standard",
             Self::Fine => "fine",
+            Self::Final => "final",
         }
     }
 
@@ -69,12 +74,13 @@ impl Level {
             Self::Draft => "learned energy (14) of a small network, on few load steps",
             Self::Standard => "learned energy (14)",
             Self::Fine => "mean learned energy (14) of an ensemble",
+            Self::Final => "learned energy (14), corrected to finite elements of every hinge",
         }
     }
 
     /// Whether its hinge law is learned.
     pub fn is_learned(self) -> bool {
-        matches!(self, Self::Draft | Self::Standard | Self::Fine)
+        self >= Self::Draft
     }
 
     /// Its load steps in a scene that has `steps`.

@@ -7,6 +7,7 @@ use crate::scene::invalid_scene::{InvalidScene, WeightsMismatch};
 use crate::scene::keys::{SceneConfig, beside};
 use crate::scene::level::Level;
 use crate::scene::scene_error::SceneError;
+use crate::scene::solved_hinges::SolvedHinges;
 use crate::sheet::cut_sheet::HingePoint;
 use hinge::{HingeDeformation, Regime, SheetMaterial};
 use std::f64::consts::FRAC_PI_2;
@@ -31,6 +32,8 @@ pub struct LoadedHinge {
     pub(super) hinge_point: HingePoint,
     /// The networks that the law reads, its own first, then those of the ensemble.
     pub(super) networks: Vec<Surrogate>,
+    /// The hinges by finite elements that the level `final` reads.
+    pub(super) solved: Option<SolvedHinges>,
 }
 
 /// How hinges open.
@@ -73,7 +76,12 @@ impl LoadedHinge {
         let hinge = match config.level {
             Level::Pin => pinned(config),
             Level::Linear => linear(config),
-            Level::Draft | Level::Standard | Level::Fine => learned(config, networks),
+            Level::Draft | Level::Standard | Level::Fine => learned(config, networks, None),
+            Level::Final => learned(
+                config,
+                networks,
+                Some(SolvedHinges::of_scene(config, path)?),
+            ),
         };
         let hinge = hinge.map_err(SceneError::at(path))?;
         (hinge.check_objective(config)).map_err(SceneError::at(path))?;
@@ -160,7 +168,11 @@ fn network(
 }
 
 /// The learned law; the contact stiffness is relative to the secant stiffness of a hinge of the start.
-fn learned(config: &SceneConfig, networks: Vec<Surrogate>) -> Result<LoadedHinge, InvalidScene> {
+fn learned(
+    config: &SceneConfig,
+    networks: Vec<Surrogate>,
+    solved: Option<SolvedHinges>,
+) -> Result<LoadedHinge, InvalidScene> {
     let surrogate = networks.first();
     let surrogate = surrogate.ok_or(InvalidScene::NoSection("surrogate"))?;
     let [_, _, [closed, _]] = surrogate.domain().bounds();
@@ -168,16 +180,21 @@ fn learned(config: &SceneConfig, networks: Vec<Surrogate>) -> Result<LoadedHinge
     let k_theta = springs_at_start(config, surrogate).k_theta;
     Ok(LoadedHinge {
         behaviour: HingeBehaviour::Elastic {
-            law: law_of(config.level, &networks),
+            law: law_of(config.level, &networks, solved.as_ref()),
             contact: contact(k_theta.abs().max(f64::MIN_POSITIVE), wall)?,
         },
         hinge_point: HingePoint::CutTip,
         networks,
+        solved,
     })
 }
 
 /// The law of a learned level, of at least one network.
-fn law_of(level: Level, networks: &[Surrogate]) -> Arc<dyn HingeLaw> {
+fn law_of(
+    level: Level,
+    networks: &[Surrogate],
+    solved: Option<&SolvedHinges>,
+) -> Arc<dyn HingeLaw> {
     let law = |surrogate: &Surrogate| -> Arc<dyn HingeLaw> {
         let surrogate = surrogate.clone();
         Arc::new(SurrogateLaw { surrogate })
@@ -186,7 +203,13 @@ fn law_of(level: Level, networks: &[Surrogate]) -> Arc<dyn HingeLaw> {
         Level::Fine => Arc::new(MeanLaw {
             laws: networks.iter().map(law).collect(),
         }),
-        _ => law(&networks[0]),
+        _ => {
+            let own = law(&networks[0]);
+            match solved {
+                Some(solved) => Arc::new(solved.corrected(own)),
+                None => own,
+            }
+        }
     }
 }
 
@@ -248,6 +271,7 @@ fn pinned(config: &SceneConfig) -> Result<LoadedHinge, InvalidScene> {
         },
         hinge_point: HingePoint::Corner,
         networks: Vec::new(),
+        solved: None,
     })
 }
 
@@ -267,6 +291,7 @@ fn linear(config: &SceneConfig) -> Result<LoadedHinge, InvalidScene> {
         },
         hinge_point: HingePoint::Corner,
         networks: Vec::new(),
+        solved: None,
     })
 }
 

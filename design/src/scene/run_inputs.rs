@@ -8,10 +8,12 @@
 //! | `inputs/weights.safetensors`, `.json` | weights and card, if the hinge law reads them |
 //! | `inputs/ensemble-N.safetensors`, `inputs/draft.safetensors`, their `.json` | the further networks, from 1, and that of drafts |
 //! | `inputs/springback.json` | the law of released hinges, if the scene names one |
+//! | `inputs/solved-hinges.json` | the hinges by finite elements, if the scene names them |
 //!
 //! The state of the run holds the BLAKE3 hash of each of them.
 
 use crate::scene::checked_scene::Scene;
+use crate::scene::hinge_model::SurrogateFile;
 use crate::scene::keys::{SceneConfig, beside};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -118,10 +120,13 @@ pub(super) fn keep(scene: &Scene) -> Result<InputHashes, FileError> {
         kept.copy(&original.with_extension("json"), &format!("{stem}.json"))?;
         *weights = kept.copy(&original, &format!("{stem}.safetensors"))?;
     }
-    let learned = config.surrogate.as_mut();
-    if let Some(law) = learned.and_then(|learned| learned.springback.as_mut()) {
-        let name = format!("{INPUTS}/springback.json");
-        *law = kept.copy(&beside(&scene.path, law), &name)?;
+    for (name, file) in config
+        .surrogate
+        .iter_mut()
+        .flat_map(SurrogateFile::further_files_mut)
+    {
+        let name = format!("{INPUTS}/{name}.json");
+        *file = kept.copy(&beside(&scene.path, file), &name)?;
     }
     kept.write(SCENE_FILE, &toml(&config, &folder)?)?;
     Ok(kept.hashes)
@@ -165,6 +170,7 @@ impl SceneConfig {
             learned.ensemble.clear();
             learned.draft = None;
             learned.springback = None;
+            learned.solved_hinges = None;
         }
         for (_, path) in config.weights_files_mut() {
             *path = PathBuf::new();

@@ -22,6 +22,7 @@ impl SceneConfig {
             draft: None,
             ensemble: Vec::new(),
             springback: replaced.and_then(|learned| learned.springback),
+            solved_hinges: None,
         });
         Ok(())
     }

@@ -14,7 +14,7 @@ fn deployed(scene: &Scene) -> Deployment {
     scene.problem().unwrap().deploy(&scene.start()).unwrap()
 }
 
-fn budget(scene: &Scene, residual: Option<&[f64]>) -> ErrorBudget {
+fn budget(scene: &Scene, residual: Option<f64>) -> ErrorBudget {
     let problem = scene.problem().unwrap();
     ErrorBudget::new(scene, &problem, &deployed(scene), residual).unwrap()
 }
@@ -82,10 +82,9 @@ fn what_is_known_adds_in_squares_and_is_a_lower_bound_if_a_part_is_not() {
 #[test]
 fn a_verified_sheet_has_the_residual_of_its_rounds() {
     let scene = film(|_| ());
-    let residual = vec![0.02; 4 * scene.grid().panel_count()];
-    let budget = budget(&scene, Some(&residual));
+    let budget = budget(&scene, Some(0.02));
     let mut parts = budget.contributions.iter();
     assert!(parts.all(|part| !part.cause.is_seen_by_elements()));
-    let found = effect(&budget, Cause::VerifyResidual).unwrap();
+    let found = effect(&budget, Cause::Balance).unwrap();
     assert_close(found.corners[0], 0.02, 1e-15);
 }

@@ -3,9 +3,11 @@
 #[path = "../../../fe_driver/tests/common/fake_solver.rs"]
 mod fake_solver;
 
+use design::hinge_law::Order;
 use design::objective::design_problem::Deployment;
 use design::pattern::design_vector::DesignVector;
-use design::scene::{Scene, SceneConfig};
+use design::scene::run_inputs::scene_file;
+use design::scene::{Level, Scene, SceneConfig};
 use fake_solver::{FakeSolver, Fault};
 use fe_driver::{
     Campaign, DrawnStates, Progress, Solution, SolveError, SolveService, SolveStore, Solver,
@@ -19,8 +21,8 @@ use surrogate::Surrogate;
 use tempfile::TempDir;
 use verification::{
     Accuracy, BALANCED, BalanceEnd, Balanced, ElementWindows, LearningEnd, LearningRound,
-    LearningSteps, LearningTask, Replay, VerificationError, balanced, distillation_states, learn,
-    movements, recorded_paths, size, spot_check,
+    LearningSteps, LearningTask, Replay, VerificationError, balanced, distillation_states,
+    final_design, learn, movements, recorded_paths, size, spot_check,
 };
 
 /// (k_a, k_s) (N/mm) and k_theta (N mm/rad) of the hinges of film.
@@ -180,6 +182,90 @@ fn a_sheet_is_balanced_on_the_cheaper_mesh_first() {
     // Already the first round on the finest mesh moves the sheet by about what it is off.
     let moved = first.movement / size(finest) / between;
     assert!((0.5..1.5).contains(&moved), "{moved}");
+}
+
+/// Hinges with 1.2 times the forces of weights.
+struct Stiffer(NeverFails, Surrogate);
+
+impl Solver for Stiffer {
+    fn versions(&self) -> ToolVersions {
+        self.0.versions()
+    }
+
+    fn attempt(
+        &self,
+        solve: &WindowSolve,
+        work: &Path,
+        limit: Duration,
+        stop: &AtomicBool,
+    ) -> Result<Solution, SolveError> {
+        let mut solution = self.0.attempt(solve, work, limit, stop)?;
+        let law = self.1.prepare(&[solve.problem.hinge.design]);
+        for sample in &mut solution.samples {
+            let energy = self
+                .1
+                .evaluate(&law, &[sample.deformation()], Order::Forces)[0];
+            [sample.f_a, sample.f_s, sample.m_theta] = energy.forces.map(|force| 1.2 * force);
+        }
+        Ok(solution)
+    }
+}
+
+/// The search goes on with the hinges of the solver, whose forces the law of the final design has at their states, although they are far
+/// from those of the learned law.
+#[test]
+fn a_final_design_has_the_forces_of_the_solver() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut config = scene().config;
+    config.output = folder.path().join("run");
+    config.optimiser.steps = 4;
+    let scene = scene().changed(config).unwrap();
+    let weights = scene.weights().unwrap().clone();
+    let stiffer = || Stiffer(healthy(), weights.clone());
+    let designed = |solver: &Stiffer| {
+        let service = &service(solver, &folder);
+        let windows = ElementWindows {
+            tier: Tier::Tiny,
+            service,
+        };
+        final_design(&scene, &windows, &NEVER, &mut |_, _| {}).unwrap()
+    };
+    let found = designed(&stiffer());
+    let rungs = &found.designed.rungs;
+    assert_eq!(
+        [rungs[0].level, rungs[1].level],
+        [Level::Standard, Level::Final]
+    );
+    let [first, .., last] = &rungs[..] else {
+        panic!("at least two searches");
+    };
+    let off = [first, last].map(|rung| rung.difference.corners[1]);
+    assert!(off[1] < 0.5 * off[0], "{off:?}");
+    // The run is opened again with its law, which has the forces of the solver, and solves nothing.
+    let run = Scene::read(&scene_file(&found.scene.output()).unwrap()).unwrap();
+    assert_eq!(run.config.level, Level::Final);
+    let problem = run.problem().unwrap();
+    let deployed = problem.deploy(&run.start()).unwrap();
+    let (designs, states) = (
+        deployed.sheet.designs(),
+        &deployed.final_step().deformations,
+    );
+    let law = problem.model.mechanics().unwrap().law.clone();
+    let forces = law.prepare(&designs).energies(states, Order::Forces);
+    let exact = weights.evaluate(&weights.prepare(&designs), states, Order::Forces);
+    for (hinge, (found, exact)) in std::iter::zip(forces, exact).enumerate() {
+        for (found, exact) in std::iter::zip(found.forces, exact.forces) {
+            let size = exact.abs().max(0.1);
+            assert!(
+                (found - 1.2 * exact).abs() < 0.05 * size,
+                "{hinge}: {found} {exact}"
+            );
+        }
+    }
+    let again = stiffer();
+    let same = designed(&again);
+    assert_eq!(again.0.attempts(), 0);
+    assert_eq!(same.designed.design, found.designed.design);
 }
 
 #[test]

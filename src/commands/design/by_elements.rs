@@ -1,0 +1,53 @@
+//! The level `final`: a search with finite elements for the hinges.
+
+use crate::commands::design::{DesignCommand, with_level_bars};
+use crate::commands::solve_args::{SolveArgs, task_error};
+use crate::ui::interrupt;
+use crate::ui::progress::{announce, duration};
+use anyhow::{Context, Result, ensure};
+use design::optimise::outer_loop::Ended;
+use design::scene::run_inputs::{SCENE_FILE, holds_a_run};
+use design::scene::{Level, Scene, SceneConfig};
+use output::report::Report;
+use verification::{ElementWindows, final_design, judging_tier, usual_cpu_seconds};
+
+impl DesignCommand {
+    /// A search that goes on with the hinges solved by finite elements.
+    pub(super) fn search_by_elements(&self, scene: &Scene) -> Result<(Report, Ended)> {
+        refuse_run_of_another_level(scene)?;
+        let weights = scene.weights();
+        let tier = judging_tier(None, weights.context(
+            "the level `final` corrects a learned energy: give the scene weights (surrogate.weights)",
+        )?)?;
+        let arguments = SolveArgs::default();
+        let service = &arguments.service(&scene.output())?;
+        let (hinges, workers) = (scene.grid().hinge_count(), arguments.workers());
+        let cpu = usual_cpu_seconds(tier, hinges);
+        announce(&format!(
+            "{hinges} hinges on the mesh `{tier}`: at most about {} of CPU time, {} on {workers} processors; after Ctrl-C the same \
+             command goes on",
+            duration(cpu),
+            duration(cpu / workers as f64)
+        ));
+        let (windows, stop) = (ElementWindows { tier, service }, interrupt::stop_flag()?);
+        let found = with_level_bars(scene, |progress| {
+            final_design(scene, &windows, stop, progress)
+        });
+        self.write_climbed(found.map_err(task_error)?)
+    }
+}
+
+/// An error if the run folder holds a search at another level, which would be found out after all solves.
+fn refuse_run_of_another_level(scene: &Scene) -> Result<()> {
+    let folder = scene.output();
+    if holds_a_run(&folder) {
+        let run: SceneConfig = support::toml_file::read(&folder.join(SCENE_FILE))?;
+        ensure!(
+            run.level == Level::Final,
+            "{} holds a run at the level `{}`: choose another folder with --out, or restart it with --restart",
+            folder.display(),
+            run.level
+        );
+    }
+    Ok(())
+}
