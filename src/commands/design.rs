@@ -9,7 +9,7 @@ use crate::commands::fitting::fit_to_target;
 use crate::ui::exit::Unfinished;
 use crate::ui::progress::{Progress, announce};
 use crate::ui::with_unit::Accuracy;
-use crate::ui::{animation, interrupt, picture, run_folder, with_unit};
+use crate::ui::{animation, interrupt, picture, processors, run_folder, with_unit};
 use anyhow::{Context, Result, bail, ensure};
 use clap::Args;
 use design::analysis::ladder::{Climbed, climb};
@@ -24,13 +24,13 @@ use output::report::{Report, Warning};
 use output::run_files::{ANIMATION, RUN_FILES, Writer};
 use output::run_results::{remove_run, write_results};
 use std::path::{Path, PathBuf};
-use std::sync::atomic::Ordering;
+use support::worker_pool::{NoThread, Reports, work_through};
 
 /// Design a sheet: cut pattern and ligament widths for a target shape
 ///
 /// Reads a scene and writes cut files (DXF and SVG, 1:1 in mm), pictures, a report and a page
 /// that shows the run in a browser (run.html) to the scene's output folder. A stopped run continues when it is started again.
-/// Several scenes or seeds are designed one after the other, each in a folder of its own, and compared in a table.
+/// Several scenes or seeds are designed side by side on all processors, each in a folder of its own, and compared in a table.
 /// Examples: kirigami design configs/scenes/linear-7x7.toml;
 /// kirigami design configs/scenes/*7x7.toml --out runs/sheets
 #[derive(Args)]
@@ -91,7 +91,8 @@ impl DesignCommand {
                 let scene = self.scene(file, |config| {
                     config.output = out.unwrap_or_else(|| config.output.clone());
                 })?;
-                let (report, ended) = self.design(&scene)?;
+                let (report, ended) =
+                    with_level_bars(&scene, |progress| self.design(&scene, progress))?;
                 if self.json {
                     println!("{}", serde_json::to_string_pretty(&report)?);
                 } else {
@@ -147,30 +148,40 @@ impl DesignCommand {
         Ok(runs)
     }
 
-    /// Designs the runs one after the other, and compares them.
+    /// Designs the runs, as many at a time as there are processors, and compares them.
     fn run_many(&self, mut runs: Vec<Run>) -> Result<()> {
         let stop = interrupt::stop_flag()?;
         let folder = self.out.clone().unwrap_or("runs/designs".into());
         std::fs::create_dir_all(&folder)
             .with_context(|| format!("cannot create the folder {}", folder.display()))?;
-        let (mut left, mut failed) = (0, 0);
-        for run in &mut runs {
-            if stop.load(Ordering::Relaxed) {
-                left += 1;
-                continue;
-            }
-            let folder = run.scene.output();
-            announce(&format!("{} -> {}", run.file.display(), folder.display()));
-            let designed = self.design(&run.scene);
-            match designed.and_then(|(report, ended)| judge(&run.scene, &report, &ended)) {
-                Ok(()) => {}
-                Err(error) if error.is::<Unfinished>() => left += 1,
+        // The windows of a single sheet occupy all processors.
+        let workers = match self.level {
+            Some(Level::Final) => 1,
+            _ => processors(),
+        };
+        let scenes: Vec<Scene> = runs.iter().map(|run| run.scene.clone()).collect();
+        let bar = Progress::new(runs.len(), "designs");
+        let (mut left, mut failed, mut done) = (runs.len(), 0, 0);
+        let work = |i: usize, reports: &Reports<(usize, Result<()>)>| {
+            let designed = self.design(&scenes[i], &mut |_, _| {});
+            let judged = designed.and_then(|(report, ended)| judge(&scenes[i], &report, &ended));
+            reports.send((i, judged));
+        };
+        work_through(runs.len(), workers, stop, &work, &mut |(i, judged)| {
+            done += 1;
+            bar.show(done, None, &runs[i].file.display().to_string());
+            match judged {
+                Ok(()) => left -= 1,
+                Err(error) if error.is::<Unfinished>() => {}
                 Err(error) => {
+                    left -= 1;
                     failed += 1;
-                    run.failure = Some(format!("{error:#}"));
+                    runs[i].failure = Some(format!("{error:#}"));
                 }
             }
-        }
+            Ok::<_, NoThread>(())
+        })?;
+        bar.finish();
         let listed = compare(&runs, &folder)?;
         println!("{listed}\nwritten to {}", folder.display());
         match left {
@@ -181,7 +192,7 @@ impl DesignCommand {
     }
 
     /// One run: its search and its results.
-    fn design(&self, scene: &Scene) -> Result<(Report, Ended)> {
+    fn design(&self, scene: &Scene, progress: OnStep) -> Result<(Report, Ended)> {
         refuse_files_of_others(&scene.output())?;
         let _held = run_folder::hold(&scene.output())?;
         if self.restart {
@@ -189,9 +200,11 @@ impl DesignCommand {
             remove_inner_runs(&scene.output())?;
         }
         match self.within {
-            None if self.by_elements(scene.config.level) => self.search_by_elements(scene),
-            None => self.search(scene),
-            Some(accuracy) => self.climb(scene, accuracy),
+            None if self.by_elements(scene.config.level) => {
+                self.search_by_elements(scene, progress)
+            }
+            None => self.search(scene, progress),
+            Some(accuracy) => self.climb(scene, accuracy, progress),
         }
     }
 
@@ -201,35 +214,32 @@ impl DesignCommand {
     }
 
     #[cfg(not(feature = "pipeline"))]
-    fn search_by_elements(&self, _scene: &Scene) -> Result<(Report, Ended)> {
+    fn search_by_elements(&self, _: &Scene, _: OnStep) -> Result<(Report, Ended)> {
         bail!(
             "the level `final` needs finite elements: install the whole program, as the README says"
         )
     }
 
     /// A search at the level of the scene.
-    fn search(&self, scene: &Scene) -> Result<(Report, Ended)> {
-        let stop = interrupt::stop_flag()?;
-        let bar = Progress::new(scene.config.optimiser.steps, "design steps");
-        let learned = scene.surrogate().is_some();
-        let designed = inverse_design(scene, stop, &mut |search| {
-            let step = search.last();
-            bar.show(step.step, None, &progress_line(step, learned));
-        })?;
-        bar.finish();
+    fn search(&self, scene: &Scene, progress: OnStep) -> Result<(Report, Ended)> {
+        let (stop, level) = (interrupt::stop_flag()?, scene.config.level);
+        let designed = inverse_design(scene, stop, &mut |search| progress(level, search))?;
         let report = write_run(scene, &designed, self.force)?;
         Ok((report, designed.ended))
     }
 
     /// Searches from the cheapest level to one that is accurate enough.
-    fn climb(&self, scene: &Scene, accuracy: Accuracy) -> Result<(Report, Ended)> {
+    fn climb(
+        &self,
+        scene: &Scene,
+        accuracy: Accuracy,
+        progress: OnStep,
+    ) -> Result<(Report, Ended)> {
         let asked = match accuracy {
             Accuracy::Length(mm) => mm,
             Accuracy::Part(part) => part * scene.config.sheet.outline().size(),
         };
-        let stop = interrupt::stop_flag()?;
-        let climbed = with_level_bars(scene, |progress| climb(scene, asked, stop, progress))?;
-        self.write_climbed(climbed)
+        self.write_climbed(climb(scene, asked, interrupt::stop_flag()?, progress)?)
     }
 
     /// Writes the results of a design that was found on several levels.
@@ -272,11 +282,11 @@ impl DesignCommand {
     }
 }
 
-/// Runs searches at several levels, each with a bar of its own.
-fn with_level_bars<T>(
-    scene: &Scene,
-    searches: impl FnOnce(&mut dyn FnMut(Level, &SearchState)) -> T,
-) -> T {
+/// Called with the level and the state of a search after each of its steps.
+type OnStep<'a> = &'a mut dyn FnMut(Level, &SearchState);
+
+/// Runs searches at one or several levels, each with a bar of its own.
+fn with_level_bars<T>(scene: &Scene, searches: impl FnOnce(OnStep) -> T) -> T {
     let total = scene.config.optimiser.steps;
     let mut shown: Option<(Level, Progress)> = None;
     let found = searches(&mut |level, search| {
@@ -284,7 +294,7 @@ fn with_level_bars<T>(
         let same = shown.take().filter(|(shown, _)| *shown == level);
         let (_, bar) =
             shown.insert(same.unwrap_or_else(|| (level, Progress::new(total, level.name()))));
-        bar.show(step.step, None, &progress_line(step, true));
+        bar.show(step.step, None, &progress_line(step, level.is_learned()));
     });
     shown.into_iter().for_each(|(_, bar)| bar.finish());
     found

@@ -30,7 +30,7 @@ fn programs_files_and_load_steps_are_named() {
             "read configs/scenes/linear-7x7.toml (",
             "pet-0.5mm.toml (",
             "load factor 1.0000: Converged, relative residual ",
-            "design steps 1/1  loss ",
+            "linear 1/1  loss ",
             "state.json (",
             "cut.dxf (",
         ],

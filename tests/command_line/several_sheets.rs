@@ -63,7 +63,6 @@ fn every_seed_has_its_run() {
 #[test]
 fn a_stopped_command_continues_with_the_runs_that_are_left() {
     let work = Workplace::new();
-    // The springs, whose steps are slow, come first.
     let scenes = "configs/scenes/linear-7x7.toml configs/scenes/pin-7x7.toml";
     let design = format!("design {scenes} --out sheets --steps");
     let mut command = work.program(&format!("{design} 100000"));
@@ -79,7 +78,13 @@ fn a_stopped_command_continues_with_the_runs_that_are_left() {
     }
     kill(Pid::from_raw(child.id() as i32), Signal::SIGTERM).unwrap();
     assert_eq!(child.wait().unwrap().code(), Some(75));
-    assert_eq!(column(&work, "state")[1], "not run");
+    let states = column(&work, "state");
+    assert!(
+        states
+            .iter()
+            .all(|state| state == "stopped" || state == "not run"),
+        "{states:?}"
+    );
     let steps = column(&work, "steps")[0].parse::<usize>().unwrap();
     work.output(&format!("{design} {}", steps + 1));
     assert_eq!(column(&work, "state"), ["completed", "completed"]);

@@ -77,11 +77,10 @@ impl LoadedHinge {
             Level::Pin => pinned(config),
             Level::Linear => linear(config),
             Level::Draft | Level::Standard | Level::Fine => learned(config, networks, None),
-            Level::Final => learned(
-                config,
-                networks,
-                Some(SolvedHinges::of_scene(config, path)?),
-            ),
+            Level::Final => {
+                let solved = SolvedHinges::load(config, path).map_err(SceneError::at(path))?;
+                learned(config, networks, Some(solved))
+            }
         };
         let hinge = hinge.map_err(SceneError::at(path))?;
         (hinge.check_objective(config)).map_err(SceneError::at(path))?;

@@ -2,7 +2,6 @@
 
 use crate::hinge_law::{CorrectedLaw, Correction, HingeLaw, MissingForces, Order};
 use crate::scene::keys::{SceneConfig, beside};
-use crate::scene::scene_error::SceneError;
 use hinge::{HingeDeformation, HingeDesign};
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
@@ -58,11 +57,7 @@ pub enum SolvedHingesError {
 
 impl SolvedHinges {
     /// Those that the scene at `path` names.
-    pub(super) fn of_scene(config: &SceneConfig, path: &Path) -> Result<Self, SceneError> {
-        Self::load(config, path).map_err(SceneError::at(path))
-    }
-
-    fn load(config: &SceneConfig, path: &Path) -> Result<Self, SolvedHingesError> {
+    pub(super) fn load(config: &SceneConfig, path: &Path) -> Result<Self, SolvedHingesError> {
         let named = (config.surrogate.as_ref()).and_then(|files| files.solved_hinges.as_ref());
         let file = beside(path, named.ok_or(SolvedHingesError::NoFile)?);
         let text = regular_file::read(&file).map_err(FileError::at(&file))?;

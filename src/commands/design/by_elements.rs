@@ -1,6 +1,6 @@
 //! The level `final`: a search with finite elements for the hinges.
 
-use crate::commands::design::{DesignCommand, with_level_bars};
+use crate::commands::design::{DesignCommand, OnStep};
 use crate::commands::solve_args::{SolveArgs, task_error};
 use crate::ui::interrupt;
 use crate::ui::progress::{announce, duration};
@@ -13,7 +13,11 @@ use verification::{ElementWindows, final_design, judging_tier, usual_cpu_seconds
 
 impl DesignCommand {
     /// A search that goes on with the hinges solved by finite elements.
-    pub(super) fn search_by_elements(&self, scene: &Scene) -> Result<(Report, Ended)> {
+    pub(super) fn search_by_elements(
+        &self,
+        scene: &Scene,
+        progress: OnStep,
+    ) -> Result<(Report, Ended)> {
         refuse_run_of_another_level(scene)?;
         let weights = scene.weights();
         let tier = judging_tier(None, weights.context(
@@ -30,9 +34,7 @@ impl DesignCommand {
             duration(cpu / workers as f64)
         ));
         let (windows, stop) = (ElementWindows { tier, service }, interrupt::stop_flag()?);
-        let found = with_level_bars(scene, |progress| {
-            final_design(scene, &windows, stop, progress)
-        });
+        let found = final_design(scene, &windows, stop, progress);
         self.write_climbed(found.map_err(task_error)?)
     }
 }
