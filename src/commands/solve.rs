@@ -69,12 +69,11 @@ impl SolveCommand {
         let w_lig = design.w_lig;
         let path = match &self.path {
             Some(file) => DeformationPath::read(file, w_lig)?,
-            None => DeformationPath::straight(HingeDeformation::from_eta(
-                self.eta_a,
-                self.eta_s,
-                self.theta_deg.to_radians(),
-                w_lig,
-            )),
+            None => {
+                let theta = self.theta_deg.to_radians();
+                let end = HingeDeformation::from_eta(self.eta_a, self.eta_s, theta, w_lig);
+                DeformationPath::ray(end, self.tier.regime(), w_lig)
+            }
         };
         input_file::require(&self.material, "--material")?;
         let material = SheetMaterial::load(&self.material)?;

@@ -33,6 +33,7 @@ mod tests {
         let states = distillation_states(DrawnStates {
             domain: &region,
             constants: &campaign.design,
+            regime: campaign.tier.regime(),
         });
         assert_eq!(states.len(), DISTILLATION_STATES);
         assert!(

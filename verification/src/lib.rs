@@ -36,7 +36,7 @@
 //!     stop: &AtomicBool::new(false),
 //!     progress: Box::new(|done, all| println!("{done} of {all}")),
 //! };
-//! let inside = DrawnStates { domain: weights.domain(), constants: &weights.card().hinge };
+//! let inside = DrawnStates { domain: weights.domain(), constants: &weights.card().hinge, regime: Tier::Tiny.regime() };
 //! let paths = random_paths(inside, 8, 4, 0);
 //! let check = spot_check(&windows, &paths, &film, Tier::Tiny)?;
 //! assert_eq!((check.rows.len(), check.unsolved.len()), (8, 0));

@@ -240,11 +240,13 @@ impl Campaign {
     pub fn region(&self) -> Option<TrainingDomain> {
         const RAYS: usize = 1500;
         const STATES: u32 = 10;
-        let of_box = |rays: &RayBox| rays.rays(&self.design, self.tier.regime(), RAYS);
+        let regime = self.tier.regime();
+        let of_box = |rays: &RayBox| rays.rays(&self.design, regime, RAYS);
         let rays = self.boxes.iter().flat_map(of_box);
         let rays = rays.flat_map(|ray| [ray, ray.mirrored()]);
-        let states = rays.flat_map(|Ray { design, end }| {
-            (1..=STATES).map(move |k| (design, end.at(f64::from(k) / f64::from(STATES))))
+        let states = rays.flat_map(|ray| {
+            let HingePath { design, path } = ray.driven(regime);
+            (1..=STATES).map(move |k| (design, path.at(f64::from(k) / f64::from(STATES))))
         });
         TrainingDomain::covering(states.collect::<Vec<_>>())
     }
@@ -254,6 +256,7 @@ impl Campaign {
         DrawnStates {
             domain: region,
             constants: &self.design,
+            regime: self.tier.regime(),
         }
     }
 
@@ -271,7 +274,9 @@ impl Campaign {
 
     /// The jobs in the order in which they are run. Any prefix of them gives a usable database.
     pub fn jobs(&self, tools: &ToolVersions) -> Vec<(JobPart, WindowSolve)> {
-        let of_box = |rays: &RayBox, count| rays.rays(&self.design, self.tier.regime(), count);
+        let regime = self.tier.regime();
+        let driven = |ray: Ray| ray.driven(regime);
+        let of_box = |rays: &RayBox, count| rays.rays(&self.design, regime, count);
         let rays = self.boxes.iter().flat_map(|rays| of_box(rays, rays.count));
         let finer = self.boxes.iter().flat_map(|rays| of_box(rays, rays.finer));
         let spot = self.spot_paths().into_iter().map(|path| path.hinge);
@@ -279,10 +284,10 @@ impl Campaign {
             (
                 JobPart::Ray,
                 rays.chain(self.further.iter().copied())
-                    .map(HingePath::from)
+                    .map(driven)
                     .collect(),
             ),
-            (JobPart::Finer, finer.map(HingePath::from).collect()),
+            (JobPart::Finer, finer.map(driven).collect()),
             (JobPart::SpotCheck, spot.collect::<Vec<_>>()),
         ];
         let jobs = all.into_iter().flat_map(|(part, hinges)| {

@@ -1,12 +1,12 @@
 //! States drawn uniformly inside a domain, on random rays.
 //!
-//! The training domain contains the flat state, and the straight ray from there to a state inside, as the rays of the training
-//! have (those of plates about their mean path, too). Draw a state x uniformly inside it; x fixes a
+//! The training domain contains the flat state, and in its coordinates the straight line from there to a state inside, which the rays of
+//! the training follow. Draw a state x uniformly inside it; x fixes a
 //! direction with the density of uniform states. With R the distance to the boundary along it and u uniform in
 //! (0, 1), the state at the distance R u^(1/3) is again uniform. Several states can therefore lie on one ray.
 
 use crate::solve::hinge_path::{HingePath, Ray};
-use hinge::{HingeConstants, HingeDeformation, HingeDesign, TrainingDomain};
+use hinge::{HingeConstants, Regime, TrainingDomain};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
@@ -26,6 +26,8 @@ pub struct DrawnStates<'a> {
     pub domain: &'a TrainingDomain,
     /// Kerf, window and, unless several are in the domain, the hole.
     pub constants: &'a HingeConstants,
+    /// How rays are driven.
+    pub regime: Regime,
 }
 
 /// `count` states drawn uniformly, `each` of them on one ray.
@@ -59,20 +61,21 @@ fn random_path(drawn: DrawnStates, states: usize, random: &mut ChaCha8Rng) -> Sp
             break state;
         }
     };
-    let edge = edge(domain, &design, &direction);
+    let direction = domain.coordinates(&design, &direction);
+    let at = |factor: f64| domain.state(&design, direction.map(|x| factor * x));
+    let edge = edge(|factor| domain.contains(&design, &at(factor)));
     let mut radii: Vec<f64> = (0..states).map(|_| between([0.0, 1.0]).cbrt()).collect();
     radii.sort_by(f64::total_cmp);
     let outermost = radii[states - 1];
-    let end = direction.at(edge * outermost);
+    let end = at(edge * outermost);
     SpotPath {
-        hinge: Ray { design, end }.into(),
+        hinge: Ray { design, end }.driven(drawn.regime),
         fractions: radii.iter().map(|radius| radius / outermost).collect(),
     }
 }
 
-/// The largest factor by which a state can be scaled without leaving the domain.
-fn edge(domain: &TrainingDomain, design: &HingeDesign, state: &HingeDeformation) -> f64 {
-    let inside = |factor: f64| domain.contains(design, &state.at(factor));
+/// The largest factor that is inside.
+fn edge(inside: impl Fn(f64) -> bool) -> f64 {
     let mut outside = 2.0;
     while inside(outside) {
         outside *= 2.0;
@@ -101,6 +104,7 @@ mod tests {
         let drawn = DrawnStates {
             domain: &domain,
             constants: &HingeConstants::PAPER,
+            regime: Regime::Film,
         };
         let mut random = ChaCha8Rng::seed_from_u64(1);
         let mut counts = [0; 5];

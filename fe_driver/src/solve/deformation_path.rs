@@ -1,14 +1,15 @@
 //! The deformation path of a window solve: (a, s, theta) as a function of lambda in [0, 1].
 //!
-//! The database consists of straight rays (section 2.4). Paths recorded from deployed sheets measure the error of
-//! ignoring the loading path (section 5.2). Both are piecewise linear and start at the undeformed state.
+//! The database consists of rays (section 2.4): straight ones for films; those of plates bend like the free turn of a ligament. Paths
+//! recorded from deployed sheets measure the error of ignoring the loading path (section 5.2). All are piecewise linear and start at the
+//! undeformed state.
 //!
 //! A recorded path is a CSV file with the columns `eta_a`, `eta_s`, `theta_deg`, one state per row.
 //! Lines that start with `#` are comments. An optional column `lambda`, which increases to 1, gives the position of
 //! each state along the path; without it the states are equally spaced in lambda. The undeformed state may be
 //! omitted: every path starts there.
 
-use hinge::HingeDeformation;
+use hinge::{HingeDeformation, Regime};
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 use support::csv_table;
@@ -23,6 +24,9 @@ pub struct DeformationPath {
 }
 
 type Knot = (f64, HingeDeformation);
+
+/// Number of straight pieces of a ray that bends: the free turn of 60 degrees is met within 0.0004 w_lig.
+const PIECES: u32 = 10;
 
 impl From<DeformationPath> for Vec<Knot> {
     fn from(path: DeformationPath) -> Self {
@@ -76,6 +80,27 @@ impl DeformationPath {
         Self {
             knots: vec![(0.0, HingeDeformation::default()), (1.0, end)],
         }
+    }
+
+    /// The ray to `end` of a ligament of the width `w_lig` (mm): eta_s and theta grow in proportion, and so does the distance of eta_a from
+    /// the free turn of the regime. With lambda it reaches every state between as the ray to that state does. Sheets of plates take such
+    /// paths: their forces at the end differ by half as much from those of paths recorded in sheets as the forces of straight rays do.
+    pub fn ray(end: HingeDeformation, regime: Regime, w_lig: f64) -> Self {
+        let [_, curvature] = regime.free_opening();
+        if curvature == 0.0 {
+            return Self::straight(end);
+        }
+        let bend = curvature * w_lig * end.theta * end.theta.abs();
+        let state = |i: u32| {
+            let lambda = f64::from(i) / f64::from(PIECES);
+            let straight = end.at(lambda);
+            HingeDeformation {
+                a: straight.a - bend * lambda * (1.0 - lambda),
+                ..straight
+            }
+        };
+        let states: Vec<_> = (1..=PIECES).map(state).collect();
+        Self::through(&states).expect("there are states")
     }
 
     /// The path through `states`, equally spaced in lambda; `None` without a state.
@@ -182,6 +207,31 @@ impl Row {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// A ray of a plate bends like the free turn, and passes through every state as the ray to that state.
+    #[test]
+    fn a_ray_of_a_plate_bends_like_the_free_turn() {
+        let free = |theta: f64| theta * (0.5 + 0.16 * theta.abs());
+        for (theta, pull) in [(1.0, 0.0), (0.8, 0.1), (-0.1, -0.05)] {
+            let state = |lambda: f64| {
+                let turned = lambda * theta;
+                let eta_a = free(turned) + lambda * pull;
+                HingeDeformation::from_eta(eta_a, 0.1 * lambda, turned, 2.0)
+            };
+            let [ray, halfway] =
+                [1.0, 0.5].map(|end| DeformationPath::ray(state(end), Regime::Plate, 2.0));
+            for i in 0..=20 {
+                let lambda = f64::from(i) / 20.0;
+                for (path, end) in [(&ray, 1.0), (&halfway, 0.5)] {
+                    let [found, exact] = [path.at(lambda), state(end * lambda)];
+                    let off = std::iter::zip(found.to_array(), exact.to_array());
+                    assert!(off.map(|(x, y)| (x - y).abs()).sum::<f64>() < 1e-3);
+                }
+            }
+            let film = DeformationPath::ray(state(1.0), Regime::Film, 2.0);
+            assert_eq!(film, DeformationPath::straight(state(1.0)));
+        }
+    }
 
     fn read(text: &str) -> Result<DeformationPath, PathError> {
         let file = tempfile::NamedTempFile::new().unwrap();

@@ -1,10 +1,10 @@
 //! One hinge design with the path along which its window is driven.
 
 use crate::solve::deformation_path::DeformationPath;
-use hinge::{HingeDeformation, HingeDesign};
+use hinge::{HingeDeformation, HingeDesign, Regime};
 use serde::{Deserialize, Serialize};
 
-/// One design driven along the straight line from the undeformed state to `end`.
+/// One design driven from the undeformed state to `end`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Ray {
     /// The hinge design.
@@ -14,6 +14,13 @@ pub struct Ray {
 }
 
 impl Ray {
+    /// The ray with its path: see [`DeformationPath::ray`].
+    pub fn driven(self, regime: Regime) -> HingePath {
+        let Self { design, end } = self;
+        let path = DeformationPath::ray(end, regime, design.w_lig);
+        HingePath { design, path }
+    }
+
     /// The ray of the mirrored design; see [`HingeDeformation::mirrored`].
     pub fn mirrored(&self) -> Self {
         Self {
@@ -23,7 +30,7 @@ impl Ray {
     }
 }
 
-/// One design driven along a path. In a file, the path of a ray is its `end` alone.
+/// One design driven along a path. In a file, a straight path is its `end` alone.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(from = "InFile", into = "InFile")]
 pub struct HingePath {
@@ -44,17 +51,10 @@ enum InFile {
     },
 }
 
-impl From<Ray> for HingePath {
-    fn from(Ray { design, end }: Ray) -> Self {
-        let path = DeformationPath::straight(end);
-        Self { design, path }
-    }
-}
-
 impl From<InFile> for HingePath {
     fn from(file: InFile) -> Self {
         match file {
-            InFile::Ray(ray) => ray.into(),
+            InFile::Ray(ray) => ray.driven(Regime::Film),
             InFile::Path { design, path } => Self { design, path },
         }
     }
@@ -77,11 +77,11 @@ mod tests {
     use hinge::HingeConstants;
 
     #[test]
-    fn a_path_is_read_back_and_that_of_a_ray_is_written_as_its_end() {
+    fn a_path_is_read_back_and_a_straight_one_is_written_as_its_end() {
         let design = HingeConstants::PAPER.hinge(18.0, 1.5);
         let [middle, end] =
             [0.2, 0.6].map(|theta| HingeDeformation::from_eta(-0.1, 0.3 * theta, theta, 18.0));
-        let ray = HingePath::from(Ray { design, end });
+        let ray = Ray { design, end }.driven(Regime::Film);
         let bent = HingePath {
             path: DeformationPath::through(&[middle, end]).unwrap(),
             ..ray.clone()

@@ -12,7 +12,7 @@ use crate::solve::hinge_path::Ray;
 use crate::solve::problem::Solve;
 use crate::solve::window_solve::WindowProblem;
 pub use fake_solver::{FakeSolver, Fault};
-use hinge::{HingeConstants, SheetMaterial};
+use hinge::{HingeConstants, Regime, SheetMaterial};
 use mesher::Tier;
 
 /// A ray of the paper's hinge that ends at the rotation `theta` (rad).
@@ -27,7 +27,7 @@ pub fn solve_to(theta: f64) -> WindowSolve {
     let film = "name = \"film\"\nthickness = 0.5\nyoung = 3000.0\npoisson = 0.4\n\
         density_kg_m3 = 1390.0\nfracture_strain = 1.784\nplastic = [[44.0, 0.0]]\n";
     let film: SheetMaterial = support::toml_file::parse(film, Path::new("film.toml")).unwrap();
-    let problem = WindowProblem::new(ray_to(theta), &film, Tier::Default);
+    let problem = WindowProblem::new(ray_to(theta).driven(Regime::Film), &film, Tier::Default);
     WindowSolve::new(problem, &healthy().versions())
 }
 

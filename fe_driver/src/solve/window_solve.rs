@@ -48,9 +48,9 @@ pub struct WindowSolve {
 
 impl WindowProblem {
     /// The problem with the usual increments.
-    pub fn new(hinge: impl Into<HingePath>, material: &SheetMaterial, tier: Tier) -> Self {
+    pub fn new(hinge: HingePath, material: &SheetMaterial, tier: Tier) -> Self {
         Self {
-            hinge: hinge.into(),
+            hinge,
             material: material.as_solved(),
             tier,
             step: StepControl::usual(tier.regime()),

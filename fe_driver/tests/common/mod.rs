@@ -7,7 +7,7 @@ use fe_driver::{
     CalculiX, Campaign, CampaignError, Ccx, Ray, RunOptions, Shard, Solved, Tally, WindowProblem,
     finished_windows, run,
 };
-use hinge::{HingeConstants, HingeDeformation, HingeDesign, SheetMaterial};
+use hinge::{HingeConstants, HingeDeformation, HingeDesign, Regime, SheetMaterial};
 use mesher::Tier;
 use std::io::ErrorKind;
 use std::os::unix::fs::PermissionsExt;
@@ -35,7 +35,7 @@ pub fn problem(alpha_deg: f64, eta: [f64; 2], theta_deg: f64) -> WindowProblem {
         design: design(alpha_deg),
         end: HingeDeformation::from_eta(eta[0], eta[1], theta_deg.to_radians(), 18.0),
     };
-    WindowProblem::new(ray, &film(), Tier::Tiny)
+    WindowProblem::new(ray.driven(Regime::Film), &film(), Tier::Tiny)
 }
 
 /// The first rays of the demo campaign, with small rotations only.

@@ -5,7 +5,7 @@ use crate::common::{film, problem};
 use fe_driver::{
     CalculiX, DeformationPath, HingePath, Ray, Solution, Solver, WindowProblem, WindowSolve,
 };
-use hinge::{HingeDeformation, HingeDesign, SheetMaterial};
+use hinge::{HingeDeformation, HingeDesign, Regime, SheetMaterial};
 use mesher::{Tier, WindowShape};
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
@@ -171,7 +171,7 @@ fn a_ligament_of_a_plate_bends_in_its_plane() {
     let solved_to = |eta_a: f64| {
         let end = HingeDeformation::from_eta(eta_a, 0.0, 20f64.to_radians(), w_lig);
         let solution = solve(&WindowProblem::new(
-            Ray { design, end },
+            Ray { design, end }.driven(Regime::Plate),
             &material,
             Tier::PlateTiny,
         ));

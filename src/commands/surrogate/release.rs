@@ -68,6 +68,7 @@ impl ReleaseCommand {
         let drawn = DrawnStates {
             domain: &domain,
             constants: &surrogate.card().hinge,
+            regime: tier.regime(),
         };
         let drawn = random_paths(drawn, self.count.get(), 1, self.seed);
         let hinges: Vec<_> = drawn.into_iter().map(|path| path.hinge).collect();

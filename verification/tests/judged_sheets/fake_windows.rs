@@ -13,6 +13,7 @@ use fe_driver::{
     Campaign, DrawnStates, Progress, Solution, SolveError, SolveService, SolveStore, Solver,
     ToolVersions, WindowSolve, random_paths,
 };
+use hinge::Regime;
 use mesher::Tier;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
@@ -359,6 +360,7 @@ fn a_spot_check_keeps_the_states_of_the_windows_that_are_solved() {
         DrawnStates {
             domain: surrogate.domain(),
             constants: &surrogate.card().hinge,
+            regime: Regime::Film,
         },
         12,
         3,

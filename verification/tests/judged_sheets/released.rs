@@ -9,7 +9,8 @@ use fe_driver::{
     ToolVersions, WindowSolve, random_paths,
 };
 use hinge::{
-    HingeConstants, HingeDeformation, HingeSample, ReleasedHinge, ReleasedSample, SheetMaterial,
+    HingeConstants, HingeDeformation, HingeSample, Regime, ReleasedHinge, ReleasedSample,
+    SheetMaterial,
 };
 use mesher::Tier;
 use std::array::from_fn;
@@ -122,6 +123,7 @@ fn rows(solver: Slipping, count: usize) -> Vec<ReleasedSample> {
     let inside = DrawnStates {
         domain: surrogate.domain(),
         constants: &surrogate.card().hinge,
+        regime: Regime::Film,
     };
     let drawn = random_paths(inside, count, 1, 5);
     let hinges: Vec<HingePath> = drawn.into_iter().map(|path| path.hinge).collect();
@@ -268,7 +270,7 @@ fn ligaments_at_the_limits_of_plasticity() {
     let share = |stress: f64| {
         let (material, folder) = (plate(stress), tempfile::tempdir().unwrap());
         let windows = service(CalculiX::find().unwrap(), &folder);
-        let hinges = [Ray { design, end }.into()];
+        let hinges = [Ray { design, end }.driven(Regime::Plate)];
         let guess =
             |_: &_, reached: &HingeDeformation| reached.at(if stress > 100.0 { 0.0 } else { 0.9 });
         let found = releases(&windows, &hinges, &material, Tier::PlateTiny, guess).unwrap();
