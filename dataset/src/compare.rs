@@ -1,7 +1,7 @@
 //! Comparison of rays that were solved twice: the error of a mesh relative to a finer one, or of one solver to another.
 //!
 //! Two jobs are the same ray if their designs, their ends and their material laws are the same; an unknown law, as in
-//! rows of another solver, is taken for that of the other job. They are compared at the states of the first job, up to
+//! rows of another solver, is taken for the law of the other job. They are compared at the states of the first job, up to
 //! the smaller lambda of the two; the second job is interpolated linearly in lambda.
 
 use crate::database::Database;
@@ -124,7 +124,7 @@ pub fn reference_rms<'a>(states: impl IntoIterator<Item = &'a ComparedState>) ->
     rms(states, |state, i| state.reference[i])
 }
 
-/// Root mean square of the differences of each quantity, divided by that of the references or by
+/// Root mean square of the differences of each quantity, divided by the root mean square of the references or by
 /// `minimum`, whichever is larger. The minimum keeps the relative error of a nearly zero damage finite.
 pub fn relative_rms(states: &[ComparedState], minimum: [f64; 6]) -> [f64; 6] {
     let off = rms(states, |state, i| state.value[i] - state.reference[i]);

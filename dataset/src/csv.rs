@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 use std::f64::consts::PI;
 use std::path::Path;
 
-/// The mapping from the columns of a foreign table to those of a database, read from a TOML file.
+/// The mapping from the columns of a foreign table to the columns of a database, read from a TOML file.
 ///
 /// Each column of the database has the same name in the table unless `columns` gives another name. A column that is
 /// missing in the table is taken from `constants`. `job` (the ray) and `lambda` may be missing if every row is a

@@ -36,7 +36,7 @@ impl Database {
         })
     }
 
-    /// A database of other rows of the rays, with the same split. Its hash is that of this file, from which it follows.
+    /// A database of other rows of the rays, with the same split. Its hash is the hash of this file, from which it follows.
     pub(crate) fn with_rows(&self, rows: Vec<Row>) -> Result<Self, DatasetError> {
         let ours = &self.manifest;
         let mut other = Self::collect(rows, &ours.split_plan)?;
@@ -65,7 +65,7 @@ impl Database {
         self.rows.chunk_by(same).collect()
     }
 
-    /// The first row of every ray that was solved on another tier than that of its campaign, after a failure.
+    /// The first row of every ray that was solved on another tier than the tier of its campaign, after a failure.
     pub fn rays_on_other_tiers(&self) -> Vec<&Row> {
         let first = self.rays().into_iter().filter_map(<[Row]>::first);
         first.filter(|row| !row.is_as_asked()).collect()
@@ -76,7 +76,7 @@ impl Database {
         self.rows.iter().filter(move |row| row.tier == tier)
     }
 
-    /// All accepted rows, also those of the finer mesh.
+    /// All accepted rows, including the rows of the finer mesh.
     pub fn rows(&self) -> &[Row] {
         &self.rows
     }

@@ -1,6 +1,6 @@
 //! Reading and writing a database: `X.parquet` and its manifest `X.json`.
 //!
-//! One rename decides which database there is, that of the manifest, which holds the hash of its Parquet file. The file is
+//! One rename decides which database there is: the rename of the manifest, which holds the hash of its Parquet file. The file is
 //! there before, as `X.parquet.next`, and gets its name after that. A process that is killed between the two leaves it to
 //! the next reader.
 
@@ -145,7 +145,7 @@ fn read_manifest(path: &Path) -> Result<Manifest, DatasetError> {
     sealed_json::from_slice(&bytes).map_err(malformed)
 }
 
-/// What a file is whose first bytes are not those of a Parquet file.
+/// What a file is that does not begin like a Parquet file.
 fn other_kind(bytes: &[u8]) -> Option<&'static str> {
     match bytes {
         [b'P', b'A', b'R', b'1', ..] => None,

@@ -42,11 +42,11 @@ const TERMS: [[usize; 2]; 13] = [
 ];
 /// Fraction of the root mean square that limits the scale of the relative error of small values from below.
 const LEAST_SCALE: f64 = 0.3;
-/// Weight of the equation of a force, relative to that of W. Where a ligament buckles a second time, forces differ between the
-/// meshes as no polynomial does: on 34 rays of the film, corrected by the others, W is off by 2.6 % at the weight 1, by 1.2 % at
-/// 0.1 and at 0, F_s by 5.6, 5.5 and 6.4 %.
+/// Weight of the equation of a force, relative to the weight of the equation of W. Where a ligament buckles a second time, forces
+/// differ between the meshes as no polynomial does: on 34 rays of the film, corrected by the others, W is off by 2.6 % at the
+/// weight 1, by 1.2 % at 0.1 and at 0, F_s by 5.6, 5.5 and 6.4 %.
 const FORCE_WEIGHT: f64 = 0.1;
-/// Weight of the ridge regularisation, which equals that of one state. It determines only the coefficients that the
+/// Weight of the ridge regularisation, which equals the weight of one state. It determines only the coefficients that the
 /// rays do not determine.
 const RIDGE: f64 = 1.0;
 
@@ -64,7 +64,7 @@ struct Bridge {
 }
 
 impl Bridge {
-    /// Fits the correction from the mesh of the rays to that of their references.
+    /// Fits the correction from the mesh of the rays to the mesh of their references.
     fn fit(rays: &[ComparedRay]) -> Self {
         let pairs = || {
             let pairs = rays.iter().flat_map(ComparedRay::pairs);
@@ -385,7 +385,7 @@ mod tests {
         database([coarse, finer(fine)].concat())
     }
 
-    /// The rows of the rays themselves, without those of the finer mesh.
+    /// The rows of the rays themselves, without the rows of the finer mesh.
     fn of_rays(database: &Database) -> Vec<Row> {
         database.on_tier("default").cloned().collect()
     }
@@ -432,7 +432,7 @@ mod tests {
         half.manifest.split.training.pop_first();
         let split = half.manifest().split.clone();
         let (corrected, _) = half.corrected().unwrap();
-        // Ten seconds per ray; those of the finer mesh are left out with its rows.
+        // Ten seconds per ray; the seconds of the finer mesh are left out with its rows.
         let manifest = corrected.manifest();
         assert_eq!(manifest.cpu_s, 10.0 * RAYS as f64);
         assert_eq!((manifest.rays, manifest.rows), (RAYS, 10 * RAYS));

@@ -1,4 +1,4 @@
-//! The meshes of a database: that of its rays, and the finer one on which some of them were solved too.
+//! The meshes of a database: the mesh of its rays, and the finer mesh on which some of them were solved too.
 //!
 //! All rows have one material, one kerf and one window radius, since a surrogate has no feature for them. The finer mesh is the
 //! one with fewer rays, or, of as many, with the longer solves.

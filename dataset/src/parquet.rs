@@ -71,7 +71,7 @@ pub(crate) fn decode(bytes: &[u8]) -> Result<Vec<Row>, DatasetError> {
 
 /// Maximum number of values in a byte of a file. Measured values do not repeat: the shipped databases have 0.3.
 const VALUES_A_BYTE: usize = 8;
-/// Maximum size of a table over that of its file. Measured values compress to about half.
+/// Maximum size of a table over the size of its file. Measured values compress to about half.
 const EXPANSION: usize = 100;
 
 /// Rejects a file that would fill far more memory than its size, judged by its metadata.

@@ -114,7 +114,7 @@ pub(crate) const RATIOS: [ColumnMeaning; 2] = [
 /// Number of columns of numbers.
 pub(crate) const NUMERIC: usize = NUMBERS.len() + 1 + RATIOS.len();
 
-/// The columns of a database, in their order: those of text, then those of numbers.
+/// The columns of a database, in their order: the columns of text, then the columns of numbers.
 pub fn columns() -> impl Iterator<Item = ColumnMeaning> {
     texts().chain(numbers())
 }

@@ -13,7 +13,7 @@ use std::fmt;
 pub(crate) struct Contents {
     /// The minimum and the maximum of every column of numbers.
     ranges: [[f64; 2]; schema::NUMERIC],
-    /// The rays that were solved on another tier than that of their campaign, with that tier.
+    /// The rays that were solved on another tier than the tier of their campaign, each with the tier on which it was solved.
     other_tiers: BTreeMap<String, String>,
 }
 
@@ -128,7 +128,7 @@ impl Summary<'_> {
         )
     }
 
-    /// The columns of numbers with their ranges, then those of text.
+    /// The columns of numbers with their ranges, then the columns of text.
     fn write_columns(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let mut line = |name: &str, range: [&str; 2], unit: &str, meaning: &str| {
             let [minimum, maximum] = range;

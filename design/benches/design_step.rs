@@ -36,7 +36,7 @@ fn equilibria_and_gradient(bencher: Bencher, name: &str) {
     bencher.bench(|| problem.evaluate(black_box(&design)).unwrap());
 }
 
-/// The equilibrium at full load of a sheet whose ligaments are wider than those of the known path.
+/// The equilibrium at full load of a sheet whose ligaments are wider than the ligaments of the sheet whose path is known.
 #[divan::bench(args = SCENES, sample_count = 10, max_time = 10)]
 fn draft(bencher: Bencher, name: &str) {
     let (problem, design) = scene(name);

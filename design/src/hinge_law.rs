@@ -5,7 +5,7 @@
 //! | [`LinearLaw`] | (11), three springs | constants |
 //! | [`SurrogateLaw`] | (14), continued beyond the training domain | weights |
 //! | [`MeanLaw`] | the mean of other laws | these |
-//! | [`ReleasedLaw`] | elastic about the deformation that stays when a hinge is let go | rest deformations and stiffnesses |
+//! | [`ReleasedLaw`] | elastic about the residual deformation of an unloaded hinge | rest deformations and stiffnesses |
 //! | [`CorrectedLaw`] | another law, corrected to forces measured at some states of each hinge | those forces |
 //!
 //! A law is prepared once for the hinges of a sheet and then evaluated for all of them at once.

@@ -4,9 +4,9 @@
 //! lambda = 0 to 1. What is kept of the converged increments is a [`SolvedPath`]. A further kind of problem is one more
 //! implementation of the two traits.
 //!
-//! **Window.** A [`WindowSolve`] drives one hinge design along one path, from the undeformed state to a deformation
-//! (a, s, theta). Every converged increment is a sample (W, grad W, D) of section 2.4. A *ray* is a straight path. Types
-//! that work for any kind of solve are those of windows where no kind is named.
+//! **Window.** A [`WindowSolve`] drives one hinge design along one path, from the undeformed state to a deformation (a, s, theta). Every
+//! converged increment is a sample (W, grad W, D) of section 2.4. A *ray* is a straight path. Where no kind is named, a type that works
+//! for any kind of solve is the type for windows.
 //!
 //! **Identity.** The id of a solve is a hash of the problem: for a window, of hinge, path, material, tier and mesh,
 //! increments, versions of the programs and of this crate.

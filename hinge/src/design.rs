@@ -27,10 +27,10 @@ pub struct HingeConstants {
     /// Radius of the hole drilled about O, as a multiple of w_lig, above 0 and below 1; the paper cuts 0.16.
     pub fillet_ratio: f64,
     /// Width the cutting tool removes along the main cut (mm), above 0 and below 2 fillet_ratio w_lig. It may differ from
-    /// that of the weights: from 0.002 to 0.15 w_lig it changes W by less than 0.5 % and the force by less than 2.5 %.
+    /// the kerf of the weights: from 0.002 to 0.15 w_lig it changes W by less than 0.5 % and the force by less than 2.5 %.
     pub kerf: f64,
-    /// Radius of the half-disc of sheet assigned to the hinge (mm), above 2.5 w_lig. For learned hinges that of the
-    /// weights, times the thickness of the sheet over that of the training.
+    /// Radius of the half-disc of sheet assigned to the hinge (mm), above 2.5 w_lig. For learned hinges it is the radius of the
+    /// weights, times the thickness of the sheet over the thickness in the training.
     pub r_win: f64,
 }
 

@@ -13,7 +13,7 @@
 //!
 //! In plates, eta_a is measured from the mean path of the states, c_1 theta + c_2 theta^2 by least squares: their ligaments turn
 //! freely along a curve, and a polytope around a curve holds states far beyond any ray. If hinges have holes of several radii,
-//! eta_a and eta_s are those of the hinge with the paper's hole and the same net ligament ([`NetLigament`]).
+//! eta_a and eta_s belong to the hinge with the paper's hole and the same net ligament ([`NetLigament`]).
 //!
 //! s is stored at widths in geometric progression and is blended between them with zero slope at both
 //! ends, so that gamma is twice differentiable in w_lig.
@@ -188,7 +188,7 @@ impl TrainingDomain {
         ])
     }
 
-    /// The hole, over w_lig, of the hinges in whose measures the domain is; `None`: those of the hinges themselves.
+    /// The hole, over w_lig, of the hinges in whose measures the domain is; `None`: in the measures of the hinges themselves.
     fn hole(&self) -> Option<f64> {
         self.holes.map(|_| HingeConstants::PAPER.fillet_ratio)
     }

@@ -8,7 +8,7 @@
 //! | sheet material | [`SheetMaterial`] | section 4.1 |
 //! | films and plates | [`Regime`] | section 5.1 |
 //! | training domain | [`TrainingDomain`] | section 2.4 |
-//! | a hinge that was let go | [`ReleasedHinge`] | - |
+//! | a hinge that was unloaded | [`ReleasedHinge`] | - |
 //! | one converged increment of a window solve | [`HingeSample`] | section 2.4 |
 //!
 //! Units: mm, N, MPa, N mm, rad. Angles in degrees have names that end in `_deg`.

@@ -41,7 +41,7 @@ pub struct SheetMaterial {
     #[serde(default, skip_serializing)]
     pub tensile_csv: Option<PathBuf>,
     /// Relative standard deviation of the stress at equal strain, of the sheet that is cut from this law, for the error budget of
-    /// a design; `kirigami material fit` writes that of its specimens. No window solve uses it.
+    /// a design; `kirigami material fit` writes the deviation of its specimens. No window solve uses it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0.0, max = 1.0))]
     pub stress_deviation: Option<f64>,

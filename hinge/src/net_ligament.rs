@@ -52,7 +52,7 @@ impl NetLigament {
         }
     }
 
-    /// The actual deformation from that of the hinge with the hole of reference.
+    /// The actual deformation from the deformation of the hinge with the hole of reference.
     pub fn actual(&self, deformation: &HingeDeformation) -> HingeDeformation {
         HingeDeformation {
             a: deformation.a + chord(deformation.theta) * self.shift,
@@ -60,7 +60,7 @@ impl NetLigament {
         }
     }
 
-    /// Deformation and moment of a sample of that hinge. The other quantities are those of the actual hinge.
+    /// Deformation and moment of a sample of that hinge. The other quantities remain the quantities of the actual hinge.
     pub fn sample(&self, sample: &HingeSample) -> HingeSample {
         HingeSample {
             a: self.deformation(&sample.deformation()).a,

@@ -1,4 +1,4 @@
-//! A hinge that was deformed and let go: what stays of its deformation, and how stiff it is about that.
+//! A hinge that was deformed and unloaded: its residual deformation, and how stiff the hinge is about that.
 
 use crate::{HingeDeformation, HingeDesign, HingeForces};
 use serde::{Deserialize, Serialize};
@@ -58,7 +58,7 @@ impl ReleasedHinge {
     }
 }
 
-/// One hinge by finite elements: deformed along a straight ray, and let go. A row of a table.
+/// One hinge by finite elements: deformed along a straight ray, and unloaded. A row of a table.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ReleasedSample {
     /// Ligament width (mm).
@@ -160,7 +160,7 @@ impl ReleasedSample {
         [self.f_a, self.f_s, self.m_theta]
     }
 
-    /// The hinge after it was let go.
+    /// The hinge after it was unloaded.
     pub fn released(&self) -> ReleasedHinge {
         ReleasedHinge {
             rest: [self.rest_a, self.rest_s, self.rest_theta].into(),
@@ -201,7 +201,7 @@ mod tests {
         }
     }
 
-    /// Energy grows with the cube of the thickness, and is that of the mirrored deformation in the mirrored hinge.
+    /// Energy grows with the cube of the thickness, and equals the energy of the mirrored deformation in the mirrored hinge.
     #[test]
     fn similar_and_mirrored_hinges_have_their_energies() {
         let (hinge, at) = (hinge(), HingeDeformation::from([0.2, -0.3, 0.8]));

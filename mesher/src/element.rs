@@ -255,7 +255,7 @@ mod tests {
         }
     }
 
-    /// The gradient of sum N_i f(x_i) equals that of f, for every f that the element represents exactly.
+    /// The gradient of sum N_i f(x_i) equals the gradient of f, for every f that the element represents exactly.
     #[test]
     fn gradients_are_exact_for_quadratic_functions() {
         let at = [0.3, 0.2, -0.4];

@@ -31,7 +31,7 @@ impl Boundary {
 /// A second-order mesh of a window or a sheet in its plane; indices count from 0.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PlaneMesh {
-    /// Node positions (mm), those of a window in the hinge frame.
+    /// Node positions (mm); the positions of a window are in the hinge frame.
     pub nodes: Vec<[f64; 2]>,
     /// Corner nodes counter-clockwise, then the same number of mid-side nodes: of edge 01, 12, and so on.
     pub faces: Vec<Vec<usize>>,

@@ -8,8 +8,8 @@ use std::fmt::Write;
 const WIDTH: f64 = 1000.0;
 const MARGIN: f64 = 10.0;
 
-/// The plane mesh as SVG: elements grey, arc A blue, arc B red, hole green. Edges are drawn as quadratic curves,
-/// like those of the elements.
+/// The plane mesh as SVG: elements grey, arc A blue, arc B red, hole green. Edges are drawn as quadratic curves, like
+/// the edges of the elements.
 pub fn plane_mesh_svg(mesh: &WindowMesh) -> String {
     let scale = (WIDTH - 2.0 * MARGIN) / (2.0 * mesh.design.r_win);
     let height = WIDTH / 2.0 + MARGIN;

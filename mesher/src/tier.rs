@@ -135,7 +135,7 @@ pub struct Imperfection {
 }
 
 impl Tier {
-    /// All tiers; those of a regime in order of increasing CPU time.
+    /// All tiers; the tiers of a regime are in order of increasing CPU time.
     pub const ALL: [Tier; 9] = [
         Tier::Tiny,
         Tier::Small,

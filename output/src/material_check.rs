@@ -9,8 +9,8 @@
 //! | plastic strain of its most strained 1 %, at the tip | 0.05 to 0.3 theta |
 //! | critical panel edge, Gamma | (22), (21) |
 //!
-//! The range of the strain at the tip is that of window solves, tier `small`, of the five materials of Table 2 at
-//! w / t = 18 and 36 and rotations of 45 and 60 degrees; docs/MATERIALS.md lists them.
+//! The range of the strain at the tip comes from window solves, tier `small`, of the five materials of Table 2 at w / t
+//! = 18 and 36 and rotations of 45 and 60 degrees; docs/MATERIALS.md lists them.
 
 use design::analysis::localisation::{critical_edge, gamma};
 use hinge::SheetMaterial;
@@ -75,7 +75,7 @@ pub struct MaterialCheck {
 const TIP_STRAIN: [f64; 2] = [0.05, 0.3];
 /// Range of w / t of the shipped polyester data.
 const KNOWN_SLENDERNESS: [f64; 2] = [10.0, 50.0];
-/// Densities below this (kg/m^3) are those of plastics and papers.
+/// Densities below this (kg/m^3) are densities of plastics and papers.
 const LIGHTEST_METAL: f64 = 1700.0;
 /// Maximum of Young's modulus over density of plastics without fibres and of papers (MPa m^3/kg); paper has up to 12.
 const STIFFEST_PLASTIC: f64 = 12.0;
@@ -185,7 +185,7 @@ fn law(material: &SheetMaterial) -> Vec<Verdict> {
     verdicts
 }
 
-/// Whether the modulus is that of a plastic, if the density is.
+/// Whether a material with the density of a plastic has the modulus of a plastic.
 fn stiffness(material: &SheetMaterial) -> Option<Verdict> {
     let [young, density] = [material.young, material.density_kg_m3];
     (density < LIGHTEST_METAL && young > STIFFEST_PLASTIC * density).then(|| {

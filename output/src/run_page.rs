@@ -38,9 +38,9 @@ pub struct Page<'a> {
     pub connections: &'a str,
     /// HTML before the cards.
     pub controls: &'a str,
-    /// Style after that of the view.
+    /// Style after the style of the view.
     pub style: &'a str,
-    /// Scripts after those of the view.
+    /// Scripts after the scripts of the view.
     pub scripts: String,
     /// Data as JSON.
     pub data: &'a str,

@@ -1,4 +1,4 @@
-//! The results of a run, written to its folder besides its state, and deleted before it is searched anew.
+//! The results of a run, written to its folder besides its state, and deleted before a new search.
 
 use crate::cut_file::{CutLines, SheetDrawing};
 use crate::report::Report;

@@ -1,6 +1,6 @@
 //! The deployment of a sheet as VTK grids: panels as quadrilaterals and hinges as points, one pair of grids a state.
 //!
-//! Points are those of the flat sheet; the point data `displacement (mm)` moves them to the deployed one.
+//! Points are the points of the flat sheet; the point data `displacement (mm)` moves them to the deployed sheet.
 
 use design::equilibrium::load_step::LoadStep;
 use design::hinge_law::DamageMeasure;

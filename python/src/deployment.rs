@@ -221,7 +221,7 @@ impl State {
         triples(py, &self.0.reactions)
     }
 
-    /// zeta: 1 under dead loads; under a prescribed stroke the load over that of the scene.
+    /// zeta: 1 under dead loads; under a prescribed stroke the load over the load of the scene.
     #[getter]
     fn load_factor(&self) -> f64 {
         self.0.state().load_factor

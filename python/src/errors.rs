@@ -1,4 +1,4 @@
-//! Errors as Python exceptions. The message is that of the command line.
+//! Errors as Python exceptions. The message is the message of the command line.
 
 use design::DesignError;
 use pyo3::create_exception;

@@ -22,7 +22,7 @@ use surrogate::mean_and_variance;
 /// >>> film([0.0, 0.0, 0.5], w_lig=18.0, alpha=1.2).energy
 #[pyclass(frozen, module = "kirigami")]
 pub(crate) struct Surrogate {
-    /// Its own network first, then those of the ensemble.
+    /// Its own network first, then the networks of the ensemble.
     networks: Vec<Arc<surrogate::Surrogate>>,
 }
 
@@ -79,8 +79,8 @@ impl Surrogate {
 
     /// Hinges prepared for evaluation.
     ///
-    /// w_lig: ligament width (mm), a number or an array of the shape of the hinges; alpha: cut angle (rad), likewise; hole: radius of
-    /// the hole over w_lig, by default that of the weights.
+    /// w_lig: ligament width (mm), a number or an array of the shape of the hinges; alpha: cut angle (rad), likewise; hole: radius of the
+    /// hole over w_lig, by default the hole of the weights.
     #[pyo3(signature = (w_lig, alpha, hole=None))]
     fn hinges(
         &self,
@@ -297,7 +297,7 @@ impl HingeStates {
         self.damaged(py, |damage| Some(damage.d))
     }
 
-    /// D_peak, that of the most strained 1 % of the ligament: it tears at 1. nan outside the training domain, and if the weights do
+    /// D_peak, the damage of the most strained 1 % of the ligament: it tears at 1. nan outside the training domain, and if the weights do
     /// not predict it.
     #[getter]
     fn damage_peak<'py>(&self, py: Python<'py>) -> Doubles<'py> {

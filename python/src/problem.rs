@@ -123,8 +123,8 @@ impl Problem {
         array(py, self.start.to_flat(), &[self.size()])
     }
 
-    /// The parts of a design by name, as slices: `z`, the logits of the void aspect ratios; `ell`, those of the intervals between the cuts
-    /// on the edges; `omega`, those of the ligament widths in their range; `opening` (rad), if it is a design variable.
+    /// The parts of a design by name, as slices: `z`, the logits of the void aspect ratios; `ell`, the logits of the intervals between the
+    /// cuts on the edges; `omega`, the logits of the ligament widths in their range; `opening` (rad), if it is a design variable.
     #[getter]
     fn blocks<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let blocks = PyDict::new(py);
@@ -212,7 +212,7 @@ impl Problem {
     /// The deployed sheet with its path, which ends early where no equilibrium is found; with pins the kinematic deployment.
     ///
     /// loads: (F_x, F_y, M) on every panel, shape (panels, 3), instead of the scene's; thickness (mm) instead of the scene's; stress: all
-    /// stresses at equal strain over those of the material; warm: correct the path from the last one if that is near, instead of
+    /// stresses at equal strain over the stresses of the material; warm: correct the path from the last one if that is near, instead of
     /// following it from the flat sheet.
     #[pyo3(signature = (x, loads=None, thickness=None, stress=1.0, warm=true))]
     fn deploy(
@@ -311,9 +311,9 @@ impl Problem {
     /// The gradient in the inputs of a function of the equilibrium at full load, from its gradient in the outputs: the implicit
     /// derivative, by one adjoint solve.
     ///
-    /// configuration: that of the state that `solve` found with the same inputs; corners, reactions, load_factor: the gradient in these
-    /// outputs, of their shapes. Returns a dict: `design` (size,), `loads` (panels, 3), and `thickness` (1/mm) and `stress`, which are
-    /// None where the hinge law does not determine them.
+    /// configuration: the configuration of the state that `solve` found with the same inputs; corners, reactions, load_factor: the
+    /// gradient in these outputs, of their shapes. Returns a dict: `design` (size,), `loads` (panels, 3), and `thickness` (1/mm) and
+    /// `stress`, which are None where the hinge law does not determine them.
     #[pyo3(signature = (x, configuration, corners, reactions, load_factor, loads=None, thickness=None, stress=1.0))]
     #[expect(
         clippy::too_many_arguments,
@@ -517,7 +517,7 @@ impl Problem {
         Ok(given.values.as_chunks::<3>().0.to_vec())
     }
 
-    /// The problem with other loads, another thickness (mm) and other stresses than those of the scene.
+    /// The problem with other loads, another thickness (mm) and other stresses than the scene has.
     fn under(
         &self,
         loads: Option<&Bound<PyAny>>,

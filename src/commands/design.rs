@@ -256,7 +256,7 @@ impl DesignCommand {
         Ok((report, designed.ended))
     }
 
-    /// A scene with the changes of the command line, and those of `change`.
+    /// A scene with the changes of the command line and the changes of `change`.
     fn scene(&self, file: &Path, change: impl FnOnce(&mut SceneConfig)) -> Result<Scene> {
         let path = scene_file(file)?;
         let mut config: SceneConfig = support::toml_file::read(&path)?;

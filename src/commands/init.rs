@@ -45,7 +45,7 @@ pub struct InitCommand {
     /// Sheet material (TOML) [default: configs/materials/polypropylene-3mm.toml, below 2 mm of thickness pet-0.5mm.toml]
     #[arg(long, value_name = "FILE")]
     material: Option<PathBuf>,
-    /// Thickness of the sheet (mm) [default: that of the material file]
+    /// Thickness of the sheet (mm) [default: the thickness in the material file]
     #[arg(long, value_name = "MM")]
     thickness: Option<f64>,
     /// Width and height of the sheet (mm) [default: 210x297 for plates up to 3 mm and films up to 0.1 mm, larger in
@@ -141,7 +141,7 @@ impl InitCommand {
             .file_name()
             .unwrap_or_default()
             .to_string_lossy();
-        // The hinges of a plate are solved in its thickness: in that of a film they would be too narrow.
+        // The hinges of a plate are solved in its thickness: in the thickness of a film they would be too narrow.
         let solved = match regime {
             Regime::Plate if !trained => sheet.thickness,
             _ => measured.thickness,
@@ -386,7 +386,7 @@ mod tests {
         ] {
             assert!(text.contains(line), "{line}\n{text}");
         }
-        // Those of every box.
+        // The widths in every box.
         let boxes = text.matches("[[rays]]").count();
         for scaled in ["\nw_lig = [1.0, 5.0]", "\nfull_range_w_lig = 1.6"] {
             assert_eq!(text.matches(scaled).count(), boxes, "{text}");

@@ -32,7 +32,7 @@ pub struct InspectCommand {
     /// Print every number as JSON
     #[arg(long)]
     json: bool,
-    /// deploy: opening angle of the hinges (deg) [default: that of the design, if the scene has pin hinges]
+    /// deploy: opening angle of the hinges (deg) [default: the angle of the design, if the scene has pin hinges]
     #[arg(long, value_name = "DEG", allow_negative_numbers = true)]
     opening_deg: Option<f64>,
     /// springback: draw the sheet without loads to this file (SVG)
@@ -50,9 +50,8 @@ enum Stage {
     Equilibrium,
     /// The objective, term by term, and its gradient
     Gradient,
-    /// What stays of the opening when the loads are taken off: every hinge springs back elastically towards the deformation
-    /// that stays by the law of `kirigami surrogate release`, and the sheet finds its equilibrium without loads, under its
-    /// weight if it has one
+    /// Residual opening when the loads are taken off: every hinge springs back elastically towards its residual deformation by the law of
+    /// `kirigami surrogate release`, and the sheet finds its equilibrium without loads, under its weight if it has one
     Springback,
 }
 

@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use support::csv_table;
 use support::nearest::nearest;
 
-/// The columns of a file; the last two are those of the template, and are not read.
+/// The columns of a file; the last two come from the template, and are not read.
 const COLUMNS: [&str; 7] = [
     "panel",
     "corner",
@@ -93,7 +93,7 @@ impl PointsFile {
         Ok(file)
     }
 
-    /// Whether the scale of the points is known: that of pixels is not.
+    /// Whether the scale of the points is known: the scale of pixels is not.
     pub fn scale(&self) -> Scale {
         match self.unit {
             Unit::Px => Scale::Free,

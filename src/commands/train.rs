@@ -52,7 +52,7 @@ pub struct TrainCommand {
         default_value = WEIGHTS
     )]
     out: PathBuf,
-    /// Fine-tune these weights of another material, thickness or mesh; the network sizes are those of the weights.
+    /// Fine-tune these weights of another material, thickness or mesh; the network sizes are taken from the weights.
     /// docs/MATERIALS.md lists the errors over the number of rays
     #[arg(long, value_name = "WEIGHTS")]
     from: Option<PathBuf>,
@@ -65,7 +65,7 @@ pub struct TrainCommand {
     /// not trained again
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..=64))]
     seeds: u64,
-    /// Replace existing weights; of several seeds, those of another training
+    /// Replace existing weights; with several seeds, the weights of another training
     #[arg(long)]
     replace: bool,
 }
@@ -155,8 +155,8 @@ impl TrainCommand {
         Ok(())
     }
 
-    /// Whether the training continues from the state of a stopped one. Without weights, a missing state is that of a
-    /// training which was killed before it had saved one.
+    /// Whether the training continues from the state of a stopped one. Without weights, a missing state means that the
+    /// training was killed before it had saved one.
     fn is_resumed(&self) -> bool {
         self.resume && self.state().exists()
     }

@@ -39,8 +39,8 @@ pub struct VerifyCommand {
     /// Number of hinges to solve, spread evenly over the sheet [default: all]
     #[arg(long, value_name = "N", value_parser = count::<NonZeroUsize>)]
     sample: Option<NonZeroUsize>,
-    /// Mesh tier of the windows [default: that of the weights' database, or the finer tier that it was
-    /// corrected to; of a whole sheet small, or plate for a plate]; a window of the tier reference takes two minutes on one core
+    /// Mesh tier of the windows [default: the tier of the weights' database, or the finer tier that the database was corrected to; of a
+    /// whole sheet small, or plate for a plate]; a window of the tier reference takes two minutes on one core
     #[arg(long, value_name = "TIER")]
     tier: Option<Tier>,
     /// Deploy the sheet with finite elements for its hinges, which are solved several times
@@ -75,7 +75,7 @@ pub struct VerifyCommand {
     solve: SolveArgs,
 }
 
-/// A sheet balanced by finite elements, and let go.
+/// A sheet balanced by finite elements, and unloaded.
 #[derive(Serialize)]
 struct Released {
     equilibrium: SheetErrors,
@@ -105,7 +105,7 @@ impl VerifyCommand {
         }
     }
 
-    /// The equilibrium with finite elements, and the sheet let go from there.
+    /// The equilibrium with finite elements, and the sheet unloaded from there.
     fn balance(
         &self,
         scene: &Scene,

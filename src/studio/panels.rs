@@ -1,8 +1,8 @@
 //! Another number of panels: what is held and pulled stays about where it was, and the sheet opens as far as before.
 //!
 //! Even and odd panels turn in opposite senses. If a held panel became an odd one instead of an even one, the sheet would open as the
-//! mirror image of the one before: the pulls and the target would point elsewhere, and the stroke would tear it. So what is held or
-//! pulled moves to the nearest panel that turns in the same sense. The stroke changes as that of the sheet of rigid panels does.
+//! mirror image of the one before: the pulls and the target would point elsewhere, and the stroke would tear it. So what is held or pulled
+//! moves to the nearest panel that turns in the same sense. The stroke changes as the stroke of the sheet of rigid panels does.
 
 use crate::commands::init::first_scene::OPENING;
 use anyhow::Result;

@@ -129,7 +129,7 @@ impl Project {
             ..sheet.config.clone()
         };
         let run = sheet.changed(config).ok()?;
-        // A run that cannot be read, or of other keys, is not that of the sheet.
+        // A run that cannot be read, or has other keys, does not belong to the sheet.
         let (ended, best) = left_run(&run).ok()??;
         let of_sheet = SceneConfig {
             output,

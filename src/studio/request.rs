@@ -38,7 +38,7 @@ pub(crate) enum Request {
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct NewSheet {
-    /// Its name, from which that of its folder is made.
+    /// Its name, from which the name of its folder is made.
     pub name: String,
     /// The material file.
     pub material: Option<PathBuf>,
@@ -58,7 +58,7 @@ pub(crate) struct Change {
     pub by: (String, u64),
 }
 
-/// Files besides those of every run.
+/// Files besides the files of every run.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Files {

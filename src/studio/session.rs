@@ -356,7 +356,7 @@ impl Session {
         Ok(())
     }
 
-    /// Lists the files of the run that is shown for the pages; while there is none, those of the last one stay.
+    /// Lists the files of the run that is shown for the pages; while no run is shown, the files of the last run stay.
     fn list_files(&self) -> Result<()> {
         let Some(run) = self.opened()?.run() else {
             return Ok(());

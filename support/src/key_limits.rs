@@ -68,7 +68,7 @@ const UNITS: [&str; 12] = [
 struct Checker<'a>(&'a Value);
 
 impl Checker<'_> {
-    /// Checks a value; `description` is that of the key.
+    /// Checks a value; `description` is the description of the key.
     fn check(
         &self,
         schema: &Value,

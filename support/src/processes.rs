@@ -33,7 +33,7 @@ pub fn is_running(process: u32) -> bool {
     Path::new("/proc").join(process.to_string()).exists()
 }
 
-/// The processes whose environment names `folder`. Those of other users cannot be read and are not ours.
+/// The processes whose environment names `folder`. The processes of other users cannot be read and are not ours.
 fn started_for(folder: &Path) -> Vec<Pid> {
     let mark = [FOLDER.as_bytes(), b"=", folder.as_os_str().as_bytes()].concat();
     let Ok(processes) = std::fs::read_dir("/proc") else {

@@ -69,7 +69,7 @@ pub fn parse<T: DeserializeOwned>(text: &str, path: &Path) -> Result<T, ConfigEr
     })
 }
 
-/// The message of the parser about a line, in words that are not those of Rust, with the key and a hint at decimal commas.
+/// The message of the parser about a line, without the terms of Rust, with the key and a hint at decimal commas.
 fn plain(message: &str, line: &str) -> String {
     let mut words: Vec<&str> = message.split(' ').collect();
     for word in &mut words {

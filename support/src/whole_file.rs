@@ -18,8 +18,8 @@ pub fn write(path: &Path, bytes: &[u8]) -> io::Result<()> {
 
 /// A file on its way to its name. It is written to a temporary file with a unique name in the folder of its path, and
 /// renamed at the end: the path holds either the old bytes or the new ones, never a part of them, even after a loss of
-/// power. The temporary file is removed when this value is dropped before, and that of a killed process by the next one
-/// that writes to this path.
+/// power. The temporary file is removed when this value is dropped before; the temporary file of a killed process is
+/// removed by the next process that writes to this path.
 #[derive(Debug)]
 pub struct Unnamed(NamedTempFile);
 

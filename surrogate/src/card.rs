@@ -38,7 +38,7 @@ pub struct Card {
     /// The states that the training rows cover.
     pub domain: TrainingDomain,
     /// The components of the hinge design that are not features; the weights are valid only for these values. If the domain
-    /// has holes of several radii, `fillet_ratio` is that of the hinge whose features the networks see ([`hinge::NetLigament`]).
+    /// has holes of several radii, `fillet_ratio` is the ratio of the hinge whose features the networks see ([`hinge::NetLigament`]).
     pub hinge: HingeConstants,
     /// Name of the sheet material.
     pub material: String,
@@ -106,7 +106,7 @@ pub struct DistillationRecord {
     pub hash: String,
 }
 
-/// One network of an ensemble; the hashes are those of [`Surrogate::hash`].
+/// One network of an ensemble; the hashes are the values of [`Surrogate::hash`].
 ///
 /// [`Surrogate::hash`]: crate::Surrogate::hash
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -235,7 +235,7 @@ impl Card {
         self
     }
 
-    /// The scale of D, followed by that of D_peak if there is a head for it.
+    /// The scale of D, followed by the scale of D_peak if there is a head for it.
     pub(crate) fn damage_scales(&self) -> Vec<f64> {
         std::iter::once(self.damage_scale)
             .chain(self.peak_scale)

@@ -9,10 +9,10 @@
 use hinge::{HingeDeformation, HingeDesign};
 use serde::{Deserialize, Serialize};
 
-/// Number of features, that of the hole included.
+/// Number of features, including the feature of the hole.
 pub(crate) const FEATURES: usize = 6;
 
-/// Number of features of weights for one radius of the hole, those of (13).
+/// Number of features of weights for one radius of the hole: the features of (13).
 const OF_ONE_HOLE: usize = 5;
 
 /// Position of log w_lig among the features.

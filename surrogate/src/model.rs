@@ -172,7 +172,7 @@ impl Surrogate {
         (self.card.domain.holes).unwrap_or([self.card.hinge.fillet_ratio; 2])
     }
 
-    /// Whether a state lies inside the training domain, and the hole of its hinge among those of the training.
+    /// Whether a state lies inside the training domain, and the hole of its hinge among the holes of the training.
     pub fn contains(&self, design: &HingeDesign, deformation: &HingeDeformation) -> bool {
         let [least, most] = self.holes();
         (least..=most).contains(&design.fillet_ratio)

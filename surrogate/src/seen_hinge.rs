@@ -1,5 +1,5 @@
-//! Energy and damage of a hinge from those of the hinge that the networks see: that with the hole of reference and the same net
-//! ligament ([`NetLigament`]), with the derivatives of this map.
+//! Energy and damage of a hinge from the energy and damage of the hinge that the networks see: the hinge with the hole of reference
+//! and the same net ligament ([`NetLigament`]), with the derivatives of this map.
 
 use crate::features::FEATURES;
 use crate::hinge_energy::{HingeEnergy, Order};
@@ -15,7 +15,7 @@ pub(crate) fn seen(
     (ligament.design(design), ligament.deformation(deformation))
 }
 
-/// The energy of the actual hinge, rotated by `theta`, from that of the hinge that the networks see.
+/// The energy of the actual hinge, rotated by `theta`, from the energy of the hinge that the networks see.
 pub(crate) fn energy(
     ligament: &NetLigament,
     at: HingeEnergy,
@@ -54,7 +54,7 @@ pub(crate) fn energy(
     energy
 }
 
-/// A gradient in (a, s, theta, w_lig, alpha, rho_f) of the actual hinge from that of the hinge that the networks see.
+/// A gradient in (a, s, theta, w_lig, alpha, rho_f) of the actual hinge from the gradient of the hinge that the networks see.
 pub(crate) fn gradient(ligament: &NetLigament, at: [f64; FEATURES], theta: f64) -> [f64; FEATURES] {
     let [by_a, by_s, by_angle, by_w, by_alpha, by_hole] = at;
     let [[a_width, w_width, _], [a_hole, w_hole, _]] = ligament.by_width_and_hole(theta);

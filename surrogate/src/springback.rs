@@ -1,4 +1,4 @@
-//! The learned law of hinges that were let go: what stays of a deformation, and how stiff the hinge is about it, as functions of the
+//! The learned law of hinges that were unloaded: the residual deformation, and how stiff the hinge is about it, as functions of the
 //! hinge and of the state that it reached.
 //!
 //! ```text
@@ -208,7 +208,7 @@ impl Springback {
         Ok(law)
     }
 
-    /// A hinge of the thickness of the windows after it was let go at a state with these forces (F_a, F_s, M_theta) (N, N, N mm).
+    /// A hinge of the thickness of the windows after it was unloaded from a state with these forces (F_a, F_s, M_theta) (N, N, N mm).
     pub fn released(
         &self,
         design: &HingeDesign,

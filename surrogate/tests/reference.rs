@@ -176,13 +176,13 @@ fn derivative(energy: &HingeEnergy, direction: usize) -> [f64; 4] {
 #[test]
 fn every_derivative_agrees_with_finite_differences() {
     derivatives_agree(&with_peak(), 0.16, 5);
-    // In hinges with other holes than that of the features the tip moves with the hole.
+    // In hinges with other holes than the hole of the features the tip moves with the hole.
     for fillet_ratio in [0.03, 0.16, 0.37] {
         derivatives_agree(&with_holes(), fillet_ratio, 6);
     }
 }
 
-/// A hole that is not among those of the training is not inside, wherever the hinge is.
+/// A hole that is not among the holes of the training is not inside, wherever the hinge is.
 #[test]
 fn a_hole_of_another_radius_is_outside() {
     let flat = HingeDeformation::default();

@@ -12,7 +12,7 @@ fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
-/// The shipped scenes, but for that of the demo, which reads the weights that the demo trains.
+/// The shipped scenes, but for the scene of the demo, which reads the weights that the demo trains.
 fn scenes() -> Vec<PathBuf> {
     let folder = std::fs::read_dir(root().join("configs/scenes")).unwrap();
     let mut scenes: Vec<PathBuf> = folder.map(|file| file.unwrap().path()).collect();

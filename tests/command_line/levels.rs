@@ -54,7 +54,7 @@ fn an_accuracy_that_no_level_has_is_refused_or_said() {
     assert!(work.error(&design("--within 1e-9mm")).contains("rounding"));
     let springs = "design configs/scenes/linear-7x7.toml --within 1mm --out springs";
     assert!(work.error(springs).contains("no learned level"));
-    // Below what the mesh of the windows is known to, dearer levels are not tried.
+    // Below what the mesh of the windows is known to, more expensive levels are not tried.
     let report = work.output(&design("--within 0.001mm"));
     assert!(
         report.contains("less than the mesh of the windows"),

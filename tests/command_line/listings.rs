@@ -1,6 +1,5 @@
-//! The output of `inspect` `pattern`, `deploy`, `equilibrium` and `gradient` with `--json`, against the reference
-//! cases, and that of `tolerances`. The panels of the cases are 1 x 1; here they are 100 mm wide, with the constants of (11) that
-//! give the same shape.
+//! The output of `inspect` `pattern`, `deploy`, `equilibrium` and `gradient` with `--json`, against the reference cases, and the output of
+//! `tolerances`. The panels of the cases are 1 x 1; here they are 100 mm wide, with the constants of (11) that give the same shape.
 
 use crate::common::Workplace;
 use serde_json::Value;
@@ -28,7 +27,7 @@ fn printed(work: &Workplace, command: &str, sections: &str, options: &str) -> Va
     serde_json::from_str(&text).unwrap()
 }
 
-/// Asserts that every number of `found` is `scale` times that of `expected`, to `error` of `scale`.
+/// Asserts that every number of `found` is `scale` times the number of `expected`, to `error` of `scale`.
 fn assert_close(found: &Value, expected: &Value, scale: f64, error: f64, place: &str) {
     match (found, expected) {
         (Value::Array(found), Value::Array(expected)) => {
@@ -149,7 +148,8 @@ fn patterns_and_deployments() {
     }
 }
 
-/// That they are those of an independent implementation is tested in `design`, without contact, as that has none.
+/// That they agree with an independent implementation is tested in `design`, without contact, as the implementation has
+/// none.
 #[test]
 fn equilibria_objective_and_gradient() {
     let work = Workplace::new();

@@ -15,8 +15,8 @@ fn number(json: &Value, path: &str) -> f64 {
 /// Mean of the factors of the three records.
 const FACTOR: f64 = (1.0 + 0.975 + 1.03) / 3.0;
 
-/// The records are those of sigma = 46 - 12 exp(-p / 0.003) + 8 (L^2 - 1 / L) with L = exp(p) and E = 3000 MPa, times 1,
-/// 0.975 and 1.03. The expected numbers are those of this law; plateau and natural draw ratio by Maxwell's rule.
+/// The records are curves of sigma = 46 - 12 exp(-p / 0.003) + 8 (L^2 - 1 / L) with L = exp(p) and E = 3000 MPa, times 1, 0.975 and 1.03.
+/// The expected numbers follow from this law; plateau and natural draw ratio by Maxwell's rule.
 #[test]
 fn records_of_a_film_become_a_material_file_that_is_checked() {
     let work = Workplace::new();

@@ -40,7 +40,7 @@ fn compared(work: &Workplace, options: &str) -> Value {
 #[test]
 fn a_measured_sheet_is_compared_with_its_path() {
     let (work, steps) = designed();
-    // Without a design, that of the scene's run folder is meant.
+    // Without a design, the design of the scene's run folder is meant.
     work.output(&format!("compare {SCENE} --template --out template"));
     let template = std::fs::read_to_string(work.path("template/template.csv")).unwrap();
     assert_eq!(template.lines().count(), 1 + 5 * 49);

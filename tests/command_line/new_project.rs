@@ -41,7 +41,7 @@ fn a_project_with_weights_is_designed_at_once() {
         };
         assert_eq!(of(&project), of(&shipped), "{section}.{key}");
     }
-    // That of the rigid panels opened by 25 degrees; the shipped sheet has a target and a stroke of its own.
+    // The stroke of the rigid panels opened by 25 degrees; the shipped sheet has a target and a stroke of its own.
     let stroke = project["drive"]["stroke"].as_float().unwrap();
     assert!((stroke - 30.4).abs() < 0.1, "{stroke}");
 
@@ -67,7 +67,7 @@ fn a_project_without_weights_begins_with_its_campaign() {
         said.contains("kirigami campaign run steel/campaign.toml"),
         "{said}"
     );
-    // Lengths of the campaign are those of the film, times the ratio of the thicknesses.
+    // Lengths of the campaign are the lengths of the film, times the ratio of the thicknesses.
     let campaign = keys(&work, "steel/campaign.toml");
     assert_eq!(campaign["design"]["r_win"].as_float(), Some(300.0));
     let message = work.error("design steel/scene.toml");

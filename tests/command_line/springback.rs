@@ -1,4 +1,4 @@
-//! `inspect springback`: what stays of a sheet of polypropylene, in its thickness and in twice that, and laws that do not fit.
+//! `inspect springback`: residual opening of a sheet of polypropylene, in its thickness and in twice that, and laws that do not fit.
 
 use crate::common::Workplace;
 use serde_json::Value;
@@ -63,7 +63,7 @@ fn a_plate_springs_back_and_one_of_twice_the_thickness_twice_as_far() {
             "{place}: {found} {expected}"
         );
     }
-    // Nothing pulls a sheet that was let go.
+    // Nothing pulls an unloaded sheet.
     let picture = std::fs::read_to_string(work.path("released.svg")).unwrap();
     assert!(
         picture.contains("</svg>") && !picture.contains(" N<"),

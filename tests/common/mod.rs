@@ -36,7 +36,7 @@ impl Workplace {
         std::fs::write(path, text).unwrap();
     }
 
-    /// Changes the keys of a campaign, and those of each of its boxes of rays, which are counted from 0.
+    /// Changes the keys of a campaign, and the keys of each of its boxes of rays, which are counted from 0.
     pub fn edit_campaign(
         &self,
         name: &str,

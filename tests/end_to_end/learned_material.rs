@@ -157,7 +157,7 @@ fn a_stopped_run_is_continued_and_its_folder_belongs_to_one_material() {
             && card.matches("distilled from").count() == 2,
         "{card}"
     );
-    // One network alone, of other sizes than those of the configuration, is fine-tuned and kept.
+    // One network alone, of other sizes than the configuration has, is fine-tuned and kept.
     let options = format!("{OPTIONS} --accuracy 100% --forces 100%");
     work.output(&learn_from(&["small"], POLYPROPYLENE, &options));
     let card = work.output("surrogate card learned/weights.safetensors");

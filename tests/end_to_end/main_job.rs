@@ -45,7 +45,7 @@ fn the_whole_chain_runs_resumes_and_refuses_to_overwrite() {
     }
 }
 
-/// Short rays of few geometries take seconds; the steps are those of a real campaign.
+/// Short rays of few geometries take seconds; the steps are the steps of a real campaign.
 fn small_demo() -> Workplace {
     let work = Workplace::new();
     work.edit(
@@ -170,8 +170,8 @@ fn hinges_of_the_design_are_solved_once(work: &Workplace) {
     assert!(again.elapsed() < Duration::from_secs(5), "solved once");
 }
 
-/// Six rays make no law whose corrections converge. Those of the shipped weights do, though the coarsest mesh is far
-/// from them: the panels move less in every round.
+/// Six rays make no law whose corrections converge. The corrections of the shipped weights converge, though the
+/// coarsest mesh is far from these weights: the panels move less in every round.
 fn balance(rounds: usize) -> String {
     format!(
         "verify shipped.toml --design runs/demo/design/state.json --equilibrium --rounds {rounds} --tier tiny --out balance --json"
@@ -214,7 +214,7 @@ fn a_failed_round_keeps_the_rounds_before(work: &Workplace) {
 fn weights_are_tested_on_the_spot_check(work: &Workplace) {
     let test = "surrogate test runs/demo/surrogate.safetensors runs/demo/spot-check.parquet";
     let card = || json(&std::fs::read_to_string(work.path("runs/demo/surrogate.json")).unwrap());
-    // Six rays do not cover the region in which the states are drawn; those of the shipped weights cover most of it.
+    // Six rays do not cover the region in which the states are drawn; the rays of the shipped weights cover most of it.
     let tested = [
         "tested on tier tiny, 3 rays",
         " of 12 states inside the training domain",

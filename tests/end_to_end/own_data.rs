@@ -234,7 +234,7 @@ fn a_database_is_corrected_by_some_rays_of_a_finer_mesh() {
         let [before, after] = differences(&compared, quantity);
         assert!(after < before, "{quantity}: {compared}");
     }
-    // A training corrects the rays by itself, and leaves those of the finer mesh out.
+    // A training corrects the rays by itself, and leaves the rays of the finer mesh out.
     work.edit(
         "configs/training/demo.toml",
         &[

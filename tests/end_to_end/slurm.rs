@@ -1,5 +1,6 @@
 //! A campaign on a real Slurm, of one controller and two nodes on this machine: tasks are cancelled, stopped, frozen
-//! until their time limit and lost with their node, the controller is restarted, and the database is that of one run.
+//! until their time limit and lost with their node, the controller is restarted, and the database equals the database
+//! of one run.
 
 use crate::common::{Workplace, failure};
 use dataset::{Database, Row, SplitPlan};

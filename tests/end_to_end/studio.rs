@@ -15,7 +15,7 @@ struct Studio {
 }
 
 impl Studio {
-    /// Starts in the folder of kirigami, with sheets in that of the test.
+    /// Starts in the folder of kirigami, with sheets in the folder of the test.
     fn start(work: &Workplace, scene: &str) -> Self {
         let root = Path::new(env!("CARGO_MANIFEST_DIR"));
         let mut command = work.program("studio --no-browser --folder");
@@ -255,7 +255,7 @@ fn a_sheet_is_drawn_designed_and_cut_in_the_browser() {
     tab.wait(
         "[...document.querySelectorAll('#files a')].some((link) => link.textContent === 'cut.dxf')",
     );
-    // The search that is shown is that of the sheet that is shown.
+    // The search that is shown belongs to the sheet that is shown.
     let designs = tab.value("designs.length");
     after(&mut tab, |tab| tab.click("#undo"));
     tab.wait(&format!("{summary}.includes('not begun')"));
@@ -376,7 +376,7 @@ fn panels_are_held_and_pulled_by_clicks() {
     let mut tab = Tab::open(&studio.address);
     at_rest(&mut tab);
     let project = work.path("studio/a4-plate");
-    // A panel is clicked and let go, and clamped.
+    // A held panel is clicked and released, and clamped.
     tab.click("input[value=grip]");
     let held: [f64; 2] = serde_json::from_value(tab.value(
         "(() => { const at = scene.supports[0].panel; const b = canvas.getBoundingClientRect(); \

@@ -13,7 +13,7 @@ pub struct TrainingConfig {
     pub seed: u64,
     /// Number of units of each layer of chi after the features (13): 1 to 16 layers, each with an even number of units. The
     /// last layer, the embedding, is linear. The heads of D and D_peak have two hidden layers of the size of the first. In a
-    /// fine-tuning, the sizes are those of the given weights.
+    /// fine-tuning, the sizes are the sizes of the given weights.
     #[schemars(inner(range(min = 1, max = 4096)))]
     pub embedding: Vec<usize>,
     /// Number of passes over the training rows.

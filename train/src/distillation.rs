@@ -3,7 +3,7 @@
 //! Networks that start from different weights make different errors between the rays, and their median has smaller errors
 //! than each has in the mean. One network that is also trained on it, at states that no solver has computed, approaches it at
 //! the cost of one network. A network that is wrong by orders of magnitude moves the median no further than to a value
-//! between those of the others.
+//! between the values of the others.
 //! (Hinton, Vinyals and Dean, "Distilling the knowledge in a neural network", 2015.)
 
 use dataset::Database;

@@ -138,7 +138,7 @@ mod tests {
             column(&predicted.damage, 0, scales.damage),
             column(&predicted.damage, 1, scales.peak.unwrap()),
         ];
-        // Burn's moment is that of the hinge that the networks see.
+        // Burn's moment is the moment of the hinge that the networks see.
         for (i, row) in rows.iter().enumerate() {
             let ligament = NetLigament::new(&row.design, scales.hole);
             burn[3][i] += burn[1][i] * ligament.by_theta(row.sample.theta)[0];

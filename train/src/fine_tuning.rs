@@ -8,7 +8,7 @@
 //! W = c_W W_0,   c_W = sum W* W_0 / sum W_0^2,   and the same for D and D_peak
 //! ```
 //!
-//! Apart from these factors and from rounding, the function of the networks is that of the pretrained ones.
+//! Apart from these factors and from rounding, the function of the networks is the function of the pretrained networks.
 
 use crate::config::{DAMAGE_SHARPNESS, TrainingConfig};
 use crate::error::TrainError;
@@ -88,7 +88,7 @@ pub(crate) fn inherit(card: &mut Card, pretrained: &Surrogate, rows: &[Row]) {
     }
 }
 
-/// Rejects initial weights whose sizes, sharpness or symmetry are not those of the configuration.
+/// Rejects initial weights whose sizes, sharpness or symmetry differ from the configuration.
 pub fn check_pretrained(pretrained: &Surrogate, config: &TrainingConfig) -> Result<(), TrainError> {
     let given = pretrained.layers();
     let heads = 1 + usize::from(given.chi_p.is_some());

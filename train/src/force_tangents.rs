@@ -20,7 +20,7 @@ pub(crate) struct Embedding {
     pub tangents: Tensor<3>,
 }
 
-/// Evaluates chi and its tangents. `inputs` are those of the undeformed and of the deformed states, (2, n, features).
+/// Evaluates chi and its tangents. `inputs` are the inputs at the undeformed and at the deformed states, (2, n, features).
 pub(crate) fn with_tangents(layers: &[Affine], inputs: Tensor<3>) -> Embedding {
     let (first, following) = layers
         .split_first()

@@ -17,7 +17,7 @@ use burn::tensor::{Tensor, TensorData};
 use std::f64::consts::FRAC_PI_2;
 use surrogate::Standardisation;
 
-/// The diagonal of S. The last feature, the radius of the hole, is that of weights for several radii.
+/// The diagonal of S. Only weights for several radii have the last feature, the radius of the hole.
 const SIGNS: [f64; 6] = [1.0, -1.0, 1.0, 1.0, -1.0, 1.0];
 
 /// Positions of the features that change their sign.

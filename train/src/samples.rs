@@ -66,7 +66,7 @@ pub(crate) struct Batch {
 impl Scales {
     /// Computes the scales; an error if a feature is constant, or a target is zero or has outliers.
     ///
-    /// `hole` is that of the hinges that the networks see, over w_lig, and `names` are their features. The rows include their
+    /// `hole` is the hole of the hinges that the networks see, over w_lig, and `names` are their features. The rows include their
     /// mirror images.
     pub fn new(rows: &[Row], hole: f64, names: &[&'static str]) -> Result<Self, TrainError> {
         let count = rows.len() as f64;
@@ -132,7 +132,7 @@ impl Scales {
         })
     }
 
-    /// The scales of trained weights; those of the forces are computed from the rows.
+    /// The scales of trained weights; the scales of the forces are computed from the rows.
     pub fn from_card(card: &Card, rows: &[Row]) -> Result<Self, TrainError> {
         Ok(Self {
             standardisation: card.standardisation.clone(),

@@ -1,6 +1,6 @@
 //! The state of a training between two epochs on disk. A resumed training continues bit-exactly.
 //!
-//! The file is a BLAKE3 hash followed by the hashed safetensors: the networks, those of the best epoch
+//! The file is a BLAKE3 hash followed by the hashed safetensors: the current networks, the networks of the best epoch
 //! and the state of the optimiser as Burn's own records (bytes), and all other data as JSON.
 
 use crate::epoch::Epoch;
@@ -158,7 +158,7 @@ impl State {
         })
     }
 
-    /// An error if the configuration, the database, the split, the initial weights or the distillation are not those of the state.
+    /// An error if the state has a different configuration, database, split or distillation, or different initial weights.
     pub fn check(&self, card: &Card) -> Result<(), StateError> {
         let saved = &self.progress.card;
         for (what, same) in [
@@ -179,7 +179,7 @@ impl State {
         Ok(())
     }
 
-    /// The networks, those of the best epoch, and the optimiser. The arguments must have the same sizes.
+    /// The current networks, the networks of the best epoch, and the optimiser. The arguments must have the same sizes.
     pub fn restore(
         self,
         networks: &Networks,

@@ -1,11 +1,11 @@
 //! The equilibrium of a sheet with finite elements for its hinges.
 //!
-//! Every hinge is solved along its path in the sheet. The hinge law is corrected to the forces of the finite elements at
-//! full load, of this round and, unless that makes too long a step, of those before ([`CorrectedLaw`]), and the sheet is deployed again; hinges then have other
-//! states, and this is repeated until the panels stay where they are. It is a quasi-Newton iteration for the equilibrium of
-//! the finite-element hinges: the tangent is that of the hinge law in the first round, and learns from each further one.
-//! Windows of the finest mesh are dear: the sheet is balanced on a cheaper mesh first ([`Tier::draft`]), from which the finest
-//! one begins, and the difference between both is the error of the cheaper mesh.
+//! Every hinge is solved along its path in the sheet. The hinge law is corrected to the forces of the finite elements at full load, of
+//! this round and, unless that makes too long a step, of the rounds before ([`CorrectedLaw`]), and the sheet is deployed again; hinges
+//! then have other states, and this is repeated until the panels stay where they are. It is a quasi-Newton iteration for the equilibrium
+//! of the finite-element hinges: in the first round the tangent is the tangent of the hinge law, and it learns from each further round.
+//! Windows of the finest mesh are expensive: the sheet is balanced on a cheaper mesh first ([`Tier::draft`]), from which the finest one
+//! begins, and the difference between both is the error of the cheaper mesh.
 
 use crate::recorded_path::paths_of;
 use crate::replay::{ElementWindows, UnsolvedHinge};
@@ -63,12 +63,12 @@ pub struct Balanced {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum BalanceEnd {
-    /// The last round moved the panels by less than [`BALANCED`], and its forces differed by less than [`BALANCED_FORCES`]. Forces at
-    /// the new states are not solved; the force error of the round is that of the states before.
+    /// The last round moved the panels by less than [`BALANCED`], and its forces differed by less than [`BALANCED_FORCES`]. Forces at the
+    /// new states are not solved; the force error of the round is the force error of the states before.
     Converged,
     /// All rounds were made, and the panels still move or the forces still differ.
     RoundsMade,
-    /// A round after the first failed. The results are those of the rounds before.
+    /// A round after the first failed. The results come from the rounds before.
     Failed(String),
 }
 
@@ -151,7 +151,7 @@ struct SolvedHinges {
 struct Iteration<'a> {
     scene: &'a Scene,
     design: &'a DesignVector,
-    /// The law that is corrected: that of the scene, or that which was balanced on the cheaper mesh.
+    /// The law that is corrected: the law of the scene, or the law that was balanced on the cheaper mesh.
     law: Arc<dyn HingeLaw>,
     /// What it lacks of the forces of each hinge, round by round.
     missing: Vec<Vec<MissingForces>>,
@@ -169,7 +169,7 @@ impl Iteration<'_> {
     }
 
     /// Rounds on one mesh until the sheet is balanced. A round after the very first that finds no solved hinge or no equilibrium ends
-    /// them, and the results are those of the rounds before; any other error is one of the task.
+    /// them, and the results come from the rounds before; any other error is an error of the task.
     fn rounds(
         &mut self,
         windows: &ElementWindows,
@@ -233,10 +233,10 @@ impl Iteration<'_> {
 
     /// The sheet with the law corrected to the finite elements so far, and its largest movement (mm).
     ///
-    /// The slopes between states that hardly differ are those of the noise of their forces, and may throw the sheet far away. A
-    /// step longer than the `last` one is therefore compared with that by the newest forces alone, on the tangent of the law, and
-    /// the shorter one is made; after that by the newest forces the earlier ones are forgotten. After an error the problem has the law that it
-    /// had before.
+    /// The slopes between states that hardly differ are slopes of the noise of their forces, and may throw the sheet far away. A step
+    /// longer than the `last` one is therefore compared with the step by the newest forces alone, on the tangent of the law, and the
+    /// shorter step is made; after a step by the newest forces the earlier forces are forgotten. After an error the problem has the law
+    /// that it had before.
     fn step(
         &mut self,
         deployed: &Deployment,
@@ -360,8 +360,8 @@ impl Balanced {
         })
     }
 
-    /// The error of the cheaper mesh: its tier and deployment, and those of the finest one. `None` if there is one mesh, or if the
-    /// sheet was not balanced on the cheaper one.
+    /// The error of the cheaper mesh: its tier and deployment, and the tier and deployment of the finest mesh. `None` if there is one
+    /// mesh, or if the sheet was not balanced on the cheaper mesh.
     pub fn mesh_error(&self) -> Option<[(Tier, &Deployment); 2]> {
         let meshes: Vec<_> = self.by_mesh().collect();
         match (&self.draft_ended, &meshes[..]) {

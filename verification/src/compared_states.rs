@@ -9,7 +9,7 @@ const MIN_SCALE: f64 = 0.1;
 pub const SCALE: &str = "for all states together and for each group alone, the latter relative to at \
                          least a tenth of the value over all";
 
-/// The difference of each group, relative to its own reference or to a tenth of that of all groups, if larger.
+/// The difference of each group, relative to its own reference or to a tenth of the reference of all groups, if larger.
 pub fn each_relative(groups: &[&[ComparedState]]) -> Vec<[f64; 6]> {
     let min_scale = reference_rms(groups.iter().copied().flatten()).map(|rms| MIN_SCALE * rms);
     groups

@@ -6,12 +6,12 @@ use hinge::{HingeDeformation, HingeDesign};
 /// Number of states of the distillation. With 10 000 the errors of steel at two spot checks are a tenth to a third larger.
 const DISTILLATION_STATES: usize = 20_000;
 
-/// The states at which one network learns the median of several, drawn uniformly inside the region. If they lie on rays of
-/// the campaign alone, the network is free in the corners that no ray passes: the moment of one of steel was wrong by 27 times
-/// the root mean square there, although those of the networks were not (docs/TRIED.md). Some states lie outside
-/// the training domain of the solved rays: the networks extrapolate there, and the one network follows their median.
+/// The states at which one network learns the median of several, drawn uniformly inside the region. If they lie on rays of the campaign
+/// alone, the network is free in the corners that no ray passes: the moment of one such network of steel was wrong by 27 times the root
+/// mean square there, although the moments of the several networks were not (docs/TRIED.md). Some states lie outside the training domain
+/// of the solved rays: the networks extrapolate there, and the one network follows their median.
 pub fn distillation_states(drawn: DrawnStates) -> Vec<(HingeDesign, HingeDeformation)> {
-    // Other states than those of a spot check, whose seeds are small by habit.
+    // Other states than the states of a spot check, whose seeds are small by habit.
     const SEED: u64 = u64::MAX;
     let paths = random_paths(drawn, DISTILLATION_STATES, 1, SEED);
     let state = |path: &SpotPath| (path.hinge.design, path.hinge.path.at(1.0));

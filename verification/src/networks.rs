@@ -5,7 +5,7 @@ use dataset::Fidelity;
 use mesher::Tier;
 use surrogate::Surrogate;
 
-/// The mesh tier to test weights on: `requested`, or that of the database they were trained on, or the finer tier
+/// The mesh tier to test weights on: `requested`, or the tier of the database they were trained on, or the finer tier
 /// that the database was corrected to.
 pub fn judging_tier(
     requested: Option<Tier>,

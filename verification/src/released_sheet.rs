@@ -1,9 +1,9 @@
-//! A sheet that is let go, with finite elements for its hinges.
+//! An unloaded sheet, with finite elements for its hinges.
 //!
 //! Every hinge is solved along its path in the deployed sheet, and from there straight to its state without loads by the law of released
-//! hinges: it is elastic on the way, and the way does not matter. The
-//! deformation at which the law is without forces is moved until the law has the forces of the finite elements there, and the sheet
-//! is let go again; this is repeated until the panels stay where they are.
+//! hinges: it is elastic on the way, and the way does not matter. The deformation at which the law is without forces is moved until the
+//! law has the forces of the finite elements there, and the sheet is unloaded again; this is repeated until the panels stay where they
+//! are.
 
 use crate::balanced_sheet::{BALANCED, Balanced, size};
 use crate::recorded_path::paths_of;
@@ -22,12 +22,12 @@ use std::fmt;
 use support::statistics::rms_and_maximum;
 use surrogate::Springback;
 
-/// What finite elements say of a sheet that was let go.
+/// The results of finite elements for an unloaded sheet.
 #[derive(Clone, Debug, Serialize)]
 pub struct ReleasedByElements {
-    /// What stays by the law of released hinges.
+    /// Residual opening by the law of released hinges.
     pub by_law: WhatStays,
-    /// What stays by finite elements.
+    /// Residual opening by finite elements.
     pub by_elements: WhatStays,
     /// Distance of the panel corners between the two: root mean square and maximum (mm).
     pub corners: [f64; 2],
@@ -102,7 +102,7 @@ pub fn released_by_elements(
     })
 }
 
-/// The hinges of a sheet that was let go, by finite elements.
+/// The hinges of an unloaded sheet, by finite elements.
 struct ElementForces {
     /// (F_a, F_s, M_theta) of every hinge; `None` if it was not solved.
     forces: Vec<Option<[f64; 3]>>,
@@ -150,7 +150,7 @@ fn element_forces(
     }
 }
 
-/// Root mean square of forces over that of the forces under load.
+/// Root mean square of forces over the root mean square of the forces under load.
 fn share(deployed: &Deployment, found: &Balanced, forces: &[Option<[f64; 3]>]) -> f64 {
     let designs = deployed.sheet.designs();
     let square = |[a, s, m]: [f64; 3], w: f64| a * a + s * s + (m / w).powi(2);

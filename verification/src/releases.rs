@@ -1,5 +1,5 @@
-//! Hinges deformed along straight rays and let go, by finite elements: the deformation without forces and the stiffness
-//! about it.
+//! Hinges deformed along straight rays and unloaded, by finite elements: the deformation without forces and the
+//! stiffness about it.
 //!
 //! The window of a hinge is driven, and where it is without forces is not known before. Its path leads to the state that it
 //! reaches, back to a guess of that deformation, and from there to and fro in a, s and theta. Unloading is elastic (and yields
@@ -16,7 +16,7 @@ use hinge::{Regime, SheetMaterial};
 use mesher::Tier;
 use std::array::from_fn;
 
-/// Hinges that were let go.
+/// Unloaded hinges.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Releases {
     /// One row a hinge, in the order of the list.
@@ -45,7 +45,7 @@ const FAR: f64 = 0.1;
 /// Numbers of legs to the reached state and back; the tour has two for each direction. All have the same number of increments.
 const LEGS: [usize; 2] = [10, 4];
 
-/// Lets hinges go at the end of their rays. `guess` is where they are expected to be without forces.
+/// Unloads hinges at the end of their rays. `guess` is where they are expected to be without forces.
 pub fn releases(
     windows: &SolveService,
     hinges: &[HingePath],

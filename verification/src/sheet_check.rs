@@ -20,7 +20,7 @@ use serde::Serialize;
 use support::severity::Severity;
 use support::statistics::rms_and_maximum;
 
-/// Difference of the loads over that of finite elements above which a finding names it.
+/// Difference of the loads over the load by finite elements above which a finding names it.
 const OTHER_LOAD: f64 = 0.05;
 /// Kinetic over internal energy up to which a dynamic path is nearly at rest.
 const AT_REST: f64 = 0.02;
@@ -63,7 +63,7 @@ pub struct SheetCheck {
     pub is_patch: bool,
     /// Longer side of the flat sheet (mm).
     pub size: f64,
-    /// Smallest radius of a window in the mesh, and that of the hinge law (mm).
+    /// Smallest radius of a window in the mesh, and the radius of the windows of the hinge law (mm).
     pub radius: [f64; 2],
     /// Smallest and largest ligament width over the thickness.
     pub slenderness: [f64; 2],
@@ -89,7 +89,7 @@ pub struct SheetCheck {
     pub hinges: Vec<HingeCheck>,
     /// The panels at its end.
     pub panels: Vec<PanelCheck>,
-    /// Internal energy of the panels outside of the windows over that of all (1) at its end.
+    /// Internal energy of the panels outside of the windows over the whole internal energy (1) at its end.
     pub panel_energy: f64,
     /// The middle surface at its end.
     #[serde(skip)]

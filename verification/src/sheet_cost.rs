@@ -18,7 +18,7 @@ pub struct SheetCost {
 const REFERENCE: [f64; 3] = [13_000.0, 34.0, 53.0];
 /// The power of the number of unknowns with which the time grows.
 const GROWTH: f64 = 1.4;
-/// Time of a sheet that may leave its plane over that of one that is held flat.
+/// Time of a sheet that may leave its plane over the time of a sheet that is held flat.
 const NOT_HELD: f64 = 3.5;
 
 impl SheetCost {

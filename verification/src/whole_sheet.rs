@@ -178,7 +178,7 @@ fn on_finished_edge(sheet: &Sheet, panel: usize, point: [f64; 2]) -> [f64; 2] {
     moved
 }
 
-/// The corners of a panel between its finished edges: those of cuts are half a kerf inside of their lines.
+/// The corners of a panel between its finished edges: the edges of cuts are half a kerf inside of their lines.
 fn finished_corners(sheet: &Sheet, panel: usize) -> [[f64; 2]; 4] {
     let Grid { m, n } = sheet.grid;
     let (column, row) = (panel % m, panel / m);
@@ -205,8 +205,8 @@ fn finished_corners(sheet: &Sheet, panel: usize) -> [[f64; 2]; 4] {
     })
 }
 
-/// The radius of each window in the mesh (mm): r_win, or as much less as the windows need to be apart. The mesh of a smaller
-/// window is a part of that of a larger one.
+/// The radius of each window in the mesh (mm): r_win, or as much less as the windows need to be apart. The mesh of a smaller window is a
+/// part of the mesh of a larger window.
 pub(crate) fn meshed_radii(sheet: &Sheet) -> Result<Vec<f64>, VerificationError> {
     let r_win = sheet.options.process.r_win;
     let widths = || sheet.hinges.iter().map(|hinge| hinge.w_lig);

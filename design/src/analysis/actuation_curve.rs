@@ -336,7 +336,7 @@ mod tests {
             dead_load_reaches: None,
         };
         assert_eq!(peak, expected);
-        // Nor does a dead load stop at a maximum below that of the end.
+        // Nor does a dead load stop at a maximum below the load at the end.
         let rises = curve(|x| x + 0.9 * (3.0 * x).sin(), 6.9).peak();
         assert_eq!(rises.dead_load_reaches, None);
         // The weight of a hanging sheet may hold its hook down all the way.

@@ -19,7 +19,7 @@ pub type Mode = Vec<(usize, [f64; 3])>;
 /// Lengths of (log w_lig, alpha) over which the error of a learned law changes, as [`LENGTHS`] are of the state: about a third of the
 /// extent of a training domain.
 const DESIGN_LENGTHS: [f64; 2] = [0.5, 0.5];
-/// Variance that is left out of alike errors, relative to that of a hinge.
+/// Variance that is left out of alike errors, relative to the variance of a hinge.
 const LEFT_OUT: f64 = 1e-3;
 
 /// Errors of the hinge forces.

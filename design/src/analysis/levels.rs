@@ -40,7 +40,7 @@ pub struct LevelCost {
 pub struct Levels {
     /// The levels, from the cheapest to the finest.
     pub levels: Vec<LevelCost>,
-    /// What no level buys: the causes of errors of the finest one that are not those of its networks.
+    /// What no level buys: the causes of errors of the finest level other than its networks.
     pub others: Vec<Contribution>,
 }
 

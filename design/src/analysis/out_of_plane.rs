@@ -181,7 +181,7 @@ impl Stiffness {
         let axial = state[0][0].max(LEAST * flat[0][0]);
         // About the middle, where a rotation causes no axial force.
         let elastic = flat[2][2] - flat[0][2].powi(2) / flat[0][0];
-        // Of a hinge that forces turn against its moment, or that has not turned, that of the flat sheet.
+        // A hinge that forces turn against its moment, or that has not turned, has the stiffness of the flat sheet.
         let rotation = if secant > 0.0 {
             secant.clamp(LEAST * elastic, elastic)
         } else {

@@ -27,7 +27,7 @@ pub struct Fit {
     pub position: f64,
     /// Load factor and panel motions at this position.
     pub shape: Shape,
-    /// From the frame of the design (mm) into that of the measurement.
+    /// From the frame of the design (mm) into the frame of the measurement.
     pub motion: Similarity,
     /// One entry for each measured point, in the order of the measurement.
     pub points: Vec<FittedPoint>,
@@ -97,7 +97,7 @@ impl Problem<'_> {
 
     /// Gauss-Newton: the variance of the position x is sigma^2 / |dp/dx|^2, with the part of dp/dx that is no rigid
     /// motion (and no change of scale) of the points. `None` if there is no such part, as for the corners of one panel, or
-    /// if the standard error of x is that of the whole path.
+    /// if the standard error of x exceeds the length of the whole path.
     pub(crate) fn load_factor_error(&self, fit: &Fit) -> Option<f64> {
         /// Difference of two positions, in load steps.
         const STEP: f64 = 1e-3;

@@ -1,4 +1,4 @@
-//! A deployed sheet that is let go: its equilibrium without loads, with hinges that are elastic about what stays of their
+//! A deployed sheet that is unloaded: its equilibrium without loads, with hinges that are elastic about their residual
 //! deformations.
 
 use crate::analysis::actuation_curve::{ActuationCurve, Mover};
@@ -14,7 +14,7 @@ use std::array::from_fn;
 use support::statistics::rms_and_maximum;
 use surrogate::Springback;
 
-/// Why nothing can be said of a sheet that is let go.
+/// Why nothing can be said of a sheet that is unloaded.
 #[derive(Debug, thiserror::Error)]
 #[allow(missing_docs, reason = "the message of a variant is its documentation")]
 pub enum LetGoError {
@@ -33,7 +33,7 @@ pub enum LetGoError {
     Design(#[from] DesignError),
 }
 
-/// What stays of the opening of a sheet.
+/// The residual opening of a sheet.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct WhatStays {
     /// Rotation of every hinge under load and without (rad).
@@ -66,7 +66,7 @@ impl WhatStays {
     }
 }
 
-/// The hinges of a deployed sheet of a scene and its problem after they were let go, with the forces of the problem's hinge law.
+/// The hinges of a deployed sheet of a scene and its problem after they were unloaded, with the forces of the problem's hinge law.
 ///
 /// # Errors
 /// As [`Scene::check_springback`], or if the sheet has no equilibrium at full load.
@@ -85,7 +85,7 @@ pub fn released_hinges(
     Ok(release.hinges(&*prepared, &designs, states))
 }
 
-/// A deployed sheet of a scene and its problem after it was let go, and what stays of its opening.
+/// A deployed sheet of a scene and its problem after it was unloaded, and its residual opening.
 ///
 /// # Errors
 /// As [`released_hinges`], or if the sheet has no equilibrium without loads.
@@ -126,8 +126,9 @@ pub fn let_go_in_domain(
 /// By how much a person opens a sheet too far, in parts of its opening.
 pub const TOO_FAR: f64 = 0.15;
 
-/// The work rate M theta of the hinges of a sheet that was opened [too far](TOO_FAR) and brought back, over that of one that was not: how firmly it
-/// holds. `None` if a hinge leaves the training domain on the way, or if the sheet does not open at its last load step.
+/// The work rate M theta of the hinges of a sheet that was opened [too far](TOO_FAR) and brought back, over the work rate of
+/// a sheet that was not: how firmly it holds. `None` if a hinge leaves the training domain on the way, or if the sheet does not
+/// open at its last load step.
 pub fn moment_after_overshoot(
     scene: &Scene,
     problem: &DesignProblem,
@@ -179,7 +180,7 @@ impl DesignProblem {
         Ok(mechanics.let_go(&deployment.sheet, deployment.at_full_load()?, hinges)?)
     }
 
-    /// What stays of the opening of a sheet that was let go.
+    /// The residual opening of a sheet that was unloaded.
     pub fn what_stays(
         &self,
         deployment: &Deployment,

@@ -141,7 +141,7 @@ impl<'a> Branch<'a> {
         }
     }
 
-    /// Moves supports and stroke of a place to their values at its load parameter, those of `known` being right.
+    /// Moves supports and stroke of a place to their values at its load parameter; their values in `known` must be right.
     pub fn hold(&self, place: &mut Place, known: &Place) {
         let ahead = match self.stage {
             Stage::Weight => 0.0,
@@ -340,7 +340,7 @@ impl<'a> Branch<'a> {
         pattern.spread(&factor.solve(pattern, &downhill))
     }
 
-    /// The correction in the plane normal to the path, and that of the load parameter.
+    /// The correction in the plane normal to the path, and the correction of the load parameter.
     pub fn in_plane(
         &self,
         direct: &[[f64; 3]],

@@ -86,7 +86,7 @@ impl Stroke {
 #[derive(Clone, Debug)]
 pub(crate) struct HeldFactor {
     pub factor: Factor,
-    /// Whether the factors are those of a shifted tangent.
+    /// Whether the factors belong to a shifted tangent.
     pub shifted: bool,
     border: Option<Border>,
 }

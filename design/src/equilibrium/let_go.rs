@@ -1,7 +1,8 @@
-//! A sheet that is let go: from a configuration to the equilibrium without loads.
+//! A sheet that is unloaded: from a configuration to the equilibrium without loads.
 //!
 //! The forces that would hold the panels in the configuration are taken off in proportion. The path begins in balance also
-//! where the hinge law has other forces than those under load. Supports that rest and the weight of the sheet stay; supports that moved it let go, too.
+//! where the forces of the hinge law differ from the forces under load. Supports that rest and the weight of the sheet stay;
+//! supports that moved the sheet are removed, too.
 
 use crate::equilibrium::branch::Branch;
 use crate::equilibrium::hinged_sheet::HingedSheet;

@@ -1,5 +1,5 @@
 //! The load steps of a sheet that differs little from another whose path is known, as in successive designs: each state
-//! is corrected from that of the known path, without increments between the load steps.
+//! is corrected from the state of the known path, without increments between the load steps.
 //!
 //! The known state is first carried over by the hinge law linearised about it,
 //!
@@ -8,7 +8,7 @@
 //! ```
 //!
 //! whose equilibrium in the new sheet requires no evaluation of the hinges. Newton's method then corrects it. The states are
-//! those of a followed path as long as the path has no jump. A jump that appears between two load steps is not noticed:
+//! the states of a followed path as long as the path has no jump. A jump that appears between two load steps is not noticed:
 //! paths must be followed from the flat sheet now and then.
 
 use crate::equilibrium::branch::Branch;
@@ -22,7 +22,7 @@ use crate::equilibrium::solver::EquilibriumSolver;
 use crate::hinge_law::{HingeEnergy, Order, PreparedLaw};
 use hinge::{HingeDeformation, HingeDesign};
 
-/// Maximum distance of an equilibrium from that of the linearised law (rad, or panel sizes for hinge translations).
+/// Maximum distance of an equilibrium from the equilibrium of the linearised law (rad, or panel sizes for hinge translations).
 const NEARBY: f64 = 0.02;
 /// Difference of the stroke of a known state from that at its load parameter, relative to the whole, that rounding may cause.
 const ROUNDED: f64 = 1e-9;
@@ -67,7 +67,7 @@ impl LinearisedLaw<'_> {
 }
 
 impl EquilibriumSolver {
-    /// The load steps of a sheet near that of the path `known`. `None` if that is not complete or jumps, or
+    /// The load steps of a sheet near the sheet of the path `known`. `None` if the known path is not complete or jumps, or
     /// if a state is not a stable equilibrium close to the known one: then the path must be followed.
     pub fn path_near(&self, sheet: HingedSheet, known: &KnownPath) -> Option<Vec<LoadStep>> {
         if known.steps.len() != self.weight_steps() + self.steps {

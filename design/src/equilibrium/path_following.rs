@@ -27,7 +27,7 @@ pub struct Increment {
 }
 
 impl EquilibriumSolver {
-    /// Follows the equilibrium path from the flat sheet: first the load steps of the weight, then those of the loads. The
+    /// Follows the equilibrium path from the flat sheet: first the load steps of the weight, then the load steps of the loads. The
     /// path ends early if no equilibrium is found.
     ///
     /// # Panics

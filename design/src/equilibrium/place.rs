@@ -84,7 +84,7 @@ impl Arc {
             + u * (3.0 * u - 2.0) * self.to_rate.at
     }
 
-    /// The place with a given load parameter between those of the two points.
+    /// The place with a given load parameter between the load parameters of the two points.
     pub fn reading(&self, at: f64) -> Place {
         let length = bisected(0.0, self.length, |length| self.at(length) < at);
         let place = self.place(length);

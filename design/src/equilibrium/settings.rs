@@ -6,7 +6,7 @@ pub struct SolverSettings {
     /// Residual of a converged state, relative to the largest force, unless rounding causes a larger one.
     pub tolerance: f64,
     /// Every how many steps of a design the path is followed from the flat sheet; the load steps of the designs between
-    /// are corrected from those of the last followed path.
+    /// are corrected from the load steps of the last followed path.
     pub follow_every: usize,
     /// Maximum number of Newton iterations of a descent in energy, as after a jump. A descent ends before that where it
     /// reaches an equilibrium or makes no progress: the longest one known takes 3000.

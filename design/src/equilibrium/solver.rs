@@ -5,7 +5,7 @@
 //! ```
 //!
 //! If the sheet has a weight in its plane, minus the work of that; it comes on before the loads, the supports resting and a
-//! prescribed stroke being zero meanwhile. For a sheet that is let go, minus the work of the forces that held it.
+//! prescribed stroke being zero meanwhile. For a sheet that is unloaded, minus the work of the forces that held it.
 
 use crate::equilibrium::displacement_control::Stroke;
 use crate::equilibrium::settings::SolverSettings;
@@ -154,7 +154,7 @@ impl EquilibriumSolver {
         self.stop.load(Ordering::Relaxed)
     }
 
-    /// The same problem with other loads (F_x, F_y, M) on the panels at full load (N, N, N mm); those of a stroke give its direction.
+    /// The same problem with other loads (F_x, F_y, M) on the panels at full load (N, N, N mm); the loads of a stroke give its direction.
     ///
     /// # Panics
     /// If there is not one load for each panel.

@@ -46,7 +46,7 @@ impl PanelWeight {
     }
 }
 
-/// The weight of every panel in a configuration; `by_area` is that of a unit of area (N/mm^2).
+/// The weight of every panel in a configuration; `by_area` is the weight of a unit of area (N/mm^2).
 pub(crate) fn weights_of_panels<'a>(
     sheet: &'a Sheet,
     by_area: [f64; 2],

@@ -20,7 +20,7 @@ const MOST_POINTS: usize = 100_000;
 /// Removes the background colour of the root element, which usvg would draw as a path.
 const NO_BACKGROUND: &str = "svg { background-color: none !important }";
 
-/// Why a file has no outline; coordinates are those of the path data.
+/// Why a file has no outline; coordinates are given as in the path data.
 #[derive(Debug, thiserror::Error)]
 #[allow(missing_docs, reason = "the message of a variant is its documentation")]
 pub enum SvgPathError {

@@ -19,7 +19,7 @@ use crate::geometry::polygon::{area, counter_clockwise, edges, side};
 /// Rotation of the polygons before they are cut into slabs (rad).
 const OBLIQUE: f64 = 0.7;
 
-/// Area of the intersection of two polygons, in either order of their vertices, over that of their union; 0 if both are
+/// Area of the intersection of two polygons, in either order of their vertices, over the area of their union; 0 if both are
 /// empty.
 pub fn intersection_over_union(one: &[[f64; 2]], other: &[[f64; 2]]) -> f64 {
     let [one, other] = [one, other].map(counter_clockwise);
@@ -290,7 +290,7 @@ mod tests {
         remainders.assert_orders(1.9..f64::INFINITY);
     }
 
-    /// Edges that lie on those of the target: the slope is one-sided, and the one of either side is found.
+    /// Edges that lie on edges of the target: the slope is one-sided, and the slope of either side is found.
     #[test]
     fn where_edges_coincide_the_slope_is_that_of_one_side() {
         let unit = square([0.0, 0.0], 1.0);

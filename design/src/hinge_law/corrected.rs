@@ -6,13 +6,13 @@
 //!
 //! x = (eta_a, eta_s, theta), x_j are the flat hinge and the states at which the forces were measured, and l are lengths
 //! over which the error of a law changes. The vectors b_j are such that the correction has the measured forces, conjugate
-//! to x, minus those of the law: of all energies that have them, this is the smoothest one (the mean of a Gaussian process
+//! to x, minus the forces of the law: of all energies that have them, this is the smoothest one (the mean of a Gaussian process
 //! with this kernel, whose slopes are observed). Energy and forces of the flat hinge remain zero, and far from all
 //! states, in units of l, the forces of the law remain as they are. The last measurement that is not nearly flat is met
 //! exactly, earlier ones within a noise: finite elements depend on the path, and differences of nearly equal states are
 //! no tangent.
-//! As a function of (a, s, theta) the correction is that of the design at which the forces were measured, also for a
-//! design close to it: derivatives in the design are those of the law alone.
+//! As a function of (a, s, theta) the correction is fixed by the design at which the forces were measured, also for a
+//! design close to it: derivatives in the design are the derivatives of the law alone.
 //! (Solak, Murray-Smith, Leithead, Leith, Rasmussen, "Derivative observations in Gaussian process models of dynamic
 //! systems", 2003.)
 
@@ -37,7 +37,7 @@ pub struct CorrectedLaw {
 /// of finite elements are predicted best with 0.06 to 0.15 and 0.2 to 0.5.
 pub(crate) const LENGTHS: [f64; 3] = [0.1, 0.1, 0.3];
 
-/// Variance of the noise of all measurements but the last one, relative to that of the correction's slopes.
+/// Variance of the noise of all measurements but the last one, relative to the variance of the correction's slopes.
 const NOISE: f64 = 1e-3;
 
 /// States closer than this to the flat hinge, in units of the lengths, are not corrected: the noise of
@@ -49,7 +49,7 @@ const NEARLY_FLAT: f64 = 1e-2;
 pub struct MissingForces {
     /// Where the forces were measured.
     pub state: HingeDeformation,
-    /// Measured (F_a, F_s, M_theta) (N, N, N mm) minus those of the law.
+    /// Measured (F_a, F_s, M_theta) (N, N, N mm) minus the forces of the law.
     pub forces: [f64; 3],
 }
 

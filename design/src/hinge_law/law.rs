@@ -52,7 +52,7 @@ pub trait HingeLaw: Send + Sync {
         None
     }
 
-    /// Whether the law determines that of a sheet of another thickness, and that of a stronger material.
+    /// Whether the law determines the law of a sheet of another thickness, and the law of a stronger material.
     fn scales(&self) -> [bool; 2] {
         [false; 2]
     }

@@ -1,4 +1,4 @@
-//! Hinges that were deformed and let go, each elastic about the deformation that stays ([`ReleasedHinge`]).
+//! Hinges that were deformed and unloaded, each elastic about its residual deformation ([`ReleasedHinge`]).
 
 use crate::hinge_law::law::{HingeEnergy, Order, PreparedLaw};
 use hinge::{HingeDeformation, HingeDesign, ReleasedHinge};
@@ -21,15 +21,15 @@ impl PreparedLaw for ReleasedLaw<'_> {
     }
 }
 
-/// What becomes of the hinges of a sheet that is let go: the learned law, for another thickness or a stronger material.
+/// What becomes of the hinges of a sheet that is unloaded: the learned law, for another thickness or a stronger material.
 ///
 /// With all lengths in proportion to the thickness, F_a and F_s grow with its square and M_theta with its cube.
 #[derive(Clone, Debug)]
 pub struct Release {
     law: Arc<Springback>,
-    /// Thickness of the sheet over that of the windows of the law.
+    /// Thickness of the sheet over the thickness of the windows of the law.
     scale: f64,
-    /// Stress at every strain over that of the material of the law.
+    /// Stress at every strain over the stress of the material of the law.
     stress: f64,
 }
 
@@ -53,7 +53,7 @@ impl Release {
         }
     }
 
-    /// The hinges of a sheet that were let go in these states, with the forces of its prepared law.
+    /// The hinges of a sheet that were unloaded from these states, with the forces of its prepared law.
     pub fn hinges(
         &self,
         law: &dyn PreparedLaw,
@@ -67,7 +67,7 @@ impl Release {
             .collect()
     }
 
-    /// A hinge that was let go at a state with these forces (F_a, F_s, M_theta) (N, N, N mm).
+    /// A hinge that was unloaded from a state with these forces (F_a, F_s, M_theta) (N, N, N mm).
     fn hinge(
         &self,
         design: &HingeDesign,
@@ -122,7 +122,7 @@ impl Release {
         (design.scaled(smaller), reached.scaled(smaller), forces)
     }
 
-    /// (F_a, F_s, M_theta) of the sheet over those of the windows.
+    /// (F_a, F_s, M_theta) of the sheet over (F_a, F_s, M_theta) of the windows.
     fn force_units(&self) -> [f64; 3] {
         let square = self.stress * self.scale * self.scale;
         [square, square, square * self.scale]

@@ -24,7 +24,7 @@ use surrogate::{Prepared, Surrogate};
 /// delta: maximum distance outside the domain at which the network is evaluated, relative to the half-range.
 const BEYOND: f64 = 0.1;
 /// k: the force along a line outwards does not fall if dW/dgamma at the edge is at most 6 (W_s + W), since the second
-/// derivative of e^3 / (e + delta) is at least 0.16 times that of -psi.
+/// derivative of e^3 / (e + delta) is at least 0.16 times the second derivative of -psi.
 const RETURN_STIFFNESS: f64 = 40.0;
 /// Half-range of the cut angle (rad) for weights that were trained on a single one.
 const NARROWEST_ANGLE: f64 = 0.01;

@@ -1,4 +1,4 @@
-//! The centroid of the area inside the deployed outline P, which is placed at the origin, and likewise that of the target,
+//! The centroid of the area inside the deployed outline P, which is placed at the origin, and likewise the centroid of the target,
 //!
 //! ```text
 //! c = 1/(6 A) sum (p_i + p_i+1) (p_i x p_i+1),     A = 1/2 sum p_i x p_i+1

@@ -130,7 +130,7 @@ pub struct Deployment {
     pub sheet: Sheet,
     /// One entry per load step; a single entry for the ideal deployment.
     pub path: Vec<LoadStep>,
-    /// Whether the path was followed from the flat sheet; `false` if it was corrected from that of a design near it.
+    /// Whether the path was followed from the flat sheet; `false` if it was corrected from the path of a design near it.
     pub followed: bool,
     /// The sheet after its loads were taken off at the end of the path, if the target is the shape that stays.
     pub released: Option<ReleasedSheet>,
@@ -167,7 +167,7 @@ pub struct Evaluation {
 }
 
 impl Deployment {
-    /// The path, from which those of designs near this one can be corrected.
+    /// The path, from which the paths of designs near this one can be corrected.
     pub fn known_path(&self) -> KnownPath {
         KnownPath {
             designs: self.sheet.designs(),

@@ -62,7 +62,7 @@ impl Objective {
         self.weights().map(label).collect()
     }
 
-    /// Whether the gradient of the objective needs that of the damage of the hinges.
+    /// Whether the gradient of the objective needs the gradient of the damage of the hinges.
     pub(crate) fn needs_damage_gradient(&self) -> bool {
         self.terms()
             .any(|(term, weight)| weight != 0.0 && term.needs_damage_gradient())

@@ -1,4 +1,4 @@
-//! A deployed sheet that is let go, and the gradient of a function of the shape that stays.
+//! A deployed sheet that is unloaded, and the gradient of a function of the shape that stays.
 //!
 //! With g the gradient of the function in the configuration v without loads, H the tangent there, f = K (x - r) the forces of a
 //! released hinge and B its rates,
@@ -37,7 +37,8 @@ impl Mechanics {
         Ok(ReleasedSheet { hinges, path })
     }
 
-    /// The sheet at the end of a path by its prepared law after it was let go, if the target is for that; `None` too if the path has not reached full load.
+    /// The sheet at the end of a path by its prepared law after it was unloaded, if the target is for the unloaded sheet; `None` too if
+    /// the path has not reached full load.
     pub(super) fn released(
         &self,
         law: &dyn PreparedLaw,

@@ -33,11 +33,11 @@ use hinge::HingeDeformation;
 /// What the equilibrium of a design depends on besides it; by default what the problem says.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Conditions {
-    /// (F_x, F_y, M) on every panel at full load (N, N, N mm); `None` for those of the problem.
+    /// (F_x, F_y, M) on every panel at full load (N, N, N mm); `None` for the loads of the problem.
     pub loads: Option<Vec<[f64; 3]>>,
-    /// Thickness over that of the problem.
+    /// Thickness over the thickness of the problem.
     pub thickness: f64,
-    /// All stresses at equal strain over those of the problem.
+    /// All stresses at equal strain over the stresses of the problem.
     pub stress: f64,
 }
 
@@ -129,8 +129,9 @@ impl DesignProblem {
         })
     }
 
-    /// A draft of the equilibrium of a design at full load, let go if the target is the shape that stays, next to the last state of a
-    /// `known` path; without one, or if there is none next to it, at the end of the path from the flat sheet. The path may end on another branch than a draft next to another.
+    /// A draft of the equilibrium of a design at full load, unloaded if the target is the shape that stays, next to the last state of a
+    /// `known` path; without one, or if there is none next to it, at the end of the path from the flat sheet. The path may end on another
+    /// branch than a draft next to another.
     pub fn draft(
         &self,
         design: &DesignVector,

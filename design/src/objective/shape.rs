@@ -28,7 +28,7 @@ pub struct Shape {
     pub target: Vec<[f64; 2]>,
     /// w_cov of the distance (dimensionless).
     pub coverage_weight: f64,
-    /// Whether the centroid of the area inside P is translated to the origin, where that of the target should be: not where
+    /// Whether the centroid of the area inside P is translated to the origin, where the centroid of the target should be: not where
     /// supports hold the sheet.
     pub centred: bool,
 }

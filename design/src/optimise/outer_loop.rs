@@ -27,9 +27,9 @@ pub struct StepRecord {
     /// The objective and its terms.
     #[serde(flatten)]
     pub scores: Scores,
-    /// Whether the path was followed from the flat sheet; `false` if it was corrected from that of an earlier design.
+    /// Whether the path was followed from the flat sheet; `false` if it was corrected from the path of an earlier design.
     pub followed: bool,
-    /// Number of halvings, including those of a step that was given up.
+    /// Number of halvings, including the halvings of a step that was given up.
     pub halvings: u32,
     /// Why the first design of the step without objective value had none; `None` if all had one.
     pub setback: Option<String>,
@@ -65,7 +65,7 @@ pub struct SearchState {
     /// The design with the minimum loss of those whose path was followed, without those at pauses, and its loss: the search
     /// goes back to it, whether it was paused or not.
     base: Scored,
-    /// The design with the minimum loss, below that of the base, of those whose path was only corrected since.
+    /// The design with the minimum loss, below the loss of the base, of the designs whose path was only corrected since.
     candidate: Option<Scored>,
     /// Whether the followed path of a candidate had another loss: since then every path is followed.
     contradicted: bool,
@@ -77,7 +77,7 @@ pub struct SearchState {
     /// The path of the anchor, if it is needed.
     #[serde(skip)]
     known: Option<KnownPath>,
-    /// One record per step, beginning with that of the start.
+    /// One record per step, beginning with the record of the start.
     pub history: Vec<StepRecord>,
 }
 

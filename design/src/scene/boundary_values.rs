@@ -203,7 +203,7 @@ impl LoadConfig {
 }
 
 impl EdgeLoadConfig {
-    /// `ends` are those of the edge in the flat sheet.
+    /// `from` and `to` are the ends of the edge in the flat sheet.
     fn on(&self, grid: Grid, [from, to]: [[f64; 2]; 2]) -> AppliedLoad {
         let length = distance(from, to);
         let resultant = self.traction.map(|traction| traction * length);

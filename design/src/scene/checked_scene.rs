@@ -41,7 +41,7 @@ pub struct Scene {
     pub config: SceneConfig,
     /// The material of the sheet, in its thickness.
     pub material: SheetMaterial,
-    /// The material in the thickness of its file, which is that of the training of learned laws.
+    /// The material in the thickness of its file, at which learned laws were trained.
     pub(crate) measured: SheetMaterial,
     /// The target outline.
     pub target: Target,
@@ -153,7 +153,7 @@ impl Scene {
         beside(&self.path, path)
     }
 
-    /// Thickness of the sheet over that of the material file, at which learned laws were trained.
+    /// Thickness of the sheet over the thickness of the material file, at which learned laws were trained.
     pub fn scale(&self) -> f64 {
         self.config.scale(&self.measured)
     }

@@ -1,6 +1,6 @@
 //! Conditions on the values of a scene besides the ranges of its keys, which stand on their fields.
 //!
-//! The ranges are wider than those of any real sheet, and narrower than an error by a factor of 1000.
+//! The ranges are wider than the ranges of any real sheet, and narrower than an error by a factor of 1000.
 
 use crate::geometry::polygon::{contains, distance, edges, mean};
 use crate::objective::shape::TargetState;
@@ -50,7 +50,7 @@ pub(super) fn level(scene: &SceneConfig) -> Result<(), InvalidScene> {
     }
 }
 
-/// Maximum ratio of the target's perimeter to that of the flat sheet. Panels keep their edges: a sheet of squares
+/// Maximum ratio of the target's perimeter to the perimeter of the flat sheet. Panels keep their edges: a sheet of squares
 /// opens to twice its width; a sheet of slender panels opens further, but along one axis only.
 const OPENS_TO: f64 = 3.0;
 

@@ -32,7 +32,7 @@ pub struct Designed {
     pub problem: DesignProblem,
     /// Why the search ended.
     pub ended: Ended,
-    /// One record per step, beginning with that of the start.
+    /// One record per step, beginning with the record of the start.
     pub history: Vec<StepRecord>,
     /// The design with the minimum loss of those whose path was followed from the flat sheet.
     pub design: DesignVector,

@@ -44,8 +44,9 @@ pub struct SurrogateFile {
     /// Further networks trained on the same data (`train --seeds`); the report states their spread, and the level `fine` takes their mean.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub ensemble: Vec<PathBuf>,
-    /// The law of released hinges (`kirigami surrogate release`), from which the report states what stays of the opening when the
-    /// loads are taken off. Unless `objective.target_state` is `released`, a run continues under another one, which changes its report only.
+    /// The law of released hinges (`kirigami surrogate release`), from which the report states the residual opening when the
+    /// loads are taken off. Unless `objective.target_state` is `released`, a run continues under another one, which changes its report
+    /// only.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub springback: Option<PathBuf>,
     /// The hinges of this sheet by finite elements, written by `kirigami design --level final`, to which the level `final` corrects the

@@ -132,7 +132,7 @@ impl SceneConfig {
         toml::to_string(self)
     }
 
-    /// Thickness of the sheet over that of the material file `material`.
+    /// Thickness of the sheet over the thickness of the material file `material`.
     pub(super) fn scale(&self, material: &SheetMaterial) -> f64 {
         self.thickness
             .map_or(1.0, |thickness| thickness / material.thickness)

@@ -3,18 +3,19 @@
 //! | level | hinges | load steps | residual of an equilibrium |
 //! |---|---|---|---|
 //! | `pin` | pins that open by one angle: no forces | - | - |
-//! | `linear` | three springs (11) | those of the scene | 1e-10 |
+//! | `linear` | three springs (11) | the steps of the scene | 1e-10 |
 //! | `draft` | the learned energy (14) of a small network | at most 5 | 1e-3 |
-//! | `standard` | the learned energy (14) | those of the scene | 1e-10 |
-//! | `fine` | the mean of the networks of the ensemble | those of the scene | 1e-10 |
-//! | `final` | the learned energy, corrected to finite elements of every hinge | those of the scene | 1e-10 |
+//! | `standard` | the learned energy (14) | the steps of the scene | 1e-10 |
+//! | `fine` | the mean of the networks of the ensemble | the steps of the scene | 1e-10 |
+//! | `final` | the learned energy, corrected to finite elements of every hinge | the steps of the scene | 1e-10 |
 
 use crate::equilibrium::settings::SolverSettings;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// How much of the hinges of a scene is modelled, from the cheapest level to the dearest; each hinge law reads the section that it needs.
+/// How much of the hinges of a scene is modelled, from the cheapest level to the most expensive; each hinge law reads the
+/// section that it needs.
 #[derive(
     Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema,
 )]
@@ -39,7 +40,7 @@ const DRAFT_STEPS: usize = 5;
 const DRAFT_TOLERANCE: f64 = 1e-3;
 
 impl Level {
-    /// All levels, from the cheapest to the dearest.
+    /// All levels, from the cheapest to the most expensive.
     pub const ALL: [Self; 6] = [
         Self::Pin,
         Self::Linear,

@@ -30,7 +30,7 @@ pub struct LoadedHinge {
     pub(super) behaviour: HingeBehaviour,
     /// The point at which the deformation is measured.
     pub(super) hinge_point: HingePoint,
-    /// The networks that the law reads, its own first, then those of the ensemble.
+    /// The networks that the law reads, its own first, then the networks of the ensemble.
     pub(super) networks: Vec<Surrogate>,
     /// The hinges by finite elements that the level `final` reads.
     pub(super) solved: Option<SolvedHinges>,
@@ -232,7 +232,7 @@ fn contact(k_theta: f64, wall: f64) -> Result<Contact, InvalidScene> {
     Ok(Contact::new(CONTACT_STIFFNESS * k_theta, wall, 0.0)?)
 }
 
-/// The spread of networks trained on different data estimates the error of neither, and that of one network is zero.
+/// The spread of networks trained on different data estimates the error of neither, and the spread of one network is zero.
 fn same_training(config: &SceneConfig, networks: &[Surrogate]) -> Result<(), InvalidScene> {
     let hashes: Vec<String> = networks.iter().map(Surrogate::hash).collect();
     let twice = (1..hashes.len()).find_map(|j| {
@@ -294,7 +294,7 @@ fn linear(config: &SceneConfig) -> Result<LoadedHinge, InvalidScene> {
     })
 }
 
-/// Relative difference of r_win from that of the weights that rounding in a scene file may cause.
+/// Relative difference of r_win from the r_win of the weights that rounding in a scene file may cause.
 const ROUNDED: f64 = 1e-6;
 
 /// The surrogate at the thickness of the scene's sheet. It is valid only for the material law and for hinges similar

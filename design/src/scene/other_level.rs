@@ -13,7 +13,7 @@ use crate::scene::scene_error::SceneError;
 const PIN_OPENING: f64 = 25.0;
 
 impl Scene {
-    /// The learned levels for which the scene names networks, from the cheapest to the dearest.
+    /// The learned levels for which the scene names networks, from the cheapest to the most expensive.
     pub fn learned_levels(&self) -> Vec<Level> {
         let has = |level: &Level| {
             let config = SceneConfig {
@@ -26,7 +26,7 @@ impl Scene {
     }
 
     /// The scene at another level. What the level does not have is left out: at `pin` supports, loads and drive, below `draft` what the
-    /// objective reads from a learned law. Springs, where the scene has none, are those of its learned law.
+    /// objective reads from a learned law. A scene without springs gets the springs of its learned law.
     pub fn at_level(&self, level: Level) -> Result<Self, SceneError> {
         let mut config = self.config.clone();
         config.level = level;

@@ -8,7 +8,7 @@ use crate::sheet::kinematics::{Configuration, deployed};
 use crate::sheet::topology::PanelCorner;
 
 /// The configuration in the position in which the objective compares it with the target: the centre of a sheet
-/// without supports is that of the target.
+/// without supports lies at the centre of the target.
 pub fn placed(scene: &Scene, sheet: &Sheet, configuration: &[[f64; 3]]) -> Configuration {
     let mut placed = configuration.to_vec();
     if scene.config.supports.is_empty() {

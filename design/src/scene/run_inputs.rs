@@ -6,7 +6,7 @@
 //! | `inputs/material.toml` | the material, with its measured curve as `plastic` |
 //! | `inputs/target.csv`, `.svg` | the target, if the scene names a file |
 //! | `inputs/weights.safetensors`, `.json` | weights and card, if the hinge law reads them |
-//! | `inputs/ensemble-N.safetensors`, `inputs/draft.safetensors`, their `.json` | the further networks, from 1, and that of drafts |
+//! | `inputs/ensemble-N.safetensors`, `inputs/draft.safetensors`, their `.json` | the further networks, from 1, and the network of drafts |
 //! | `inputs/springback.json` | the law of released hinges, if the scene names one |
 //! | `inputs/solved-hinges.json` | the hinges by finite elements, if the scene names them |
 //!
@@ -27,7 +27,7 @@ use support::{regular_file, whole_file};
 pub const STATE_FILE: &str = "state.json";
 /// The scene of a run, in its folder.
 pub const SCENE_FILE: &str = "scene.toml";
-/// The folder of the copies, in that of a run.
+/// The folder of the copies, in the folder of a run.
 pub const INPUTS: &str = "inputs";
 const MATERIAL_FILE: &str = "inputs/material.toml";
 

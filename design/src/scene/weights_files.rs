@@ -27,7 +27,7 @@ impl SceneConfig {
         Ok(())
     }
 
-    /// The weights that the hinge law of the level reads: its own first, then those of the ensemble.
+    /// The weights that the hinge law of the level reads: its own first, then the weights of the ensemble.
     pub fn weights_files(&self) -> Vec<PathBuf> {
         let Some(learned) = (self.surrogate.as_ref()).filter(|_| self.level.is_learned()) else {
             return Vec::new();

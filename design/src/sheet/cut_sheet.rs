@@ -311,7 +311,7 @@ impl Sheet {
             widths[h] += along / sin;
             let by_alpha = gradient.alphas[h] - along * hinge.set_back * cos / (sin * sin);
             let by_main_angle = dot(by_tip, I * main) * hinge.set_back / sin;
-            // alpha is the angle of e_sec minus that of m.
+            // alpha is the angle of e_sec minus the angle of m.
             let by_frame_angle = gradient.frame_angles[h] + by_alpha;
             self.angle_pullback(&mut points, hinge.site.secondary, by_frame_angle);
             let main_cut = [hinge.site.corner, hinge.site.main_end];

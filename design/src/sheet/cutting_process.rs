@@ -38,11 +38,11 @@ struct ProcessKeys {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     hole_diameter: Option<f64>,
     /// Width the cutting tool removes along the main cut (mm), above 0 and below the diameter of the hole. It may differ from
-    /// that of the weights: in a film from 0.002 to 0.15 w_lig it changes W by less than 0.5 % and the force by less than 2.5 %, in a
+    /// the kerf of the weights: in a film from 0.002 to 0.15 w_lig it changes W by less than 0.5 % and the force by less than 2.5 %, in a
     /// plate from 0.05 to 0.64 w_lig by less than 0.4 and 3.5 %.
     kerf: f64,
-    /// Radius of the half-disc of sheet assigned to the hinge (mm), above 2.5 w_lig. For learned hinges that of the
-    /// weights, times the thickness of the sheet over that of the training.
+    /// Radius of the half-disc of sheet assigned to the hinge (mm), above 2.5 w_lig. For learned hinges it is the radius of the
+    /// weights, times the thickness of the sheet over the thickness in the training.
     r_win: f64,
 }
 

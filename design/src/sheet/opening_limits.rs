@@ -56,7 +56,7 @@ impl Span {
         }
     }
 
-    /// The spans from the middle of the west edge to that of the east edge, and from south to north.
+    /// The spans from the middle of the west edge to the middle of the east edge, and from south to north.
     pub fn of_sheet(sheet: &Sheet) -> [Self; 2] {
         let grid = sheet.grid;
         let (p, q) = (grid.m / 2, grid.n / 2);

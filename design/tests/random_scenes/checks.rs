@@ -204,7 +204,8 @@ fn distance(found: &[[f64; 3]], expected: &[[f64; 3]], size: f64) -> f64 {
     apart.fold(0.0, f64::max)
 }
 
-/// The loss of a design beside, with its path corrected from that of this one and followed from the flat sheet.
+/// The loss of a design close to the drawn one, with its path corrected from the path of the drawn one and followed from the flat
+/// sheet.
 fn corrected(
     drawn: &Drawn,
     problem: &DesignProblem,

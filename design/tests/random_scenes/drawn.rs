@@ -38,7 +38,7 @@ pub enum DrawnLaw {
     Learned(usize, f64),
 }
 
-/// Power of ten by which the constants of a linear law differ at most, with the millimetre as unit: those of sheets, and
+/// Power of ten by which the constants of a linear law differ at most, with the millimetre as unit: constants of sheets, and
 /// extreme ones.
 const EXPONENTS: [f64; 2] = [2.0, 8.0];
 
@@ -178,7 +178,7 @@ impl Drawn {
         }
     }
 
-    /// Whether springs differ by more than those of sheets do.
+    /// Whether springs differ by more than the springs of sheets do.
     pub fn is_extreme(&self) -> bool {
         let DrawnLaw::Linear(constants) = &self.law else {
             return false;

@@ -1,4 +1,4 @@
-//! Objective and gradient against an independent implementation, whose Chamfer distance is that of the paper: of all corners on the
+//! Objective and gradient against an independent implementation with the Chamfer distance of the paper: of all corners on the
 //! outline, to the samples of the target.
 
 use crate::cases;

@@ -117,7 +117,7 @@ fn a_snap_in_shear_is_reported() {
     assert_equal_paths("shear", &[4, 5, 40, 200], snaps);
 }
 
-/// Hinges a hundred times softer in rotation than those of the scene: the flat sheet turns by most of its opening at
+/// Hinges a hundred times softer in rotation than the hinges of the scene: the flat sheet turns by most of its opening at
 /// a hundredth of the load.
 #[test]
 fn soft_hinges_have_an_equilibrium_at_full_load() {

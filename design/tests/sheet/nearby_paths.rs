@@ -1,4 +1,4 @@
-//! Paths corrected from those of designs near them are the paths that are followed, or none.
+//! Paths corrected from the paths of designs near them are the paths that are followed, or none.
 
 use crate::prelude::*;
 use design::equilibrium::nearby_path::KnownPath;

@@ -43,13 +43,13 @@ fn release(stiffness: [f64; 3], scale: f64) -> Release {
     Release::new(Springback::fit(&rows, &[], &film, "tiny").unwrap(), scale)
 }
 
-/// A model whose sheet is compared with its target after it was let go.
+/// A model whose sheet is compared with its target after it was unloaded.
 fn let_go(mut model: Model, release: Release) -> Model {
     mechanics_of(&mut model).release = Some(release);
     model
 }
 
-/// Sheets that are pulled, moved by a support that lets go, and that hang by their weight.
+/// Sheets that are pulled, moved by a support that is removed, and that hang by their weight.
 #[test]
 fn springs_that_are_let_go() {
     let stiffness = [5000.0, 3000.0, 1500.0];

@@ -27,8 +27,8 @@ pub struct CalculiX {
     pub gmsh: Gmsh,
     /// Solves the mesh.
     pub ccx: Ccx,
-    /// Whether the displacements of all nodes of a window are printed, for [`fields`](Self::fields); if not, those of the
-    /// lower face, which are a small part of the output.
+    /// Whether the displacements of all nodes of a window are printed, for [`fields`](Self::fields); if not, only the displacements of the
+    /// lower face are printed, which are a small part of the output.
     pub print_all: bool,
 }
 
@@ -144,7 +144,7 @@ impl WindowModel<'_> {
         Ok(read_dat(&read_if_there(&output)?, self.layout())?)
     }
 
-    /// The valid samples, and why they are not those of the whole path.
+    /// The valid samples, and why they are not the samples of the whole path.
     fn outcome(&self, run: DeckRun) -> (Vec<HingeSample>, Option<SolveError>) {
         let frames = match read_dat(&run.output, self.layout()) {
             Ok(frames) => frames,

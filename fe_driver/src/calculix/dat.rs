@@ -28,7 +28,7 @@ pub struct Frame {
     pub energy: f64,
     /// Nodes of arc B, counted from 0, with their reaction forces (N).
     pub reactions: Vec<(usize, [f64; 3])>,
-    /// Displacements (mm) of the first nodes of the mesh: those of the lower face, or all.
+    /// Displacements (mm) of the first nodes of the mesh: the nodes of the lower face, or all.
     pub displacements: Vec<[f64; 3]>,
     /// Equivalent plastic strain at the Gauss points, element by element.
     pub peeq: Vec<f64>,

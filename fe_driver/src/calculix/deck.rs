@@ -58,7 +58,7 @@ fn write_deck(d: &mut String, model: &WindowModel) -> fmt::Result {
     let Some(turn) = turn else {
         return Ok(());
     };
-    // Boundary conditions and output are those of the step before. Unloading needs no shorter increments than a whole path.
+    // Boundary conditions and output stay as in the step before. Unloading needs no shorter increments than a whole path.
     let duration = 1.0 - turn;
     let unloading = StepControl {
         greatest: (model.step.greatest / duration).min(1.0),

@@ -17,6 +17,6 @@ pub struct WindowModel<'a> {
     /// The increments of the solve.
     pub step: &'a StepControl,
     /// Whether the displacements of all nodes are printed, for [`CalculiX::fields`](crate::CalculiX::fields); if not,
-    /// those of the lower face, which are a small part of the output.
+    /// only the displacements of the lower face are printed, which are a small part of the output.
     pub print_all: bool,
 }

@@ -249,7 +249,7 @@ mod tests {
     /// Number of hostile names that a script can state.
     const STATED: usize = 22;
 
-    /// The words that the programs of a filled template receive: those of kirigami, run with the arguments of `bash`.
+    /// The arguments that kirigami receives from a filled template, which `bash` runs with the argument `role`.
     fn words(script: &ArrayScript, template: &str, role: &str) -> Vec<String> {
         let text = script.fill(template).unwrap();
         let recorded = script.here.join("recorded");

@@ -47,7 +47,7 @@ pub struct Campaign {
     pub time_limit: Duration,
     /// CSV file of rays in addition to the sampled ones, relative to this file; written by `kirigami campaign extend`.
     extra_rays: Option<PathBuf>,
-    /// Rays in addition to those of the boxes, solved after them.
+    /// Rays in addition to the rays of the boxes, and solved after them.
     #[serde(skip)]
     pub further: Vec<Ray>,
     /// Constants of all hinges.

@@ -1,7 +1,8 @@
-//! Rays that a campaign solves in addition to those of its box, at states that designs reach outside the data.
+//! Rays that a campaign solves in addition to the rays of its box, at states that designs reach outside the data.
 //!
-//! They are in a CSV file with the columns `w_lig` (mm), `alpha_deg`, `eta_a`, `eta_s`, `theta_deg`, one ray per
-//! row, and `fillet_ratio` where hinges have other holes than that of the campaign's `[design]`. The campaign's key `extra_rays` is the path of the file. Lines that start with `#` are comments.
+//! They are in a CSV file with the columns `w_lig` (mm), `alpha_deg`, `eta_a`, `eta_s`, `theta_deg`, one ray per row, and `fillet_ratio`
+//! where hinges have other holes than the hole of the campaign's `[design]`. The campaign's key `extra_rays` is the path of the file.
+//! Lines that start with `#` are comments.
 
 use crate::solve::hinge_path::Ray;
 use hinge::{HingeConstants, HingeDeformation};
@@ -91,8 +92,8 @@ pub struct Added {
     pub refused: usize,
 }
 
-/// Appends rays to the file, which is created if it does not exist. Rays of hinges with one hole are those of a campaign with
-/// this hole; otherwise, and in a file with that column, `fillet_ratio` is written too.
+/// Appends rays to the file, which is created if it does not exist. If the hinges of all rays have the same hole, the rays belong to a
+/// campaign with this hole; otherwise, and in a file with that column, `fillet_ratio` is written too.
 pub fn add_extra_rays(path: &Path, rays: &[Ray]) -> Result<Added, ExtraRaysError> {
     let (header, rows) = if path.exists() {
         csv_table::read(path)?

@@ -23,10 +23,10 @@ pub struct Plan {
     pub reasons: BTreeMap<String, usize>,
     /// Jobs in the folder that no longer belong to the campaign; they are kept.
     pub stale: usize,
-    /// Estimated time of one worker (s), from the jobs of each mesh whose time is known ([`Tally::timed`]); if there is none,
-    /// that of as many jobs of the polyester film.
+    /// Estimated time of one worker (s), from the jobs of each mesh whose time is known ([`Tally::timed`]); if there is none, the time of
+    /// as many jobs of the polyester film.
     pub seconds: f64,
-    /// Memory of one worker (MB): that of the largest mesh.
+    /// Memory of one worker (MB) for the largest mesh.
     pub memory_mb: f64,
     /// Disk space of the jobs to run (MB).
     pub disk_mb: f64,

@@ -29,7 +29,7 @@ pub struct RunOptions {
 /// The progress of a run.
 #[derive(Clone, Debug)]
 pub struct Progress {
-    /// All jobs of the shard, including those of earlier runs.
+    /// All jobs of the shard, including the jobs of earlier runs.
     pub tally: Tally,
     /// Estimated remaining time (s), from the rate of this run; `None` before it has closed a job.
     pub seconds_left: Option<f64>,

@@ -240,9 +240,9 @@ pub fn array_states(campaign_folder: &Path) -> Result<Option<ArrayStates>, Slurm
     }))
 }
 
-/// The states of jobs and tasks by their ids: those of the queue, which forgets jobs minutes after their end, before
-/// those of the accounting, which not every site keeps, and which learns of jobs late. `None` if the queue does not answer
-/// and the accounting knows none of the jobs.
+/// The states of jobs and tasks by their ids. A state in the queue, which forgets jobs minutes after their end, takes precedence over a
+/// state in the accounting, which not every site keeps, and which learns of jobs late. `None` if the queue does not answer and the
+/// accounting knows none of the jobs.
 fn known_states(jobs: &[&str]) -> Option<BTreeMap<String, String>> {
     let jobs = format!("--jobs={}", jobs.join(","));
     let mut squeue = Command::new("squeue");

@@ -48,7 +48,7 @@ impl Difference {
     }
 }
 
-/// Whether the samples are those of a complete first attempt. A restored job may have been solved by a later one.
+/// Whether the samples come from a complete first attempt. A restored job may have been solved by a later attempt.
 fn is_of_first_attempt(window: &Solved) -> bool {
     let record = &window.record;
     record.failure.is_none()

@@ -31,13 +31,13 @@ pub struct Tally {
     pub rows: usize,
     /// Kinds of the last failure of partial, failed and retried jobs.
     pub failures: BTreeMap<FailureKind, usize>,
-    /// The jobs whose samples were solved on another tier than that of the campaign, by their ids.
+    /// The jobs whose samples were solved on another tier than the tier of the campaign, by their ids.
     pub other_tiers: BTreeMap<String, Tier>,
     /// Solver CPU time over all attempts (s).
     pub cpu_seconds: f64,
     /// Wall time of one worker over all attempts (s); restored jobs have none.
     pub wall_seconds: f64,
-    /// Closed jobs that were solved in this folder, not restored. The throughput is that of these jobs.
+    /// Closed jobs that were solved in this folder, not restored. Only these jobs count in the throughput.
     pub solved_here: usize,
     /// Closed jobs whose time is known: the wall time of those solved here, the CPU time of restored ones.
     pub timed: usize,
@@ -125,7 +125,7 @@ impl Tally {
         self.open + self.retry
     }
 
-    /// Time of one worker per job on a tier (s): the mean of those whose time is known, otherwise that of the polyester film.
+    /// Time of one worker per job on a tier (s): the mean over the jobs whose time is known, otherwise the time for the polyester film.
     pub(crate) fn seconds_a_job(&self, tier: Tier) -> f64 {
         match self.timed_by_tier.get(&tier) {
             Some((seconds, jobs @ 1..)) => seconds / *jobs as f64,
@@ -258,7 +258,7 @@ mod tests {
         }
     }
 
-    /// Restored jobs have no wall time, but their CPU time is that of the material.
+    /// Restored jobs have no wall time, but their CPU time is the CPU time for this material.
     #[test]
     fn the_time_of_a_job_is_also_that_of_restored_ones() {
         let seconds = |tally: &Tally| tally.seconds_a_job(Tier::Default);

@@ -36,7 +36,8 @@ impl RigidMotion {
         }
     }
 
-    /// What is left of a point after the motion: its position less that of the rigid body, in the frame of the latter.
+    /// The displacement of a point relative to the rigid body: the position of the point less its position on the body,
+    /// in the frame of the body.
     pub fn left(&self, before: [f64; 3], after: [f64; 3]) -> [f64; 3] {
         let r = &self.rotation;
         std::array::from_fn(|i| {

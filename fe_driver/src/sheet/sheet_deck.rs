@@ -19,7 +19,8 @@ use std::fmt::{self, Write};
 const TABLE_STIFFNESS: f64 = 0.2;
 /// Distance of the other ends of the springs that are the table (mm): so large that they stay upright.
 const TABLE_DEPTH: f64 = 1e5;
-/// Height of a node at which the table lets go (mm). Exactly zero would let the first iteration take the open branch.
+/// Height of a node at which the table releases it (mm). Exactly zero would let the first iteration take the open
+/// branch.
 const TABLE_KINK: f64 = 1e-5;
 /// Numerical damping of the dynamic steps, near the most that the method has.
 const DAMPING: f64 = -0.3;

@@ -13,7 +13,7 @@ pub(crate) struct SheetLayout {
     pulled: Vec<usize>,
     hinges: usize,
     is_held: bool,
-    /// Gauss points of each element of a window; 0 for those of panels.
+    /// Gauss points of each element of a window; 0 for the elements of panels.
     points: Vec<usize>,
     is_dynamic: bool,
 }

@@ -112,7 +112,7 @@ impl SheetModel<'_> {
         }
     }
 
-    /// `elements` are those of its window.
+    /// `elements` are the elements of the window of the hinge.
     fn hinge(&self, frame: &SheetFrame, hinge: usize, elements: &[usize]) -> HingeState {
         let shape = &self.problem.shape;
         let points = elements.iter().flat_map(|element| {

@@ -75,7 +75,7 @@ pub struct SheetSurface {
     pub displacements: Vec<[f64; 3]>,
     /// Corners of each face, counter-clockwise.
     pub faces: Vec<Vec<usize>>,
-    /// The panel of each face, or the number of panels plus that of its window.
+    /// The index of the panel of each face, or the number of panels plus the index of the window of the face.
     pub parts: Vec<usize>,
     /// Largest plastic strain of the elements of each face; 0 in panels.
     pub plastic_strain: Vec<f64>,
@@ -118,7 +118,7 @@ impl PanelState {
         (r[1][0] - r[0][1]).atan2(r[0][0] + r[1][1])
     }
 
-    /// Angle between the normal of the panel and that of the sheet (rad).
+    /// Angle between the normal of the panel and the normal of the sheet (rad).
     pub fn tilt(&self) -> f64 {
         let r = &self.rotation;
         f64::hypot(r[0][2], r[1][2]).atan2(r[2][2])
@@ -126,7 +126,7 @@ impl PanelState {
 }
 
 impl SheetSurface {
-    /// Angle (deg) between the normal of each face and that of the flat sheet.
+    /// Angle (deg) between the normal of each face and the normal of the flat sheet.
     pub fn tilts_deg(&self) -> Vec<f64> {
         let deformed = self.deformed();
         let tilt = |face: &Vec<usize>| {

@@ -152,8 +152,8 @@ impl<S: Solve> Workers<'_, S> {
 
     /// Makes one attempt at a job and records its result, unless the machine ended it or a request.
     ///
-    /// The samples of the attempt that reached the largest lambda are kept. If another process has recorded an attempt in the
-    /// meantime, its record is returned, and that of this attempt is dropped.
+    /// The samples of the attempt that reached the largest lambda are kept. If another process has recorded an attempt in the meantime,
+    /// its record is returned, and the record of this attempt is dropped.
     fn attempt(
         &self,
         job: &Job<S>,

@@ -1,6 +1,6 @@
 //! The deformation path of a window solve: (a, s, theta) as a function of lambda in [0, 1].
 //!
-//! The database consists of rays (section 2.4): straight ones for films; those of plates bend like the free turn of a ligament. Paths
+//! The database consists of rays (section 2.4): straight rays for films; the rays of plates bend like the free turn of a ligament. Paths
 //! recorded from deployed sheets measure the error of ignoring the loading path (section 5.2). All are piecewise linear and start at the
 //! undeformed state.
 //!
@@ -82,9 +82,10 @@ impl DeformationPath {
         }
     }
 
-    /// The ray to `end` of a ligament of the width `w_lig` (mm): eta_s and theta grow in proportion, and so does the distance of eta_a from
-    /// the free turn of the regime. With lambda it reaches every state between as the ray to that state does. Sheets of plates take such
-    /// paths: their forces at the end differ by half as much from those of paths recorded in sheets as the forces of straight rays do.
+    /// The ray to `end` of a ligament of the width `w_lig` (mm): eta_s and theta grow in proportion, and so does the distance of eta_a
+    /// from the free turn of the regime. With lambda it reaches every state between as the ray to that state does. Sheets of plates take
+    /// such paths: the forces at their end differ from the forces of paths recorded in sheets by half as much as the forces of straight
+    /// rays do.
     pub fn ray(end: HingeDeformation, regime: Regime, w_lig: f64) -> Self {
         let [_, curvature] = regime.free_opening();
         if curvature == 0.0 {

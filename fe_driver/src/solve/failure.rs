@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use strum::VariantNames;
 use support::program::ToolError;
 
-/// Why a solve has no samples, or only samples of a part of its path. Its name is that of records and tables.
+/// Why a solve has no samples, or only samples of a part of its path. Records and tables use its name.
 #[derive(
     Clone,
     Copy,

@@ -1,10 +1,10 @@
 //! The store of solves on disk: one folder a solve, whole or open.
 //!
-//! The folder of a solve is `<first two digits of its id>/<id>/`, so that no folder has 10^5 entries. It contains `job.json`
-//! (all inputs of the result; its hash is the id), the file of the samples (`rows.csv` for a window) and `result.json`.
-//! `result.json` is written last: a solve without it is not done. These files are written atomically. Every process works
-//! in a folder of its own, `work-<host>-<process>`. Deck and log of the last attempt that failed remain in `work`; those of
-//! others do not: the deck follows from `job.json`.
+//! The folder of a solve is `<first two digits of its id>/<id>/`, so that no folder has 10^5 entries. It contains `job.json` (all inputs
+//! of the result; its hash is the id), the file of the samples (`rows.csv` for a window) and `result.json`. `result.json` is written last:
+//! a solve without it is not done. These files are written atomically. Every process works in a folder of its own,
+//! `work-<host>-<process>`. The deck and the log of the last attempt that failed remain in `work`; the decks and logs of other attempts do
+//! not: the deck follows from `job.json`.
 
 use crate::record_file::{entries, or_damage, read_json, write_json};
 use crate::solve::failure::FailureKind;
@@ -283,7 +283,7 @@ impl SolveFolder {
         let (from, to) = (self.work_here(), self.work());
         remove_folder(&to)?;
         match std::fs::rename(&from, &to) {
-            // Another process has just kept those of its own attempt at the same solve.
+            // Another process has just kept the deck and the log of its own attempt at the same solve.
             Err(error) if error.kind() == io::ErrorKind::DirectoryNotEmpty => remove_folder(&from),
             renamed => renamed.map_err(FileError::at(&to)),
         }

@@ -48,7 +48,7 @@ impl<S: Solve, T: Solver<S> + ?Sized> Solver<S> for &T {
 pub struct Solution<S: Solve = WindowSolve> {
     /// The converged increments, in order of lambda; empty if the output is not valid.
     pub samples: S::Samples,
-    /// Why the samples are not those of a valid complete path; `None` for a complete path.
+    /// Why the samples are not the samples of a valid complete path; `None` for a complete path.
     pub stopped: Option<SolveError>,
     /// Number of elements of the mesh.
     pub elements: usize,
@@ -60,7 +60,7 @@ pub struct Solution<S: Solve = WindowSolve> {
     pub solver_seconds: f64,
     /// Maximum resident memory of the solver (MiB), if the operating system reports it.
     pub peak_memory_mib: Option<f64>,
-    /// Newton iterations, including those of cut-back increments.
+    /// Newton iterations, including the iterations of cut-back increments.
     pub iterations: usize,
 }
 

@@ -16,7 +16,7 @@ use serde::{Deserialize, Serialize};
 ///
 /// 2: D_peak is the mean over the most strained 1 % of the ligament.
 const RECIPE_VERSION: u32 = 2;
-/// That of paths that turn back. 3: an increment ends at the turn.
+/// The version for paths that turn back. 3: an increment ends at the turn.
 const TURNING_VERSION: u32 = 3;
 
 /// A window problem, without what solves it.
@@ -38,7 +38,7 @@ pub struct WindowProblem {
 pub struct WindowSolve {
     /// The window problem.
     pub problem: WindowProblem,
-    /// The recipe of the mesh: that of the tier.
+    /// The mesh recipe of the tier.
     pub mesh: MeshRecipe,
     /// Versions of the external programs.
     pub tools: ToolVersions,

@@ -95,7 +95,7 @@ fn patch_test(tier: Tier) {
     )
     .unwrap();
 
-    // Nodes and elements are those of the usual deck; the material and the load are specific to this test.
+    // Nodes and elements are the same as in the usual deck; the material and the load are specific to this test.
     let text = deck(&WindowModel {
         mesh: &mesh,
         path: &DeformationPath::straight(HingeDeformation::default()),

@@ -152,9 +152,9 @@ fn the_thinnest_and_the_thickest_sheet_are_solved() {
     }
 }
 
-/// A ligament narrower than the plate is thick stays in the plane and carries no axial force as it turns about its middle. An
-/// ideally plastic one carries the moment of a notched strip in bending: that of a plane section, sigma t c^2 / 4 over the net
-/// width c, or up to 1.26 times as much by the constraint of the notch (Green and Hundy 1956: deep notch, plane strain).
+/// A ligament narrower than the plate is thick stays in the plane and carries no axial force as it turns about its middle. An ideally
+/// plastic one carries the moment of a notched strip in bending: the moment of a plane section, sigma t c^2 / 4 over the net width c, or
+/// up to 1.26 times as much by the constraint of the notch (Green and Hundy 1956: deep notch, plane strain).
 #[test]
 fn a_ligament_of_a_plate_bends_in_its_plane() {
     let (yields, thickness, w_lig) = (40.0, 3.0, 1.5);
@@ -228,7 +228,7 @@ fn windows_of_every_thickness_are_similar() {
     }
 }
 
-/// Printing all displacements changes no sample, and the fields are those of the prescribed motion and of the sample.
+/// Printing all displacements changes no sample, and the fields agree with the prescribed motion and the sample.
 #[test]
 fn the_fields_of_a_window_agree_with_its_last_sample() {
     let asked = problem(70.0, [0.1, -0.05], 40.0);

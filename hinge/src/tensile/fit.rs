@@ -98,7 +98,7 @@ pub struct MaterialFit {
     pub table_deviation: f64,
     /// Plastic strain at fracture.
     pub fracture_strain: f64,
-    /// Scatter of the fracture strain, if it is that of the specimens.
+    /// Scatter of the fracture strain, if the fracture strain comes from the specimens.
     pub fracture_scatter: Option<f64>,
     /// Source of the fracture strain.
     pub fracture_source: FractureSource,

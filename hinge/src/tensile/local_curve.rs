@@ -18,7 +18,7 @@ fn local(row: &[f64; 2], young: f64) -> [f64; 2] {
     [stress, strain - stress / young]
 }
 
-/// The local curve from the end of the elastic part on: its stress at the plastic strain `onset` is that of zero plastic
+/// The local curve from the end of the elastic part on: its stress at the plastic strain `onset` becomes the stress at zero plastic
 /// strain. A film may reach its upper yield before: its curve is then one row.
 pub(super) fn first_part(
     curve: &[[f64; 2]],

@@ -134,7 +134,7 @@ impl Quantity {
         spelt(|spelling, unit| spelling == unit).or_else(|| spelt(str::eq_ignore_ascii_case))
     }
 
-    /// The units of this quantity, separated by commas; the first is that of the project.
+    /// The units of this quantity, separated by commas; the first is the unit of the project.
     pub fn units(self) -> String {
         let known: Vec<&str> = self
             .known()

@@ -182,7 +182,7 @@ impl RecordRow {
 }
 
 impl ReadColumn {
-    /// The unit is that of the options, or else that in the label.
+    /// The unit is given by the options, or else by the label.
     fn new(
         (quantity, index): (Quantity, usize),
         labels: &[String],
@@ -274,7 +274,7 @@ fn columns(labels: &[String], options: &RecordOptions) -> Result<Vec<(Quantity, 
     options.columns.iter().map(named).collect()
 }
 
-/// The column of the load and that of the deformation. Stress is preferred to force, and strain to extension.
+/// The column of the load and the column of the deformation. Stress is preferred to force, and strain to extension.
 fn pair(
     columns: &[(Quantity, usize)],
     labels: &[String],

@@ -59,7 +59,7 @@ pub struct Specimen {
     pub linear: LinearPart,
     /// Slack and toe that was subtracted from the strain.
     pub toe: f64,
-    /// Young's modulus of the evaluation: given, or that of the linear part.
+    /// Young's modulus of the evaluation: given, or the modulus of the linear part.
     pub young: f64,
     /// Nominal stress at a plastic strain of 0.2 %.
     pub offset_yield: f64,
@@ -359,7 +359,7 @@ fn half_window(curve: &[[f64; 2]], noise: f64) -> usize {
     (needed as usize).min(rise.unwrap_or(0) / 4)
 }
 
-/// The curve with each stress replaced by that of the regression line through the rows around it.
+/// The curve with each stress replaced by the stress of the regression line through the rows around it.
 fn smoothed(curve: &[[f64; 2]], half: usize) -> Vec<[f64; 2]> {
     let last = curve.len().saturating_sub(1);
     let value = |row: usize| {

@@ -1,4 +1,4 @@
-//! Tensile tests of known laws, with the disturbances of a testing machine: the fitted law is that of the record.
+//! Tensile tests of known laws, with the disturbances of a testing machine: the fitted law is the law of the record.
 
 mod bad_files;
 mod mutations;
@@ -344,7 +344,7 @@ fn a_film_that_draws_gives_its_local_law() {
             let allowed = if strain < natural { 0.12 } else { 0.02 };
             assert!(error.abs() < allowed, "{case}: {error:+.3} at {strain}");
         }
-        // The plastic work up to the natural draw ratio is that of the law: Maxwell's rule, and the elastic part.
+        // The plastic work up to the natural draw ratio is the plastic work of the law: Maxwell's rule, and the elastic part.
         let work = |stress: &dyn Fn(f64) -> f64| -> f64 {
             (0..10_000)
                 .map(|i| stress(natural * (f64::from(i) + 0.5) / 1e4) * natural / 1e4)

@@ -62,7 +62,7 @@ fn area_inside_parabolas(mesh: &WindowMesh) -> f64 {
 
 #[test]
 fn every_tier_covers_the_window_without_folded_elements() {
-    // The documented number of bricks; that of the wedges of `paper` depends on the hinge.
+    // The documented number of bricks; the number of wedges of `paper` depends on the hinge.
     let films = [36, 104, 228, 400, 912].map(Some).into_iter();
     let bricks = films.chain([None]).chain([72, 160, 768].map(Some));
     for (tier, bricks) in Tier::ALL.into_iter().zip(bricks) {

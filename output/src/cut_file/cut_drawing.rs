@@ -12,7 +12,7 @@ pub enum Layer {
     AttachmentHoles,
     /// The slits.
     Cut,
-    /// Without shapes: files declare it, as those of earlier versions.
+    /// Without shapes: files declare it, as the files of earlier versions do.
     Joint,
     /// The edge of the sheet.
     Outline,

@@ -73,8 +73,8 @@ impl CutLines {
         Self::new(pattern, sheet, scene.config.cutting, &attachments)
     }
 
-    /// The cuts of `sheet`, which must come from `pattern`, held and pulled at `attachments`. They are checked to be those
-    /// of the simulated sheet, to meet nowhere and to leave the sheet in one piece.
+    /// The cuts of `sheet`, which must come from `pattern`, held and pulled at `attachments`. They are checked to be the cuts of the
+    /// simulated sheet, to meet nowhere and to leave the sheet in one piece.
     pub fn new(
         pattern: &CutPattern,
         sheet: &Sheet,

@@ -13,8 +13,8 @@ const RUN: usize = 1000;
 const GAIN: f64 = 1e-6;
 
 impl CutDrawing {
-    /// The shapes in cutting order, from a tool at `home`. The travel within a layer is at most that of the present
-    /// order.
+    /// The shapes in cutting order, from a tool at `home`. The travel within a layer is at most the travel in the
+    /// present order.
     pub fn in_cutting_order(&self, home: [f64; 2]) -> Self {
         let mut at = home;
         let mut ordered = Self::default();

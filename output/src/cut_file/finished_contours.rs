@@ -19,8 +19,8 @@ pub struct Contours {
 }
 
 impl CutLines {
-    /// The contours that a tool of the given kerf (mm) follows with its centre, half of that from the finished edges; with
-    /// 0 the finished edges themselves. The kerf must be smaller than that of the slits.
+    /// The contours that a tool of the given kerf (mm) follows with its centre, half of that from the finished edges; with 0 the finished
+    /// edges themselves. The kerf must be smaller than the kerf of the slits.
     pub fn contours(&self, tool_kerf: f64) -> Contours {
         let inset = 0.5 * tool_kerf;
         let end = |slit: &Slit, which: usize| {

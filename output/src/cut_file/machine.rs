@@ -30,7 +30,7 @@ pub struct Machines {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Machine {
-    /// The name on the command line, which is also that of the folder of its files.
+    /// The name on the command line, which is also the name of the folder of its files.
     pub name: String,
     /// What it is, in a line.
     pub says: String,
@@ -38,7 +38,7 @@ pub struct Machine {
     cuts: Cuts,
     /// Width that the tool removes and the paths allow for (mm); `None`: the kerf of the scene.
     tool_kerf: Option<f64>,
-    /// Length by which an open slit is cut beyond the outline (mm); `None`: that of the scene.
+    /// Length by which an open slit is cut beyond the outline (mm); `None`: the length of the scene.
     over_run: Option<f64>,
     /// Diameter of the smallest hole that the tool cuts (mm).
     #[serde(default)]

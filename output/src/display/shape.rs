@@ -125,7 +125,7 @@ impl Shape {
         }
     }
 
-    /// Points whose bounding box is that of the shape.
+    /// Points with the same bounding box as the shape.
     fn extremes(&self) -> Vec<[f64; 2]> {
         match self {
             Self::Line(ends) => ends.to_vec(),

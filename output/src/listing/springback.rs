@@ -1,4 +1,4 @@
-//! What stays of the opening of a sheet when its loads are taken off, in numbers.
+//! Residual opening of a sheet when its loads are taken off, in numbers.
 
 use crate::drawing;
 use design::analysis::springback::{LetGoError, WhatStays, let_go_in_domain};
@@ -9,10 +9,10 @@ use serde::Serialize;
 use std::fmt;
 use surrogate::{Springback, SpringbackErrors};
 
-/// A sheet that was let go.
+/// An unloaded sheet.
 #[derive(Serialize)]
 pub struct SpringbackListing {
-    /// What stays.
+    /// The residual opening.
     #[serde(flatten)]
     pub stays: WhatStays,
     /// Mean rotation of the hinges without load over that under load; `None` if they have not opened.
@@ -24,7 +24,7 @@ pub struct SpringbackListing {
 }
 
 impl SpringbackListing {
-    /// Deploys a design of a scene and its problem, and lets it go.
+    /// Deploys a design of a scene and its problem, and unloads it.
     pub fn new(
         scene: &Scene,
         problem: &DesignProblem,

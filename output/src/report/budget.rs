@@ -26,7 +26,7 @@ const NEVER_MODELLED: [&str; 3] = [
     "the error of the finest mesh",
 ];
 
-/// What it leaves out of a sheet that is let go.
+/// What the model leaves out of an unloaded sheet.
 const UNDER_LOAD: &str = "the law of released hinges: the errors are those of the sheet under load, before it was let go";
 
 /// What the page and the report say above the table.

@@ -6,7 +6,7 @@
 //! ```
 //!
 //! over the states inside the training domain, for X = W, (w_lig F_a, w_lig F_s, M_theta) and D_peak. It does not
-//! contain errors that all networks have in common, such as that of the window's mesh.
+//! contain errors that all networks have in common, such as the error of the window's mesh.
 //! (Lakshminarayanan et al., "Simple and scalable predictive uncertainty estimation", 2017.)
 
 use design::objective::design_problem::Deployment;

@@ -15,16 +15,16 @@ use surrogate::SpringbackErrors;
 pub struct LastingShape {
     /// Creep of the material; `None` if its file has no figure.
     pub creep: Option<Creep>,
-    /// What stays when the loads are taken off; `None` if it is not known.
+    /// The residual opening when the loads are taken off; `None` if it is not known.
     pub released: Option<Released>,
     #[serde(skip)]
     springback: Option<String>,
 }
 
-/// A sheet that was let go.
+/// An unloaded sheet.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Released {
-    /// What stays.
+    /// The residual opening.
     #[serde(flatten)]
     pub stays: WhatStays,
     /// Errors of the law at hinges that it has not seen; `None` if they were not measured.

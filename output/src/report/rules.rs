@@ -24,22 +24,25 @@ use support::severity::Severity;
 
 /// Weight or friction over load from which a sheet opens otherwise than without it.
 const HEAVY: f64 = 0.05;
-/// Mass of hung weights over that of the sheet from which they are probably given in another unit.
+/// Ratio of the mass of hung weights to the mass of the sheet from which the weights are probably given in another
+/// unit.
 const HUNG: f64 = 50.0;
 /// Mean opening of the hinges (rad) that is rounding.
 const SHUT: f64 = -1e-6;
 /// Distance of the outline from the target over the longer side of the flat sheet from which it is a note, a warning and an error.
 const MISSED: [f64; 3] = [0.01, 0.03, 0.2];
-/// Kerf over ligament width for which another kerf than that of the weights was measured, in a film (data/pet-0.5mm) and in a
-/// plate (data/polypropylene-3mm).
+/// Kerf over ligament width for which another kerf than the kerf of the weights was measured, in a film (data/pet-0.5mm) and in a plate
+/// (data/polypropylene-3mm).
 const MEASURED_KERF_OF_FILM: [f64; 2] = [0.002, 0.15];
 const MEASURED_KERF_OF_PLATE: [f64; 2] = [0.05, 0.64];
 /// Relative difference of two kerfs that is rounding.
 const SAME_KERF: f64 = 1e-6;
 /// Relative error of a force (%) above which a law is inaccurate.
 const INACCURATE: f64 = 10.0;
-/// Separation of a path from its ray, in ligament widths, up to which W differs by less than 1 % (docs/TRIED.md).
-const SAFE_SEPARATION: f64 = 0.15;
+/// Separation of a path from its straight ray, in ligament widths: in a film W differs by less than 1 % up to there (docs/TRIED.md), in a plate
+/// the forces by less than 10 % (docs/results/plates).
+const SAFE_SEPARATION_OF_FILM: f64 = 0.15;
+const SAFE_SEPARATION_OF_PLATE: f64 = 0.03;
 /// Ligament width over thickness from which the corners of a film that nothing holds are more than 5 % of the sheet off (docs/results/flatness).
 const FALLS: f64 = 2.6;
 /// Rounding of lengths (mm).
@@ -245,10 +248,15 @@ fn states_outside(judged: &Judged) -> Option<Warning> {
 /// A learned law was measured along straight rays.
 fn path_dependence(judged: &Judged) -> Option<Warning> {
     judged.scene.surrogate()?;
-    let bent = judged.those(|row| row.path_separation > SAFE_SEPARATION);
+    let widest = judged.scene.config.ligament.range[1];
+    let (safe, page) = match judged.scene.material.regime(widest) {
+        Regime::Film => (SAFE_SEPARATION_OF_FILM, "docs/TRIED.md"),
+        Regime::Plate => (SAFE_SEPARATION_OF_PLATE, "docs/results/plates"),
+    };
+    let bent = judged.those(|row| row.path_separation > safe);
     let message = format!(
-        "paths depart by more than {SAFE_SEPARATION} ligament widths from the straight rays of the hinge law: energy, forces \
-         and damage depend on the path there (docs/TRIED.md); check by `kirigami verify`"
+        "paths depart by more than {safe} ligament widths from the straight rays of the hinge law: energy, forces and damage depend on the \
+         path there ({page}); check by `kirigami verify`"
     );
     about(Concern::PathDependence, bent, message)
 }

@@ -16,7 +16,7 @@ pub struct SelfWeight {
     pub over_load: Option<f64>,
     /// Whether the weight acts in the model.
     pub is_modelled: bool,
-    /// Mass of the weights that hang from the sheet over that of the sheet; `None` if none does.
+    /// Mass of the weights that hang from the sheet over the mass of the sheet; `None` if no weight hangs from it.
     pub hung: Option<f64>,
     /// Friction and bending of a sheet that lies on a surface.
     pub lying: Option<Lying>,

@@ -26,9 +26,9 @@ pub(super) struct HingeStates {
     of: usize,
     index: Vec<usize>,
     load_factor: Vec<f64>,
-    /// Whether the last state is that after the loads were taken off.
+    /// Whether the last state is the state after the loads were taken off.
     let_go: bool,
-    /// Number of load steps in which the weight comes on, before those of the loads.
+    /// Number of load steps in which the weight comes on, before the steps of the loads.
     weight_steps: usize,
     status: Vec<Status>,
     /// (displacement, load) of what moves the sheet, for all states of the path; `None` before the whole weight is on.

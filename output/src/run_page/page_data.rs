@@ -140,7 +140,7 @@ impl<'a> PageData<'a> {
 }
 
 impl<'a> SheetData<'a> {
-    /// A sheet whose states are those of a deployment, without the spread of the scene's networks.
+    /// A sheet with the states of a deployment, without the spread of the scene's networks.
     pub fn new(scene: &'a Scene, problem: &DesignProblem, deployment: &Deployment) -> Self {
         let rows = HingeRow::all(scene, deployment);
         Self::with_hinges(scene, problem, deployment, &[], &rows)

@@ -316,7 +316,7 @@ fn the_files_of_every_machine_leave_the_solved_ligaments() {
     }
 }
 
-/// Nothing but closed contours, whose edges are those of the finished sheet.
+/// Nothing but closed contours, whose edges are the edges of the finished sheet.
 fn contours_leave_the_ligaments(file: &DxfContents, cuts: &CutLines) {
     assert!(file.lines.is_empty() && file.circles.is_empty() && file.texts.is_empty());
     assert!(file.polylines.iter().all(|(_, closed, _)| *closed));

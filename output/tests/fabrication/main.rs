@@ -1,5 +1,5 @@
-//! The cut lines of the uniform 3 x 3 sheet against numbers computed by hand, and those of irregular sheets against the
-//! rule that no cut enters a ligament; cutting order, numbers of random sheets; the files, read back.
+//! The cut lines of the uniform 3 x 3 sheet against numbers computed by hand, and the cut lines of irregular sheets
+//! against the rule that no cut enters a ligament; cutting order, numbers of random sheets; the files, read back.
 //!
 //! The uniform sheet of 400 mm panels and 18 mm ligaments, with its four interior slits:
 //!

@@ -71,8 +71,8 @@ fn the_load_factor_is_found_with_the_standard_error_that_is_stated() {
     assert!((sum / 40.0 - 1.0).abs() < allowed, "{sum}");
 }
 
-/// The stated errors of the openings are those of the noise: their normalised squares have a mean of 1. The 85
-/// openings of a sheet share panels; four standard deviations of 50 independent ones are 0.8.
+/// The stated errors of the openings are the errors that the noise causes: their normalised squares have a mean of 1.
+/// The 85 openings of a sheet share panels; four standard deviations of 50 independent ones are 0.8.
 #[test]
 fn the_openings_have_the_standard_error_that_is_stated() {
     let (problem, deployment) = deployed();

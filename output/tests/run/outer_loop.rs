@@ -57,7 +57,7 @@ fn resumes(text: &str) {
     let [whole, parts] = [(); 2].map(|()| tempfile::tempdir().unwrap());
     let uninterrupted = run(&read(whole.path(), text), None).unwrap();
     let scene = read(parts.path(), text);
-    // In the middle of steps whose paths are corrected from that of step 10.
+    // In the middle of steps whose paths are corrected from the path of step 10.
     let stopped = run(&scene, Some(13)).unwrap();
     assert_eq!(stopped.ended, Ended::Stopped);
     assert_eq!(stopped.history.len(), 14);

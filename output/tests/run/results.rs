@@ -70,7 +70,7 @@ fn the_pictures_show_every_panel_hinge_and_slit() {
 fn panels_too_small_for_their_windows_are_named() {
     let report =
         finished(&[&SMALL[..], &[("start_noise = 0.05", "start_noise = 0.0")]].concat()).report;
-    // Panels of about 130 mm: windows of 100 mm lie inside them but overlap those of the next hinge.
+    // Panels of about 130 mm: windows of 100 mm lie inside them but overlap the windows of the next hinge.
     one(&report, Concern::WindowsOverlap);
     assert_says(&report.to_string(), "windows of 100 mm radius overlap");
 }
@@ -105,8 +105,8 @@ fn ligaments_wider_than_their_slits_cannot_be_cut_and_the_report_says_so() {
     assert!(run.scene.output().join("deployed.svg").exists());
 }
 
-/// Ligaments that translate by more than their width are an error: no cut file is written unless it is forced, and
-/// that of an earlier design is removed.
+/// Ligaments that translate by more than their width are an error: no cut file is written unless it is forced, and the
+/// cut file of an earlier design is removed.
 #[test]
 fn a_load_far_too_large_leaves_no_cut_file_unless_it_is_forced() {
     let run = finished(&[("force = [2.0, 0.0]", "force = [3e4, 0.0]"), QUICK]);
@@ -125,7 +125,7 @@ fn a_load_far_too_large_leaves_no_cut_file_unless_it_is_forced() {
     }
 }
 
-/// The table of the tutorial is that of the program: one line for successive files of the same contents.
+/// The table of the tutorial is the table of the program: one line for successive files of the same contents.
 #[test]
 fn the_tutorial_lists_the_files_of_a_run() {
     let mut lines: Vec<(String, &str)> = Vec::new();

@@ -36,7 +36,7 @@ fn assert_single(found: f32, expected: f64) {
     assert!(close, "{found} {expected}");
 }
 
-/// Asserts that the numbers of all hinges in the last state are those of the report.
+/// Asserts that the numbers of all hinges in the last state are the numbers in the report.
 fn assert_equals_report(data: &Value, report: &Report) {
     let (count, states) = (report.hinges.len(), &data["states"]);
     let deformations = floats(&states["deformations"]);

@@ -29,7 +29,7 @@ pub struct SubmitCommand {
     /// Number of solves in parallel in each task, and of its processors
     #[arg(long, value_name = "N", default_value = "1", value_parser = jobs::<NonZeroUsize>)]
     jobs: NonZeroUsize,
-    /// Template of the script [default: that of configs/cluster/slurm.sh]
+    /// Template of the script [default: the template in configs/cluster/slurm.sh]
     #[arg(long, value_name = "FILE")]
     template: Option<PathBuf>,
     /// Print the script and submit nothing

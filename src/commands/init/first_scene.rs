@@ -26,14 +26,14 @@ pub(crate) const OPENING: f64 = 0.436;
 /// Thickness (mm) from which a sheet is a plate: the narrowest ligaments of a thinner one, a third of its thickness, would be
 /// too narrow for a hole wider than the kerf.
 pub(crate) const THINNEST_PLATE: f64 = 2.0;
-/// Widths of the clips at the top and at the bottom over those of their edges.
+/// Widths of the clips at the top and at the bottom over the widths of their edges.
 const HELD: f64 = 0.21;
 const PULLED: f64 = 0.14;
 /// Name of the law of released hinges in the folder of weights.
 const SPRINGBACK: &str = "springback.json";
 /// The network of drafts beside weights.
 const DRAFT: &str = "small.safetensors";
-/// Kerf of the shipped plate, which is that of the shipped film or wider (mm).
+/// Kerf of the shipped plate, which is as wide as the kerf of the shipped film or wider (mm).
 const WIDEST_KERF: f64 = 0.2;
 /// Fewest panels along a side: below three, no panel has a neighbour on both sides.
 const FEWEST: usize = 3;
@@ -141,7 +141,7 @@ impl FirstScene {
                 }
             }
         }
-        // Clips as wide, relative to the edge that they hold, as those of the template.
+        // Clips as wide, relative to the edge that they hold, as the clips of the template.
         let edge = self.size[0] / self.panels[0] as f64;
         for (list, panel, part) in [("supports", held, HELD), ("loads", pulled, PULLED)] {
             let attached = &mut scene[list][0];

@@ -17,7 +17,7 @@ pub struct Inspected {
     /// Scene (TOML); see configs/scenes. Or the folder of a run, which holds its scene, material and weights
     #[arg(value_name = "SCENE")]
     scene: PathBuf,
-    /// Design (JSON): the state.json of a run, or a design alone; `start` is the start design of the scene [default: that of the
+    /// Design (JSON): the state.json of a run, or a design alone; `start` is the start design of the scene [default: the design of the
     /// scene's run]
     #[arg(long, value_name = "FILE")]
     design: Option<PathBuf>,
@@ -35,8 +35,8 @@ impl Inspected {
         }
     }
 
-    /// The scene, a design of its sheet and the name of the design: without `--design` that of the scene's run, or the start
-    /// design if the scene has no run.
+    /// The scene, a design of its sheet and the name of the design: without `--design` the design of the scene's run, or the start design
+    /// if the scene has no run.
     pub(crate) fn read(&self) -> Result<(Scene, DesignVector, String)> {
         let scene = self.scene()?;
         let (design, name) = match self.stored(&scene)? {
@@ -59,7 +59,7 @@ impl Inspected {
         Ok((scene, design, name))
     }
 
-    /// The design that `--design` names, or that of the scene's run; `None` if it has no run.
+    /// The design that `--design` names, or the design of the scene's run; `None` if the scene has no run.
     fn stored(&self, scene: &Scene) -> Result<Option<Named>> {
         Ok(match &self.design {
             None => {

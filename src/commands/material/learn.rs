@@ -62,8 +62,8 @@ pub struct LearnCommand {
     /// Start no ray after this time, with its unit: h, min or s; the spot check, running solves and trainings are finished
     #[arg(long, value_name = "TIME", default_value = "1h", value_parser = time)]
     time: Duration,
-    /// Mesh tier of the windows, which also says whether the ligaments are those of a film or of a plate [default: plate from
-    /// 2 mm of thickness on, below it default]
+    /// Mesh tier of the windows, which also says whether the ligaments belong to a film or to a plate [default: plate from 2 mm of
+    /// thickness on, below it default]
     #[arg(long, value_name = "TIER")]
     tier: Option<Tier>,
     /// Number of rays of the first round
@@ -77,7 +77,7 @@ pub struct LearnCommand {
     spot_seed: u64,
     #[command(flatten)]
     solve: SolveArgs,
-    /// Folder for the results; a folder of a stopped run is continued. Its weights are those of the last round of this command
+    /// Folder for the results; a folder of a stopped run is continued. Its weights come from the last round of this command
     #[arg(long, value_name = "FOLDER")]
     out: PathBuf,
 }
@@ -180,7 +180,7 @@ impl LearnCommand {
         }
     }
 
-    /// Writes material, campaign and training to a new folder. Those of a folder that is continued are kept.
+    /// Writes material, campaign and training to a new folder. The files of a folder that is continued are kept.
     fn write_inputs(&self, material: &SheetMaterial, tier: Tier) -> Result<()> {
         if !self.out.join(TRAINING_FILE).exists() {
             run_folder::write(&self.out, TRAINING_FILE, TRAINING)?;
@@ -205,7 +205,7 @@ impl LearnCommand {
         run_folder::write(&self.out, "campaign.toml", &campaign.to_string())
     }
 
-    /// The campaign of the folder, which must be that of the material and the tier.
+    /// The campaign of the folder, which must have the same material and tier.
     fn campaign(&self, material: &SheetMaterial, tier: Tier) -> Result<Campaign> {
         let campaign = Campaign::load(&self.out.join("campaign.toml"))?;
         let (out, given) = (self.out.display(), self.material.display());
@@ -295,7 +295,7 @@ impl LearningSteps for Steps<'_> {
         println!("{round}");
         self.rounds.push(round.clone());
         run_folder::write(self.out, "learn.csv", &LearningRound::csv(&self.rounds))?;
-        // The weights are those of all rays that an earlier command has solved.
+        // The saved weights are trained on all rays that an earlier command has solved.
         if is_latest {
             weights.save(&weights_file(self.out))?;
         }

@@ -1,4 +1,4 @@
-//! `kirigami surrogate release`: hinges deformed and let go by finite elements, and their law.
+//! `kirigami surrogate release`: hinges deformed and unloaded by finite elements, and their law.
 
 use crate::commands::solve_args::{SolveArgs, task_error};
 use crate::commands::surrogate::trained_material;
@@ -14,7 +14,7 @@ use std::path::PathBuf;
 use surrogate::{FEWEST, Springback, Surrogate};
 use verification::{first_guess, judging_tier, releases};
 
-/// Deform hinges by finite elements, let them go, and learn what stays
+/// Deform hinges by finite elements, unload them, and learn their residual deformation
 ///
 /// The states are drawn uniformly inside the training domain of the weights, one a hinge, with holes of 0.16 ligament widths. Each hinge is deformed along the straight
 /// ray to its state and unloaded until it is without forces; that takes two to three windows. Writes released.csv, the
@@ -35,8 +35,8 @@ pub struct ReleaseCommand {
     /// Sheet material that the weights were trained on (TOML)
     #[arg(long, value_name = "FILE")]
     material: PathBuf,
-    /// Mesh tier of the windows [default: that of the weights' database, or the finer tier that the
-    /// database was corrected to]
+    /// Mesh tier of the windows [default: the tier of the weights' database, or the finer tier that the database was
+    /// corrected to]
     #[arg(long, value_name = "TIER")]
     tier: Option<Tier>,
     /// Folder for the table and the solutions
@@ -62,7 +62,7 @@ impl ReleaseCommand {
         let tier = judging_tier(self.tier, &surrogate)?;
         let _held = run_folder::hold(&self.out)?;
         let windows = self.solve.service(&self.out)?;
-        // A law knows one hole, that of reference.
+        // A law knows one hole, the reference hole.
         let mut domain = surrogate.domain().clone();
         domain.holes = None;
         let drawn = DrawnStates {

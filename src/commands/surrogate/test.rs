@@ -21,7 +21,7 @@ pub struct TestCommand {
     /// Database (Parquet with its manifest)
     #[arg(value_name = "DATABASE")]
     database: PathBuf,
-    /// Write the errors to the card of the weights as their spot check, from which the error budget of a design takes those of the
+    /// Write the errors to the card of the weights as their spot check, from which the error budget of a design takes the errors of the
     /// hinge law. The states must be in no training
     #[arg(long)]
     record: bool,

@@ -46,7 +46,7 @@ pub fn kept_fit<'a>(
     Ok(trained.surrogate)
 }
 
-/// Whether a card is that of the network of a configuration, its data and its initial weights.
+/// Whether a card belongs to the network of a configuration, its data and its initial weights.
 pub(super) fn is_of(
     card: &Card,
     data: TrainingData,

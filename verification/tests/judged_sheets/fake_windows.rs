@@ -92,8 +92,8 @@ fn springs(factor: f64) -> Scene {
 /// (k_a, k_s) (N/mm) and k_theta (N mm/rad).
 const SPRINGS: [f64; 3] = [400.0, 250.0, 300.0];
 
-/// The finite elements of the test are springs that are a tenth stiffer than those of the scene: the exact equilibrium is
-/// that of a scene with their stiffness.
+/// The finite elements of the test are springs that are a tenth stiffer than the springs of the scene: the exact equilibrium is the
+/// equilibrium of a scene with their stiffness.
 #[test]
 fn a_balanced_sheet_is_that_of_the_hinges_of_the_solver() {
     let folder = tempfile::tempdir().unwrap();
@@ -120,7 +120,7 @@ fn a_balanced_sheet_is_that_of_the_hinges_of_the_solver() {
     assert_eq!(again.attempts(), 0);
 }
 
-/// Hinges whose stiffness is that of the mesh: [`SPRINGS`] times 1.05 on the mesh `default`, times 1.1 on any other.
+/// Hinges whose stiffness depends on the mesh: [`SPRINGS`] times 1.05 on the mesh `default`, times 1.1 on any other.
 struct ByMesh([NeverFails; 2]);
 
 type NeverFails = FakeSolver<fn(&WindowSolve) -> Option<Fault>>;
@@ -213,7 +213,7 @@ impl Solver for Stiffer {
 }
 
 /// The search goes on with the hinges of the solver, whose forces the law of the final design has at their states, although they are far
-/// from those of the learned law.
+/// from the forces of the learned law.
 #[test]
 fn a_final_design_has_the_forces_of_the_solver() {
     let folder = tempfile::tempdir().unwrap();

@@ -1,4 +1,4 @@
-//! Hinges and sheets that are let go: by springs that slip, whose rest is known exactly, and by finite elements at the limits.
+//! Unloaded hinges and sheets: by springs that slip, whose rest is known exactly, and by finite elements at the limits.
 
 use design::analysis::springback::released_hinges;
 use design::objective::design_problem::Deployment;
@@ -84,7 +84,7 @@ impl Slipping {
         })
     }
 
-    /// A hinge that was let go at a state to which it was driven without return.
+    /// A hinge that was unloaded from a state to which it was driven without return.
     fn released(&self, reached: &HingeDeformation) -> ReleasedHinge {
         let mut slipped = [0.0; 3];
         self.forces(&mut slipped, reached);
@@ -224,7 +224,7 @@ fn a_law_for_another_material_is_refused() {
     );
 }
 
-/// Without springs that slip, a sheet that is let go is flat again.
+/// Without springs that slip, an unloaded sheet is flat again.
 #[test]
 fn an_elastic_sheet_is_flat_again() {
     let scene = scene();

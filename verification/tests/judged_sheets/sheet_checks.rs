@@ -107,7 +107,7 @@ fn panels_held_flat_go_where_the_law_has_them() {
     ] {
         assert!(page.contains(part), "{page}");
     }
-    // The path is that of the law from its beginning.
+    // The path agrees with the path of the law from its beginning.
     let half = branch
         .path
         .iter()
