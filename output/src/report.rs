@@ -115,12 +115,12 @@ impl Report {
                 load,
                 damage,
             } = rung.difference;
-            let judge = match rung.finer {
+            let reference = match rung.finer {
                 Level::Final => "finite elements of every hinge".to_owned(),
                 finer => format!("`{finer}`"),
             };
             format!(
-                "searched at the level `{}` in {} steps: its corners differ from {judge} by {} mm at most{}{}; asked for: {} mm",
+                "searched at the level `{}` in {} steps: its corners differ from {reference} by {} mm at most{}{}; asked for: {} mm",
                 rung.level,
                 rung.steps,
                 rounded(corners[1], 2),

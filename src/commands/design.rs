@@ -197,7 +197,7 @@ impl DesignCommand {
         let _held = run_folder::hold(&scene.output())?;
         if self.restart {
             remove_run(scene)?;
-            remove_inner_runs(&scene.output())?;
+            remove_level_runs(&scene.output())?;
         }
         match self.within {
             None if self.by_elements(scene.config.level) => {
@@ -300,15 +300,18 @@ fn with_level_bars<T>(scene: &Scene, searches: impl FnOnce(OnStep) -> T) -> T {
     found
 }
 
-/// Removes the runs of other levels in the folder of a run.
-fn remove_inner_runs(folder: &Path) -> Result<()> {
+/// Removes the runs of levels in the folder of a run, such as `draft` and `final-1`; other runs there, such as `seed-1`, are not its.
+fn remove_level_runs(folder: &Path) -> Result<()> {
+    let is_of_level = |path: &PathBuf| {
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        let search = name.strip_prefix("final-");
+        let is_search = search.is_some_and(|number| number.parse::<usize>().is_ok());
+        (is_search || Level::named(&name).is_some()) && holds_a_run(path)
+    };
     let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
-    for inner in entries
-        .map(|entry| entry.path())
-        .filter(|path| holds_a_run(path))
-    {
-        std::fs::remove_dir_all(&inner)
-            .with_context(|| format!("cannot remove {}", inner.display()))?;
+    for run in entries.map(|entry| entry.path()).filter(is_of_level) {
+        std::fs::remove_dir_all(&run)
+            .with_context(|| format!("cannot remove {}", run.display()))?;
     }
     Ok(())
 }

@@ -38,7 +38,7 @@ pub struct SolveCommand {
     /// Shear at the end of the ray, divided by the ligament width
     #[arg(long, value_name = "RATIO", default_value_t = 0.0)]
     eta_s: f64,
-    /// Recorded path instead of a straight ray: a CSV file with the columns eta_a, eta_s, theta_deg and,
+    /// Recorded path instead of a ray: a CSV file with the columns eta_a, eta_s, theta_deg and,
     /// if the states are not equally spaced, lambda
     #[arg(long, value_name = "FILE", conflicts_with_all = ["theta_deg", "eta_a", "eta_s"])]
     path: Option<PathBuf>,

@@ -86,7 +86,7 @@ impl BalanceEnd {
 }
 
 /// Most rounds on the cheaper mesh, which takes a sixth of the time of the finest one.
-const DRAFT_ROUNDS: usize = 6;
+pub(crate) const DRAFT_ROUNDS: usize = 6;
 
 /// Deploys a design with finite elements for its hinges: on the cheaper mesh of [`Tier::draft`] until it is balanced, then in at most
 /// `rounds` rounds on the mesh of the windows. Also returns the problem of the scene with the hinge law corrected to the finite

@@ -4,7 +4,7 @@
 //! moves the corners of its panels is the error of the search, and the law that is corrected to the solved hinges takes the place of the
 //! learned one. The search goes on with it, until a further balance moves the corners by less than [`BALANCED`], or all rounds are made.
 
-use crate::balanced_sheet::{BALANCED, Balanced, balanced};
+use crate::balanced_sheet::{BALANCED, Balanced, DRAFT_ROUNDS, balanced};
 use crate::replay::ElementWindows;
 use crate::verification_error::VerificationError;
 use design::analysis::ladder::Climbed;
@@ -24,10 +24,12 @@ const ROUNDS: usize = 3;
 const SOLVED_HINGES: &str = "solved-hinges.json";
 
 /// The CPU time of the solves of a sheet with `hinges` hinges (s), at most, at the usual time of the meshes.
-pub fn usual_cpu_seconds(tier: Tier, hinges: usize) -> f64 {
-    let meshes = tier.draft().into_iter().chain([tier]);
-    let a_round: f64 = meshes.map(Tier::usual_cpu_seconds).sum();
-    a_round * (SEARCHES * ROUNDS * hinges) as f64
+pub fn most_cpu_seconds(tier: Tier, hinges: usize) -> f64 {
+    let rounds = |tier: Tier, count: usize| tier.usual_cpu_seconds() * count as f64;
+    let draft = tier
+        .draft()
+        .map_or(0.0, |draft| rounds(draft, DRAFT_ROUNDS));
+    (draft + rounds(tier, ROUNDS)) * (SEARCHES * hinges) as f64
 }
 
 /// Designs a scene with finite elements for its hinges. Its searches are runs in folders of its run folder. A search that is stopped ends
@@ -53,14 +55,17 @@ pub fn final_design(
         let (found, corrected) = balanced(&at, &designed.design, windows, ROUNDS)?;
         let file = at.output().join(SOLVED_HINGES);
         let file = std::path::absolute(&file).map_err(FileError::at(&file))?;
-        solved_hinges(&found, windows.tier).write(&file)?;
-        let at_level = |level, problem, deployment| AtLevel {
+        solved_hinges(&found).write(&file)?;
+        let own = AtLevel {
             level,
-            problem,
-            deployment,
+            problem: designed.problem,
+            deployment: found.by_law().clone(),
         };
-        let own = at_level(level, designed.problem, found.by_law().clone());
-        let finer = at_level(Level::Final, corrected, found.by_elements().clone());
+        let finer = AtLevel {
+            level: Level::Final,
+            problem: corrected,
+            deployment: found.by_elements().clone(),
+        };
         let rung = Rung {
             level,
             start: designed.history[0].scores.clone(),
@@ -93,7 +98,7 @@ pub fn final_design(
 }
 
 /// The last states of the hinges by finite elements.
-fn solved_hinges(found: &Balanced, tier: Tier) -> SolvedHinges {
+fn solved_hinges(found: &Balanced) -> SolvedHinges {
     let designs = found.by_law().sheet.designs();
     let hinges = std::iter::zip(designs, &found.hinges);
     let solved = hinges.map(|(design, end)| {
@@ -104,7 +109,6 @@ fn solved_hinges(found: &Balanced, tier: Tier) -> SolvedHinges {
         })
     });
     SolvedHinges {
-        tier: tier.name().to_owned(),
         hinges: solved.collect(),
     }
 }

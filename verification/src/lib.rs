@@ -74,7 +74,7 @@ pub use balanced_sheet::{
 pub use compared_states::{SCALE, each_relative, spread_table};
 pub use distillation_states::distillation_states;
 pub use extension::rays_on_paths;
-pub use final_design::{final_design, usual_cpu_seconds};
+pub use final_design::{final_design, most_cpu_seconds};
 pub use learning::{Accuracy, LearningEnd, LearningRound, LearningSteps, LearningTask, learn};
 pub use networks::judging_tier;
 pub use recorded_path::{RecordedPath, paths_of, recorded_paths};

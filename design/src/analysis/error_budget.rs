@@ -43,7 +43,7 @@ const PLATE_IMPERFECTION: [[f64; 2]; 3] = [[1.0 / 3.0, 0.0127], [2.0 / 3.0, 0.00
 const DETOUR_OF_FILM: f64 = 0.05 / 0.17;
 const DETOUR_OF_PLATE: f64 = 6.2;
 /// The largest fraction that was found in plates.
-const MOST_DETOUR: f64 = 0.63;
+const MOST_DETOUR_OF_PLATE: f64 = 0.63;
 /// Yield strain of that film. The forces of a material that yields at a smaller one depend more on the path: the forces of steel, at a
 /// thirteenth of it, by some fifty times (docs/results/metals). Materials below half of it are not covered.
 const DETOUR_YIELD: f64 = 0.0146;
@@ -429,11 +429,10 @@ impl Deployed<'_> {
             let states: Vec<_> = path.iter().map(|step| step.deformations[h]).collect();
             let regime = Regime::of(design.w_lig / thickness);
             let separation = PathSeparation::new(design.w_lig, &states).whole;
-            let slope = match regime {
-                Regime::Film => DETOUR_OF_FILM,
-                Regime::Plate => DETOUR_OF_PLATE,
+            *size *= match regime {
+                Regime::Film => DETOUR_OF_FILM * separation,
+                Regime::Plate => f64::min(DETOUR_OF_PLATE * separation, MOST_DETOUR_OF_PLATE),
             };
-            *size *= f64::min(slope * separation, MOST_DETOUR);
             largest = largest.max(separation);
         }
         let source =

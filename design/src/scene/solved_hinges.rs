@@ -26,8 +26,6 @@ pub struct SolvedHinge {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SolvedHinges {
-    /// Mesh tier of the windows.
-    pub tier: String,
     /// One entry a hinge.
     pub hinges: Vec<Option<SolvedHinge>>,
 }
@@ -56,7 +54,7 @@ pub enum SolvedHingesError {
 }
 
 impl SolvedHinges {
-    /// Those that the scene at `path` names.
+    /// The solved hinges that the scene at `path` names.
     pub(super) fn load(config: &SceneConfig, path: &Path) -> Result<Self, SolvedHingesError> {
         let named = (config.surrogate.as_ref()).and_then(|files| files.solved_hinges.as_ref());
         let file = beside(path, named.ok_or(SolvedHingesError::NoFile)?);

@@ -9,7 +9,7 @@ use design::optimise::outer_loop::Ended;
 use design::scene::run_inputs::{SCENE_FILE, holds_a_run};
 use design::scene::{Level, Scene, SceneConfig};
 use output::report::Report;
-use verification::{ElementWindows, final_design, judging_tier, usual_cpu_seconds};
+use verification::{ElementWindows, final_design, judging_tier, most_cpu_seconds};
 
 impl DesignCommand {
     /// A search that goes on with the hinges solved by finite elements.
@@ -26,7 +26,7 @@ impl DesignCommand {
         let arguments = SolveArgs::default();
         let service = &arguments.service(&scene.output())?;
         let (hinges, workers) = (scene.grid().hinge_count(), arguments.workers());
-        let cpu = usual_cpu_seconds(tier, hinges);
+        let cpu = most_cpu_seconds(tier, hinges);
         announce(&format!(
             "{hinges} hinges on the mesh `{tier}`: at most about {} of CPU time, {} on {workers} processors; after Ctrl-C the same \
              command goes on",
