@@ -92,6 +92,7 @@ impl Digest {
         let no_rows = |rejected| DatasetError::NoRows {
             why: reasons(rejected),
         };
+        let bent_rays = self.meshes.bent_rays.unwrap_or_default();
         let Some((rays, finer)) = self.meshes.sorted()? else {
             return Err(no_rows(&self.rejected));
         };
@@ -115,6 +116,7 @@ impl Digest {
             partial_rays: rays.partial_rays,
             geometries: rays.geometries.len(),
             cpu_s: rays.cpu_s,
+            bent_rays,
             finer: finer.map(|finer| FinerMesh {
                 tier: finer.tier().to_owned(),
                 rays: finer.rays,

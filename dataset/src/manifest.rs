@@ -30,6 +30,9 @@ pub struct Manifest {
     pub geometries: usize,
     /// CPU time of these rays (s).
     pub cpu_s: f64,
+    /// Whether the rays bend like the free turn of a ligament, as [`hinge::Regime::free_opening`] has it for plates, and are not straight.
+    #[serde(default)]
+    pub bent_rays: bool,
     /// The finer mesh on which some of the rays were solved too.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub finer: Option<FinerMesh>,

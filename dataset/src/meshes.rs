@@ -7,7 +7,7 @@ use crate::error::DatasetError;
 use crate::rays::{RayKey, ray_key};
 use crate::rows::Row;
 use crate::split::Geometries;
-use hinge::{HingeDeformation, HingeDesign};
+use hinge::{HingeDeformation, HingeDesign, Regime};
 use std::cmp::Reverse;
 use std::collections::BTreeSet;
 
@@ -81,9 +81,28 @@ impl MeshRows {
     }
 }
 
+/// Whether a ray bends like the free turn of a plate; `None` if it turns too little to tell. Both ends of its rows lie on one line in
+/// (lambda, eta_a / lambda), whose slope is the curvature times theta^2.
+fn bends(ray: &[Row]) -> Option<bool> {
+    const LEAST_TURN: f64 = 0.1; // rad
+    let (first, last) = (&ray.first()?.sample, &ray.last()?.sample);
+    let lambdas = last.lambda - first.lambda;
+    if lambdas <= 0.0 || last.theta.abs() < LEAST_TURN {
+        return None;
+    }
+    let slope = (last.a / last.lambda - first.a / first.lambda) / lambdas / ray[0].design.w_lig;
+    let turn = last.theta / last.lambda;
+    let [_, of_free_turn] = Regime::Plate.free_opening();
+    Some(slope / (turn * turn.abs()) > 0.5 * of_free_turn)
+}
+
 /// The rows of all meshes.
 #[derive(Default)]
-pub(crate) struct Meshes(Vec<MeshRows>);
+pub(crate) struct Meshes {
+    meshes: Vec<MeshRows>,
+    /// [`Manifest::bent_rays`](crate::Manifest::bent_rays), if one of the rays tells.
+    pub bent_rays: Option<bool>,
+}
 
 impl Meshes {
     /// Adds accepted rows of one job.
@@ -91,22 +110,42 @@ impl Meshes {
         let Some(first) = ray.first() else {
             return Ok(());
         };
-        let known = self.0.iter().position(|mesh| mesh.tier() == first.tier);
+        let known = self
+            .meshes
+            .iter()
+            .position(|mesh| mesh.tier() == first.tier);
         let place = known.unwrap_or_else(|| {
-            self.0.push(MeshRows::new(first));
-            self.0.len() - 1
+            self.meshes.push(MeshRows::new(first));
+            self.meshes.len() - 1
         });
         for row in ray {
-            refuse_other(&self.0[0].first, row, &SHARED)?;
-            refuse_other(&self.0[place].first, row, &SHARED_ON_A_MESH)?;
+            refuse_other(&self.meshes[0].first, row, &SHARED)?;
+            refuse_other(&self.meshes[place].first, row, &SHARED_ON_A_MESH)?;
         }
-        self.0[place].add(ray);
+        if let Some(bent) = bends(ray)
+            && bent != *self.bent_rays.get_or_insert(bent)
+        {
+            let shape = |bent| {
+                if bent {
+                    "of bent rays"
+                } else {
+                    "of straight rays"
+                }
+            };
+            return Err(DatasetError::Mixed {
+                job: first.job.clone(),
+                column: "a",
+                expected: shape(!bent).into(),
+                found: shape(bent).into(),
+            });
+        }
+        self.meshes[place].add(ray);
         Ok(())
     }
 
     /// The mesh of the rays, and the finer one if there is one; `None` without rows.
     pub fn sorted(self) -> Result<Option<(MeshRows, Option<MeshRows>)>, DatasetError> {
-        let mut meshes = self.0;
+        let mut meshes = self.meshes;
         meshes.sort_by(|x, y| x.cost().total_cmp(&y.cost()));
         meshes.sort_by_key(|mesh| Reverse(mesh.keys.len()));
         let mut meshes = meshes.into_iter();

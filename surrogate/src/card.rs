@@ -50,6 +50,11 @@ pub struct Card {
     pub settings_hash: Option<String>,
     /// Tier of the window mesh on which the rows were solved.
     pub tier: String,
+    /// Whether the rays of the database bend like the free turn of a ligament; see [`Surrogate::ray_curvature`].
+    ///
+    /// [`Surrogate::ray_curvature`]: crate::Surrogate::ray_curvature
+    #[serde(default)]
+    pub bent_rays: bool,
     /// Hash of the database file.
     pub dataset_hash: String,
     /// For fine-tuned weights: [`Surrogate::hash`] of the initial weights.

@@ -7,7 +7,7 @@ use crate::hinge_energy::{HingeEnergy, Order};
 use crate::network::{InvalidWeights, Layer, Network};
 use crate::seen_hinge;
 use hinge::{
-    HingeDeformation, HingeDesign, HingeSample, NetLigament, SheetMaterial, TrainingDomain,
+    HingeDeformation, HingeDesign, HingeSample, NetLigament, Regime, SheetMaterial, TrainingDomain,
 };
 
 /// The networks of (14), with the card that contains their scaling and provenance.
@@ -165,6 +165,17 @@ impl Surrogate {
     /// The hinge states that the training data cover.
     pub fn domain(&self) -> &TrainingDomain {
         &self.card.domain
+    }
+
+    /// How the rays bend along which the training data were solved: at the rotation lambda theta, eta_a is this times
+    /// theta |theta| lambda (1 - lambda) below the straight line to its end. 0: rays are straight.
+    pub fn ray_curvature(&self) -> f64 {
+        let [_, of_free_turn] = Regime::Plate.free_opening();
+        if self.card.bent_rays {
+            of_free_turn
+        } else {
+            0.0
+        }
     }
 
     /// Minimum and maximum radius of the holes of the training, over w_lig.

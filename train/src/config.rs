@@ -32,7 +32,7 @@ pub struct TrainingConfig {
 }
 
 /// gamma of (15): the weight of the energy W; 1 - gamma is the weight of the forces.
-pub(crate) const ENERGY_WEIGHT: f64 = 0.5;
+pub(crate) const ENERGY_WEIGHT: f64 = 0.1;
 /// w_D of (15): the weight of the damage.
 pub(crate) const DAMAGE_WEIGHT: f64 = 0.1;
 /// beta of the damage heads, D = D_s softplus(beta y) / beta: the larger, the sharper the onset at yield.

@@ -91,6 +91,7 @@ mod tests {
             material_hash: None,
             settings_hash: None,
             tier: String::new(),
+            bent_rays: false,
             dataset_hash: String::new(),
             split_hash: String::new(),
             training: serde_json::Value::Null,

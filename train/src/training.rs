@@ -345,6 +345,7 @@ fn card(
         material_hash: the_only(&manifest.material_hashes),
         settings_hash: the_only(&manifest.settings_hashes),
         tier: manifest.tier.clone(),
+        bent_rays: manifest.bent_rays,
         dataset_hash: manifest.hash.clone(),
         fine_tuned_from: None,
         distillation: None,

@@ -104,6 +104,21 @@ fn the_finer_mesh_has_fewer_rays_or_longer_solves() {
 }
 
 #[test]
+fn the_rays_of_both_meshes_are_straight_or_bend_alike() {
+    let bend = |mut row: Row| {
+        let (lambda, end) = (row.sample.lambda, row.sample.theta / row.sample.lambda);
+        row.sample.a -= 0.16 * row.design.w_lig * end * end.abs() * lambda * (1.0 - lambda);
+        row
+    };
+    let bent = |rows: Vec<Row>| rows.into_iter().map(bend).collect::<Vec<_>>();
+    let bends = |rows| collect(rows).unwrap().manifest().bent_rays;
+    assert!(!bends([rows(), finer(4)].concat()));
+    assert!(bends(bent([rows(), finer(4)].concat())));
+    assert_eq!(mixed([rows(), bent(finer(4))].concat()), "a");
+    assert_eq!(mixed([bent(rows()), finer(4)].concat()), "a");
+}
+
+#[test]
 fn the_rows_of_a_ray_are_of_one_mesh() {
     for change in ["default", "reference"] {
         let mut both = [rows(), finer(4)].concat();

@@ -30,7 +30,7 @@ use crate::scene::{Scene, standard_deviation};
 use hinge::{HingeDesign, Regime};
 use serde::Serialize;
 use support::statistics::rms_and_maximum;
-use surrogate::SpotCheck;
+use surrogate::{SpotCheck, Surrogate};
 
 /// Ligament width over thickness, and the relative change of M_theta in a pure rotation if the imperfection has two thicknesses
 /// instead of one: the larger of two cut angles (docs/results/window, polyester film of 0.5 mm).
@@ -38,12 +38,14 @@ const FILM_IMPERFECTION: [[f64; 2]; 3] = [[10.0, 0.0970], [36.0, 0.0247], [50.0,
 /// The same if it has 0.1 instead of 0.02 thicknesses (docs/results/window, polypropylene plate of 3 mm).
 const PLATE_IMPERFECTION: [[f64; 2]; 3] = [[1.0 / 3.0, 0.0127], [2.0 / 3.0, 0.0081], [1.0, 0.0075]];
 /// The fraction by which the forces differ at a separation of the path from its ray of one ligament width; they do in proportion to it. Film:
-/// the law through all detours (docs/TRIED.md, polyester film of 0.5 mm). Plate: root mean square over fourteen paths in sheets
-/// (docs/results/plates, polypropylene of 3 mm).
+/// the law through all detours (docs/TRIED.md, polyester film of 0.5 mm). Plate, and a law of bent rays: root mean square over fourteen paths
+/// in plates (docs/results/plates, polypropylene of 3 mm).
 const DETOUR_OF_FILM: f64 = 0.05 / 0.17;
 const DETOUR_OF_PLATE: f64 = 6.2;
-/// The largest fraction that was found in plates.
+const DETOUR_OF_BENT_RAYS: f64 = 3.6;
+/// The largest fraction that was found in plates, and with bent rays.
 const MOST_DETOUR_OF_PLATE: f64 = 0.63;
+const MOST_DETOUR_OF_BENT_RAYS: f64 = 0.4;
 /// Yield strain of that film. The forces of a material that yields at a smaller one depend more on the path: the forces of steel, at a
 /// thirteenth of it, by some fifty times (docs/results/metals). Materials below half of it are not covered.
 const DETOUR_YIELD: f64 = 0.0146;
@@ -423,14 +425,18 @@ impl Deployed<'_> {
             ));
         }
         let path = &self.deployment.path;
+        let curvature = self.scene.surrogate().map_or(0.0, Surrogate::ray_curvature);
         let mut sizes = self.norms();
         let mut largest = 0.0_f64;
         for (h, (size, design)) in sizes.iter_mut().zip(&self.designs).enumerate() {
             let states: Vec<_> = path.iter().map(|step| step.deformations[h]).collect();
             let regime = Regime::of(design.w_lig / thickness);
-            let separation = PathSeparation::new(design.w_lig, &states).whole;
+            let separation = PathSeparation::new(design.w_lig, curvature, &states).whole;
             *size *= match regime {
                 Regime::Film => DETOUR_OF_FILM * separation,
+                Regime::Plate if curvature > 0.0 => {
+                    f64::min(DETOUR_OF_BENT_RAYS * separation, MOST_DETOUR_OF_BENT_RAYS)
+                }
                 Regime::Plate => f64::min(DETOUR_OF_PLATE * separation, MOST_DETOUR_OF_PLATE),
             };
             largest = largest.max(separation);

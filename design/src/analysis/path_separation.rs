@@ -1,12 +1,12 @@
-//! How far the path of a hinge departs from the straight ray to its end, along which the hinge law was measured
-//! (section 5.2).
+//! How far the path of a hinge departs from the ray to its end, along which the hinge law was measured (section 5.2): a straight ray, or
+//! one that bends like the free turn of a ligament.
 
 use hinge::HingeDeformation;
 
 /// Maximum distance between a path and the ray to its end at equal fractions of their lengths, in ligament widths.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PathSeparation {
-    /// Euclidean in (eta_a, eta_s, theta): a rotation by one radian moves a point at the distance of one ligament width
+    /// Euclidean in (eta_a, eta_s, theta), with eta_a from the bend of the ray: a rotation by one radian moves a point at the distance of one ligament width
     /// from O by one ligament width.
     pub whole: f64,
     /// Of (eta_a, eta_s) alone, the measure of the paper; zero for a pure rotation.
@@ -15,12 +15,13 @@ pub struct PathSeparation {
 
 impl PathSeparation {
     /// The separation of a path from the undeformed state through `states`, of a hinge with the ligament width `w_lig`
-    /// (mm).
-    pub fn new(w_lig: f64, states: &[HingeDeformation]) -> Self {
+    /// (mm), from rays of the given [curvature](surrogate::Surrogate::ray_curvature).
+    pub fn new(w_lig: f64, curvature: f64, states: &[HingeDeformation]) -> Self {
         let places = |turn: f64| {
             let place = |state: &HingeDeformation| {
                 let [eta_a, eta_s] = state.eta(w_lig);
-                [eta_a, eta_s, turn * state.theta]
+                let bend = curvature * state.theta * state.theta.abs();
+                [eta_a - bend, eta_s, turn * state.theta]
             };
             let begin = std::iter::once([0.0; 3]);
             begin.chain(states.iter().map(place)).collect::<Vec<_>>()
@@ -57,13 +58,27 @@ mod tests {
 
     fn separation(states: &[[f64; 3]]) -> PathSeparation {
         let states: Vec<_> = states.iter().map(|state| (*state).into()).collect();
-        PathSeparation::new(10.0, &states)
+        PathSeparation::new(10.0, 0.0, &states)
     }
 
     #[test]
     fn a_straight_path_is_its_ray_at_any_pace() {
         let found = separation(&[[0.1, 0.2, 0.05], [0.2, 0.4, 0.1], [2.0, 4.0, 1.0]]);
         assert!(found.whole < 1e-15 && found.translation < 1e-15);
+    }
+
+    #[test]
+    fn a_path_that_bends_as_its_ray_does_is_not_separated() {
+        let curvature = 0.16;
+        // Equal steps of theta are nearly equal lengths of the path.
+        let state = |i: u32| {
+            let theta = 0.05 * f64::from(i);
+            HingeDeformation::from_eta(theta * curvature * theta, 0.0, theta, 10.0)
+        };
+        let states: Vec<_> = (1..=20).map(state).collect();
+        let found = [curvature, 0.0].map(|curvature| PathSeparation::new(10.0, curvature, &states));
+        assert!(found[0].whole < 1e-15, "{found:?}");
+        assert!((found[1].whole - 0.04).abs() < 0.01, "{found:?}");
     }
 
     #[test]
@@ -79,6 +94,9 @@ mod tests {
         let found = separation(&[[3.0, 0.0, 0.0], [3.0, 4.0, 0.0]]);
         let gap = f64::hypot(0.3 - fraction * 0.3, fraction * 0.4);
         assert!((found.translation - gap).abs() < 1e-15 && found.whole == found.translation);
-        assert_eq!(PathSeparation::new(10.0, &[]), PathSeparation::default());
+        assert_eq!(
+            PathSeparation::new(10.0, 0.0, &[]),
+            PathSeparation::default()
+        );
     }
 }

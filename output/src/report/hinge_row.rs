@@ -10,6 +10,7 @@ use design::scene::{Posture, Scene};
 use design::sheet::cut_sheet::{Hinge, Sheet};
 use hinge::HingeDesign;
 use serde::Serialize;
+use surrogate::Surrogate;
 
 /// One hinge of the best design in the deployed sheet.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -35,7 +36,7 @@ pub struct HingeRow {
     pub damage_peak: Option<f64>,
     /// Whether every state of the path is inside the training domain of the hinge law.
     pub inside: bool,
-    /// Maximum distance of the path from the straight ray to its end, in ligament widths; see
+    /// Maximum distance of the path from the ray to its end, in ligament widths; see
     /// [`PathSeparation::whole`].
     pub path_separation: f64,
     /// Minimum along the path of the distance of the flanks of the cut where they come nearest (mm): see
@@ -60,6 +61,7 @@ impl HingeRow {
         let last = deployment.final_step().deformations[h];
         let [eta_a, eta_s] = last.eta(hinge.w_lig);
         let regime = scene.material.regime(hinge.w_lig);
+        let curvature = scene.surrogate().map_or(0.0, Surrogate::ray_curvature);
         let states: Vec<_> = (deployment.path.iter())
             .map(|step| step.deformations[h])
             .collect();
@@ -74,7 +76,7 @@ impl HingeRow {
             damage: deployment.damage_max(DamageMeasure::Mean, h),
             damage_peak: deployment.damage_max(DamageMeasure::Peak, h),
             inside: deployment.path.iter().all(|step| step.inside[h]),
-            path_separation: PathSeparation::new(hinge.w_lig, &states).whole,
+            path_separation: PathSeparation::new(hinge.w_lig, curvature, &states).whole,
             flank_gap: (states
                 .iter()
                 .map(|state| flank_gap(&designs[h], state, regime)))
