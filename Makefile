@@ -1,7 +1,7 @@
 # Two commands: `make demo` runs the main job, `make test` passes all tests.
 # Both first install what is missing.
 
-.PHONY: demo test test-fast lint book python python-torch tools test-tools python-tools
+.PHONY: demo test test-fast lint python python-torch tools test-tools python-tools
 
 # With the features of the whole workspace, so that `make test` compiles no dependency again.
 demo: tools
@@ -22,10 +22,6 @@ lint:
 	cargo check --release --locked -p kirigami --no-default-features
 	RUSTDOCFLAGS="-D warnings" cargo doc --release --locked --workspace --lib --no-deps
 
-# The pages as a site, target/book/index.html; installs mdBook, in some minutes, if it is missing.
-book:
-	scripts/book
-
 # The Python package and its tests, in an environment of their own. Those of PyTorch need 5 GB: by a command of their own.
 python: python-tools
 	python3 -m venv target/python
@@ -44,3 +40,8 @@ test-tools:
 
 python-tools:
 	scripts/install-tools python
+
+# The pages as a site, target/book/index.html; installs mdBook, in some minutes, if it is missing.
+.PHONY: book
+book:
+	scripts/book
