@@ -138,7 +138,7 @@ fn the_page_of_a_run_lists_its_files() {
     }
     let line = |(names, contents): &(String, &str)| format!("| {names} | {contents} |\n");
     let lines = lines.iter().map(line);
-    let page = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/RUN.md");
+    let page = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/RUN-PAGE.md");
     let page = std::fs::read_to_string(page).unwrap();
     assert!(page.contains(&lines.collect::<String>()));
 }
