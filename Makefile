@@ -40,3 +40,8 @@ test-tools:
 
 python-tools:
 	scripts/install-tools python
+
+# The pages as a site, target/book/index.html; installs mdBook, in some minutes, if it is missing.
+.PHONY: book
+book:
+	scripts/book

@@ -1,4 +1,4 @@
-//! The files of a run folder: `design` writes them from this table, `--restart` deletes by it, docs/TUTORIAL.md lists it.
+//! The files of a run folder: `design` writes them from this table, `--restart` deletes by it, docs/RUN-PAGE.md lists it.
 
 use crate::cut_file::{
     CutDrawing, CutLines, FabricationError, SheetDrawing, attachment_list, cut_list, cut_summary,

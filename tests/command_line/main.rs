@@ -5,6 +5,7 @@ mod bad_input;
 #[path = "../common/mod.rs"]
 mod common;
 mod cutting;
+mod documents;
 #[path = "../common/failing_ccx.rs"]
 mod failing_ccx;
 mod foreign_files;

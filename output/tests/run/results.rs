@@ -125,9 +125,9 @@ fn a_load_far_too_large_leaves_no_cut_file_unless_it_is_forced() {
     }
 }
 
-/// The table of the tutorial is the table of the program: one line for successive files of the same contents.
+/// The table of the page is the table of the program: one line for successive files of the same contents.
 #[test]
-fn the_tutorial_lists_the_files_of_a_run() {
+fn the_page_of_a_run_lists_its_files() {
     let mut lines: Vec<(String, &str)> = Vec::new();
     for file in &RUN_FILES {
         let name = format!("`{}`", file.name);
@@ -138,9 +138,9 @@ fn the_tutorial_lists_the_files_of_a_run() {
     }
     let line = |(names, contents): &(String, &str)| format!("| {names} | {contents} |\n");
     let lines = lines.iter().map(line);
-    let tutorial = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/TUTORIAL.md");
-    let tutorial = std::fs::read_to_string(tutorial).unwrap();
-    assert!(tutorial.contains(&lines.collect::<String>()));
+    let page = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/RUN-PAGE.md");
+    let page = std::fs::read_to_string(page).unwrap();
+    assert!(page.contains(&lines.collect::<String>()));
 }
 
 #[test]

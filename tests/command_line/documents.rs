@@ -1,0 +1,136 @@
+//! The pages: every link leads to a file and to a heading in it, docs/SUMMARY.md lists every page, and the README leads to every page
+//! by two links.
+
+use std::collections::BTreeSet;
+use std::path::{Component, Path, PathBuf};
+
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+/// The pages of a folder and of the folders below it, relative to the root.
+fn pages_below(folder: &str) -> Vec<PathBuf> {
+    let (mut pages, mut folders) = (Vec::new(), vec![PathBuf::from(folder)]);
+    while let Some(folder) = folders.pop() {
+        for entry in std::fs::read_dir(root().join(&folder)).unwrap() {
+            let path = folder.join(entry.unwrap().file_name());
+            match path.extension() {
+                _ if root().join(&path).is_dir() => folders.push(path),
+                Some(kind) if kind == "md" => pages.push(path),
+                _ => {}
+            }
+        }
+    }
+    pages
+}
+
+/// The pages of the project, relative to its root.
+fn pages() -> Vec<PathBuf> {
+    let mut pages = vec!["README.md".into(), "CHANGELOG.md".into()];
+    pages.extend(pages_below("docs"));
+    pages.extend(pages_below("data"));
+    pages
+}
+
+fn read(page: &Path) -> String {
+    std::fs::read_to_string(root().join(page)).unwrap()
+}
+
+/// A page without its blocks of code.
+fn prose(page: &Path) -> String {
+    let text = read(page);
+    let blocks = text.split("```");
+    blocks.step_by(2).collect()
+}
+
+/// The targets of the relative links and pictures of a page: a path from the root, and a heading.
+fn links(page: &Path) -> Vec<(PathBuf, Option<String>)> {
+    let text = prose(page);
+    let after = |mark| text.split(mark).skip(1);
+    let inline = after("](").filter_map(|rest| rest.split_once(')'));
+    let pictures = after("src=\"").filter_map(|rest| rest.split_once('"'));
+    let targets = inline.chain(pictures).map(|(target, _)| target);
+    let own = targets.filter(|target| !target.contains("://") && !target.contains(' '));
+    own.map(|target| {
+        let (file, heading) = match target.split_once('#') {
+            Some((file, heading)) => (file, Some(heading.to_owned())),
+            None => (target, None),
+        };
+        let from = match file {
+            "" => page.to_owned(),
+            file => page.parent().unwrap().join(file),
+        };
+        (without_dots(&from), heading)
+    })
+    .collect()
+}
+
+fn without_dots(path: &Path) -> PathBuf {
+    let mut parts = PathBuf::new();
+    for part in path.components() {
+        match part {
+            Component::ParentDir => assert!(parts.pop(), "{} leaves the root", path.display()),
+            part => parts.push(part),
+        }
+    }
+    parts
+}
+
+/// The headings of a page as links name them.
+fn headings(page: &Path) -> Vec<String> {
+    let text = prose(page);
+    let titles = text.lines().filter(|line| line.starts_with('#'));
+    let slug = |title: &str| {
+        let letters = title.trim_start_matches('#').trim().chars();
+        let kept = letters.filter(|c| c.is_alphanumeric() || matches!(c, '-' | '_' | ' '));
+        kept.collect::<String>().to_lowercase().replace(' ', "-")
+    };
+    titles.map(slug).collect()
+}
+
+#[test]
+fn every_link_leads_to_a_file_and_a_heading() {
+    let mut broken = Vec::new();
+    for page in pages() {
+        for (target, heading) in links(&page) {
+            let leads = root().join(&target).exists()
+                && heading
+                    .as_ref()
+                    .is_none_or(|heading| headings(&target).contains(heading));
+            if !leads {
+                broken.push((page.clone(), target, heading));
+            }
+        }
+    }
+    assert!(broken.is_empty(), "{broken:#?}");
+}
+
+#[test]
+fn the_summary_lists_every_page_once() {
+    let summary = Path::new("docs/SUMMARY.md");
+    let mut listed: Vec<PathBuf> = links(summary).into_iter().map(|(page, _)| page).collect();
+    listed.sort();
+    let mut all = pages();
+    all.retain(|page| page != summary);
+    all.sort();
+    assert_eq!(listed, all);
+}
+
+#[test]
+fn two_links_lead_from_the_readme_to_every_page() {
+    let mut reached = BTreeSet::from([PathBuf::from("README.md")]);
+    for _ in 0..2 {
+        let next: Vec<PathBuf> = reached
+            .iter()
+            .filter(|page| page.extension().is_some_and(|kind| kind == "md"))
+            .flat_map(|page| links(page))
+            .map(|(target, _)| target)
+            .collect();
+        reached.extend(next);
+    }
+    let far: Vec<PathBuf> = pages()
+        .into_iter()
+        .filter(|page| !reached.contains(page) && !page.ends_with("SUMMARY.md"))
+        .collect();
+    assert!(far.is_empty(), "{far:?}");
+}
