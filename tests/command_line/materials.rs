@@ -136,7 +136,7 @@ fn wrong_options_name_the_option() {
     let strip =
         "material fit configs/tensile/strip-1.csv --name a --thickness 0.5 --density-kg-m3 1390";
     for (options, expected) in [
-        ("", "give --width"),
+        ("", "give --width, --gauge-length of the specimen"),
         ("--width 10", "give --gauge-length"),
         (
             "--width 10,11 --gauge-length 50",
