@@ -133,6 +133,9 @@ fn a_brittle_material_fails_its_check() {
 #[test]
 fn wrong_options_name_the_option() {
     let work = Workplace::new();
+    // The record states its dimensions.
+    let unstated = [("Width;10,0;mm\n", ""), ("Gauge length;50,0;mm\n", "")];
+    work.edit("configs/tensile/strip-1.csv", &unstated);
     let strip =
         "material fit configs/tensile/strip-1.csv --name a --thickness 0.5 --density-kg-m3 1390";
     for (options, expected) in [
