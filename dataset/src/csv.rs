@@ -1,7 +1,6 @@
 //! CSV export of a database, and import of rows computed by other solvers.
 
 use crate::database::Database;
-use crate::database_files::read_bytes;
 use crate::error::DatasetError;
 use crate::rows::Row;
 use crate::schema::{D_PEAK, NUMBERS, TEXTS, columns};
@@ -10,6 +9,7 @@ use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
 use std::path::Path;
+use support::csv_table::NamedTable;
 
 /// The mapping from the columns of a foreign table to the columns of a database, read from a TOML file.
 ///
@@ -73,19 +73,19 @@ impl Database {
 /// Reads the rows of a CSV file, to be collected into a database.
 pub fn rows_from_csv(path: &Path, map: &ColumnMap) -> Result<Vec<Row>, DatasetError> {
     map.check()?;
-    let bytes = read_bytes(path)?;
-    rows_of(&bytes, map).map_err(|source| DatasetError::In {
-        path: path.to_owned(),
-        source: Box::new(source),
+    rows_of(NamedTable::read(path).map_err(DatasetError::Read)?, map).map_err(|source| {
+        DatasetError::In {
+            path: path.to_owned(),
+            source: Box::new(source),
+        }
     })
 }
 
-fn rows_of(bytes: &[u8], map: &ColumnMap) -> Result<Vec<Row>, DatasetError> {
+fn rows_of(table: NamedTable, map: &ColumnMap) -> Result<Vec<Row>, DatasetError> {
     // Every column is read as text: numbers are parsed below, where errors can name the row.
-    let mut reader = csv::Reader::from_reader(bytes);
     let table = ForeignTable {
-        names: reader.headers()?.clone(),
-        records: reader.into_records().collect::<Result<_, _>>()?,
+        names: table.head.1,
+        records: table.rows.into_iter().map(|(_, row)| row).collect(),
         map,
     };
     let mut rows = vec![Row::default(); table.records.len()];

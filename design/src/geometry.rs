@@ -2,6 +2,7 @@
 
 pub mod chamfer;
 mod near_origin;
+pub mod outline_points;
 pub mod plane;
 pub mod polygon;
 pub mod similarity;

@@ -2,7 +2,7 @@
 //!
 //! | step | file |
 //! |---|---|
-//! | text, columns, units | `number_table`, `quantity`, `record` |
+//! | text, specimens, columns, units, dimensions | `number_table`, `quantity`, `preamble`, `record` |
 //! | unloading, break, shaking strains | `cleaning`, `isotonic` |
 //! | Young's modulus and toe (ISO 527-1, ASTM D638) | `linear_part` |
 //! | yield, plateau, natural draw ratio, necking | `landmarks` |
@@ -25,6 +25,7 @@ mod local_curve;
 mod material_file;
 mod mean_curve;
 mod number_table;
+mod preamble;
 mod quantity;
 mod record;
 mod regression;
@@ -37,6 +38,7 @@ pub use fit::{FitOptions, FractureSource, HardeningRow, MaterialFit, Origin, Sta
 pub use landmarks::Draw;
 pub use linear_part::LinearPart;
 pub use material_file::{SheetFacts, material_file};
+pub use preamble::StatedDimension;
 pub use quantity::Quantity;
 pub use record::{ReadColumn, RecordOptions};
 pub use specimen::{End, Specimen, SpecimenOptions};
@@ -55,10 +57,17 @@ const MAX_TOE: f64 = 5e-4;
 /// Reads the hardening table of a material of Young's modulus `young` (MPa): rows [true stress (MPa), true plastic
 /// strain].
 pub(crate) fn read_tensile(path: &Path, young: f64) -> Result<Vec<[f64; 2]>, TensileError> {
-    let record = Record::read(path, &RecordOptions::default())?;
     let refuse = |what| TensileError::File {
         path: path.to_owned(),
         what,
+    };
+    let records = Record::read_all(path, &RecordOptions::default())?;
+    let [record] = &records[..] else {
+        let what = format!(
+            "has {} specimens: `kirigami material fit` evaluates them",
+            records.len()
+        );
+        return Err(refuse(what));
     };
     if record.deformation == PlasticStrain {
         return Ok(record
@@ -71,7 +80,7 @@ pub(crate) fn read_tensile(path: &Path, young: f64) -> Result<Vec<[f64; 2]>, Ten
         young: Some(young),
         ..SpecimenOptions::default()
     };
-    let specimen = Specimen::new(&record, &young_known)?;
+    let specimen = Specimen::new(record, &young_known)?;
     let fit = "`kirigami material fit` corrects and reports it, and writes the table `plastic`";
     let slope = specimen.linear.young;
     if !(young / SLOPE_FACTOR..=young * SLOPE_FACTOR).contains(&slope) {

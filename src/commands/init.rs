@@ -22,7 +22,7 @@ use design::fit::opening::safe_opening;
 use design::scene::{Scene, Stock};
 use hinge::{Regime, SheetMaterial};
 use std::path::{Path, PathBuf};
-use support::regular_file;
+use support::text_file;
 use surrogate::Surrogate;
 use toml_edit::{Array, ArrayOfTables, DocumentMut};
 
@@ -331,8 +331,7 @@ fn readme(folder: &Path, template: &Template, regime: Regime, trained: bool) -> 
 
 /// The text of a material file for another folder, in a thickness (mm): the path of its measured curve becomes absolute.
 pub(crate) fn material_text(path: &Path, thickness: f64) -> Result<String> {
-    let text = regular_file::read_to_string(path)
-        .with_context(|| format!("cannot read {}", path.display()))?;
+    let text = text_file::read(path).with_context(|| format!("cannot read {}", path.display()))?;
     let mut material: DocumentMut = text.parse()?;
     set(&mut material["thickness"], thickness);
     let curve = material.get("tensile_csv").and_then(|curve| curve.as_str());

@@ -1,12 +1,12 @@
 //! The CSV file of measured points; errors name file, line and column.
 
-use anyhow::{Context, Error, Result, anyhow, bail};
+use anyhow::{Context, Error, Result, anyhow, bail, ensure};
 use clap::ValueEnum;
 use design::analysis::marks::{Mark, MeasuredPoint};
 use design::analysis::measured_sheet::{MeasurementError, PointFault};
 use design::geometry::similarity::Scale;
 use std::path::{Path, PathBuf};
-use support::csv_table;
+use support::csv_table::{NamedTable, name_and_unit};
 use support::nearest::nearest;
 
 /// The columns of a file; the last two come from the template, and are not read.
@@ -58,29 +58,27 @@ impl Unit {
 impl PointsFile {
     /// Reads a file whose lengths are in mm, or in the unit of its column `unit`.
     pub fn read(path: &Path, y_down: bool) -> Result<Self> {
-        let (mut reader, separator) =
-            csv_table::open(path).with_context(|| format!("cannot read {}", path.display()))?;
-        let broken = |error: csv::Error| Error::from(error).context(path.display().to_string());
-        let header = reader.headers().map_err(broken)?.clone();
-        let columns = Columns::new(&header, separator != b',')
-            .with_context(|| format!("{}:{}", path.display(), line_of(&header)))?;
+        let NamedTable { head, rows } =
+            NamedTable::read(path).map_err(|error| anyhow!("cannot read {error}"))?;
+        let located = |line: u64| format!("{}:{line}", path.display());
+        let columns = Columns::new(&head.1).with_context(|| located(head.0))?;
         let mut file = Self {
             path: path.to_owned(),
             points: Vec::new(),
             lines: Vec::new(),
             unit: Unit::Mm,
         };
-        for record in reader.records() {
-            let record = record.map_err(broken)?;
-            let line = line_of(&record);
-            let located = || format!("{}:{line}", path.display());
-            let Some((mut point, own)) = columns.point(&record).with_context(located)? else {
+        for (line, row) in rows {
+            let Some((mut point, own)) = columns.point(&row).with_context(|| located(line))? else {
                 continue;
             };
             let own = own.unwrap_or(file.unit);
             let pixels = |unit: Unit| unit == Unit::Px;
             if !file.points.is_empty() && pixels(own) != pixels(file.unit) {
-                bail!("{}: column `unit`: pixels and lengths are mixed", located());
+                bail!(
+                    "{}: column `unit`: pixels and lengths are mixed",
+                    located(line)
+                );
             }
             file.unit = own;
             point.position = point.position.map(|x| x * own.length());
@@ -122,23 +120,26 @@ impl PointsFile {
     }
 }
 
-fn line_of(record: &csv::StringRecord) -> u64 {
-    record.position().map_or(1, csv::Position::line)
+/// The unit of this name in a column.
+fn unit(column: &str, name: &str) -> Result<Unit> {
+    let known = Unit::from_str(name, true);
+    known.map_err(|_| anyhow!("column `{column}`: `{name}` is none of mm, cm, m, px"))
 }
 
 /// Places of the columns in a row.
 struct Columns {
-    /// Whether numbers may have a decimal comma.
-    decimal_comma: bool,
     panel: usize,
     corner: Option<usize>,
     position: [usize; 2],
     unit: Option<usize>,
+    /// The unit behind the name `x`.
+    unit_of_x: Option<Unit>,
 }
 
 impl Columns {
-    fn new(header: &csv::StringRecord, decimal_comma: bool) -> Result<Self> {
-        for name in header {
+    fn new(header: &csv::StringRecord) -> Result<Self> {
+        let (names, units): (Vec<String>, Vec<String>) = header.iter().map(name_and_unit).unzip();
+        for name in names.iter().map(String::as_str) {
             if !COLUMNS.contains(&name) {
                 let hint = match nearest(name, COLUMNS) {
                     Some(known) => format!("did you mean `{known}`?"),
@@ -148,15 +149,21 @@ impl Columns {
                 bail!("unknown column `{name}`; {hint}");
             }
         }
-        let place = |name: &str| header.iter().position(|found| found == name);
+        let place = |name: &str| names.iter().position(|found| found == name);
         let needed =
             |name: &str| place(name).with_context(|| format!("the column `{name}` is missing"));
+        let position = [needed("x")?, needed("y")?];
+        let [of_x, of_y] = position.map(|column| units[column].as_str());
+        ensure!(
+            of_x == of_y,
+            "the columns `x` and `y` have the units `{of_x}` and `{of_y}`: give both in one"
+        );
         Ok(Self {
-            decimal_comma,
             panel: needed("panel")?,
             corner: place("corner"),
-            position: [needed("x")?, needed("y")?],
+            position,
             unit: place("unit"),
+            unit_of_x: (!of_x.is_empty()).then(|| unit("x", of_x)).transpose()?,
         })
     }
 
@@ -170,30 +177,33 @@ impl Columns {
             let value = text(column);
             let number = value.strip_prefix('P').unwrap_or(value);
             number.parse().ok().with_context(|| {
-                format!("column `{name}`: `{value}` is not a whole number of 0 or more")
+                let hint = match name {
+                    "corner" => ": corners count 0 to 3 counter-clockwise from the lower left one in the flat sheet",
+                    _ => "",
+                };
+                format!("column `{name}`: `{value}` is not a whole number of 0 or more{hint}")
             })
         };
         let length = |axis: usize| -> Result<f64> {
             let value = text(self.position[axis]);
-            let number = match self.decimal_comma {
-                true => value.replace(',', "."),
-                false => value.to_owned(),
-            };
-            number.parse().ok().with_context(|| {
-                let name = ["x", "y"][axis];
+            value.parse().ok().with_context(|| {
+                let (name, value) = (["x", "y"][axis], value.escape_debug());
                 format!("column `{name}`: `{value}` is not a number")
             })
         };
         let corner = self.corner.filter(|&column| !text(column).is_empty());
-        let unit = self.unit.map(|column| {
-            Unit::from_str(text(column), true)
-                .map_err(|_| anyhow!("column `unit`: `{}` is none of mm, cm, m, px", text(column)))
-        });
+        let own = self
+            .unit
+            .map(|column| unit("unit", text(column)))
+            .transpose()?;
         let mark = Mark {
             panel: whole(self.panel, "panel")?,
             corner: corner.map(|column| whole(column, "corner")).transpose()?,
         };
         let position = [length(0)?, length(1)?];
-        Ok(Some((MeasuredPoint { mark, position }, unit.transpose()?)))
+        Ok(Some((
+            MeasuredPoint { mark, position },
+            own.or(self.unit_of_x),
+        )))
     }
 }

@@ -16,7 +16,7 @@ use design::scene::run_inputs::{INPUTS, SCENE_FILE, STATE_FILE, scene_file};
 use design::scene::{Scene, SceneConfig};
 use output::run_files::RUN_FILES;
 use std::path::{Path, PathBuf};
-use support::regular_file;
+use support::{regular_file, text_file};
 
 /// The first line of a scene that the studio writes. It changes no other scene.
 const HEAD: &str =
@@ -163,7 +163,7 @@ fn copy_run(from: &Path, to: &Path) -> Result<()> {
 
 /// Whether the studio wrote a scene.
 fn is_own(file: &Path) -> bool {
-    regular_file::read_to_string(file).is_ok_and(|text| text.starts_with(HEAD))
+    text_file::read(file).is_ok_and(|text| text.starts_with(HEAD))
 }
 
 /// A folder for a sheet of this name that does not exist.

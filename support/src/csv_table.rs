@@ -1,57 +1,70 @@
-//! CSV files that people write: cells may stand between spaces, and lines that start with `#` are comments. The first other
-//! line decides whether cells are separated by commas, semicolons or tabs.
+//! Tables whose first line names the columns; see [`text_table`](crate::text_table).
 
 use crate::file_error::FileError;
-use crate::regular_file;
+use crate::text_table::TextTable;
 use csv::StringRecord;
 use serde::de::DeserializeOwned;
-use std::io::{self, Cursor};
+use std::io::{self, ErrorKind};
 use std::path::Path;
 
-/// A reader of the file's rows, and what separates their cells.
-pub fn open(path: &Path) -> io::Result<(csv::Reader<Cursor<Vec<u8>>>, u8)> {
-    let mut bytes = regular_file::read(path)?;
-    // A comment at the end of the file without a line break would be read as a row.
-    bytes.push(b'\n');
-    let separator = separator(&bytes);
-    let reader = csv::ReaderBuilder::new()
-        .delimiter(separator)
-        .trim(csv::Trim::All)
-        .comment(Some(b'#'))
-        .from_reader(Cursor::new(bytes));
-    Ok((reader, separator))
+/// A table whose columns have names. Its numbers have a decimal point.
+#[derive(Debug)]
+pub struct NamedTable {
+    /// The first line, which names the columns, and its number.
+    pub head: (u64, StringRecord),
+    /// The cells of every row, and the number of its line.
+    pub rows: Vec<(u64, StringRecord)>,
 }
 
-/// The separator that the first line which is no comment has most of; a comma if it has none.
-fn separator(bytes: &[u8]) -> u8 {
-    let mut lines = bytes.split(|byte| *byte == b'\n');
-    let header = lines.find(|line| !line.trim_ascii().is_empty() && !line.starts_with(b"#"));
-    let count = |separator: &u8| {
-        let header = header.unwrap_or_default().iter();
-        header.filter(|byte| *byte == separator).count()
-    };
-    // The last of equal counts.
-    let [tab, semicolon, comma] = *b"\t;,";
-    [tab, semicolon, comma]
-        .into_iter()
-        .max_by_key(count)
-        .unwrap_or(comma)
+impl NamedTable {
+    /// Reads a file; without a line it has no columns.
+    pub fn read(path: &Path) -> Result<Self, FileError> {
+        let TextTable { rows, style } = TextTable::read(path)?;
+        let mut rows = rows.into_iter().filter(|row| !row.is_comment());
+        let head = rows.next();
+        let line = head.as_ref().map_or(1, |row| row.line);
+        let names = head.map_or(Vec::new(), |row| row.cells);
+        let width = names.len();
+        let record = |mut cells: Vec<String>| {
+            // The last cells of a row may be left out.
+            cells.resize(width.max(cells.len()), String::new());
+            let plain = |cell: String| match style.number(&cell) {
+                Some(number) if cell.parse() != Ok(number) => number.to_string(),
+                _ => cell,
+            };
+            cells.into_iter().map(plain).collect()
+        };
+        Ok(Self {
+            head: (line, StringRecord::from(names)),
+            rows: rows.map(|row| (row.line, record(row.cells))).collect(),
+        })
+    }
 }
 
-/// The header of the file, and its rows, each with the number of its line.
+/// Name in lower case and unit, which may be empty, of a column in `X (mm)`.
+pub fn name_and_unit(cell: &str) -> (String, String) {
+    let (name, unit) = cell.split_once(['(', '[']).unwrap_or((cell, ""));
+    let unit = unit.trim_end_matches([')', ']']);
+    (name.trim().to_lowercase(), unit.trim().to_owned())
+}
+
+/// The names of the columns of a file in lower case, and its rows, each with the number of its line.
 pub fn read<T: DeserializeOwned>(path: &Path) -> Result<(StringRecord, Vec<(u64, T)>), FileError> {
-    let rows = || -> Result<_, csv::Error> {
-        let (mut reader, _) = open(path)?;
-        let header = reader.headers()?.clone();
-        let rows = reader.into_records().map(|record| {
-            let record = record?;
-            let line = record.position().map_or(0, csv::Position::line);
-            Ok((line, record.deserialize(Some(&header))?))
-        });
-        let rows = rows.collect::<Result<_, csv::Error>>()?;
-        Ok((header, rows))
+    let NamedTable {
+        head: (_, head),
+        rows,
+        ..
+    } = NamedTable::read(path)?;
+    let head: StringRecord = head.iter().map(|cell| name_and_unit(cell).0).collect();
+    let typed = |(line, row): (u64, StringRecord)| {
+        let row = row.deserialize(Some(&head)).map_err(|error| {
+            io::Error::new(ErrorKind::InvalidData, format!("line {line}: {error}"))
+        })?;
+        Ok((line, row))
     };
-    rows().map_err(FileError::at(path))
+    let rows = rows.into_iter().map(typed).collect::<io::Result<_>>();
+    let rows = rows.map_err(FileError::at(path))?;
+    Ok((head, rows))
 }
 
 #[cfg(test)]
@@ -59,27 +72,21 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_header_tells_the_separator() {
+    fn names_and_numbers_are_read_as_people_write_them() {
         let file = tempfile::NamedTempFile::new().unwrap();
-        for (text, cells) in [
-            ("a,b\n1,2\n", ["1", "2"]),
-            ("# a,b,c\n\na;b\n1,5;2\n", ["1,5", "2"]),
-            ("a\tb\r\n1,5\t2\r\n", ["1,5", "2"]),
+        for text in [
+            "a,b\n1.5,2\n",
+            "# a,b,c\n\nA (mm);b\n1,5;2\n# end",
+            "a\tB [deg]\r\n1,5\t2\r\n",
+            "\u{feff}a, b\n1.5, 2 # a remark\n",
         ] {
             std::fs::write(file.path(), text).unwrap();
-            let mut rows = open(file.path()).unwrap().0.into_records();
-            assert_eq!(rows.next().unwrap().unwrap(), cells.to_vec(), "{text}");
+            let (head, rows) = read::<(f64, f64)>(file.path()).unwrap();
+            assert_eq!(head, vec!["a", "b"], "{text}");
+            assert_eq!(rows[0].1, (1.5, 2.0), "{text}");
+            assert_eq!(rows.len(), 1, "{text}");
         }
-    }
-
-    #[test]
-    fn comments_are_no_rows_also_without_a_last_line_break() {
-        let file = tempfile::NamedTempFile::new().unwrap();
-        for last in ["", "\n", "# end", "# end\n"] {
-            std::fs::write(file.path(), format!("# begin\na, b\n1, 2\n{last}")).unwrap();
-            let rows = open(file.path()).unwrap().0.into_records();
-            let rows: Vec<_> = rows.map(Result::unwrap).collect();
-            assert_eq!(rows, [vec!["1", "2"]], "{last}");
-        }
+        let [name, unit] = ["x", "mm"].map(str::to_owned);
+        assert_eq!(name_and_unit("X [mm]"), (name, unit));
     }
 }

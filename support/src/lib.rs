@@ -30,6 +30,8 @@ pub mod severity;
 pub mod shard;
 pub mod statistics;
 pub mod table;
+pub mod text_file;
+pub mod text_table;
 pub mod toml_file;
 pub mod verbose;
 pub mod vtk;

@@ -32,11 +32,6 @@ pub fn read(path: &Path) -> io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// The text of a file in UTF-8; an error if it is not a regular file.
-pub fn read_to_string(path: &Path) -> io::Result<String> {
-    String::from_utf8(read(path)?).map_err(|error| io::Error::new(ErrorKind::InvalidData, error))
-}
-
 /// Opens a file in a folder that others can write. It is an error of the kind [`ErrorKind::InvalidData`] if a link, a pipe or a
 /// device is in its place: nothing is awaited, and nothing that a link names is read, created or changed.
 pub fn open(options: &mut OpenOptions, path: &Path) -> io::Result<File> {
@@ -83,7 +78,7 @@ mod tests {
         assert_eq!(missing.kind(), ErrorKind::NotFound);
         let file = folder.path().join("file");
         std::fs::write(&file, "text").unwrap();
-        assert_eq!(read_to_string(&file).unwrap(), "text");
+        assert_eq!(read(&file).unwrap(), b"text");
     }
 
     #[test]

@@ -3,7 +3,7 @@
 
 use crate::file_error::FileError;
 use crate::nearest::nearest;
-use crate::regular_file;
+use crate::text_file;
 use crate::whole_arrays::{DECIMAL_POINT, Whole};
 use serde::de::DeserializeOwned;
 use std::path::{Path, PathBuf};
@@ -38,7 +38,7 @@ pub enum ConfigError {
 
 /// Reads a TOML file into `T`, which should deny unknown fields.
 pub fn read<T: DeserializeOwned>(path: &Path) -> Result<T, ConfigError> {
-    let text = regular_file::read_to_string(path).map_err(FileError::at(path))?;
+    let text = text_file::read(path).map_err(FileError::at(path))?;
     parse(&text, path)
 }
 
@@ -97,6 +97,11 @@ fn plain(message: &str, line: &str) -> String {
     let mut plain = format!("{key}{}", words.join(" "));
     if number {
         plain += &format!("; {DECIMAL_POINT}");
+    }
+    if let Some(character) = text_file::unlike_its_looks(line) {
+        plain += &format!(
+            "; the line contains {character}, which is not what it looks like: type it again"
+        );
     }
     plain
 }
@@ -187,6 +192,18 @@ mod tests {
         }
         let short = read("size = [1]").unwrap_err().to_string();
         assert!(short.contains("length 1"), "{short}");
+    }
+
+    /// As text that is copied from a page has them.
+    #[test]
+    fn characters_that_look_like_others_are_shown() {
+        for (from, to, shown) in [
+            ("\"film\"", "“film”", "`“` (U+201C)"),
+            ("poisson = ", "poisson\u{a0}= ", "(U+00A0)"),
+        ] {
+            let message = message(&FILM.replace(from, to));
+            assert!(message.contains(shown), "{message}");
+        }
     }
 
     #[test]

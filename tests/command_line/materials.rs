@@ -133,10 +133,13 @@ fn a_brittle_material_fails_its_check() {
 #[test]
 fn wrong_options_name_the_option() {
     let work = Workplace::new();
+    // The record states its dimensions.
+    let unstated = [("Width;10,0;mm\n", ""), ("Gauge length;50,0;mm\n", "")];
+    work.edit("configs/tensile/strip-1.csv", &unstated);
     let strip =
         "material fit configs/tensile/strip-1.csv --name a --thickness 0.5 --density-kg-m3 1390";
     for (options, expected) in [
-        ("", "give --width"),
+        ("", "give --width, --gauge-length of the specimen"),
         ("--width 10", "give --gauge-length"),
         (
             "--width 10,11 --gauge-length 50",

@@ -108,7 +108,7 @@ fn errors_in_tables_and_column_maps_name_the_place() {
     for (from, to, expected) in [
         ("20,6.0", "20,six", "column `W`, row 1: `six`"),
         (",M\n", ",Moment\n", "no column `M`"),
-        ("ray,", "\u{0}\u{1},", "no column `ray`"),
+        ("ray,", "\u{0}\u{1},", "NUL bytes"),
     ] {
         let message = error(&FOREIGN.replacen(from, to, 1), &map);
         assert!(message.contains(expected), "{message}");

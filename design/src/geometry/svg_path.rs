@@ -1,13 +1,14 @@
 //! The visible path of an SVG file as a polygon; Bezier curves are approximated by segments.
 //!
 //! usvg reads the document: it converts rect, circle, ellipse and polygon to paths and arcs to
-//! cubic curves, and it resolves styles, `<use>` and transforms. There must be one visible path, and it must be one closed
-//! contour that neither crosses nor touches itself. The y axis of SVG points downwards; the result has y
+//! cubic curves, and it resolves styles, `<use>` and transforms. There must be one visible path, once for the fill and once for the
+//! stroke, and it must be one closed contour that neither crosses nor touches itself. A clip may surround it. The y axis of SVG points downwards; the result has y
 //! upwards. The size of the outline is set by the scene.
 
 use crate::geometry::{near_origin, polygon};
+use support::text_file;
 use usvg::tiny_skia_path::{PathSegment, Point};
-use usvg::{Group, ImageHrefResolver, Node, Options, Path, Transform, Tree};
+use usvg::{ClipPath, Group, ImageHrefResolver, Node, Options, Path, Transform, Tree};
 
 /// Number of segments of a flattened curve.
 const SEGMENTS: usize = 32;
@@ -17,6 +18,8 @@ const WELD: f64 = 1e-6;
 const TOO_FAR: f64 = 1000.0;
 /// Maximum number of points of an outline, 3000 curves: the worst one of them is checked for crossings in seconds.
 const MOST_POINTS: usize = 100_000;
+/// How far a path may reach out of a clip around it, over the length of an edge of the clip: rounding.
+const FRAME: f64 = 1e-5;
 /// Removes the background colour of the root element, which usvg would draw as a path.
 const NO_BACKGROUND: &str = "svg { background-color: none !important }";
 
@@ -28,13 +31,21 @@ pub enum SvgPathError {
     Empty,
     #[error("the file is not readable as SVG: {0}; save the drawing as plain SVG")]
     NotSvg(usvg::Error),
+    #[error("the file is no drawing: {0}")]
+    NotText(std::io::Error),
     #[error(
         "there is no visible path in the file; draw the outline as a path, polygon, rect, circle \
          or ellipse with a fill or a stroke, outside of <defs>"
     )]
     NoPath,
-    #[error("the file has {found} visible paths; keep the outline and hide or delete the others")]
-    SeveralPaths { found: usize },
+    #[error(
+        "the file has text alone; convert it to paths in the drawing program (Inkscape: Path, Object to Path)"
+    )]
+    Text,
+    #[error(
+        "the file has {found} visible paths, the largest of them {largest}; keep the outline and hide or delete the others"
+    )]
+    SeveralPaths { found: usize, largest: String },
     #[error(
         "the path is drawn in part alone, because of the {element} `{id}`; release it in the drawing program, so that the \
          path itself is the outline"
@@ -66,8 +77,13 @@ pub enum SvgPathError {
     SelfCrossing { x: f64, y: f64 },
 }
 
+/// The vertices of the only visible path in an SVG file, y upwards.
+pub(crate) fn of_file(bytes: &[u8]) -> Result<Vec<[f64; 2]>, SvgPathError> {
+    vertices(&text_file::decoded(bytes).map_err(SvgPathError::NotText)?)
+}
+
 /// The vertices of the only visible path in an SVG text, y upwards.
-pub(crate) fn vertices(svg: &str) -> Result<Vec<[f64; 2]>, SvgPathError> {
+fn vertices(svg: &str) -> Result<Vec<[f64; 2]>, SvgPathError> {
     if svg.trim().is_empty() {
         return Err(SvgPathError::Empty);
     }
@@ -88,13 +104,13 @@ pub(crate) fn vertices(svg: &str) -> Result<Vec<[f64; 2]>, SvgPathError> {
     let tree = Tree::from_str(svg, &options).map_err(SvgPathError::NotSvg)?;
     let mut paths = Vec::new();
     add_visible(tree.root(), &mut paths)?;
+    // Programs write the fill and the stroke of a shape one after the other.
+    paths.dedup_by(|a, b| a.data() == b.data() && a.abs_transform() == b.abs_transform());
     let path = match paths[..] {
+        [] if svg.contains("<text") => return Err(SvgPathError::Text),
         [] => return Err(SvgPathError::NoPath),
         [path] => path,
-        _ => {
-            let found = paths.len();
-            return Err(SvgPathError::SeveralPaths { found });
-        }
+        _ => return Err(several(&paths, origin)),
     };
     let points = contour(path, origin)?;
     let times = near_origin::distance_over_size(&points);
@@ -120,6 +136,20 @@ pub(crate) fn vertices(svg: &str) -> Result<Vec<[f64; 2]>, SvgPathError> {
     Ok(points.iter().map(turned).collect())
 }
 
+/// The paths with the sizes and places of the three largest, in the coordinates of the file.
+fn several(paths: &[&Path], [x0, y0]: [f64; 2]) -> SvgPathError {
+    let mut boxes: Vec<_> = paths.iter().map(|path| path.abs_bounding_box()).collect();
+    boxes.sort_by(|a, b| (b.width() * b.height()).total_cmp(&(a.width() * a.height())));
+    let words = boxes.iter().take(3).map(|it| {
+        let [x, y] = [f64::from(it.x()) + x0, f64::from(it.y()) + y0];
+        format!("{} x {} at ({x}, {y})", it.width(), it.height())
+    });
+    SvgPathError::SeveralPaths {
+        found: paths.len(),
+        largest: words.collect::<Vec<_>>().join(", "),
+    }
+}
+
 /// Adds the visible paths of a group, in document order; an error if only a part of them is drawn.
 fn add_visible<'a>(group: &'a Group, paths: &mut Vec<&'a Path>) -> Result<(), SvgPathError> {
     if group.opacity().get() == 0.0 {
@@ -139,7 +169,9 @@ fn add_visible<'a>(group: &'a Group, paths: &mut Vec<&'a Path>) -> Result<(), Sv
             Node::Image(_) | Node::Text(_) => {}
         }
     }
-    let clip = group.clip_path().map(|clip| ("clipPath", clip.id()));
+    let clip = group.clip_path();
+    let clip = clip.filter(|clip| !surrounds(clip, group.abs_transform(), &paths[before..]));
+    let clip = clip.map(|clip| ("clipPath", clip.id()));
     let cut = clip.or_else(|| group.mask().map(|mask| ("mask", mask.id())));
     match cut {
         Some((element, id)) if paths.len() > before => {
@@ -150,27 +182,77 @@ fn add_visible<'a>(group: &'a Group, paths: &mut Vec<&'a Path>) -> Result<(), Sv
     }
 }
 
+/// Whether a clip is one convex path around paths, so that it hides nothing of them, as the frame of an artboard.
+fn surrounds(clip: &ClipPath, transform: Transform, paths: &[&Path]) -> bool {
+    let [Node::Path(frame)] = clip.root().children() else {
+        return false;
+    };
+    let placed = |path: &Path, transform: Transform| -> Vec<[f64; 2]> {
+        let points = subpaths(path).into_iter().flat_map(|part| part.points);
+        points.map(|point| transformed(transform, point)).collect()
+    };
+    let to_page = transform.pre_concat(clip.transform());
+    let frame = placed(frame, to_page.pre_concat(frame.abs_transform()));
+    let sign = polygon::area(&frame).signum();
+    let inside = |p: &[f64; 2]| {
+        polygon::edges(&frame).all(|(a, b)| {
+            let along = [b[0] - a[0], b[1] - a[1]];
+            let off = sign * (along[0] * (p[1] - a[1]) - along[1] * (p[0] - a[0]));
+            off >= -FRAME * (along[0] * along[0] + along[1] * along[1])
+        })
+    };
+    let is_convex = clip.clip_path().is_none() && frame.iter().all(inside);
+    is_convex
+        && paths
+            .iter()
+            .all(|path| placed(path, path.abs_transform()).iter().all(inside))
+}
+
+/// A part of a path between two moves.
+struct Subpath {
+    points: Vec<[f64; 2]>,
+    closed: bool,
+}
+
+/// The parts of a path, before its transform, from the origin of the moved drawing. A move that draws nothing is none.
+fn subpaths(path: &Path) -> Vec<Subpath> {
+    let mut parts: Vec<Subpath> = Vec::new();
+    for segment in path.data().segments() {
+        if let PathSegment::MoveTo(to) = segment {
+            let points = vec![pair(to)];
+            parts.push(Subpath {
+                points,
+                closed: false,
+            });
+        }
+        let Some(Subpath { points, closed }) = parts.last_mut() else {
+            continue;
+        };
+        match segment {
+            PathSegment::MoveTo(_) => {}
+            PathSegment::LineTo(to) => points.push(pair(to)),
+            PathSegment::QuadTo(b, to) => flatten(points, &[pair(b), pair(to)]),
+            PathSegment::CubicTo(b, c, to) => flatten(points, &[pair(b), pair(c), pair(to)]),
+            PathSegment::Close => *closed = true,
+        }
+    }
+    parts.retain(|part| part.points.iter().any(|point| *point != part.points[0]));
+    parts
+}
+
 /// The distinct points of a path that is one closed contour, before its transform, from the origin of the moved drawing.
 fn contour(path: &Path, origin: [f64; 2]) -> Result<Vec<[f64; 2]>, SvgPathError> {
-    let mut points: Vec<[f64; 2]> = Vec::new();
-    let mut closed = false;
-    // The start of a second contour; a move at the end of the data draws none.
-    let mut second: Option<[f64; 2]> = None;
-    for segment in path.data().segments() {
-        if let Some(start) = second
-            && !matches!(segment, PathSegment::MoveTo(_))
-        {
-            let [x, y] = in_file(start, origin);
-            return Err(SvgPathError::SecondContour { x, y });
-        }
-        match segment {
-            PathSegment::MoveTo(to) if points.is_empty() => points.push(pair(to)),
-            PathSegment::MoveTo(to) => second = Some(pair(to)),
-            PathSegment::LineTo(to) => points.push(pair(to)),
-            PathSegment::QuadTo(b, to) => flatten(&mut points, &[pair(b), pair(to)]),
-            PathSegment::CubicTo(b, c, to) => flatten(&mut points, &[pair(b), pair(c), pair(to)]),
-            PathSegment::Close => closed = true,
-        }
+    let mut parts = subpaths(path).into_iter();
+    let Some(Subpath {
+        mut points,
+        mut closed,
+    }) = parts.next()
+    else {
+        return Err(SvgPathError::TooFewPoints { found: 1 });
+    };
+    if let Some(second) = parts.next() {
+        let [x, y] = in_file(second.points[0], origin);
+        return Err(SvgPathError::SecondContour { x, y });
     }
     let largest = points.as_flattened().iter().map(|c| c.abs());
     let weld = WELD * largest.fold(0.0, f64::max);
@@ -347,6 +429,45 @@ mod tests {
             let found = polygon::area(&found).abs();
             assert!((found / area - 1.0).abs() < error, "{shape}: {found}");
         }
+    }
+
+    #[test]
+    fn what_draws_nothing_and_hides_nothing_does_not_count() {
+        let frame = "<clipPath id='f'><rect width='10' height='20'/></clipPath>";
+        let framed = format!("{frame}<g clip-path='url(#f)'>{LARGE}</g>");
+        let artboard =
+            format!("<svg x='5' width='40' height='40' viewBox='0 0 20 20'>{LARGE}</svg>");
+        let symbol = format!(
+            "<symbol id='s' viewBox='0 0 10 20'>{LARGE}</symbol><use href='#s' width='10' height='20'/>"
+        );
+        let twice = format!(
+            "{LARGE}{}",
+            LARGE.replace("/>", " fill='none' stroke='#000'/>")
+        );
+        for (content, expected) in [
+            (framed, [0.0, 10.0, -20.0, 0.0]),
+            (artboard, [5.0, 25.0, -40.0, 0.0]),
+            (symbol, [0.0, 10.0, -20.0, 0.0]),
+            (twice, [0.0, 10.0, -20.0, 0.0]),
+            (LARGE.replace("Z", "Z M 99 99 z"), [0.0, 10.0, -20.0, 0.0]),
+            (
+                LARGE.replace("d=\"", "d=\"M 99 99 z "),
+                [0.0, 10.0, -20.0, 0.0],
+            ),
+        ] {
+            assert_near(bounds(drawn(&content)), expected);
+        }
+        let narrow = format!(
+            "{}<g clip-path='url(#f)'>{LARGE}</g>",
+            frame.replace("'10'", "'9'")
+        );
+        assert_refused(drawn(&narrow), "clipPath `f`");
+        assert_refused(drawn("<text y='9'>A</text>"), "text alone");
+        let two = format!("{SMALL}{LARGE}");
+        assert_refused(
+            drawn(&two),
+            "2 visible paths, the largest of them 10 x 20 at (0, 0), 1 x 1 at (0, 0)",
+        );
     }
 
     #[test]

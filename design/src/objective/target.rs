@@ -1,5 +1,6 @@
 //! The target outline T of (16): a closed curve, sampled densely at equal arc lengths.
 
+use crate::geometry::outline_points::{self, PointsError};
 use crate::geometry::plane::{complex, point};
 use crate::geometry::polygon;
 use crate::geometry::svg_path::{self, SvgPathError};
@@ -45,7 +46,8 @@ pub enum TargetShape {
         /// The points (mm), at least three.
         points: Vec<[f64; 2]>,
     },
-    /// A polygon in a file with one `x,y` (mm) per line, in order around the outline; `#` starts a comment.
+    /// A polygon in a file with one point a line, in order around the outline: x and y (mm, or the unit behind their names), with commas,
+    /// semicolons, tabs or blanks between them; `#` starts a comment.
     Csv {
         /// Path of the file, relative to the folder of the scene.
         file: PathBuf,
@@ -86,12 +88,8 @@ impl TargetShape {
 pub enum TargetError {
     #[error("cannot read the target outline {0}")]
     Read(#[from] FileError),
-    #[error("{path}:{line}: `{text}` is not `x,y` in mm", path = .path.display())]
-    Row {
-        path: PathBuf,
-        line: usize,
-        text: String,
-    },
+    #[error(transparent)]
+    Points(#[from] PointsError),
     #[error("{path}: {source}", path = .path.display())]
     Svg { path: PathBuf, source: SvgPathError },
     #[error(transparent)]
@@ -143,7 +141,9 @@ impl Target {
             }
             TargetShape::Polygon { vertices } => along_polygon(vertices, count),
             TargetShape::Curve { points } => along_polygon(&curve(points), count),
-            TargetShape::Csv { file } => along_polygon(&read_points(&folder.join(file))?, count),
+            TargetShape::Csv { file } => {
+                along_polygon(&outline_points::read(&folder.join(file))?, count)
+            }
             TargetShape::Svg {
                 file,
                 centre,
@@ -151,9 +151,9 @@ impl Target {
                 rotation_deg,
             } => {
                 let path = folder.join(file);
-                let svg = regular_file::read_to_string(&path).map_err(FileError::at(&path))?;
-                let drawn =
-                    svg_path::vertices(&svg).map_err(|source| TargetError::Svg { path, source })?;
+                let bytes = regular_file::read(&path).map_err(FileError::at(&path))?;
+                let drawn = svg_path::of_file(&bytes)
+                    .map_err(|source| TargetError::Svg { path, source })?;
                 along_polygon(&placed(&drawn, *centre, *height, *rotation_deg)?, count)
             }
         }
@@ -258,31 +258,6 @@ fn placed(
     Ok(vertices.iter().map(place).collect())
 }
 
-fn read_points(path: &Path) -> Result<Vec<[f64; 2]>, TargetError> {
-    (regular_file::read_to_string(path).map_err(FileError::at(path))?)
-        .lines()
-        .enumerate()
-        .map(|(row, line)| (row + 1, line.split('#').next().unwrap_or_default().trim()))
-        .filter(|(_, line)| !line.is_empty())
-        .map(|(line, text)| {
-            row(text).ok_or_else(|| TargetError::Row {
-                path: path.to_owned(),
-                line,
-                text: text.to_owned(),
-            })
-        })
-        .collect()
-}
-
-fn row(text: &str) -> Option<[f64; 2]> {
-    let (x, y) = text.split_once(',')?;
-    let point = [x.trim().parse().ok()?, y.trim().parse().ok()?];
-    point
-        .iter()
-        .all(|value: &f64| value.is_finite())
-        .then_some(point)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -372,7 +347,7 @@ mod tests {
         assert_eq!(triangle, polygon);
         assert_close(triangle.length, 120.0, 1e-12);
         assert_close(area(&triangle.points), 600.0, 1e-9);
-        let error = from_file("0,0\n1;2\n").unwrap_err().to_string();
+        let error = from_file("0,0\n1;2\n3,4\n").unwrap_err().to_string();
         assert!(error.contains("triangle.csv:2: `1;2`"), "{error}");
     }
 

@@ -104,8 +104,6 @@ pub struct MaterialFit {
     pub fracture_source: FractureSource,
 }
 
-/// Minimum number of rows from which a modulus is taken.
-const MIN_LINEAR_ROWS: usize = 5;
 /// Number of points of the curve in the neck.
 const NECK_POINTS: usize = 100;
 /// Digits after the point of stresses (MPa) and strains in the table.
@@ -141,11 +139,12 @@ impl MaterialFit {
         records: &[(PathBuf, RecordOptions)],
         options: &FitOptions,
     ) -> Result<Self, TensileError> {
-        let evaluate = |(path, record): &(PathBuf, RecordOptions)| {
-            let specimen = Specimen::new(&Record::read(path, record)?, &options.specimen)?;
-            enough_rows(specimen)
-        };
-        let specimens: Vec<Specimen> = records.iter().map(evaluate).collect::<Result<_, _>>()?;
+        let mut specimens = Vec::new();
+        for (path, record) in records {
+            for record in Record::read_all(path, record)? {
+                specimens.push(Specimen::new(&record, &options.specimen)?);
+            }
+        }
         same_kind(&specimens)?;
         let over = |value: fn(&Specimen) -> f64| Statistic::new(specimens.iter().map(value));
         let drawn = |value: fn(&Draw) -> f64| {
@@ -223,21 +222,6 @@ fn hardening(
         Origin::Measured,
     ));
     Ok((curve, (yields < top[0]).then_some(yields)))
-}
-
-/// A specimen whose modulus was measured over enough rows.
-fn enough_rows(specimen: Specimen) -> Result<Specimen, TensileError> {
-    let rows = specimen.linear.rows;
-    if rows >= MIN_LINEAR_ROWS {
-        return Ok(specimen);
-    }
-    Err(TensileError::File {
-        path: specimen.path,
-        what: format!(
-            "has {rows} rows in its linear part, which needs at least {MIN_LINEAR_ROWS}: export the record without \
-             thinning, or record at a higher rate"
-        ),
-    })
 }
 
 /// Specimens that draw and specimens that do not have no common curve.

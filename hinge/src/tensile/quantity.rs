@@ -150,38 +150,36 @@ impl Quantity {
         spellings.split(' ').next().unwrap_or_default()
     }
 
-    /// The quantity that a column's name describes, in its usual spellings in English and German.
+    /// The quantity that a column's name describes, in its usual spellings in English, German, French, Spanish, Italian and
+    /// Turkish.
     pub(super) fn from_label(label: &str) -> Option<Self> {
-        let name = label.to_lowercase();
+        let name = folded(label);
         let name = name.split(['(', '[']).next().unwrap_or_default();
         let words: Vec<&str> = (name.split(|c: char| !c.is_alphabetic()))
             .filter(|word| !word.is_empty())
             .collect();
-        let has = |known: &[&str]| words.iter().any(|word| known.contains(word));
+        let has = |known: &str| known.split(' ').any(|known| words.contains(&known));
         let ends = |tail: &str| words.iter().any(|word| word.ends_with(tail));
-        if has(&["rate", "time", "zeit"]) {
+        if has(TIMES) {
             return None;
         }
-        let is_true = has(&["true", "wahre", "logarithmic", "log", "hencky"]);
-        let is_plastic = has(&["plastic", "plastische"]);
+        let is_true = has(TRUE);
+        let is_plastic = words.iter().any(|word| word.starts_with("plasti"));
         let unit = unit_of(label);
         let measured_in = |quantity: Self| unit.is_some_and(|unit| quantity.factor(unit).is_some());
-        if has(&["stress", "sigma"]) || ends("spannung") {
-            return Some(if is_true { TrueStress } else { Stress });
+        if has(STRESS_NAMES) || ends("spannung") {
+            // `Tension` is a stress in Spanish and may be a force in English.
+            return Some(match is_true {
+                true => TrueStress,
+                false if measured_in(Force) => Force,
+                false => Stress,
+            });
         }
-        if has(&["force", "load"]) || ends("kraft") {
+        if has(FORCE_NAMES) || ends("kraft") {
             return Some(if measured_in(Stress) { Stress } else { Force });
         }
-        let strain = has(&["strain", "epsilon", "eps"]) || ends("dehnung");
-        let extension = has(&[
-            "extension",
-            "displacement",
-            "elongation",
-            "crosshead",
-            "stroke",
-            "travel",
-        ]) || ends("weg")
-            || ends("verlängerung");
+        let strain = has(STRAIN_NAMES) || ends("dehnung");
+        let extension = has(EXTENSION_NAMES) || ends("weg") || ends("verlangerung");
         match (strain, extension) {
             (true, _) if is_plastic => Some(PlasticStrain),
             (true, _) if is_true => Some(TrueStrain),
@@ -192,6 +190,31 @@ impl Quantity {
             (false, false) => None,
         }
     }
+}
+
+/// Words in the names of columns, as [`folded`] leaves them: of times and rates, of true values, and of each quantity.
+const TIMES: &str = "rate time zeit temps tiempo tempo zaman sure speed vitesse velocidad velocita";
+const TRUE: &str = "true wahre logarithmic log hencky vraie verdadera verdadero reale vera";
+const STRESS_NAMES: &str = "stress sigma contrainte tension esfuerzo tensione sforzo gerilme";
+const FORCE_NAMES: &str = "force load charge effort fuerza carga forza carico kuvvet yuk";
+const STRAIN_NAMES: &str = "strain epsilon eps deformation deformacion deformazione gerinim";
+const EXTENSION_NAMES: &str = "extension displacement elongation crosshead stroke travel allongement deplacement course alargamiento \
+     elongacion desplazamiento carrera allungamento spostamento corsa uzama";
+
+/// A text in lower case, without accents.
+pub(super) fn folded(text: &str) -> String {
+    let plain = |c| match c {
+        'à' | 'á' | 'â' | 'ä' | 'ã' => 'a',
+        'è' | 'é' | 'ê' | 'ë' => 'e',
+        'ì' | 'í' | 'î' | 'ï' | 'ı' => 'i',
+        'ò' | 'ó' | 'ô' | 'ö' => 'o',
+        'ù' | 'ú' | 'û' | 'ü' => 'u',
+        'ç' => 'c',
+        'ş' => 's',
+        'ğ' => 'g',
+        c => c,
+    };
+    text.to_lowercase().chars().map(plain).collect()
 }
 
 /// A unit without its spaces, superscripts and Greek letters: `kgf / mm²` is `kgf/mm2`, `µε` is `ue`.
@@ -289,6 +312,16 @@ mod tests {
             ("true_stress_mpa", TrueStress, Some("mpa")),
             ("True strain", TrueStrain, None),
             ("plastic_strain", PlasticStrain, None),
+            ("Force standard", Force, None),
+            ("Course standard (mm)", Extension, Some("mm")),
+            ("Déformation (%)", Strain, Some("%")),
+            ("CONTRAINTE (MPa)", Stress, Some("MPa")),
+            ("Tensión (MPa)", Stress, Some("MPa")),
+            ("Tension (N)", Force, Some("N")),
+            ("Alargamiento [mm]", Extension, Some("mm")),
+            ("Deformazione (mm)", Extension, Some("mm")),
+            ("Forza, kN", Force, Some("kN")),
+            ("Verlängerung in mm", Extension, Some("mm")),
             ("Load, kN", Force, Some("kN")),
             ("Kraft/daN", Force, Some("daN")),
             ("Load (Channel 1) (N)", Force, Some("N")),
@@ -303,7 +336,14 @@ mod tests {
             assert_eq!(Quantity::from_label(label), Some(quantity), "{label}");
             assert_eq!(unit_of(label), unit, "{label}");
         }
-        for label in ["Time (s)", "Strain rate (1/s)", "Width (mm)", "", "Cycle"] {
+        for label in [
+            "Time (s)",
+            "Strain rate (1/s)",
+            "Temps (s)",
+            "Width (mm)",
+            "",
+            "Cycle",
+        ] {
             assert_eq!(Quantity::from_label(label), None, "{label}");
         }
     }

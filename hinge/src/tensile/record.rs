@@ -1,7 +1,8 @@
 //! The record of one tensile test: load and deformation of every row, in MPa and as a ratio.
 
 use crate::tensile::error::TensileError;
-use crate::tensile::number_table::{NumberTable, TextRow};
+use crate::tensile::number_table::NumberTable;
+use crate::tensile::preamble::{self, StatedDimension};
 use crate::tensile::quantity::Quantity::{
     Extension, Force, PlasticStrain, Strain, Stress, TrueStrain, TrueStress,
 };
@@ -9,6 +10,7 @@ use crate::tensile::quantity::{Quantity, unit_of};
 use serde::Serialize;
 use std::fmt;
 use std::path::{Path, PathBuf};
+use support::text_table::TextRow;
 
 /// What a file does not say about its columns and its specimen.
 #[derive(Clone, Debug, Default)]
@@ -21,7 +23,7 @@ pub struct RecordOptions {
     pub gauge_length: Option<f64>,
     /// Width of the specimen (mm); needed for a force.
     pub width: Option<f64>,
-    /// Thickness of the specimen (mm); needed for a force.
+    /// Thickness of the specimen (mm), unless its file states another; needed for a force.
     pub thickness: Option<f64>,
 }
 
@@ -39,7 +41,7 @@ pub(super) struct RecordRow {
 /// The curve of one specimen in the units of the project.
 #[derive(Clone, Debug)]
 pub(super) struct Record {
-    /// The file.
+    /// The file, with the number of the specimen if it has several.
     pub path: PathBuf,
     /// The rows as measured.
     pub rows: Vec<RecordRow>,
@@ -49,6 +51,8 @@ pub(super) struct Record {
     pub deformation: Quantity,
     /// The columns that were read: load and deformation.
     pub read_as: [ReadColumn; 2],
+    /// The dimensions that were read from the file.
+    pub stated: Vec<StatedDimension>,
     /// BLAKE3 hash of the file, 16 hexadecimal digits.
     pub hash: String,
 }
@@ -79,27 +83,44 @@ pub struct ReadColumn {
 }
 
 impl Record {
-    pub fn read(path: &Path, options: &RecordOptions) -> Result<Self, TensileError> {
+    /// The records of a file, one a specimen; options that name columns read one specimen.
+    pub fn read_all(path: &Path, options: &RecordOptions) -> Result<Vec<Self>, TensileError> {
+        let (tables, hash) = NumberTable::read_all(path)?;
+        let beside = |table: NumberTable| match table.side_by_side() {
+            Some(tables) if options.columns.is_empty() => tables,
+            _ => vec![table],
+        };
+        let tables: Vec<NumberTable> = tables.into_iter().flat_map(beside).collect();
+        let several = tables.len() > 1;
+        let named = |number: usize| match several {
+            true => format!("{} (specimen {number})", path.display()).into(),
+            false => path.to_owned(),
+        };
+        let numbered = tables.iter().zip(1..);
+        numbered
+            .map(|(table, number)| Self::new(&named(number), table, options, &hash))
+            .collect()
+    }
+
+    fn new(
+        path: &Path,
+        table: &NumberTable,
+        options: &RecordOptions,
+        hash: &str,
+    ) -> Result<Self, TensileError> {
         let refuse = |what| TensileError::File {
             path: path.to_owned(),
             what,
         };
-        let table = NumberTable::read(path)?;
         let columns = columns(&table.labels, options).map_err(refuse)?;
         let [load, deformation] = pair(&columns, &table.labels).map_err(refuse)?;
         let load = &ReadColumn::new(load, &table.labels, options).map_err(refuse)?;
         let deformation = &ReadColumn::new(deformation, &table.labels, options).map_err(refuse)?;
-        let area = match load.quantity {
-            Force => {
-                dimension(options.width, "width").map_err(refuse)?
-                    * dimension(options.thickness, "thickness").map_err(refuse)?
-            }
-            _ => 1.0,
-        };
-        let length = match deformation.quantity {
-            Extension => dimension(options.gauge_length, "gauge-length").map_err(refuse)?,
-            _ => 1.0,
-        };
+        let Sizes {
+            area,
+            length,
+            stated,
+        } = Sizes::new([load.quantity, deformation.quantity], table, options).map_err(refuse)?;
         let at = |row: &TextRow, what| TensileError::Row {
             path: path.to_owned(),
             line: row.line,
@@ -123,8 +144,9 @@ impl Record {
             }
             let number = |column: &ReadColumn| {
                 table.number(row, column.number - 1).map_err(|text| {
+                    let text = text.escape_debug();
                     let what = format!("`{text}` in column {} is not a number", column.title());
-                    refuse(if is_grouped(text) {
+                    refuse(if is_grouped(&text.to_string()) {
                         format!("{what}: it {THOUSANDS}")
                     } else {
                         format!("{what}: correct the cell or delete the line")
@@ -157,7 +179,8 @@ impl Record {
             load: load.quantity,
             deformation: deformation.quantity,
             read_as: [load.clone(), deformation.clone()],
-            hash: table.hash,
+            stated,
+            hash: hash.to_owned(),
         })
     }
 }
@@ -239,19 +262,59 @@ fn is_grouped(text: &str) -> bool {
     text.contains(sign) && text.replace(sign, "").parse::<f64>().is_ok()
 }
 
-/// A dimension of the specimen that is needed, in mm.
-fn dimension(given: Option<f64>, option: &str) -> Result<f64, String> {
-    match given {
-        Some(value) if value > 0.0 && value.is_finite() => Ok(value),
-        Some(value) => Err(format!("needs a positive --{option} (mm), not {value}")),
-        None => Err(format!(
-            "contains a {}: give --{option} of the specimen (mm)",
-            if option == "gauge-length" {
-                "length change"
-            } else {
-                "force"
+/// Section (mm^2) and gauge length (mm) by which load and deformation are divided, 1 for a stress and a strain.
+struct Sizes {
+    area: f64,
+    length: f64,
+    /// Those that are from the file.
+    stated: Vec<StatedDimension>,
+}
+
+impl Sizes {
+    /// The options decide, but for the thickness: there it is that of the sheet.
+    fn new(
+        [load, deformation]: [Quantity; 2],
+        table: &NumberTable,
+        options: &RecordOptions,
+    ) -> Result<Self, String> {
+        let in_file = preamble::dimensions(&table.preamble, table.style);
+        let in_file = |name: &str| in_file.iter().find(|it| it.name == name).copied();
+        let (mut missing, mut stated) = (Vec::new(), Vec::new());
+        let mut size = |needed: bool, name: &str, given: Option<f64>| {
+            let found = in_file(name).filter(|_| given.is_none() || name == "thickness");
+            match found.map(|it| it.value).or(given) {
+                _ if !needed => Ok(1.0),
+                Some(value) if value > 0.0 && value.is_finite() => {
+                    stated.extend(found);
+                    Ok(value)
+                }
+                Some(value) => Err(format!("needs a positive --{name} (mm), not {value}")),
+                None => {
+                    missing.push(format!("--{name}"));
+                    Ok(1.0)
+                }
             }
-        )),
+        };
+        let (force, extension) = (load == Force, deformation == Extension);
+        let area =
+            size(force, "width", options.width)? * size(force, "thickness", options.thickness)?;
+        let length = size(extension, "gauge-length", options.gauge_length)?;
+        if missing.is_empty() {
+            return Ok(Self {
+                area,
+                length,
+                stated,
+            });
+        }
+        let contains = match (force, extension) {
+            (true, true) => "a force and a length change",
+            (true, false) => "a force",
+            _ => "a length change",
+        };
+        let options = missing.join(", ");
+        Err(format!(
+            "contains {contains}: give {options} of the specimen (mm)"
+        ))
     }
 }
 

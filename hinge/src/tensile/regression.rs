@@ -8,21 +8,28 @@ pub(super) struct Regression {
     pub squares: f64,
     /// Slope of the line; not finite if all x are equal.
     pub slope: f64,
+    /// Standard error of the slope, from the distances of the rows to the line; not a number for two rows.
+    pub error: f64,
 }
 
 impl Regression {
     pub fn new(rows: &[[f64; 2]]) -> Self {
         let count = rows.len() as f64;
         let mean = [0, 1].map(|of| rows.iter().map(|row| row[of]).sum::<f64>() / count);
-        let (mut squares, mut products) = (0.0, 0.0);
+        let (mut squares, mut products, mut total) = (0.0, 0.0, 0.0);
         for row in rows {
-            squares += (row[0] - mean[0]).powi(2);
-            products += (row[0] - mean[0]) * (row[1] - mean[1]);
+            let [x, y] = [0, 1].map(|of| row[of] - mean[of]);
+            squares += x * x;
+            products += x * y;
+            total += y * y;
         }
+        let slope = products / squares;
+        let left = (total - slope * products).max(0.0);
         Self {
             mean,
             squares,
-            slope: products / squares,
+            slope,
+            error: (left / (count - 2.0) / squares).sqrt(),
         }
     }
 }

@@ -2,8 +2,8 @@
 //!
 //! 1. Unloading loops, rows after the break and falling strains are removed (`cleaning`).
 //! 2. The line through the linear part is extended to zero stress; the strain there, slack and toe, is subtracted.
-//! 3. If Young's modulus is given, the compliance of the testing machine is removed:
-//!    e - s (1 / E_measured - 1 / E).
+//! 3. If Young's modulus is given, the compliance of the testing machine is removed, e - s (1 / E_measured - 1 / E), unless the strain is
+//!    that of an extensometer: of a slope near the modulus.
 //! 4. Landmarks are read from the nominal curve (`landmarks`).
 //! 5. Where the strain is uniform, nominal rows become local ones (`local_curve`).
 
@@ -12,7 +12,8 @@ use crate::tensile::error::TensileError;
 use crate::tensile::landmarks::{Draw, draw, offset_yield, uniform_end};
 use crate::tensile::linear_part::LinearPart;
 use crate::tensile::local_curve::{first_part, second_part, true_row};
-use crate::tensile::quantity::Quantity::{PlasticStrain, TrueStrain, TrueStress};
+use crate::tensile::preamble::StatedDimension;
+use crate::tensile::quantity::Quantity::{Extension, PlasticStrain, TrueStrain, TrueStress};
 use crate::tensile::record::{ReadColumn, Record};
 use crate::tensile::regression::Regression;
 use serde::Serialize;
@@ -43,13 +44,15 @@ pub enum End {
 /// One evaluated specimen. Stresses are in MPa; strains are from the toe.
 #[derive(Clone, Debug, Serialize)]
 pub struct Specimen {
-    /// The file.
+    /// The file, with the number of the specimen if it has several.
     pub path: PathBuf,
     /// The columns that were read: load and deformation.
     pub read_as: [ReadColumn; 2],
+    /// The dimensions that were read from the file.
+    pub stated: Vec<StatedDimension>,
     /// BLAKE3 hash of the file, 16 hexadecimal digits.
     pub hash: String,
-    /// Number of rows in the file.
+    /// Number of rows of the specimen.
     pub rows: usize,
     /// Rows that are not used.
     pub dropped: Vec<DroppedRow>,
@@ -61,8 +64,12 @@ pub struct Specimen {
     pub toe: f64,
     /// Young's modulus of the evaluation: given, or the modulus of the linear part.
     pub young: f64,
+    /// Compliance of the testing machine that was removed (1/MPa), 0 if none was.
+    pub compliance: f64,
     /// Nominal stress at a plastic strain of 0.2 %.
     pub offset_yield: f64,
+    /// Largest nominal stress.
+    pub strength: f64,
     /// The draw, if the specimen drew.
     pub draw: Option<Draw>,
     /// How the specimen ended.
@@ -89,6 +96,8 @@ const SMOOTH: f64 = 0.003;
 /// Maximum and minimum of the measured over the given modulus.
 const STIFFER: f64 = 1.25;
 const SOFTER: f64 = 0.1;
+/// Minimum of the measured over the given modulus of an extensometer: a machine's compliance lowers the slope by more.
+const EXTENSOMETER: f64 = 0.75;
 
 impl Specimen {
     /// Evaluates a record.
@@ -155,6 +164,7 @@ impl Specimen {
         Ok(Self {
             path: record.path.clone(),
             read_as: record.read_as.clone(),
+            stated: record.stated.clone(),
             hash: record.hash.clone(),
             rows: record.rows.len(),
             dropped,
@@ -162,7 +172,9 @@ impl Specimen {
             linear: curve.linear,
             toe: curve.toe,
             young,
+            compliance: curve.compliance,
             offset_yield,
+            strength: cleaned.curve.iter().map(|row| row[1]).fold(0.0, f64::max),
             draw,
             end,
             nominal,
@@ -228,14 +240,17 @@ impl Compensated {
         let half = half_window(curve, noise[1]);
         let noise = [noise[0], noise[1] / (2.0 * half as f64 + 1.0).sqrt()];
         let mut rows = smoothed(curve, half);
-        let (linear, toe) = linear_part(&mut rows, noise).ok_or(
+        let (linear, toe) = linear_part(&mut rows, record, noise).ok_or(
             "has no linear part: the stress does not rise with the strain; are the columns swapped?",
         )?;
         let young = check_modulus(record, &linear, options)?;
-        let compliance = 1.0 / linear.young - 1.0 / young;
+        let compliance = match linear.young / young {
+            ratio if ratio >= EXTENSOMETER && record.deformation != Extension => 0.0,
+            _ => 1.0 / linear.young - 1.0 / young,
+        };
         rows.iter_mut()
             .for_each(|row| row[0] -= row[1] * compliance);
-        let end = linear.strain[1] * linear.young / young;
+        let end = linear.strain[1] * (1.0 - linear.young * compliance);
         let elastic = rows.iter().position(|row| row[0] >= end).unwrap_or(0);
         Ok(Self {
             rows,
@@ -288,9 +303,25 @@ fn nominal(record: &Record, [strain, stress]: [f64; 2]) -> [f64; 2] {
 
 /// The linear part and the toe, which is subtracted from the curve. Its rows are found on the nominal curve, whose slope
 /// is largest at the start; its modulus is the slope of the true stress over the logarithmic strain, as the solver reads it.
-fn linear_part(curve: &mut [[f64; 2]], noise: [f64; 2]) -> Option<(LinearPart, f64)> {
+fn linear_part(
+    curve: &mut [[f64; 2]],
+    record: &Record,
+    noise: [f64; 2],
+) -> Option<(LinearPart, f64)> {
     let nominal = LinearPart::find(curve, noise)?;
     curve.iter_mut().for_each(|row| row[0] -= nominal.toe);
+    let end = nominal.first + nominal.rows;
+    let yields = offset_yield(curve, nominal.young, end).filter(|_| !is_local(record));
+    let rows = record
+        .rows
+        .iter()
+        .map(|row| true_row(&[row.strain - nominal.toe, row.stress]));
+    let rows: Vec<[f64; 2]> = rows.collect();
+    if let Some(metal) = yields.and_then(|yields| nominal.of_metal(&rows, yields)) {
+        curve.iter_mut().for_each(|row| row[0] -= metal.toe);
+        let toe = nominal.toe + metal.toe;
+        return Some((metal, toe));
+    }
     let last = nominal.first + nominal.rows - 1;
     let true_curve: Vec<[f64; 2]> = curve[..=last].iter().map(true_row).collect();
     let part = LinearPart::through(&true_curve, nominal.first, last)?;

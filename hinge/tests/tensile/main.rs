@@ -457,6 +457,56 @@ fn a_given_modulus_removes_the_compliance_of_the_machine() {
     assert!(fit.young_given && fit.specimens[0].linear.young < 0.35 * VOCE.young);
 }
 
+/// An extensometer whose slope is 5 % low: the given modulus is the slope of the line to Rp0.2.
+#[test]
+fn a_given_modulus_does_not_change_the_strain_of_an_extensometer() {
+    let rows: Vec<[f64; 2]> = LINEAR.record(8000);
+    let mut options = OPTIONS;
+    options.specimen.young = Some(LINEAR.young / 0.95);
+    let fit = fit_text(&csv(HEADER, &rows), &options);
+    let specimen = &fit.specimens[0];
+    assert_eq!(specimen.compliance, 0.0);
+    assert!((specimen.linear.young / LINEAR.young - 1.0).abs() < 1e-3);
+    // From the last elastic row on, the strain of the line is 0.2 % + s / E.
+    let at_yield = |young: f64| {
+        let line = |row: &&[f64; 2]| row[1] < young * (row[0] - 0.002);
+        rows.iter().find(line).unwrap()[1]
+    };
+    let expected = at_yield(LINEAR.young / 0.95);
+    assert!((specimen.offset_yield / expected - 1.0).abs() < 1e-3);
+    assert!(
+        (specimen.strength / rows.iter().map(|row| row[1]).fold(0.0, f64::max) - 1.0).abs() < 1e-12
+    );
+}
+
+/// A metal whose first rows are steeper, because the specimen straightens: its line is that between a tenth and half of the yield
+/// stress.
+#[test]
+fn steep_first_rows_of_a_metal_are_not_its_modulus() {
+    let rows: Vec<[f64; 2]> = (LINEAR.record(8000).into_iter())
+        .map(|[strain, stress]| [strain - 1e-4 * (stress / 15.0).min(1.0), stress])
+        .collect();
+    let fit = fit_text(&csv(HEADER, &rows), &OPTIONS);
+    let linear = &fit.specimens[0].linear;
+    assert!(
+        (linear.young / LINEAR.young - 1.0).abs() < 0.01,
+        "{linear:?}"
+    );
+    assert!(linear.error < 0.001 * linear.young, "{linear:?}");
+}
+
+#[test]
+fn few_rows_give_a_modulus_with_its_error() {
+    let fit = fit_text(&csv(HEADER, &VOCE.record(80)), &OPTIONS);
+    let linear = &fit.specimens[0].linear;
+    assert!(linear.rows < 5, "{linear:?}");
+    assert!(
+        (linear.young - VOCE.young).abs() < 0.02 * VOCE.young,
+        "{linear:?}"
+    );
+    assert!(linear.error < 0.02 * VOCE.young, "{linear:?}");
+}
+
 #[test]
 fn the_material_file_is_read_and_its_table_is_the_law() {
     let folder = tempfile::tempdir().unwrap();

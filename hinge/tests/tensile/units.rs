@@ -230,9 +230,9 @@ fn the_record_says_how_each_column_was_read() {
     }
 }
 
-/// 1,234 N is not 1.234 N.
+/// 1,234 N is not 1.234 N: separators of thousands are read where the file tells them from a decimal sign, and else refused.
 #[test]
-fn separators_of_thousands_are_an_error() {
+fn separators_of_thousands_are_read_or_refused() {
     let rows = |header: &str, row: &dyn Fn(f64, f64) -> String| {
         let rows = POLYMER.record(400).into_iter();
         let rows: Vec<String> = rows.map(|[e, s]| row(50.0 * e, 100.0 * s)).collect();
@@ -247,19 +247,22 @@ fn separators_of_thousands_are_an_error() {
         thickness: Some(5.0),
         ..specimen()
     };
+    let comma = |sign: &str| {
+        rows("Weg (mm);Kraft (N)", &|x, f| {
+            let way = format!("{x:.5}").replace('.', ",");
+            format!("{way};{},5", grouped(f, sign))
+        })
+    };
+    let states = rows("Extension (mm),Load (N)", &|x, f| {
+        format!("\"{x:.5}\",\"{}.5\"", grouped(f, ","))
+    });
+    let swiss = rows("Weg (mm);Kraft (N)", &|x, f| {
+        format!("{x:.5};{}.5", grouped(f, "'"))
+    });
+    for text in [states, swiss, comma("."), comma("\u{202f}")] {
+        is_polymer(&text, &wide);
+    }
     for (case, text) in [
-        (
-            "of the United States, quoted",
-            rows("Extension (mm),Load (N)", &|x, f| {
-                format!("\"{x:.5}\",\"{}.5\"", grouped(f, ","))
-            }),
-        ),
-        (
-            "Swiss",
-            rows("Weg (mm);Kraft (N)", &|x, f| {
-                format!("{x:.5};{}.5", grouped(f, "'"))
-            }),
-        ),
         (
             "whole numbers, comma",
             rows("Weg (um);Kraft (N)", &|x, f| {
@@ -283,14 +286,73 @@ fn separators_of_thousands_are_an_error() {
     let unquoted = rows("Extension (mm),Load (N)", &|x, f| {
         format!("{x:.5},{}", grouped(f, ","))
     });
-    let comma = |sign: &str| {
-        rows("Weg (mm);Kraft (N)", &|x, f| {
-            let way = format!("{x:.5}").replace('.', ",");
-            format!("{way};{},5", grouped(f, sign))
-        })
+    message(&unquoted, &wide);
+}
+
+/// Words and numbers of a machine in four languages, with the dimensions above the table.
+#[test]
+fn records_in_other_languages_state_the_dimensions_of_their_specimens() {
+    for (above, header) in [
+        (
+            "Épaisseur,0.5,mm\nLargeur,1,cm\nL0 - course standard,50,mm",
+            "Temps (s),Course (mm),Force (N),",
+        ),
+        (
+            "Probenbreite (mm),10,\nProbendicke (mm),0.5\nMesslänge (mm),50",
+            "Zeit (s),Weg (mm),Kraft (N),",
+        ),
+        (
+            "Ancho,10\nEspesor,0.5\nLongitud inicial,50",
+            "Tiempo (s),Alargamiento (mm),Fuerza (N),",
+        ),
+        (
+            "Larghezza: 10 mm\nSpessore: 500 um\nLunghezza iniziale = 50",
+            "Tempo (s),Corsa (mm),Forza (N),",
+        ),
+    ] {
+        let header = format!("{above}\n{header}");
+        let text = text(&POLYMER, &header, 1.0 / LENGTH, 1.0 / AREA);
+        is_polymer(&text, &RecordOptions::default());
+        let fit = read(&text, &RecordOptions::default()).unwrap();
+        let stated = fit.specimens[0].stated.iter();
+        let stated: Vec<_> = stated.map(|it| (it.name, it.value)).collect();
+        let expected = [("width", 10.0), ("thickness", 0.5), ("gauge-length", 50.0)];
+        assert_eq!(stated, expected, "{above}");
+        // An option decides.
+        let wide = RecordOptions {
+            width: Some(20.0),
+            ..RecordOptions::default()
+        };
+        let fit = read(&text, &wide).unwrap();
+        assert!((fit.young.mean / (0.5 * POLYMER.young) - 1.0).abs() < 0.01);
+    }
+}
+
+#[test]
+fn specimens_of_one_file_are_evaluated_one_by_one() {
+    let second = Law {
+        young: 2600.0,
+        ..POLYMER
     };
-    for text in [unquoted, comma("."), comma("\u{202f}")] {
-        message(&text, &wide);
+    let [one, two] = [&POLYMER, &second].map(|law| {
+        let header = "Specimen,,,\nTime (s),Strain (1),Stress (MPa),";
+        text(law, header, 1.0, 1.0)
+    });
+    let lines = one.lines().zip(two.lines());
+    let beside: Vec<String> = lines.map(|(one, two)| format!("{one},{two}")).collect();
+    for text in [format!("{one}{two}"), beside.join("\n")] {
+        let fit = read(&text, &RecordOptions::default()).unwrap();
+        let [first, second] = &fit.specimens[..] else {
+            panic!("{} specimens", fit.specimens.len())
+        };
+        assert!(second.path.ends_with("test.csv (specimen 2)"));
+        for (specimen, young) in [(first, 2500.0), (second, 2600.0)] {
+            assert!(
+                (specimen.young / young - 1.0).abs() < 0.01,
+                "{}",
+                specimen.young
+            );
+        }
     }
 }
 

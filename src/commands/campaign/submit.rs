@@ -8,7 +8,7 @@ use clap::Args;
 use fe_driver::{ArrayScript, CalculiX, SLURM, slurm_folder, submit_array};
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf, absolute};
-use support::regular_file;
+use support::text_file;
 
 /// Solve a campaign on a cluster: submit it to Slurm as an array of jobs
 ///
@@ -71,8 +71,9 @@ impl SubmitCommand {
     fn script(&self, folder: &Path) -> Result<String> {
         let template = match &self.template {
             None => SLURM.to_owned(),
-            Some(path) => regular_file::read_to_string(path)
-                .with_context(|| format!("cannot read {}", path.display()))?,
+            Some(path) => {
+                text_file::read(path).with_context(|| format!("cannot read {}", path.display()))?
+            }
         };
         let script = ArrayScript {
             program: std::env::current_exe().context("cannot find this program's own path")?,

@@ -14,8 +14,8 @@ use std::path::{Path, PathBuf};
 
 /// Fit a material to tensile tests: modulus, yield, hardening, fracture strain
 ///
-/// One file a specimen, as the testing machine exports it. Columns, units, separators and decimal signs are
-/// recognised, or given by --columns and --units. Slack and toe are removed (ISO 527-1, ASTM D638), and unloading
+/// Files as the testing machine exports them, of one specimen or several. Columns, units, separators, decimal signs and the
+/// dimensions above a table are recognised, or given by --columns, --units, --width and --gauge-length. Slack and toe are removed (ISO 527-1, ASTM D638), and unloading
 /// loops and rows after the break are dropped. Beyond a yield peak with a draw plateau the curve of the material
 /// is constructed from the work of the machine; docs/MATERIALS.md states the rules. Writes the material file and a
 /// picture of all curves. Example: kirigami material fit strip-*.csv --name film --thickness 0.5
@@ -23,13 +23,13 @@ use std::path::{Path, PathBuf};
 #[derive(Args)]
 #[command(allow_negative_numbers = true)]
 pub struct FitCommand {
-    /// Records of the specimens (CSV or text with semicolons or tabs), one file a specimen
+    /// Records of the specimens: tables as text, such as CSV
     #[arg(value_name = "TEST", required = true)]
     tests: Vec<PathBuf>,
     /// Name of the material and of the files written
     #[arg(long, value_name = "NAME")]
     name: String,
-    /// Thickness of the sheet and its specimens (mm)
+    /// Thickness of the sheet, and of specimens whose file states none (mm)
     #[arg(long, value_name = "MM")]
     thickness: f64,
     /// Density (kg/m^3)
@@ -76,7 +76,8 @@ struct ColumnArgs {
 #[derive(Args)]
 #[command(next_help_heading = "Evaluation")]
 struct EvaluationArgs {
-    /// Young's modulus (MPa), if it is known better than from these records; the compliance of the machine is removed
+    /// Young's modulus (MPa), if it is known better than from these records; the compliance of the machine is removed, but
+    /// not from a strain whose slope is within a quarter of it, which is an extensometer's
     #[arg(long, value_name = "MPA")]
     young: Option<f64>,
     /// Natural draw ratio, measured on the neck: initial over drawn section [default: where the stress rises again]
@@ -123,6 +124,7 @@ impl FitCommand {
                 "law_hash": material.law_hash(),
                 "fit": fit,
                 "notes": notes(&fit),
+                "warnings": doubtful_moduli(&fit),
             });
             println!("{json:#}");
             return Ok(());
@@ -132,6 +134,9 @@ impl FitCommand {
         println!("{}\n", law_table(&fit));
         for note in notes(&fit) {
             println!("note: {note}");
+        }
+        for warning in doubtful_moduli(&fit) {
+            println!("warning: {warning}");
         }
         println!(
             "\nmaterial: {} (law {})",
@@ -243,6 +248,7 @@ fn specimen_table(specimens: &[Specimen]) -> Table {
         "linear, %",
         "E, MPa",
         "Rp0.2, MPa",
+        "Rm, MPa",
         "upper, MPa",
         "plateau, MPa",
         "draw ratio",
@@ -263,8 +269,9 @@ fn specimen_table(specimens: &[Specimen]) -> Table {
             it.averaged.to_string(),
             format!("{:.3}", 100.0 * it.toe),
             format!("{from:.3} to {to:.3}"),
-            format!("{:.0}", it.linear.young),
+            format!("{:.0} ± {:.0}", it.linear.young, it.linear.error),
             format!("{:.2}", it.offset_yield),
+            format!("{:.2}", it.strength),
             draw(|draw| draw.upper_yield, 2),
             draw(|draw| draw.plateau, 2),
             draw(|draw| draw.draw_ratio, 3),
@@ -304,6 +311,7 @@ fn law_table(fit: &MaterialFit) -> Table {
 /// What a user must know about the law, one sentence each.
 fn notes(fit: &MaterialFit) -> Vec<String> {
     let mut notes = units_taken(&fit.specimens);
+    notes.extend(fit.specimens.iter().flat_map(stated_sizes));
     notes.push(format!(
         "the table has {} rows and deviates from the mean curve by at most {:.2} %",
         fit.table.len(),
@@ -334,10 +342,18 @@ fn notes(fit: &MaterialFit) -> Vec<String> {
     }
     if fit.young_given {
         let measured = Statistic::new(fit.specimens.iter().map(|specimen| specimen.linear.young));
+        let removed = fit
+            .specimens
+            .iter()
+            .any(|specimen| specimen.compliance != 0.0);
         notes.push(format!(
-            "the records have a mean slope of {:.0} MPa; the difference to the given modulus is removed as the compliance \
-             of the machine",
-            measured.mean
+            "the records have a mean slope of {:.0} MPa; {}",
+            measured.mean,
+            if removed {
+                "the difference to the given modulus is removed as the compliance of the machine"
+            } else {
+                "as that of an extensometer it is not corrected, and the given modulus is the slope to Rp0.2"
+            }
         ));
     }
     notes.push(match fit.fracture_source {
@@ -349,6 +365,51 @@ fn notes(fit: &MaterialFit) -> Vec<String> {
         source => format!("fracture strain: {}", source.words()),
     });
     notes
+}
+
+/// The dimensions that the file of a specimen states, one note a specimen.
+fn stated_sizes(specimen: &Specimen) -> Option<String> {
+    let sizes = specimen.stated.iter();
+    let sizes = sizes.map(|it| {
+        format!(
+            "{} {} mm (line {})",
+            it.name.replace('-', " "),
+            it.value,
+            it.line
+        )
+    });
+    let sizes: Vec<String> = sizes.collect();
+    let name = file_name(specimen);
+    (!sizes.is_empty()).then(|| format!("{name} states the dimensions used: {}", sizes.join(", ")))
+}
+
+/// Fewest rows from which a modulus is taken without a word.
+const FEW_ROWS: usize = 5;
+/// Largest standard error of a modulus, and largest distance to the median of the specimens, over the modulus.
+const DOUBTFUL: f64 = 0.1;
+
+/// Measured moduli from few rows, with a large error, or far from those of the other specimens; one sentence each.
+fn doubtful_moduli(fit: &MaterialFit) -> Vec<String> {
+    let mut moduli: Vec<f64> = fit.specimens.iter().map(|it| it.linear.young).collect();
+    moduli.sort_by(f64::total_cmp);
+    let median = moduli[moduli.len() / 2];
+    let doubt = |it: &Specimen| {
+        let (linear, name) = (&it.linear, file_name(it));
+        let reason = if (linear.young / median - 1.0).abs() > DOUBTFUL {
+            format!("the median of the specimens is {median:.0} MPa")
+        } else if linear.rows < FEW_ROWS || linear.error > DOUBTFUL * linear.young {
+            format!("it is from {} rows", linear.rows)
+        } else {
+            return None;
+        };
+        Some(format!(
+            "the modulus of {name} is {:.0} ± {:.0} MPa (standard error), and {reason}: state it with --young, export \
+             the record without thinning, or leave it out",
+            linear.young, linear.error
+        ))
+    };
+    let of_records = fit.specimens.iter().filter(|_| !fit.young_given);
+    of_records.filter_map(doubt).collect()
 }
 
 /// The units that no file and no option states, one note a quantity.

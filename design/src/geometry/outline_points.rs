@@ -1,0 +1,200 @@
+//! The vertices of an outline in a text with one point a line. Lines above the first point name the outline or its columns: without
+//! names the columns are x and y, behind a number that counts the lines or before a constant.
+
+use std::path::{Path, PathBuf};
+use support::file_error::FileError;
+use support::text_table::{TextRow, TextTable};
+
+/// Units behind the names of columns, with their length (mm).
+const UNITS: [(&str, f64); 5] = [
+    ("mm", 1.0),
+    ("cm", 10.0),
+    ("m", 1000.0),
+    ("in", 25.4),
+    ("inch", 25.4),
+];
+
+/// Why a text is no outline.
+#[derive(Debug, thiserror::Error)]
+#[allow(missing_docs, reason = "the message of a variant is its documentation")]
+pub enum PointsError {
+    #[error("cannot read the target outline {0}")]
+    Read(#[from] FileError),
+    #[error("{path}:{line}: {what}", path = .path.display())]
+    Line {
+        path: PathBuf,
+        line: u64,
+        what: String,
+    },
+}
+
+/// Where x and y stand in a line, and the length of their unit (mm).
+struct Columns {
+    places: [usize; 2],
+    unit: f64,
+}
+
+/// The points in a file (mm), in its order.
+pub(crate) fn read(path: &Path) -> Result<Vec<[f64; 2]>, PointsError> {
+    let table = TextTable::read(path)?;
+    points(&table).map_err(|(line, what)| PointsError::Line {
+        path: path.to_owned(),
+        line,
+        what,
+    })
+}
+
+/// The points of a table (mm); an error has the number of its line.
+fn points(table: &TextTable) -> Result<Vec<[f64; 2]>, (u64, String)> {
+    let number = |cell: &String| table.style.number(cell);
+    let rows = table.rows.iter().filter(|row| !row.is_comment());
+    let is_point = |row: &TextRow| {
+        let digit = |c: char| c.is_ascii_digit();
+        let begins = row.cells[0].trim_start_matches(['-', '+', '.', ',']);
+        let numbers = row.cells.iter().filter_map(&number).count();
+        begins.starts_with(digit) || (row.cells[0].contains(digit) && numbers > 0)
+    };
+    let (above, below): (Vec<_>, Vec<_>) = {
+        let mut found = false;
+        rows.partition(|row| {
+            found |= is_point(row);
+            !found
+        })
+    };
+    let Some(first) = below.first() else {
+        return Ok(Vec::new());
+    };
+    // A title such as `NACA 2412` names no columns.
+    let head = above.last().filter(|head| {
+        head.cells.len() == first.cells.len()
+            && head.cells.iter().all(|cell| number(cell).is_none())
+    });
+    let named = head.map(|head| named(&head.cells)).transpose();
+    let named = named.map_err(|what| (above[above.len() - 1].line, what))?;
+    let columns = match named {
+        Some(columns) => columns,
+        None => Columns {
+            places: unnamed(&below, table).map_err(|what| (first.line, what))?,
+            unit: 1.0,
+        },
+    };
+    let point = |row: &&TextRow| {
+        let coordinate = |place: usize| Some(columns.unit * number(row.cells.get(place)?)?);
+        let [x, y] = columns.places.map(coordinate);
+        let text = row.cells.join("  ");
+        let written = text.escape_debug();
+        let alike = row.cells.len() == first.cells.len();
+        (x.zip(y).filter(|_| alike).map(<[f64; 2]>::from)).ok_or_else(|| {
+            (
+                row.line,
+                format!("`{written}` is no point: write x and y in mm, as in `12.5, 40`"),
+            )
+        })
+    };
+    below.iter().map(point).collect()
+}
+
+/// The columns that a head names x and y.
+fn named(head: &[String]) -> Result<Columns, String> {
+    let parts = |cell: &String| -> Vec<String> {
+        let letters = cell.to_lowercase();
+        let words = letters.split(|c: char| !c.is_alphanumeric());
+        words
+            .filter(|word| !word.is_empty())
+            .map(str::to_owned)
+            .collect()
+    };
+    let parts: Vec<Vec<String>> = head.iter().map(parts).collect();
+    let place = |name: &str| {
+        parts
+            .iter()
+            .position(|words| words.first().is_some_and(|it| it == name))
+    };
+    let (Some(x), Some(y)) = (place("x"), place("y")) else {
+        let head = head.join(", ");
+        return Err(format!(
+            "`{head}` names no columns x and y: correct it, or write # before it"
+        ));
+    };
+    let unit = |place: usize| match parts[place].get(1) {
+        None => Ok(1.0),
+        Some(unit) => (UNITS.iter().find(|(name, _)| name == unit))
+            .map(|(_, length)| *length)
+            .ok_or_else(|| {
+                format!("`{unit}` is no unit of points that is known: use mm, cm, m or in")
+            }),
+    };
+    match (unit(x)?, unit(y)?) {
+        (of_x, of_y) if of_x == of_y => Ok(Columns {
+            places: [x, y],
+            unit: of_x,
+        }),
+        _ => Err("x and y have different units".into()),
+    }
+}
+
+/// The places of x and y in lines without a head.
+fn unnamed(rows: &[&TextRow], table: &TextTable) -> Result<[usize; 2], String> {
+    let column = |place: usize| -> Vec<f64> {
+        let cells = rows.iter().filter_map(|row| row.cells.get(place));
+        cells.filter_map(|cell| table.style.number(cell)).collect()
+    };
+    match rows[0].cells.len() {
+        0..=2 => Ok([0, 1]),
+        3 if column(0).windows(2).all(|pair| pair[1] == pair[0] + 1.0) => Ok([1, 2]),
+        3 if column(2).windows(2).all(|pair| pair[1] == pair[0]) => Ok([0, 1]),
+        found => Err(format!(
+            "there are {found} numbers in a line, and no names of the columns: write x and y alone, or a first line with `x` and `y`; if \
+             commas are decimal signs, write semicolons between the numbers"
+        )),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn of(text: &str) -> Result<Vec<[f64; 2]>, (u64, String)> {
+        points(&TextTable::parse(text))
+    }
+
+    #[test]
+    fn points_are_read_as_programs_write_them() {
+        for text in [
+            "0,0.5\n20,0\n20,10\n",
+            "0;0,5\n20;0\n20;10\n",
+            "\nWing 12\n 0.0000   0.5000\n 20.0 0.0\n 20.0 10.0\n",
+            "X;Y\n0;0,5\n20;0\n20;10\n",
+            "x_mm\ty_mm\n0\t0.5\n20\t0\n20\t10\n",
+            "\"X (cm)\",\"Y (cm)\"\n0,0.05\n2,0\n2,1\n",
+            "y/mm,x/mm\n0.5,0\n0,20\n10,20\n",
+            "1,0,0.5\n2,20,0\n3,20,10\n",
+            "0,0.5,0\n20,0,0\n20,10,0\n",
+            "n,x,y,z\n7,0,0.5,3\n8,20,0,4\n9,20,10,5\n",
+            "# mine\n0 , 0.5 # left\n20,0\n20,10\n",
+            "x,y\n\"0\",\"0.5\"\n20,0\n20,10\n",
+        ] {
+            let found = of(text).unwrap();
+            assert_eq!(found, [[0.0, 0.5], [20.0, 0.0], [20.0, 10.0]], "{text}");
+        }
+    }
+
+    #[test]
+    fn what_is_no_point_is_shown_with_its_line() {
+        for (text, line, part) in [
+            ("0,0\n1;2\n3,4\n", 2, "`1;2` is no point"),
+            ("0,0\n1\u{200b}0,2\n3,4\n", 2, "`1\\u{200b}0  2`"),
+            ("0,0\n1,2\n3\n", 3, "`3` is no point"),
+            ("0,0\n1,x\n3,4\n", 2, "`1  x`"),
+            ("0,5,0,25\n1,5,0,25\n1,5,9,75\n", 1, "write semicolons"),
+            ("0,0,1\n1,2,5\n3,4,4\n", 1, "there are 3 numbers"),
+            ("O.5,1\n0,0\n1,2\n", 1, "`O.5  1` is no point"),
+            ("a,b\n0,0\n1,2\n", 1, "`a, b` names no columns"),
+            ("x (ft),y (ft)\n0,0\n1,2\n", 1, "`ft` is no unit"),
+        ] {
+            let (found, what) = of(text).unwrap_err();
+            assert_eq!(found, line, "{text}: {what}");
+            assert!(what.contains(part), "{text}: {what}");
+        }
+    }
+}
