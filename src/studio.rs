@@ -8,6 +8,7 @@ mod draft;
 pub(crate) mod engine;
 pub(crate) mod event;
 mod everyday;
+mod http;
 mod panels;
 pub(crate) mod project;
 pub(crate) mod request;
