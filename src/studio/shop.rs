@@ -42,6 +42,8 @@ pub(super) struct Shop {
     /// Names and what they are; those that a search of the studio can have.
     levels: Vec<[&'static str; 2]>,
     keys: BTreeMap<String, String>,
+    /// Least side of a panel over the radius of a window.
+    panel: f64,
 }
 
 /// A material with weights.
@@ -83,6 +85,7 @@ impl Shop {
                 .map(|level| [level.name(), level.hinges()])
                 .collect(),
             keys: meanings(),
+            panel: PANEL,
         })
     }
 }

@@ -168,11 +168,13 @@ const MISSED = 0.02;
 /** Most places of the target whose distances are written. */
 const MOST_PLACES = 4;
 
-/** The outer edges of the panels as they are drawn, one after the other around the sheet (px). */
+/** The corners of the outline that belong to no hinge, as they are drawn, around the sheet (px): those whose distances the figure has. */
 function outlineDrawn() {
   const [m, n] = run.panels.grid;
-  const edges = (count, panel, c) => Array.from({ length: count }, (_, i) => cornersDrawn[panel(i)]).flatMap((corners) => [corners[c], corners[(c + 1) % 4]]);
-  return [...edges(m, (i) => i, 0), ...edges(n, (i) => (i + 1) * m - 1, 1), ...edges(m, (i) => m * n - 1 - i, 2), ...edges(n, (i) => (n - 1 - i) * m, 3)];
+  const edges = (count, panel, c) => Array.from({ length: count }, (_, i) => panel(i)).flatMap((k) => [[k, c], [k, (c + 1) % 4]]);
+  const all = [...edges(m, (i) => i, 0), ...edges(n, (i) => (i + 1) * m - 1, 1), ...edges(m, (i) => m * n - 1 - i, 2), ...edges(n, (i) => (n - 1 - i) * m, 3)];
+  const hinged = new Set(run.hinges.sites.flatMap(([a, atA, b, atB]) => [`${a} ${atA}`, `${b} ${atB}`]));
+  return all.filter((corner) => !hinged.has(corner.join(" "))).map(([k, c]) => cornersDrawn[k][c]);
 }
 
 /** Distance of a point from a closed line. */

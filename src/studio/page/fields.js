@@ -145,13 +145,15 @@ const groups = {
     }
     numberField(box, "Columns", "sheet.panels.0", (count) => askPanels(0, count), "change");
     numberField(box, "Rows", "sheet.panels.1", (count) => askPanels(1, count), "change");
+    const most = scene.sheet.size?.map((side) => Math.floor(side / (shop.panel * scene.process.r_win)));
+    if (most) button(box, `As many as the material allows: ${most.join(" \u00d7 ")}`, () => ask({ do: "panels", panels: most }), "More are narrower than the windows of their hinges");
     if (scene.thickness) numberField(box, "Thickness (mm)", "thickness", setThickness, "change");
     numberField(box, "Kerf (mm)", "process.kerf");
     if (scene.process.hole_diameter) numberField(box, "Hole diameter (mm)", "process.hole_diameter");
     else numberField(box, "Hole over ligament", "process.fillet_ratio");
     if (["pin", "linear"].includes(scene.level)) numberField(box, "Window r_win (mm)", "process.r_win");
     const window = inField(scene.process.r_win);
-    write(box, "p", `Material: ${scene.material.split("/").pop()}. Windows of the hinges: r_win = ${window} mm; panels are at least 3.5 r_win wide.`, "note");
+    write(box, "p", `Material: ${scene.material.split("/").pop()}. Windows of the hinges: r_win = ${window} mm; panels are at least ${shop.panel} r_win wide.`, "note");
   },
 
   grips: (box) => writeGrips(box),
