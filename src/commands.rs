@@ -33,7 +33,7 @@ pub mod design;
 #[cfg(feature = "pipeline")]
 pub mod doctor;
 pub mod export;
-mod fitting;
+pub(crate) mod fitting;
 pub mod init;
 mod input_file;
 pub mod inspect;

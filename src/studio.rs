@@ -8,6 +8,8 @@ mod draft;
 pub(crate) mod engine;
 pub(crate) mod event;
 mod everyday;
+mod http;
+mod key_meanings;
 mod panels;
 pub(crate) mod project;
 pub(crate) mod request;

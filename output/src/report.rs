@@ -14,6 +14,7 @@ mod warning;
 pub(crate) use budget::BUDGET_HEADING;
 pub(crate) use columns::rounded;
 pub(crate) use estimate::force_spreads;
+pub(crate) use fact_sheet::{extent, miss};
 pub(crate) use text::worst_first;
 
 pub use budget::Budget;
@@ -102,7 +103,7 @@ impl Report {
 
     /// How far the outline is from the target, which is the first that a person asks.
     pub fn miss(&self) -> String {
-        self.facts.miss(self.after.outline_error)
+        miss(self.after.outline_error, self.facts.flat_size)
     }
 
     /// The searches at coarser levels: what each is worth by the next finer one.

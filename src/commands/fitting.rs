@@ -18,7 +18,7 @@ pub(super) fn fit_to_target(scene: &Scene) -> Result<(FittedScene, String)> {
 }
 
 /// What a person may expect of the sheet.
-fn expected(fit: &FittedScene) -> String {
+pub(crate) fn expected(fit: &FittedScene) -> String {
     let [columns, rows] = fit.config.sheet.panels;
     let pulled = match (fit.pulled, fit.config.loads.len()) {
         (None, _) => "no equilibrium under pulls was found".to_owned(),

@@ -2,7 +2,6 @@
 
 use crate::studio::everyday::milliseconds;
 use design::equilibrium::nearby_path::KnownPath;
-use design::objective::scores::outline_error;
 use design::optimise::outer_loop::SearchState;
 use design::scene::Scene;
 use design::{Deployment, DesignError, DesignProblem, DesignVector};
@@ -17,8 +16,6 @@ const SHOW_EVERY: Duration = Duration::from_millis(80);
 #[derive(Serialize)]
 pub(super) struct Draft<'a> {
     sheet: SheetData<'a>,
-    /// Root mean square distance of the outline to the target (mm).
-    outline_error: f64,
     ms: f64,
 }
 
@@ -27,6 +24,8 @@ pub(super) struct Draft<'a> {
 pub(super) struct Step<'a> {
     step: usize,
     of: usize,
+    /// Time that the other steps will take at most (s); `None` at the first one.
+    seconds_left: Option<f64>,
     history: History,
     draft: Option<Draft<'a>>,
 }
@@ -40,7 +39,6 @@ impl<'a> Draft<'a> {
     ) -> Self {
         Self {
             sheet: SheetData::new(scene, problem, deployment),
-            outline_error: outline_error(&problem.objective, deployment),
             ms: milliseconds(begin),
         }
     }
@@ -49,6 +47,8 @@ impl<'a> Draft<'a> {
 /// The steps of a search that are shown: not more than the page can draw.
 #[derive(Default)]
 pub(super) struct Steps {
+    /// When the first step of this session was made, and which.
+    first: Option<(Instant, usize)>,
     last: Option<Instant>,
     known: Option<KnownPath>,
 }
@@ -64,12 +64,17 @@ impl Steps {
             return None;
         }
         let begin = Instant::now();
+        let (step, of) = (search.last().step, scene.config.optimiser.steps);
+        let (first, first_step) = *self.first.get_or_insert((begin, step));
+        let made = step.saturating_sub(first_step);
+        let left = of.saturating_sub(step) as f64 * first.elapsed().as_secs_f64() / made as f64;
         let deployment = draft(problem, search.last_design(), self.known.as_ref()).ok();
         self.known = deployment.as_ref().map(Deployment::known_path);
         self.last = Some(Instant::now());
         Some(Step {
-            step: search.last().step,
-            of: scene.config.optimiser.steps,
+            step,
+            of,
+            seconds_left: (made > 0).then_some(left),
             history: History::new(&problem.objective, &search.history),
             draft: deployment.map(|deployment| Draft::new(scene, problem, &deployment, begin)),
         })

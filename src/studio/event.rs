@@ -12,7 +12,7 @@ use strum::IntoStaticStr;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, IntoStaticStr)]
 #[strum(serialize_all = "kebab-case")]
 pub(crate) enum Kind {
-    /// The materials with weights, and the machines.
+    /// The materials with weights, the machines, what the keys of a scene mean, and examples.
     Shop,
     /// Which sheet is open from now on; what was said of another is forgotten.
     Sheet,
@@ -30,6 +30,10 @@ pub(crate) enum Kind {
     Working,
     /// Why the last request was refused, or what it did.
     Says,
+    /// What a person may expect of the sheet that was fitted to a drawing.
+    Fit,
+    /// The cost and the accuracy of the levels of a sheet.
+    Levels,
     /// The files of its run, and what services say of them.
     Files,
 }

@@ -3,11 +3,11 @@
 //! | file | contents |
 //! |---|---|
 //! | `scene.toml` | the scene that is shown, for `kirigami design` |
-//! | `target-HASH.svg` | drawings that were dropped onto the page |
+//! | `target-NAME-HASH.svg` | drawings that were dropped onto the page, with the names of their files |
 //! | `design-N/` | the run folders of the searches, from 1; the first one of an opened run is its copy |
 
 use crate::commands::init::InitCommand;
-use crate::studio::request::NewSheet;
+use crate::studio::request::{Drawing, NewSheet};
 use crate::ui::output_file;
 use anyhow::{Context, Result, ensure};
 use design::optimise::outer_loop::Ended;
@@ -101,9 +101,10 @@ impl Project {
     }
 
     /// Stores a drawing; returns the name of its file.
-    pub fn keep_drawing(&self, svg: &str) -> Result<PathBuf> {
+    pub fn keep_drawing(&self, Drawing { name, svg }: &Drawing) -> Result<PathBuf> {
         let hash = blake3::hash(svg.as_bytes()).to_hex();
-        let name = PathBuf::from(format!("target-{}.svg", &hash[..12]));
+        let name = slug(name.strip_suffix(".svg").unwrap_or(name));
+        let name = PathBuf::from(format!("target-{name}-{}.svg", &hash[..6]));
         output_file::write(&self.folder.join(&name), svg)?;
         Ok(name)
     }
@@ -168,16 +169,7 @@ fn is_own(file: &Path) -> bool {
 
 /// A folder for a sheet of this name that does not exist.
 fn free_folder(projects: &Path, name: &str) -> Result<PathBuf> {
-    let words = name.to_lowercase();
-    let words = words
-        .split(|c: char| !c.is_alphanumeric())
-        .filter(|word| !word.is_empty());
-    let slug: String = words
-        .collect::<Vec<_>>()
-        .join("-")
-        .chars()
-        .take(60)
-        .collect();
+    let slug = slug(name);
     ensure!(
         !slug.is_empty(),
         "the name `{name}` has no letter and no digit: name the sheet"
@@ -187,4 +179,14 @@ fn free_folder(projects: &Path, name: &str) -> Result<PathBuf> {
         .chain(numbered)
         .filter(|folder| !folder.exists());
     Ok(free.next().expect("there are more numbers than folders"))
+}
+
+/// The letters and digits of a name, as a part of the name of a file.
+fn slug(name: &str) -> String {
+    let words = name.to_lowercase();
+    let words = words
+        .split(|c: char| !c.is_alphanumeric())
+        .filter(|word| !word.is_empty());
+    let words = words.collect::<Vec<_>>().join("-");
+    words.chars().take(60).collect()
 }

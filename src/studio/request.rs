@@ -1,6 +1,6 @@
 //! What a page asks of the engine.
 
-use design::scene::SceneConfig;
+use design::scene::{Level, SceneConfig};
 use serde::Deserialize;
 use std::path::PathBuf;
 
@@ -17,10 +17,19 @@ pub(crate) enum Request {
         /// Columns and rows.
         panels: [usize; 2],
     },
-    /// The target is this drawing, with the place and the area of the present target.
-    Drawing {
-        /// Text of an SVG file.
-        svg: String,
+    /// The target is this drawing, to which the sheet is fitted.
+    Drawing(Drawing),
+    /// How much of the hinges is modelled is other than before.
+    Level {
+        /// The level.
+        level: Level,
+    },
+    /// Measure what every level costs for the sheet that is shown, and how far it is from the finest.
+    Levels,
+    /// Open a copy of a shipped scene.
+    Open {
+        /// Its file.
+        scene: PathBuf,
     },
     /// Search from the sheet that is shown, or go on with its search.
     Design,
@@ -46,6 +55,18 @@ pub(crate) struct NewSheet {
     pub thickness: Option<f64>,
     /// Width and height (mm).
     pub size: Option<[f64; 2]>,
+    /// What it opens onto, instead of the opened rectangle.
+    pub drawing: Option<Drawing>,
+}
+
+/// A drawing.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Drawing {
+    /// The name of its file.
+    pub name: String,
+    /// Text of the SVG file.
+    pub svg: String,
 }
 
 /// Other keys of the scene.

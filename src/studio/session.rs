@@ -2,17 +2,20 @@
 
 use crate::commands::cut::{Verdict, machine_file_of_run, tiles_of_run};
 use crate::commands::design::write_run;
+use crate::commands::fitting::expected;
 use crate::studio::draft::{Draft, Steps, draft};
 use crate::studio::event::{Event, Kind};
 use crate::studio::everyday::{Everyday, Listener, Resting, Shown, refusal, run_name};
 use crate::studio::panels::with_panels;
 use crate::studio::project::Project;
-use crate::studio::request::{Change, Files, Request};
+use crate::studio::request::{Change, Drawing, Files, Request};
 use crate::studio::run_listing::files_of_run;
+use crate::studio::shop::is_example;
 use crate::ui::exit::message;
 use crate::ui::run_folder;
 use crate::ui::shell_word::shell_word;
-use anyhow::{Context, Result, ensure};
+use anyhow::{Context, Result, anyhow, ensure};
+use design::analysis::levels::levels;
 use design::equilibrium::nearby_path::KnownPath;
 use design::fit::scene::fitted;
 use design::objective::target::TargetShape;
@@ -24,7 +27,7 @@ use serde::Serialize;
 use serde_json::json;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Instant;
 
@@ -117,10 +120,25 @@ impl Session {
             Request::New(sheet) => {
                 let (project, scene) = Project::begin(&sheet, &self.projects)?;
                 self.open(project, scene);
+                if let Some(drawing) = &sheet.drawing {
+                    self.drawing(drawing)?;
+                }
+            }
+            Request::Open { scene } => {
+                ensure!(is_example(&scene), "{} is no example", scene.display());
+                let (project, scene) = Project::open(&scene, &self.projects)?;
+                self.open(project, scene);
             }
             Request::Change(change) => self.change(change)?,
             Request::Panels { panels } => self.panels(panels)?,
-            Request::Drawing { svg } => self.drawing(&svg)?,
+            Request::Drawing(drawing) => self.drawing(&drawing)?,
+            Request::Level { level } => {
+                let other = self.opened()?.scene.at_level(level)?;
+                self.show(other)?;
+                self.tell_scene();
+                self.draft()?;
+            }
+            Request::Levels => self.levels()?,
             Request::Design => self.design()?,
             // The engine pauses a search at once.
             Request::Pause => {}
@@ -175,15 +193,26 @@ impl Session {
     }
 
     fn panels(&mut self, panels: [usize; 2]) -> Result<()> {
+        self.tell(Kind::Working, &"panels");
         let changed = with_panels(&self.opened()?.scene, panels)?;
         self.show(changed)?;
         self.tell_scene();
         self.draft()
     }
 
-    fn drawing(&mut self, svg: &str) -> Result<()> {
+    fn drawing(&mut self, drawing: &Drawing) -> Result<()> {
+        self.tell(Kind::Working, &"fit");
+        let project = &self.opened()?.project;
+        let file = project.keep_drawing(drawing)?;
+        let path = project.folder.join(&file).display().to_string();
+        // A person knows the drawing by the name that it had.
+        let named = |error| anyhow!(message(&error).replace(&path, &drawing.name));
+        self.fit(file).map_err(named)
+    }
+
+    /// Fits the sheet to a drawing.
+    fn fit(&mut self, file: PathBuf) -> Result<()> {
         let sheet = self.opened()?;
-        let file = sheet.project.keep_drawing(svg)?;
         let target = &sheet.scene.target;
         let path = sheet.project.folder.join(&file);
         let (centre, height) = place_drawing(&path, target.mean(), target.area())?;
@@ -199,9 +228,24 @@ impl Session {
         };
         let drawn = sheet.scene.changed(config)?;
         let fit = fitted(&drawn)?;
-        self.show(drawn.changed(fit.config)?)?;
+        let says = expected(&fit);
+        let fitted = self.show(drawn.changed(fit.config)?)?;
+        let says = json!({ "target": fitted.scene.config.target, "says": says });
+        self.tell(Kind::Fit, &says);
         self.tell_scene();
         self.draft()
+    }
+
+    /// Measures the levels of the sheet that is shown.
+    fn levels(&mut self) -> Result<()> {
+        self.stop_everyday();
+        self.tell(Kind::Working, &"levels");
+        let scene = &self.opened()?.scene;
+        let stop = &*self.stop_search;
+        stop.store(false, Ordering::Relaxed);
+        let found = levels(scene, &scene.start(), stop, &mut |_| ())?;
+        self.tell(Kind::Levels, &found.levels);
+        Ok(())
     }
 
     /// Shows the sheet at full load.

@@ -2,21 +2,48 @@
 
 use crate::commands::init::WEIGHTS;
 use crate::commands::init::first_scene::PANEL;
+use crate::studio::key_meanings::meanings;
 use anyhow::Result;
+use design::scene::Level;
 use hinge::SheetMaterial;
 use output::cut_file::Machines;
 use serde::Serialize;
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
+use support::regular_file;
 use surrogate::Surrogate;
 
 const MATERIALS: &str = "configs/materials";
 
-/// The materials and the machines.
+/// Scenes that a page offers to open, what they are, and what they become.
+const EXAMPLES: [[&str; 3]; 2] = [
+    [
+        "configs/scenes/a4-plate-service.toml",
+        "Service plate",
+        "twelve panels of polypropylene, as a laser service cuts them, hang and open by 25 degrees",
+    ],
+    [
+        "configs/scenes/pet-7x7.toml",
+        "Disc",
+        "a square of 49 panels of polyester film, which a search makes open into a disc",
+    ],
+];
+const HEART: &str = "configs/targets/heart.svg";
+
+/// What a page offers.
 #[derive(Serialize)]
 pub(super) struct Shop {
     materials: Vec<Offered>,
     /// Names and what they are.
     machines: Vec<[String; 2]>,
+    examples: Vec<[&'static str; 3]>,
+    /// A drawing to begin with.
+    heart: Option<String>,
+    /// Names and what they are; those that a search of the studio can have.
+    levels: Vec<[&'static str; 2]>,
+    keys: BTreeMap<String, String>,
+    /// Least side of a panel over the radius of a window.
+    panel: f64,
 }
 
 /// A material with weights.
@@ -49,8 +76,23 @@ impl Shop {
                 .into_iter()
                 .map(|machine| [machine.name, machine.says])
                 .collect(),
+            examples: (EXAMPLES.into_iter())
+                .filter(|[file, ..]| is_example(Path::new(file)))
+                .collect(),
+            heart: regular_file::read_to_string(Path::new(HEART)).ok(),
+            levels: (Level::ALL.into_iter())
+                .filter(|level| *level != Level::Final)
+                .map(|level| [level.name(), level.hinges()])
+                .collect(),
+            keys: meanings(),
+            panel: PANEL,
         })
     }
+}
+
+/// Whether a file is one of the examples, and is there.
+pub(super) fn is_example(file: &Path) -> bool {
+    EXAMPLES.iter().any(|[name, ..]| file == Path::new(name)) && file.is_file()
 }
 
 /// The material of weights, if its file is among the shipped ones.

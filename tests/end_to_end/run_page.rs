@@ -58,7 +58,9 @@ fn a_sheet_of_springs_shows_its_loads_and_the_numbers_of_a_hinge() {
     // One label for each of the four forces, and for the two couples that open a hinge.
     assert_eq!(document.matches(">40 N</text>").count(), 4);
     assert_eq!(document.matches(">5 N mm</text>").count(), 2);
-    assert!(document.contains("<td>opening couple, panels [1,1] and [2,1]</td>"));
+    assert!(document.contains(
+        "<td>opening couple, panel P8 (column 2, row 2) and panel P9 (column 3, row 2)</td>"
+    ));
     assert!(document.contains("Load step 10 of 10 \u{b7} load factor 1 \u{b7} load 160 N"));
     let row = &report["hinges"][17];
     for (name, key, unit) in [

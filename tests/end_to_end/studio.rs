@@ -1,6 +1,6 @@
 //! `kirigami studio` as a person uses it: a sheet is drawn, opened, designed and cut in Chromium, and nobody else is let in.
 
-use crate::browser::Tab;
+use crate::browser::{PATIENCE, Tab};
 use crate::common::Workplace;
 use serde_json::{Value, json};
 use std::io::{BufRead, BufReader, Read, Write};
@@ -436,7 +436,12 @@ fn nobody_else_is_let_in_and_floods_lose_nothing() {
     let status = |head: &str, host: &str| studio.raw(head, host, b"").0;
     let page = format!("GET /?{query}");
     assert_eq!(status(&page, host), 200);
-    assert_eq!(status(&page, "studio.example:80"), 421);
+    // A forwarded port has another number, and an editor adds keys of its own.
+    assert_eq!(status(&page, "localhost:1"), 200);
+    assert_eq!(status(&format!("GET /?id=7&{query}&x"), host), 200);
+    let (code, reason) = studio.raw(&page, "studio.example:80", b"");
+    assert!(code == 421 && reason.contains("ssh -L"), "{code} {reason}");
+    let silent = TcpStream::connect(host).unwrap();
     assert_eq!(status("GET /", host), 403);
     assert_eq!(status("GET /?token=0", host), 403);
     assert_eq!(status("GET /events?token=0", host), 403);
@@ -485,6 +490,89 @@ fn nobody_else_is_let_in_and_floods_lose_nothing() {
     }
     let on_disk = scene_on_disk(&work.path("studio/a4-plate"));
     assert!(on_disk.contains("stroke = 40.0"), "{on_disk}");
+    // A connection that says nothing is closed: one that stays open ends the test at the patience of its stream.
+    silent.set_read_timeout(Some(PATIENCE)).unwrap();
+    assert_eq!((&silent).read(&mut [0]).unwrap(), 0);
+}
+
+#[test]
+fn a_silhouette_becomes_a_cut_file_without_another_control() {
+    let work = Workplace::new();
+    let studio = Studio::start(&work, "");
+    let mut tab = Tab::open(&studio.address);
+    tab.wait("document.getElementById('new-says').textContent.includes('W within')");
+    let fit = "document.getElementById('fit').textContent.includes('on pins: within')";
+    let figure = "document.getElementById('miss').textContent";
+    let leaf = Path::new(env!("CARGO_MANIFEST_DIR")).join("configs/targets/leaf.svg");
+    tab.drop_file(leaf.to_str().unwrap(), "#studio");
+    tab.wait("document.getElementById('progress').textContent.startsWith('Fitting')");
+    at_rest(&mut tab);
+    tab.wait(fit);
+    reload(&mut tab, &studio);
+    at_rest(&mut tab);
+    tab.wait(fit);
+    let fitted = tab.value(figure);
+    tab.click("#design");
+    tab.wait("document.getElementById('left').textContent.includes('best so far')");
+    reload(&mut tab, &studio);
+    tab.wait(FOUND);
+    assert_ne!(tab.value(figure), fitted);
+    assert_eq!(
+        tab.value("document.getElementById('blocking').textContent"),
+        json!("")
+    );
+    // Another tab shows the same.
+    let mut other = Tab::open(&studio.address);
+    at_rest(&mut other);
+    assert_eq!(other.value(figure), tab.value(figure));
+    // Every file is saved under a name of its own, which begins with that of the drawing.
+    let links = "[...document.querySelectorAll('#files a[download]')].map((link) => link.download)";
+    let names: Vec<String> = serde_json::from_value(tab.value(links)).unwrap();
+    assert!(names.contains(&"leaf-cut.dxf".to_owned()), "{names:?}");
+    assert!(work.path("studio/leaf/design-1/cut.dxf").is_file());
+
+    // A drawing that is refused is refused where it was dropped, by its name, also after the sheet is at rest again.
+    let drawing = work.path("two leaves.svg");
+    let path = "<path d='M0 0L5 0L5 5Z'/>";
+    let svg =
+        format!("<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 9 9'>{path}{path}</svg>");
+    std::fs::write(&drawing, svg).unwrap();
+    let scene = scene_on_disk(&work.path("studio/leaf"));
+    tab.drop_file(drawing.to_str().unwrap(), "#stage");
+    let says = "document.getElementById('drop-says')";
+    tab.wait(&format!(
+        "!{says}.hidden && {says}.textContent.includes('two leaves.svg')"
+    ));
+    at_rest(&mut tab);
+    assert_eq!(tab.value(&format!("{says}.hidden")), json!(false));
+    assert_eq!(scene_on_disk(&work.path("studio/leaf")), scene);
+}
+
+#[test]
+fn every_control_is_explained_and_no_window_is_too_narrow() {
+    let work = Workplace::new();
+    let studio = Studio::start(&work, A4);
+    let mut tab = Tab::open(&studio.address);
+    at_rest(&mut tab);
+    let unexplained = "[...document.querySelectorAll('input, select, button')].filter((control) => !control.closest('[title]:not([title=\"\"])')) \
+        .map((control) => control.dataset.path ?? control.id)";
+    assert_eq!(tab.value(unexplained), json!([]));
+    let thickness = tab.value("document.querySelector('[data-path=thickness]').parentNode.title");
+    assert!(
+        thickness.as_str().unwrap().ends_with("Range: 0.02 to 10."),
+        "{thickness}"
+    );
+    for width in [1400, 1280, 820, 390] {
+        let size =
+            json!({ "width": width, "height": 900, "deviceScaleFactor": 1, "mobile": false });
+        tab.call("Emulation.setDeviceMetricsOverride", size);
+        for page in ["tools", "new-sheet"] {
+            tab.value(&format!("openTools({})", page == "tools"));
+            let wider = "[document.documentElement, ...document.querySelectorAll('.card:not(#budget-card)')] \
+                .filter((part) => part.scrollWidth > part.clientWidth).map((part) => part.id)";
+            assert_eq!(tab.value(wider), json!([]), "{page} at {width} px");
+        }
+    }
 }
 
 #[test]

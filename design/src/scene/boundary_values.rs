@@ -146,9 +146,10 @@ fn name(value: impl Serialize) -> String {
     name.as_str().unwrap_or_default().to_owned()
 }
 
-/// A panel [column, row] by its number in the drawings and its place in the scene.
+/// A panel [column, row] by its number in the drawings, which counts from 0, and its place, which counts from 1.
 pub fn panel_name(grid: Grid, [column, row]: [usize; 2]) -> String {
-    format!("panel P{} [{column},{row}]", grid.panel(column, row))
+    let number = grid.panel(column, row);
+    format!("panel P{number} (column {}, row {})", column + 1, row + 1)
 }
 
 impl SupportConfig {
@@ -234,7 +235,7 @@ impl OpeningCoupleConfig {
         let loaded = couples.into_iter().enumerate();
         let loaded = loaded.filter(|(k, couple)| *couple != 0.0 && turns(*k));
         let place = match self.panels {
-            Some([[a, b], [c, d]]) => format!("panels [{a},{b}] and [{c},{d}]"),
+            Some(pair) => pair.map(|panel| panel_name(grid, panel)).join(" and "),
             None => "every hinge".to_owned(),
         };
         AppliedLoad {

@@ -163,15 +163,6 @@ impl FactSheet {
         width.max(height)
     }
 
-    /// The distance of the outline to the target (mm), in words.
-    pub(super) fn miss(&self, outline_error: f64) -> String {
-        format!(
-            "the outline is {} mm (root mean square) from the target, {} % of the longer side of the flat sheet",
-            rounded(outline_error, 3),
-            rounded(100.0 * outline_error / self.longer_side(), 2)
-        )
-    }
-
     /// The facts as names and values with units.
     pub fn rows(&self) -> Vec<(&'static str, String)> {
         let size = |[x, y]: [f64; 2]| format!("{} x {} mm", rounded(x, 5), rounded(y, 5));
@@ -427,7 +418,16 @@ fn stroke_of(scene: &Scene, curve: &ActuationCurve) -> String {
     }
 }
 
-fn extent(points: impl IntoIterator<Item = [f64; 2]>) -> [f64; 2] {
+/// The distance of the outline of a sheet of some flat size to its target (mm), in words.
+pub(crate) fn miss(outline_error: f64, [width, height]: [f64; 2]) -> String {
+    format!(
+        "the outline is {} mm (root mean square) from the target, {} % of the longer side of the flat sheet",
+        rounded(outline_error, 3),
+        rounded(100.0 * outline_error / width.max(height), 2)
+    )
+}
+
+pub(crate) fn extent(points: impl IntoIterator<Item = [f64; 2]>) -> [f64; 2] {
     let [low, high] = bounds(points);
     [high[0] - low[0], high[1] - low[1]]
 }

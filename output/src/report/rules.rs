@@ -3,7 +3,7 @@
 use crate::cut_file::{CutLines, FabricationError, fits};
 use crate::display::Shape;
 use crate::report::columns::rounded;
-use crate::report::fact_sheet::FactSheet;
+use crate::report::fact_sheet::{FactSheet, miss};
 use crate::report::hinge_row::HingeRow;
 use crate::report::self_weight::of_the_load;
 use crate::report::warning::{Concern, Warning};
@@ -607,7 +607,7 @@ fn missed(judged: &Judged) -> Option<Warning> {
     };
     Some(Warning {
         severity,
-        ..Concern::TargetMissed.of_sheet(facts.miss(error))
+        ..Concern::TargetMissed.of_sheet(miss(error, facts.flat_size))
     })
 }
 

@@ -122,6 +122,9 @@ function drawCurve(state) {
 
 const TERM_COLOURS = ["teal", "accent", "violet", "blue", "ochre", "rose"].map((name) => `var(--${name})`);
 
+/** The place of the best design in the history of a search. */
+const bestOf = ({ loss }) => loss.reduce((best, value, i) => (value < loss[best] ? i : best), 0);
+
 function drawHistory() {
   const history = run.history;
   const line = (values) => values.map((value, i) => [history.step[i], value > 0 ? value : NaN]);
@@ -131,7 +134,7 @@ function drawHistory() {
   // With a single term the loss is that term.
   if (series.length === 1) series.length = 0;
   series.push({ name: "loss", points: line(history.loss), colour: INK, width: 2.4 });
-  const best = history.loss.reduce((b, loss, i) => (loss < history.loss[b] ? i : b), 0);
+  const best = bestOf(history);
   const mark = { x: history.step[best], y: history.loss[best], colour: INK };
   chart(byId("history"), 250, { x: "step of the search", y: "loss and terms (mm\u00b2)", log: true }, series, [mark]);
   const error = history.outline_error;

@@ -1,4 +1,4 @@
-// The page of a run: what its address names, and how it is printed.
+// The page of a run: what its address names.
 
 /** What the address names: run.html#state=3&quantity=d_peak&hinge=12. */
 function fromAddress() {
@@ -41,18 +41,5 @@ layOut(false);
 window.addEventListener("resize", () => layOut(false));
 // Printing is a change to light.
 darkScreen.addEventListener("change", () => layOut(onPaper));
-// The final state is printed; then the page returns to the state that it showed.
-let beforePaper = shownNow.state;
-window.addEventListener("beforeprint", () => {
-  stop();
-  fitView();
-  beforePaper = shownNow.state;
-  shownNow.state = stateCount - 1;
-  layOut(true);
-});
-window.addEventListener("afterprint", () => {
-  shownNow.state = beforePaper;
-  layOut(false);
-});
 document.documentElement.dataset.disagreements = domainDisagreements();
 document.documentElement.dataset.ready = "true";

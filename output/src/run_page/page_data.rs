@@ -1,11 +1,12 @@
 //! The data of the page.
 
 use crate::deployment_states::kept;
-use crate::report::{BUDGET_HEADING, HingeRow, Report, Warning, worst_first};
+use crate::report::{BUDGET_HEADING, HingeRow, Report, Warning, extent, miss, worst_first};
 use crate::run_page::hinge_states::HingeStates;
 use crate::run_page::packed::Packed;
 use design::objective::design_problem::{Deployment, DesignProblem};
 use design::objective::loss::Objective;
+use design::objective::scores::outline_error;
 use design::objective::term::in_words;
 use design::optimise::outer_loop::StepRecord;
 use design::scene::design_run::Designed;
@@ -24,7 +25,6 @@ const MOST_TEXT: usize = 20_000;
 #[derive(Serialize)]
 pub struct PageData<'a> {
     title: &'a str,
-    miss: String,
     about_cut_files: Option<&'static str>,
     end_of_search: String,
     facts: Vec<(&'static str, String)>,
@@ -47,6 +47,8 @@ pub struct PageData<'a> {
 pub struct SheetData<'a> {
     /// Whether the hinges carry load; otherwise they are pins.
     carries_load: bool,
+    /// How far the outline is from the target, in words.
+    miss: String,
     panels: Panels,
     hinges: Hinges,
     states: HingeStates,
@@ -111,7 +113,6 @@ impl<'a> PageData<'a> {
             .min_by(|one, other| worst_first(one, other));
         Self {
             title: &report.title,
-            miss: report.miss(),
             about_cut_files: report.about_cut_files(),
             end_of_search: report.end_of_search(),
             facts: report.fact_rows(),
@@ -157,6 +158,10 @@ impl<'a> SheetData<'a> {
         let target = &scene.target.points;
         Self {
             carries_load: scene.hinge.carries_load(),
+            miss: miss(
+                outline_error(&problem.objective, deployment),
+                extent(sheet.outline.corners),
+            ),
             panels: Panels::new(sheet),
             hinges: Hinges::new(sheet, rows),
             states: HingeStates::new(scene, problem, deployment, networks),

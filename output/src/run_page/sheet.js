@@ -148,6 +148,7 @@ function drawMarks(state, selected) {
   draw(marks, "path", { d: outlinePath(target), fill: "none", stroke: ACCENT, "stroke-width": 1.8, "stroke-dasharray": "9 6" });
   const labels = [];
   const obstacles = [];
+  if (state === stateCount - 1) drawMissed(target, labels);
   drawSupports(state, obstacles);
   drawLoads(state, labels, obstacles);
   if (selected >= 0) {
@@ -160,6 +161,52 @@ function drawMarks(state, selected) {
   obstacles.push(drawScaleBar());
   placeLabels(marks, labels, obstacles, view.width, view.height);
   overlays.forEach((drawOverlay) => drawOverlay());
+}
+
+/** Distance of the target from the opened outline, over the longer side of the flat sheet, from which its places are marked. */
+const MISSED = 0.02;
+/** Most places of the target whose distances are written. */
+const MOST_PLACES = 4;
+
+/** The corners of the outline that belong to no hinge, as they are drawn, around the sheet (px): those whose distances the figure has. */
+function outlineDrawn() {
+  const [m, n] = run.panels.grid;
+  const edges = (count, panel, c) => Array.from({ length: count }, (_, i) => panel(i)).flatMap((k) => [[k, c], [k, (c + 1) % 4]]);
+  const all = [...edges(m, (i) => i, 0), ...edges(n, (i) => (i + 1) * m - 1, 1), ...edges(m, (i) => m * n - 1 - i, 2), ...edges(n, (i) => (n - 1 - i) * m, 3)];
+  const hinged = new Set(run.hinges.sites.flatMap(([a, atA, b, atB]) => [`${a} ${atA}`, `${b} ${atB}`]));
+  return all.filter((corner) => !hinged.has(corner.join(" "))).map(([k, c]) => cornersDrawn[k][c]);
+}
+
+/** Distance of a point from a closed line. */
+function distanceTo(line, [x, y]) {
+  return line.reduce((least, [ax, ay], i) => {
+    const [bx, by] = line[(i + 1) % line.length];
+    const [dx, dy] = [bx - ax, by - ay];
+    const along = Math.min(Math.max(((x - ax) * dx + (y - ay) * dy) / (dx * dx + dy * dy || 1), 0), 1);
+    return Math.min(least, Math.hypot(x - ax - along * dx, y - ay - along * dy));
+  }, Infinity);
+}
+
+/** Marks the stretches of the target that the sheet does not reach, with the largest distances. */
+function drawMissed(target, labels) {
+  const outline = outlineDrawn();
+  const stride = Math.ceil(target.length / 300);
+  const [low, high] = [Math.min, Math.max].map((most) => [0, 1].map((c) => most(...run.outline.map((p) => p[c]))));
+  const least = MISSED * Math.max(high[0] - low[0], high[1] - low[1]) * view.scale;
+  const stretches = [];
+  let stretch = null;
+  for (let i = 0; i < target.length; i += stride) {
+    const at = toPixels(target[i]);
+    const distance = distanceTo(outline, at);
+    if (distance < least) { stretch = null; continue; }
+    if (!stretch) stretches.push((stretch = { points: [], distance: 0 }));
+    stretch.points.push(at);
+    if (distance > stretch.distance) Object.assign(stretch, { distance, at });
+  }
+  for (const { points } of stretches) draw(marks, "path", { d: path(points, (x) => x, (y) => y), class: "missed" });
+  stretches.sort((one, other) => other.distance - one.distance);
+  for (const { at: [x, y], distance } of stretches.slice(0, MOST_PLACES))
+    labels.push({ text: `${shown(distance / view.scale, 2)} mm`, x, y, dx: x - view.width / 2, dy: y - view.height / 2, colour: "var(--error)" });
 }
 
 /** What other scripts draw above the sheet. */

@@ -29,19 +29,23 @@ function stateText(i) {
   return text[0].toUpperCase() + text.slice(1);
 }
 
-function writeSummary() {
-  const [columns, rows] = run.panels.grid;
+/** How far the sheet is from its target, with the verdict of a report. */
+function writeMiss(missed) {
   const miss = byId("miss");
   miss.textContent = "";
-  const missed = run.warnings.find(({ concern }) => concern === "target-missed");
   if (missed && missed.severity !== "note") write(miss, "span", missed.severity, `tag ${missed.severity}`);
   miss.append(run.miss[0].toUpperCase() + run.miss.slice(1));
+}
+
+function writeSummary() {
+  const [columns, rows] = run.panels.grid;
   byId("summary").textContent = `${columns} \u00d7 ${rows} panels, ${hingeCount} hinges. Search: ${run.end_of_search}.`;
 }
 
 function writeTexts() {
   byId("title").textContent = run.title;
   writeSummary();
+  writeMiss(run.warnings.find(({ concern }) => concern === "target-missed"));
   byId("alert").hidden = !run.about_cut_files;
   byId("alert").textContent = `${run.about_cut_files}: see the findings.`;
   byId("facts").textContent = "";
@@ -89,7 +93,7 @@ function writeWarnings() {
 }
 
 function legend() {
-  const parts = ["Dashed orange: target."];
+  const parts = [`Dashed orange: target; red where the opened sheet is further from it than ${100 * MISSED} % of its longer side.`];
   if (!run.carries_load) parts.push("Pins carry no load; the sheet is centred on its target.");
   else parts.push("Fine dashes: flat sheet. Panels stay in the plane. Arrows: loads (orange) and reactions (teal) at the points where they act.", run.actuation.legend);
   parts.push("A panel has the fainter colour of its hinge with the largest value.");
@@ -182,6 +186,24 @@ function connectControls() {
     show({ state: Math.min(Math.max(shownNow.state + step, 0), stateCount - 1) });
   });
   connectStage();
+  connectPrinter();
+}
+
+/** The final state is printed; then the page returns to the state that it showed. */
+function connectPrinter() {
+  let before = 0;
+  window.addEventListener("beforeprint", () => {
+    if (!run) return;
+    stop();
+    fitView();
+    before = shownNow.state;
+    shownNow.state = stateCount - 1;
+    layOut(true);
+  });
+  window.addEventListener("afterprint", () => {
+    shownNow.state = before;
+    layOut(false);
+  });
 }
 
 /** The pixel of the drawing at which an event of the pointer is. */

@@ -86,7 +86,10 @@ fn friction_is_a_warning_beside_a_small_load() {
     let shares = ["147 % of the load", "150 % of the load"];
     let stated = shares.iter().any(|share| message.contains(share));
     assert!(stated, "{message}");
-    assert_says(&heavy.to_string(), "clamp, panel P3 [0,1], at (");
+    assert_says(
+        &heavy.to_string(),
+        "clamp, panel P3 (column 1, row 2), at (",
+    );
     // At 4.9 % of the load it is none.
     let light = report(&[], &[LYING, ("[2.0, 0.0]", "[60.5, 0.0]"), SHORT]);
     assert!(found(&light, Concern::Friction).is_empty());

@@ -10,7 +10,7 @@ let changes = 0;
 /** Sends a request; the reason appears if it is refused. */
 async function ask(request) {
   try {
-    const answer = await fetch(withToken("/request"), { method: "POST", body: JSON.stringify(request) });
+    const answer = await fetch(withToken("request"), { method: "POST", body: JSON.stringify(request) });
     if (!answer.ok) refuse(await answer.text());
   } catch {
     goOffline();
@@ -42,7 +42,7 @@ function goOffline() {
 
 /** Calls the listeners of every kind with the data of their events. */
 function connect(listeners) {
-  const stream = new EventSource(withToken("/events"));
+  const stream = new EventSource(withToken("events"));
   for (const kind in listeners) stream.addEventListener(kind, (event) => listeners[kind](JSON.parse(event.data)));
   stream.addEventListener("open", () => { byId("offline").hidden = true; });
   stream.addEventListener("error", goOffline);

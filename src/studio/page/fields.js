@@ -24,9 +24,13 @@ const inField = (value) => (typeof value === "number" ? String(Number(value.toPr
 /** The key of a path as the command line writes it: supports[0].clip. */
 const named = (path) => path.replace(/\.(\d+)/g, "[$1]");
 
+/** What a key means, with its unit and its range. */
+const meaningOf = (path) => shop.keys[path.replace(/\.\d+/g, "")] ?? "";
+
 /** A label with an input element for a key. */
 function field(parent, text, path, input) {
   const label = write(parent, "label", text);
+  label.title = meaningOf(path);
   input.dataset.key = named(path).replace(/\[\d+\]$/, "");
   input.dataset.path = path;
   label.appendChild(input);
@@ -61,6 +65,7 @@ function sliderField(parent, text, path, [low, high], changed) {
   const slider = document.createElement("input");
   Object.assign(slider, { type: "range", min: low, max: high, step: (high - low) / 500, value: valueAt(path) ?? low });
   slider.setAttribute("aria-label", text);
+  slider.title = meaningOf(path);
   slider.addEventListener("input", () => {
     number.value = Number(slider.valueAsNumber.toPrecision(5));
     number.dispatchEvent(new Event("input"));
@@ -72,14 +77,13 @@ function sliderField(parent, text, path, [low, high], changed) {
 
 function button(parent, text, pressed, title) {
   const element = write(parent, "button", text);
-  element.type = "button";
-  if (title) element.title = title;
+  Object.assign(element, { type: "button", title });
   element.addEventListener("click", pressed);
   return element;
 }
 
-/** A choice of the scene between yes and no. */
-function checkField(parent, text, checked, changed) {
+/** A choice of the scene between yes and no, which decides a key. */
+function checkField(parent, text, path, checked, changed) {
   const check = document.createElement("input");
   Object.assign(check, { type: "checkbox", checked });
   check.addEventListener("change", () => {
@@ -87,7 +91,9 @@ function checkField(parent, text, checked, changed) {
     sendScene();
     writeFields();
   });
-  write(parent, "label", text).appendChild(check);
+  const label = write(parent, "label", text);
+  label.title = meaningOf(path);
+  label.appendChild(check);
 }
 
 /** The groups of fields: what writes each into its part of the page. */
@@ -96,14 +102,14 @@ const groups = {
     if (scene.drive) sliderField(box, "Stroke (mm)", "drive.stroke", [0, Math.max(1, 2 * Math.abs(scene.drive.stroke))]);
     const loaded = scene.loads.length + scene.edge_loads.length + scene.opening_couples.length > 0;
     if (loaded && !scene.drive) loadSlider(box);
-    if (!loaded && scene.hinge !== "pin") write(box, "p", "Nothing pulls: choose \u201cholds and pulls panels\u201d and click one.", "note");
+    if (!loaded && scene.level !== "pin") write(box, "p", "Nothing pulls: choose \u201cholds and pulls panels\u201d and click one.", "note");
     if (scene.pin) sliderField(box, "Opening (deg)", "pin.opening_deg", [0, 90]);
     if (!loaded) return;
-    checkField(box, "the stroke is prescribed", Boolean(scene.drive), (checked) => {
+    checkField(box, "the stroke is prescribed", "drive", Boolean(scene.drive), (checked) => {
       scene.drive = checked ? { stroke: Number(strokeNow().toPrecision(4)) } : null;
     });
     if (scene.surrogate?.springback)
-      checkField(box, "the target is for the sheet after its loads were taken off", scene.objective.target_state === "released", (checked) => {
+      checkField(box, "the target is for the sheet after its loads were taken off", "objective.target_state", scene.objective.target_state === "released", (checked) => {
         scene.objective.target_state = checked ? "released" : "loaded";
       });
   },
@@ -139,19 +145,22 @@ const groups = {
     }
     numberField(box, "Columns", "sheet.panels.0", (count) => askPanels(0, count), "change");
     numberField(box, "Rows", "sheet.panels.1", (count) => askPanels(1, count), "change");
+    const most = scene.sheet.size?.map((side) => Math.floor(side / (shop.panel * scene.process.r_win)));
+    if (most) button(box, `As many as the material allows: ${most.join(" \u00d7 ")}`, () => ask({ do: "panels", panels: most }), "More are narrower than the windows of their hinges");
     if (scene.thickness) numberField(box, "Thickness (mm)", "thickness", setThickness, "change");
     numberField(box, "Kerf (mm)", "process.kerf");
     if (scene.process.hole_diameter) numberField(box, "Hole diameter (mm)", "process.hole_diameter");
     else numberField(box, "Hole over ligament", "process.fillet_ratio");
-    if (scene.hinge !== "surrogate") numberField(box, "Window r_win (mm)", "process.r_win");
+    if (["pin", "linear"].includes(scene.level)) numberField(box, "Window r_win (mm)", "process.r_win");
     const window = inField(scene.process.r_win);
-    write(box, "p", `Material: ${scene.material.split("/").pop()}. Windows of the hinges: r_win = ${window} mm; panels are at least 3.5 r_win wide.`, "note");
+    write(box, "p", `Material: ${scene.material.split("/").pop()}. Windows of the hinges: r_win = ${window} mm; panels are at least ${shop.panel} r_win wide.`, "note");
   },
 
   grips: (box) => writeGrips(box),
   target: (box) => writeTarget(box),
 
   search(box) {
+    writeLevels(box);
     choiceField(box, "Method", "optimiser.method", [["lbfgs", "L-BFGS"], ["adam", "Adam"]]);
     numberField(box, "Steps", "optimiser.steps", (steps) => set("optimiser.steps", Math.max(1, Math.round(steps))));
     for (const [text, key] of [["Damage", "damage"], ["Compression", "compression"], ["Panel shape", "panel_shape"], ["Domain", "domain"]])
@@ -160,9 +169,22 @@ const groups = {
   },
 };
 
+/** The levels, with what each costs and how far it is from the finest if that was measured. */
+function writeLevels(box) {
+  const says = ({ search, difference }) =>
+    [search !== null && `${shown(search, 2)} s`, difference && `${shown(difference.corners[1], 2)} mm from the finest`].filter(Boolean).join(", ");
+  const costs = Object.fromEntries(levelCosts.map((cost) => [cost.level, says(cost)]));
+  const choices = shop.levels.map(([name]) => [name, costs[name] ? `${name}: ${costs[name]}` : name]);
+  choiceField(box, "Level", "level", choices, (level) => ask({ do: "level", level }));
+  const [, hinges] = shop.levels.find(([name]) => name === scene.level) ?? [];
+  write(box, "p", `Hinges: ${hinges ?? scene.level}.`, "note");
+  button(box, "Compare levels", () => ask({ do: "levels" }), "Time of a search and distance of the corners from those of the finest level, for this sheet");
+}
+
 /** Loads in proportion to those at the beginning of a drag. */
 function loadSlider(box) {
   const label = write(box, "label", "All loads, times");
+  label.title = meaningOf("loads");
   const slider = document.createElement("input");
   Object.assign(slider, { type: "range", min: 0.05, max: 2, step: 0.05, value: 1 });
   let from = null;
@@ -222,6 +244,6 @@ function writeFields() {
 function updateFields() {
   for (const input of document.querySelectorAll("#studio [data-path]")) {
     const value = valueAt(input.dataset.path);
-    if (input !== document.activeElement && ["number", "string"].includes(typeof value)) input.value = inField(value);
+    if (input !== document.activeElement && ["number", "string"].includes(typeof value)) input.value = inField(input.dataset.from ? value + 1 : value);
   }
 }

@@ -35,16 +35,16 @@ function writeGrips(box) {
   });
   const line = write(box, "div", undefined, "actions");
   const middle = scene.sheet.panels.map((count) => Math.floor(count / 2));
-  button(line, "Hold", () => addGrip("supports", { panel: [middle[0], scene.sheet.panels[1] - 1], kind: "clamp", at: "top" }));
-  button(line, "Pull", () => addGrip("loads", { panel: [middle[0], 0], at: "bottom", force: [0, -1] }));
-  button(line, "Pull an edge", () => addGrip("edge_loads", { edge: "bottom", traction: [0, -0.01] }));
+  button(line, "Hold", () => addGrip("supports", { panel: [middle[0], scene.sheet.panels[1] - 1], kind: "clamp", at: "top" }), "Hold a panel");
+  button(line, "Pull", () => addGrip("loads", { panel: [middle[0], 0], at: "bottom", force: [0, -1] }), "Pull a panel");
+  button(line, "Pull an edge", () => addGrip("edge_loads", { edge: "bottom", traction: [0, -0.01] }), "Pull all panels along an edge");
 }
 
 function listItem(box, list, i, text) {
   const item = write(box, "div", undefined, "item");
   const { panel } = scene[list][i];
-  write(item, "b", panel ? `${text}: panel [${panel}] ` : `${text} `);
-  button(item, "remove", () => { scene[list].splice(i, 1); letGo(); });
+  write(item, "b", panel ? `${text}: panel in ${placeOf(panel)} ` : `${text} `);
+  button(item, "remove", () => { scene[list].splice(i, 1); letGo(); }, "Remove it");
   return item;
 }
 
@@ -55,10 +55,21 @@ function letGo() {
   writeFields();
 }
 
+/** A column or a row: counted from 1 on the page, from 0 in the scene. */
+function placeField(item, text, path) {
+  const input = numberField(item, text, path, (at) => set(path, Math.max(0, Math.round(at) - 1)));
+  Object.assign(input, { step: 1, min: 1, value: valueAt(path) + 1 });
+  input.dataset.from = 1;
+  input.parentNode.title = "Counted from 1, at the lower left";
+}
+
+/** The place of a panel in words. */
+const placeOf = ([column, row]) => `column ${column + 1}, row ${row + 1}`;
+
 /** Where a panel is held or pulled. */
 function writePlace(item, path) {
-  numberField(item, "Column", `${path}.panel.0`, (at) => set(`${path}.panel.0`, Math.max(0, Math.round(at))));
-  numberField(item, "Row", `${path}.panel.1`, (at) => set(`${path}.panel.1`, Math.max(0, Math.round(at))));
+  placeField(item, "Column", `${path}.panel.0`);
+  placeField(item, "Row", `${path}.panel.1`);
   if (typeof valueAt(`${path}.at`) === "string")
     choiceField(item, "At", `${path}.at`, [["centroid", "its centroid"], ...EDGES.map((edge) => [edge, `its ${edge} edge`])], (at) => {
       const grip = valueAt(path);
@@ -106,10 +117,10 @@ function openGripMenu(place) {
   menu.hidden = !place;
   if (!place) return;
   const { panel, at } = place;
-  write(menu, "p", `Panel [${panel}], ${at === "centroid" ? "its centroid" : `its ${at} edge`}:`, "note");
+  write(menu, "p", `Panel in ${placeOf(panel)}, ${at === "centroid" ? "its centroid" : `its ${at} edge`}:`, "note");
   const line = write(menu, "div", undefined, "actions");
   const here = (grip) => grip.panel[0] === panel[0] && grip.panel[1] === panel[1];
-  const act = (text, change) => button(line, text, () => { change(); openGripMenu(null); });
+  const act = (text, change) => button(line, text, () => { change(); openGripMenu(null); }, `${text}: ${placeOf(panel)}`);
   const held = (kind) => {
     scene.supports = scene.supports.filter((support) => !here(support));
     addGrip("supports", { panel, at, kind });

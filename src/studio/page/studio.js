@@ -4,10 +4,17 @@ document.body.classList.add("studio", "empty");
 const mode = () => document.querySelector("#modes input:checked").value;
 
 /** The texts of a report while something newer is drawn. */
-const reported = () => ["miss", "summary", "facts-card", "warnings-card", "budget-card", "curve-card", "hinge-card", "forces-card"].map(byId);
+const reported = () => ["summary", "facts-card", "warnings-card", "budget-card", "curve-card", "hinge-card", "forces-card"].map(byId);
 const setStale = (stale) => reported().forEach((card) => card.classList.toggle("stale", stale));
 
-let shop = { materials: [], machines: [] };
+let shop = { materials: [], machines: [], examples: [], levels: [], keys: {} };
+
+/** What the levels cost for the sheet that is open, if that was measured. */
+let levelCosts = [];
+
+byId("miss").insertAdjacentHTML("afterend", '<p id="search" class="note screen-only"><progress id="bar" aria-label="work under way"></progress> <span id="left"></span></p>');
+byId("state").insertAdjacentHTML("afterend", '<p id="fit" class="note"></p>');
+stage.insertAdjacentHTML("beforeend", '<p id="drop-says" class="refusal screen-only" role="alert" hidden></p>');
 
 /** Whether a search or the writing of files is under way: the sheet is not changed meanwhile. */
 let busy = false;
@@ -20,6 +27,9 @@ let designs = [];
 /** The scene file of the sheet that is open. */
 let file = null;
 
+/** What may be expected of the sheet that was fitted to a target. */
+let fit = { target: "", says: "" };
+
 connect({
   shop(offered) {
     shop = offered;
@@ -28,6 +38,8 @@ connect({
     for (const { file, name } of shop.materials) write(select, "option", name).value = file;
     if (!shop.materials.length) refuse("No material with weights here: start the studio in the folder of kirigami, or with a scene.");
     sayMaterial();
+    writeExamples();
+    for (const element of document.querySelectorAll("[data-meaning]")) element.title = meaningOf(element.dataset.meaning);
     byId("machine").length = 1;
     for (const [name] of shop.machines) write(byId("machine"), "option", `for ${name}`).value = name;
   },
@@ -48,6 +60,7 @@ connect({
     const other = JSON.stringify(event.scene) !== JSON.stringify(scene);
     scene = event.scene;
     if (other) writeFields();
+    byId("fit").hidden = JSON.stringify(scene.target) !== fit.target;
   },
 
   draft(event) {
@@ -64,7 +77,7 @@ connect({
     choosePath(fraction);
     show({ quantity: shownNow.quantity });
     setStale(true);
-    byId("progress").textContent = "Writing the report \u2026";
+    sayWork("Writing the report \u2026");
   },
 
   page(event) {
@@ -78,6 +91,7 @@ connect({
     if (event.run && run.history.step.length > 1) addDesign(event.run);
     if (event.ms !== null) times.everyday = event.ms;
     writeTexts();
+    writeBlocking();
     writeDesigns();
     sayTimes();
     if (first || grown()) { measureExtent(); fitView(); }
@@ -89,7 +103,11 @@ connect({
   },
 
   step(event) {
-    byId("progress").textContent = `Step ${event.step} of ${event.of}`;
+    sayWork(`Step ${event.step} of ${event.of}`);
+    const best = shown(event.history.outline_error[bestOf(event.history)], 3);
+    const left = event.seconds_left === null ? "" : ` \u00b7 ${shown(Math.ceil(event.seconds_left), 2)} s left at most`;
+    byId("left").textContent = `best so far ${best} mm from the target${left}`;
+    Object.assign(byId("bar"), { value: event.step, max: event.of });
     if (!run) return;
     Object.assign(run, { history: event.history, end_of_search: `step ${event.step} of ${event.of}` });
     if (event.draft) showDraft(event.draft);
@@ -99,17 +117,35 @@ connect({
   },
 
   working(what) {
-    const texts = { everyday: "Following the path \u2026", design: "Searching \u2026", files: "Writing files \u2026" };
-    byId("progress").textContent = texts[what] ?? "";
-    busy = what === "design" || what === "files";
+    const texts = {
+      everyday: "Following the path \u2026", design: "Searching \u2026", files: "Writing files \u2026",
+      fit: "Fitting the sheet and the drawing to each other \u2026", panels: "Placing the panels \u2026", levels: "Measuring every level \u2026",
+    };
+    byId("search").classList.toggle("working", what !== null);
+    byId("bar").removeAttribute("value");
+    sayWork(texts[what] ?? "");
+    busy = what !== null && what !== "everyday";
     byId("design").textContent = what === "design" ? "Pause" : "Design";
     document.querySelectorAll("#tools details input, #tools details select, #tools details button, #grip-menu, #undo, #redo, #another").forEach((element) => { element.inert = busy; });
     document.documentElement.dataset.working = what ?? "";
   },
 
   says({ refused, message }) {
-    refuse(refused ? message : "");
+    if (refused && taken) sayAtSheet(message);
+    else refuse(refused ? message : "");
+    if (refused) taken = false;
     if (!refused && message) byId("progress").textContent = message;
+  },
+
+  fit({ target, says }) {
+    fit = { target: JSON.stringify(target), says };
+    byId("fit").textContent = says;
+    taken = false;
+  },
+
+  levels(costs) {
+    levelCosts = costs;
+    writeFields();
   },
 
   files({ files, verdicts }) {
@@ -118,13 +154,42 @@ connect({
     writeVerdicts(verdicts);
     for (const { name, contents } of files) {
       const link = write(write(list, "li"), "a", name);
-      link.href = withToken(`/files/${name.split("/").map(encodeURIComponent).join("/")}`);
+      link.href = withToken(`files/${name.split("/").map(encodeURIComponent).join("/")}`);
       link.title = contents;
       if (/\.(html|pdf|svg|png|txt)$/.test(name)) link.target = "_blank";
-      else link.download = name.split("/").pop();
+      else link.download = `${file.split("/").at(-2)}-${name.replaceAll("/", "-")}`;
     }
   },
 });
+
+/** Says what is under way, beside the buttons and at the sheet. */
+function sayWork(text) {
+  byId("progress").textContent = byId("left").textContent = text;
+}
+
+/** Buttons that mend what prevents a cut file: what each says and does, if the sheet has what it changes. */
+const MENDS = {
+  "cuts-too-close": () => ["Wider panels", () => ask({ do: "panels", panels: scene.sheet.panels.map((count) => Math.max(1, count - 1)) })],
+  "cannot-be-cut": () => {
+    const clips = [...scene.supports, ...scene.loads].filter(({ clip }) => clip);
+    return clips.length > 0 && ["Narrower clips", () => { clips.forEach((grip) => { grip.clip *= 0.5; }); sendScene(); }];
+  },
+  tearing: () => scene.drive && ["Open it less", () => set("drive.stroke", 0.85 * scene.drive.stroke)],
+};
+MENDS.overstrained = MENDS.tearing;
+
+/** The findings that prevent a cut file. */
+function writeBlocking() {
+  const list = byId("blocking");
+  list.textContent = "";
+  for (const { message, concern } of run.warnings.filter(({ severity }) => severity === "error")) {
+    const item = write(list, "li");
+    write(item, "span", "no cut file", "tag error");
+    write(item, "span", `${message} `);
+    const [text, mend] = MENDS[concern]?.() || [];
+    if (mend) button(item, text, () => { mend(); updateFields(); }, "Changes the sheet; Undo takes it back");
+  }
+}
 
 /** How far along the path the state is that is shown. */
 const fractionShown = () => (stateCount < 2 ? 1 : shownNow.state / (stateCount - 1));
@@ -137,7 +202,7 @@ function choosePath(fraction) {
 }
 
 /** Draws a sheet at full load in place of the last path. */
-function showDraft({ sheet, outline_error }) {
+function showDraft({ sheet }) {
   if (!run) return;
   const sameSheet = sheet.hinges.sites.length === hingeCount;
   take({ ...run, ...sheet });
@@ -149,7 +214,8 @@ function showDraft({ sheet, outline_error }) {
   const quantity = quantities[shownNow.quantity];
   drawSheet(shownNow.state, quantity, shownNow.hinge);
   drawScale(quantity);
-  byId("state").textContent = `${states.let_go ? "Loads taken off" : "At full load"} (draft) \u00b7 outline ${shown(outline_error, 3)} mm from the target, rms`;
+  byId("state").textContent = `${states.let_go ? "Loads taken off" : "At full load"} (draft)`;
+  writeMiss();
   setStale(true);
 }
 
@@ -172,7 +238,7 @@ function finalOutline() {
 /** Adds the best design of a run to the list, unless it is there. */
 function addDesign(name) {
   const { loss, outline_error } = run.history;
-  const best = loss.reduce((b, x, i) => (x < loss[b] ? i : b), 0);
+  const best = bestOf(run.history);
   if (designs.some((design) => design.run === name && design.loss === loss[best])) return;
   designs.push({ run: name, loss: loss[best], error: outline_error[best], outline: finalOutline() });
 }
@@ -218,6 +284,29 @@ function sayMaterial() {
   byId("new-thickness").placeholder = material ? String(material.thickness) : "";
 }
 
+/** Begins a sheet as the form says, for a drawing if there is one. */
+function begin(drawing = null) {
+  const [width, height, thickness] = ["new-width", "new-height", "new-thickness"].map((id) => byId(id).valueAsNumber || null);
+  if ((width === null) !== (height === null)) return refuse("Give both width and height of the sheet, or neither.");
+  refuse("");
+  const name = byId("new-name");
+  const named = drawing && name.value === name.defaultValue ? drawing.name.replace(/\.svg$/i, "") : name.value;
+  ask({ do: "new", name: named, material: byId("new-material").value || null, thickness, size: width && [width, height], drawing });
+}
+
+function writeExamples() {
+  const list = byId("examples");
+  list.textContent = "";
+  const example = (title, becomes, request) => {
+    const item = write(list, "li");
+    button(item, title, request, `Open a copy: ${becomes}`);
+    write(item, "span", ` ${becomes}`, "note");
+  };
+  const heart = { name: "heart.svg", svg: shop.heart };
+  if (shop.heart) example("Heart", "a plate is fitted to the silhouette of a heart", () => begin(heart));
+  for (const [scene, title, becomes] of shop.examples) example(title, becomes, () => ask({ do: "open", scene }));
+}
+
 /** Shows the tools of the sheet, or the form of a new one. */
 function openTools(tools) {
   byId("tools").hidden = !tools;
@@ -227,7 +316,7 @@ function openTools(tools) {
 
 /** Waits for the first page of another sheet. */
 function openSheet(other) {
-  [file, run, designs] = [other, null, []];
+  [file, run, designs, levelCosts] = [other, null, [], []];
   document.body.classList.add("empty");
   byId("files").textContent = "";
   writeVerdicts({});
@@ -237,11 +326,9 @@ function openSheet(other) {
 byId("new-material").addEventListener("change", sayMaterial);
 byId("new-sheet").addEventListener("submit", (event) => {
   event.preventDefault();
-  const [width, height, thickness] = ["new-width", "new-height", "new-thickness"].map((id) => byId(id).valueAsNumber || null);
-  if ((width === null) !== (height === null)) return refuse("Give both width and height of the sheet, or neither.");
-  refuse("");
-  ask({ do: "new", name: byId("new-name").value, material: byId("new-material").value || null, thickness, size: width && [width, height] });
+  begin();
 });
+byId("new-drawing").addEventListener("change", (event) => takeDrawing(event.target.files[0]));
 byId("another").addEventListener("click", () => openTools(false));
 byId("back").addEventListener("click", () => { refuse(""); openTools(true); });
 byId("design").addEventListener("click", () => ask({ do: byId("design").textContent === "Pause" ? "pause" : "design" }));
@@ -277,13 +364,16 @@ window.addEventListener("pointerup", () => { grabbed = -1; });
 // The fields of a hinge are those of the hinge that is selected.
 stage.addEventListener("click", () => { if (mode() === "look") writeFields(); });
 byId("hinge-number").addEventListener("change", writeFields);
-stage.addEventListener("dragover", (event) => { event.preventDefault(); stage.classList.add("dropping"); });
-stage.addEventListener("dragleave", () => stage.classList.remove("dropping"));
-stage.addEventListener("drop", (event) => {
+const setDropping = (dropping) => document.body.classList.toggle("dropping", dropping);
+document.addEventListener("dragover", (event) => { event.preventDefault(); setDropping(true); });
+document.addEventListener("dragleave", (event) => { if (!event.relatedTarget) setDropping(false); });
+document.addEventListener("drop", (event) => {
   event.preventDefault();
-  stage.classList.remove("dropping");
+  setDropping(false);
   takeDrawing(event.dataTransfer.files[0]);
 });
+
+document.addEventListener("pointerdown", () => { byId("drop-says").hidden = true; });
 
 connectControls();
 window.addEventListener("resize", () => layOut(false));

@@ -49,16 +49,17 @@ function writeTarget(box) {
   if (kind === "rectangle" || kind === "svg") numberField(box, "Rotation (deg)", `target.${kind}.rotation_deg`);
   if (kind === "curve") {
     const line = write(box, "div", undefined, "actions");
-    button(line, "More points", () => morePoints(2));
-    button(line, "Fewer points", () => morePoints(0.5));
+    button(line, "More points", () => morePoints(2), "Twice as many points");
+    button(line, "Fewer points", () => morePoints(0.5), "Half as many points");
     write(box, "p", `${target.points.length} points. Drag them, or Tab to one and move it with the arrows (Shift: by 10 mm).`, "note");
   }
   const label = write(box, "label", "Drawing (SVG)");
+  label.title = "An SVG file with one closed path";
   const file = document.createElement("input");
   Object.assign(file, { type: "file", accept: ".svg,image/svg+xml", id: "drawing" });
   file.addEventListener("change", () => takeDrawing(file.files[0]));
   label.appendChild(file);
-  write(box, "p", "Or drop one onto the sheet: one closed path, in the place and with the area of the present target.", "note");
+  write(box, "p", "Or drop one anywhere: one closed path, to which the sheet is fitted.", "note");
 }
 
 function morePoints(factor) {
@@ -71,10 +72,26 @@ function morePoints(factor) {
 
 const MOST_BYTES = 8e6;
 
+/** Fits the sheet, or a new one while the form of a new sheet is shown, to the drawing in a file. */
 async function takeDrawing(file) {
-  if (!file || busy) return;
-  if (file.size > MOST_BYTES) return refuse(`${file.name} has ${Math.round(file.size / 1e6)} MB: simplify the drawing to 8 MB at most`);
-  ask({ do: "drawing", svg: await file.text() });
+  if (!file) return;
+  sayAtSheet("");
+  if (busy) return sayAtSheet(`${file.name} was not taken: something else is under way. Pause it, or drop the file again later.`);
+  if (file.size > MOST_BYTES) return sayAtSheet(`${file.name} has ${Math.round(file.size / 1e6)} MB: simplify the drawing to 8 MB at most`);
+  const drawing = { name: file.name, svg: await file.text() };
+  taken = true;
+  if (byId("tools").hidden) begin(drawing);
+  else ask({ do: "drawing", ...drawing });
+}
+
+/** Whether a drawing was taken of which nothing is known yet. */
+let taken = false;
+
+/** Says something about a drawing where it was dropped. */
+function sayAtSheet(message) {
+  if (document.body.classList.contains("empty") || byId("tools").hidden) refuse(message);
+  byId("drop-says").hidden = !message;
+  byId("drop-says").textContent = message;
 }
 
 /** The handles of the target: where each is (mm), and what moving it there does. */
