@@ -15,9 +15,9 @@
 
 use crate::studio::engine::Engine;
 use crate::studio::event::Post;
+use crate::studio::page::{Connection, page};
 use crate::studio::request::Request;
 use anyhow::{Result, anyhow};
-use output::run_page::Page;
 use percent_encoding::percent_decode_str;
 use std::io::{self, Read, Write};
 use std::net::Ipv4Addr;
@@ -92,7 +92,11 @@ impl Studio {
                 403,
                 "the address needs the token that `kirigami studio` has printed",
             ),
-            (Method::Get, "/") => page(),
+            (Method::Get, "/") => Answer {
+                status: 200,
+                kind: "text/html; charset=utf-8",
+                body: page(Connection::Http).into(),
+            },
             (Method::Get, "/events") => {
                 // The page is gone when it cannot be written to.
                 let _ = send(&self.post, &mut *request.into_writer());
@@ -199,29 +203,6 @@ fn refusal(status: u16, message: &str) -> Answer {
         status,
         kind: TEXT,
         body: message.into(),
-    }
-}
-
-fn page() -> Answer {
-    let page = Page {
-        title: "kirigami studio",
-        connections: "; connect-src 'self'",
-        controls: include_str!("page/controls.html"),
-        style: include_str!("page/studio.css"),
-        scripts: [
-            include_str!("page/connection.js"),
-            include_str!("page/fields.js"),
-            include_str!("page/target.js"),
-            include_str!("page/grips.js"),
-            include_str!("page/studio.js"),
-        ]
-        .concat(),
-        data: "null",
-    };
-    Answer {
-        status: 200,
-        kind: "text/html; charset=utf-8",
-        body: page.to_html().into(),
     }
 }
 
