@@ -18,12 +18,12 @@ function ask(request) {
   return new Promise((resolve) => { answered.push(resolve); });
 }
 
-const KINDS = { html: "text/html", svg: "image/svg+xml", png: "image/png", json: "application/json", csv: "text/plain", txt: "text/plain" };
+const MEDIA = { html: "text/html", svg: "image/svg+xml", png: "image/png", json: "application/json", csv: "text/plain", txt: "text/plain" };
 
 function keepFiles(files) {
   for (const [name, bytes] of Object.entries(files)) {
     URL.revokeObjectURL(addresses.get(name));
-    const type = KINDS[name.split(".").pop()] ?? "application/octet-stream";
+    const type = MEDIA[name.split(".").pop()] ?? "application/octet-stream";
     addresses.set(name, URL.createObjectURL(new Blob([bytes], { type })));
   }
 }
