@@ -1,7 +1,7 @@
 # Two commands: `make demo` runs the main job, `make test` passes all tests.
 # Both first install what is missing.
 
-.PHONY: demo test test-fast lint python python-torch tools test-tools python-tools
+.PHONY: demo test test-fast lint page python python-torch tools test-tools python-tools
 
 # With the features of the whole workspace, so that `make test` compiles no dependency again.
 demo: tools
@@ -21,6 +21,15 @@ lint:
 	cargo clippy --release --locked --workspace --all-targets -- -D warnings
 	cargo check --release --locked -p kirigami --no-default-features
 	RUSTDOCFLAGS="-D warnings" cargo doc --release --locked --workspace --lib --no-deps
+
+# The studio as a folder of files for any web server: no request leaves the page. rustup adds the target.
+page:
+	rustup target add wasm32-wasip1
+	RUSTFLAGS="-C target-feature=+simd128" cargo rustc --locked --profile page -p kirigami --lib --no-default-features \
+	    --target wasm32-wasip1 --crate-type cdylib
+	rm -rf target/page
+	cargo run --release --locked -- studio --page target/page
+	cp target/wasm32-wasip1/page/kirigami.wasm target/page/
 
 # The Python package and its tests, in an environment of their own. Those of PyTorch need 5 GB: by a command of their own.
 python: python-tools

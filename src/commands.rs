@@ -49,6 +49,7 @@ mod points_file;
 pub mod solve;
 #[cfg(feature = "pipeline")]
 pub mod solve_args;
+#[cfg(unix)]
 pub mod studio;
 #[cfg(feature = "pipeline")]
 pub mod surrogate;

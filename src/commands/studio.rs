@@ -4,6 +4,7 @@ use crate::studio::engine::Engine;
 use crate::studio::event::Post;
 use crate::studio::project::Project;
 use crate::studio::server::Studio;
+use crate::studio::static_page;
 use crate::ui::{interrupt, with_unit};
 use anyhow::Result;
 use clap::Args;
@@ -31,6 +32,10 @@ pub struct StudioCommand {
     /// Folder of the folders of new sheets
     #[arg(long, value_name = "FOLDER", default_value = "runs/studio")]
     folder: PathBuf,
+    /// Write the studio into this new folder as a page for any web server, and end: it runs in the browser, and sends nothing. It needs
+    /// the module that `make page` compiles
+    #[arg(long, value_name = "FOLDER", exclusive = true)]
+    page: Option<PathBuf>,
     /// Port on 127.0.0.1 [default: a free one]
     #[arg(
         long,
@@ -57,6 +62,9 @@ impl StudioCommand {
     }
 
     pub(crate) fn run(&self) -> Result<()> {
+        if let Some(folder) = &self.page {
+            return static_page::write(folder);
+        }
         let projects = std::path::absolute(&self.folder)?;
         let opened = self.scene.as_deref();
         let opened = opened

@@ -7,9 +7,8 @@ use crate::studio::event::{Event, Kind};
 use crate::studio::everyday::{Everyday, Listener};
 use crate::studio::project::Project;
 use crate::studio::request::Request;
-use crate::studio::session::{Fetched, Session};
+use crate::studio::session::{Fetched, Next, Session};
 use crate::studio::shop::Shop;
-use crate::ui::exit::message;
 use anyhow::{Context, Result};
 use design::scene::Scene;
 use std::collections::VecDeque;
@@ -18,7 +17,6 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
 use std::time::Duration;
-use support::caught_panic;
 
 /// Time without a request after which the everyday level is computed.
 const REST: Duration = Duration::from_millis(200);
@@ -44,13 +42,6 @@ struct Waiting {
     /// Whether a search is under way.
     searching: bool,
     closed: bool,
-}
-
-/// What comes next.
-enum Next {
-    Request(Request),
-    Rest,
-    Closed,
 }
 
 impl Engine {
@@ -158,18 +149,7 @@ fn work(inbox: &Inbox, session: &mut Session) {
     loop {
         let next = inbox.next(session.is_at_rest());
         let last = matches!(next, Next::Closed);
-        let done = caught_panic::catch(|| match next {
-            Next::Request(request) => session.answer(request),
-            Next::Rest => session.rest(),
-            Next::Closed => session.close(),
-        });
-        match done {
-            Ok(Ok(())) => {}
-            Ok(Err(error)) => session.give_up(&message(&error)),
-            Err(panic) => session.give_up(&format!(
-                "the studio failed: {panic}; the scene of the last rest is on disk"
-            )),
-        }
+        session.go(next);
         if last {
             return;
         }

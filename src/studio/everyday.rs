@@ -88,17 +88,24 @@ struct Wanted {
 }
 
 impl Everyday {
-    /// Starts the thread, which ends with the program.
+    /// Starts the thread, which ends with the program. A page in a browser has none: there [`Self::compute`] computes at once.
     pub fn start(listener: Listener) -> std::io::Result<Arc<Self>> {
         let everyday = Arc::new(Self {
             wanted: Mutex::default(),
             news: Condvar::new(),
             listener,
         });
+        if cfg!(target_family = "wasm") {
+            return Ok(everyday);
+        }
         let thread = std::thread::Builder::new().name("everyday".into());
         thread.spawn({
             let everyday = Arc::clone(&everyday);
-            move || everyday.work()
+            move || {
+                loop {
+                    everyday.work();
+                }
+            }
         })?;
         Ok(everyday)
     }
@@ -108,6 +115,9 @@ impl Everyday {
         self.stop();
         self.lock().sheet = Some(sheet);
         self.news.notify_one();
+        if cfg!(target_family = "wasm") {
+            self.work();
+        }
     }
 
     /// Shows nothing of what is under way. Returns the path of the last computation that was shown, once.
@@ -133,39 +143,38 @@ impl Everyday {
         }
     }
 
+    /// Computes the next sheet, as soon as there is one.
     fn work(&self) {
-        loop {
-            let nothing = |wanted: &mut Wanted| wanted.sheet.is_none();
-            let mut wanted = (self.news.wait_while(self.lock(), nothing))
-                .unwrap_or_else(PoisonError::into_inner);
-            let Some(sheet) = wanted.sheet.take() else {
-                continue;
-            };
-            let stop = Arc::new(AtomicBool::new(false));
-            wanted.stop = Arc::clone(&stop);
-            drop(wanted);
-            let begin = Instant::now();
-            let computed = caught_panic::catch(|| {
-                let designed = sheet.designed(Arc::clone(&stop))?;
-                self.show_path(sheet.scene(), &designed, &stop);
-                Ok::<_, anyhow::Error>(page_of(&sheet, &designed, begin))
-            });
-            // Under the lock: nothing is shown after a stop.
-            let mut wanted = self.lock();
-            if stop.load(Ordering::Relaxed) {
-                continue;
-            }
-            let event = match computed {
-                Ok(Ok((page, path))) => {
-                    wanted.path = Some(path);
-                    page
-                }
-                Ok(Err(error)) => refusal(&message(&error)),
-                Err(panic) => refusal(&format!("the report failed: {panic}")),
-            };
-            (self.listener)(event);
-            (self.listener)(Event::new(Kind::Working, &()));
+        let nothing = |wanted: &mut Wanted| wanted.sheet.is_none();
+        let mut wanted =
+            (self.news.wait_while(self.lock(), nothing)).unwrap_or_else(PoisonError::into_inner);
+        let Some(sheet) = wanted.sheet.take() else {
+            return;
+        };
+        let stop = Arc::new(AtomicBool::new(false));
+        wanted.stop = Arc::clone(&stop);
+        drop(wanted);
+        let begin = Instant::now();
+        let computed = caught_panic::catch(|| {
+            let designed = sheet.designed(Arc::clone(&stop))?;
+            self.show_path(sheet.scene(), &designed, &stop);
+            Ok::<_, anyhow::Error>(page_of(&sheet, &designed, begin))
+        });
+        // Under the lock: nothing is shown after a stop.
+        let mut wanted = self.lock();
+        if stop.load(Ordering::Relaxed) {
+            return;
         }
+        let event = match computed {
+            Ok(Ok((page, path))) => {
+                wanted.path = Some(path);
+                page
+            }
+            Ok(Err(error)) => refusal(&message(&error)),
+            Err(panic) => refusal(&format!("the report failed: {panic}")),
+        };
+        (self.listener)(event);
+        (self.listener)(Event::new(Kind::Working, &()));
     }
 }
 

@@ -16,8 +16,8 @@
 use crate::studio::engine::Engine;
 use crate::studio::event::Post;
 use crate::studio::http::{Answer, Request};
+use crate::studio::page::{Connection, page};
 use anyhow::{Context, Result};
-use output::run_page::Page;
 use percent_encoding::percent_decode_str;
 use std::io::{self, Write};
 use std::net::{Ipv4Addr, TcpListener, TcpStream};
@@ -103,7 +103,11 @@ impl Studio {
                 403,
                 "the address needs the token that `kirigami studio` has printed",
             ),
-            ("GET", "/") => page(),
+            ("GET", "/") => Answer {
+                status: 200,
+                kind: "text/html; charset=utf-8",
+                body: page(Connection::Http).into(),
+            },
             ("GET", "/events") => return send(&self.post, stream),
             ("POST", "/request") => asked(request, engine).unwrap_or_else(|refusal| refusal),
             ("GET", name) => file(engine, name.strip_prefix("/files/").unwrap_or("")),
@@ -153,29 +157,6 @@ fn asked(request: Request, engine: &Engine) -> Result<Answer, Answer> {
     let asked = serde_json::from_slice(&request.body()?);
     engine.ask(asked.map_err(|error| Answer::refusal(400, &error.to_string()))?);
     Ok(Answer::refusal(204, ""))
-}
-
-fn page() -> Answer {
-    let page = Page {
-        title: "kirigami studio",
-        connections: "; connect-src 'self'",
-        controls: include_str!("page/controls.html"),
-        style: include_str!("page/studio.css"),
-        scripts: [
-            include_str!("page/connection.js"),
-            include_str!("page/fields.js"),
-            include_str!("page/target.js"),
-            include_str!("page/grips.js"),
-            include_str!("page/studio.js"),
-        ]
-        .concat(),
-        data: "null",
-    };
-    Answer {
-        status: 200,
-        kind: "text/html; charset=utf-8",
-        body: page.to_html().into(),
-    }
 }
 
 fn file(engine: &Engine, name: &str) -> Answer {

@@ -30,9 +30,18 @@ use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Instant;
+use support::caught_panic;
 
 /// The files that can be fetched, by the names that pages know.
 pub(super) type Fetched = Arc<Mutex<BTreeMap<String, PathBuf>>>;
+
+/// What comes next.
+pub(super) enum Next {
+    Request(Request),
+    /// No request came for a moment.
+    Rest,
+    Closed,
+}
 
 pub(super) struct Session {
     projects: PathBuf,
@@ -115,7 +124,23 @@ impl Session {
         self.tell_scene();
     }
 
-    pub fn answer(&mut self, request: Request) -> Result<()> {
+    /// Does what comes next, and says why it cannot.
+    pub fn go(&mut self, next: Next) {
+        let done = caught_panic::catch(|| match next {
+            Next::Request(request) => self.answer(request),
+            Next::Rest => self.rest(),
+            Next::Closed => self.close(),
+        });
+        match done {
+            Ok(Ok(())) => {}
+            Ok(Err(error)) => self.give_up(&message(&error)),
+            Err(panic) => self.give_up(&format!(
+                "the studio failed: {panic}; the scene of the last rest is on disk"
+            )),
+        }
+    }
+
+    fn answer(&mut self, request: Request) -> Result<()> {
         match request {
             Request::New(sheet) => {
                 let (project, scene) = Project::begin(&sheet, &self.projects)?;
@@ -150,7 +175,7 @@ impl Session {
     }
 
     /// Writes the scene, and lets the everyday level be computed.
-    pub fn rest(&mut self) -> Result<()> {
+    fn rest(&mut self) -> Result<()> {
         self.at_rest = true;
         if self.sheet.is_none() {
             return Ok(());
@@ -167,7 +192,7 @@ impl Session {
     }
 
     /// Writes the scene before the end.
-    pub fn close(&mut self) -> Result<()> {
+    fn close(&mut self) -> Result<()> {
         if self.sheet.is_some() {
             self.commit()?;
         }
@@ -175,7 +200,7 @@ impl Session {
     }
 
     /// Says why a request was not answered. The last result stays.
-    pub fn give_up(&mut self, why: &str) {
+    fn give_up(&mut self, why: &str) {
         // The page shows one scene.
         let file = self.sheet.as_ref().map(|sheet| sheet.project.scene_file());
         let named = file.map(|file| format!("{}: ", file.display()));

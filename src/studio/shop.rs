@@ -10,7 +10,7 @@ use output::cut_file::Machines;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-use support::regular_file;
+use support::text_file;
 use surrogate::Surrogate;
 
 const MATERIALS: &str = "configs/materials";
@@ -79,7 +79,7 @@ impl Shop {
             examples: (EXAMPLES.into_iter())
                 .filter(|[file, ..]| is_example(Path::new(file)))
                 .collect(),
-            heart: regular_file::read_to_string(Path::new(HEART)).ok(),
+            heart: text_file::read(Path::new(HEART)).ok(),
             levels: (Level::ALL.into_iter())
                 .filter(|level| *level != Level::Final)
                 .map(|level| [level.name(), level.hinges()])

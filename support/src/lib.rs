@@ -19,11 +19,15 @@ pub mod csv_table;
 pub mod file_error;
 pub mod key_limits;
 pub mod lock_file;
+#[cfg(unix)]
 pub mod memory;
 pub mod nearest;
+#[cfg(unix)]
 pub mod processes;
+#[cfg(unix)]
 pub mod program;
 pub mod regular_file;
+#[cfg(unix)]
 pub mod scratch;
 pub mod sealed_json;
 pub mod severity;

@@ -2,7 +2,6 @@
 //! result depends on them.
 
 use crate::regular_file;
-use nix::errno::Errno;
 use std::fs::{File, OpenOptions};
 use std::io;
 use std::path::Path;
@@ -28,7 +27,11 @@ fn hold_by(path: &Path, lock: impl Fn(&File) -> io::Result<()>) -> io::Result<Fi
 
 /// Whether an error says that the file system has no locks.
 fn is_without_locks(error: &io::Error) -> bool {
-    error.kind() == io::ErrorKind::Unsupported || error.raw_os_error() == Some(Errno::ENOLCK as i32)
+    #[cfg(unix)]
+    if error.raw_os_error() == Some(nix::errno::Errno::ENOLCK as i32) {
+        return true;
+    }
+    error.kind() == io::ErrorKind::Unsupported
 }
 
 #[cfg(test)]

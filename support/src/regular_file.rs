@@ -3,10 +3,8 @@
 //! folders that others can write are no links either.
 
 use crate::verbose;
-use nix::libc;
 use std::fs::{File, FileType, OpenOptions};
 use std::io::{self, ErrorKind};
-use std::os::unix::fs::OpenOptionsExt;
 use std::path::Path;
 
 /// Maximum size of an input file (bytes): over ten times the database of 100 000 rays.
@@ -39,12 +37,8 @@ pub fn open(options: &mut OpenOptions, path: &Path) -> io::Result<File> {
         let what = "a link, a pipe or a device is in its place: remove it";
         io::Error::new(ErrorKind::InvalidData, what)
     };
-    let flags = libc::O_NOFOLLOW | libc::O_NONBLOCK;
-    let file = match options.custom_flags(flags).open(path) {
-        // Of a link, and of a pipe that nobody reads.
-        Err(error) if matches!(error.raw_os_error(), Some(libc::ELOOP | libc::ENXIO)) => {
-            return Err(refused());
-        }
+    let file = match without_following(options).open(path) {
+        Err(error) if is_link_or_pipe(&error) => return Err(refused()),
         opened => opened?,
     };
     if file.metadata()?.is_file() {
@@ -52,6 +46,30 @@ pub fn open(options: &mut OpenOptions, path: &Path) -> io::Result<File> {
     } else {
         Err(refused())
     }
+}
+
+#[cfg(unix)]
+fn without_following(options: &mut OpenOptions) -> &mut OpenOptions {
+    use nix::libc;
+    std::os::unix::fs::OpenOptionsExt::custom_flags(options, libc::O_NOFOLLOW | libc::O_NONBLOCK)
+}
+
+/// Of a link, and of a pipe that nobody reads.
+#[cfg(unix)]
+fn is_link_or_pipe(error: &io::Error) -> bool {
+    use nix::libc;
+    matches!(error.raw_os_error(), Some(libc::ELOOP | libc::ENXIO))
+}
+
+/// The files of a page in a browser are in its memory, and no others can write there.
+#[cfg(not(unix))]
+fn without_following(options: &mut OpenOptions) -> &mut OpenOptions {
+    options
+}
+
+#[cfg(not(unix))]
+fn is_link_or_pipe(_: &io::Error) -> bool {
+    false
 }
 
 /// A folder is not endless: reading it fails with a message of its own.

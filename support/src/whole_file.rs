@@ -4,7 +4,6 @@ use crate::verbose;
 use std::ffi::OsStr;
 use std::fs::File;
 use std::io::{self, Write};
-use std::os::unix::ffi::OsStrExt;
 use std::path::Path;
 use std::time::Duration;
 use tempfile::NamedTempFile;
@@ -27,12 +26,12 @@ impl Unnamed {
     /// An empty temporary file in the folder of `path`, which must exist.
     pub fn beside(path: &Path) -> io::Result<Self> {
         let name = path.file_name().unwrap_or_default();
-        let file = tempfile::Builder::new()
-            .prefix(name)
-            .rand_bytes(RANDOM)
-            .suffix(SUFFIX)
-            .permissions(permissions())
-            .tempfile_in(folder(path))?;
+        let mut file = tempfile::Builder::new();
+        file.prefix(name).rand_bytes(RANDOM).suffix(SUFFIX);
+        // The default permissions of a new file, before the umask is applied; a temporary file would be private.
+        #[cfg(unix)]
+        file.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+        let file = file.tempfile_in(folder(path))?;
         // On a file system without locks nothing is removed.
         let _ = file.as_file().try_lock();
         remove_abandoned(path, file.as_file());
@@ -70,13 +69,13 @@ const LOCKED_AFTER: Duration = Duration::from_secs(5);
 /// `newest`, which is on the same disk and was created just now. What cannot be read stays.
 fn remove_abandoned(path: &Path, newest: &File) {
     let (Some(name), Ok(now)) = (
-        path.file_name().map(OsStr::as_bytes),
+        path.file_name().map(OsStr::as_encoded_bytes),
         newest.metadata().and_then(|new| new.modified()),
     ) else {
         return;
     };
     let is_temporary = |file: &OsStr| {
-        let random = file.as_bytes().strip_prefix(name);
+        let random = file.as_encoded_bytes().strip_prefix(name);
         random.is_some_and(|rest| {
             rest.len() == RANDOM + SUFFIX.len() && rest.ends_with(SUFFIX.as_bytes())
         })
@@ -122,11 +121,6 @@ pub fn create_folder(path: &Path) -> io::Result<()> {
         _ if parent == Path::new("") => File::open(".")?.sync_all(),
         _ => File::open(parent)?.sync_all(),
     }
-}
-
-/// The default permissions of a new file, before the umask is applied; a temporary file would be private.
-fn permissions() -> std::fs::Permissions {
-    std::os::unix::fs::PermissionsExt::from_mode(0o666)
 }
 
 #[cfg(test)]

@@ -51,6 +51,24 @@ pub fn work_through<M: Send, E: From<NoThread>>(
 ) -> Result<(), E> {
     let (next, halt) = (AtomicUsize::new(0), AtomicBool::new(false));
     let (sender, receiver) = mpsc::channel();
+    if cfg!(target_family = "wasm") {
+        // Without threads: each item, then its messages.
+        let reports = Reports {
+            sender,
+            halt: &halt,
+        };
+        let mut outcome = Ok(());
+        for item in 0..count {
+            work(item, &reports);
+            outcome = receiver
+                .try_iter()
+                .fold(outcome, |outcome, message| outcome.and(note(message)));
+            if outcome.is_err() || stop.load(Ordering::Relaxed) {
+                break;
+            }
+        }
+        return outcome;
+    }
     thread::scope(|scope| {
         for started in 0..workers.clamp(1, count.max(1)) {
             let (sender, halt) = (sender.clone(), &halt);

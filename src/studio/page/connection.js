@@ -1,21 +1,8 @@
-// The connection to the studio: requests to it, events from it.
-
-const token = new URLSearchParams(location.search).get("token") ?? "";
-const withToken = (path) => `${path}?token=${token}`;
+// Requests to the studio, and what it refuses.
 
 /** This page among those of the studio, and the number of its changes. */
 const me = Math.random().toString(36).slice(2);
 let changes = 0;
-
-/** Sends a request; the reason appears if it is refused. */
-async function ask(request) {
-  try {
-    const answer = await fetch(withToken("request"), { method: "POST", body: JSON.stringify(request) });
-    if (!answer.ok) refuse(await answer.text());
-  } catch {
-    goOffline();
-  }
-}
 
 let sending = false;
 let unsent = false;
@@ -32,20 +19,6 @@ async function sendScene() {
     await ask({ do: "change", scene, by: [me, changes] });
   }
   sending = false;
-}
-
-function goOffline() {
-  byId("offline").hidden = false;
-  byId("offline").textContent =
-    "The studio does not answer: it was ended. Start `kirigami studio` again with the folder of the sheet.";
-}
-
-/** Calls the listeners of every kind with the data of their events. */
-function connect(listeners) {
-  const stream = new EventSource(withToken("events"));
-  for (const kind in listeners) stream.addEventListener(kind, (event) => listeners[kind](JSON.parse(event.data)));
-  stream.addEventListener("open", () => { byId("offline").hidden = true; });
-  stream.addEventListener("error", goOffline);
 }
 
 /** Shows why a request was refused, at the field that it names or else above; nothing without a reason. */

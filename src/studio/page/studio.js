@@ -154,7 +154,7 @@ connect({
     writeVerdicts(verdicts);
     for (const { name, contents } of files) {
       const link = write(write(list, "li"), "a", name);
-      link.href = withToken(`files/${name.split("/").map(encodeURIComponent).join("/")}`);
+      link.href = addressOf(name);
       link.title = contents;
       if (/\.(html|pdf|svg|png|txt)$/.test(name)) link.target = "_blank";
       else link.download = `${file.split("/").at(-2)}-${name.replaceAll("/", "-")}`;

@@ -1,0 +1,66 @@
+//! The studio as a page of files, which any web server serves: the page, the worker, and the shipped files that designs need. The module
+//! of the worker is this program, compiled for WebAssembly (`make page`).
+
+use crate::commands::init::WEIGHTS;
+use crate::studio::page::{Connection, page};
+use crate::ui::output_file;
+use anyhow::{Context, Result};
+use std::path::{Path, PathBuf};
+use support::regular_file;
+
+/// Folders of the materials and examples of the studio, and of the files that they name.
+const CONFIGS: [&str; 4] = [
+    "configs/materials",
+    "configs/scenes",
+    "configs/targets",
+    "configs/tensile",
+];
+
+/// Writes the page into a new folder; the shipped files are in the working folder.
+pub(crate) fn write(folder: &Path) -> Result<()> {
+    let mut files = Vec::new();
+    for of_configs in CONFIGS {
+        files.extend(files_in(Path::new(of_configs))?);
+    }
+    for weights in WEIGHTS.iter().map(Path::new) {
+        let all = files_in(weights.parent().unwrap_or(Path::new("")))?;
+        files.extend(all.into_iter().filter(|file| is_for_designs(file)));
+    }
+    files.sort();
+    for file in &files {
+        let bytes = regular_file::read(file);
+        let bytes = bytes.with_context(|| format!("cannot read {}", file.display()))?;
+        let copy = folder.join(file);
+        output_file::create_folder_of(&copy)?;
+        output_file::write(&copy, bytes)?;
+    }
+    output_file::write(&folder.join("files.json"), serde_json::to_string(&files)?)?;
+    output_file::write(&folder.join("index.html"), page(Connection::Worker))?;
+    let worker = [include_str!("page/wasi.js"), include_str!("page/worker.js")].concat();
+    output_file::write(&folder.join("worker.js"), worker)
+}
+
+fn files_in(folder: &Path) -> Result<Vec<PathBuf>> {
+    let entries = std::fs::read_dir(folder);
+    let entries = entries.with_context(|| {
+        format!(
+            "cannot read {}: run in the folder of kirigami",
+            folder.display()
+        )
+    })?;
+    let paths = entries.map(|entry| Ok(entry?.path()));
+    let paths: Result<Vec<_>> = paths.collect();
+    Ok(paths?.into_iter().filter(|path| path.is_file()).collect())
+}
+
+/// Weights with their cards, and laws of springback, but no database and no further network of an ensemble.
+fn is_for_designs(file: &Path) -> bool {
+    let is = |kind| file.extension().is_some_and(|extension| extension == kind);
+    let name = file.file_stem().unwrap_or_default().to_string_lossy();
+    let is_of_ensemble = name
+        .rsplit_once('-')
+        .is_some_and(|(_, seed)| seed.parse::<u32>().is_ok());
+    (is("safetensors") || is("json"))
+        && !is_of_ensemble
+        && !file.with_extension("parquet").is_file()
+}
