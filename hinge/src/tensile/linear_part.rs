@@ -88,12 +88,12 @@ impl LinearPart {
         let loading = rows.iter().take_while(|row| row[1] <= high);
         let used: Vec<[f64; 2]> = loading.filter(|row| row[1] >= low).copied().collect();
         let line = Self::through(&used, 0, used.len().checked_sub(1)?)?;
-        let strains = || used.iter().map(|row| row[0] - line.toe);
-        let start = rows[0][0] - rows[0][1] / line.young;
+        let toe = line.toe.max(rows[0][0] - rows[0][1] / line.young);
+        let strains = || used.iter().map(|row| row[0] - toe);
         (used.len() >= MIN_SEED).then(|| Self {
-            toe: line.toe.max(start),
+            toe,
             strain: [
-                strains().fold(self.strain[0] - line.toe, f64::min),
+                strains().fold(self.strain[0] - toe, f64::min),
                 strains().fold(0.0, f64::max),
             ],
             ..line
