@@ -30,6 +30,7 @@ page:
 	rm -rf target/page
 	cargo run --release --locked -- studio --page target/page
 	cp target/wasm32-wasip1/page/kirigami.wasm target/page/
+	cargo test --release --locked -p kirigami --test end_to_end static_page -- --ignored
 
 # The Python package and its tests, in an environment of their own. Those of PyTorch need 5 GB: by a command of their own.
 python: python-tools

@@ -19,4 +19,5 @@ mod regenerated;
 mod run_page;
 mod scale;
 mod slurm;
+mod static_page;
 mod studio;
