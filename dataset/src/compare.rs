@@ -148,15 +148,18 @@ fn rms<'a>(
     std::array::from_fn(|i| (squares[i] / f64::max(counts[i], 1.0)).sqrt())
 }
 
-/// Rows by ray and hash of the material law, in order of lambda.
+/// Rows by ray and hash of the material law, in order of lambda. The last row of a job tells its ray, also where the ray bends.
 fn rays<'a>(rows: impl IntoIterator<Item = &'a Row>) -> BTreeMap<(RayKey, &'a str), Vec<&'a Row>> {
-    let mut rays: BTreeMap<(RayKey, &str), Vec<&Row>> = BTreeMap::new();
+    let mut jobs: BTreeMap<&str, Vec<&Row>> = BTreeMap::new();
     for row in rows {
-        let ray = (ray_key(row), row.material_hash.as_str());
-        rays.entry(ray).or_default().push(row);
+        jobs.entry(&row.job).or_default().push(row);
     }
-    for rows in rays.values_mut() {
-        rows.sort_by(|x, y| x.sample.lambda.total_cmp(&y.sample.lambda));
+    let mut rays: BTreeMap<(RayKey, &str), Vec<&Row>> = BTreeMap::new();
+    for mut job in jobs.into_values() {
+        job.sort_by(|x, y| x.sample.lambda.total_cmp(&y.sample.lambda));
+        let last = job[job.len() - 1];
+        let ray = (ray_key(last), last.material_hash.as_str());
+        rays.entry(ray).or_default().extend(job);
     }
     rays
 }

@@ -5,7 +5,7 @@ use crate::rows::Row;
 /// Design and end of a ray, in millionths of their units.
 pub(crate) type RayKey = [i64; 8];
 
-/// The ray of a row.
+/// The ray to a row, or straight on beyond it.
 pub(crate) fn ray_key(row: &Row) -> RayKey {
     let (design, x) = (&row.design, &row.sample);
     let [a, s, theta] = [x.a, x.s, x.theta].map(|component| component / x.lambda);

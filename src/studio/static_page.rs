@@ -5,6 +5,7 @@ use crate::commands::init::WEIGHTS;
 use crate::studio::page::{Connection, page};
 use crate::ui::output_file;
 use anyhow::{Context, Result};
+use serde_json::json;
 use std::path::{Path, PathBuf};
 use support::regular_file;
 
@@ -34,7 +35,9 @@ pub(crate) fn write(folder: &Path) -> Result<()> {
         output_file::create_folder_of(&copy)?;
         output_file::write(&copy, bytes)?;
     }
-    output_file::write(&folder.join("files.json"), serde_json::to_string(&files)?)?;
+    let (later, first): (Vec<_>, Vec<_>) = files.iter().partition(|file| is_of_ensemble(file));
+    let listed = json!({ "first": first, "later": later });
+    output_file::write(&folder.join("files.json"), listed.to_string())?;
     output_file::write(&folder.join("index.html"), page(Connection::Worker))?;
     let worker = [include_str!("page/wasi.js"), include_str!("page/worker.js")].concat();
     output_file::write(&folder.join("worker.js"), worker)
@@ -53,14 +56,15 @@ fn files_in(folder: &Path) -> Result<Vec<PathBuf>> {
     Ok(paths?.into_iter().filter(|path| path.is_file()).collect())
 }
 
-/// Weights with their cards, and laws of springback, but no database and no further network of an ensemble.
+/// Weights with their cards, and laws of springback, but no database.
 fn is_for_designs(file: &Path) -> bool {
     let is = |kind| file.extension().is_some_and(|extension| extension == kind);
+    (is("safetensors") || is("json")) && !file.with_extension("parquet").is_file()
+}
+
+/// Whether a file is of a further network of an ensemble, which only examples use: it comes when it is asked for.
+fn is_of_ensemble(file: &Path) -> bool {
     let name = file.file_stem().unwrap_or_default().to_string_lossy();
-    let is_of_ensemble = name
-        .rsplit_once('-')
-        .is_some_and(|(_, seed)| seed.parse::<u32>().is_ok());
-    (is("safetensors") || is("json"))
-        && !is_of_ensemble
-        && !file.with_extension("parquet").is_file()
+    (name.rsplit_once('-')).is_some_and(|(_, seed)| seed.parse::<u32>().is_ok())
+        && file.starts_with("data")
 }

@@ -310,10 +310,6 @@ fn a_refused_thread_is_an_error_and_no_panic() {
     let scene = "configs/scenes/pet-3x3.toml";
     let fault = "starts no further thread";
     for command in [
-        format!(
-            "inspect equilibrium {}/{scene} --design start",
-            env!("CARGO_MANIFEST_DIR")
-        ),
         format!("design {scene} --weights {} --steps 1", weights.display()),
         format!("campaign run {DEMO} --folder campaign"),
     ] {

@@ -26,12 +26,31 @@ class Files {
   put(path, bytes) {
     const parts = Files.resolve("", path).split("/");
     for (let i = 1; i < parts.length; i += 1) this.entries.set(parts.slice(0, i).join("/"), null);
-    this.entries.set(parts.join("/"), { bytes, length: bytes.length, changed: Date.now() });
+    this.entries.set(parts.join("/"), { bytes, length: bytes?.length, changed: Date.now() });
+  }
+
+  /** Puts a file whose bytes come from the server when they are asked for. */
+  putLater(path) {
+    this.put(path, null);
+  }
+
+  /** A file, or `null` for a folder; `undefined` if there is neither. */
+  at(path) {
+    const file = this.entries.get(path);
+    if (file && !file.bytes) {
+      const get = new XMLHttpRequest();
+      get.open("GET", path, false);
+      get.responseType = "arraybuffer";
+      get.send();
+      file.bytes = new Uint8Array(get.response);
+      file.length = file.bytes.length;
+    }
+    return file;
   }
 
   /** The bytes of a file. */
   bytes(path) {
-    const file = this.entries.get(Files.resolve("", path));
+    const file = this.at(Files.resolve("", path));
     return file?.bytes.slice(0, file.length);
   }
 
@@ -190,7 +209,7 @@ function wasi(files, onLine) {
         if (files.entries.get(files.folderOf(path)) !== null) return ERRNO.noent;
         files.put(path, new Uint8Array(0));
       }
-      const file = files.entries.get(path);
+      const file = files.at(path);
       if (directory && file) return ERRNO.notdir;
       if (truncate && file) file.length = 0;
       fds.set(nextFd, { path, file, folder: !file, at: 0, appends: (options & 1) !== 0 });
@@ -200,7 +219,7 @@ function wasi(files, onLine) {
     path_filestat_get(fd, _follow, at, length, into) {
       const path = pathAt(fd, at, length);
       const exists = files.appears(path) ?? files.entries.has(path);
-      return exists ? filestat(into, path, files.entries.get(path)) : ERRNO.noent;
+      return exists ? filestat(into, path, files.at(path)) : ERRNO.noent;
     },
     path_create_directory(fd, at, length) {
       const path = pathAt(fd, at, length);

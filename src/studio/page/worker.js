@@ -47,11 +47,12 @@ async function load() {
     if (!answer.ok) throw new Error(`${path} is missing on the server (${answer.status})`);
     return answer;
   };
-  const names = await (await get("files.json")).json();
+  const { first, later } = await (await get("files.json")).json();
+  later.forEach((name) => files.putLater(name));
   const arrive = async (name) => files.put(name, new Uint8Array(await (await get(name)).arrayBuffer()));
   const system = wasi(files, onLine);
   const module = get("kirigami.wasm").then((answer) => WebAssembly.instantiateStreaming(answer, system.imports));
-  const [{ instance }] = await Promise.all([module, ...names.map(arrive)]);
+  const [{ instance }] = await Promise.all([module, ...first.map(arrive)]);
   system.begin(instance);
   instance.exports.start();
   return instance.exports;
