@@ -60,9 +60,8 @@ pub struct TrainCommand {
     /// minute left nothing, and starts from the beginning
     #[arg(long, conflicts_with = "seeds")]
     resume: bool,
-    /// Number of trainings, with successive seeds. The one with the smallest product of the validation errors of W and
-    /// of D is kept as the weights. Seeds that are trained already are
-    /// not trained again
+    /// Number of trainings, with successive seeds. The one with the smallest validation error of W and the forces is kept
+    /// as the weights. Seeds that are trained already are not trained again
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..=64))]
     seeds: u64,
     /// Replace existing weights; with several seeds, the weights of another training

@@ -60,7 +60,11 @@ impl TextTable {
                 numbers += count;
                 others += if count > 0 { row.filled() - count } else { 0 };
             }
-            (numbers, Reverse(others))
+            // A head alone has no number.
+            let columns = rows
+                .iter()
+                .any(|row| !row.is_comment() && row.cells.len() > 1);
+            (numbers, Reverse(others), columns)
         };
         // `max_by_key` returns the last maximum; the first is preferred.
         let best = tables.rev().max_by_key(score);

@@ -533,9 +533,12 @@ fn a_silhouette_becomes_a_cut_file_without_another_control() {
 
     // A drawing that is refused is refused where it was dropped, by its name, also after the sheet is at rest again.
     let drawing = work.path("two leaves.svg");
-    let path = "<path d='M0 0L5 0L5 5Z'/>";
-    let svg =
-        format!("<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 9 9'>{path}{path}</svg>");
+    let leaf = |at: u32| format!("<path d='M{at} 0L{at} 3L0 3Z'/>");
+    let svg = format!(
+        "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 9 9'>{}{}</svg>",
+        leaf(4),
+        leaf(8)
+    );
     std::fs::write(&drawing, svg).unwrap();
     let scene = scene_on_disk(&work.path("studio/leaf"));
     tab.drop_file(drawing.to_str().unwrap(), "#stage");

@@ -312,8 +312,8 @@ mod tests {
             ("0.5,0,0,10\n0.9,0,0,20\n", ":3: `lambda` must be 1"),
             ("1,0,0,10\n2,0,0,20\n", ":2: `lambda` must be 1"),
             ("1,nan,0,10\n", ":2: a number is not finite"),
-            ("1,ten,0,10\n", "line: 2"),
-            ("1,0,0\n", "line: 2"),
+            ("1,ten,0,10\n", "line 2: "),
+            ("1,0,0\n", "line 2: "),
             ("", "no row has a deformed state"),
             ("0,0,0,0\n", "no row has a deformed state"),
         ];
