@@ -148,7 +148,7 @@ fn rms<'a>(
     std::array::from_fn(|i| (squares[i] / f64::max(counts[i], 1.0)).sqrt())
 }
 
-/// Rows by ray and hash of the material law, in order of lambda. The last row of a job tells its ray, also where the ray bends.
+/// Rows by ray and hash of the material law, in order of lambda. The last row of a job identifies its ray, which may bend.
 fn rays<'a>(rows: impl IntoIterator<Item = &'a Row>) -> BTreeMap<(RayKey, &'a str), Vec<&'a Row>> {
     let mut jobs: BTreeMap<&str, Vec<&Row>> = BTreeMap::new();
     for row in rows {

@@ -100,7 +100,7 @@ fn bends(ray: &[Row]) -> Option<bool> {
 #[derive(Default)]
 pub(crate) struct Meshes {
     meshes: Vec<MeshRows>,
-    /// [`Manifest::bent_rays`](crate::Manifest::bent_rays), if one of the rays tells.
+    /// [`Manifest::bent_rays`](crate::Manifest::bent_rays), once a ray that turns was added.
     pub bent_rays: Option<bool>,
 }
 

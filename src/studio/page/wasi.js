@@ -1,6 +1,6 @@
 // The system interface of a WebAssembly module (WASI preview 1), with files in memory, of which there is one folder of all: "/".
 
-const ERRNO = { success: 0, badf: 8, exist: 20, inval: 28, isdir: 31, noent: 44, notdir: 54, notempty: 55 };
+const ERRNO = { success: 0, badf: 8, exist: 20, inval: 28, isdir: 31, noent: 44, notdir: 54 };
 const [CHARACTERS, FOLDER, FILE] = [2, 3, 4];
 const ROOT_FD = 3;
 const ALL_RIGHTS = 0xffff_ffff_ffff_ffffn;
@@ -109,8 +109,6 @@ function wasi(files, onLine) {
   });
 
   const calls = {
-    args_sizes_get(count, size) { view().setUint32(count, 0, true); view().setUint32(size, 0, true); },
-    args_get() {},
     environ_sizes_get(count, size) { view().setUint32(count, 0, true); view().setUint32(size, 0, true); },
     environ_get() {},
     clock_time_get(clock, _precision, at) {
@@ -139,12 +137,6 @@ function wasi(files, onLine) {
     },
     fd_sync() {},
     fd_close(fd) { return fds.delete(fd) ? ERRNO.success : ERRNO.badf; },
-    fd_seek(fd, offset, whence, at) {
-      const open = fds.get(fd);
-      if (!open?.file) return ERRNO.badf;
-      open.at = [0, open.at, open.file.length][whence] + Number(offset);
-      view().setBigUint64(at, BigInt(open.at), true);
-    },
     fd_read(fd, at, count, read) {
       const open = fds.get(fd);
       if (!open?.file) return open ? ERRNO.isdir : ERRNO.badf;
@@ -236,18 +228,7 @@ function wasi(files, onLine) {
         files.entries.set(to + path.slice(from.length), file);
       }
     },
-    path_link(fd, _follow, at, length, toFd, toAt, toLength) {
-      const [from, to] = [pathAt(fd, at, length), pathAt(toFd, toAt, toLength)];
-      if (!files.entries.get(from)) return ERRNO.noent;
-      if (files.entries.has(to)) return ERRNO.exist;
-      files.entries.set(to, files.entries.get(from));
-    },
     path_unlink_file(fd, at, length) { return files.entries.delete(pathAt(fd, at, length)) ? ERRNO.success : ERRNO.noent; },
-    path_remove_directory(fd, at, length) {
-      const path = pathAt(fd, at, length);
-      if (files.list(path).length) return ERRNO.notempty;
-      files.entries.delete(path);
-    },
     path_readlink() { return ERRNO.inval; },
   };
   const answered = Object.entries(calls).map(([name, call]) => [name, (...given) => call(...given) ?? ERRNO.success]);
