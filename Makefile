@@ -1,11 +1,10 @@
 # Two commands: `make demo` runs the main job, `make test` passes all tests.
 # Both first install what is missing.
 
-.PHONY: demo test test-fast lint page python python-torch tools test-tools python-tools
+.PHONY: demo test test-fast lint paper built page python python-torch tools test-tools python-tools
 
 # With the features of the whole workspace, so that `make test` compiles no dependency again.
-demo: tools
-	cargo build --release --locked --workspace --bin kirigami
+demo: built
 	target/release/kirigami demo
 
 test: test-tools
@@ -21,6 +20,10 @@ lint:
 	cargo clippy --release --locked --workspace --all-targets -- -D warnings
 	cargo check --release --locked -p kirigami --no-default-features
 	RUSTDOCFLAGS="-D warnings" cargo doc --release --locked --workspace --lib --no-deps
+
+# The figures of docs/PAPER.md that commands of the program print, with the paper's, in some minutes.
+paper: built
+	scripts/paper
 
 # The studio as a folder of files for any web server: no request leaves the page. rustup adds the target.
 page:
@@ -41,6 +44,9 @@ python: python-tools
 python-torch: python
 	target/python/bin/pip install --quiet './python[torch]'
 	target/python/bin/pytest python/tests/test_torch.py
+
+built: tools
+	cargo build --release --locked --workspace --bin kirigami
 
 tools:
 	scripts/install-tools

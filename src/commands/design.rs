@@ -183,7 +183,13 @@ impl DesignCommand {
         })?;
         bar.finish();
         let listed = compare(&runs, &folder)?;
-        println!("{listed}\nwritten to {}", folder.display());
+        println!("{listed}");
+        for run in &runs {
+            if let Some(failure) = &run.failure {
+                eprintln!("{}: {failure}", run.scene.output().display());
+            }
+        }
+        println!("written to {}", folder.display());
         match left {
             0 => ensure!(failed == 0, "{failed} of {} runs failed", runs.len()),
             _ => bail!(Unfinished::new(left, "runs")),

@@ -1,6 +1,7 @@
 //! The scene of a sheet that is fitted to the target of another: what the fit, the pulls and one equilibrium decide becomes keys.
 
 use crate::analysis::out_of_plane::Stability;
+use crate::equilibrium::load_step::Status;
 use crate::fit::opening::safe_opening;
 use crate::fit::placement::place;
 use crate::fit::pulls::{Pull, candidates, pulls};
@@ -31,9 +32,10 @@ const UNKNOWN: f64 = 0.785;
 const ACUTE: f64 = 0.524;
 /// By how much the cut angles stay away from the ends of the training domain (rad): two degrees.
 const INSIDE: f64 = 0.035;
-/// Weights of the damage and of states outside the training domain: with lower ones the ligaments of a slender shape tear.
+/// Weights of the damage and of states outside the training domain. With lower ones the ligaments of a slender shape tear, and a few
+/// states remain outside.
 const DAMAGE: f64 = 0.4;
-const DOMAIN: f64 = 300.0;
+const DOMAIN: f64 = 3e4;
 /// Distance of the silhouette from the opened outline at which a place counts as reached, over the longer side of the sheet.
 const REACHED: f64 = 0.02;
 /// The largest number of pulls.
@@ -41,7 +43,7 @@ const MOST_PULLS: usize = 4;
 /// Outline error of an equilibrium over the outline error of the pins up to which another pull is not needed.
 const CLOSE: f64 = 1.25;
 /// Steps of the search from the fitted sheet, and the length of its first step: it starts near its end.
-const STEPS: usize = 30;
+const STEPS: usize = 100;
 const FIRST_STEP: f64 = 0.03;
 
 /// How near an opened outline is to a silhouette.
@@ -115,10 +117,11 @@ pub fn fitted(scene: &Scene) -> Result<FittedScene, FitError> {
     let with = |count: usize, place: Similarity| {
         fitted_keys(scene, &fitted, held, &pulls(&candidates, count), place)
     };
-    // The worst first: cuts close, the outline is far, the panels leave their plane.
+    // The worst first: cuts close, the outline is far, the sheet jumps, the panels leave their plane.
     let defects = |pulled: &Pulled, near: &Nearness| {
         let is_close = near.error <= CLOSE * pins.error;
-        [pulled.overlap > OVERLAP, !is_close, !pulled.is_flat()]
+        let overlaps = pulled.overlap > OVERLAP;
+        [overlaps, !is_close, pulled.jumps, !pulled.is_flat()]
     };
     let mut tried: Vec<(Pulled, Nearness, SceneConfig)> = Vec::new();
     for count in 1..=MOST_PULLS {
@@ -130,19 +133,19 @@ pub fn fitted(scene: &Scene) -> Result<FittedScene, FitError> {
         let defects = defects(&pulled, &near);
         let config = with(count, pulled.place);
         tried.push((pulled, near, config));
-        if defects == [false; 3] {
+        if defects == [false; 4] {
             break;
         }
     }
-    // Of those that are as good, the one with the fewest pulls.
+    // Of those with the same defects the one with the least of the worst; without defects the one with the fewest pulls.
     let best = tried.into_iter().min_by(|one, other| {
         let [first, second] = [one, other].map(|(pulled, near, _)| defects(pulled, near));
-        let by_error = if first[1] {
-            one.1.error.total_cmp(&other.1.error)
-        } else {
-            Ordering::Equal
+        let by_size = match first {
+            [true, ..] => one.0.overlap.total_cmp(&other.0.overlap),
+            [_, true, ..] => one.1.error.total_cmp(&other.1.error),
+            _ => Ordering::Equal,
         };
-        first.cmp(&second).then(by_error)
+        first.cmp(&second).then(by_size)
     });
     let (pulled, stability, mut config) = match best {
         Some((pulled, near, config)) => (Some(near), pulled.stability, config),
@@ -250,6 +253,8 @@ struct Pulled {
     place: Similarity,
     /// The largest common area of two panels on the way, over the area of a panel.
     overlap: f64,
+    /// Whether the load has a maximum on the way.
+    jumps: bool,
     /// Whether it stays in its plane by itself; `None` for a film.
     stability: Option<Stability>,
 }
@@ -275,10 +280,12 @@ fn pulled(scene: &Scene, silhouette: &[[f64; 2]], guess: Similarity) -> Option<P
         .iter()
         .map(|step| overlap(sheet, &step.configuration));
     let overlap = overlaps.fold(0.0, f64::max);
+    let mut statuses = deployment.path.iter().map(|step| step.status);
     Some(Pulled {
         outline,
         place,
         overlap,
+        jumps: statuses.any(|status| status == Status::LimitPoint),
         stability: Stability::new(scene, &problem, &deployment),
     })
 }

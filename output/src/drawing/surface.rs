@@ -23,6 +23,8 @@ pub struct Surface<'a> {
     pub faces: &'a [Vec<usize>],
     /// The value of each face, which its colour shows.
     pub values: &'a [f64],
+    /// The last value of the colour scale; larger values have its colour.
+    pub largest: f64,
     /// Name and unit of the values.
     pub name: &'a str,
 }
@@ -50,7 +52,7 @@ pub fn surface(surface: &Surface, view: View, title: &str, subtitle: &str) -> St
     let room = (LEAST_HEIGHT * (high[0] - low[0]) - (high[1] - low[1])).max(0.0) / 2.0;
     let corners = [[low[0], low[1] - room], [high[0], high[1] + room]];
     let mut page = Page::around(corners, title, subtitle, true);
-    let scale = ColourScale::covering(surface.values.iter().copied());
+    let scale = ColourScale::covering([surface.largest]);
     let depth = |face: &Vec<usize>| {
         let sum: f64 = face.iter().map(|point| seen[*point].1).sum();
         sum / face.len() as f64

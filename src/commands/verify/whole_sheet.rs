@@ -104,11 +104,12 @@ impl VerifyCommand {
             points: &points,
             faces: &check.surface.faces,
             values: &tilts,
+            // Ligaments twist by more than the panels tilt.
+            largest: last.tilt_deg,
             name: "tilt (deg)",
         };
         let subtitle = format!(
-            "Whole sheet by finite elements, {}, {:.0} % of the path: panels tilt by up to {:.1}\u{b0}",
-            check.kept(),
+            "By finite elements, at {:.0} % of the path; panels tilt by up to {:.2}\u{b0}",
             100.0 * last.fraction,
             last.tilt_deg
         );
