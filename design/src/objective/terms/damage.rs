@@ -1,9 +1,14 @@
-//! The damage functional (17): the mean over hinges of (max_i^tau D_ih / D_s)^2. D is the mean or the peak damage.
+//! The damage functional (17): the mean over hinges of (max_i^tau D_ih / D_s)^2. D is the mean or the peak damage. A ligament tears at a
+//! peak damage of 1: from 0.9 on it costs (100 (max_i^tau D_ih - 0.9))^2 more.
 
 use crate::geometry::smooth_extrema::smooth_max;
 use crate::hinge_law::DamageMeasure;
 use crate::objective::hinge_measures::HingeMeasure;
 use crate::objective::term::{Deployed, Term, TermGradient};
+
+/// Peak damage from which a ligament costs more, and the factor on its excess.
+const NEARLY_TORN: f64 = 0.9;
+const TEARING: f64 = 100.0;
 
 /// The damage functional.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,9 +35,13 @@ impl Term for Damage {
         measure.mean_over_hinges(at, gradient, |damage| {
             let scaled: Vec<f64> = damage.iter().map(|d| d / self.scale).collect();
             let (max, mut slopes) = smooth_max(&scaled, self.temperature);
-            let factor = 2.0 * max * weight / self.scale;
+            let excess = match self.measure {
+                DamageMeasure::Mean => 0.0,
+                DamageMeasure::Peak => TEARING * (self.scale * max - NEARLY_TORN).max(0.0),
+            };
+            let factor = 2.0 * weight * (max / self.scale + TEARING * excess);
             slopes.iter_mut().for_each(|slope| *slope *= factor);
-            (max * max, slopes)
+            (max * max + excess * excess, slopes)
         })
     }
 }
