@@ -69,10 +69,7 @@ const STIFFEST: f64 = 200.0;
 
 /// Why a material could not be read.
 #[derive(Debug, thiserror::Error)]
-#[allow(
-    missing_docs,
-    reason = "the message of each variant is its documentation"
-)]
+#[allow(missing_docs, reason = "the message of a variant is its documentation")]
 pub enum MaterialError {
     #[error(transparent)]
     Config(#[from] ConfigError),

@@ -97,7 +97,7 @@ pub(crate) fn read_tensile(path: &Path, young: f64) -> Result<Vec<[f64; 2]>, Ten
     }
     if let Some(draw) = &specimen.draw {
         return Err(refuse(format!(
-            "has a yield peak of {:.1} MPa and a draw plateau of {:.1} MPa, along which its strain is not that of the \
+            "has a yield peak of {:.1} MPa and a draw plateau of {:.1} MPa, along which its strain is not the strain of the \
              material; {fit}",
             draw.upper_yield, draw.plateau
         )));

@@ -6,7 +6,7 @@
 //! | cause | force errors | of the hinges | measured |
 //! |---|---|---|---|
 //! | network | deviations of the ensemble at the states of the sheet | as the networks have them | the ensemble of the scene |
-//! | window mesh | errors of the weights beside a finer mesh, over the force | alike in like states | spot check on the card |
+//! | window mesh | errors of the weights relative to a finer mesh, over the force | alike in like states | spot check on the card |
 //! | material law | in proportion to the force | common | the material file |
 //! | imperfection | in proportion to the force | independent | docs/results/window, docs/results/plates |
 //! | loading path | in proportion to the force and the separation from the ray | independent | docs/TRIED.md |
@@ -49,7 +49,7 @@ const MOST_DETOUR_OF_BENT_RAYS: f64 = 0.4;
 /// Yield strain of that film. The forces of a material that yields at a smaller one depend more on the path: the forces of steel, at a
 /// thirteenth of it, by some fifty times (docs/results/metals). Materials below half of it are not covered.
 const DETOUR_YIELD: f64 = 0.0146;
-/// What whole sheets in finite elements say of panels and clips, which bend.
+/// The effect of panels and clips that bend, from whole sheets in finite elements.
 const RIGID_PANELS: &str = "in whole sheets that stay flat, all errors together move corners by 0.04 to 0.33 % of the sheet (docs/results/plates, flatness, whole-sheets)";
 /// Number of hinges above which no budget is made: it takes three solves a hinge and more.
 const MOST_HINGES: usize = 2000;
@@ -60,7 +60,7 @@ const MOST_HINGES: usize = 2000;
 pub enum Cause {
     /// Spread of the networks of the ensemble.
     Network,
-    /// Errors of the weights beside a finer mesh of the windows.
+    /// Errors of the weights relative to a finer mesh of the windows.
     WindowMesh,
     /// The stress at equal strain.
     MaterialLaw,
@@ -454,9 +454,7 @@ impl Deployed<'_> {
             .zip(&self.designs)
             .map(|(energy, design)| {
                 let by_hole = (1.0 + design.fillet_ratio) / design.w_lig;
-                energy
-                    .mixed
-                    .map(|[by_width, _, by_ratio]| narrower * (by_width - by_hole * by_ratio))
+                (energy.mixed).map(|by| narrower * (by.w_lig - by_hole * by.hole))
             })
             .collect();
         let source = format!("+- {tolerance} mm, two standard deviations");

@@ -10,7 +10,7 @@
 //! with one unknown rigid motion, and one unknown scale if requested. x and the motion have the least sum of squared
 //! errors over all points. Residuals are in the frame of the design, in mm.
 
-use crate::analysis::marks::{FittedPoint, MeasuredPoint};
+use crate::analysis::measured_points::{FittedPoint, MeasuredPoint};
 use crate::analysis::shape_path::{Shape, ShapePath};
 use crate::geometry::plane::{complex, point};
 use crate::geometry::similarity::{Pair, Scale, Similarity};

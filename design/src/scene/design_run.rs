@@ -41,8 +41,8 @@ pub struct Designed {
     /// The evaluation of `design`, whose path is followed from the flat sheet.
     pub best: Evaluation,
     /// Whether a corrected path of the search was on another branch than the followed one; see
-    /// [`SearchState::contradicted`].
-    pub contradicted: bool,
+    /// [`SearchState::branch_mismatch`].
+    pub branch_mismatch: bool,
     /// The levels at which the start of the search was found; empty if the search began at the start of the scene.
     pub rungs: Vec<Rung>,
 }
@@ -178,7 +178,7 @@ impl Designed {
         Ok(Self {
             ended: Ended::Stopped,
             history: vec![record],
-            contradicted: false,
+            branch_mismatch: false,
             rungs: Vec::new(),
             design,
             best: start.clone(),
@@ -221,7 +221,7 @@ impl Designed {
         Ok(Self {
             problem,
             ended,
-            contradicted: search.contradicted(),
+            branch_mismatch: search.branch_mismatch(),
             history: search.history,
             design: search.best,
             start,

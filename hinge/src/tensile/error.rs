@@ -5,10 +5,7 @@ use support::file_error::FileError;
 
 /// A file that is not a valid tensile curve.
 #[derive(Debug, thiserror::Error)]
-#[allow(
-    missing_docs,
-    reason = "the message of each variant is its documentation"
-)]
+#[allow(missing_docs, reason = "the message of a variant is its documentation")]
 pub enum TensileError {
     #[error("cannot read {0}")]
     Read(#[from] FileError),

@@ -207,7 +207,7 @@ fn hardening(
     let drawing = Drawing::new(top, plateau.mean, ratio.mean, young).ok_or_else(|| {
         TensileError::Specimens(format!(
             "the natural draw ratio {:.3} is not beyond the upper yield at the plastic strain {:.3}: check --draw-ratio, \
-             the initial section over that of the drawn neck",
+             the initial section over the section of the drawn neck",
             ratio.mean, top[1]
         ))
     })?;

@@ -46,7 +46,7 @@ pub(super) enum RatioFault {
     /// The neck has covered the specimen, which is stretched less than the given ratio.
     #[error(
         "ends at a stretch of {stretch:.2}, after its stress has risen from the draw plateau: the draw ratio {given} is \
-         beyond it; give the initial section over that of the drawn neck, or leave --draw-ratio out"
+         beyond it; give the initial section over the section of the drawn neck, or leave --draw-ratio out"
     )]
     BeyondEnd { given: f64, stretch: f64 },
 }

@@ -271,7 +271,7 @@ struct Sizes {
 }
 
 impl Sizes {
-    /// The options decide, but for the thickness: there it is that of the sheet.
+    /// The options decide, but for the thickness, which is the sheet's.
     fn new(
         [load, deformation]: [Quantity; 2],
         table: &NumberTable,

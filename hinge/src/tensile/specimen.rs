@@ -3,7 +3,7 @@
 //! 1. Unloading loops, rows after the break and falling strains are removed (`cleaning`).
 //! 2. The line through the linear part is extended to zero stress; the strain there, slack and toe, is subtracted.
 //! 3. If Young's modulus is given, the compliance of the testing machine is removed, e - s (1 / E_measured - 1 / E), unless the strain is
-//!    that of an extensometer: of a slope near the modulus.
+//!    the strain of an extensometer: of a slope near the modulus.
 //! 4. Landmarks are read from the nominal curve (`landmarks`).
 //! 5. Where the strain is uniform, nominal rows become local ones (`local_curve`).
 

@@ -327,7 +327,7 @@ fn notes(fit: &MaterialFit) -> Vec<String> {
     if let Some([from, to]) = ends(Origin::Drawn) {
         notes.push(format!(
             "between the plastic strains {from:.3} and {to:.3} a neck runs along the specimen and the record is not \
-             local: the curve there is constructed, such that its work is that of the machine"
+             local: the curve there is constructed, such that its work equals the work of the machine"
         ));
     }
     if let Some(yields) = fit.cut_yield {
@@ -352,7 +352,7 @@ fn notes(fit: &MaterialFit) -> Vec<String> {
             if removed {
                 "the difference to the given modulus is removed as the compliance of the machine"
             } else {
-                "as that of an extensometer it is not corrected, and the given modulus is the slope to Rp0.2"
+                "it is not corrected, as the strain of an extensometer, and the given modulus is the slope to Rp0.2"
             }
         ));
     }
@@ -388,7 +388,7 @@ const FEW_ROWS: usize = 5;
 /// Largest standard error of a modulus, and largest distance to the median of the specimens, over the modulus.
 const DOUBTFUL: f64 = 0.1;
 
-/// Measured moduli from few rows, with a large error, or far from those of the other specimens; one sentence each.
+/// Measured moduli from few rows, with a large error, or far from the moduli of the other specimens; one sentence each.
 fn doubtful_moduli(fit: &MaterialFit) -> Vec<String> {
     let mut moduli: Vec<f64> = fit.specimens.iter().map(|it| it.linear.young).collect();
     moduli.sort_by(f64::total_cmp);

@@ -15,7 +15,7 @@ fn loaded(solver: &EquilibriumSolver, sheet: &Sheet) -> LoadStep {
 }
 
 /// The sheet without loads, with springs about the deformations `rest`.
-fn let_go(
+fn unload(
     solver: &EquilibriumSolver,
     sheet: &Sheet,
     from: &LoadStep,
@@ -28,7 +28,7 @@ fn let_go(
     let hinges: Vec<ReleasedHinge> = hinges.collect();
     let law = ReleasedLaw(&hinges);
     let hinged = hinged(sheet, &law);
-    last(solver.let_go(hinged, from.configuration.clone()).unwrap())
+    last(solver.unload(hinged, from.configuration.clone()).unwrap())
 }
 
 fn unstrained(_hinge: usize) -> HingeDeformation {
@@ -46,7 +46,7 @@ fn an_elastic_sheet_hangs_as_before_its_loads() {
     };
     for pulled in [hangs(&PULL), hangs(&PULL).driven(0.8).unwrap()] {
         let under_load = loaded(&pulled, &sheet);
-        let free = let_go(&pulled, &sheet, &under_load, unstrained);
+        let free = unload(&pulled, &sheet, &under_load, unstrained);
         let expected = loaded(&hangs(&[]), &sheet);
         assert!(difference(&free.configuration, &expected.configuration) < 1e-8);
         assert!(difference(&free.configuration, &under_load.configuration) > 0.1);
@@ -59,7 +59,7 @@ fn a_sheet_of_hinges_that_stay_does_not_move() {
     let sheet = sheet_of("p1_3x3_random");
     let pulled = solver(sheet.grid, &clamp(3), &PULL, 5);
     let under_load = loaded(&pulled, &sheet);
-    let free = let_go(&pulled, &sheet, &under_load, |h| under_load.deformations[h]);
+    let free = unload(&pulled, &sheet, &under_load, |h| under_load.deformations[h]);
     assert!(difference(&free.configuration, &under_load.configuration) < 1e-8);
 }
 
@@ -70,7 +70,7 @@ fn supports_that_moved_the_sheet_let_it_go() {
     let supports = [clamp(3).as_slice(), &[moved]].concat();
     let pulled = solver(sheet.grid, &supports, &[], 5);
     let under_load = loaded(&pulled, &sheet);
-    let free = let_go(&pulled, &sheet, &under_load, unstrained);
+    let free = unload(&pulled, &sheet, &under_load, unstrained);
     let flat = vec![[0.0; 3]; sheet.panels.len()];
     assert!(difference(&under_load.configuration, &flat) > 0.3);
     assert!(difference(&free.configuration, &flat) < 1e-8);

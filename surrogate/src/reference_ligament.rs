@@ -1,9 +1,8 @@
 //! Energy and damage of a hinge from the energy and damage of the hinge that the networks see: the hinge with the hole of reference
 //! and the same net ligament ([`NetLigament`]), with the derivatives of this map.
 
-use crate::features::FEATURES;
 use crate::hinge_energy::{HingeEnergy, Order};
-use hinge::{HingeDeformation, HingeDesign, NetLigament};
+use hinge::{DesignGradient, HingeDeformation, HingeDesign, HingeGradient, NetLigament};
 use std::array::from_fn;
 
 /// The hinge that the networks see, and its deformation.
@@ -39,31 +38,37 @@ pub(crate) fn energy(
     if order < Order::Design {
         return energy;
     }
-    let [by_width, by_hole] = ligament.by_width_and_hole(theta);
-    for (g, [a, w, a_theta]) in [(0, by_width), (2, by_hole)] {
-        let of_feature = if g == 0 { 0.0 } else { 1.0 };
-        let along =
-            |by_feature: f64, by_a: f64, by_w: f64| of_feature * by_feature + by_a * a + by_w * w;
-        energy.design[g] = along(at.design[g], f_a, at.design[0]);
-        for i in 0..3 {
-            energy.mixed[i][g] = along(at.mixed[i][g], at.tangent[i][0], at.mixed[i][0]);
-        }
-        energy.mixed[2][g] += energy.mixed[0][g] * by_theta + f_a * a_theta;
-    }
-    energy.mixed[2][1] += at.mixed[0][1] * by_theta;
+    let by = ligament.by_width_and_hole(theta);
+    energy.design = by_design(f_a, at.design, by);
+    energy.mixed = from_fn(|i| by_design(at.tangent[i][0], at.mixed[i], by));
+    let [of_a, ..] = energy.mixed;
+    let [[.., by_width], [.., by_hole]] = by;
+    energy.mixed[2] += DesignGradient {
+        w_lig: of_a.w_lig * by_theta + f_a * by_width,
+        alpha: of_a.alpha * by_theta,
+        hole: of_a.hole * by_theta + f_a * by_hole,
+    };
     energy
 }
 
-/// A gradient in (a, s, theta, w_lig, alpha, rho_f) of the actual hinge from the gradient of the hinge that the networks see.
-pub(crate) fn gradient(ligament: &NetLigament, at: [f64; FEATURES], theta: f64) -> [f64; FEATURES] {
-    let [by_a, by_s, by_angle, by_w, by_alpha, by_hole] = at;
-    let [[a_width, w_width, _], [a_hole, w_hole, _]] = ligament.by_width_and_hole(theta);
-    [
-        by_a,
-        by_s,
-        by_angle + by_a * ligament.by_theta(theta)[0],
-        by_a * a_width + by_w * w_width,
-        by_alpha,
-        by_hole + by_a * a_hole + by_w * w_hole,
-    ]
+/// The gradient of the actual hinge from the gradient of the hinge that the networks see.
+pub(crate) fn gradient(ligament: &NetLigament, at: HingeGradient, theta: f64) -> HingeGradient {
+    let [by_a, by_s, by_angle] = at.state;
+    HingeGradient {
+        state: [by_a, by_s, by_angle + by_a * ligament.by_theta(theta)[0]],
+        design: by_design(by_a, at.design, ligament.by_width_and_hole(theta)),
+    }
+}
+
+/// The gradient in the design of the actual hinge from a' and the design of the hinge that the networks see.
+fn by_design(
+    by_a: f64,
+    at: DesignGradient,
+    [[a_width, w_width, _], [a_hole, w_hole, _]]: [[f64; 3]; 2],
+) -> DesignGradient {
+    DesignGradient {
+        w_lig: by_a * a_width + at.w_lig * w_width,
+        alpha: at.alpha,
+        hole: at.hole + by_a * a_hole + at.w_lig * w_hole,
+    }
 }

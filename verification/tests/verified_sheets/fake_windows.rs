@@ -1,4 +1,4 @@
-//! Sheets, weights and campaigns judged by a fake solver with a closed-form hinge: exact, and with windows that fail.
+//! Sheets, weights and campaigns checked by a fake solver with a closed-form hinge: exact, and with windows that fail.
 
 #[path = "../../../fe_driver/tests/common/fake_solver.rs"]
 mod fake_solver;

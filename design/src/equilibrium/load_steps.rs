@@ -3,14 +3,14 @@
 //! Newton's method follows the path in increments of its own, and the load steps are read off it: the cubic between two
 //! points of the path is the start of a correction at the load of the step.
 
-use crate::equilibrium::branch::{Branch, Point};
+use crate::equilibrium::continuation::{Follower, LEAP};
+use crate::equilibrium::corrector::{Branch, Point};
 use crate::equilibrium::displacement_control::{HeldFactor, work};
-use crate::equilibrium::follower::{Follower, LEAP};
 use crate::equilibrium::hinged_sheet::HingedSheet;
 use crate::equilibrium::load_step::{DescentEnd, LoadStep, Status, StepTangent};
 use crate::equilibrium::newton::{Failure, Minimum};
-use crate::equilibrium::place::Place;
 use crate::equilibrium::potential::{Stage, State, moved};
+use crate::equilibrium::predictor::PathPoint;
 use crate::equilibrium::solver::EquilibriumSolver;
 use crate::hinge_law::Order;
 use crate::sheet::kinematics::Configuration;
@@ -245,7 +245,7 @@ impl Follower<'_> {
         }
         let mut place = match &self.arc {
             Some(arc) => arc.reading(to),
-            None => Place {
+            None => PathPoint {
                 at: to,
                 ..self.last.place.clone()
             },
@@ -266,14 +266,14 @@ impl Follower<'_> {
 
     /// The minimum at `to` that is reached from the last point, from where the path goes on, and its distance.
     fn minimised(&mut self, to: f64) -> Result<(Minimum, f64), Failure> {
-        let mut start = Place {
+        let mut start = PathPoint {
             at: to,
             ..self.last.place.clone()
         };
         self.branch.hold(&mut start, &self.last.place);
         let minimum = self.branch.minimum(&start)?;
         let moved = self.branch.moved(&minimum, &start);
-        self.last = Point::still(Place {
+        self.last = Point::still(PathPoint {
             at: to,
             configuration: minimum.state.configuration.clone(),
             forces: minimum.state.forces(),
@@ -337,7 +337,7 @@ impl Branch<'_> {
     }
 
     /// The maximum rotation or hinge translation from a place to a minimum.
-    pub fn moved(&self, minimum: &Minimum, start: &Place) -> f64 {
+    pub fn moved(&self, minimum: &Minimum, start: &PathPoint) -> f64 {
         let motion = moved(&minimum.state.configuration, &start.configuration, -1.0);
         let potential = self.potential(start.at);
         potential.length(&minimum.state, &motion)

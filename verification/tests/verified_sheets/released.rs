@@ -196,8 +196,8 @@ fn a_sheet_that_is_let_go_has_the_hinges_of_the_solver() {
             }
         })
         .collect();
-    let exact = problem.let_go(deployed, exact).unwrap();
-    let exact = problem.what_stays(deployed, &exact).unwrap();
+    let exact = problem.unload(deployed, exact).unwrap();
+    let exact = problem.residual_shape(deployed, &exact).unwrap();
     let [found, exact] = [&released.by_elements, &exact].map(|stays| stays.rotations.clone());
     for ([_, found], [_, exact]) in std::iter::zip(found, exact) {
         assert!((found - exact).abs() < 1e-3, "{found} {exact}");
@@ -232,7 +232,7 @@ fn an_elastic_sheet_is_flat_again() {
     let deployed = problem.deploy(&scene.start()).unwrap();
     let elastic = Slipping([f64::INFINITY; 3]).released(&HingeDeformation::default());
     let hinges = vec![elastic; deployed.sheet.hinges.len()];
-    let released = problem.let_go(&deployed, hinges).unwrap();
+    let released = problem.unload(&deployed, hinges).unwrap();
     let flat: Vec<[f64; 3]> = vec![[0.0; 3]; deployed.sheet.panels.len()];
     let corners = |of: &Deployment, configuration: &[[f64; 3]]| {
         deployed_corners(&of.sheet, configuration).concat()

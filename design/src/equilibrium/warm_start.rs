@@ -11,16 +11,16 @@
 //! the states of a followed path as long as the path has no jump. A jump that appears between two load steps is not noticed:
 //! paths must be followed from the flat sheet now and then.
 
-use crate::equilibrium::branch::Branch;
-use crate::equilibrium::displacement_control::dot;
+use crate::equilibrium::corrector::Branch;
 use crate::equilibrium::hinged_sheet::HingedSheet;
 use crate::equilibrium::load_step::{LoadStep, Status};
 use crate::equilibrium::newton::Minimum;
-use crate::equilibrium::place::Place;
 use crate::equilibrium::potential::{Stage, moved};
+use crate::equilibrium::predictor::PathPoint;
 use crate::equilibrium::solver::EquilibriumSolver;
 use crate::hinge_law::{HingeEnergy, Order, PreparedLaw};
 use hinge::{HingeDeformation, HingeDesign};
+use support::vectors::dot;
 
 /// Maximum distance of an equilibrium from the equilibrium of the linearised law (rad, or panel sizes for hinge translations).
 const NEARBY: f64 = 0.02;
@@ -29,7 +29,7 @@ const ROUNDED: f64 = 1e-9;
 
 /// The equilibrium path of a sheet.
 #[derive(Clone, Debug)]
-pub struct KnownPath {
+pub struct WarmStart {
     /// The designs of the hinges.
     pub designs: Vec<HingeDesign>,
     /// All load steps. Without the mixed derivatives of the hinges C_0 is zero.
@@ -56,7 +56,7 @@ impl LinearisedLaw<'_> {
         let (from, known) = (self.deformations[hinge], self.energies[hinge]);
         let strain = [to.a - from.a, to.s - from.s, to.theta - from.theta];
         let by_strain = known.tangent.map(|row| dot(&row, &strain));
-        let by_design = known.mixed.map(|row| dot(&row, &self.changes[hinge]));
+        let by_design = (known.mixed).map(|row| dot(&row.to_array(), &self.changes[hinge]));
         let start: [f64; 3] = std::array::from_fn(|c| known.forces[c] + by_design[c]);
         HingeEnergy {
             w: known.w + dot(&start, &strain) + 0.5 * dot(&by_strain, &strain),
@@ -69,7 +69,7 @@ impl LinearisedLaw<'_> {
 impl EquilibriumSolver {
     /// The load steps of a sheet near the sheet of the path `known`. `None` if the known path is not complete or jumps, or
     /// if a state is not a stable equilibrium close to the known one: then the path must be followed.
-    pub fn path_near(&self, sheet: HingedSheet, known: &KnownPath) -> Option<Vec<LoadStep>> {
+    pub fn path_near(&self, sheet: HingedSheet, known: &WarmStart) -> Option<Vec<LoadStep>> {
         if known.steps.len() != self.weight_steps() + self.steps {
             return None;
         }
@@ -89,7 +89,7 @@ impl EquilibriumSolver {
         &self,
         sheet: HingedSheet,
         parameters: &[f64],
-        known: &KnownPath,
+        known: &WarmStart,
     ) -> Option<Vec<LoadStep>> {
         if known.steps.len() != parameters.len() {
             return None;
@@ -105,7 +105,7 @@ impl EquilibriumSolver {
 
     /// A stable equilibrium at full load next to the last state of a known path: where Newton's method leads from it, or else a descent
     /// in energy. It need not be on the path from the flat sheet. `None` if there is none.
-    pub(crate) fn full_load_near(&self, sheet: HingedSheet, known: &KnownPath) -> Option<LoadStep> {
+    pub(crate) fn full_load_near(&self, sheet: HingedSheet, known: &WarmStart) -> Option<LoadStep> {
         let last = known.steps.last()?;
         let changes = changes(sheet, &known.designs);
         let mut branch = Branch::new(self, sheet, Stage::Actuation);
@@ -174,7 +174,7 @@ impl Branch<'_> {
     }
 
     /// Moves a known state to the stroke at its load parameter, which loads in another direction change.
-    fn hold_stroke(&self, place: &mut Place) {
+    fn hold_stroke(&self, place: &mut PathPoint) {
         let Some((stroke, full)) = &self.solver.drive else {
             return;
         };
@@ -191,7 +191,12 @@ impl Branch<'_> {
     }
 
     /// The equilibrium of this sheet with the hinge law linearised about the states of a known load step.
-    fn carried_over(&mut self, at: f64, known: &LoadStep, changes: &[[f64; 3]]) -> Option<Place> {
+    fn carried_over(
+        &mut self,
+        at: f64,
+        known: &LoadStep,
+        changes: &[[f64; 3]],
+    ) -> Option<PathPoint> {
         let law = LinearisedLaw {
             deformations: &known.deformations,
             energies: &known.hinges,
@@ -204,7 +209,7 @@ impl Branch<'_> {
             ..self.sheet
         };
         let mut branch = Branch::new(self.solver, linearised, self.stage);
-        let mut start = Place {
+        let mut start = PathPoint {
             at,
             configuration: known.configuration.clone(),
             forces: known.hinges.iter().map(|hinge| hinge.forces).collect(),

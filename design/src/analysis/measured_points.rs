@@ -24,7 +24,7 @@ pub struct MeasuredPoint {
     pub position: [f64; 2],
 }
 
-/// A measured point beside its prediction, both in the frame of the design (mm).
+/// A measured point and its prediction, both in the frame of the design (mm).
 #[derive(Clone, Copy, Debug)]
 pub struct FittedPoint {
     /// What was measured.

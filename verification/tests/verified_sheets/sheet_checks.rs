@@ -1,4 +1,4 @@
-//! Designed sheets solved as a whole with gmsh and CalculiX, beside the deployment by the hinge law.
+//! Designed sheets solved as a whole with gmsh and CalculiX, compared with the deployment by the hinge law.
 
 use design::scene::{Posture, Scene};
 use fe_driver::{CalculiX, SolveService, SolveStore};
@@ -100,7 +100,7 @@ fn panels_held_flat_go_where_the_law_has_them() {
     assert_eq!(flat.severity, Severity::Note);
     let page = check.to_string();
     for part in [
-        "goes where the law has it",
+        "agrees with the hinge law",
         "panels held flat",
         "| hinge | w_lig",
         "| 3 |",

@@ -2,7 +2,7 @@
 
 use crate::report::columns::rounded;
 use design::analysis::springback::{
-    LetGoError, TOO_FAR, WhatStays, let_go_in_domain, moment_after_overshoot,
+    ResidualShape, TOO_FAR, UnloadError, moment_after_overshoot, unload_in_domain,
 };
 use design::objective::design_problem::{Deployment, DesignProblem};
 use design::scene::Scene;
@@ -12,7 +12,7 @@ use surrogate::SpringbackErrors;
 
 /// Creep and springback of a sheet whose hinges carry load.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct LastingShape {
+pub struct CreepAndSpringback {
     /// Creep of the material; `None` if its file has no figure.
     pub creep: Option<Creep>,
     /// The residual opening when the loads are taken off; `None` if it is not known.
@@ -26,14 +26,14 @@ pub struct LastingShape {
 pub struct Released {
     /// The residual opening.
     #[serde(flatten)]
-    pub stays: WhatStays,
+    pub stays: ResidualShape,
     /// Errors of the law at hinges that it has not seen; `None` if they were not measured.
     pub law: Option<SpringbackErrors>,
     /// The moments of hinges that were opened too far and brought back, over the reported moments; `None` if that is not known.
     pub after_overshoot: Option<f64>,
 }
 
-impl LastingShape {
+impl CreepAndSpringback {
     /// `None` if the hinges carry no load.
     pub(super) fn new(
         scene: &Scene,
@@ -75,9 +75,9 @@ impl Released {
         scene: &Scene,
         problem: &DesignProblem,
         deployment: &Deployment,
-    ) -> Option<Result<Self, LetGoError>> {
+    ) -> Option<Result<Self, UnloadError>> {
         let law = scene.springback.as_ref()?;
-        let found = let_go_in_domain(scene, problem, law, deployment);
+        let found = unload_in_domain(scene, problem, law, deployment);
         Some(found.map(|(_, stays)| Self {
             stays,
             law: law.errors,

@@ -11,13 +11,13 @@
 //!
 //! The increments do not depend on the load steps, which are read off the path between them.
 
-use crate::equilibrium::branch::{Branch, Corrected, Point};
+use crate::equilibrium::corrector::{Branch, Corrected, Point};
 use crate::equilibrium::displacement_control::HeldFactor;
 use crate::equilibrium::hinged_sheet::HingedSheet;
 use crate::equilibrium::load_step::DescentEnd;
 use crate::equilibrium::newton::{Failure, Minimum};
-use crate::equilibrium::place::{Arc, Place, bisected};
 use crate::equilibrium::potential::{Stage, State, moved};
+use crate::equilibrium::predictor::{Arc, PathPoint, bisected};
 use crate::equilibrium::solver::EquilibriumSolver;
 use crate::hinge_law::Order;
 use crate::sheet::kinematics::Configuration;
@@ -81,7 +81,7 @@ impl<'a> Follower<'a> {
         let mut branch = Branch::new(solver, sheet, stage);
         let potential = branch.potential(0.0);
         let state = potential.state(start.clone())?;
-        let place = Place {
+        let place = PathPoint {
             at: 0.0,
             configuration: start,
             forces: state.forces(),
@@ -112,10 +112,10 @@ impl<'a> Follower<'a> {
     }
 
     /// The predicted place at a length ahead.
-    fn ahead(&self, length: f64) -> Place {
+    fn ahead(&self, length: f64) -> PathPoint {
         let mut place = match &self.arc {
             Some(arc) => arc.place(arc.length + length * self.stretch),
-            None => Place::sum([(1.0, &self.last.place), (length, &self.last.rate)]),
+            None => PathPoint::sum([(1.0, &self.last.place), (length, &self.last.rate)]),
         };
         if self.at_ahead(length) >= 1.0 {
             place.at = 1.0;
@@ -135,7 +135,7 @@ impl<'a> Follower<'a> {
     pub fn advance(&mut self) -> Result<(), Failure> {
         match self.increment() {
             Some(()) => Ok(()),
-            None => self.skip(),
+            None => self.skip_ahead(),
         }
     }
 
@@ -189,7 +189,7 @@ impl<'a> Follower<'a> {
             }
             let next = length * ratio(error).clamp(GROWTH[0], GROWTH[1]);
             let (arc, stretch) = self.arc_to(&point);
-            let doubt = self.branch.doubt(&arc, &point);
+            let doubt = self.branch.midpoint_error(&arc, &point);
             if doubt > DOUBT {
                 self.reject(length, 0.5)?;
                 continue;
@@ -204,9 +204,8 @@ impl<'a> Follower<'a> {
         self.tried > solver.settings.max_increments || solver.is_stopped()
     }
 
-    /// Goes on from a minimum at a higher load where the path cannot be followed; otherwise why there is none at the
-    /// first of these loads.
-    fn skip(&mut self) -> Result<(), Failure> {
+    /// Restarts from a stable equilibrium at a higher load; the first failure if there is none.
+    fn skip_ahead(&mut self) -> Result<(), Failure> {
         let from = self.last.place.clone();
         let mut first = None;
         let partial = SKIPPED.map(|ahead| from.at + ahead);
@@ -214,9 +213,9 @@ impl<'a> Follower<'a> {
             if self.is_exhausted() {
                 break;
             }
-            let mut start = Place { at, ..from.clone() };
+            let mut start = PathPoint { at, ..from.clone() };
             self.branch.hold(&mut start, &from);
-            match self.land(start, false) {
+            match self.restart_on_stable_branch(start, false) {
                 Ok(()) => return Ok(()),
                 Err(failure) => _ = first.get_or_insert(failure),
             }
@@ -236,10 +235,11 @@ impl<'a> Follower<'a> {
     /// The arc from the last point to another, and the ratio of lengths by the rates at its two ends.
     fn arc_to(&self, point: &Point) -> (Arc, f64) {
         let last = &self.last;
-        let product =
-            |place: &Place| (self.branch).product(&last.rate.configuration, &place.configuration);
-        let along = |place: &Place| product(place) / product(&last.rate);
-        let change = Place::sum([(1.0, &point.place), (-1.0, &last.place)]);
+        let product = |place: &PathPoint| {
+            (self.branch).product(&last.rate.configuration, &place.configuration)
+        };
+        let along = |place: &PathPoint| product(place) / product(&last.rate);
+        let change = PathPoint::sum([(1.0, &point.place), (-1.0, &last.place)]);
         let (length, stretch) = if last.is_still() {
             (change.at, 1.0)
         } else {
@@ -249,7 +249,7 @@ impl<'a> Follower<'a> {
             from: last.place.clone(),
             from_rate: last.rate.clone(),
             to: point.place.clone(),
-            to_rate: Place::sum([(1.0 / stretch, &point.rate)]),
+            to_rate: PathPoint::sum([(1.0 / stretch, &point.rate)]),
             length,
         };
         (arc, stretch)
@@ -277,13 +277,17 @@ impl<'a> Follower<'a> {
         } else {
             beyond.place
         };
-        let start = self.away_from_returns(start);
-        self.land(start, fold).ok()
+        let start = self.step_past_returns(start);
+        self.restart_on_stable_branch(start, fold).ok()
     }
 
     /// Continues the path from the stable equilibrium downhill of a start; a long way to it is a jump, as is any from a
     /// limit point.
-    fn land(&mut self, start: Place, limit_point: bool) -> Result<(), Failure> {
+    fn restart_on_stable_branch(
+        &mut self,
+        start: PathPoint,
+        limit_point: bool,
+    ) -> Result<(), Failure> {
         let landed = self.branch.settled(start)?;
         let moved = (self.branch).distance(&landed.state, &landed.place, &self.last.place);
         self.jumps += usize::from(limit_point || moved > LEAP);
@@ -293,7 +297,7 @@ impl<'a> Follower<'a> {
 
     /// A place at the load of the limit point, past it: there the unstable equilibrium is the ridge of the energy, from
     /// which the sheet moves away. Nearer to the limit point if panels overlap.
-    fn beyond_limit_point(&self, beyond: &Point) -> Place {
+    fn beyond_limit_point(&self, beyond: &Point) -> PathPoint {
         let (arc, _) = self.arc_to(beyond);
         let top = bisected(0.0, arc.length, |length| arc.slope(length) > 0.0);
         let at = arc.at(top).max(self.last.place.at);
@@ -303,7 +307,7 @@ impl<'a> Follower<'a> {
             self.branch.hold(&mut place, &self.last.place);
             place
         });
-        let finite = |place: &Place| self.branch.state(place, Order::Forces).is_some();
+        let finite = |place: &PathPoint| self.branch.state(place, Order::Forces).is_some();
         let found = places.iter().position(finite).unwrap_or(0);
         places.swap(0, found);
         let [place, ..] = places;
@@ -311,7 +315,7 @@ impl<'a> Follower<'a> {
     }
 
     /// A start ahead of a jump, the farther the more jumps have ended where they began.
-    fn away_from_returns(&mut self, mut start: Place) -> Place {
+    fn step_past_returns(&mut self, mut start: PathPoint) -> PathPoint {
         let (at, returns) = self.jumped;
         let returns = if start.at - at < NOWHERE {
             returns + 1
@@ -342,7 +346,7 @@ impl<'a> Follower<'a> {
 
 impl Branch<'_> {
     /// The distance of the path from the middle of an arc, by factors of a tangent near its end.
-    fn doubt(&self, arc: &Arc, point: &Point) -> f64 {
+    fn midpoint_error(&self, arc: &Arc, point: &Point) -> f64 {
         let middle = arc.place(0.5 * arc.length);
         let potential = self.potential(middle.at);
         potential
@@ -359,7 +363,7 @@ impl Branch<'_> {
     /// Whether a corrected place is stable. If the tangent near it is not, its own decides.
     fn is_stable(&mut self, corrected: &mut Corrected) -> bool {
         if corrected.factor.unstable_directions() > 0 {
-            let Place {
+            let PathPoint {
                 at, configuration, ..
             } = corrected.place.clone();
             let potential = self.potential(at);
@@ -376,7 +380,7 @@ impl Branch<'_> {
     }
 
     /// The stable equilibrium that is reached downhill from a place at constant load.
-    pub fn settled(&mut self, start: Place) -> Result<Corrected, Failure> {
+    pub fn settled(&mut self, start: PathPoint) -> Result<Corrected, Failure> {
         let Minimum { state, factor, .. } = self.minimum(&start)?;
         match factor.filter(|factor| factor.unstable_directions() == 0) {
             Some(factor) => Ok(self.exact(start.at, state, factor)),
@@ -390,7 +394,7 @@ impl Branch<'_> {
     /// An equilibrium with the factors of its own tangent.
     fn exact(&self, at: f64, state: State, factor: HeldFactor) -> Corrected {
         Corrected {
-            place: Place {
+            place: PathPoint {
                 at,
                 configuration: state.configuration.clone(),
                 forces: state.forces(),
@@ -403,14 +407,14 @@ impl Branch<'_> {
     }
 
     /// The minimum of the potential that is reached downhill from a place at constant load.
-    pub fn minimum(&mut self, start: &Place) -> Result<Minimum, Failure> {
+    pub fn minimum(&mut self, start: &PathPoint) -> Result<Minimum, Failure> {
         let potential = self.potential(start.at);
         let configuration = start.configuration.clone();
         potential.minimise(configuration, &mut self.effort)
     }
 
     /// The maximum rotation or hinge translation between two places, in the frames of a state near them.
-    pub fn distance(&self, near: &State, to: &Place, from: &Place) -> f64 {
+    pub fn distance(&self, near: &State, to: &PathPoint, from: &PathPoint) -> f64 {
         let motion = moved(&to.configuration, &from.configuration, -1.0);
         self.potential(from.at).length(near, &motion)
     }

@@ -4,7 +4,7 @@
 //! where the forces of the hinge law differ from the forces under load. Supports that rest and the weight of the sheet stay;
 //! supports that moved the sheet are removed, too.
 
-use crate::equilibrium::branch::Branch;
+use crate::equilibrium::corrector::Branch;
 use crate::equilibrium::hinged_sheet::HingedSheet;
 use crate::equilibrium::load_step::LoadStep;
 use crate::equilibrium::potential::Stage;
@@ -37,7 +37,7 @@ impl ReleasedSheet {
 impl EquilibriumSolver {
     /// The load steps from the configuration `start`, of which the last one is without loads. Their load factor is the part of the holding
     /// forces that is left.
-    pub fn let_go(
+    pub fn unload(
         &self,
         sheet: HingedSheet,
         start: Configuration,

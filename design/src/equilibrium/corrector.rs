@@ -15,8 +15,8 @@ use crate::equilibrium::displacement_control::HeldFactor;
 use crate::equilibrium::hinged_sheet::HingedSheet;
 use crate::equilibrium::load_step::Effort;
 use crate::equilibrium::newton::Minimum;
-use crate::equilibrium::place::Place;
 use crate::equilibrium::potential::{Potential, Stage, State, moved};
+use crate::equilibrium::predictor::PathPoint;
 use crate::equilibrium::solver::EquilibriumSolver;
 use crate::hinge_law::Order;
 
@@ -53,7 +53,7 @@ pub(crate) struct Branch<'a> {
 
 /// An equilibrium close enough to the path to follow it.
 pub(crate) struct Corrected {
-    pub place: Place,
+    pub place: PathPoint,
     /// The state at the place, the factors of a tangent near it, and the rate with the load parameter by them.
     pub state: State,
     pub factor: HeldFactor,
@@ -76,9 +76,9 @@ struct Correction {
 }
 
 pub(crate) struct Point {
-    pub place: Place,
+    pub place: PathPoint,
     /// The rate along the path; the fastest hinge moves by one (rad, or panel sizes).
-    pub rate: Place,
+    pub rate: PathPoint,
     /// Maximum rate of rotation (rad).
     pub turning: f64,
     /// Factors of a tangent near the place.
@@ -87,8 +87,8 @@ pub(crate) struct Point {
 
 impl Point {
     /// A place without a known rate: from there the path goes on by its load parameter.
-    pub fn still(place: Place) -> Self {
-        let rate = Place {
+    pub fn still(place: PathPoint) -> Self {
+        let rate = PathPoint {
             at: 1.0,
             configuration: vec![[0.0; 3]; place.configuration.len()],
             forces: vec![[0.0; 3]; place.forces.len()],
@@ -142,7 +142,7 @@ impl<'a> Branch<'a> {
     }
 
     /// Moves supports and stroke of a place to their values at its load parameter; their values in `known` must be right.
-    pub fn hold(&self, place: &mut Place, known: &Place) {
+    pub fn hold(&self, place: &mut PathPoint, known: &PathPoint) {
         let ahead = match self.stage {
             Stage::Weight => 0.0,
             Stage::Actuation => place.at - known.at,
@@ -153,7 +153,8 @@ impl<'a> Branch<'a> {
                 known.configuration[panel][dof] + ahead * support.value;
         }
         if let Some((stroke, full)) = &self.solver.drive {
-            let of = |place: &Place| stroke.of(&self.solver.pattern.gather(&place.configuration));
+            let of =
+                |place: &PathPoint| stroke.of(&self.solver.pattern.gather(&place.configuration));
             let short = of(known) + ahead * full - of(place);
             let motion = self.solver.pattern.spread(&stroke.motion(short));
             place.configuration = moved(&place.configuration, &motion, 1.0);
@@ -165,8 +166,8 @@ impl<'a> Branch<'a> {
     /// converge.
     pub fn close(
         &mut self,
-        mut place: Place,
-        normal: Option<&Place>,
+        mut place: PathPoint,
+        normal: Option<&PathPoint>,
         limit: f64,
     ) -> Result<Corrected, f64> {
         const DIVERGED: f64 = f64::INFINITY;
@@ -205,7 +206,7 @@ impl<'a> Branch<'a> {
             if next <= CLOSE {
                 let state = self.state(&place, Order::Tangent).ok_or(DIVERGED)?;
                 return Ok(Corrected {
-                    place: Place {
+                    place: PathPoint {
                         forces: state.forces(),
                         ..place
                     },
@@ -220,7 +221,7 @@ impl<'a> Branch<'a> {
     }
 
     /// The equilibrium near a predicted place, at its load, with a residual within the tolerance.
-    pub fn balanced(&mut self, mut place: Place) -> Option<Minimum> {
+    pub fn balanced(&mut self, mut place: PathPoint) -> Option<Minimum> {
         let tolerance = self.solver.settings.tolerance;
         let mut before = f64::INFINITY;
         for _ in 0..CORRECTIONS {
@@ -279,7 +280,7 @@ impl<'a> Branch<'a> {
     }
 
     /// The state at a place; `None` if its energy is not finite.
-    pub fn state(&self, place: &Place, order: Order) -> Option<State> {
+    pub fn state(&self, place: &PathPoint, order: Order) -> Option<State> {
         let configuration = place.configuration.clone();
         self.potential(place.at).state_up_to(configuration, order)
     }
@@ -312,7 +313,7 @@ impl<'a> Branch<'a> {
         &mut self,
         state: &State,
         factor: &HeldFactor,
-        in_plane: Option<(&[[f64; 3]], &Place)>,
+        in_plane: Option<(&[[f64; 3]], &PathPoint)>,
     ) -> Correction {
         let direct = self.direct(state, factor);
         let (motion, at) = match in_plane {
@@ -324,9 +325,9 @@ impl<'a> Branch<'a> {
         Correction { at, motion, length }
     }
 
-    fn corrected(&self, at: f64, state: &State, by: &Correction) -> Place {
+    fn corrected(&self, at: f64, state: &State, by: &Correction) -> PathPoint {
         let rates = self.potential(at).force_rates(state, &by.motion);
-        Place {
+        PathPoint {
             at: at + by.at,
             configuration: moved(&state.configuration, &by.motion, 1.0),
             forces: moved(&state.forces(), &rates, 1.0),
@@ -345,7 +346,7 @@ impl<'a> Branch<'a> {
         &self,
         direct: &[[f64; 3]],
         rate: &[[f64; 3]],
-        normal: &Place,
+        normal: &PathPoint,
     ) -> (Vec<[f64; 3]>, f64) {
         let along = |motion: &[[f64; 3]]| self.product(&normal.configuration, motion);
         let dt = -along(direct) / along(rate);
@@ -361,7 +362,7 @@ impl<'a> Branch<'a> {
     }
 
     /// The point of the branch at a corrected place, seen along the rate `before`.
-    pub fn point(&self, corrected: Corrected, before: Option<&Place>) -> Point {
+    pub fn point(&self, corrected: Corrected, before: Option<&PathPoint>) -> Point {
         let Corrected {
             place,
             state,
@@ -381,12 +382,12 @@ impl<'a> Branch<'a> {
             .is_some_and(|before| unstable && self.product(&before.configuration, &rate) < 0.0);
         let scale = if backwards { -1.0 / size } else { 1.0 / size };
         let forces = potential.force_rates(&state, &rate);
-        let rate = Place {
+        let rate = PathPoint {
             at: 1.0,
             configuration: rate,
             forces,
         };
-        let rate = Place::sum([(scale, &rate)]);
+        let rate = PathPoint::sum([(scale, &rate)]);
         let turning = |most: f64, rate: &[f64; 3]| rate[2].abs().max(most);
         Point {
             turning: rate.configuration.iter().fold(0.0, turning),

@@ -5,10 +5,11 @@
 //! extrapolates it.
 
 use crate::sheet::kinematics::Configuration;
+use support::vectors;
 
 /// A place on the path, or a rate along it.
 #[derive(Clone, Debug)]
-pub(crate) struct Place {
+pub(crate) struct PathPoint {
     /// Fraction of the loads, the stroke and the support motions.
     pub at: f64,
     pub configuration: Configuration,
@@ -16,16 +17,13 @@ pub(crate) struct Place {
     pub forces: Vec<[f64; 3]>,
 }
 
-impl Place {
+impl PathPoint {
     /// A linear combination of places.
     pub fn sum<const N: usize>(terms: [(f64, &Self); N]) -> Self {
         let combined = |part: fn(&Self) -> &[[f64; 3]]| {
             let mut sum = vec![[0.0; 3]; part(terms[0].1).len()];
             for (weight, place) in terms {
-                let entries = part(place).as_flattened();
-                for (sum, entry) in std::iter::zip(sum.as_flattened_mut(), entries) {
-                    *sum += weight * entry;
-                }
+                vectors::add(sum.as_flattened_mut(), part(place).as_flattened(), weight);
             }
             sum
         };
@@ -39,10 +37,10 @@ impl Place {
 
 /// The path between two points, by its length from the first.
 pub(crate) struct Arc {
-    pub from: Place,
-    pub from_rate: Place,
-    pub to: Place,
-    pub to_rate: Place,
+    pub from: PathPoint,
+    pub from_rate: PathPoint,
+    pub to: PathPoint,
+    pub to_rate: PathPoint,
     pub length: f64,
 }
 
@@ -59,9 +57,9 @@ impl Arc {
         ]
     }
 
-    pub fn place(&self, length: f64) -> Place {
+    pub fn place(&self, length: f64) -> PathPoint {
         let [a, b, c, d] = self.weights(length);
-        Place::sum([
+        PathPoint::sum([
             (a, &self.from),
             (b, &self.from_rate),
             (c, &self.to),
@@ -85,10 +83,10 @@ impl Arc {
     }
 
     /// The place with a given load parameter between the load parameters of the two points.
-    pub fn reading(&self, at: f64) -> Place {
+    pub fn reading(&self, at: f64) -> PathPoint {
         let length = bisected(0.0, self.length, |length| self.at(length) < at);
         let place = self.place(length);
-        Place { at, ..place }
+        PathPoint { at, ..place }
     }
 }
 
@@ -109,8 +107,8 @@ pub(crate) fn bisected(mut low: f64, mut high: f64, holds: impl Fn(f64) -> bool)
 mod tests {
     use super::*;
 
-    fn place(at: f64, x: f64) -> Place {
-        Place {
+    fn place(at: f64, x: f64) -> PathPoint {
+        PathPoint {
             at,
             configuration: vec![[x, 2.0 * x, 1.0]],
             forces: vec![[-x, 0.0, 0.0]],
@@ -122,7 +120,7 @@ mod tests {
     fn cubics_are_reproduced_inside_and_outside_the_arc() {
         let x = |s: f64| s * s * s - s;
         let t = |s: f64| s + s * s;
-        let rate = |s: f64| Place {
+        let rate = |s: f64| PathPoint {
             configuration: vec![[3.0 * s * s - 1.0, 2.0 * (3.0 * s * s - 1.0), 0.0]],
             forces: vec![[1.0 - 3.0 * s * s, 0.0, 0.0]],
             at: 1.0 + 2.0 * s,
