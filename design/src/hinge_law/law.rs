@@ -44,9 +44,9 @@ pub trait HingeLaw: Send + Sync {
         None
     }
 
-    /// The law of a sheet of `thickness` times the thickness, of a material with `stress` times the stress at every strain; `None` if
+    /// The law at `thickness` times the thickness and `stress` times the stress at every strain; `None` if
     /// the law does not determine it, see [`scales`](Self::scales).
-    fn scaled(&self, _thicker: f64, _stronger: f64) -> Option<Arc<dyn HingeLaw>> {
+    fn scaled(&self, _thickness: f64, _stress: f64) -> Option<Arc<dyn HingeLaw>> {
         None
     }
 

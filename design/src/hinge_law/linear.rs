@@ -30,10 +30,10 @@ impl HingeLaw for LinearLaw {
 
     /// The constants of another thickness are not known.
     fn scaled(&self, thickness: f64, stress: f64) -> Option<Arc<dyn HingeLaw>> {
-        let stress = |constants: &[f64; 3]| constants.map(|constant| stress * constant);
+        let scaled = |constants: &[f64; 3]| constants.map(|constant| stress * constant);
         (thickness == 1.0).then(|| -> Arc<dyn HingeLaw> {
             Arc::new(Self {
-                stiffness: self.stiffness.iter().map(stress).collect(),
+                stiffness: self.stiffness.iter().map(scaled).collect(),
             })
         })
     }

@@ -44,7 +44,7 @@ impl Release {
         }
     }
 
-    /// The same in a sheet of `thickness` times the thickness, of a material with `stress` times the stress at every strain.
+    /// The same at `thickness` times the thickness and `stress` times the stress at every strain.
     pub(crate) fn scaled(&self, thickness: f64, stress: f64) -> Self {
         Self {
             law: Arc::clone(&self.law),

@@ -392,7 +392,7 @@ pub(crate) fn converged(step: &LoadStep) -> Result<&LoadStep, DesignError> {
 }
 
 impl Mechanics {
-    /// The mechanics of a sheet of `thickness` times the thickness, of a material with `stress` times the stress at every strain. Its
+    /// The mechanics at `thickness` times the thickness and `stress` times the stress at every strain. Its
     /// weight grows with the thickness; contact is not changed.
     pub(crate) fn scaled(&self, thickness: f64, stress: f64) -> Result<Self, DesignError> {
         if !(thickness > 0.0 && stress > 0.0 && thickness.is_finite() && stress.is_finite()) {

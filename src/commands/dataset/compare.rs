@@ -73,12 +73,12 @@ impl CompareCommand {
 fn summary(
     rays: &[ComparedRay],
     states: &[Vec<ComparedState>],
-    [database, reference]: &[String; 2],
+    [tier, reference]: &[String; 2],
 ) -> Result<String> {
     let count = rays.iter().map(|ray| ray.rows.len()).sum::<usize>();
     let cpu = [0, 1].map(|i| rays.iter().map(|ray| ray.cpu_s[i]).sum::<f64>() / rays.len() as f64);
     let heading = format!(
-        "## Tier {database} against tier {reference}, over all common states\n\n\
+        "## Tier {tier} against tier {reference}, over all common states\n\n\
          {count} states of {} rays, {:.1} and {:.1} CPU s per ray. Differences are root mean squares relative \
          to the root mean square of the tier {reference}: {SCALE}. `kirigami dataset compare`.\n\n\
          ",
