@@ -1,12 +1,12 @@
 //! The sheet material, as measured on tensile specimens; section 4.1.
 
 use crate::Regime;
-use crate::tensile::{TensileError, read_tensile};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 use support::key_limits;
 use support::toml_file::{self, ConfigError};
+use tensile::{TensileError, read_tensile};
 
 /// Standard acceleration of gravity, rounded (m/s^2 = N/kg).
 pub const STANDARD_GRAVITY: f64 = 9.81;
@@ -267,7 +267,7 @@ mod tests {
 
     #[test]
     fn softening_is_accepted() {
-        film().validate().unwrap();
+        assert_eq!(film().validate(), Ok(()));
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use super::{OPTIONS, fit_with, write};
 use crate::synthetic::Law;
-use hinge::tensile::{MaterialFit, Quantity, RecordOptions, TensileError};
+use tensile::{MaterialFit, Quantity, RecordOptions, TensileError};
 
 /// sigma = 30.164 + 15 (1 - exp(-eps_p / 0.03)), of a specimen of 10 x 0.5 mm with a gauge length of 50 mm.
 const POLYMER: Law = Law {

@@ -50,8 +50,7 @@ impl CheckCommand {
         let (all, versions) = (solved.len(), solver.versions());
         ensure!(
             all > 0 || stop.load(Ordering::Relaxed),
-            "no ray of {} was solved there to its end at the first attempt: nothing to compare with. Restored rays may \
-             stem from a retry",
+            "no ray of {} was solved there to its end at the first attempt; restored rays may stem from a retry",
             folder.display()
         );
         println!("{all} rays solved again with {versions}; {count} differ");

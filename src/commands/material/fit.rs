@@ -6,11 +6,12 @@ use crate::ui::table::{Table, table};
 use crate::ui::{output_file, picture, run_folder};
 use anyhow::{Result, ensure};
 use clap::Args;
-use hinge::tensile::{
-    Cause, FitOptions, FractureSource, MaterialFit, Origin, Quantity, RecordOptions, SheetFacts,
-    Specimen, SpecimenOptions, Statistic, material_file,
-};
+use hinge::{SheetFacts, SheetMaterial, material_file};
 use std::path::{Path, PathBuf};
+use tensile::{
+    Cause, FitOptions, FractureSource, MaterialFit, Origin, Quantity, RecordOptions, Specimen,
+    SpecimenOptions, Statistic,
+};
 
 /// Fit a material to tensile tests: modulus, yield, hardening, fracture strain
 ///
@@ -111,7 +112,7 @@ impl FitCommand {
             poisson_assumed: self.poisson.is_none(),
             density_kg_m3: self.density_kg_m3,
         };
-        let material = fit.material(&facts)?;
+        let material = SheetMaterial::fitted(&fit, &facts)?;
         let _held = run_folder::hold(&self.out)?;
         run_folder::write(&self.out, &name, &material_file(&fit, &facts))?;
         let chart = tensile_test(&fit, &self.name)?;
@@ -254,7 +255,7 @@ fn specimen_table(specimens: &[Specimen]) -> Table {
         "draw ratio",
     ]);
     for it in specimens {
-        let draw = |value: fn(&hinge::tensile::Draw) -> f64, digits: usize| {
+        let draw = |value: fn(&tensile::Draw) -> f64, digits: usize| {
             it.draw
                 .as_ref()
                 .map_or("-".into(), |draw| format!("{:.digits$}", value(draw)))

@@ -7,15 +7,15 @@
 //! 4. Landmarks are read from the nominal curve (`landmarks`).
 //! 5. Where the strain is uniform, nominal rows become local ones (`local_curve`).
 
-use crate::tensile::cleaning::{Cause, Cleaned, DroppedRow, cleaned};
-use crate::tensile::error::TensileError;
-use crate::tensile::landmarks::{Draw, draw, offset_yield, uniform_end};
-use crate::tensile::linear_part::LinearPart;
-use crate::tensile::local_curve::{first_part, second_part, true_row};
-use crate::tensile::preamble::StatedDimension;
-use crate::tensile::quantity::Quantity::{Extension, PlasticStrain, TrueStrain, TrueStress};
-use crate::tensile::record::{ReadColumn, Record};
-use crate::tensile::regression::Regression;
+use crate::cleaning::{Cause, Cleaned, DroppedRow, cleaned};
+use crate::error::TensileError;
+use crate::landmarks::{Draw, draw, offset_yield, uniform_end};
+use crate::linear_part::LinearPart;
+use crate::local_curve::{first_part, second_part, true_row};
+use crate::preamble::StatedDimension;
+use crate::quantity::Quantity::{Extension, PlasticStrain, TrueStrain, TrueStress};
+use crate::record::{ReadColumn, Record};
+use crate::regression::Regression;
 use serde::Serialize;
 use std::collections::BTreeSet;
 use std::path::PathBuf;

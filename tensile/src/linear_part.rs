@@ -5,7 +5,7 @@
 //! yield stress: its first rows may be steeper, because the specimen straightens. ISO 527-1 and ASTM D638 extend the line to zero stress: the strain
 //! there is the slack and toe of the curve, and is subtracted from all strains.
 
-use crate::tensile::regression::Regression;
+use crate::regression::Regression;
 use serde::Serialize;
 
 /// The linear part of a curve.

@@ -1,11 +1,8 @@
 //! The material file of a fit, with its provenance as comments.
 
 use crate::material::{InvalidMaterial, SheetMaterial};
-use crate::tensile::cleaning::Cause;
-use crate::tensile::fit::{FractureSource, MaterialFit, Origin, Statistic};
-use crate::tensile::record::ReadColumn;
-use crate::tensile::specimen::Specimen;
 use std::fmt::Write;
+use tensile::{Cause, MaterialFit, Origin, ReadColumn, Specimen, Statistic};
 
 /// What a tensile test does not measure.
 #[derive(Clone, Debug, PartialEq)]
@@ -22,23 +19,23 @@ pub struct SheetFacts {
     pub density_kg_m3: f64,
 }
 
-impl MaterialFit {
-    /// The material of the fit; the error names a value that no sheet has.
-    pub fn material(&self, facts: &SheetFacts) -> Result<SheetMaterial, InvalidMaterial> {
-        let material = SheetMaterial {
+impl SheetMaterial {
+    /// The material of a fit; the error names a value that no sheet has.
+    pub fn fitted(fit: &MaterialFit, facts: &SheetFacts) -> Result<Self, InvalidMaterial> {
+        let material = Self {
             name: facts.name.clone(),
             thickness: facts.thickness,
-            young: self.young.mean,
+            young: fit.young.mean,
             poisson: facts.poisson,
             density_kg_m3: facts.density_kg_m3,
-            fracture_strain: self.fracture_strain,
-            plastic: self
+            fracture_strain: fit.fracture_strain,
+            plastic: fit
                 .table
                 .iter()
                 .map(|row| [row.stress, row.strain])
                 .collect(),
-            stress_deviation: self.stress_deviation(),
-            ..SheetMaterial::default()
+            stress_deviation: fit.stress_deviation(),
+            ..Self::default()
         };
         material.validate()?;
         Ok(material)
@@ -161,21 +158,6 @@ fn landmarks(t: &mut String, fit: &MaterialFit) -> std::fmt::Result {
         }
     }
     writeln!(t, "; +- is the standard deviation.")
-}
-
-impl FractureSource {
-    /// The source in words.
-    pub fn words(self) -> &'static str {
-        match self {
-            Self::Given => "given",
-            Self::Break => "where the specimens broke, at uniform strain",
-            Self::RecordEnd => {
-                "the record ends here without a break: a lower bound; measure ln(A0 / A)"
-            }
-            Self::MaximumForce => "at the maximum force: a lower bound, the neck strains further",
-            Self::DrawRatio => "at the natural draw ratio: a lower bound",
-        }
-    }
 }
 
 /// " +- 1.2", or nothing for one specimen.

@@ -1,8 +1,8 @@
 //! Rows of a record that are not a monotone loading: unloading loops, rows after the break, repeated and shaking
 //! strains.
 
-use crate::tensile::isotonic::pools;
-use crate::tensile::record::RecordRow;
+use crate::isotonic::pools;
+use crate::record::RecordRow;
 use serde::Serialize;
 
 /// Why a row is not used.

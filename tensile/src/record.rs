@@ -1,12 +1,12 @@
 //! The record of one tensile test: load and deformation of every row, in MPa and as a ratio.
 
-use crate::tensile::error::TensileError;
-use crate::tensile::number_table::NumberTable;
-use crate::tensile::preamble::{self, StatedDimension};
-use crate::tensile::quantity::Quantity::{
+use crate::error::TensileError;
+use crate::number_table::NumberTable;
+use crate::preamble::{self, StatedDimension};
+use crate::quantity::Quantity::{
     Extension, Force, PlasticStrain, Strain, Stress, TrueStrain, TrueStress,
 };
-use crate::tensile::quantity::{Quantity, unit_of};
+use crate::quantity::{Quantity, unit_of};
 use serde::Serialize;
 use std::fmt;
 use std::path::{Path, PathBuf};

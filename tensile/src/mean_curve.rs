@@ -1,6 +1,6 @@
 //! The mean hardening curve of several specimens.
 
-use crate::tensile::regression::interpolated;
+use crate::regression::interpolated;
 
 /// Number of intervals of the mean curve; they grow linearly, because a curve bends most after yield.
 const INTERVALS: usize = 400;

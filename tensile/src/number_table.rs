@@ -4,8 +4,8 @@
 //! Lines before the first row of numbers are a preamble. Of these, the last one, or the last one above a row of units,
 //! names the columns. Lines that start with `#` are comments.
 
-use crate::tensile::error::TensileError;
-use crate::tensile::quantity::{Quantity, are_units, bare};
+use crate::error::TensileError;
+use crate::quantity::{Quantity, are_units, bare};
 use std::collections::BTreeMap;
 use std::path::Path;
 use support::file_error::FileError;

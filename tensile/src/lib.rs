@@ -9,10 +9,11 @@
 //! | one specimen, its local curve | `specimen`, `local_curve` |
 //! | local curve in the neck | `drawing` |
 //! | mean over the specimens, table, fracture strain | `mean_curve`, `thinning`, `fit` |
-//! | the material file | `material_file` |
 //!
 //! A material file may name a clean curve as `tensile_csv`. It is read without corrections: a curve that needs one is
 //! rejected, with the advice to use `kirigami material fit`, which reports them.
+
+#![warn(missing_docs)]
 
 mod cleaning;
 mod drawing;
@@ -22,7 +23,6 @@ mod isotonic;
 mod landmarks;
 mod linear_part;
 mod local_curve;
-mod material_file;
 mod mean_curve;
 mod number_table;
 mod preamble;
@@ -37,7 +37,6 @@ pub use error::TensileError;
 pub use fit::{FitOptions, FractureSource, HardeningRow, MaterialFit, Origin, Statistic};
 pub use landmarks::Draw;
 pub use linear_part::LinearPart;
-pub use material_file::{SheetFacts, material_file};
 pub use preamble::StatedDimension;
 pub use quantity::Quantity;
 pub use record::{ReadColumn, RecordOptions};
@@ -56,7 +55,7 @@ const MAX_TOE: f64 = 5e-4;
 
 /// Reads the hardening table of a material of Young's modulus `young` (MPa): rows [true stress (MPa), true plastic
 /// strain].
-pub(crate) fn read_tensile(path: &Path, young: f64) -> Result<Vec<[f64; 2]>, TensileError> {
+pub fn read_tensile(path: &Path, young: f64) -> Result<Vec<[f64; 2]>, TensileError> {
     let refuse = |what| TensileError::File {
         path: path.to_owned(),
         what,

@@ -4,7 +4,7 @@
 //! stretches, and the nominal strain is their average. The curve is local again where the neck has covered the
 //! specimen and the stress rises from the plateau.
 
-use crate::tensile::regression::interpolated;
+use crate::regression::interpolated;
 use serde::Serialize;
 
 /// Plastic strain at the yield stress Rp0.2 (ISO 6892-1).

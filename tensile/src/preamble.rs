@@ -1,6 +1,6 @@
 //! The dimensions of a specimen that a testing machine writes above its table: `Width;10,0;mm`, `Largeur (mm): 10`.
 
-use crate::tensile::quantity::{Quantity, folded, unit_of};
+use crate::quantity::{Quantity, folded, unit_of};
 use serde::Serialize;
 use support::text_table::{NumberStyle, TextRow};
 

@@ -1,8 +1,8 @@
 //! The local curve [true stress, plastic strain] of rows at which the strain is uniform:
 //! sigma = s (1 + e), eps_p = ln(1 + e) - sigma / E.
 
-use crate::tensile::isotonic::{non_decreasing, pools};
-use crate::tensile::landmarks::Draw;
+use crate::isotonic::{non_decreasing, pools};
+use crate::landmarks::Draw;
 
 /// Plastic strain above which no yield can be read from a curve: its noise is too large.
 const MAX_ONSET: f64 = 5e-3;

@@ -1,13 +1,13 @@
 //! The law of a material from its specimens: mean modulus, mean hardening curve, fracture strain, and the table of the
 //! finite elements.
 
-use crate::tensile::drawing::{Drawing, beyond_maximum_force};
-use crate::tensile::error::TensileError;
-use crate::tensile::landmarks::Draw;
-use crate::tensile::mean_curve::mean_curve;
-use crate::tensile::record::{Record, RecordOptions};
-use crate::tensile::specimen::{End, Specimen, SpecimenOptions};
-use crate::tensile::thinning::thinned;
+use crate::drawing::{Drawing, beyond_maximum_force};
+use crate::error::TensileError;
+use crate::landmarks::Draw;
+use crate::mean_curve::mean_curve;
+use crate::record::{Record, RecordOptions};
+use crate::specimen::{End, Specimen, SpecimenOptions};
+use crate::thinning::thinned;
 use serde::Serialize;
 use std::path::PathBuf;
 
@@ -70,6 +70,21 @@ pub enum FractureSource {
     DrawRatio,
 }
 
+impl FractureSource {
+    /// The source in words.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Given => "given",
+            Self::Break => "where the specimens broke, at uniform strain",
+            Self::RecordEnd => {
+                "the record ends here without a break: a lower bound; measure ln(A0 / A)"
+            }
+            Self::MaximumForce => "at the maximum force: a lower bound, the neck strains further",
+            Self::DrawRatio => "at the natural draw ratio: a lower bound",
+        }
+    }
+}
+
 /// The law fitted to the records of one material. Stresses are in MPa.
 #[derive(Clone, Debug, Serialize)]
 pub struct MaterialFit {
@@ -123,7 +138,7 @@ impl Statistic {
 
 impl MaterialFit {
     /// Relative standard deviation of the stress over the specimens: the largest of modulus, yield and plateau, to two digits.
-    pub(super) fn stress_deviation(&self) -> Option<f64> {
+    pub fn stress_deviation(&self) -> Option<f64> {
         let stresses = [self.young, self.offset_yield].into_iter();
         let drawn = [self.upper_yield, self.plateau].into_iter().flatten();
         let relative = |of: Statistic| Some(of.deviation? / of.mean);
