@@ -11,7 +11,7 @@ use surrogate::{Springback, SpringbackError};
 #[allow(missing_docs, reason = "the message of a variant is its documentation")]
 pub enum SpringbackMismatch {
     #[error(
-        "the law of released hinges is for {law}, and the sheet is of another material law, {sheet}: let hinges of its material go by \
+        "the law of released hinges is for {law}, and the sheet is of another material law, {sheet}: unload hinges of its material by \
          `kirigami surrogate release`"
     )]
     Material { law: String, sheet: String },
