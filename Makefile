@@ -35,7 +35,7 @@ page:
 	cp target/wasm32-wasip1/page/kirigami.wasm target/page/
 	cargo test --release --locked -p kirigami --test end_to_end static_page -- --ignored
 
-# The Python package and its tests, in an environment of their own. Those of PyTorch need 5 GB: by a command of their own.
+# The Python package and its tests, in an environment of their own. The tests of PyTorch need 5 GB: by a command of their own.
 python: python-tools
 	python3 -m venv target/python
 	target/python/bin/pip install --quiet -r python/tests/requirements.txt ./python

@@ -14,7 +14,7 @@ const LEAK: &str = "a geometry of the test or validation part occurs in the trai
 
 /// Something that makes a database unfit for training.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Finding {
+pub struct Defect {
     /// What is wrong, in one sentence.
     pub what: &'static str,
     /// Number of rows or rays.
@@ -23,7 +23,7 @@ pub struct Finding {
     pub job: String,
 }
 
-impl fmt::Display for Finding {
+impl fmt::Display for Defect {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         write!(
             f,
@@ -35,7 +35,7 @@ impl fmt::Display for Finding {
 
 impl Database {
     /// Everything that is wrong with the database; empty if nothing was found.
-    pub fn check(&self) -> Vec<Finding> {
+    pub fn check(&self) -> Vec<Defect> {
         let rays = self.rays();
         let rows = self.rows();
         let row_findings = [
@@ -54,13 +54,13 @@ impl Database {
             ("a ray has a single state", with(&rays, |ray| ray.len() < 2)),
         ];
         let found = row_findings.into_iter().chain(ray_findings);
-        let mut findings: Vec<Finding> = found.filter_map(finding).collect();
+        let mut findings: Vec<Defect> = found.filter_map(finding).collect();
         findings.extend(forces_without_work(&rays));
         findings
     }
 
     /// A geometry of the test or validation part that occurs in the training part: the errors of weights would be false.
-    pub fn leak(&self) -> Option<Finding> {
+    pub fn leak(&self) -> Option<Defect> {
         finding((LEAK, self.leaked()))
     }
 
@@ -77,9 +77,9 @@ impl Database {
     }
 }
 
-fn finding((what, rows): (&'static str, Vec<&Row>)) -> Option<Finding> {
+fn finding((what, rows): (&'static str, Vec<&Row>)) -> Option<Defect> {
     let first = rows.first()?;
-    Some(Finding {
+    Some(Defect {
         what,
         count: rows.len(),
         job: first.job.clone(),
@@ -110,7 +110,7 @@ fn healing(ray: &[Row]) -> bool {
 }
 
 /// The energies of the rays against the work of their forces (trapezoidal rule from the undeformed state).
-fn forces_without_work(rays: &[&[Row]]) -> Option<Finding> {
+fn forces_without_work(rays: &[&[Row]]) -> Option<Defect> {
     let relative = |ray: &[Row]| -> Option<f64> {
         let last = ray
             .last()
@@ -135,7 +135,7 @@ fn forces_without_work(rays: &[&[Row]]) -> Option<Finding> {
     sorted.sort_by(f64::total_cmp);
     // The median: single rays may snap between two rows.
     let typical = *sorted.get(sorted.len() / 2)?;
-    (typical > WORK).then(|| Finding {
+    (typical > WORK).then(|| Defect {
         what: "the forces are not the gradient of the energy along the rays: check signs and units",
         count: errors.iter().filter(|(error, _)| *error > WORK).count(),
         job: errors[0].1.job.clone(),

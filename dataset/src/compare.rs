@@ -84,17 +84,17 @@ impl Database {
 }
 
 /// The rays that both databases contain, in the order of their designs; of a database with a finer mesh, those on the other one.
-pub fn compare<'a>(judged: &'a Database, reference: &'a Database) -> Vec<ComparedRay<'a>> {
+pub fn compare<'a>(candidate: &'a Database, reference: &'a Database) -> Vec<ComparedRay<'a>> {
     let rays = |database: &'a Database| database.on_tier(&database.manifest().tier);
-    compare_rows(rays(judged), rays(reference))
+    compare_rows(rays(candidate), rays(reference))
 }
 
 fn compare_rows<'a>(
-    judged: impl IntoIterator<Item = &'a Row>,
+    candidate: impl IntoIterator<Item = &'a Row>,
     reference: impl IntoIterator<Item = &'a Row>,
 ) -> Vec<ComparedRay<'a>> {
     let references = rays(reference);
-    let pairs = rays(judged);
+    let pairs = rays(candidate);
     let pairs = pairs.into_iter().filter_map(|((ray, law), rows)| {
         let mut alike = references
             .range((ray, "")..)
@@ -197,8 +197,8 @@ mod tests {
                 ..row
             }
         });
-        let (judged, reference) = (database(stiff.collect()), database(rows(6)));
-        let rays = compare(&judged, &reference);
+        let (candidate, reference) = (database(stiff.collect()), database(rows(6)));
+        let rays = compare(&candidate, &reference);
         assert_eq!(rays.len(), 6);
         assert!(rays.iter().all(|ray| ray.end().sample.lambda == 1.0));
         let states: Vec<_> = rays.iter().flat_map(ComparedRay::states).collect();
@@ -211,7 +211,7 @@ mod tests {
         }
         // Only rays that both databases contain are compared.
         let fewer = database(rows(4));
-        assert_eq!(compare(&judged, &fewer).len(), 4);
+        assert_eq!(compare(&candidate, &fewer).len(), 4);
     }
 
     #[test]

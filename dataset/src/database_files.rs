@@ -1,8 +1,7 @@
 //! Reading and writing a database: `X.parquet` and its manifest `X.json`.
 //!
-//! One rename decides which database there is: the rename of the manifest, which holds the hash of its Parquet file. The file is
-//! there before, as `X.parquet.next`, and gets its name after that. A process that is killed between the two leaves it to
-//! the next reader.
+//! Renaming the manifest, which holds the hash of its Parquet file, commits the database. The Parquet file is written before as
+//! `X.parquet.next` and renamed afterwards; after a kill between the two the next reader renames it.
 
 use crate::database::Database;
 use crate::error::DatasetError;
@@ -44,7 +43,7 @@ impl Database {
     /// An existing file is an error unless `replace` is true.
     pub fn write(&self, path: &Path, replace: bool) -> Result<(), DatasetError> {
         refuse_existing(path, replace)?;
-        let mut file = Unnamed::beside(path).map_err(unwritable(path))?;
+        let mut file = Unnamed::next_to(path).map_err(unwritable(path))?;
         let written = file.file().write_all(&self.parquet);
         written.map_err(unwritable(path))?;
         publish(file, &self.manifest, path)

@@ -5,10 +5,7 @@ use support::file_error::FileError;
 
 /// Why a database cannot be collected, read, written or corrected.
 #[derive(Debug, thiserror::Error)]
-#[allow(
-    missing_docs,
-    reason = "the message of each variant is its documentation"
-)]
+#[allow(missing_docs, reason = "the message of a variant is its documentation")]
 pub enum DatasetError {
     #[error("no rows: {why}")]
     NoRows { why: String },
@@ -70,7 +67,7 @@ pub enum DatasetError {
     )]
     Expanding { values: usize, bytes: usize },
     #[error(
-        "the texts of the table are over {most} bytes long at row {index} of the column `{column}`, which those of measured \
+        "the texts of the table are over {most} bytes long at row {index} of the column `{column}`, which texts of measured \
          data never are: the file is damaged, or made to fill the memory"
     )]
     LongText {

@@ -23,6 +23,7 @@ use faer::linalg::solvers::{Llt, Solve};
 use faer::prelude::*;
 use hinge::HingeSample;
 use std::f64::consts::FRAC_PI_2;
+use support::vectors::dot;
 
 /// The terms, as products of two of (w_lig, alpha, eta_a, eta_s, theta, 1).
 const TERMS: [[usize; 2]; 13] = [
@@ -185,8 +186,8 @@ impl Database {
             return Ok((self, None));
         };
         let rays = self.on_both_meshes();
-        let judged = left_out(&rays)?;
-        let corrected = judged.corrected();
+        let checked = left_out(&rays)?;
+        let corrected = checked.corrected();
         let from = self.manifest().tier.clone();
         let tier = if corrected[0] {
             let to = finer.tier.clone();
@@ -200,7 +201,7 @@ impl Database {
             tier: tier.to_string(),
             ..row.clone()
         });
-        Ok((self.with_rows(rows.collect())?, Some(judged)))
+        Ok((self.with_rows(rows.collect())?, Some(checked)))
     }
 }
 
@@ -254,13 +255,13 @@ pub fn left_out(rays: &[ComparedRay]) -> Result<LeftOut, DatasetError> {
         std::iter::zip(rays, &bridges).map(of_ray).collect()
     };
     let corrected = states([true; 3]);
-    let judged = LeftOut {
+    let checked = LeftOut {
         errors: [errors(&states([false; 3])), errors(&corrected)],
         states: corrected,
     };
     Ok(LeftOut {
-        states: states(judged.corrected()),
-        ..judged
+        states: states(checked.corrected()),
+        ..checked
     })
 }
 
@@ -360,10 +361,6 @@ fn least_squares<const N: usize>(quantities: [(Vec<Change>, f64); N]) -> Coeffic
     std::array::from_fn(|i| solution[(i, 0)])
 }
 
-fn dot(c: &Coefficients, terms: &Coefficients) -> f64 {
-    std::iter::zip(c, terms).map(|(c, term)| c * term).sum()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -420,8 +417,8 @@ mod tests {
     #[test]
     fn the_mesh_error_is_corrected_on_rays_that_were_solved_only_once() {
         let fine = database(rows(RAYS));
-        let errors = |judged: &Database| {
-            let rays = compare(judged, &fine);
+        let errors = |candidate: &Database| {
+            let rays = compare(candidate, &fine);
             assert_eq!(rays.len(), RAYS);
             let states: Vec<_> = rays.iter().flat_map(ComparedRay::states).collect();
             relative_rms(&states, [0.0; 6])
@@ -451,8 +448,8 @@ mod tests {
     #[test]
     fn a_database_of_one_mesh_is_as_it_was() {
         let once = database(coarse());
-        let (same, judged) = once.clone().corrected().unwrap();
-        assert!(judged.is_none());
+        let (same, checked) = once.clone().corrected().unwrap();
+        assert!(checked.is_none());
         assert_eq!(same.rows(), once.rows());
         assert_eq!(same.manifest(), once.manifest());
     }
@@ -514,12 +511,12 @@ mod tests {
         }
         let twice = on_both(coarse(), spoilt);
         let rays = twice.on_both_meshes();
-        let judged = left_out(&rays).unwrap().states;
+        let checked = left_out(&rays).unwrap().states;
         let i = rays
             .iter()
             .position(|ray| ray.end().job == "job-003")
             .unwrap();
-        let [corrected, solved] = [&judged[i], &rays[i].states()].map(|states| states[9].value[0]);
+        let [corrected, solved] = [&checked[i], &rays[i].states()].map(|states| states[9].value[0]);
         assert!(
             (corrected / solved - 1.0).abs() < 0.1,
             "{corrected} {solved}"
@@ -535,8 +532,8 @@ mod tests {
             row
         });
         let twice = on_both(spoilt.collect(), rows(TWICE));
-        let (corrected, judged) = twice.clone().corrected().unwrap();
-        assert_eq!(judged.unwrap().uncorrected(), ["D"]);
+        let (corrected, checked) = twice.clone().corrected().unwrap();
+        assert_eq!(checked.unwrap().uncorrected(), ["D"]);
         let coarse = of_rays(&twice);
         assert_eq!(coarse.len(), corrected.rows().len());
         let both = || std::iter::zip(&coarse, corrected.rows());
@@ -545,8 +542,8 @@ mod tests {
 
         let mut unknown = twice.rows().to_vec();
         unknown.iter_mut().for_each(|row| row.sample.d_peak = None);
-        let judged = left_out(&database(unknown).on_both_meshes()).unwrap();
-        assert_eq!(judged.uncorrected(), ["D"]);
+        let checked = left_out(&database(unknown).on_both_meshes()).unwrap();
+        assert_eq!(checked.uncorrected(), ["D"]);
     }
 
     #[test]

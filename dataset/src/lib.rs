@@ -43,7 +43,7 @@ mod schema;
 mod split;
 mod summary;
 
-pub use check::Finding;
+pub use check::Defect;
 pub use compare::{COMPARED, ComparedRay, ComparedState, compare, reference_rms, relative_rms};
 pub use csv::{ColumnMap, Constant, rows_from_csv};
 pub use database::Database;

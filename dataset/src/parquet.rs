@@ -74,7 +74,7 @@ const VALUES_A_BYTE: usize = 8;
 /// Maximum size of a table over the size of its file. Measured values compress to about half.
 const EXPANSION: usize = 100;
 
-/// Rejects a file that would fill far more memory than its size, judged by its metadata.
+/// Rejects a file that would fill far more memory than its size, according to its metadata.
 fn refuse_expanding(
     reader: &mut ParquetReader<Cursor<&[u8]>>,
     bytes: usize,

@@ -33,7 +33,7 @@ impl Collected {
         replace: bool,
     ) -> Result<Self, E> {
         refuse_existing(path, replace)?;
-        let mut file = Unnamed::beside(path).map_err(unwritable(path))?;
+        let mut file = Unnamed::next_to(path).map_err(unwritable(path))?;
         let failed = |error: DatasetError| unwritable(path)(std::io::Error::other(error));
         let mut digest = Digest::new();
         let mut contents = Contents::default();

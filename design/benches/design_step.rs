@@ -40,7 +40,7 @@ fn equilibria_and_gradient(bencher: Bencher, name: &str) {
 #[divan::bench(args = SCENES, sample_count = 10, max_time = 10)]
 fn draft(bencher: Bencher, name: &str) {
     let (problem, design) = scene(name);
-    let known = problem.deploy(&design).unwrap().known_path();
+    let known = problem.deploy(&design).unwrap().warm_start();
     let mut wider = design;
     wider.omega.iter_mut().for_each(|omega| *omega += 0.02);
     bencher.bench(|| problem.draft(black_box(&wider), Some(&known)).unwrap());

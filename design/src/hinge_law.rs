@@ -23,7 +23,8 @@ pub(crate) use corrected::LENGTHS;
 pub use contact::{Contact, InvalidContact};
 pub use corrected::{CorrectedLaw, Correction, MissingForces};
 pub use law::{
-    DamageMeasure, HingeDamage, HingeEnergy, HingeGradient, HingeLaw, Order, PreparedLaw,
+    DamageMeasure, DesignGradient, HingeDamage, HingeEnergy, HingeGradient, HingeLaw, Order,
+    PreparedLaw,
 };
 pub use linear::LinearLaw;
 pub use mean::MeanLaw;

@@ -112,13 +112,15 @@ fn the_mean_law_is_the_mean_of_its_laws_in_every_derivative() {
         close(energies[h].w, &|k| each[k].0[h].w);
         close(energies[h].forces[1], &|k| each[k].0[h].forces[1]);
         close(energies[h].tangent[0][2], &|k| each[k].0[h].tangent[0][2]);
-        close(energies[h].design[2], &|k| each[k].0[h].design[2]);
-        close(energies[h].mixed[2][0], &|k| each[k].0[h].mixed[2][0]);
+        close(energies[h].design.hole, &|k| each[k].0[h].design.hole);
+        close(energies[h].mixed[2].w_lig, &|k| each[k].0[h].mixed[2].w_lig);
         close(damage[h].d, &|k| each[k].1[h].d);
-        close(damage[h].gradient[3], &|k| each[k].1[h].gradient[3]);
+        close(damage[h].gradient.design.w_lig, &|k| {
+            each[k].1[h].gradient.design.w_lig
+        });
         close(damage[h].d_peak.unwrap(), &|k| each[k].1[h].d_peak.unwrap());
-        close(damage[h].peak_gradient[2], &|k| {
-            each[k].1[h].peak_gradient[2]
+        close(damage[h].peak_gradient.state[2], &|k| {
+            each[k].1[h].peak_gradient.state[2]
         });
     }
 }

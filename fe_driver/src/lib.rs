@@ -14,7 +14,7 @@
 //! **Solver.** A [`Solver`] makes one attempt at a solve of its kind. [`CalculiX`] is one, the deterministic `FakeSolver`
 //! of the tests another; a further program is one more implementation.
 //!
-//! **Attempts.** A solve that fails by what its solver says of the problem is attempted otherwise, depending on the
+//! **Attempts.** A solve whose problem its solver refuses is attempted otherwise, depending on the
 //! [`FailureKind`] and as its kind of problem says ([`Solve::next_attempt`]): a window with shorter increments, then on a finer
 //! mesh ([`AttemptKind`]). The samples of the attempt that reaches furthest are kept. What the machine does to an attempt
 //! ([`Cause`]) decides nothing of a result: the same attempt is made again, and after a few times the solve stays open.

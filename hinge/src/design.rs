@@ -56,10 +56,7 @@ impl HingeConstants {
 
 /// A hinge design that cannot be cut, with the inequality it violates.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[allow(
-    missing_docs,
-    reason = "the message of each variant is its documentation"
-)]
+#[allow(missing_docs, reason = "the message of a variant is its documentation")]
 pub enum InvalidDesign {
     #[error("{name} = {value} is not a finite number")]
     NotFinite { name: &'static str, value: f64 },

@@ -25,11 +25,12 @@ mod stored_domain;
 
 pub use stored_domain::InvalidDomain;
 
-use crate::domain::directions::{DIRECTION, DIRECTIONS, EXPONENT, dot, norm};
+use crate::domain::directions::{DIRECTION, DIRECTIONS, EXPONENT, norm};
 use crate::net_ligament::{NetLigament, NetLigamentJet};
 use crate::{HingeConstants, HingeDeformation, HingeDesign, Jet};
 use serde::{Deserialize, Serialize};
 use std::array::from_fn;
+use support::vectors::dot;
 
 /// The states that a surrogate was trained on; section 2.4. The domain is computed from the data and stored with
 /// the weights.
@@ -79,7 +80,7 @@ impl TrainingDomain {
         let (row, [blend, ..]) = self.place(design.w_lig);
         norm(from_fn(|m| {
             let support = self.supports[row][m] + blend * self.rise(row, m);
-            dot(DIRECTION[m], y) / support
+            dot(&DIRECTION[m], &y) / support
         }))
     }
 
@@ -89,7 +90,7 @@ impl TrainingDomain {
         let y: [Jet; 3] =
             from_fn(|i| (y[i] - Jet::constant(self.centre[i])) * (1.0 / self.half_range[i]));
         let (row, blend) = self.place(design.w_lig);
-        let blend = Jet::variable(3, design.w_lig).map(blend);
+        let blend = Jet::variable(Jet::W_LIG, design.w_lig).map(blend);
         let ratios: [Jet; DIRECTIONS] = from_fn(|m| {
             let support = Jet::constant(self.supports[row][m]) + blend * self.rise(row, m);
             let components = std::iter::zip(DIRECTION[m], y);
@@ -116,7 +117,7 @@ impl TrainingDomain {
             let side = |sign: f64| {
                 let axis = DIRECTION
                     .iter()
-                    .position(|m| m[i] == sign && dot(*m, *m) == 1.0);
+                    .position(|m| m[i] == sign && dot(m, m) == 1.0);
                 let axis = axis.expect("the axes are among the directions");
                 self.supports
                     .iter()

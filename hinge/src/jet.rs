@@ -24,6 +24,11 @@ impl Jet {
         }
     }
 
+    /// Index of the variable w_lig.
+    pub(crate) const W_LIG: usize = 3;
+    /// Index of the variable rho_f.
+    pub(crate) const HOLE: usize = 4;
+
     /// One of the five variables: index 0 is a, 1 is s, 2 is theta, 3 is w_lig, 4 is rho_f.
     pub fn variable(index: usize, value: f64) -> Self {
         Self {

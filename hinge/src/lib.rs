@@ -5,6 +5,7 @@
 //! | hinge design g | [`HingeDesign`] | (7) |
 //! | hinge deformation (a, s, theta) | [`HingeDeformation`] | (8) |
 //! | generalised forces (F_a, F_s, M_theta) | [`HingeForces`] | section 2.3 |
+//! | derivatives in both | [`HingeGradient`] | (20) |
 //! | sheet material | [`SheetMaterial`] | section 4.1 |
 //! | films and plates | [`Regime`] | section 5.1 |
 //! | training domain | [`TrainingDomain`] | section 2.4 |
@@ -38,21 +39,23 @@
 mod deformation;
 mod design;
 mod domain;
+mod gradient;
 mod jet;
 mod material;
+mod material_file;
 mod net_ligament;
 mod regime;
 mod released;
 mod sample;
-pub mod tensile;
 
 pub use deformation::{HingeDeformation, HingeForces};
 pub use design::{HingeConstants, HingeDesign, InvalidDesign};
 pub use domain::{InvalidDomain, TrainingDomain};
+pub use gradient::{DesignGradient, HingeGradient};
 pub use jet::Jet;
 pub use material::{Creep, InvalidMaterial, MaterialError, STANDARD_GRAVITY, SheetMaterial};
+pub use material_file::{SheetFacts, material_file};
 pub use net_ligament::{NetLigament, NetLigamentJet};
 pub use regime::Regime;
 pub use released::{ReleasedHinge, ReleasedSample};
 pub use sample::HingeSample;
-pub use tensile::TensileError;

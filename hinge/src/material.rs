@@ -1,12 +1,12 @@
 //! The sheet material, as measured on tensile specimens; section 4.1.
 
 use crate::Regime;
-use crate::tensile::{TensileError, read_tensile};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 use support::key_limits;
 use support::toml_file::{self, ConfigError};
+use tensile::{TensileError, read_tensile};
 
 /// Standard acceleration of gravity, rounded (m/s^2 = N/kg).
 pub const STANDARD_GRAVITY: f64 = 9.81;
@@ -69,10 +69,7 @@ const STIFFEST: f64 = 200.0;
 
 /// Why a material could not be read.
 #[derive(Debug, thiserror::Error)]
-#[allow(
-    missing_docs,
-    reason = "the message of each variant is its documentation"
-)]
+#[allow(missing_docs, reason = "the message of a variant is its documentation")]
 pub enum MaterialError {
     #[error(transparent)]
     Config(#[from] ConfigError),
@@ -270,7 +267,7 @@ mod tests {
 
     #[test]
     fn softening_is_accepted() {
-        film().validate().unwrap();
+        assert_eq!(film().validate(), Ok(()));
     }
 
     #[test]

@@ -103,9 +103,9 @@ pub struct NetLigamentJet {
 impl NetLigamentJet {
     /// See [`NetLigament::new`]; without a hole of reference the hinge itself.
     pub fn new(design: &HingeDesign, reference: Option<f64>) -> Self {
-        let w_lig = Jet::variable(3, design.w_lig);
+        let w_lig = Jet::variable(Jet::W_LIG, design.w_lig);
         let width = reference.map_or(w_lig, |reference| {
-            let solid = Jet::constant(1.0) - Jet::variable(4, design.fillet_ratio);
+            let solid = Jet::constant(1.0) - Jet::variable(Jet::HOLE, design.fillet_ratio);
             w_lig * solid * (1.0 - reference).recip()
         });
         Self {

@@ -1,4 +1,4 @@
-//! Every material in `configs/materials` is read and valid. Those of the paper's Table 2 have its Young's modulus, density and
+//! Every material in `configs/materials` is read and valid. The materials of the paper's Table 2 have its Young's modulus, density and
 //! thickness; the others are plates.
 
 use hinge::SheetMaterial;

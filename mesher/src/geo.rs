@@ -136,7 +136,7 @@ mod tests {
     #[test]
     fn every_statement_ends_its_line() {
         let design = design(18.0, 90.0);
-        for tier in Tier::ALL {
+        for tier in Tier::all() {
             let text = script(&Window(&design), &tier.recipe().plane);
             assert!(text.ends_with(";\n"));
             assert!(text.lines().all(|line| line.ends_with(';')));

@@ -19,10 +19,7 @@ use support::program::{self, ToolError};
 
 /// Why no mesh was generated.
 #[derive(Debug, thiserror::Error)]
-#[allow(
-    missing_docs,
-    reason = "the message of each variant is its documentation"
-)]
+#[allow(missing_docs, reason = "the message of a variant is its documentation")]
 pub enum MeshError {
     #[error(transparent)]
     Design(#[from] InvalidDesign),

@@ -64,10 +64,7 @@ pub(crate) fn sides(face: &[usize]) -> impl Iterator<Item = [usize; 3]> + Clone 
 
 /// Why a mesh file is rejected.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[allow(
-    missing_docs,
-    reason = "the message of each variant is its documentation"
-)]
+#[allow(missing_docs, reason = "the message of a variant is its documentation")]
 pub enum MshError {
     #[error("the mesh file is not a text file: byte {0} is not UTF-8")]
     NotText(usize),

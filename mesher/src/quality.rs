@@ -27,10 +27,7 @@ pub struct MeshQuality {
 
 /// Why a mesh is rejected.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[allow(
-    missing_docs,
-    reason = "the message of each variant is its documentation"
-)]
+#[allow(missing_docs, reason = "the message of a variant is its documentation")]
 pub enum MeshDefect {
     #[error("element {element} is folded: its Jacobian is {jacobian} mm^3 at a Gauss point")]
     Folded { element: usize, jacobian: f64 },
@@ -39,7 +36,7 @@ pub enum MeshDefect {
          {aspect} > {MAX_ASPECT}"
     )]
     Sliver { element: usize, aspect: f64 },
-    #[error("the area of the mesh is {area} mm^2, but that of its shape is {exact} mm^2")]
+    #[error("the area of the mesh is {area} mm^2, but its shape has {exact} mm^2")]
     Area { area: f64, exact: f64 },
     #[error("the mesh has no edge on {0:?}")]
     NoBoundary(Boundary),

@@ -57,10 +57,7 @@ impl PanelShape {
 
 /// Why a sheet has no mesh.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[allow(
-    missing_docs,
-    reason = "the message of each variant is its documentation"
-)]
+#[allow(missing_docs, reason = "the message of a variant is its documentation")]
 pub enum InvalidSheet {
     #[error(
         "panel {panel} is too small for its windows: its {edge} edge is {short} mm too short; use a smaller r_win or \
@@ -72,7 +69,7 @@ pub enum InvalidSheet {
         short: f64,
     },
     #[error(
-        "the window of hinge {window} does not end on the edges of panel {panel}: it is {off} mm beside them"
+        "the window of hinge {window} does not end on the edges of panel {panel}: it is {off} mm away from them"
     )]
     BesideEdge {
         window: usize,

@@ -134,19 +134,52 @@ pub struct Imperfection {
     pub widths: [f64; 2],
 }
 
+/// Regime, plane mesh, layers, CPU seconds of one ray, and resident memory of the solver (MB), measured.
+type Spec = (Regime, PlaneRecipe, usize, f64, f64);
+
+/// All tiers, in the order of [`Tier`].
+#[rustfmt::skip]
+const TIERS: [(Tier, Spec); 9] = [
+    (Tier::Tiny, (Regime::Film, structured([2, 8, 2, 3], 0.15), 1, 2.5, 25.0)),
+    (Tier::Small, (Regime::Film, structured([2, 14, 2, 4], 0.105), 2, 6.3, 25.0)),
+    (Tier::Default, (Regime::Film, structured([3, 20, 3, 6], 0.07), 2, 17.0, 30.0)),
+    (Tier::Fine, (Regime::Film, structured([4, 26, 4, 8], 0.0525), 2, 39.0, 45.0)),
+    (Tier::Reference, (Regime::Film, structured([6, 40, 6, 12], 0.035), 2, 126.0, 95.0)),
+    (Tier::Paper, (Regime::Film, WEDGES, 1, 171.0, 115.0)),
+    (Tier::PlateTiny, (Regime::Plate, structured([2, 8, 2, 3], 0.25), 2, 3.0, 25.0)),
+    (Tier::Plate, (Regime::Plate, structured([4, 8, 3, 4], 0.25), 2, 8.0, 25.0)),
+    (Tier::PlateReference, (Regime::Plate, structured([8, 16, 4, 8], 0.125), 3, 70.0, 85.0)),
+];
+
+/// The mesh of the paper.
+const WEDGES: PlaneRecipe = PlaneRecipe::Unstructured(Unstructured {
+    tip_size: 0.1,
+    rim_size: 0.2,
+});
+
+/// A mesh by the numbers of [`Structured`], in their order.
+const fn structured(
+    [inner_rings, edge_columns, arc_columns, outer_rings]: [usize; 4],
+    fold_size: f64,
+) -> PlaneRecipe {
+    PlaneRecipe::Structured(Structured {
+        inner_rings,
+        edge_columns,
+        arc_columns,
+        outer_rings,
+        fold_size,
+    })
+}
+
 impl Tier {
     /// All tiers; the tiers of a regime are in order of increasing CPU time.
-    pub const ALL: [Tier; 9] = [
-        Tier::Tiny,
-        Tier::Small,
-        Tier::Default,
-        Tier::Fine,
-        Tier::Reference,
-        Tier::Paper,
-        Tier::PlateTiny,
-        Tier::Plate,
-        Tier::PlateReference,
-    ];
+    pub fn all() -> impl Iterator<Item = Self> {
+        TIERS.into_iter().map(|(tier, _)| tier)
+    }
+
+    fn spec(self) -> Spec {
+        TIERS[self as usize].1
+    }
 
     /// The cheaper tier on which a sheet is balanced before windows of this one are solved; `None` if that saves little.
     pub fn draft(self) -> Option<Self> {
@@ -159,84 +192,35 @@ impl Tier {
 
     /// The ligaments that this mesh is for.
     pub fn regime(self) -> Regime {
-        match self {
-            Tier::Tiny
-            | Tier::Small
-            | Tier::Default
-            | Tier::Fine
-            | Tier::Reference
-            | Tier::Paper => Regime::Film,
-            Tier::PlateTiny | Tier::Plate | Tier::PlateReference => Regime::Plate,
-        }
+        self.spec().0
     }
 
     /// The mesh of this tier.
     pub fn recipe(self) -> MeshRecipe {
-        let structured = |inner_rings, edge_columns, arc_columns, outer_rings, fold_size| {
-            PlaneRecipe::Structured(Structured {
-                inner_rings,
-                edge_columns,
-                arc_columns,
-                outer_rings,
-                fold_size,
-            })
-        };
-        let (plane, layers) = match self {
-            Tier::Tiny => (structured(2, 8, 2, 3, 0.15), 1),
-            Tier::Small => (structured(2, 14, 2, 4, 0.105), 2),
-            Tier::Default => (structured(3, 20, 3, 6, 0.07), 2),
-            Tier::Fine => (structured(4, 26, 4, 8, 0.0525), 2),
-            Tier::Reference => (structured(6, 40, 6, 12, 0.035), 2),
-            Tier::Paper => (
-                PlaneRecipe::Unstructured(Unstructured {
-                    tip_size: 0.1,
-                    rim_size: 0.2,
-                }),
-                1,
-            ),
-            Tier::PlateTiny => (structured(2, 8, 2, 3, 0.25), 2),
-            Tier::Plate => (structured(4, 8, 3, 4, 0.25), 2),
-            Tier::PlateReference => (structured(8, 16, 4, 8, 0.125), 3),
-        };
+        let (regime, plane, layers, ..) = self.spec();
         MeshRecipe {
             plane,
             layers,
-            imperfection: Imperfection::of(self.regime()),
+            imperfection: Imperfection::of(regime),
         }
     }
 
     /// The next finer tier of the regime with the same element, if there is one.
     pub fn finer(self) -> Option<Tier> {
         let kind = |tier: Tier| (tier.regime(), tier.recipe().element());
-        let same = |tier: &Tier| kind(*tier) == kind(self);
-        Self::ALL.into_iter().filter(same).find(|tier| *tier > self)
+        Self::all().find(|tier| *tier > self && kind(*tier) == kind(self))
     }
 
     /// CPU seconds of one ray, as in the table of [`Tier`].
     pub fn usual_cpu_seconds(self) -> f64 {
-        match self {
-            Tier::Tiny => 2.5,
-            Tier::Small => 6.3,
-            Tier::Default => 17.0,
-            Tier::Fine => 39.0,
-            Tier::Reference => 126.0,
-            Tier::Paper => 171.0,
-            Tier::PlateTiny => 3.0,
-            Tier::Plate => 8.0,
-            Tier::PlateReference => 70.0,
-        }
+        let (.., cpu_seconds, _) = self.spec();
+        cpu_seconds
     }
 
     /// Resident memory of the solver (MB), measured.
     pub fn usual_memory_mb(self) -> f64 {
-        match self {
-            Tier::Tiny | Tier::Small | Tier::PlateTiny | Tier::Plate => 25.0,
-            Tier::Default => 30.0,
-            Tier::Fine => 45.0,
-            Tier::PlateReference => 85.0,
-            Tier::Reference => 95.0,
-            Tier::Paper => 115.0,
-        }
+        let (.., memory_mb) = self.spec();
+        memory_mb
     }
 
     /// Time limit of one solve: sixty times the usual time and at least twenty minutes, for stiff materials and slow machines.
@@ -252,9 +236,7 @@ impl Tier {
 
 /// An unknown tier name; the message lists the known ones.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error(
-    "unknown mesh tier `{0}`; choose tiny, small, default, fine, reference or paper, for plates plate-tiny, plate or plate-reference"
-)]
+#[error("unknown mesh tier `{0}`; choose {known}", known = Tier::all().map(Tier::name).collect::<Vec<_>>().join(", "))]
 pub struct UnknownTier(String);
 
 impl UnknownTier {
@@ -304,7 +286,8 @@ mod tests {
 
     #[test]
     fn names_round_trip_and_the_finest_tiers_have_no_finer_one() {
-        for tier in Tier::ALL {
+        for (place, (tier, _)) in TIERS.into_iter().enumerate() {
+            assert_eq!(tier as usize, place);
             assert_eq!(tier.name().parse(), Ok(tier));
             assert!(tier.finer().is_none_or(|finer| finer > tier));
         }

@@ -15,7 +15,7 @@
 use design::analysis::localisation::{critical_edge, gamma};
 use hinge::SheetMaterial;
 use serde::Serialize;
-use support::severity::Severity;
+use support::severity::{Finding, Severity};
 
 /// The intended use of a material.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -49,16 +49,7 @@ pub struct LigamentEstimate {
     pub gamma: Option<f64>,
 }
 
-/// A statement about the material in its use.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Verdict {
-    /// Note: a fact. Warning: check before hours are spent. Error: the use is not possible.
-    pub severity: Severity,
-    /// The quantity, its limit and the consequence.
-    pub message: String,
-}
-
-/// All estimates and verdicts.
+/// All estimates and findings.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct MaterialCheck {
     /// Hash of the law.
@@ -67,8 +58,8 @@ pub struct MaterialCheck {
     pub yield_strain: f64,
     /// Estimates at the minimum and the maximum ligament width.
     pub ligaments: Vec<LigamentEstimate>,
-    /// Verdicts, the most severe first.
-    pub verdicts: Vec<Verdict>,
+    /// The most severe first. A note is a fact, a warning is to be checked before hours are spent, an error excludes the use.
+    pub verdicts: Vec<Finding>,
 }
 
 /// Plastic strain of the most strained 1 % of a ligament over the rotation (1/rad).
@@ -126,12 +117,8 @@ fn yield_strain(material: &SheetMaterial) -> f64 {
     material.plastic[0][0] / material.young
 }
 
-fn verdict(severity: Severity, message: String) -> Verdict {
-    Verdict { severity, message }
-}
-
 /// Yield, hardening, softening, and the end of the table.
-fn law(material: &SheetMaterial) -> Vec<Verdict> {
+fn law(material: &SheetMaterial) -> Vec<Finding> {
     let SheetMaterial {
         plastic,
         young,
@@ -152,7 +139,7 @@ fn law(material: &SheetMaterial) -> Vec<Verdict> {
     let percent = 100.0 * yield_strain(material);
     let yields =
         format!("the material yields at {yields} MPa, a strain of {percent:.2} %, and {hardens}");
-    let mut verdicts = vec![verdict(Severity::Note, yields)];
+    let mut verdicts = vec![Severity::Note.finding(yields)];
     let slope = |pair: &[[f64; 2]]| (pair[1][0] - pair[0][0]) / (pair[1][1] - pair[0][1]);
     let drop = plastic
         .windows(2)
@@ -170,9 +157,9 @@ fn law(material: &SheetMaterial) -> Vec<Verdict> {
                 "{fall}, by {steepness:.3} E: above {STEEPEST_DROP} E coarse meshes diverge; spread the fall over a longer \
                  strain"
             );
-            verdict(Severity::Warning, steep)
+            Severity::Warning.finding(steep)
         } else {
-            verdict(Severity::Note, format!("{fall}: the material softens there"))
+            Severity::Note.finding(format!("{fall}: the material softens there"))
         });
     }
     if *fracture_strain > 1.05 * strain {
@@ -180,13 +167,13 @@ fn law(material: &SheetMaterial) -> Vec<Verdict> {
             "between the last row, at {strain}, and the fracture strain {fracture_strain} the window solver holds the \
              stress constant at {stress} MPa"
         );
-        verdicts.push(verdict(Severity::Note, held));
+        verdicts.push(Severity::Note.finding(held));
     }
     verdicts
 }
 
 /// Whether a material with the density of a plastic has the modulus of a plastic.
-fn stiffness(material: &SheetMaterial) -> Option<Verdict> {
+fn stiffness(material: &SheetMaterial) -> Option<Finding> {
     let [young, density] = [material.young, material.density_kg_m3];
     (density < LIGHTEST_METAL && young > STIFFEST_PLASTIC * density).then(|| {
         let message = format!(
@@ -194,12 +181,12 @@ fn stiffness(material: &SheetMaterial) -> Option<Verdict> {
              {STIFFEST_PLASTIC}; in a tensile test check width, thickness, gauge length and units",
             young / density
         );
-        verdict(Severity::Warning, message)
+        Severity::Warning.finding(message)
     })
 }
 
 /// Whether the narrowest ligament buckles before it yields in its plane.
-fn buckling(material: &SheetMaterial, narrowest: &LigamentEstimate) -> Option<Verdict> {
+fn buckling(material: &SheetMaterial, narrowest: &LigamentEstimate) -> Option<Finding> {
     let yields = yield_strain(material);
     let buckles = 0.5 / narrowest.slenderness.powi(2);
     (buckles >= yields).then(|| {
@@ -209,12 +196,12 @@ fn buckling(material: &SheetMaterial, narrowest: &LigamentEstimate) -> Option<Ve
              {buckles:.4} for {} mm: their windows converge in small increments or not at all",
             narrowest.w_lig
         );
-        verdict(Severity::Warning, message)
+        Severity::Warning.finding(message)
     })
 }
 
 /// Width over thickness against the range for which hinge data exist.
-fn slenderness(ligaments: &[LigamentEstimate]) -> Option<Verdict> {
+fn slenderness(ligaments: &[LigamentEstimate]) -> Option<Finding> {
     let [least, most] = KNOWN_SLENDERNESS;
     // Rounding of a width given as a multiple of the thickness.
     let slack = 1e-9;
@@ -232,12 +219,12 @@ fn slenderness(ligaments: &[LigamentEstimate]) -> Option<Verdict> {
              campaign",
             found.join(", of ")
         );
-        verdict(Severity::Warning, message)
+        Severity::Warning.finding(message)
     })
 }
 
 /// Gamma at the intended panel edge.
-fn panels(intended: &Intended, ligaments: &[LigamentEstimate]) -> Option<Verdict> {
+fn panels(intended: &Intended, ligaments: &[LigamentEstimate]) -> Option<Finding> {
     let pitch = intended.pitch?;
     let least = ligaments
         .iter()
@@ -255,11 +242,11 @@ fn panels(intended: &Intended, ligaments: &[LigamentEstimate]) -> Option<Verdict
         (Severity::Note, enough)
     };
     let message = format!("{at}, for a sheet that lies on a surface: {weight}");
-    Some(verdict(severity, message))
+    Some(severity.finding(message))
 }
 
 /// The strain at the tip against the fracture strain.
-fn fracture(material: &SheetMaterial, intended: &Intended, ligament: &LigamentEstimate) -> Verdict {
+fn fracture(material: &SheetMaterial, intended: &Intended, ligament: &LigamentEstimate) -> Finding {
     let [least, most] = ligament.tip_strain;
     let limit = material.fracture_strain;
     let at = format!(
@@ -274,7 +261,7 @@ fn fracture(material: &SheetMaterial, intended: &Intended, ligament: &LigamentEs
         (_, true) => (Severity::Warning, "may tear at its tip"),
         _ => (Severity::Note, "does not tear"),
     };
-    verdict(severity, format!("{at}: the ligament {tears}"))
+    severity.finding(format!("{at}: the ligament {tears}"))
 }
 
 #[cfg(test)]

@@ -7,10 +7,10 @@ mod tables;
 
 pub use agreement::{Agreement, OpeningSpread, Spread};
 
-use design::analysis::marks::FittedPoint;
 use design::analysis::measured_openings::{
     MeasuredOpening, MeasuredPanel, openings, scatter, slip,
 };
+use design::analysis::measured_points::FittedPoint;
 use design::analysis::measured_sheet::MeasuredSheet;
 use design::analysis::path_fit::Fit;
 use design::geometry::plane::point;

@@ -2,10 +2,10 @@
 
 mod budget;
 pub(crate) mod columns;
+mod creep_and_springback;
 mod estimate;
 mod fact_sheet;
 mod hinge_row;
-mod lasting_shape;
 mod rules;
 mod self_weight;
 mod text;
@@ -18,15 +18,15 @@ pub(crate) use fact_sheet::{extent, miss};
 pub(crate) use text::worst_first;
 
 pub use budget::Budget;
+pub use creep_and_springback::{CreepAndSpringback, Released};
 pub use estimate::Estimate;
-pub use fact_sheet::{FactSheet, Reached, SpotCheck, WeightFacts};
+pub use fact_sheet::{FactSheet, Reached, SpotCheckFacts, WeightFacts};
 pub use hinge_row::HingeRow;
-pub use lasting_shape::{LastingShape, Released};
 pub use self_weight::{Lying, SelfWeight};
 pub use warning::{Concern, Warning};
 
 use crate::cut_file::{CutLines, FabricationError};
-use crate::report::rules::{Judged, JudgedRun};
+use crate::report::rules::{RuleInput, RunContext};
 use design::analysis::error_budget::ErrorBudget;
 use design::objective::design_problem::Deployment;
 use design::objective::scores::Scores;
@@ -76,7 +76,7 @@ pub fn warnings(
     deployment: &Deployment,
     cuts: &Result<CutLines, FabricationError>,
 ) -> Vec<Warning> {
-    rules::warnings(&Judged {
+    rules::warnings(&RuleInput {
         scene,
         deployment,
         cuts,
@@ -106,7 +106,7 @@ impl Report {
         miss(self.after.outline_error, self.facts.flat_size)
     }
 
-    /// The searches at coarser levels: what each is worth by the next finer one.
+    /// The searches at coarser levels: the error of each, measured by the next finer one.
     pub fn climb(&self) -> Vec<String> {
         let rungs = self.rungs.iter().map(|rung| {
             let percent = |load| format!(", the load by {} %", rounded(100.0 * load, 2));
@@ -138,7 +138,7 @@ impl Report {
                 }
                 0 => "that is less than the mesh of the windows is known to: see its row of the error budget".into(),
                 _ => format!(
-                    "searched on at `{}`, and no level is finer: `kirigami verify --equilibrium` judges by finite elements",
+                    "searched on at `{}`, and no level is finer: `kirigami verify --equilibrium` compares with finite elements",
                     self.facts.level
                 ),
             });
@@ -179,12 +179,12 @@ impl Report {
         let budget = errors
             .map(|errors| Budget::new(errors, &facts.self_weight, dead_loads, facts.target_state));
         let after = Scores::new(&designed.problem.objective, &designed.best);
-        let warnings = rules::warnings(&Judged {
+        let warnings = rules::warnings(&RuleInput {
             scene,
             deployment,
             cuts,
             hinges: &hinges,
-            run: Some(JudgedRun {
+            run: Some(RunContext {
                 designed,
                 facts: &facts,
                 after: &after,

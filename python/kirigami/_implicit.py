@@ -53,7 +53,7 @@ def solve(problem: Problem, inputs: Inputs) -> Solution:
 
 
 def pullback(problem: Problem, inputs: Inputs, solution: Solution) -> Inputs:
-    """The gradient in the inputs. The outputs of `solution` are the gradient in them, its configuration is that of the equilibrium."""
+    """The gradient in the inputs. The outputs of `solution` are the gradient in them, its configuration is the equilibrium's."""
     lead = inputs.x.shape[:-1]
     count = int(np.prod(lead))
 

@@ -1,4 +1,4 @@
-"""Types of the compiled part. The docstrings are those of the classes."""
+"""Types of the compiled part. The classes have the docstrings."""
 
 import os
 from collections.abc import Callable, Sequence
@@ -126,7 +126,7 @@ class Deployment:
     @property
     def corners(self) -> _Doubles: ...
     @property
-    def corners_let_go(self) -> _Doubles | None: ...
+    def corners_unloaded(self) -> _Doubles | None: ...
     @property
     def deformation(self) -> _Doubles: ...
     @property

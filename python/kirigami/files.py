@@ -25,7 +25,7 @@ def read_scene(path: str | os.PathLike[str]) -> dict[str, Any]:
 def read_database(path: str | os.PathLike[str], library: str = "polars") -> Any:
     """A database of hinge states (Parquet) as a frame of Polars or of pandas, which read it themselves.
 
-    One row is a converged increment of a ray; the manifest beside it (`X.json`) holds units, counts and split.
+    One row is a converged increment of a ray; the manifest next to it (`X.json`) holds units, counts and split.
     """
     if library == "polars":
         import polars

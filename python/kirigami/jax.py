@@ -31,14 +31,14 @@ class Equilibrium(NamedTuple):
     reactions: jax.Array
     """Forces (F_x, F_y, M) by which the supports hold the panels (N, N, N mm), shape (panels, 3)."""
     load_factor: jax.Array
-    """zeta: 1 under dead loads; under a prescribed stroke the load over that of the scene."""
+    """zeta: 1 under dead loads; under a prescribed stroke the load over the load of the scene."""
 
 
 def equilibrium(problem: Problem) -> Callable[..., Equilibrium]:
     """The function f(x, loads=None, thickness=None, stress=None) -> Equilibrium of a problem.
 
     x: design, shape (size,); loads: (F_x, F_y, M) on every panel, shape (panels, 3); thickness (mm); stress: all stresses at equal strain
-    over those of the material. What is not given is the scene's. Its reverse-mode derivative is implicit: one adjoint solve.
+    over the stresses of the material. What is not given is the scene's. Its reverse-mode derivative is implicit: one adjoint solve.
 
     Raises TypeError without double precision, and where a derivative in thickness or stress does not exist. Inside of compiled functions an
     equilibrium that is not found is raised by JAX, with the message of NoEquilibrium.

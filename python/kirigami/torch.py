@@ -26,7 +26,7 @@ class Equilibrium(NamedTuple):
     reactions: torch.Tensor
     """Forces (F_x, F_y, M) by which the supports hold the panels (N, N, N mm), shape (..., panels, 3)."""
     load_factor: torch.Tensor
-    """zeta: 1 under dead loads; under a prescribed stroke the load over that of the scene."""
+    """zeta: 1 under dead loads; under a prescribed stroke the load over the load of the scene."""
 
 
 def equilibrium(
@@ -39,7 +39,7 @@ def equilibrium(
     """The equilibrium of a problem at full load, differentiable once.
 
     x: designs, shape (..., size), float64; loads: (F_x, F_y, M) on every panel, shape (..., panels, 3); thickness (mm), shape (...);
-    stress: all stresses at equal strain over those of the material, shape (...). What is not given is the scene's. A batch is solved over
+    stress: all stresses at equal strain over the stresses of the material, shape (...). What is not given is the scene's. A batch is solved over
     all threads.
 
     Raises TypeError for other than double precision, and where a derivative in thickness or stress does not exist; NoEquilibrium; and in the

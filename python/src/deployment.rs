@@ -122,8 +122,8 @@ impl Deployment {
     /// Corners of the panels after the loads were taken off (mm), shape (panels, 4, 2); None unless the target of the scene is for that
     /// state (`objective.target_state`).
     #[getter]
-    fn corners_let_go<'py>(&self, py: Python<'py>) -> PyResult<Option<Doubles<'py>>> {
-        if self.deployment.let_go().is_none() {
+    fn corners_unloaded<'py>(&self, py: Python<'py>) -> PyResult<Option<Doubles<'py>>> {
+        if self.deployment.unloaded().is_none() {
             return Ok(None);
         }
         let state = self.deployment.at_target_state().map_err(errors::design)?;

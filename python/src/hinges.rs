@@ -5,7 +5,7 @@ use crate::arrays::{
 };
 use crate::errors;
 use design::hinge_law::{HingeDamage, HingeEnergy, Order, PreparedLaw, PreparedSurrogate};
-use hinge::{HingeConstants, HingeDeformation, HingeDesign};
+use hinge::{DesignGradient, HingeConstants, HingeDeformation, HingeDesign};
 use numpy::PyArrayDyn;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -55,7 +55,7 @@ pub(crate) struct HingeStates {
 
 #[pymethods]
 impl Surrogate {
-    /// Weights (.safetensors) with the card (.json) beside them, and further networks of the same training, whose
+    /// Weights (.safetensors) with the card (.json) next to them, and further networks of the same training, whose
     /// disagreement is the spread.
     #[staticmethod]
     #[pyo3(signature = (weights, ensemble=Vec::new()))]
@@ -281,14 +281,18 @@ impl HingeStates {
     #[getter]
     fn by_design<'py>(&self, py: Python<'py>) -> PyResult<Doubles<'py>> {
         self.needs(Order::Design, "design")?;
-        Ok(self.column(py, |energy| energy.design, &[3]))
+        Ok(self.column(py, |energy| energy.design.to_array(), &[3]))
     }
 
     /// d2W/d(a, s, theta)d(w_lig, alpha, hole), shape (..., 3, 3).
     #[getter]
     fn forces_by_design<'py>(&self, py: Python<'py>) -> PyResult<Doubles<'py>> {
         self.needs(Order::Design, "design")?;
-        Ok(self.column(py, |energy| flat(energy.mixed), &[3, 3]))
+        Ok(self.column(
+            py,
+            |energy| flat(energy.mixed.map(DesignGradient::to_array)),
+            &[3, 3],
+        ))
     }
 
     /// D, the mean plastic strain of the ligament over that at fracture; nan outside the training domain, where it is not known.
@@ -404,7 +408,7 @@ fn prepared(network: &Arc<surrogate::Surrogate>, designs: &[HingeDesign]) -> Vec
         .collect()
 }
 
-/// What a law says of the states of each chunk.
+/// The values of a law at the states of each chunk.
 fn by_chunk<T: Send>(
     laws: &[Law],
     states: &[HingeDeformation],

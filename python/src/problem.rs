@@ -7,7 +7,7 @@ use crate::deployment::{Deployment, State};
 use crate::errors;
 use crate::flat_sheet::Sheet;
 use crate::waiting::while_polling;
-use design::equilibrium::nearby_path::KnownPath;
+use design::equilibrium::warm_start::WarmStart;
 use design::objective::response::{Conditions, Response, ResponseCotangent, ResponseGradient};
 use design::scene::design_run::{design_of_run, stored_design};
 use design::scene::run_inputs::scene_file;
@@ -50,13 +50,13 @@ struct Warm {
 /// Load steps that are known, and how many solves have been corrected from one another since the last followed path.
 #[derive(Default)]
 struct Known {
-    path: Option<Arc<KnownPath>>,
+    path: Option<Arc<WarmStart>>,
     corrected: usize,
 }
 
 impl Known {
     /// The path to start from; none when the next one is to be followed from the flat sheet.
-    fn usable(&self, follow_every: usize) -> Option<Arc<KnownPath>> {
+    fn usable(&self, follow_every: usize) -> Option<Arc<WarmStart>> {
         self.path
             .clone()
             .filter(|_| self.corrected + 1 < follow_every)
@@ -68,7 +68,7 @@ impl Known {
         } else {
             self.corrected + 1
         };
-        self.path = Some(Arc::new(deployment.known_path()));
+        self.path = Some(Arc::new(deployment.warm_start()));
     }
 }
 
@@ -495,7 +495,7 @@ impl Problem {
         self.warm.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    fn known(&self, warm: bool, part: impl Fn(&Warm) -> &Known) -> Option<Arc<KnownPath>> {
+    fn known(&self, warm: bool, part: impl Fn(&Warm) -> &Known) -> Option<Arc<WarmStart>> {
         let follow_every = self.scene.config.solver.follow_every;
         part(&self.warm()).usable(follow_every).filter(|_| warm)
     }

@@ -91,7 +91,7 @@ def test_an_equilibrium_that_is_not_found_is_raised_with_the_words_of_the_comman
 
 
 def test_an_optimiser_of_its_own(problem, equilibrium):
-    """Gradient descent on an objective of the test: the corners onto those of another design."""
+    """Gradient descent on an objective of the test: the corners onto the corners of another design."""
     target = equilibrium(problem.start + 0.05 * np.random.default_rng(2).standard_normal(problem.size)).corners
     loss = jax.jit(jax.value_and_grad(lambda x: jnp.mean((equilibrium(x).corners - target) ** 2)))
     x, values = jnp.asarray(problem.start), []

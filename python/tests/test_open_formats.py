@@ -74,7 +74,7 @@ def test_a_run_folder_is_read_back(program, tmp_path):
 def test_the_stubs_are_those_of_the_module(tmp_path):
     pytest.importorskip("mypy")
     command = [sys.executable, "-m", "mypy.stubtest", "kirigami._kirigami"]
-    # Elsewhere than beside the sources, which have no compiled part.
+    # Elsewhere than next to the sources, which have no compiled part.
     checked = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path)
     assert checked.returncode == 0, checked.stdout
 

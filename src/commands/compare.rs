@@ -5,7 +5,7 @@ use crate::commands::points_file::PointsFile;
 use crate::ui::{picture, run_folder};
 use anyhow::{Context, Result, ensure};
 use clap::Args;
-use design::analysis::marks::Mark;
+use design::analysis::measured_points::Mark;
 use design::analysis::measured_sheet::MeasuredSheet;
 use design::analysis::shape_path::ShapePath;
 use design::scene::Scene;
@@ -64,7 +64,7 @@ impl CompareCommand {
         let deployment = problem.deploy(&design)?;
         if deployment.released.is_some() {
             eprintln!(
-                "note: the target of this scene is for the sheet let go; the points are compared with the sheet under load, on its way to full load"
+                "note: the target of this scene is for the unloaded sheet; the points are compared with the sheet under load, on its way to full load"
             );
         }
         let path = ShapePath::new(&problem, &deployment);

@@ -273,7 +273,7 @@ impl Display for Written {
     }
 }
 
-/// What a service says of a sheet.
+/// The answer of a service to a sheet.
 #[derive(Clone, Serialize)]
 pub(crate) struct Verdict {
     name: String,
@@ -281,7 +281,7 @@ pub(crate) struct Verdict {
     refuses: Vec<String>,
 }
 
-/// The file of a machine, and what services say of it.
+/// The file of a machine, and the answers of services to it.
 struct MachineFile {
     /// The design.
     named: String,

@@ -47,7 +47,7 @@ pub struct DesignCommand {
     level: Option<Level>,
     /// How accurately the corners of the panels are to be known: a length such as 0.5mm, or a part of the longer side of the sheet
     /// such as 0.2%. The search runs at the cheapest level, `draft`, and goes up until the difference to the next finer level is
-    /// smaller; that level judges the design
+    /// smaller; that level evaluates the design
     #[arg(long, value_name = "ACCURACY", value_parser = with_unit::accuracy, conflicts_with_all = ["level", "steps"])]
     within: Option<Accuracy>,
     /// Run folder, instead of the scene's. Of several runs: the folder of the table, designs.md and designs.csv, and of the
@@ -62,7 +62,7 @@ pub struct DesignCommand {
     #[arg(long, value_name = "N")]
     steps: Option<usize>,
     /// First fit outline, cuts and pulls of the sheet, a rectangle that stands for its stock, and the place of the target to each other,
-    /// as `init --target` does. What the scene says of these, of posture, weights of the objective and optimiser is replaced; the run's
+    /// as `init --target` does. What the scene states of these, of posture, weights of the objective and optimiser is replaced; the run's
     /// scene.toml has what was chosen
     #[arg(long)]
     fit: bool,
@@ -99,7 +99,7 @@ impl DesignCommand {
                     let folder = scene.output().canonicalize()?;
                     println!("{report}\nwritten to {}", folder.display());
                 }
-                judge(&scene, &report, &ended)
+                check(&scene, &report, &ended)
             }
             _ => {
                 ensure!(
@@ -164,13 +164,13 @@ impl DesignCommand {
         let (mut left, mut failed, mut done) = (runs.len(), 0, 0);
         let work = |i: usize, reports: &Reports<(usize, Result<()>)>| {
             let designed = self.design(&scenes[i], &mut |_, _| {});
-            let judged = designed.and_then(|(report, ended)| judge(&scenes[i], &report, &ended));
-            reports.send((i, judged));
+            let ended = designed.and_then(|(report, ended)| check(&scenes[i], &report, &ended));
+            reports.send((i, ended));
         };
-        work_through(runs.len(), workers, stop, &work, &mut |(i, judged)| {
+        work_through(runs.len(), workers, stop, &work, &mut |(i, ended)| {
             done += 1;
             bar.show(done, None, &runs[i].file.display().to_string());
-            match judged {
+            match ended {
                 Ok(()) => left -= 1,
                 Err(error) if error.is::<Unfinished>() => {}
                 Err(error) => {
@@ -351,7 +351,7 @@ pub(crate) fn write_run(scene: &Scene, designed: &Designed, force: bool) -> Resu
 }
 
 /// An error if a run is not at its end, or has no cut file.
-fn judge(scene: &Scene, report: &Report, ended: &Ended) -> Result<()> {
+fn check(scene: &Scene, report: &Report, ended: &Ended) -> Result<()> {
     match ended {
         Ended::Completed | Ended::Settled => {}
         Ended::Stopped => bail!(Unfinished::new(

@@ -285,11 +285,11 @@ fn readme(folder: &Path, template: &Template, regime: Regime, trained: bool) -> 
     let (jobs, database) = (path("campaign"), path("hinges.parquet"));
     let (weights, training) = (path("weights.safetensors"), path(TRAINING));
     let (learned, learned_weights) = (path("learned"), path("learned/weights.safetensors"));
-    let judge = match regime {
+    let check = match regime {
         Regime::Film => "--equilibrium   # the deployed sheet by finite elements of its ligaments",
         Regime::Plate => "--sheet   # the whole sheet by finite elements: whether it stays flat",
     };
-    let design = format!("kirigami design {scene}\nkirigami verify {scene} {judge}\n");
+    let design = format!("kirigami design {scene}\nkirigami verify {scene} {check}\n");
     let learn = format!("kirigami material learn {material} --out {learned}\n");
     let with = format!("kirigami design {scene} --weights {learned_weights} --restart\n");
     let campaign = format!(

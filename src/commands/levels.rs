@@ -15,7 +15,7 @@ use std::path::PathBuf;
 /// Deploys the design of the scene's run, or its start design, at every level for which the scene names networks and at those below,
 /// and times ten steps of the search at each. The difference to the finest level is the estimate of a level's error. What no level
 /// lowers, such as the errors of the mesh and of the material, is listed below the table. `kirigami design --within` chooses the level
-/// by itself; docs/CHOOSE.md explains the levels; `kirigami verify` judges the finest one by finite elements.
+/// by itself; docs/CHOOSE.md explains the levels; `kirigami verify` compares the finest one with finite elements.
 /// Example: kirigami levels configs/scenes/a4-plate.toml --picture runs/levels.svg
 #[derive(Args)]
 pub struct LevelsCommand {

@@ -2,7 +2,7 @@
 
 use anyhow::{Context, Error, Result, anyhow, bail, ensure};
 use clap::ValueEnum;
-use design::analysis::marks::{Mark, MeasuredPoint};
+use design::analysis::measured_points::{Mark, MeasuredPoint};
 use design::analysis::measured_sheet::{MeasurementError, PointFault};
 use design::geometry::similarity::Scale;
 use std::path::{Path, PathBuf};

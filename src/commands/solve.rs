@@ -1,7 +1,7 @@
 //! `kirigami solve`: one window solved along one ray or recorded path, printed as a table.
 
 use crate::commands::input_file;
-use crate::commands::solve_args::LIMIT;
+use crate::commands::solve_args::{FeSolver, LIMIT};
 use crate::commands::window_args::WindowArgs;
 use crate::ui::exit::Unfinished;
 use crate::ui::progress::watched;
@@ -9,9 +9,7 @@ use crate::ui::table::{Table, table};
 use crate::ui::{interrupt, run_folder};
 use anyhow::{Error, Result, bail};
 use clap::Args;
-use fe_driver::{
-    CalculiX, DeformationPath, HingePath, Solver, WindowProblem, WindowSolve, reached,
-};
+use fe_driver::{DeformationPath, HingePath, Solver, WindowProblem, WindowSolve, reached};
 use hinge::{HingeDeformation, HingeSample, SheetMaterial};
 use mesher::Tier;
 use serde_json::json;
@@ -79,9 +77,9 @@ impl SolveCommand {
         let material = SheetMaterial::load(&self.material)?;
         let _held = run_folder::hold(&self.out)?;
         let stop = interrupt::stop_flag()?;
-        let solver = CalculiX {
+        let solver = FeSolver {
             print_all: true,
-            ..CalculiX::find()?
+            ..FeSolver::find()?
         };
         let problem = WindowProblem::new(HingePath { design, path }, &material, self.tier);
         let solve = WindowSolve::new(problem, &solver.versions());

@@ -7,12 +7,15 @@ use crate::ui::processors;
 use crate::ui::progress::Progress;
 use anyhow::Result;
 use clap::Args;
-use fe_driver::{CalculiX, Solve, SolveListError, SolveService, SolveStore, Solver};
+use fe_driver::{Solve, SolveListError, SolveService, SolveStore, Solver};
 use std::cell::RefCell;
 use std::num::NonZeroUsize;
 use std::path::Path;
 use std::time::Duration;
 use verification::VerificationError;
+
+/// The solver of windows and sheets of every command.
+pub use fe_driver::CalculiX as FeSolver;
 
 /// Time limit of a window solve, unless a campaign states another.
 pub const LIMIT: Duration = Duration::from_secs(3600);
@@ -43,7 +46,7 @@ impl SolveArgs {
                 bar.finish();
             }
         };
-        self.service_of(CalculiX::find()?, folder, progress)
+        self.service_of(FeSolver::find()?, folder, progress)
     }
 
     /// Solves problems of one kind, and keeps them in the folder `solves` of `folder`.

@@ -15,7 +15,7 @@ use std::sync::Arc;
 
 /// Draw a sheet in the browser, watch it open, and design it
 ///
-/// Serves one page on 127.0.0.1, to nobody else and without a network, and opens the browser. Ctrl-C ends it. A scene or a run is
+/// Serves one page on 127.0.0.1, to this computer alone and without a network, and opens the browser. Ctrl-C ends it. A scene or a run is
 /// copied to a folder below runs/studio; everything that the page does is a scene there, which `kirigami design` repeats.
 /// docs/STUDIO.md is the tutorial. Examples:
 /// kirigami studio;

@@ -128,9 +128,9 @@ impl TrainCommand {
                 "{others} of the rays were solved on another mesh than the campaign's, and are used"
             );
         }
-        let (database, judged) = database.corrected()?;
-        if let Some(judged) = judged {
-            println!("{}\n", correction(&judged)?);
+        let (database, checked) = database.corrected()?;
+        if let Some(checked) = checked {
+            println!("{}\n", correction(&checked)?);
         }
         Ok(database)
     }
@@ -180,11 +180,11 @@ impl TrainCommand {
     /// Writes weights, last weights, curves and plots of one training, and prints its errors.
     fn write(&self, trained: &Trained) -> Result<()> {
         trained.surrogate.save(&self.out)?;
-        trained.last.save(&self.beside("last.safetensors"))?;
+        trained.last.save(&self.with_suffix("last.safetensors"))?;
         self.write_curve(&trained.history)?;
         let axes = ["finite elements", "surrogate"];
         let parity = charts::parity(&trained.parity.states, QUANTITIES, axes)?;
-        picture::save(&parity, &self.beside("parity"), 2000)?;
+        picture::save(&parity, &self.with_suffix("parity"), 2000)?;
         println!("{}\n", error_table(&trained.test_errors, UNSEEN));
         println!("{}\n", bin_table(&trained.surrogate.card().error_bins));
         if let Some(last) = trained.history.last() {
@@ -204,7 +204,7 @@ impl TrainCommand {
     }
 
     /// `<stem>-<suffix>` next to the weights.
-    fn beside(&self, suffix: &str) -> PathBuf {
+    fn with_suffix(&self, suffix: &str) -> PathBuf {
         let stem = self.out.file_stem().unwrap_or_default().to_string_lossy();
         self.out.with_file_name(format!("{stem}-{suffix}"))
     }
@@ -228,7 +228,7 @@ impl TrainCommand {
                 e.elapsed_s
             )?;
         }
-        let stem = self.beside("learning-curve");
+        let stem = self.with_suffix("learning-curve");
         output_file::write(&stem.with_extension("csv"), csv)?;
         let losses = |of: fn(&Epoch) -> f64| -> Vec<f64> { history.iter().map(of).collect() };
         let (training, validation) = (losses(|e| e.training_loss), losses(|e| e.validation_loss));

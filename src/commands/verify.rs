@@ -20,8 +20,8 @@ use std::num::NonZeroUsize;
 use std::path::PathBuf;
 use surrogate::{Springback, Surrogate};
 use verification::{
-    ElementWindows, ReleasedByElements, Replay, SheetErrors, balanced, judging_tier,
-    recorded_paths, released_by_elements,
+    ElementWindows, ReleasedByElements, Replay, SheetErrors, balanced, recorded_paths,
+    released_by_elements, verification_tier,
 };
 
 /// Solve the hinges of a design by finite elements, along their paths in the sheet
@@ -35,7 +35,7 @@ use verification::{
 #[derive(Args)]
 pub struct VerifyCommand {
     #[command(flatten)]
-    judged: Inspected,
+    inspected: Inspected,
     /// Number of hinges to solve, spread evenly over the sheet [default: all]
     #[arg(long, value_name = "N", value_parser = count::<NonZeroUsize>)]
     sample: Option<NonZeroUsize>,
@@ -90,14 +90,14 @@ impl Display for Released {
 
 impl VerifyCommand {
     pub(crate) fn run(&self) -> Result<()> {
-        let (scene, design, name) = self.judged.read()?;
+        let (scene, design, name) = self.inspected.read()?;
         if self.sheet {
             return self.whole_sheet(&scene, &design, &name);
         }
         let surrogate = scene
             .surrogate()
             .context("only a surrogate can be verified: set level = \"standard\" in the scene")?;
-        let tier = judging_tier(self.tier, surrogate)?;
+        let tier = verification_tier(self.tier, surrogate)?;
         if self.equilibrium {
             self.balance(&scene, &design, name, tier)
         } else {

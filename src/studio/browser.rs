@@ -57,7 +57,7 @@ extern "C" fn answer() {
     });
 }
 
-/// Computes the everyday level of a sheet that nobody has changed for a moment.
+/// Computes the everyday level of a sheet that has not changed for a moment.
 #[unsafe(no_mangle)]
 extern "C" fn rest() {
     with(|studio| {

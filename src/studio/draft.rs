@@ -1,7 +1,7 @@
 //! Drafts: the sheet at full load, next to the last one, as it is shown while something is dragged and in every step of a search.
 
 use crate::studio::everyday::milliseconds;
-use design::equilibrium::nearby_path::KnownPath;
+use design::equilibrium::warm_start::WarmStart;
 use design::optimise::outer_loop::SearchState;
 use design::scene::Scene;
 use design::{Deployment, DesignError, DesignProblem, DesignVector};
@@ -50,7 +50,7 @@ pub(super) struct Steps {
     /// When the first step of this session was made, and which.
     first: Option<(Instant, usize)>,
     last: Option<Instant>,
-    known: Option<KnownPath>,
+    known: Option<WarmStart>,
 }
 
 impl Steps {
@@ -69,7 +69,7 @@ impl Steps {
         let made = step.saturating_sub(first_step);
         let left = of.saturating_sub(step) as f64 * first.elapsed().as_secs_f64() / made as f64;
         let deployment = draft(problem, search.last_design(), self.known.as_ref()).ok();
-        self.known = deployment.as_ref().map(Deployment::known_path);
+        self.known = deployment.as_ref().map(Deployment::warm_start);
         self.last = Some(Instant::now());
         Some(Step {
             step,
@@ -85,7 +85,7 @@ impl Steps {
 pub(super) fn draft(
     problem: &DesignProblem,
     design: &DesignVector,
-    known: Option<&KnownPath>,
+    known: Option<&WarmStart>,
 ) -> Result<Deployment, DesignError> {
     let deployment = match problem.model.mechanics() {
         Some(_) => problem.draft(design, known)?.deployment,

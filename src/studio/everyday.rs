@@ -3,7 +3,7 @@
 use crate::studio::event::{Event, Kind};
 use crate::ui::exit::message;
 use anyhow::{Context, Result};
-use design::equilibrium::nearby_path::KnownPath;
+use design::equilibrium::warm_start::WarmStart;
 use design::scene::Scene;
 use design::scene::design_run::Designed;
 use output::cut_file::CutLines;
@@ -84,7 +84,7 @@ struct Wanted {
     /// Ends the computation that is under way, of which nothing is shown then.
     stop: Arc<AtomicBool>,
     /// The path of the last one that was shown.
-    path: Option<KnownPath>,
+    path: Option<WarmStart>,
 }
 
 impl Everyday {
@@ -121,7 +121,7 @@ impl Everyday {
     }
 
     /// Shows nothing of what is under way. Returns the path of the last computation that was shown, once.
-    pub fn stop(&self) -> Option<KnownPath> {
+    pub fn stop(&self) -> Option<WarmStart> {
         let mut wanted = self.lock();
         wanted.sheet = None;
         wanted.stop.store(true, Ordering::Relaxed);
@@ -188,7 +188,7 @@ pub(super) fn refusal(why: &str) -> Event {
 }
 
 /// The page of a sheet, and its path.
-fn page_of(sheet: &Resting, designed: &Designed, begin: Instant) -> (Event, KnownPath) {
+fn page_of(sheet: &Resting, designed: &Designed, begin: Instant) -> (Event, WarmStart) {
     let scene = sheet.scene();
     let best = &designed.best.deployment;
     let cuts = CutLines::of(scene, best);
@@ -196,5 +196,5 @@ fn page_of(sheet: &Resting, designed: &Designed, begin: Instant) -> (Event, Know
     let page = PageData::new(scene, designed, &report);
     let (run, ms) = (sheet.run(), Some(milliseconds(begin)));
     let event = Event::new(Kind::Page, &Shown { page, run, ms });
-    (event, best.known_path())
+    (event, best.warm_start())
 }

@@ -16,7 +16,7 @@ use crate::ui::run_folder;
 use crate::ui::shell_word::shell_word;
 use anyhow::{Context, Result, anyhow, ensure};
 use design::analysis::levels::levels;
-use design::equilibrium::nearby_path::KnownPath;
+use design::equilibrium::warm_start::WarmStart;
 use design::fit::scene::fitted;
 use design::objective::target::TargetShape;
 use design::optimise::outer_loop::Ended;
@@ -65,7 +65,7 @@ struct Opened {
     /// The page that made the last change, and the number of its changes; `None` if no page did, as after an undo.
     by: Option<(String, u64)>,
     /// The last equilibrium, from which a draft starts.
-    known: Option<KnownPath>,
+    known: Option<WarmStart>,
     /// The runs, each in a folder of its own.
     runs: Vec<Run>,
 }
@@ -280,7 +280,7 @@ impl Session {
         let sheet = self.opened_mut()?;
         let (scene, problem) = (&sheet.scene, sheet.scene.problem()?);
         let deployment = draft(&problem, &scene.start(), sheet.known.as_ref())?;
-        sheet.known = Some(deployment.known_path());
+        sheet.known = Some(deployment.warm_start());
         let draft = Draft::new(&sheet.scene, &problem, &deployment, begin);
         let event = Event::new(Kind::Draft, &draft);
         (self.listener)(event);
@@ -361,7 +361,7 @@ impl Session {
         };
         let shown = self.opened()?.scene.changed(adopted.clone())?;
         let sheet = self.show(shown)?;
-        sheet.known = Some(designed.best.deployment.known_path());
+        sheet.known = Some(designed.best.deployment.warm_start());
         // A run that went on is no longer what it was at its pause.
         let folder = scene.output();
         sheet.runs.retain(|run| run.scene.output() != folder);

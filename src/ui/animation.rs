@@ -133,7 +133,7 @@ mod tests {
         assert_eq!(found, expected);
     }
 
-    /// A frequent grey, a rare colour beside it, a rare colour far from it.
+    /// A frequent grey, a rare colour next to it, a rare colour far from it.
     #[test]
     fn the_palette_keeps_rare_colours_that_no_frequent_one_is_near_to() {
         let frame = [vec![[90; 3]; 50], vec![[90, 95, 92], [253, 231, 37]]].concat();

@@ -1,5 +1,4 @@
-//! Counts on the command line, each with an upper bound: a slip of the pen neither fills the memory nor starts a work without
-//! end.
+//! Counts on the command line, each with an upper bound that catches typing errors.
 
 /// Maximum of a count.
 const MOST: usize = 1_000_000;

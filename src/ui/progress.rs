@@ -148,7 +148,7 @@ mod tests {
         let resumed = Progress::new(1000, "steps");
         assert_eq!(resumed.seconds_left(400), None);
         std::thread::sleep(Duration::from_millis(20));
-        // 1 of 600 units says nothing, 300 say that the others take as long.
+        // 1 of 600 units is no measure; after 300 the others are expected to take as long.
         assert_eq!(resumed.seconds_left(401), None);
         let left = resumed.seconds_left(700).unwrap();
         assert!((0.02..10.0).contains(&left), "{left}");

@@ -37,6 +37,7 @@ pub mod table;
 pub mod text_file;
 pub mod text_table;
 pub mod toml_file;
+pub mod vectors;
 pub mod verbose;
 pub mod vtk;
 mod whole_arrays;

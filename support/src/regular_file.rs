@@ -54,7 +54,7 @@ fn without_following(options: &mut OpenOptions) -> &mut OpenOptions {
     std::os::unix::fs::OpenOptionsExt::custom_flags(options, libc::O_NOFOLLOW | libc::O_NONBLOCK)
 }
 
-/// Of a link, and of a pipe that nobody reads.
+/// Of a link, and of a pipe without a reader.
 #[cfg(unix)]
 fn is_link_or_pipe(error: &io::Error) -> bool {
     use nix::libc;

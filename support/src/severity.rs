@@ -1,4 +1,4 @@
-//! The severity of a finding.
+//! Findings: statements about a material, a design or a sheet, with their severity.
 
 use serde::Serialize;
 use std::fmt;
@@ -13,6 +13,29 @@ pub enum Severity {
     Warning,
     /// The sheet will not behave as computed, or cannot be cut: no cut file is written unless forced.
     Error,
+}
+
+/// A statement about a material or a sheet.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Finding {
+    /// The consequence.
+    pub severity: Severity,
+    /// The quantity, its limit and the consequence, in words.
+    pub message: String,
+}
+
+impl Severity {
+    /// A finding of this severity.
+    pub fn finding(self, message: String) -> Finding {
+        let severity = self;
+        Finding { severity, message }
+    }
+}
+
+impl fmt::Display for Finding {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        write!(f, "{}: {}", self.severity, self.message)
+    }
 }
 
 impl fmt::Display for Severity {

@@ -9,7 +9,7 @@ use std::path::Path;
 
 /// What separates cells, in the order of preference; a blank stands for any number of them.
 const SEPARATORS: [u8; 4] = *b";\t, ";
-/// Signs between groups of three digits beside `,` and `.`: blanks of every width, and the apostrophes of Switzerland.
+/// Signs between groups of three digits besides `,` and `.`: blanks of every width, and the apostrophes of Switzerland.
 const GROUPING: [char; 6] = [' ', '\u{a0}', '\u{2009}', '\u{202f}', '\'', '’'];
 
 /// The cells of a text; they are converted to numbers where they are used.

@@ -10,10 +10,7 @@ use std::path::{Path, PathBuf};
 
 /// Why a configuration file cannot be read; the message names the file, the line and the key.
 #[derive(Debug, thiserror::Error)]
-#[allow(
-    missing_docs,
-    reason = "the message of each variant is its documentation"
-)]
+#[allow(missing_docs, reason = "the message of a variant is its documentation")]
 pub enum ConfigError {
     #[error("cannot read {0}")]
     Read(#[from] FileError),

@@ -10,7 +10,7 @@ use tempfile::NamedTempFile;
 
 /// Writes `bytes` to `path`, whose folder must exist, as described at [`Unnamed`].
 pub fn write(path: &Path, bytes: &[u8]) -> io::Result<()> {
-    let mut file = Unnamed::beside(path)?;
+    let mut file = Unnamed::next_to(path)?;
     file.file().write_all(bytes)?;
     file.name(path)
 }
@@ -24,7 +24,7 @@ pub struct Unnamed(NamedTempFile);
 
 impl Unnamed {
     /// An empty temporary file in the folder of `path`, which must exist.
-    pub fn beside(path: &Path) -> io::Result<Self> {
+    pub fn next_to(path: &Path) -> io::Result<Self> {
         let name = path.file_name().unwrap_or_default();
         let mut file = tempfile::Builder::new();
         file.prefix(name).rand_bytes(RANDOM).suffix(SUFFIX);

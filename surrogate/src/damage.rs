@@ -1,4 +1,4 @@
-//! D and D_peak of (14), and their gradients in the hinge deformation and in (w_lig, alpha, rho_f).
+//! D and D_peak of (14), and their gradients.
 //!
 //! ```text
 //! D = D_s softplus(beta chi_D(xi)) / beta,   softplus(y) = log(1 + e^y)
@@ -6,27 +6,27 @@
 //!
 //! D_peak has the same form, with its own network and scale.
 
-use crate::features::{FEATURES, features, pull_back};
+use crate::features::{features, pull_back};
+use crate::mlp_kernels::{Passes, chunk_size};
 use crate::network::Network;
-use crate::passes::{Passes, chunk_size};
-use crate::seen_hinge;
-use hinge::{HingeDeformation, HingeDesign, NetLigament};
+use crate::reference_ligament;
+use hinge::{HingeDeformation, HingeDesign, HingeGradient, NetLigament};
 
 /// Damage measures of one hinge and their gradients.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct HingeDamage {
     /// D, the consumed fraction of the ligament's ductility: zero in an undamaged hinge.
     pub d: f64,
-    /// dD/d(a, s, theta, w_lig, alpha, rho_f).
-    pub gradient: [f64; FEATURES],
+    /// The gradient of D.
+    pub gradient: HingeGradient,
     /// D_peak, the plastic strain of the most strained part of the ligament, divided by the fracture strain. The
     /// ligament tears at 1. `None` if the weights do not predict it.
     pub d_peak: Option<f64>,
-    /// dD_peak/d(a, s, theta, w_lig, alpha, rho_f); zero without D_peak.
-    pub peak_gradient: [f64; FEATURES],
+    /// The gradient of D_peak; zero without it.
+    pub peak_gradient: HingeGradient,
 }
 
-/// One damage measure of each hinge, and its gradient in (a, s, theta, w_lig, alpha, rho_f).
+/// One damage measure of each hinge, and its gradient.
 ///
 /// `head` has one output; `sharpness` is beta; `seen` are the hinges that the networks see, with their maps. Without `with_gradient` the gradients are zero.
 pub(crate) fn evaluate(
@@ -35,7 +35,7 @@ pub(crate) fn evaluate(
     sharpness: f64,
     seen: &[(NetLigament, HingeDesign, HingeDeformation)],
     with_gradient: bool,
-) -> Vec<(f64, [f64; FEATURES])> {
+) -> Vec<(f64, HingeGradient)> {
     let size = chunk_size(seen.len(), 0);
     let mut damages = Vec::with_capacity(seen.len());
     Passes::lent(|passes| {
@@ -46,7 +46,11 @@ pub(crate) fn evaluate(
             let outputs: Vec<f64> = outputs.map(|&y| sharpness * y).collect();
             let value = |y: f64| scale / sharpness * softplus(y);
             if !with_gradient {
-                damages.extend(outputs.iter().map(|&y| (value(y), [0.0; FEATURES])));
+                damages.extend(
+                    outputs
+                        .iter()
+                        .map(|&y| (value(y), HingeGradient::default())),
+                );
                 continue;
             }
             let slopes: Vec<f64> = outputs.iter().map(|&y| logistic(y)).collect();
@@ -55,7 +59,10 @@ pub(crate) fn evaluate(
                 |(hinge, ((ligament, g, eps), y))| {
                     let gradient = passes.gradient(hinge).map(|slope| scale * slope);
                     let seen = pull_back(gradient, g, eps);
-                    (value(y), seen_hinge::gradient(ligament, seen, eps.theta))
+                    (
+                        value(y),
+                        reference_ligament::gradient(ligament, seen, eps.theta),
+                    )
                 },
             ));
         }

@@ -13,11 +13,11 @@
 
 use crate::features::{FEATURES, features, pull_back};
 use crate::hinge_energy::{DEFORMATION_FEATURES, DESIGN, HingeEnergy, Order};
+use crate::mlp_kernels::{Passes, chunk_size, packed_index, packed_len};
 use crate::network::Network;
-use crate::passes::{Passes, chunk_size, packed_index, packed_len};
-use crate::seen_hinge;
+use crate::reference_ligament;
 use faer::Mat;
-use hinge::{HingeDeformation, HingeDesign, NetLigament};
+use hinge::{HingeDeformation, HingeDesign, HingeGradient, NetLigament};
 use rayon::prelude::*;
 use std::cell::RefCell;
 use std::ops::Range;
@@ -101,7 +101,7 @@ pub(crate) fn evaluate(
         let seen: Vec<_> = std::iter::zip(&prepared.designs[chunk], deformations)
             .zip(ligaments)
             .map(|((design, deformation), ligament)| {
-                seen_hinge::seen(ligament, design, deformation)
+                reference_ligament::seen(ligament, design, deformation)
             })
             .collect();
         KERNEL.with_borrow_mut(|kernel| {
@@ -110,7 +110,7 @@ pub(crate) fn evaluate(
             hinges
                 .map(|(hinge, (ligament, (design, deformation)))| {
                     let energy = kernel.energy(hinge, design, deformation, energy_scale, order);
-                    seen_hinge::energy(ligament, energy, deformation.theta, order)
+                    reference_ligament::energy(ligament, energy, deformation.theta, order)
                 })
                 .collect()
         })
@@ -208,7 +208,7 @@ impl Kernel {
         }
     }
 
-    /// W_s |r|^2 of one hinge with its derivatives in (a, s, theta, w_lig, alpha, rho_f).
+    /// W_s |r|^2 of one hinge with its derivatives in deformation and design.
     fn energy(
         &self,
         hinge: usize,
@@ -232,8 +232,8 @@ impl Kernel {
                     twice * self.origin_gradient[self.n * p + hinge];
             }
         }
-        let [f_a, f_s, m_theta, by_design @ ..] = pull_back(gradient, design, deformation);
-        energy.forces = [f_a, f_s, m_theta];
+        let gradient = pull_back(gradient, design, deformation);
+        energy.forces = gradient.state;
         if order < Order::Tangent {
             return energy;
         }
@@ -241,18 +241,19 @@ impl Kernel {
         for (i, scale) in [design.w_lig, design.w_lig, 1.0].into_iter().enumerate() {
             let row: [f64; FEATURES] =
                 std::array::from_fn(|j| twice * self.second(hinge, i, j, order));
-            let [by_a, by_s, by_theta, by_design @ ..] =
-                pull_back(row, design, deformation).map(|value| value / scale);
-            energy.tangent[i] = [by_a, by_s, by_theta];
+            let row = pull_back(row, design, deformation).to_array();
+            let row = HingeGradient::from(row.map(|value| value / scale));
+            energy.tangent[i] = row.state;
             if order == Order::Design {
-                energy.mixed[i] = by_design;
+                energy.mixed[i] = row.design;
             }
         }
         if order == Order::Design {
-            energy.design = by_design;
+            energy.design = gradient.design;
             // The factor 1 / w_lig of dW/da and dW/ds depends on w_lig itself.
-            energy.mixed[0][0] -= f_a / design.w_lig;
-            energy.mixed[1][0] -= f_s / design.w_lig;
+            let [f_a, f_s, _] = energy.forces;
+            energy.mixed[0].w_lig -= f_a / design.w_lig;
+            energy.mixed[1].w_lig -= f_s / design.w_lig;
         }
         energy
     }

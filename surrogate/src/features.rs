@@ -6,7 +6,7 @@
 //!
 //! In weights that were trained at one radius of the hole, rho_f is no feature: the networks have five inputs.
 
-use hinge::{HingeDeformation, HingeDesign};
+use hinge::{HingeDeformation, HingeDesign, HingeGradient};
 use serde::{Deserialize, Serialize};
 
 /// Number of features, including the feature of the hole.
@@ -57,12 +57,12 @@ pub struct Standardisation {
     pub std: Vec<f64>,
 }
 
-/// Transforms a gradient in the features (13) to a gradient in (a, s, theta, w_lig, alpha, rho_f).
+/// Transforms a gradient in the features (13) to a gradient in deformation and design.
 pub(crate) fn pull_back(
     gradient: [f64; FEATURES],
     design: &HingeDesign,
     deformation: &HingeDeformation,
-) -> [f64; FEATURES] {
+) -> HingeGradient {
     let w = design.w_lig;
     let [eta_a, eta_s] = deformation.eta(w);
     let [by_eta_a, by_eta_s, by_theta, by_log_w, by_alpha, by_hole] = gradient;
@@ -74,4 +74,5 @@ pub(crate) fn pull_back(
         by_alpha,
         by_hole,
     ]
+    .into()
 }

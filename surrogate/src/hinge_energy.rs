@@ -1,6 +1,7 @@
 //! The energy of one hinge with its derivatives, and how many of them are computed.
 
 use crate::features::FEATURES;
+use hinge::DesignGradient;
 
 /// Number of features of the deformation; the others, log w_lig, alpha and rho_f, depend on the design only.
 pub(crate) const DEFORMATION_FEATURES: usize = 3;
@@ -40,8 +41,8 @@ pub struct HingeEnergy {
     pub forces: [f64; 3],
     /// d2W/d(a, s, theta)^2.
     pub tangent: [[f64; 3]; 3],
-    /// dW/d(w_lig, alpha, rho_f) at fixed (a, s, theta); rho_f is the radius of the hole over w_lig.
-    pub design: [f64; DESIGN],
-    /// d2W/d(a, s, theta)d(w_lig, alpha, rho_f).
-    pub mixed: [[f64; DESIGN]; 3],
+    /// dW/dg at fixed (a, s, theta).
+    pub design: DesignGradient,
+    /// d2W/d(a, s, theta)dg.
+    pub mixed: [DesignGradient; 3],
 }

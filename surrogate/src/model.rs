@@ -5,7 +5,7 @@ use crate::damage::{self, HingeDamage};
 use crate::energy::{self, Prepared};
 use crate::hinge_energy::{HingeEnergy, Order};
 use crate::network::{InvalidWeights, Layer, Network};
-use crate::seen_hinge;
+use crate::reference_ligament;
 use hinge::{
     HingeDeformation, HingeDesign, HingeSample, NetLigament, Regime, SheetMaterial, TrainingDomain,
 };
@@ -294,7 +294,8 @@ impl Surrogate {
         let seen: Vec<_> = std::iter::zip(designs, deformations)
             .map(|(design, deformation)| {
                 let ligament = NetLigament::new(design, self.card.hinge.fillet_ratio);
-                let (design, deformation) = seen_hinge::seen(&ligament, design, deformation);
+                let (design, deformation) =
+                    reference_ligament::seen(&ligament, design, deformation);
                 (ligament, design, deformation)
             })
             .collect();

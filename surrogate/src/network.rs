@@ -23,10 +23,7 @@ pub struct Layer {
 
 /// Why weights or a card are not valid.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[allow(
-    missing_docs,
-    reason = "the message of each variant is its documentation"
-)]
+#[allow(missing_docs, reason = "the message of a variant is its documentation")]
 pub enum InvalidWeights {
     #[error("tensor `{tensor}` is missing; train or export the weights again")]
     Missing { tensor: String },

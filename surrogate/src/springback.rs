@@ -24,6 +24,7 @@ use std::path::{Path, PathBuf};
 use support::file_error::FileError;
 use support::sealed_json::{self, SealError};
 use support::statistics::root_mean_square;
+use support::vectors::dot;
 use support::{regular_file, whole_file};
 
 /// The even and the odd terms: products of two of the factors (1, ln w_lig, eta_a, theta, alpha - 90 deg, eta_s), of which the last two
@@ -491,10 +492,6 @@ fn back(unit: &[[f64; 3]; 3], pivots: &[f64; 3], right: [f64; 3]) -> [f64; 3] {
 
 fn products<const T: usize>(factors: &[f64; 6], terms: &[[usize; 2]; T]) -> [f64; T] {
     terms.map(|[i, j]| factors[i] * factors[j])
-}
-
-fn dot<const N: usize>(x: &[f64; N], y: &[f64; N]) -> f64 {
-    std::iter::zip(x, y).map(|(x, y)| x * y).sum()
 }
 
 fn product<const T: usize, const N: usize>(terms: &[f64; T], rows: &[[f64; N]; T]) -> [f64; N] {

@@ -27,10 +27,7 @@ use support::sealed_json::{self, SealError};
 
 /// Why a surrogate could not be read or written.
 #[derive(Debug, thiserror::Error)]
-#[allow(
-    missing_docs,
-    reason = "the message of each variant is its documentation"
-)]
+#[allow(missing_docs, reason = "the message of a variant is its documentation")]
 pub enum WeightsError {
     #[error("cannot read {0}")]
     Read(#[source] FileError),

@@ -61,7 +61,7 @@ fn file(page: &mut String, described: &mut Described, title: &str, schema: &Valu
             writeln!(page, "{meaning}").unwrap();
         }
         if let Some(earlier) = described.get(name) {
-            writeln!(page, "The keys are those of {earlier}.").unwrap();
+            writeln!(page, "The same keys as {earlier}.").unwrap();
             continue;
         }
         describe(page, &types[name]);

@@ -85,7 +85,7 @@ fn a_project_without_weights_begins_with_its_campaign() {
         },
         |place, rays| {
             let widest = rays["w_lig"][1].as_float();
-            assert_eq!(widest, Some(75.0), "three times that of the film");
+            assert_eq!(widest, Some(75.0), "three times the film's");
             rays["count"] = value(if place == 0 { 6 } else { 1 });
             rays["finer"] = value(0);
             rays["theta_deg"] = value(Array::from_iter([-5.0, 15.0]));

@@ -73,7 +73,7 @@ fn a_plate_springs_back_and_one_of_twice_the_thickness_twice_as_far() {
     assert!(text.contains("of the opening stays") && text.contains("Not in these numbers"));
 }
 
-/// Outside the training domain the law says nothing, and no number is printed.
+/// Outside the training domain the law is not known, and no number is printed.
 #[test]
 fn what_stays_of_a_sheet_outside_the_domain_is_not_known() {
     let work = Workplace::new();
@@ -111,7 +111,7 @@ fn the_report_says_what_stays_by_the_law_that_the_scene_names() {
     four_panels(&work, "with.toml", &[output, (weights, &named)]);
     four_panels(&work, "without.toml", &[output]);
     let found = report(&work, "with.toml");
-    let found = found.pointer("/facts/lasting_shape").unwrap();
+    let found = found.pointer("/facts/creep_and_springback").unwrap();
     // The run has a copy of the law.
     let listed = work.output("inspect springback run --json");
     let listed: Value = serde_json::from_str(&listed).unwrap();
@@ -133,7 +133,7 @@ fn the_report_says_what_stays_by_the_law_that_the_scene_names() {
     let without = report(&work, "without.toml");
     assert!(
         without
-            .pointer("/facts/lasting_shape/released")
+            .pointer("/facts/creep_and_springback/released")
             .unwrap()
             .is_null()
     );
@@ -211,8 +211,11 @@ fn a_design_for_the_shape_that_stays() {
         number("/after/outline_error"),
     );
     assert!(after < 0.9 * before, "{before} {after}");
-    let [loaded, free] =
-        [0, 1].map(|i| number(&format!("/facts/lasting_shape/released/outline_error/{i}")));
+    let [loaded, free] = [0, 1].map(|i| {
+        number(&format!(
+            "/facts/creep_and_springback/released/outline_error/{i}"
+        ))
+    });
     assert!((free / after - 1.0).abs() < 1e-9, "{free} {after}");
     assert!((loaded / free - 1.0).abs() > 0.1, "{loaded} {free}");
     for (file, text) in [
@@ -221,7 +224,7 @@ fn a_design_for_the_shape_that_stays() {
             "report.txt",
             "after the loads were taken off; the target is for that state",
         ),
-        ("run.html", "\"let_go\":true"),
+        ("run.html", "\"unloaded\":true"),
     ] {
         let written = std::fs::read_to_string(work.path("run").join(file)).unwrap();
         assert!(written.contains(text), "{file}");

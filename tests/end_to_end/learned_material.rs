@@ -134,7 +134,7 @@ fn a_stopped_run_is_continued_and_its_folder_belongs_to_one_material() {
     let card: serde_json::Value = serde_json::from_str(&card).unwrap();
     assert!(card["training_rays"].as_u64().unwrap() > 6, "{card}");
     assert_eq!(card["spot_check"]["errors"]["rows"], 12);
-    // Rows that the database of the spot check rejects judge no weights.
+    // Rows that the database of the spot check rejects test no weights.
     let (summary, states) = spot_check(&work);
     assert!(summary.contains("12 rows of 3 rays"), "{summary}");
     assert_eq!(states, "12");

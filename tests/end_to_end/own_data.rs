@@ -87,8 +87,8 @@ fn a_table_becomes_weights_that_predict_it() {
     }
     assert!(!work.path("runs/own.state").exists());
 
-    let judged = work.output(&format!("surrogate test {WEIGHTS} {DATABASE}"));
-    let energy = judged
+    let tested = work.output(&format!("surrogate test {WEIGHTS} {DATABASE}"));
+    let energy = tested
         .lines()
         .find(|line| line.contains("W, relative to its root mean square"))
         .unwrap();
@@ -97,8 +97,8 @@ fn a_table_becomes_weights_that_predict_it() {
         .find_map(|word| word.parse().ok())
         .unwrap();
     assert!(
-        judged.contains("30 rays") && judged.contains("of 300 states inside") && percent < 20.0,
-        "{judged}"
+        tested.contains("30 rays") && tested.contains("of 300 states inside") && percent < 20.0,
+        "{tested}"
     );
 
     let card = work.output(&format!("surrogate card {WEIGHTS}"));

@@ -32,7 +32,7 @@ fn printed_pages(work: &Workplace) -> usize {
     text.matches("/Type /Page\n").count()
 }
 
-/// The value beside a name in the table of a hinge.
+/// The value next to a name in the table of a hinge.
 fn cell<'a>(document: &'a str, name: &str) -> &'a str {
     let (_, row) = document.split_once(&format!("<td>{name}</td><td")).unwrap();
     let (_, value) = row.split_once('>').unwrap();
@@ -91,7 +91,7 @@ fn a_sheet_of_springs_shows_its_loads_and_the_numbers_of_a_hinge() {
     assert!(animation.len() < 1_000_000, "{}", animation.len());
 }
 
-/// The colour of a pixel beside the title, on a screen with the given preference.
+/// The colour of a pixel next to the title, on a screen with the given preference.
 fn ground(work: &Workplace, preference: &str) -> [u8; 3] {
     let mut tab = page(work, "run", "");
     tab.prefer(preference);

@@ -236,7 +236,7 @@ fn an_array_is_not_submitted_twice() {
         "{message}"
     );
     assert_eq!(arrays, 1);
-    // The accounting learns of a job late: its silence says nothing.
+    // The accounting learns of a job late: its silence is no evidence.
     slurm.script("sacct", "true");
     assert_eq!(slurm.submit().1, 1);
     let status = slurm.campaign(&format!("status {CAMPAIGN}")).output();

@@ -1,4 +1,4 @@
-//! `kirigami studio` as a person uses it: a sheet is drawn, opened, designed and cut in Chromium, and nobody else is let in.
+//! `kirigami studio` as a person uses it: a sheet is drawn, opened, designed and cut in Chromium, and no other page is admitted.
 
 use crate::browser::{PATIENCE, Tab};
 use crate::common::Workplace;
@@ -490,7 +490,7 @@ fn nobody_else_is_let_in_and_floods_lose_nothing() {
     }
     let on_disk = scene_on_disk(&work.path("studio/a4-plate"));
     assert!(on_disk.contains("stroke = 40.0"), "{on_disk}");
-    // A connection that says nothing is closed: one that stays open ends the test at the patience of its stream.
+    // A silent connection is closed: one that stays open ends the test at the patience of its stream.
     silent.set_read_timeout(Some(PATIENCE)).unwrap();
     assert_eq!((&silent).read(&mut [0]).unwrap(), 0);
 }
@@ -525,7 +525,7 @@ fn a_silhouette_becomes_a_cut_file_without_another_control() {
     let mut other = Tab::open(&studio.address);
     at_rest(&mut other);
     assert_eq!(other.value(figure), tab.value(figure));
-    // Every file is saved under a name of its own, which begins with that of the drawing.
+    // Every file is saved under a name of its own, which begins with the name of the drawing.
     let links = "[...document.querySelectorAll('#files a[download]')].map((link) => link.download)";
     let names: Vec<String> = serde_json::from_value(tab.value(links)).unwrap();
     assert!(names.contains(&"leaf-cut.dxf".to_owned()), "{names:?}");

@@ -51,10 +51,7 @@ fn is_zero(count: &usize) -> bool {
 
 /// A value that violates a rule of the configuration.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[allow(
-    missing_docs,
-    reason = "the message of each variant is its documentation"
-)]
+#[allow(missing_docs, reason = "the message of a variant is its documentation")]
 pub enum InvalidConfig {
     #[error(transparent)]
     OutOfRange(#[from] OutOfRange),

@@ -7,10 +7,7 @@ use surrogate::InvalidWeights;
 
 /// Why a training failed.
 #[derive(Debug, thiserror::Error)]
-#[allow(
-    missing_docs,
-    reason = "the message of each variant is its documentation"
-)]
+#[allow(missing_docs, reason = "the message of a variant is its documentation")]
 pub enum TrainError {
     #[error("training configuration: {0}")]
     Config(#[from] InvalidConfig),
@@ -52,7 +49,7 @@ pub enum TrainError {
         found: Vec<Vec<usize>>,
     },
     #[error(
-        "the initial weights have `damage_sharpness = {found}`, and those of a training {expected}; start with random weights",
+        "the initial weights have `damage_sharpness = {found}`, and a training has {expected}; start with random weights",
         expected = crate::config::DAMAGE_SHARPNESS
     )]
     OtherSharpness { found: f64 },

@@ -31,7 +31,7 @@ pub struct ErrorInterval {
 }
 
 impl ErrorInterval {
-    /// Those of W and of the three forces together at the rows, whose rays are their jobs; `None` below six rays, and if a force
+    /// The errors of W and of the three forces together at the rows, whose rays are their jobs; `None` below six rays, and if a force
     /// is not known or zero everywhere.
     pub fn of(surrogate: &Surrogate, rows: &[Row]) -> Option<[Self; 2]> {
         let parity = Parity::new(surrogate, rows);

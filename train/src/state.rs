@@ -20,10 +20,7 @@ const FORMAT_VERSION: u32 = 3;
 
 /// Why a training cannot be resumed or saved.
 #[derive(Debug, thiserror::Error)]
-#[allow(
-    missing_docs,
-    reason = "the message of each variant is its documentation"
-)]
+#[allow(missing_docs, reason = "the message of a variant is its documentation")]
 pub enum StateError {
     #[error("cannot read {0}")]
     Read(#[source] FileError),

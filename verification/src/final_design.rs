@@ -11,7 +11,7 @@ use design::analysis::ladder::Climbed;
 use design::analysis::level_difference::AtLevel;
 use design::optimise::outer_loop::{Ended, SearchState};
 use design::scene::design_run::{design_after, inverse_design};
-use design::scene::{Level, Rung, Scene, SolvedHinge, SolvedHinges};
+use design::scene::{Level, Scene, SolvedHinge, SolvedHinges};
 use mesher::Tier;
 use std::sync::atomic::AtomicBool;
 use support::file_error::FileError;
@@ -66,14 +66,7 @@ pub fn final_design(
             problem: corrected,
             deployment: found.by_elements().clone(),
         };
-        let rung = Rung {
-            level,
-            start: designed.history[0].scores.clone(),
-            steps: designed.history.len() - 1,
-            finer: Level::Final,
-            difference: own.difference(&finer),
-            asked,
-        };
+        let rung = own.rung(&designed.history, &finer, asked);
         let is_last = rung.suffices() || searched == SEARCHES;
         rungs.push(rung);
         let mut config = at.starting_at(&designed.design);

@@ -1,4 +1,4 @@
-//! Finite elements judge designs and weights: lists of window solves, and what follows from them.
+//! Designs and weights are checked by finite elements: lists of window solves, and what follows from them.
 //!
 //! | task | entry point |
 //! |---|---|
@@ -7,7 +7,7 @@
 //! | a sheet in equilibrium with the forces of finite elements | [`balanced`], [`SheetErrors`] |
 //! | a design searched for with finite elements for its hinges | [`final_design`] |
 //! | the whole sheet, every window and every panel | [`SheetTask`], [`SheetCheck`] |
-//! | errors of weights at random states | [`spot_check`], [`SpotCheck`] |
+//! | errors of weights at random states | [`spot_check`], [`SpotStates`] |
 //! | rays where the training data is thin | [`rays_on_paths`] |
 //! | rays of a campaign solved in rounds until weights are accurate | [`learn`] |
 //!
@@ -76,15 +76,15 @@ pub use distillation_states::distillation_states;
 pub use extension::rays_on_paths;
 pub use final_design::{final_design, most_cpu_seconds};
 pub use learning::{Accuracy, LearningEnd, LearningRound, LearningSteps, LearningTask, learn};
-pub use networks::judging_tier;
+pub use networks::verification_tier;
 pub use recorded_path::{RecordedPath, paths_of, recorded_paths};
 pub use released_sheet::{ReleasedByElements, released_by_elements};
 pub use releases::{Releases, first_guess, releases};
 pub use replay::{ElementWindows, Replay, ReplayedHinge, UnsolvedHinge};
 pub use rows::{InvalidRow, collected, collected_windows, rows};
-pub use sheet_check::{HingeCheck, PanelCheck, SheetCheck, SheetFinding, SheetTask, StateCheck};
+pub use sheet_check::{HingeCheck, PanelCheck, SheetCheck, SheetTask, StateCheck};
 pub use sheet_cost::SheetCost;
 pub use sheet_errors::SheetErrors;
-pub use spot_check::{SpotCheck, spot_check};
+pub use spot_check::{SpotStates, spot_check};
 pub use verification_error::VerificationError;
 pub use whole_sheet::usual_sheet_tier;

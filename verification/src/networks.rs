@@ -1,4 +1,4 @@
-//! The mesh that judges weights.
+//! The mesh on which weights are checked.
 
 use crate::verification_error::VerificationError;
 use dataset::Fidelity;
@@ -7,7 +7,7 @@ use surrogate::Surrogate;
 
 /// The mesh tier to test weights on: `requested`, or the tier of the database they were trained on, or the finer tier
 /// that the database was corrected to.
-pub fn judging_tier(
+pub fn verification_tier(
     requested: Option<Tier>,
     surrogate: &Surrogate,
 ) -> Result<Tier, VerificationError> {

@@ -10,8 +10,8 @@ use crate::recorded_path::paths_of;
 use crate::releases::solved;
 use crate::replay::{ElementWindows, UnsolvedHinge};
 use crate::verification_error::VerificationError;
-use design::analysis::springback::{WhatStays, let_go};
-use design::equilibrium::let_go::ReleasedSheet;
+use design::analysis::springback::{ResidualShape, unload};
+use design::equilibrium::unloading::ReleasedSheet;
 use design::objective::design_problem::{Deployment, DesignProblem};
 use design::scene::Scene;
 use design::sheet::kinematics::corner_distances;
@@ -26,9 +26,9 @@ use surrogate::Springback;
 #[derive(Clone, Debug, Serialize)]
 pub struct ReleasedByElements {
     /// Residual opening by the law of released hinges.
-    pub by_law: WhatStays,
+    pub by_law: ResidualShape,
     /// Residual opening by finite elements.
-    pub by_elements: WhatStays,
+    pub by_elements: ResidualShape,
     /// Distance of the panel corners between the two: root mean square and maximum (mm).
     pub corners: [f64; 2],
     /// Largest movement of a panel corner in every round (mm).
@@ -52,7 +52,7 @@ pub fn released_by_elements(
     rounds: usize,
 ) -> Result<ReleasedByElements, VerificationError> {
     let deployed = found.by_elements();
-    let (mut released, by_law) = let_go(scene, problem, law, deployed)?;
+    let (mut released, by_law) = unload(scene, problem, law, deployed)?;
     let distances = |from: &[[f64; 3]], to: &[[f64; 3]]| {
         rms_and_maximum(corner_distances(&deployed.sheet, from, to))
     };
@@ -80,7 +80,7 @@ pub fn released_by_elements(
                 })
             })
             .collect::<Result<_, VerificationError>>()?;
-        released = problem.let_go(deployed, hinges)?;
+        released = problem.unload(deployed, hinges)?;
         let now = released.last().configuration.clone();
         let [_, movement] = distances(&last, &now);
         movements.push(movement);
@@ -90,7 +90,7 @@ pub fn released_by_elements(
         }
     }
     Ok(ReleasedByElements {
-        by_elements: problem.what_stays(deployed, &released)?,
+        by_elements: problem.residual_shape(deployed, &released)?,
         by_law,
         corners: distances(&first, &last),
         is_balanced: movements
@@ -167,11 +167,11 @@ fn share(deployed: &Deployment, found: &Balanced, forces: &[Option<[f64; 3]>]) -
 impl fmt::Display for ReleasedByElements {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let [law, elements] = [&self.by_law, &self.by_elements];
-        let rotations = |stays: &WhatStays| stays.mean_rotations().map(f64::to_degrees);
+        let rotations = |stays: &ResidualShape| stays.mean_rotations().map(f64::to_degrees);
         let [loaded, stay] = std::array::from_fn(|i| [law, elements].map(|of| rotations(of)[i]));
         writeln!(
             f,
-            "# The sheet let go\n\n| | by the law | by finite elements |\n|---|---|---|"
+            "# The unloaded sheet\n\n| | by the law | by finite elements |\n|---|---|---|"
         )?;
         for (what, [law, elements]) in [
             ("mean rotation of the hinges under load, deg", loaded),

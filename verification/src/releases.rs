@@ -124,7 +124,7 @@ struct Released {
     step: f64,
 }
 
-/// What a window says of a hinge.
+/// The hinge that a window measures.
 enum Next {
     Row(ReleasedSample),
     /// And the length of Newton's step to it.
@@ -160,7 +160,7 @@ impl Released {
     /// For a person.
     fn name(&self) -> String {
         format!(
-            "w_lig {:.2} mm, alpha {:.1} deg, let go at theta {:.1} deg",
+            "w_lig {:.2} mm, alpha {:.1} deg, unloaded at theta {:.1} deg",
             self.design.w_lig,
             self.design.alpha.to_degrees(),
             self.reached.theta.to_degrees()

@@ -1,4 +1,4 @@
-//! A whole sheet by finite elements beside the deployment that the hinge law predicts.
+//! A whole sheet by finite elements compared with the deployment that the hinge law predicts.
 
 use crate::patch::SheetPart;
 use crate::verification_error::VerificationError;
@@ -17,7 +17,7 @@ use fe_driver::{PanelState, SheetSolve, SheetState, SheetSurface, Solved, ToolVe
 use hinge::HingeDesign;
 use mesher::Tier;
 use serde::Serialize;
-use support::severity::Severity;
+use support::severity::{Finding, Severity};
 use support::statistics::rms_and_maximum;
 
 /// Difference of the loads over the load by finite elements above which a finding names it.
@@ -51,7 +51,7 @@ pub struct SheetTask {
 /// The result of a task.
 #[derive(Debug, Serialize)]
 pub struct SheetCheck {
-    /// The design that is judged, for a person.
+    /// The design that is checked, for a person.
     pub design: String,
     /// What keeps the panels in their plane.
     pub support: Posture,
@@ -72,7 +72,7 @@ pub struct SheetCheck {
     /// Whether the stroke is prescribed; otherwise loads are.
     pub driven: bool,
     /// What a person should know.
-    pub findings: Vec<SheetFinding>,
+    pub findings: Vec<Finding>,
     /// Why the path was not followed to its end; `None` if it was.
     pub stopped: Option<String>,
     /// Whether inertia was needed to follow it.
@@ -94,15 +94,6 @@ pub struct SheetCheck {
     /// The middle surface at its end.
     #[serde(skip)]
     pub surface: SheetSurface,
-}
-
-/// A finding about a sheet.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct SheetFinding {
-    /// The consequence.
-    pub severity: Severity,
-    /// In words.
-    pub message: String,
 }
 
 /// A state of a path. Pairs are by the hinge law and by finite elements.
@@ -211,7 +202,7 @@ impl SheetTask {
         let thickness = self.scene.material.thickness;
         let widths = sheet.hinges.iter().map(|hinge| hinge.w_lig / thickness);
         let samples = &solved.samples;
-        // Before the loads, while the weight comes on, the law has no state beside.
+        // Before the loads, while the weight comes on, the law has no state to compare with.
         let loaded = samples.states.iter().filter(|state| state.fraction > 0.0);
         let problem = &solved.solve.problem;
         let path = loaded.map(|state| self.state(state, problem.total_load()));
@@ -415,29 +406,22 @@ impl SheetCheck {
     }
 }
 
-fn finding(severity: Severity, message: String) -> SheetFinding {
-    SheetFinding { severity, message }
-}
-
 /// All findings, the most severe first.
-fn findings(check: &SheetCheck) -> Vec<SheetFinding> {
+fn findings(check: &SheetCheck) -> Vec<Finding> {
     let Some(last) = check.last() else {
         let reason = check.stopped.as_deref();
         let reason = reason.unwrap_or("no increment converged");
         let message = format!("the sheet was not solved: {reason}");
-        let unsolved = finding(Severity::Error, message);
+        let unsolved = Severity::Error.finding(message);
         return std::iter::once(unsolved)
             .chain(outside_domain(check))
             .collect();
     };
     let stopped = check.stopped.as_ref().map(|reason| {
-        finding(
-            Severity::Error,
-            format!(
-                "the path was followed to {:.1} % only; what happens beyond is not known: {reason}",
-                100.0 * last.fraction
-            ),
-        )
+        Severity::Error.finding(format!(
+            "the path was followed to {:.1} % only; what happens beyond is not known: {reason}",
+            100.0 * last.fraction
+        ))
     });
     let found = [
         stopped,
@@ -448,13 +432,13 @@ fn findings(check: &SheetCheck) -> Vec<SheetFinding> {
         still_moving(last),
         outside_domain(check),
     ];
-    let mut found: Vec<SheetFinding> = found.into_iter().flatten().collect();
+    let mut found: Vec<Finding> = found.into_iter().flatten().collect();
     found.sort_by_key(|finding| std::cmp::Reverse(finding.severity));
     found
 }
 
 /// Whether a sheet of a size (mm) is flat, by the rule of a design, where it is least so: on the way or at the end.
-fn flatness(support: Posture, size: f64, path: &[StateCheck]) -> Option<SheetFinding> {
+fn flatness(support: Posture, size: f64, path: &[StateCheck]) -> Option<Finding> {
     let most = |value: fn(&StateCheck) -> f64| {
         path.iter()
             .max_by(|one, other| value(one).total_cmp(&value(other)))
@@ -465,7 +449,7 @@ fn flatness(support: Posture, size: f64, path: &[StateCheck]) -> Option<SheetFin
     let (error, tilt) = (rms / size, tilted.tilt_deg);
     let [as_predicted, otherwise] = match support {
         Posture::HeldFlat => [
-            "goes where the law has it",
+            "agrees with the hinge law",
             "opens otherwise than predicted",
         ],
         _ => ["stays flat", "does not stay flat"],
@@ -476,9 +460,7 @@ fn flatness(support: Posture, size: f64, path: &[StateCheck]) -> Option<SheetFin
         Flatness::Falls => (Severity::Error, otherwise),
     };
     let at = |state: &StateCheck| format!("at {:.0} % of the path", 100.0 * state.fraction);
-    Some(finding(
-        severity,
-        format!(
+    Some(severity.finding(format!(
             "the sheet {what}: the panels tilt by up to {tilt:.1} deg, {}, and the corners are {rms:.2} mm (root mean square) from where \
              the hinge law has them, {largest:.2} mm at most, {}: {:.2} % of the sheet",
             at(tilted),
@@ -489,16 +471,14 @@ fn flatness(support: Posture, size: f64, path: &[StateCheck]) -> Option<SheetFin
 }
 
 /// Flanks that pass through each other, as flanks of a cut sheet cannot.
-fn flanks_pass(path: &[StateCheck]) -> Option<SheetFinding> {
+fn flanks_pass(path: &[StateCheck]) -> Option<Finding> {
     let gap = |state: &&StateCheck| state.flank_gap.is_some_and(|gap| gap < -FLANKS_TOUCH);
     let first = path.iter().find(gap)?;
     let deepest = path
         .iter()
         .filter_map(|state| state.flank_gap)
         .fold(0.0, f64::min);
-    Some(finding(
-        Severity::Warning,
-        format!(
+    Some(Severity::Warning.finding(format!(
             "flanks of cuts pass through each other, by up to {:.2} mm: these finite elements have no contact, and from {:.0} % of the \
              path on they may go where the sheet cannot, as a hinge closes: pull other panels, or more of them",
             -deepest,
@@ -507,42 +487,41 @@ fn flanks_pass(path: &[StateCheck]) -> Option<SheetFinding> {
     ))
 }
 
-fn other_load(check: &SheetCheck, last: &StateCheck) -> Option<SheetFinding> {
+fn other_load(check: &SheetCheck, last: &StateCheck) -> Option<Finding> {
     let [by_law, by_elements] = last.load.filter(|_| check.driven)?;
     let differs = (by_law - by_elements).abs() > OTHER_LOAD * by_elements.abs();
     differs.then(|| {
-        finding(Severity::Warning, format!(
+        Severity::Warning.finding(format!(
             "the load is {by_elements:.4} N by finite elements and {by_law:.4} N by the hinge law"
         ))
     })
 }
 
-fn tearing(check: &SheetCheck) -> Option<SheetFinding> {
+fn tearing(check: &SheetCheck) -> Option<Finding> {
     let tears = |hinge: &&HingeCheck| hinge.d_peak[1].is_some_and(|peak| peak >= 1.0);
     let torn = check.hinges.iter().filter(tears).map(|hinge| hinge.hinge);
     let torn: Vec<String> = torn.map(|hinge| hinge.to_string()).collect();
     (!torn.is_empty()).then(|| {
         let hinges = torn.join(", ");
-        finding(
-            Severity::Error,
-            format!("ligaments tear: D_peak is 1 or more (hinges {hinges})"),
-        )
+        Severity::Error.finding(format!(
+            "ligaments tear: D_peak is 1 or more (hinges {hinges})"
+        ))
     })
 }
 
-fn still_moving(last: &StateCheck) -> Option<SheetFinding> {
+fn still_moving(last: &StateCheck) -> Option<Finding> {
     (last.kinetic > AT_REST).then(|| {
-        finding(Severity::Warning, format!(
+        Severity::Warning.finding(format!(
             "the sheet still moves at the end of its dynamic path: kinetic energy is {:.1} % of the internal energy",
             100.0 * last.kinetic
         ))
     })
 }
 
-fn outside_domain(check: &SheetCheck) -> Option<SheetFinding> {
+fn outside_domain(check: &SheetCheck) -> Option<Finding> {
     let hinges: Vec<String> = check.outside.iter().map(usize::to_string).collect();
     (!hinges.is_empty()).then(|| {
-        finding(Severity::Warning, format!(
+        Severity::Warning.finding(format!(
             "the hinge law is outside of its training domain at hinges {}: what it predicts there is extrapolated, and the \
              difference to finite elements is not one of flatness",
             hinges.join(", ")

@@ -1,4 +1,4 @@
-//! The error of a deployed sheet, judged by finite elements for its hinges.
+//! The error of a deployed sheet, measured by finite elements for its hinges.
 
 use crate::balanced_sheet::{
     BALANCED, BALANCED_FORCES, BalanceEnd, Balanced, Round, movements, size,
@@ -14,7 +14,7 @@ use support::statistics::rms_and_maximum;
 /// The equilibrium by the hinge law compared with that by finite elements.
 #[derive(Debug, Serialize)]
 pub struct SheetErrors {
-    /// The design that is judged, for a person.
+    /// The design that is checked, for a person.
     design: String,
     rounds: Vec<Round>,
     /// Why no further round was made on the finest mesh.
@@ -27,7 +27,7 @@ pub struct SheetErrors {
     load_factor: f64,
     /// The errors of the law by finite elements of each mesh, the finest one last.
     errors: Vec<MeshErrors>,
-    /// The cheaper mesh beside the finest one, if the sheet was balanced on both.
+    /// The cheaper mesh in addition to the finest one, if the sheet was balanced on both.
     between: Option<MeshErrors>,
     /// Standard deviations of the causes in the error budget of the report that finite elements see, if there is one.
     budget: Option<Effect>,
@@ -36,7 +36,7 @@ pub struct SheetErrors {
     hinges: Vec<HingeErrors>,
 }
 
-/// One deployment beside finite elements of one mesh, at full load.
+/// One deployment compared with finite elements of one mesh, at full load.
 #[derive(Debug, Serialize)]
 struct MeshErrors {
     /// Mesh tier of the windows.
@@ -62,7 +62,7 @@ struct HingeErrors {
 }
 
 impl SheetErrors {
-    /// The errors of a design, which has a name for a person, beside their budget.
+    /// The errors of a design, which has a name for a person, with their budget.
     pub fn new(found: &Balanced, design: String, budget: Option<&ErrorBudget>) -> Self {
         let (by_law, by_elements) = (found.by_law(), found.by_elements());
         let ends = [by_law, by_elements].map(Deployment::final_step);
@@ -163,7 +163,7 @@ impl fmt::Display for SheetErrors {
 }
 
 impl MeshErrors {
-    /// A deployment beside that by finite elements.
+    /// A deployment compared with the deployment by finite elements.
     fn new(deployed: &Deployment, tier: Tier, by_elements: &Deployment) -> Self {
         let [own, other] = [deployed, by_elements].map(Deployment::final_step);
         let turned = std::iter::zip(&own.deformations, &other.deformations)

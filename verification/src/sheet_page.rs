@@ -42,12 +42,12 @@ impl fmt::Display for SheetCheck {
         if meshed < of_law {
             writeln!(
                 f,
-                "The windows of {of_law} mm of the hinge law have no room between each other: those of the mesh have {meshed:.1} mm and more, and \
+                "The windows of {of_law} mm of the hinge law have no room between each other: the windows of the mesh have {meshed:.1} mm and more, and \
                  the energies of hinges below lack what is outside of that.\n"
             )?;
         }
         for finding in &self.findings {
-            writeln!(f, "* {}: {}", finding.severity, finding.message)?;
+            writeln!(f, "* {finding}")?;
         }
         writeln!(
             f,

@@ -14,7 +14,7 @@ use std::path::Path;
 
 /// The states on paths that the solver followed to their end.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct SpotCheck {
+pub struct SpotStates {
     /// One row a state; the rows of a window have one job.
     pub rows: Vec<Row>,
     /// The windows of the other paths.
@@ -31,21 +31,21 @@ pub fn spot_check(
     paths: &[SpotPath],
     material: &SheetMaterial,
     tier: Tier,
-) -> Result<SpotCheck, VerificationError> {
+) -> Result<SpotStates, VerificationError> {
     let versions = windows.versions();
     let problem = |path: &SpotPath| WindowProblem::new(path.hinge.clone(), material, tier);
     let solves: Vec<WindowSolve> = (paths.iter())
         .map(|path| WindowSolve::new(problem(path), &versions))
         .collect();
     let solved = windows.solve(&solves)?;
-    let mut check = SpotCheck::default();
+    let mut check = SpotStates::default();
     for (path, window) in paths.iter().zip(&solved) {
         check.add(path, window);
     }
     Ok(check)
 }
 
-impl SpotCheck {
+impl SpotStates {
     /// The spot check of a campaign, as far as its rays are solved in `folder`; `parts` are the jobs there.
     pub fn collected(
         campaign: &Campaign,

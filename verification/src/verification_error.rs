@@ -1,7 +1,7 @@
 //! Errors of this crate.
 
 use dataset::DatasetError;
-use design::analysis::springback::LetGoError;
+use design::analysis::springback::UnloadError;
 use design::objective::design_problem::DesignError;
 use design::scene::SceneError;
 use design::scene::design_run::InverseDesignError;
@@ -12,10 +12,7 @@ use support::file_error::FileError;
 
 /// Why a task has no result.
 #[derive(Debug, thiserror::Error)]
-#[allow(
-    missing_docs,
-    reason = "the message of each variant is its documentation"
-)]
+#[allow(missing_docs, reason = "the message of a variant is its documentation")]
 pub enum VerificationError {
     #[error(transparent)]
     Solve(#[from] SolveListError),
@@ -38,8 +35,8 @@ pub enum VerificationError {
     #[error("at least one round is needed")]
     NoRounds,
     #[error(transparent)]
-    LetGo(#[from] LetGoError),
-    #[error("a hinge that was let go has no positive stiffness by the law of released hinges")]
+    Unload(#[from] UnloadError),
+    #[error("an unloaded hinge has no positive stiffness by the law of released hinges")]
     NotElastic,
     #[error(
         "the equilibrium needs the forces of the hinges, and none is solved: {0}. Try another mesh with --tier"

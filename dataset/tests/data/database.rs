@@ -43,7 +43,7 @@ fn a_written_database_is_read_back_bit_exactly() {
     assert_eq!(manifest.units["F_a"], "N");
 }
 
-/// Holes of several radii are a range, beside the paper's hole, in whose measures the domain is.
+/// Holes of several radii are a range next to the paper's hole, in whose measures the domain is.
 #[test]
 fn holes_of_several_radii_are_a_range() {
     let one = collect(rows()).unwrap();

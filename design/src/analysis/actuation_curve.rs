@@ -15,7 +15,7 @@
 use crate::equilibrium::displacement_control::{magnitude, work};
 use crate::equilibrium::hinged_sheet::HingedSheet;
 use crate::equilibrium::load_step::LoadStep;
-use crate::equilibrium::path_following::Increment;
+use crate::equilibrium::load_steps::Increment;
 use crate::equilibrium::potential::Stage;
 use crate::equilibrium::weight::weights_of_panels;
 use crate::hinge_law::Order;

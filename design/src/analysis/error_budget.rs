@@ -6,7 +6,7 @@
 //! | cause | force errors | of the hinges | measured |
 //! |---|---|---|---|
 //! | network | deviations of the ensemble at the states of the sheet | as the networks have them | the ensemble of the scene |
-//! | window mesh | errors of the weights beside a finer mesh, over the force | alike in like states | spot check on the card |
+//! | window mesh | errors of the weights relative to a finer mesh, over the force | alike in like states | spot check on the card |
 //! | material law | in proportion to the force | common | the material file |
 //! | imperfection | in proportion to the force | independent | docs/results/window, docs/results/plates |
 //! | loading path | in proportion to the force and the separation from the ray | independent | docs/TRIED.md |
@@ -29,6 +29,7 @@ use crate::objective::response::by_thickness;
 use crate::scene::{Scene, standard_deviation};
 use hinge::{HingeDesign, Regime};
 use serde::Serialize;
+use strum::VariantArray;
 use support::statistics::rms_and_maximum;
 use surrogate::{SpotCheck, Surrogate};
 
@@ -49,30 +50,37 @@ const MOST_DETOUR_OF_BENT_RAYS: f64 = 0.4;
 /// Yield strain of that film. The forces of a material that yields at a smaller one depend more on the path: the forces of steel, at a
 /// thirteenth of it, by some fifty times (docs/results/metals). Materials below half of it are not covered.
 const DETOUR_YIELD: f64 = 0.0146;
-/// What whole sheets in finite elements say of panels and clips, which bend.
+/// The effect of panels and clips that bend, from whole sheets in finite elements.
 const RIGID_PANELS: &str = "in whole sheets that stay flat, all errors together move corners by 0.04 to 0.33 % of the sheet (docs/results/plates, flatness, whole-sheets)";
 /// Number of hinges above which no budget is made: it takes three solves a hinge and more.
 const MOST_HINGES: usize = 2000;
 
-/// A cause of errors of a deployed sheet.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+/// A cause of errors of a deployed sheet, in the order of a budget.
+#[derive(
+    Clone, Copy, Debug, PartialEq, Eq, Serialize, strum::IntoStaticStr, strum::VariantArray,
+)]
 #[serde(rename_all = "kebab-case")]
+#[strum(serialize_all = "lowercase")]
 pub enum Cause {
     /// Spread of the networks of the ensemble.
     Network,
-    /// Errors of the weights beside a finer mesh of the windows.
+    /// Errors of the weights relative to a finer mesh of the windows.
+    #[strum(serialize = "window mesh")]
     WindowMesh,
     /// The stress at equal strain.
+    #[strum(serialize = "material law")]
     MaterialLaw,
     /// The imperfection from which the ligament buckles.
     Imperfection,
     /// The energy of a hinge as a function of its state alone.
+    #[strum(serialize = "loading path")]
     LoadingPath,
     /// The width that the cutter removes.
     Kerf,
     /// The thickness of the sheet.
     Thickness,
     /// Panels and clips, which are rigid in the model.
+    #[strum(serialize = "rigid panels")]
     RigidPanels,
     /// What is left if the sheet was balanced with finite elements for its hinges.
     Balance,
@@ -125,32 +133,9 @@ struct Deployed<'a> {
 }
 
 impl Cause {
-    /// All causes in the order of a budget.
-    pub const ALL: [Self; 9] = [
-        Self::Network,
-        Self::WindowMesh,
-        Self::MaterialLaw,
-        Self::Imperfection,
-        Self::LoadingPath,
-        Self::Kerf,
-        Self::Thickness,
-        Self::RigidPanels,
-        Self::Balance,
-    ];
-
     /// Its name.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Network => "network",
-            Self::WindowMesh => "window mesh",
-            Self::MaterialLaw => "material law",
-            Self::Imperfection => "imperfection",
-            Self::LoadingPath => "loading path",
-            Self::Kerf => "kerf",
-            Self::Thickness => "thickness",
-            Self::RigidPanels => "rigid panels",
-            Self::Balance => "balance",
-        }
+        self.into()
     }
 
     /// Whether finite elements of the hinges of a sheet see its errors: they have the imperfection, the material, the kerf and the
@@ -196,7 +181,7 @@ impl ErrorBudget {
             total: Effect::none(sheet.panels.len()),
         };
         let replaced = |cause: &Cause| residual.is_some() && cause.is_seen_by_elements();
-        for cause in Cause::ALL.into_iter().filter(|cause| !replaced(cause)) {
+        for &cause in Cause::VARIANTS.iter().filter(|cause| !replaced(*cause)) {
             let Some(known) = deployed.errors(cause) else {
                 continue;
             };
@@ -454,9 +439,7 @@ impl Deployed<'_> {
             .zip(&self.designs)
             .map(|(energy, design)| {
                 let by_hole = (1.0 + design.fillet_ratio) / design.w_lig;
-                energy
-                    .mixed
-                    .map(|[by_width, _, by_ratio]| narrower * (by_width - by_hole * by_ratio))
+                (energy.mixed).map(|by| narrower * (by.w_lig - by_hole * by.hole))
             })
             .collect();
         let source = format!("+- {tolerance} mm, two standard deviations");

@@ -1,19 +1,19 @@
-//! A design that is as accurate as asked for, at the cheapest level that is.
+//! A design of the required accuracy, at the cheapest level that reaches it.
 //!
 //! The search runs at the cheapest learned level. The difference of the design it finds to the next finer level estimates the error of
-//! the level. If it is larger than asked for, the search goes on at the finer level from that design, and so on; otherwise the finer
-//! level judges the design, which is what the run reports.
+//! the level. If it is larger than required, the search goes on at the finer level from that design, and so on; otherwise the finer
+//! level evaluates the design, and the run reports that evaluation.
 
 use crate::analysis::error_budget::{Cause, ErrorBudget};
 use crate::analysis::level_difference::{AtLevel, LevelError};
 use crate::optimise::outer_loop::{Ended, SearchState};
 use crate::scene::design_run::{Designed, InverseDesignError, design_after, inverse_design};
-use crate::scene::{Level, Rung, Scene, SceneError};
+use crate::scene::{Level, Scene, SceneError};
 use std::sync::atomic::AtomicBool;
 
 /// A design found on a ladder of levels.
 pub struct Climbed {
-    /// The scene of the judging level, which starts at the design.
+    /// The scene of the finer level, which starts at the design.
     pub scene: Scene,
     /// The design at that level.
     pub designed: Designed,
@@ -24,7 +24,7 @@ pub struct Climbed {
 #[allow(missing_docs, reason = "the message of a variant is its documentation")]
 pub enum ClimbError {
     #[error(
-        "the accuracy of a level is judged by a finer one, and the scene names networks for {found}: name a smaller network \
+        "the accuracy of a level is measured by a finer one, and the scene names networks for {found}: name a smaller network \
          (surrogate.draft) or further ones (surrogate.ensemble), or design at one level (--level)"
     )]
     OneLevel { found: String },
@@ -44,10 +44,10 @@ impl From<SceneError> for ClimbError {
     }
 }
 
-/// The smallest difference that is asked for, over the size of the sheet: a hundred times the residual of an equilibrium.
+/// The smallest difference that can be required, over the size of the sheet: a hundred times the residual of an equilibrium.
 const LEAST: f64 = 1e-8;
 
-/// Designs a scene to within `asked` (mm) of its panel corners. The searches below the judging level are runs in folders of its run
+/// Designs a scene to within `asked` (mm) of its panel corners. The searches below the last level are runs in folders of its run
 /// folder, with the names of their levels. A search that is stopped ends the ladder: its design is the one that is returned.
 pub fn climb(
     scene: &Scene,
@@ -81,32 +81,25 @@ pub fn climb(
                 designed,
             });
         }
-        let judge = search.at_level(finer)?;
-        let judged = AtLevel::new(&judge, &designed.design)?;
+        let next = search.at_level(finer)?;
+        let at_finer = AtLevel::new(&next, &designed.design)?;
         let own = AtLevel {
             level,
             deployment: designed.best.deployment,
             problem: designed.problem,
         };
-        let rung = Rung {
-            level,
-            start: designed.history[0].scores.clone(),
-            steps: designed.history.len() - 1,
-            finer,
-            difference: own.difference(&judged),
-            asked,
-        };
-        let mut config = judge.starting_at(&designed.design);
+        let rung = own.rung(&designed.history, &at_finer, asked);
+        let mut config = next.starting_at(&designed.design);
         config.output.clone_from(&scene.config.output);
         let enough = rung.suffices()
-            || rung.difference.corners[1] <= mesh_error(&judge, &judged).unwrap_or(0.0);
+            || rung.difference.corners[1] <= mesh_error(&next, &at_finer).unwrap_or(0.0);
         rungs.push(rung);
         if enough {
             config.optimiser.steps = 0;
-            at = judge.changed(config)?;
+            at = next.changed(config)?;
             break;
         }
-        at = judge.changed(config)?;
+        at = next.changed(config)?;
     }
     let level = at.config.level;
     let designed = design_after(rungs, &at, stop, &mut |state| progress(level, state))?;
@@ -117,8 +110,8 @@ pub fn climb(
 }
 
 /// The error of the panel corners by the mesh of the windows (mm, the largest), which no level lowers; `None` if it is not known.
-fn mesh_error(scene: &Scene, judged: &AtLevel) -> Option<f64> {
-    let budget = ErrorBudget::new(scene, &judged.problem, &judged.deployment, None)?;
+fn mesh_error(scene: &Scene, at_finer: &AtLevel) -> Option<f64> {
+    let budget = ErrorBudget::new(scene, &at_finer.problem, &at_finer.deployment, None)?;
     let mesh = budget.contributions.into_iter();
     let mut mesh = mesh.filter(|part| part.cause == Cause::WindowMesh);
     Some(mesh.next()?.effect?.corners[1])

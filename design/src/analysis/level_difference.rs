@@ -6,8 +6,9 @@ use crate::geometry::polygon::distance;
 use crate::geometry::similarity::{Scale, Similarity};
 use crate::hinge_law::DamageMeasure;
 use crate::objective::design_problem::{Deployment, DesignError, DesignProblem};
+use crate::optimise::outer_loop::StepRecord;
 use crate::pattern::design_vector::DesignVector;
-use crate::scene::{Level, LevelDifference, Scene, SceneError};
+use crate::scene::{Level, LevelDifference, Rung, Scene, SceneError};
 use crate::sheet::kinematics::deployed_corners;
 use support::statistics::rms_and_maximum;
 
@@ -47,6 +48,18 @@ impl AtLevel {
             problem,
             deployment,
         })
+    }
+
+    /// What is kept of a search that ended at this design, compared with a finer level and with the difference `asked` for (mm).
+    pub fn rung(&self, history: &[StepRecord], finer: &Self, asked: f64) -> Rung {
+        Rung {
+            level: self.level,
+            start: history[0].scores.clone(),
+            steps: history.len() - 1,
+            finer: finer.level,
+            difference: self.difference(finer),
+            asked,
+        }
     }
 
     /// The difference to a finer level.

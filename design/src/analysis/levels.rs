@@ -13,7 +13,7 @@ use std::time::Instant;
 
 /// Steps of a search that are timed: one whose path is followed, and those up to the next one.
 const TIMED: usize = 10;
-/// Steps of a search of a scene that has none, such as a run that judges a design.
+/// Steps of a search of a scene that has none, such as a run that evaluates a design.
 const USUAL: usize = 100;
 
 /// A level of a scene.

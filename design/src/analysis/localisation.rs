@@ -7,7 +7,7 @@
 //!
 //! For Gamma > 1 the paper expects that buckling stays in the ligaments. The prefactor is of order one, so L* is an order of
 //! magnitude and not a sharp limit: by finite elements of whole sheets, panels lift off a table also where Gamma is above
-//! 10. Of a sheet that hangs or stands Gamma says nothing.
+//! 10. Gamma does not apply to a sheet that hangs or stands.
 
 use hinge::SheetMaterial;
 

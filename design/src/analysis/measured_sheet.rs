@@ -1,12 +1,12 @@
 //! Points measured on a deployed sheet, compared with its equilibrium path; section 4.4.
 
-use crate::analysis::marks::{Mark, MeasuredPoint};
+use crate::analysis::measured_points::{Mark, MeasuredPoint};
 use crate::analysis::path_fit::{Fit, MIN_POINTS, Problem};
 use crate::analysis::shape_path::ShapePath;
 use crate::geometry::similarity::Scale;
 use std::collections::HashMap;
 
-/// A measured sheet beside its path.
+/// A measured sheet and its path.
 #[derive(Clone, Debug)]
 pub struct MeasuredSheet {
     /// The state of the path that fits best.

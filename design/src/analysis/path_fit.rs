@@ -10,8 +10,8 @@
 //! with one unknown rigid motion, and one unknown scale if requested. x and the motion have the least sum of squared
 //! errors over all points. Residuals are in the frame of the design, in mm.
 
-use crate::analysis::marks::{FittedPoint, MeasuredPoint};
-use crate::analysis::shape_path::{Shape, ShapePath};
+use crate::analysis::measured_points::{FittedPoint, MeasuredPoint};
+use crate::analysis::shape_path::{PathShape, ShapePath};
 use crate::geometry::plane::{complex, point};
 use crate::geometry::similarity::{Pair, Scale, Similarity};
 
@@ -26,7 +26,7 @@ pub struct Fit {
     /// Position on the path, in load steps from the flat sheet.
     pub position: f64,
     /// Load factor and panel motions at this position.
-    pub shape: Shape,
+    pub shape: PathShape,
     /// From the frame of the design (mm) into the frame of the measurement.
     pub motion: Similarity,
     /// One entry for each measured point, in the order of the measurement.

@@ -13,7 +13,7 @@ const IDEAL_STATES: u32 = 40;
 
 /// One state of a sheet on its path.
 #[derive(Clone, Debug)]
-pub struct Shape {
+pub struct PathShape {
     /// zeta; for an ideal deployment the fraction of the opening angle.
     pub load_factor: f64,
     /// The motion of every panel.
@@ -26,7 +26,7 @@ pub struct ShapePath<'a> {
     /// The flat sheet.
     pub sheet: &'a Sheet,
     /// In order of the path.
-    pub shapes: Vec<Shape>,
+    pub shapes: Vec<PathShape>,
 }
 
 impl<'a> ShapePath<'a> {
@@ -42,7 +42,7 @@ impl<'a> ShapePath<'a> {
                 path.shapes.extend((1..=IDEAL_STATES).map(|i| {
                     let load_factor = f64::from(i) / f64::from(IDEAL_STATES);
                     let configuration = ideal_deployment(sheet, load_factor * theta);
-                    Shape {
+                    PathShape {
                         load_factor,
                         configuration,
                     }
@@ -51,7 +51,7 @@ impl<'a> ShapePath<'a> {
             Model::Equilibrium(_) => {
                 let steps = deployment.path.iter();
                 let reached = steps.filter(|step| step.status != Status::Diverged);
-                path.shapes.extend(reached.map(|step| Shape {
+                path.shapes.extend(reached.map(|step| PathShape {
                     load_factor: step.load_factor,
                     configuration: step.configuration.clone(),
                 }));
@@ -62,7 +62,7 @@ impl<'a> ShapePath<'a> {
 
     /// The flat sheet alone.
     pub fn flat(sheet: &'a Sheet) -> Self {
-        let flat = Shape {
+        let flat = PathShape {
             load_factor: 0.0,
             configuration: vec![[0.0; 3]; sheet.panels.len()],
         };
@@ -78,14 +78,14 @@ impl<'a> ShapePath<'a> {
     }
 
     /// The shape at a position between 0 and [`end`](Self::end).
-    pub fn at(&self, position: f64) -> Shape {
+    pub fn at(&self, position: f64) -> PathShape {
         let before = (position as usize).min(self.shapes.len() - 1);
         let after = (before + 1).min(self.shapes.len() - 1);
         let (from, to) = (&self.shapes[before], &self.shapes[after]);
         let fraction = position - before as f64;
         let between = |a: f64, b: f64| a + fraction * (b - a);
         let motions = std::iter::zip(&from.configuration, &to.configuration);
-        Shape {
+        PathShape {
             load_factor: between(from.load_factor, to.load_factor),
             configuration: motions
                 .map(|(a, b)| std::array::from_fn(|d| between(a[d], b[d])))

@@ -2,9 +2,9 @@
 //! deformations.
 
 use crate::analysis::actuation_curve::{ActuationCurve, Mover};
-use crate::equilibrium::let_go::ReleasedSheet;
+use crate::equilibrium::unloading::ReleasedSheet;
 use crate::hinge_law::{Order, PreparedLaw, Release, ReleasedLaw};
-use crate::objective::design_problem::{Deployment, DesignError, DesignProblem, found};
+use crate::objective::design_problem::{Deployment, DesignError, DesignProblem, converged};
 use crate::objective::scores::outline_error_at;
 use crate::scene::{Scene, SpringbackMismatch};
 use crate::sheet::kinematics::corner_distances;
@@ -14,12 +14,12 @@ use std::array::from_fn;
 use support::statistics::rms_and_maximum;
 use surrogate::Springback;
 
-/// Why nothing can be said of a sheet that is unloaded.
+/// Why the unloaded state of a sheet cannot be computed.
 #[derive(Debug, thiserror::Error)]
 #[allow(missing_docs, reason = "the message of a variant is its documentation")]
-pub enum LetGoError {
+pub enum UnloadError {
     #[error(
-        "{hinges} hinges are outside the training domain at full load, where the law of released hinges says nothing"
+        "{hinges} hinges are outside the training domain at full load, where the law of released hinges is not known"
     )]
     OutsideDomain { hinges: usize },
     #[error(
@@ -35,7 +35,7 @@ pub enum LetGoError {
 
 /// The residual opening of a sheet.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct WhatStays {
+pub struct ResidualShape {
     /// Rotation of every hinge under load and without (rad).
     pub rotations: Vec<[f64; 2]>,
     /// Rotation at which every hinge by itself would be without forces (rad).
@@ -52,7 +52,7 @@ pub struct WhatStays {
     pub outline_error: [f64; 2],
 }
 
-impl WhatStays {
+impl ResidualShape {
     /// Mean rotation of the hinges under load and without (rad).
     pub fn mean_rotations(&self) -> [f64; 2] {
         let count = self.rotations.len() as f64;
@@ -75,7 +75,7 @@ pub fn released_hinges(
     problem: &DesignProblem,
     law: &Springback,
     deployment: &Deployment,
-) -> Result<Vec<ReleasedHinge>, LetGoError> {
+) -> Result<Vec<ReleasedHinge>, UnloadError> {
     scene.check_springback(law)?;
     let mechanics = problem.model.mechanics().ok_or(DesignError::NoMechanics)?;
     let release = Release::new(law.clone(), scene.scale());
@@ -89,36 +89,36 @@ pub fn released_hinges(
 ///
 /// # Errors
 /// As [`released_hinges`], or if the sheet has no equilibrium without loads.
-pub fn let_go(
+pub fn unload(
     scene: &Scene,
     problem: &DesignProblem,
     law: &Springback,
     deployment: &Deployment,
-) -> Result<(ReleasedSheet, WhatStays), LetGoError> {
+) -> Result<(ReleasedSheet, ResidualShape), UnloadError> {
     let hinges = released_hinges(scene, problem, law, deployment)?;
-    let released = problem.let_go(deployment, hinges)?;
-    let stays = problem.what_stays(deployment, &released)?;
+    let released = problem.unload(deployment, hinges)?;
+    let stays = problem.residual_shape(deployment, &released)?;
     Ok((released, stays))
 }
 
-/// As [`let_go`], where the law of released hinges is known to hold.
+/// As [`unload`], where the law of released hinges is known to hold.
 ///
 /// # Errors
-/// As [`let_go`], if hinges are outside the training domain at full load, or if the sheet would open further without its loads.
-pub fn let_go_in_domain(
+/// As [`unload`], if hinges are outside the training domain at full load, or if the sheet would open further without its loads.
+pub fn unload_in_domain(
     scene: &Scene,
     problem: &DesignProblem,
     law: &Springback,
     deployment: &Deployment,
-) -> Result<(ReleasedSheet, WhatStays), LetGoError> {
+) -> Result<(ReleasedSheet, ResidualShape), UnloadError> {
     let hinges = deployment.hinges_outside();
     if hinges > 0 {
-        return Err(LetGoError::OutsideDomain { hinges });
+        return Err(UnloadError::OutsideDomain { hinges });
     }
-    let (released, stays) = let_go(scene, problem, law, deployment)?;
+    let (released, stays) = unload(scene, problem, law, deployment)?;
     let [loaded, free] = stays.mean_rotations().map(f64::to_degrees);
     if free > loaded {
-        return Err(LetGoError::OpensFurther { loaded, free });
+        return Err(UnloadError::OpensFurther { loaded, free });
     }
     Ok((released, stays))
 }
@@ -171,23 +171,23 @@ pub fn moment_after_overshoot(
 
 impl DesignProblem {
     /// Takes the loads off a deployed sheet with these hinges.
-    pub fn let_go(
+    pub fn unload(
         &self,
         deployment: &Deployment,
         hinges: Vec<ReleasedHinge>,
     ) -> Result<ReleasedSheet, DesignError> {
         let mechanics = self.model.mechanics().ok_or(DesignError::NoMechanics)?;
-        Ok(mechanics.let_go(&deployment.sheet, deployment.at_full_load()?, hinges)?)
+        Ok(mechanics.unload(&deployment.sheet, deployment.at_full_load()?, hinges)?)
     }
 
     /// The residual opening of a sheet that was unloaded.
-    pub fn what_stays(
+    pub fn residual_shape(
         &self,
         deployment: &Deployment,
         released: &ReleasedSheet,
-    ) -> Result<WhatStays, DesignError> {
+    ) -> Result<ResidualShape, DesignError> {
         let loaded = deployment.at_full_load()?;
-        let free = found(released.last())?;
+        let free = converged(released.last())?;
         let sheet = &deployment.sheet;
         let moved = corner_distances(sheet, &loaded.configuration, &free.configuration);
         let curve = self.model.mechanics().and_then(|mechanics| {
@@ -197,7 +197,7 @@ impl DesignProblem {
         });
         let curve = curve.filter(|curve| curve.mover == Mover::Loads);
         let rotations = std::iter::zip(&loaded.deformations, &free.deformations);
-        Ok(WhatStays {
+        Ok(ResidualShape {
             rotations: rotations.map(|(on, off)| [on.theta, off.theta]).collect(),
             rest_rotations: released
                 .hinges

@@ -14,8 +14,7 @@
 //! The supports resist with the forces r = grad Pi at the supported degrees of freedom. For a function that depends on them, by
 //! g_r, lambda is -g_r there, and the equations of the free degrees of freedom have the right-hand side g_i + H g_r.
 
-use crate::equilibrium::branch::Branch;
-use crate::equilibrium::displacement_control::dot;
+use crate::equilibrium::corrector::Branch;
 use crate::equilibrium::hinged_sheet::HingedSheet;
 use crate::equilibrium::load_step::LoadStep;
 use crate::equilibrium::potential::Stage;
@@ -28,6 +27,7 @@ use crate::sheet::cut_sheet::SheetGradient;
 use crate::sheet::kinematics::{HingeGeometryGradient, HingeMotion};
 use crate::sheet::panel_vectors::{add_at_hinge, at_hinge};
 use std::borrow::Cow;
+use support::vectors::{self, dot};
 
 /// Backward error of an adjoint solve above which the tangent is considered singular.
 pub(crate) const SINGULAR: f64 = 1e-6;
@@ -42,7 +42,7 @@ pub struct SingularTangent {
 
 /// The gradient of a function of the path.
 pub(crate) struct PathGradient<'a> {
-    /// `by_states[h][i]`: in (a, s, theta, w_lig, alpha) of hinge h at load step i.
+    /// `by_states[h][i]`: in hinge h at load step i.
     pub by_states: &'a [Vec<HingeGradient>],
     /// In the load factor of the last load step; read under displacement control only.
     pub by_load_factor: f64,
@@ -89,14 +89,17 @@ pub(crate) fn adjoint(
     };
     for (i, (step, mut by_q)) in std::iter::zip(path, by_configurations).enumerate() {
         let is_last = i + 1 == path.len();
-        if !is_last && by_states.iter().all(|hinge| hinge[i] == [0.0; 6]) {
+        if !is_last
+            && by_states
+                .iter()
+                .all(|hinge| hinge[i] == HingeGradient::default())
+        {
             continue;
         }
         let hinges = || sheet.sheet.hinges.iter().enumerate();
         let motions = HingeMotion::all(sheet.sheet, &step.configuration);
         for (h, hinge) in hinges() {
-            let [a, s, theta, ..] = by_states[h][i];
-            add_at_hinge(&mut by_q, hinge, motions[h].forces([a, s, theta]));
+            add_at_hinge(&mut by_q, hinge, motions[h].forces(by_states[h][i].state));
         }
         let by_supports = by_reactions.as_ref().filter(|_| is_last);
         let held = by_supports.map(|by_reactions| held_motion(solver, sheet, step, by_reactions));
@@ -141,7 +144,7 @@ pub(crate) fn adjoint(
             let (energy, rates) = (&energies[h], motions[h].rates(virtual_motion));
             let against = |row: [f64; 3]| dot(&row, &rates);
             let by_state = by_states[h][i];
-            let weights = std::array::from_fn(|c| by_state[c] - against(energy.tangent[c]));
+            let weights = std::array::from_fn(|c| by_state.state[c] - against(energy.tangent[c]));
             let turning = motions[h].rates_geometry_gradient(energy.forces, virtual_motion);
             let stretching = motions[h].geometry_gradient(weights);
             let panels = [hinge.panel_a(), hinge.panel_b()];
@@ -151,9 +154,10 @@ pub(crate) fn adjoint(
                 let eps = step.deformations[h].to_array();
                 (0..3).for_each(|c| sums.constants[h][c] -= eps[c] * rates[c]);
             }
-            by_sheet.widths[h] += by_state[3] - against(energy.mixed.map(|row| row[0]));
-            by_sheet.alphas[h] += by_state[4] - against(energy.mixed.map(|row| row[1]));
-            by_sheet.holes[h] += by_state[5] - against(energy.mixed.map(|row| row[2]));
+            let (by_state, mixed) = (by_state.design, energy.mixed);
+            by_sheet.widths[h] += by_state.w_lig - against(mixed.map(|row| row.w_lig));
+            by_sheet.alphas[h] += by_state.alpha - against(mixed.map(|row| row.alpha));
+            by_sheet.holes[h] += by_state.hole - against(mixed.map(|row| row.hole));
         }
         sums.virtual_motion = lambda;
     }
@@ -185,9 +189,7 @@ fn held_motion(
 }
 
 fn add_motions(sum: &mut [[f64; 3]], motion: &[[f64; 3]], factor: f64) {
-    for (sum, entry) in std::iter::zip(sum.as_flattened_mut(), motion.as_flattened()) {
-        *sum += factor * entry;
-    }
+    vectors::add(sum.as_flattened_mut(), motion.as_flattened(), factor);
 }
 
 fn add_geometry(

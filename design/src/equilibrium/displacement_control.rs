@@ -11,6 +11,7 @@
 //! ```
 
 use crate::equilibrium::tangent::{Factor, TangentPattern};
+use support::vectors::dot;
 
 /// The direction c of the loads in the free degrees of freedom.
 #[derive(Clone, Debug)]
@@ -162,8 +163,4 @@ pub(crate) fn magnitude(by_panel: &[[f64; 3]]) -> Option<(f64, bool)> {
 
 pub(crate) fn work(forces: &[[f64; 3]], motions: &[[f64; 3]]) -> f64 {
     dot(forces.as_flattened(), motions.as_flattened())
-}
-
-pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
-    std::iter::zip(a, b).map(|(a, b)| a * b).sum()
 }

@@ -1,6 +1,6 @@
 //! The state of the sheet at one step of the equilibrium path, and how it was found.
 
-use crate::equilibrium::displacement_control::{HeldFactor, Stroke, dot};
+use crate::equilibrium::displacement_control::{HeldFactor, Stroke};
 use crate::equilibrium::solver::EquilibriumSolver;
 use crate::hinge_law::{HingeDamage, HingeEnergy, Order};
 use crate::sheet::cut_sheet::Sheet;
@@ -9,6 +9,7 @@ use hinge::HingeDeformation;
 use serde::Serialize;
 use std::fmt;
 use support::statistics::root_mean_square;
+use support::vectors::dot;
 
 /// How a load step ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]

@@ -9,10 +9,11 @@
 //! corrupt the geometric part f . d2(eps) of H. That part therefore uses the forces predicted by their rates
 //! (Magisano, Leonetti and Garcea 2017), until the state is stationary or no descent step is found.
 
-use crate::equilibrium::displacement_control::{HeldFactor, dot};
+use crate::equilibrium::displacement_control::HeldFactor;
 use crate::equilibrium::load_step::{DescentEnd, Effort};
 use crate::equilibrium::potential::{Potential, State, moved};
 use crate::sheet::kinematics::Configuration;
+use support::vectors::dot;
 
 /// Maximum length of a step: rotations in rad, hinge translations in panel sizes.
 const LONGEST_STEP: f64 = 0.5;
@@ -225,12 +226,12 @@ impl Potential<'_> {
         let motion = self.solver.pattern.spread(&direction);
         let mut fraction = 0.1 / self.length(state, &motion);
         for _ in 0..20 {
-            let beside = [fraction, -fraction].map(|f| self.moved(state, &motion, f));
-            let lowest = beside
+            let moved_to = [fraction, -fraction].map(|f| self.moved(state, &motion, f));
+            let lowest = moved_to
                 .into_iter()
                 .flatten()
                 .min_by(|a, b| a.potential.total_cmp(&b.potential))
-                .filter(|beside| beside.potential < state.potential);
+                .filter(|moved_to| moved_to.potential < state.potential);
             if lowest.is_some() {
                 return lowest;
             }

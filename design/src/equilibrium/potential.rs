@@ -10,7 +10,6 @@
 //! The minimised function is then U alone, because the work of the loads is the same in every configuration with
 //! that stroke. If there are a weight or loads held constant, U contains their work with negative sign.
 
-use crate::equilibrium::displacement_control::dot;
 use crate::equilibrium::hinged_sheet::HingedSheet;
 use crate::equilibrium::panel_force::PanelForce;
 use crate::equilibrium::solver::EquilibriumSolver;
@@ -19,6 +18,7 @@ use crate::hinge_law::{HingeEnergy, Order};
 use crate::sheet::kinematics::{Configuration, HingeMotion};
 use crate::sheet::panel_vectors::{add_at_hinge, at_hinge};
 use hinge::HingeDeformation;
+use support::vectors::dot;
 
 /// What grows along a part of the path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

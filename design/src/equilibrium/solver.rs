@@ -4,8 +4,8 @@
 //! min over q of  Pi(q) = sum_h W(eps_h(q); g_h) - zeta sum_k (F_k . u_k + M_k phi_k)
 //! ```
 //!
-//! If the sheet has a weight in its plane, minus the work of that; it comes on before the loads, the supports resting and a
-//! prescribed stroke being zero meanwhile. For a sheet that is unloaded, minus the work of the forces that held it.
+//! Self-weight in the plane is applied before the loads, with fixed supports and no prescribed displacement; its work is
+//! subtracted. In unloading the work of the forces that held the sheet is subtracted.
 
 use crate::equilibrium::displacement_control::Stroke;
 use crate::equilibrium::settings::SolverSettings;
@@ -13,7 +13,7 @@ use crate::equilibrium::supports::{Dof, Load, Support, hold_rigid_body};
 use crate::equilibrium::tangent::TangentPattern;
 use crate::equilibrium::weight::hung_from;
 use crate::pattern::grid::Grid;
-use crate::sheet::cut_sheet::{Grip, Sheet};
+use crate::sheet::cut_sheet::{AttachmentPoint, Sheet};
 use crate::sheet::kinematics::Configuration;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -43,11 +43,11 @@ pub enum EquilibriumError {
     #[error(
         "the supports leave the sheet free to move as a rigid body: support at least three \
          degrees of freedom, such as one clamp or a pin and a roller; one pin is enough for a sheet that hangs by its \
-         weight, without a prescribed stroke, from a point beside its centre of gravity"
+         weight, without a prescribed stroke, from a point that is not its centre of gravity"
     )]
     Unsupported,
     #[error(
-        "without the supports that moved it the sheet is free to move as a rigid body: nothing says where it goes when they let go. \
+        "without the supports that moved it the sheet is free to move as a rigid body, and its unloaded position is undetermined. \
          Hold it by supports that do not move"
     )]
     HeldByMoved,
@@ -77,7 +77,7 @@ pub struct EquilibriumSolver {
     /// Weight of a unit of area (N/mm^2), zero without weight.
     pub(crate) weight: [f64; 2],
     /// The points at which panels are held or pulled; the others have their centroids as reference points.
-    pub(crate) grips: Box<[Grip]>,
+    pub(crate) grips: Box<[AttachmentPoint]>,
     /// Loads held constant from the beginning of the path.
     pub(crate) held: Box<[[f64; 3]]>,
     /// Under displacement control, the direction of the stroke and its value at full load.
@@ -242,13 +242,13 @@ impl EquilibriumSolver {
     }
 
     /// The same problem for panels that are held or pulled at the points of `grips`, to which supports and loads refer.
-    pub fn gripping(mut self, grips: Vec<Grip>) -> Self {
+    pub fn attached_at(mut self, grips: Vec<AttachmentPoint>) -> Self {
         self.grips = grips.into();
         self
     }
 
     /// The points at which panels are held or pulled.
-    pub fn grips(&self) -> &[Grip] {
+    pub fn grips(&self) -> &[AttachmentPoint] {
         &self.grips
     }
 

@@ -334,6 +334,7 @@ fn fitted_keys(
     });
     let regime = scene.material.regime(config.ligament.start);
     config.start = StartConfig::at(&fitted.pattern, widths(scene, fitted, regime));
+    config.clear_actuation();
     config.supports = vec![SupportConfig::at_centroid(held, SupportKind::Clamp)];
     let length = |pull: &Pull| complex(pull.displacement).norm();
     let load = |pull: &Pull| {
@@ -344,8 +345,6 @@ fn fitted_keys(
     config.drive = Some(DriveConfig {
         stroke: rounded(pulls.iter().map(length).sum::<f64>() / pulls.len() as f64),
     });
-    config.edge_loads.clear();
-    config.opening_couples.clear();
     // Relative to the mean area of a panel.
     config.objective.symmetric_difference = DIFFERENCE * fitted.grid.panel_count() as f64;
     if scene.surrogate().is_some() {

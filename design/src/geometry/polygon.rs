@@ -226,7 +226,7 @@ mod tests {
     use super::*;
     use std::cell::Cell;
 
-    /// Long teeth, all of them beside each other in x: each of the 60 000 edges overlaps all others in x.
+    /// Long teeth side by side: each of the 60 000 edges overlaps all others in x.
     #[test]
     fn an_outline_of_very_many_points_needs_few_comparisons() {
         let mut teeth = Vec::new();

@@ -99,10 +99,10 @@ impl Edge {
         if left > other_right || right < other_left {
             return None;
         }
-        let beside = |edge: &Self, other: &Self| {
+        let sides = |edge: &Self, other: &Self| {
             [other.low, other.high].map(|end| side((edge.low, edge.high), end))
         };
-        let ([a, b], [p, q]) = (beside(self, other), beside(other, self));
+        let ([a, b], [p, q]) = (sides(self, other), sides(other, self));
         let crosses = a * b < 0.0 && p * q < 0.0;
         crosses.then(|| self.low[1] + p / (p - q) * (self.high[1] - self.low[1]))
     }
@@ -113,10 +113,10 @@ fn heights(all: &[Edge]) -> Vec<f64> {
     let ends = all.iter().flat_map(|edge| [edge.low[1], edge.high[1]]);
     let mut heights: Vec<f64> = ends.collect();
     for (i, edge) in all.iter().enumerate() {
-        let beside = all[i + 1..]
+        let overlapping = all[i + 1..]
             .iter()
             .take_while(|other| other.low[1] < edge.high[1]);
-        heights.extend(beside.filter_map(|other| edge.crossing(other)));
+        heights.extend(overlapping.filter_map(|other| edge.crossing(other)));
     }
     heights.sort_by(f64::total_cmp);
     heights.dedup();

@@ -24,6 +24,7 @@ use faer::{Col, Mat, Side};
 use hinge::{HingeDeformation, HingeDesign, TrainingDomain};
 use std::array::from_fn;
 use std::sync::Arc;
+use support::vectors::dot;
 
 /// A hinge law with a correction for each hinge of one sheet.
 pub struct CorrectedLaw {
@@ -70,7 +71,7 @@ impl Correction {
         let scaled = |measured: &MissingForces| scaled(&measured.state, lengths);
         let bent = |measured: &&MissingForces| {
             let state = scaled(measured);
-            dot(state, state) > NEARLY_FLAT * NEARLY_FLAT
+            dot(&state, &state) > NEARLY_FLAT * NEARLY_FLAT
         };
         let missing: Vec<&MissingForces> = missing.iter().filter(bent).collect();
         let flat = [0.0; 3];
@@ -106,8 +107,8 @@ impl Correction {
         let x = scaled(state, self.lengths);
         for (centre, b) in &self.centres {
             let (u, at_flat) = (minus(x, *centre), minus([0.0; 3], *centre));
-            let (decay, along) = (gaussian(u), dot(*b, u));
-            energy.w += decay * along - gaussian(at_flat) * dot(*b, at_flat);
+            let (decay, along) = (gaussian(u), dot(b, &u));
+            energy.w += decay * along - gaussian(at_flat) * dot(b, &at_flat);
             for i in (0..3).filter(|_| order >= Order::Forces) {
                 energy.forces[i] += decay * (b[i] - along * u[i]) / self.lengths[i];
                 for j in (0..3).filter(|_| order >= Order::Tangent) {
@@ -127,7 +128,7 @@ fn scaled(state: &HingeDeformation, lengths: [f64; 3]) -> [f64; 3] {
 }
 
 fn gaussian(u: [f64; 3]) -> f64 {
-    (-0.5 * dot(u, u)).exp()
+    (-0.5 * dot(&u, &u)).exp()
 }
 
 /// Covariance of the slopes at two states: the mixed second derivative of the Gaussian kernel.
@@ -191,10 +192,6 @@ impl PreparedLaw for PreparedCorrected<'_> {
 
 fn minus(x: [f64; 3], y: [f64; 3]) -> [f64; 3] {
     from_fn(|i| x[i] - y[i])
-}
-
-fn dot(x: [f64; 3], y: [f64; 3]) -> f64 {
-    std::iter::zip(x, y).map(|(x, y)| x * y).sum()
 }
 
 #[cfg(test)]
@@ -323,9 +320,16 @@ mod tests {
         let found = of(&design());
         let at = |x: &[f64]| of(&HingeConstants::PAPER.hinge(x[0], x[1]));
         let (x, allowed) = ([10.0, 1.3], |slope: f64| 1e-5 * slope.abs());
-        assert_gradient(|x| at(x).w, &x, &found.design[..2], 1e-4, allowed);
+        assert_gradient(
+            |x| at(x).w,
+            &x,
+            &found.design.to_array()[..2],
+            1e-4,
+            allowed,
+        );
         for j in 0..3 {
-            assert_gradient(|x| at(x).forces[j], &x, &found.mixed[j][..2], 1e-4, allowed);
+            let mixed = found.mixed[j].to_array();
+            assert_gradient(|x| at(x).forces[j], &x, &mixed[..2], 1e-4, allowed);
         }
     }
 

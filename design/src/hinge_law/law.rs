@@ -1,14 +1,12 @@
 //! The traits of a hinge law, which is prepared for the hinges of one sheet and then evaluated for all of them.
 
 pub use ::surrogate::{HingeDamage, HingeEnergy, Order};
+pub use hinge::{DesignGradient, HingeGradient};
 
 use hinge::{HingeDeformation, HingeDesign, TrainingDomain};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
-
-/// A gradient in (a, s, theta, w_lig, alpha, rho_f) of a hinge; rho_f is the radius of its hole over w_lig.
-pub type HingeGradient = [f64; 6];
 
 /// The damage measure of an objective.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
@@ -46,9 +44,9 @@ pub trait HingeLaw: Send + Sync {
         None
     }
 
-    /// The law of a sheet of `thicker` times the thickness, of a material with `stronger` times the stress at every strain; `None` if
+    /// The law at `thickness` times the thickness and `stress` times the stress at every strain; `None` if
     /// the law does not determine it, see [`scales`](Self::scales).
-    fn similar(&self, _thicker: f64, _stronger: f64) -> Option<Arc<dyn HingeLaw>> {
+    fn scaled(&self, _thickness: f64, _stress: f64) -> Option<Arc<dyn HingeLaw>> {
         None
     }
 

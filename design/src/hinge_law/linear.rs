@@ -29,11 +29,11 @@ impl HingeLaw for LinearLaw {
     }
 
     /// The constants of another thickness are not known.
-    fn similar(&self, thicker: f64, stronger: f64) -> Option<Arc<dyn HingeLaw>> {
-        let stronger = |constants: &[f64; 3]| constants.map(|constant| stronger * constant);
-        (thicker == 1.0).then(|| -> Arc<dyn HingeLaw> {
+    fn scaled(&self, thickness: f64, stress: f64) -> Option<Arc<dyn HingeLaw>> {
+        let scaled = |constants: &[f64; 3]| constants.map(|constant| stress * constant);
+        (thickness == 1.0).then(|| -> Arc<dyn HingeLaw> {
             Arc::new(Self {
-                stiffness: self.stiffness.iter().map(stronger).collect(),
+                stiffness: self.stiffness.iter().map(scaled).collect(),
             })
         })
     }

@@ -5,6 +5,7 @@ use crate::hinge_law::law::{
 };
 use hinge::{HingeDeformation, HingeDesign, TrainingDomain};
 use std::sync::Arc;
+use support::vectors;
 
 /// The mean of laws with one training domain.
 pub struct MeanLaw {
@@ -33,8 +34,8 @@ impl HingeLaw for MeanLaw {
         self.laws[0].domain()
     }
 
-    fn similar(&self, thicker: f64, stronger: f64) -> Option<Arc<dyn HingeLaw>> {
-        let laws = self.laws.iter().map(|law| law.similar(thicker, stronger));
+    fn scaled(&self, thickness: f64, stress: f64) -> Option<Arc<dyn HingeLaw>> {
+        let laws = self.laws.iter().map(|law| law.scaled(thickness, stress));
         Some(Arc::new(Self {
             laws: laws.collect::<Option<_>>()?,
         }))
@@ -51,10 +52,12 @@ impl PreparedLaw for PreparedMean<'_> {
             |law| law.energies(deformations, order),
             |mean, part, share| {
                 mean.w += share * part.w;
-                add(&mut mean.forces, &part.forces, share);
-                add_rows(&mut mean.tangent, &part.tangent, share);
-                add(&mut mean.design, &part.design, share);
-                add_rows(&mut mean.mixed, &part.mixed, share);
+                vectors::add(&mut mean.forces, &part.forces, share);
+                let (sum, rows) = (mean.tangent.as_flattened_mut(), part.tangent.as_flattened());
+                vectors::add(sum, rows, share);
+                mean.design += part.design * share;
+                let rows = mean.mixed.iter_mut().zip(part.mixed);
+                rows.for_each(|(mean, part)| *mean += part * share);
             },
         )
     }
@@ -64,10 +67,10 @@ impl PreparedLaw for PreparedMean<'_> {
             |law| law.damage(deformations, with_gradient),
             |mean, part, share| {
                 mean.d += share * part.d;
-                add(&mut mean.gradient, &part.gradient, share);
+                mean.gradient += part.gradient * share;
                 let peaks = mean.d_peak.zip(part.d_peak);
                 mean.d_peak = peaks.map(|(mean, part)| mean + share * part);
-                add(&mut mean.peak_gradient, &part.peak_gradient, share);
+                mean.peak_gradient += part.peak_gradient * share;
             },
         )
     }
@@ -82,7 +85,7 @@ impl PreparedLaw for PreparedMean<'_> {
 }
 
 impl PreparedMean<'_> {
-    /// The mean of what the laws say of every hinge; `add` adds a multiple of what one law says to a sum.
+    /// The mean over the laws of their values at every hinge; `add` adds a multiple of the value of one law to a sum.
     fn mean<T: Clone>(
         &self,
         of: impl Fn(&dyn PreparedLaw) -> Vec<T>,
@@ -101,21 +104,5 @@ impl PreparedMean<'_> {
             }
         }
         mean
-    }
-}
-
-fn add<const N: usize>(sum: &mut [f64; N], part: &[f64; N], share: f64) {
-    for (sum, part) in sum.iter_mut().zip(part) {
-        *sum += share * part;
-    }
-}
-
-fn add_rows<const N: usize, const M: usize>(
-    sum: &mut [[f64; M]; N],
-    part: &[[f64; M]; N],
-    share: f64,
-) {
-    for (sum, part) in sum.iter_mut().zip(part) {
-        add(sum, part, share);
     }
 }

@@ -44,12 +44,12 @@ impl Release {
         }
     }
 
-    /// The same in a sheet of `thicker` times the thickness, of a material with `stronger` times the stress at every strain.
-    pub(crate) fn similar(&self, thicker: f64, stronger: f64) -> Self {
+    /// The same at `thickness` times the thickness and `stress` times the stress at every strain.
+    pub(crate) fn scaled(&self, thickness: f64, stress: f64) -> Self {
         Self {
             law: Arc::clone(&self.law),
-            scale: thicker * self.scale,
-            stress: stronger * self.stress,
+            scale: thickness * self.scale,
+            stress: stress * self.stress,
         }
     }
 

@@ -13,7 +13,8 @@
 //! to its interval by the same psi.
 
 use crate::hinge_law::law::{
-    DamageMeasure, HingeDamage, HingeEnergy, HingeGradient, HingeLaw, Order, PreparedLaw,
+    DamageMeasure, DesignGradient, HingeDamage, HingeEnergy, HingeGradient, HingeLaw, Order,
+    PreparedLaw,
 };
 use hinge::{HingeDeformation, HingeDesign, Jet, TrainingDomain};
 use std::array::from_fn;
@@ -56,10 +57,10 @@ impl HingeLaw for SurrogateLaw {
         Some(self.surrogate.domain())
     }
 
-    fn similar(&self, thicker: f64, stronger: f64) -> Option<Arc<dyn HingeLaw>> {
-        let surrogate = self.surrogate.clone().scaled(thicker);
+    fn scaled(&self, thickness: f64, stress: f64) -> Option<Arc<dyn HingeLaw>> {
+        let surrogate = self.surrogate.clone().scaled(thickness);
         Some(Arc::new(Self {
-            surrogate: surrogate.stressed(stronger, None),
+            surrogate: surrogate.stressed(stress, None),
         }))
     }
 
@@ -120,11 +121,8 @@ impl<S: Deref<Target = Surrogate>> PreparedLaw for PreparedSurrogate<S> {
         let mut energies = self.surrogate.evaluate(&self.prepared, &mapped, order);
         let scale = self.surrogate.energy_scale();
         for (h, energy) in energies.iter_mut().enumerate() {
-            energy.design[1] *= self.angle_slopes[h];
-            energy
-                .mixed
-                .iter_mut()
-                .for_each(|m| m[1] *= self.angle_slopes[h]);
+            let by_design = std::iter::once(&mut energy.design).chain(&mut energy.mixed);
+            by_design.for_each(|gradient| gradient.alpha *= self.angle_slopes[h]);
             if let Some(continuation) = &continuations[h] {
                 *energy = continuation.energy(energy, scale, order);
             }
@@ -141,7 +139,7 @@ impl<S: Deref<Target = Surrogate>> PreparedLaw for PreparedSurrogate<S> {
         let mut damages = self.surrogate.damage(designs, &mapped);
         for (h, damage) in damages.iter_mut().enumerate() {
             for gradient in [&mut damage.gradient, &mut damage.peak_gradient] {
-                gradient[4] *= self.angle_slopes[h];
+                gradient.design.alpha *= self.angle_slopes[h];
                 if let Some(continuation) = &continuations[h] {
                     *gradient = continuation.gradient(gradient);
                 }
@@ -206,9 +204,9 @@ impl Continuation {
         };
         let law = drawn + (drawn + Jet::constant(scale)) * returning;
         let grown = 1.0 + returning.value;
+        let (by_design, mixed) = (at.design.to_array(), at.mixed.map(DesignGradient::to_array));
         let mixed = |j: usize, g: usize| {
-            grown * sum(|i| y[i].gradient[j] * at.mixed[i][g])
-                + returning.gradient[j] * at.design[g]
+            grown * sum(|i| y[i].gradient[j] * mixed[i][g]) + returning.gradient[j] * by_design[g]
         };
         let mut energy = HingeEnergy {
             w: law.value,
@@ -221,13 +219,11 @@ impl Continuation {
             energy.tangent = from_fn(|j| from_fn(|k| law.hessian[j][k]));
         }
         if order >= Order::Design {
-            energy.design = at.design.map(|slope| grown * slope);
-            energy.design[0] += law.gradient[3];
-            energy.design[2] += law.gradient[4];
-            energy.mixed = from_fn(|j| from_fn(|g| mixed(j, g)));
+            energy.design = at.design * grown;
+            energy.design += HingeGradient::from_jet(law.gradient).design;
             for j in 0..3 {
-                energy.mixed[j][0] += law.hessian[j][3];
-                energy.mixed[j][2] += law.hessian[j][4];
+                energy.mixed[j] = from_fn(|g| mixed(j, g)).into();
+                energy.mixed[j] += HingeGradient::from_jet(law.hessian[j]).design;
             }
         }
         energy
@@ -235,15 +231,10 @@ impl Continuation {
 
     /// A gradient at y, pulled back to x.
     fn gradient(&self, at: &HingeGradient) -> HingeGradient {
-        let along = |j: usize| sum(|i| at[i] * self.mapped[i].gradient[j]);
-        [
-            along(0),
-            along(1),
-            along(2),
-            at[3] + along(3),
-            at[4],
-            at[5] + along(4),
-        ]
+        let along = |j: usize| sum(|i| at.state[i] * self.mapped[i].gradient[j]);
+        let mut gradient = HingeGradient::from_jet(from_fn(along));
+        gradient.design += at.design;
+        gradient
     }
 }
 
@@ -322,11 +313,11 @@ mod tests {
         ] {
             let found = energy(&law, &x);
             let allowed = |slope: f64| 1e-7 * law.surrogate.energy_scale().max(slope.abs());
-            let first = [&found.forces[..], &found.design[..2]].concat();
+            let first = [&found.forces[..], &found.design.to_array()[..2]].concat();
             assert_gradient(|x| energy(&law, x).w, &x, &first, 1e-5, allowed);
             for i in 0..3 {
                 let force = |x: &[f64]| energy(&law, x).forces[i];
-                let second = [&found.tangent[i][..], &found.mixed[i][..2]].concat();
+                let second = [&found.tangent[i][..], &found.mixed[i].to_array()[..2]].concat();
                 assert_gradient(force, &x, &second, 1e-5, allowed);
             }
         }

@@ -2,7 +2,7 @@
 
 use crate::equilibrium::adjoint::{PathGradient, adjoint};
 use crate::equilibrium::load_step::LoadStep;
-use crate::equilibrium::nearby_path::KnownPath;
+use crate::equilibrium::warm_start::WarmStart;
 use crate::geometry::plane::add;
 use crate::hinge_law::{HingeGradient, PreparedLaw};
 use crate::objective::design_problem::{
@@ -23,7 +23,7 @@ pub(super) struct Partials<'a> {
     pub outline: &'a [PanelCorner],
     /// In their deployed positions.
     pub by_outline: &'a [[f64; 2]],
-    /// In (a, s, theta, w_lig, alpha) per hinge and step of `path`.
+    /// In each hinge at each step of `path`.
     pub by_states: &'a [Vec<HingeGradient>],
     /// In the load factor of the last step.
     pub by_load_factor: f64,
@@ -58,27 +58,27 @@ impl DesignProblem {
     pub fn evaluate_near(
         &self,
         design: &DesignVector,
-        known: Option<&KnownPath>,
+        known: Option<&WarmStart>,
     ) -> Result<Evaluation, DesignError> {
         let by_damage = self.objective.needs_damage_gradient();
         let (deployment, law) = self.deploy_prepared(design, by_damage, known)?;
         let law = self.model.mechanics().zip(law.as_deref());
         let outline = deployment.sheet.free_outline_corners();
-        let judgement = self.judge(&deployment, &outline)?;
+        let value = self.evaluate_deployed(&deployment, &outline)?;
         let partials = Partials {
             path: &deployment.path,
             outline: &outline,
-            by_outline: &judgement.gradient.by_outline,
-            by_states: &judgement.gradient.by_states,
+            by_outline: &value.gradient.by_outline,
+            by_states: &value.gradient.by_states,
             by_load_factor: 0.0,
-            by_sheet: judgement.gradient.by_sheet,
-            by_fit: judgement.gradient.by_fit,
+            by_sheet: value.gradient.by_sheet,
+            by_fit: value.gradient.by_fit,
             by_reactions: None,
         };
         let gradient = self.design_gradient(design, &deployment, law, partials)?;
         Ok(Evaluation {
-            loss: judgement.loss,
-            terms: judgement.terms,
+            loss: value.loss,
+            terms: value.terms,
             gradient: gradient.design,
             sensitivities: gradient.sensitivities,
             deployment,
@@ -128,7 +128,7 @@ impl DesignProblem {
                     adjoint_residual = residual;
                     for (by_path, by_loaded) in std::iter::zip(by_states.to_mut(), by_loaded) {
                         let by_last = by_path.last_mut().expect("a path has at least one step");
-                        (0..6).for_each(|c| by_last[c] += by_loaded[c]);
+                        *by_last += by_loaded;
                     }
                 }
                 let sums = adjoint(

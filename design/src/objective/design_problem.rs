@@ -3,12 +3,12 @@
 
 use crate::equilibrium::adjoint::SingularTangent;
 use crate::equilibrium::hinged_sheet::HingedSheet;
-use crate::equilibrium::let_go::ReleasedSheet;
 use crate::equilibrium::load_step::{DescentEnd, LoadStep, Status, residual_in_words};
-use crate::equilibrium::nearby_path::KnownPath;
 use crate::equilibrium::solver::{EquilibriumError, EquilibriumSolver};
+use crate::equilibrium::unloading::ReleasedSheet;
+use crate::equilibrium::warm_start::WarmStart;
 use crate::hinge_law::{Contact, DamageMeasure, HingeLaw, PreparedLaw, Release};
-use crate::objective::loss::{Judgement, Objective, TermValues};
+use crate::objective::loss::{Objective, ObjectiveValue, TermValues};
 use crate::objective::term::Deployed;
 use crate::pattern::cut_pattern::{CutPattern, Outline};
 use crate::pattern::design_vector::{DesignVector, WidthChart};
@@ -62,7 +62,7 @@ pub enum DesignError {
     #[error(
         "no equilibrium was found when the loads are taken off, and objective.target_state = \"released\" is for that: open the sheet less"
     )]
-    NotLetGo,
+    NotUnloaded,
     #[error(transparent)]
     SingularTangent(#[from] SingularTangent),
 }
@@ -168,8 +168,8 @@ pub struct Evaluation {
 
 impl Deployment {
     /// The path, from which the paths of designs near this one can be corrected.
-    pub fn known_path(&self) -> KnownPath {
-        KnownPath {
+    pub fn warm_start(&self) -> WarmStart {
+        WarmStart {
             designs: self.sheet.designs(),
             steps: self.path.clone(),
         }
@@ -195,12 +195,12 @@ impl Deployment {
 
     /// The state at full load, or an error if it was not reached.
     pub fn at_full_load(&self) -> Result<&LoadStep, DesignError> {
-        found(self.final_step())
+        converged(self.final_step())
     }
 
     /// The state that is compared with the target: at full load, or after the loads were taken off.
     pub fn compared(&self) -> &LoadStep {
-        self.let_go().unwrap_or_else(|| self.final_step())
+        self.unloaded().unwrap_or_else(|| self.final_step())
     }
 
     /// The same, or an error if there is no equilibrium in that state.
@@ -209,11 +209,11 @@ impl Deployment {
         let compared = self.compared();
         (compared.status != Status::Diverged)
             .then_some(compared)
-            .ok_or(DesignError::NotLetGo)
+            .ok_or(DesignError::NotUnloaded)
     }
 
     /// The state after the loads were taken off, if the target is for that.
-    pub fn let_go(&self) -> Option<&LoadStep> {
+    pub fn unloaded(&self) -> Option<&LoadStep> {
         self.released.as_ref().map(ReleasedSheet::last)
     }
 
@@ -292,7 +292,7 @@ impl DesignProblem {
     pub(crate) fn sheet(&self, pattern: &CutPattern, w_lig: &[f64]) -> Result<Sheet, SheetError> {
         let sheet = Sheet::new(pattern, w_lig, self.options)?;
         let grips = (self.model.mechanics()).map_or(&[][..], |mechanics| mechanics.solver.grips());
-        Ok(sheet.gripped(grips))
+        Ok(sheet.attached_at(grips))
     }
 
     /// Lines 2-5 of Algorithm 1. A path that diverges ends early; see [`LoadStep::status`].
@@ -304,7 +304,7 @@ impl DesignProblem {
     pub fn deploy_near(
         &self,
         design: &DesignVector,
-        known: Option<&KnownPath>,
+        known: Option<&WarmStart>,
     ) -> Result<Deployment, DesignError> {
         Ok(self.deploy_prepared(design, false, known)?.0)
     }
@@ -315,7 +315,7 @@ impl DesignProblem {
         &self,
         design: &DesignVector,
         gradient: bool,
-        known: Option<&KnownPath>,
+        known: Option<&WarmStart>,
     ) -> Result<(Deployment, Option<Box<dyn PreparedLaw + '_>>), DesignError> {
         let (pattern, sheet) = self.cut(design)?;
         let (path, followed, law, released) = match &self.model {
@@ -358,19 +358,19 @@ impl DesignProblem {
     /// L of a deployed sheet at full load.
     pub fn loss_of(&self, deployment: &Deployment) -> Result<f64, DesignError> {
         let outline = deployment.sheet.free_outline_corners();
-        Ok(self.judge(deployment, &outline)?.loss)
+        Ok(self.evaluate_deployed(deployment, &outline)?.loss)
     }
 
-    pub(super) fn judge(
+    pub(super) fn evaluate_deployed(
         &self,
         deployment: &Deployment,
         outline: &[PanelCorner],
-    ) -> Result<Judgement, DesignError> {
+    ) -> Result<ObjectiveValue, DesignError> {
         if self.objective.shape.target.is_empty() {
             return Err(DesignError::EmptyTarget);
         }
         deployment.at_target_state()?;
-        Ok(self.objective.judge(&Deployed {
+        Ok(self.objective.evaluate(&Deployed {
             sheet: &deployment.sheet,
             path: &deployment.path,
             outline: &deployment.outline(outline),
@@ -380,7 +380,7 @@ impl DesignProblem {
 }
 
 /// The load step, or an error if it is no equilibrium.
-pub(crate) fn found(step: &LoadStep) -> Result<&LoadStep, DesignError> {
+pub(crate) fn converged(step: &LoadStep) -> Result<&LoadStep, DesignError> {
     match step.status {
         Status::Diverged => Err(DesignError::NoEquilibrium {
             reached: step.load_factor,
@@ -392,10 +392,10 @@ pub(crate) fn found(step: &LoadStep) -> Result<&LoadStep, DesignError> {
 }
 
 impl Mechanics {
-    /// The mechanics of a sheet of `thicker` times the thickness, of a material with `stronger` times the stress at every strain. Its
+    /// The mechanics at `thickness` times the thickness and `stress` times the stress at every strain. Its
     /// weight grows with the thickness; contact is not changed.
-    pub(crate) fn similar(&self, thicker: f64, stronger: f64) -> Result<Self, DesignError> {
-        if !(thicker > 0.0 && stronger > 0.0 && thicker.is_finite() && stronger.is_finite()) {
+    pub(crate) fn scaled(&self, thickness: f64, stress: f64) -> Result<Self, DesignError> {
+        if !(thickness > 0.0 && stress > 0.0 && thickness.is_finite() && stress.is_finite()) {
             return Err(DesignError::ImpossibleSheet);
         }
         let mut similar = Self {
@@ -404,12 +404,12 @@ impl Mechanics {
             solver: self.solver.clone(),
             release: self.release.clone(),
         };
-        if (thicker, stronger) != (1.0, 1.0) {
-            let law = self.law.similar(thicker, stronger);
+        if (thickness, stress) != (1.0, 1.0) {
+            let law = self.law.scaled(thickness, stress);
             similar.law = law.ok_or(DesignError::NoSimilarLaw)?;
             let release = self.release.as_ref();
-            similar.release = release.map(|release| release.similar(thicker, stronger));
-            similar.solver.weight = self.solver.weight.map(|weight| thicker * weight);
+            similar.release = release.map(|release| release.scaled(thickness, stress));
+            similar.solver.weight = self.solver.weight.map(|weight| thickness * weight);
         }
         Ok(similar)
     }
@@ -419,7 +419,7 @@ impl Mechanics {
     pub(crate) fn path(
         &self,
         hinged: HingedSheet,
-        known: Option<&KnownPath>,
+        known: Option<&WarmStart>,
     ) -> (Vec<LoadStep>, bool) {
         let near = known.and_then(|known| self.solver.path_near(hinged, known));
         let followed = near.is_none();

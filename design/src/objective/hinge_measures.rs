@@ -2,7 +2,7 @@
 //! the path of a hinge.
 
 use crate::equilibrium::load_step::LoadStep;
-use crate::hinge_law::DamageMeasure;
+use crate::hinge_law::{DamageMeasure, HingeGradient};
 use crate::objective::term::{Deployed, TermGradient};
 
 /// A dimensionless measure of the state of a hinge.
@@ -60,7 +60,7 @@ impl HingeMeasure {
     }
 }
 
-/// Adds the gradient in the measures to `by_states`, that in the state and the design of each hinge at each load step.
+/// Adds the gradient in the measures to `by_states`, the gradient in each hinge at each load step.
 pub(crate) fn add_by_states(at: &Deployed, gradient: &mut TermGradient) {
     let per_hinge = 1.0 / at.sheet.hinges.len() as f64;
     let by_hinges = std::iter::zip(&gradient.by_measures, &mut gradient.by_states);
@@ -71,18 +71,15 @@ pub(crate) fn add_by_states(at: &Deployed, gradient: &mut TermGradient) {
         {
             let [eta_a, eta_s] = step.deformations[h].eta(w_lig);
             let by_width = -(by_eta_a * eta_a + by_eta_s * eta_s) / w_lig;
-            let mut slopes = [by_eta_a / w_lig, by_eta_s / w_lig, 0.0, by_width, 0.0, 0.0];
+            let mut slopes =
+                HingeGradient::from([by_eta_a / w_lig, by_eta_s / w_lig, 0.0, by_width, 0.0, 0.0]);
             if let Some(damage) = step.damage.get(h) {
                 let measures = [(by_mean, damage.gradient), (by_peak, damage.peak_gradient)];
                 for (by_damage, gradient) in measures.into_iter().filter(|(by, _)| *by != 0.0) {
-                    for (slope, by_state) in std::iter::zip(&mut slopes, gradient) {
-                        *slope += by_damage * by_state;
-                    }
+                    slopes += gradient * by_damage;
                 }
             }
-            for (sum, slope) in std::iter::zip(sums, slopes) {
-                *sum += per_hinge * slope;
-            }
+            *sums += slopes * per_hinge;
         }
     }
 }

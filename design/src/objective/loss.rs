@@ -22,7 +22,7 @@ pub struct Objective {
 
 /// The objective and its partial derivatives at a deployment.
 #[derive(Clone, Debug)]
-pub(crate) struct Judgement {
+pub(crate) struct ObjectiveValue {
     /// L of (16).
     pub loss: f64,
     pub terms: TermValues,
@@ -69,7 +69,7 @@ impl Objective {
     }
 
     /// Evaluates a deployed sheet.
-    pub(crate) fn judge(&self, at: &Deployed) -> Judgement {
+    pub(crate) fn evaluate(&self, at: &Deployed) -> ObjectiveValue {
         let mut gradient = TermGradient::zeros(at);
         let mut terms = TermValues::new();
         let mut value = |term: &dyn Term, weight: f64, counts: bool| {
@@ -92,7 +92,7 @@ impl Objective {
             loss += value(&**term, *weight, *weight != 0.0);
         }
         add_by_states(at, &mut gradient);
-        Judgement {
+        ObjectiveValue {
             loss,
             terms,
             gradient,

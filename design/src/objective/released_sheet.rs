@@ -11,10 +11,10 @@
 //! each hinge at full load, with which the adjoint (20) of the path under load begins.
 
 use crate::equilibrium::adjoint::{PathGradient, adjoint};
-use crate::equilibrium::let_go::ReleasedSheet;
 use crate::equilibrium::load_step::{LoadStep, Status};
 use crate::equilibrium::solver::EquilibriumError;
-use crate::hinge_law::{HingeGradient, Order, PreparedLaw, ReleasedLaw};
+use crate::equilibrium::unloading::ReleasedSheet;
+use crate::hinge_law::{DesignGradient, HingeGradient, Order, PreparedLaw, ReleasedLaw};
 use crate::objective::design_problem::{Deployment, DesignError, Mechanics};
 use crate::sheet::cut_sheet::{Sheet, SheetGradient};
 use crate::sheet::kinematics::HingeMotion;
@@ -25,7 +25,7 @@ use surrogate::ByReleased;
 
 impl Mechanics {
     /// Takes the loads off a sheet in the configuration of a load step, with these hinges.
-    pub(crate) fn let_go(
+    pub(crate) fn unload(
         &self,
         sheet: &Sheet,
         step: &LoadStep,
@@ -33,7 +33,7 @@ impl Mechanics {
     ) -> Result<ReleasedSheet, EquilibriumError> {
         let law = ReleasedLaw(&hinges);
         let hinged = self.hinged(sheet, &law, false);
-        let path = self.solver.let_go(hinged, step.configuration.clone())?;
+        let path = self.solver.unload(hinged, step.configuration.clone())?;
         Ok(ReleasedSheet { hinges, path })
     }
 
@@ -50,7 +50,7 @@ impl Mechanics {
             return Ok(None);
         };
         let hinges = release.hinges(law, &sheet.designs(), &step.deformations);
-        Ok(Some(self.let_go(sheet, step, hinges)?))
+        Ok(Some(self.unload(sheet, step, hinges)?))
     }
 
     /// The gradient, in the state and the design of every hinge at full load, of a function with the gradient `by_free` in the
@@ -63,7 +63,7 @@ impl Mechanics {
         by_free: Vec<[f64; 3]>,
         by_sheet: &mut SheetGradient,
     ) -> Result<(Vec<HingeGradient>, f64), DesignError> {
-        let release = self.release.as_ref().expect("by it the sheet was let go");
+        let release = self.release.as_ref().expect("the sheet was unloaded by it");
         let (sheet, loaded, free) = (&deployment.sheet, deployment.final_step(), released.last());
         let released_law = ReleasedLaw(&released.hinges);
         let sums = adjoint(
@@ -71,7 +71,7 @@ impl Mechanics {
             self.hinged(sheet, &released_law, false),
             std::slice::from_ref(free),
             PathGradient {
-                by_states: &vec![vec![[0.0; 6]]; sheet.hinges.len()],
+                by_states: &vec![vec![HingeGradient::default()]; sheet.hinges.len()],
                 by_load_factor: 0.0,
                 by_last: by_free,
                 by_reactions: None,
@@ -94,14 +94,14 @@ impl Mechanics {
             let by_force = |rates: &dyn Fn(usize) -> f64| -> f64 {
                 (0..3).map(|i| found.forces[i] * rates(i)).sum()
             };
-            let direct = [&found.reached[..], &[found.w_lig, found.alpha, 0.0]].concat();
-            from_fn(|c| {
-                let rates = |i: usize| match c {
-                    0..3 => energy.tangent[i][c],
-                    _ => energy.mixed[i][c - 3],
-                };
-                direct[c] + by_force(&rates)
-            })
+            HingeGradient {
+                state: from_fn(|c| found.reached[c] + by_force(&|i| energy.tangent[i][c])),
+                design: DesignGradient {
+                    w_lig: found.w_lig + by_force(&|i| energy.mixed[i].w_lig),
+                    alpha: found.alpha + by_force(&|i| energy.mixed[i].alpha),
+                    hole: by_force(&|i| energy.mixed[i].hole),
+                },
+            }
         };
         let by_states = (0..sheet.hinges.len()).map(by_hinge).collect();
         Ok((by_states, sums.residual))

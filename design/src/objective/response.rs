@@ -15,20 +15,20 @@
 //! A hinge of another thickness is a geometrically similar one, W(a, s, theta, w_lig; t) = t^3 W(a/t, s/t, theta, w_lig/t; 1), so
 //! that Euler's theorem gives df/dlog t from the second derivatives of W.
 
-use crate::equilibrium::displacement_control::dot;
 use crate::equilibrium::hinged_sheet::HingedSheet;
 use crate::equilibrium::load_step::LoadStep;
-use crate::equilibrium::nearby_path::KnownPath;
 use crate::equilibrium::solver::EquilibriumSolver;
+use crate::equilibrium::warm_start::WarmStart;
 use crate::equilibrium::weight::weights_of_panels;
-use crate::hinge_law::{HingeEnergy, Order};
+use crate::hinge_law::{HingeEnergy, HingeGradient, Order};
 use crate::objective::design_gradient::Partials;
-use crate::objective::design_problem::{Deployment, DesignError, DesignProblem, Model, found};
+use crate::objective::design_problem::{Deployment, DesignError, DesignProblem, Model, converged};
 use crate::pattern::design_vector::DesignVector;
 use crate::sheet::cut_sheet::SheetGradient;
 use crate::sheet::kinematics::{HingeMotion, deployed_corners};
 use crate::sheet::panel_vectors::at_hinge;
 use hinge::HingeDeformation;
+use support::vectors::dot;
 
 /// What the equilibrium of a design depends on besides it; by default what the problem says.
 #[derive(Clone, Debug, PartialEq)]
@@ -101,7 +101,7 @@ impl DesignProblem {
     /// The same problem under other conditions.
     pub fn under(&self, conditions: &Conditions) -> Result<Self, DesignError> {
         let mechanics = self.model.mechanics().ok_or(DesignError::NoMechanics)?;
-        let mut mechanics = mechanics.similar(conditions.thickness, conditions.stress)?;
+        let mut mechanics = mechanics.scaled(conditions.thickness, conditions.stress)?;
         if let Some(loads) = &conditions.loads {
             mechanics.solver = mechanics.solver.loaded(loads)?;
         }
@@ -117,7 +117,7 @@ impl DesignProblem {
     pub fn response(
         &self,
         design: &DesignVector,
-        known: Option<&KnownPath>,
+        known: Option<&WarmStart>,
     ) -> Result<Response, DesignError> {
         self.responded(design, |solver, hinged| {
             let near = known.and_then(|known| solver.readings_near(hinged, &FULL_LOAD, known));
@@ -135,7 +135,7 @@ impl DesignProblem {
     pub fn draft(
         &self,
         design: &DesignVector,
-        known: Option<&KnownPath>,
+        known: Option<&WarmStart>,
     ) -> Result<Response, DesignError> {
         let mut response = self.responded(design, |solver, hinged| {
             match known.and_then(|known| solver.full_load_near(hinged, known)) {
@@ -180,7 +180,7 @@ impl DesignProblem {
             .expect("there is one reading, or where the path ends");
         let reactions = mechanics
             .solver
-            .reactions(hinged, &found(state)?.configuration);
+            .reactions(hinged, &converged(state)?.configuration);
         drop(law);
         Ok(Response {
             deployment: Deployment {
@@ -215,7 +215,7 @@ impl DesignProblem {
             path: &response.deployment.path,
             outline: &corners,
             by_outline: by.corners.as_flattened(),
-            by_states: &vec![vec![[0.0; 6]]; sheet.hinges.len()],
+            by_states: &vec![vec![HingeGradient::default()]; sheet.hinges.len()],
             by_load_factor: by.load_factor,
             by_sheet: SheetGradient::zeros(sheet.grid),
             by_fit: [0.0; 2],
@@ -242,13 +242,13 @@ impl DesignProblem {
         let of_weight: f64 = std::iter::zip(weight, virtual_motion)
             .map(|(weight, motion)| dot(&weight.force, motion))
             .sum();
-        let thicker =
+        let thickness =
             |h: usize| by_thickness(&energies[h], &state.deformations[h], designs[h].w_lig);
         let [of_thickness, of_stress] = mechanics.law.scales();
         Ok(ResponseGradient {
             design: gradient.design,
             loads: mechanics.solver.in_loads(&gradient.sensitivities.loads),
-            thickness: of_thickness.then(|| work(&thicker) + of_weight),
+            thickness: of_thickness.then(|| work(&thickness) + of_weight),
             stress: of_stress.then(|| work(&|h| energies[h].forces)),
         })
     }
@@ -263,6 +263,6 @@ pub(crate) fn by_thickness(energy: &HingeEnergy, at: &HingeDeformation, w_lig: f
     std::array::from_fn(|c| {
         let degree = if c == 2 { 3.0 } else { 2.0 };
         let [by_a, by_s, _] = energy.tangent[c];
-        degree * energy.forces[c] - at.a * by_a - at.s * by_s - w_lig * energy.mixed[c][0]
+        degree * energy.forces[c] - at.a * by_a - at.s * by_s - w_lig * energy.mixed[c].w_lig
     })
 }

@@ -6,6 +6,7 @@ use crate::pattern::fit_variables::FitVariables;
 use crate::sheet::cut_sheet::{Sheet, SheetGradient};
 use std::fmt::Debug;
 use std::sync::Arc;
+use support::vectors;
 
 /// A term of the objective.
 pub trait Term: Debug + Send + Sync {
@@ -84,7 +85,7 @@ impl TermGradient {
         Self {
             by_outline: vec![[0.0; 2]; at.outline.len()],
             by_measures: vec![vec![[0.0; 4]; steps]; hinges],
-            by_states: vec![vec![[0.0; 6]; steps]; hinges],
+            by_states: vec![vec![HingeGradient::default(); steps]; hinges],
             by_sheet: SheetGradient::zeros(at.sheet.grid),
             by_fit: [0.0; 2],
         }
@@ -93,14 +94,13 @@ impl TermGradient {
     /// Adds `weight` times a gradient in the deployed positions of P.
     pub fn add_by_outline(&mut self, weight: f64, by_outline: &[[f64; 2]]) {
         let sums = self.by_outline.as_flattened_mut();
-        std::iter::zip(sums, by_outline.as_flattened())
-            .for_each(|(sum, entry)| *sum += weight * entry);
+        vectors::add(sums, by_outline.as_flattened(), weight);
     }
 
     /// Adds `weight` times a gradient in the flat corners of every panel.
     pub fn add_by_corners(&mut self, weight: f64, by_corners: &[[[f64; 2]; 4]]) {
         let sums = self.by_sheet.corners.as_flattened_mut().as_flattened_mut();
         let entries = by_corners.as_flattened().as_flattened();
-        std::iter::zip(sums, entries).for_each(|(sum, entry)| *sum += weight * entry);
+        vectors::add(sums, entries, weight);
     }
 }

@@ -234,9 +234,9 @@ mod tests {
         let gradient = [by_a, 0.0, by_theta, per_width, 0.0, 0.0];
         HingeDamage {
             d: w_lig * per_width,
-            gradient,
+            gradient: gradient.into(),
             d_peak: Some(3.0 * w_lig * per_width),
-            peak_gradient: gradient.map(|slope| 3.0 * slope),
+            peak_gradient: gradient.map(|slope| 3.0 * slope).into(),
         }
     }
 
@@ -273,9 +273,12 @@ mod tests {
         add_by_states(&at, &mut gradient);
         let by_hinges = std::iter::zip(&gradient.by_states, &gradient.by_sheet.alphas);
         let by_hinges = by_hinges.flat_map(|(steps, by_angle)| {
-            let sum = |c: usize| steps.iter().map(|step| step[c]).sum::<f64>();
-            let states = steps.iter().flat_map(|step| step[..3].to_vec());
-            [sum(3), sum(4) + by_angle].into_iter().chain(states)
+            let [width, angle] = [0, 1].map(|c| {
+                let slopes = steps.iter().map(|step| step.design.to_array()[c]);
+                slopes.sum::<f64>()
+            });
+            let states = steps.iter().flat_map(|step| step.state);
+            [width, angle + by_angle].into_iter().chain(states)
         });
         let by_corners = gradient.by_sheet.corners.into_flattened().into_flattened();
         let by_outline = gradient.by_outline.into_flattened();

@@ -1,7 +1,7 @@
 //! Step halving: a step of the outer loop that leads to a design without objective value, or to one that
 //! the search does not accept, is halved until it leads to an acceptable design.
 
-use crate::equilibrium::nearby_path::KnownPath;
+use crate::equilibrium::warm_start::WarmStart;
 use crate::objective::design_problem::{DesignProblem, Evaluation};
 use crate::optimise::search::Search;
 use crate::pattern::design_vector::DesignVector;
@@ -24,7 +24,7 @@ pub(crate) fn evaluate_or_back_off(
     search: &Search,
     good: &DesignVector,
     mut proposal: DesignVector,
-    known: Option<&KnownPath>,
+    known: Option<&WarmStart>,
 ) -> Result<(DesignVector, Evaluation, Setback), Option<String>> {
     let mut setback = Setback::default();
     loop {

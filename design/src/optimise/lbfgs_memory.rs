@@ -1,9 +1,9 @@
 //! The memory of the L-BFGS method (Liu and Nocedal 1989): an approximation of the inverse Hessian from the
 //! last steps.
 
-use crate::equilibrium::displacement_control::dot;
 use serde::{Deserialize, Serialize};
 use std::collections::VecDeque;
+use support::vectors::{add, dot};
 
 /// Maximum number of stored pairs of step and gradient change.
 const PAIRS: usize = 20;
@@ -79,9 +79,4 @@ pub(crate) fn shortened(mut step: Vec<f64>, longest: f64) -> Vec<f64> {
         step.iter_mut().for_each(|entry| *entry *= longest / reach);
     }
     step
-}
-
-/// sum += weight * vector
-fn add(sum: &mut [f64], vector: &[f64], weight: f64) {
-    std::iter::zip(sum, vector).for_each(|(sum, v)| *sum += weight * v);
 }

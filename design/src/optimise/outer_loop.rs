@@ -1,4 +1,4 @@
-//! The outer loop, Algorithm 1: Adam, L-BFGS or Gauss-Newton on theta = (z, ell, omega).
+//! The outer loop, Algorithm 1: Adam or L-BFGS on theta = (z, ell, omega).
 //!
 //! Every few steps the path of the design is followed from the flat sheet; those between are corrected from that path.
 //! A corrected path can be on another branch than the followed one. The best design is therefore one whose path was
@@ -10,7 +10,7 @@
 //! an equilibrium exists. Steps depend only on the problem and the search state, so a search continued from
 //! a saved state follows the trajectory of an uninterrupted one.
 
-use crate::equilibrium::nearby_path::KnownPath;
+use crate::equilibrium::warm_start::WarmStart;
 use crate::objective::design_problem::{DesignProblem, Evaluation, Model};
 use crate::objective::scores::Scores;
 use crate::optimise::backing_off::{MAX_HALVINGS, Setback, evaluate_or_back_off};
@@ -64,19 +64,22 @@ pub struct SearchState {
     pub best: DesignVector,
     /// The design with the minimum loss of those whose path was followed, without those at pauses, and its loss: the search
     /// goes back to it, whether it was paused or not.
-    base: Scored,
-    /// The design with the minimum loss, below the loss of the base, of the designs whose path was only corrected since.
+    #[serde(rename = "base")]
+    best_followed: Scored,
+    /// The design with the minimum loss, below the loss of the best followed one, of the designs whose path was only corrected since.
     candidate: Option<Scored>,
     /// Whether the followed path of a candidate had another loss: since then every path is followed.
-    contradicted: bool,
+    #[serde(rename = "contradicted")]
+    branch_mismatch: bool,
     /// Whether the candidate of the present pause has another loss.
     #[serde(skip)]
-    doubtful: bool,
+    candidate_mismatch: bool,
     /// The last design whose path was followed from the flat sheet.
-    anchor: Option<DesignVector>,
-    /// The path of the anchor, if it is needed.
+    #[serde(rename = "anchor")]
+    last_followed: Option<DesignVector>,
+    /// The path of that design, if it is needed.
     #[serde(skip)]
-    known: Option<KnownPath>,
+    known: Option<WarmStart>,
     /// One record per step, beginning with the record of the start.
     pub history: Vec<StepRecord>,
 }
@@ -143,16 +146,16 @@ impl SearchState {
             search: Search::new(method, learning_rate, start.to_flat().len()),
             proposal: start.clone(),
             best: start.clone(),
-            base: Scored {
+            best_followed: Scored {
                 design: start.clone(),
                 loss: evaluation.loss,
                 step: 0,
             },
             candidate: None,
-            contradicted: false,
-            doubtful: false,
+            branch_mismatch: false,
+            candidate_mismatch: false,
             design: start.clone(),
-            anchor: None,
+            last_followed: None,
             known: None,
             history: Vec::new(),
         };
@@ -172,7 +175,12 @@ impl SearchState {
 
     /// Whether the designs of the state have the same dimensions as `start`.
     pub(crate) fn fits(&self, start: &DesignVector) -> bool {
-        let designs = [&self.design, &self.proposal, &self.best, &self.base.design];
+        let designs = [
+            &self.design,
+            &self.proposal,
+            &self.best,
+            &self.best_followed.design,
+        ];
         let further = self.candidate.iter().map(|candidate| &candidate.design);
         !self.history.is_empty()
             && (designs.into_iter().chain(further)).all(|design| design.same_shape(start))
@@ -210,19 +218,19 @@ impl SearchState {
         }
     }
 
-    /// Computes the path of the anchor after a pause of the search; forgets it if the next path must be followed.
+    /// Computes the path of the last followed design after a pause of the search; forgets it if the next path must be followed.
     fn know_a_path(&mut self, problem: &DesignProblem) {
         let recent = self
             .history
             .iter()
             .rev()
             .take(self.follow_every(problem) - 1);
-        match &self.anchor {
-            Some(anchor) if recent.clone().any(|record| record.followed) => {
+        match &self.last_followed {
+            Some(last) if recent.clone().any(|record| record.followed) => {
                 if self.known.is_none()
-                    && let Ok(evaluation) = problem.evaluate(anchor)
+                    && let Ok(evaluation) = problem.evaluate(last)
                 {
-                    self.known = Some(evaluation.deployment.known_path());
+                    self.known = Some(evaluation.deployment.warm_start());
                 }
             }
             _ => self.known = None,
@@ -230,21 +238,21 @@ impl SearchState {
     }
 
     /// Whether a corrected path was on another branch than the followed one.
-    pub fn contradicted(&self) -> bool {
-        self.contradicted || self.doubtful
+    pub fn branch_mismatch(&self) -> bool {
+        self.branch_mismatch || self.candidate_mismatch
     }
 
-    /// Follows the path of the candidate, which becomes the base if its loss is below that. Returns whether the followed
-    /// loss is another one, so that the search went back to the base.
+    /// Follows the path of the candidate, which becomes the best followed one if its loss is below that. Returns whether the followed
+    /// loss is another one, so that the search went back to the best followed one.
     fn confirm(&mut self, problem: &DesignProblem) -> Result<bool, Ended> {
         let Some(candidate) = self.candidate.take() else {
             return Ok(false);
         };
         let followed = candidate.followed(problem);
         let (same, step) = (candidate.agrees_with(&followed, problem), candidate.step);
-        if followed.loss < self.base.loss {
+        if followed.loss < self.best_followed.loss {
             self.best = followed.design.clone();
-            self.base = followed;
+            self.best_followed = followed;
         }
         if !same {
             self.go_back(problem, step)?;
@@ -254,20 +262,20 @@ impl SearchState {
 
     /// Follows the path of the candidate for the best design, without an effect on the search.
     pub(crate) fn pause(&mut self, problem: &DesignProblem) {
-        self.best = self.base.design.clone();
-        self.doubtful = false;
+        self.best = self.best_followed.design.clone();
+        self.candidate_mismatch = false;
         if let Some(candidate) = &self.candidate {
             let followed = candidate.followed(problem);
-            self.doubtful = !candidate.agrees_with(&followed, problem);
-            if followed.loss < self.base.loss {
+            self.candidate_mismatch = !candidate.agrees_with(&followed, problem);
+            if followed.loss < self.best_followed.loss {
                 self.best = followed.design;
             }
         }
     }
 
-    /// Discards the steps since the followed path before a step and continues from the base, as from a new start.
+    /// Discards the steps since the followed path before a step and continues from the best followed design, as from a new start.
     fn go_back(&mut self, problem: &DesignProblem, step: usize) -> Result<(), Ended> {
-        let evaluation = problem.evaluate(&self.base.design);
+        let evaluation = problem.evaluate(&self.best_followed.design);
         let evaluation = evaluation.map_err(|error| Ended::Stuck {
             reason: error.to_string(),
         })?;
@@ -275,10 +283,10 @@ impl SearchState {
             .iter()
             .rposition(|record| record.followed);
         self.history.truncate(before.map_or(1, |last| last + 1));
-        self.contradicted = true;
-        (self.anchor, self.known) = (None, None);
+        self.branch_mismatch = true;
+        (self.last_followed, self.known) = (None, None);
         self.search = self.search.restarted();
-        self.go_on(self.base.design.clone(), &evaluation);
+        self.go_on(self.best_followed.design.clone(), &evaluation);
         Ok(())
     }
 
@@ -296,20 +304,20 @@ impl SearchState {
             loss,
             step: self.history.len(),
         };
-        let least = self.candidate.as_ref().unwrap_or(&self.base).loss;
+        let least = self.candidate.as_ref().unwrap_or(&self.best_followed).loss;
         match followed {
-            true if loss < self.base.loss => {
+            true if loss < self.best_followed.loss => {
                 self.candidate.take_if(|candidate| candidate.loss >= loss);
                 self.best = design.clone();
-                self.base = scored;
+                self.best_followed = scored;
             }
             false if loss < least => self.candidate = Some(scored),
             _ => {}
         }
         if followed {
-            self.anchor = Some(design.clone());
+            self.last_followed = Some(design.clone());
             self.known =
-                (self.follow_every(problem) > 1).then(|| evaluation.deployment.known_path());
+                (self.follow_every(problem) > 1).then(|| evaluation.deployment.warm_start());
         }
         self.go_on(design, evaluation);
         self.history.push(StepRecord {
@@ -340,7 +348,7 @@ impl SearchState {
     /// Every how many steps of a design the path is followed; ideal hinges have no path to correct.
     fn follow_every(&self, problem: &DesignProblem) -> usize {
         match &problem.model {
-            Model::Equilibrium(mechanics) if !self.contradicted => {
+            Model::Equilibrium(mechanics) if !self.branch_mismatch => {
                 mechanics.solver.settings.follow_every
             }
             _ => 1,

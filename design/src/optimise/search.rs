@@ -1,11 +1,11 @@
 //! How the next design is proposed: by Adam, as in Algorithm 1, or by L-BFGS with backtracking, which needs a fraction of
 //! Adam's evaluations on designs with equilibrium.
 
-use crate::equilibrium::displacement_control::dot;
 use crate::optimise::adam::Adam;
 use crate::optimise::lbfgs_memory::{Memory, shortened};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use support::vectors::dot;
 
 /// Armijo constant: the fraction of the decrease predicted by the slope that an L-BFGS step must achieve.
 const ARMIJO: f64 = 1e-4;
@@ -173,11 +173,11 @@ mod tests {
         'steps: loop {
             for halvings in 0..30 {
                 let fraction = 0.5f64.powi(halvings);
-                let beside = [x[0] + fraction * step[0], x[1] + fraction * step[1]];
-                let next = valley(&beside);
+                let stepped = [x[0] + fraction * step[0], x[1] + fraction * step[1]];
+                let next = valley(&stepped);
                 evaluations += 1;
                 if search.accepts(next.0, fraction) {
-                    x = beside.to_vec();
+                    x = stepped.to_vec();
                     (loss, gradient) = next;
                     step = search.increment(&x, loss, &gradient);
                     continue 'steps;

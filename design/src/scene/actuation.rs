@@ -209,6 +209,24 @@ impl SupportConfig {
     }
 }
 
+/// A point of a panel that is held or pulled, with its hole or its clip, as written in a scene.
+pub(super) struct Attached {
+    /// The key of the support or the load.
+    pub key: String,
+    /// What is attached.
+    pub kind: String,
+    pub panel: [usize; 2],
+    pub at: At,
+    pub hole: Option<f64>,
+    pub clip: Option<f64>,
+}
+
+/// The name of a value in a scene.
+pub(super) fn name(value: impl Serialize) -> String {
+    let name = serde_json::to_value(value).unwrap_or_default();
+    name.as_str().unwrap_or_default().to_owned()
+}
+
 impl LoadConfig {
     /// A force (N) at the centroid of a panel.
     pub fn at_centroid(panel: [usize; 2], force: [f64; 2]) -> Self {

@@ -3,10 +3,12 @@
 use crate::equilibrium::supports::{Dof, Load, Support};
 use crate::geometry::polygon::distance;
 use crate::pattern::grid::{EDGES, Grid};
-use crate::scene::actuation::{EdgeLoadConfig, LoadConfig, OpeningCoupleConfig, SupportConfig};
+use crate::scene::actuation::{
+    Attached, EdgeLoadConfig, LoadConfig, OpeningCoupleConfig, SupportConfig, name,
+};
 use crate::scene::checked_scene::Scene;
 use crate::sheet::attachment::Attachment;
-use crate::sheet::cut_sheet::{Grip, PanelPoint};
+use crate::sheet::cut_sheet::{AttachmentPoint, PanelPoint};
 use crate::sheet::topology::{HingeSite, hinge_sites};
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -80,13 +82,8 @@ impl Scene {
             .opening_couples
             .iter()
             .map(|load| load.on(grid, turns));
-        let held = config
-            .supports
-            .iter()
-            .map(|support| support.attachment(grid));
-        let pulled = config.loads.iter().map(|load| load.attachment(grid));
         Actuation {
-            attachments: held.chain(pulled).collect(),
+            attachments: config.attached().map(|it| it.on(grid)).collect(),
             loads: panels.chain(edges).chain(openings).collect(),
             legend: if config.opening_couples.is_empty() {
                 SYMBOLS.to_owned()
@@ -110,11 +107,11 @@ impl Actuation {
     }
 
     /// The points at which panels are held or pulled, if they are not their centroids.
-    pub(super) fn grips(&self) -> Vec<Grip> {
+    pub(super) fn grips(&self) -> Vec<AttachmentPoint> {
         let moved = |attachment: &&Attachment| attachment.point != PanelPoint::Centroid;
         let attachments = self.attachments.iter().filter(moved);
         attachments
-            .map(|&Attachment { panel, point, .. }| Grip { panel, point })
+            .map(|&Attachment { panel, point, .. }| AttachmentPoint { panel, point })
             .collect()
     }
 
@@ -140,12 +137,6 @@ impl Actuation {
     }
 }
 
-/// The name of a value in a scene.
-fn name(value: impl Serialize) -> String {
-    let name = serde_json::to_value(value).unwrap_or_default();
-    name.as_str().unwrap_or_default().to_owned()
-}
-
 /// A panel [column, row] by its number in the drawings, which counts from 0, and its place, which counts from 1.
 pub fn panel_name(grid: Grid, [column, row]: [usize; 2]) -> String {
     let number = grid.panel(column, row);
@@ -164,11 +155,13 @@ impl SupportConfig {
             rail: self.kind.rail(),
         }
     }
+}
 
-    fn attachment(&self, grid: Grid) -> Attachment {
+impl Attached {
+    fn on(&self, grid: Grid) -> Attachment {
         let [column, row] = self.panel;
         Attachment {
-            name: format!("{}, {}", name(self.kind), panel_name(grid, self.panel)),
+            name: format!("{}, {}", self.kind, panel_name(grid, self.panel)),
             panel: grid.panel(column, row),
             point: self.at.point(),
             hole: self.hole,
@@ -188,17 +181,6 @@ impl LoadConfig {
             on_panels: vec![(grid.panel(column, row), load)],
             total: load,
             label: None,
-        }
-    }
-
-    fn attachment(&self, grid: Grid) -> Attachment {
-        let [column, row] = self.panel;
-        Attachment {
-            name: format!("load, {}", panel_name(grid, self.panel)),
-            panel: grid.panel(column, row),
-            point: self.at.point(),
-            hole: self.hole,
-            clip: self.clip,
         }
     }
 }

@@ -5,7 +5,7 @@ use crate::objective::target::Target;
 use crate::objective::terms::TARGET_POINTS;
 use crate::scene::checks;
 use crate::scene::hinge_model::SurrogateFile;
-use crate::scene::keys::{SceneConfig, beside, folder};
+use crate::scene::keys::{SceneConfig, folder, resolved};
 use crate::scene::level::Level;
 use crate::scene::loaded_hinge::LoadedHinge;
 use crate::scene::posture::PostureConfig;
@@ -88,7 +88,7 @@ impl Scene {
         known: Option<&[Surrogate]>,
     ) -> Result<Self, SceneError> {
         checks::config(&config).map_err(SceneError::at(path))?;
-        let material_path = beside(path, &config.material);
+        let material_path = resolved(path, &config.material);
         let measured = SheetMaterial::load(&material_path)?;
         let material = SheetMaterial {
             thickness: config.thickness.unwrap_or(measured.thickness),
@@ -150,7 +150,7 @@ impl Scene {
 
     /// A path that the scene names.
     pub(crate) fn file(&self, path: &Path) -> PathBuf {
-        beside(&self.path, path)
+        resolved(&self.path, path)
     }
 
     /// Thickness of the sheet over the thickness of the material file, at which learned laws were trained.
@@ -227,6 +227,6 @@ impl Scene {
 
     /// The run folder.
     pub fn output(&self) -> PathBuf {
-        beside(&self.path, &self.config.output)
+        resolved(&self.path, &self.config.output)
     }
 }

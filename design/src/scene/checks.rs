@@ -7,7 +7,7 @@ use crate::objective::shape::TargetState;
 use crate::objective::target::Target;
 use crate::pattern::cut_pattern::CutPattern;
 use crate::pattern::pattern_error::PatternError;
-use crate::scene::actuation::{At, EdgeLoadConfig, SupportKind};
+use crate::scene::actuation::{At, Attached, EdgeLoadConfig, SupportKind};
 use crate::scene::invalid_scene::InvalidScene;
 use crate::scene::keys::SceneConfig;
 use crate::scene::level::Level;
@@ -188,34 +188,10 @@ fn posture(scene: &SceneConfig) -> Result<(), InvalidScene> {
     Ok(())
 }
 
-/// A support or a load of a panel, as far as it is attached to a point.
-struct Attached {
-    key: String,
-    panel: [usize; 2],
-    at: At,
-    hole: Option<f64>,
-    clip: Option<f64>,
-}
-
 /// The points at which panels are held or pulled: one for each panel, inside it in the start pattern, with one hole or clip.
 fn attachments(scene: &SceneConfig) -> Result<(), InvalidScene> {
-    let supports = scene.supports.iter().enumerate();
-    let supports = supports.map(|(i, support)| Attached {
-        key: format!("supports[{i}]"),
-        panel: support.panel,
-        at: support.at,
-        hole: support.hole,
-        clip: support.clip,
-    });
-    let loads = scene.loads.iter().enumerate().map(|(i, load)| Attached {
-        key: format!("loads[{i}]"),
-        panel: load.panel,
-        at: load.at,
-        hole: load.hole,
-        clip: load.clip,
-    });
     let (mut points, mut fastened) = (BTreeMap::new(), BTreeSet::new());
-    for attached in supports.chain(loads) {
+    for attached in scene.attached() {
         let Attached { panel, at, .. } = attached;
         if points.insert(panel, at).is_some_and(|other| other != at) {
             return Err(InvalidScene::TwoPoints { panel });

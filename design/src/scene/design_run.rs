@@ -41,8 +41,8 @@ pub struct Designed {
     /// The evaluation of `design`, whose path is followed from the flat sheet.
     pub best: Evaluation,
     /// Whether a corrected path of the search was on another branch than the followed one; see
-    /// [`SearchState::contradicted`].
-    pub contradicted: bool,
+    /// [`SearchState::branch_mismatch`].
+    pub branch_mismatch: bool,
     /// The levels at which the start of the search was found; empty if the search began at the start of the scene.
     pub rungs: Vec<Rung>,
 }
@@ -92,7 +92,7 @@ pub enum InverseDesignError {
 
 /// The scene of a run and the state of its search.
 #[derive(Debug, Serialize, Deserialize)]
-struct State {
+struct RunState {
     scene: SceneConfig,
     /// [`Scene::model_hash`].
     model: String,
@@ -135,7 +135,7 @@ pub fn stored_design(path: &Path, scene: &Scene) -> Result<DesignVector, Inverse
 /// It is an error if the run is of another scene or model.
 pub fn design_of_run(scene: &Scene) -> Result<Option<DesignVector>, InverseDesignError> {
     let path = scene.output().join(STATE_FILE);
-    let Some(state) = State::load(&path)? else {
+    let Some(state) = RunState::load(&path)? else {
         return Ok(None);
     };
     if let Some(changed) = state.changes(scene, &SEARCH_KEYS) {
@@ -152,7 +152,7 @@ pub fn design_of_run(scene: &Scene) -> Result<Option<DesignVector>, InverseDesig
 ///
 /// It is an error if the run is of another scene or model.
 pub fn left_run(scene: &Scene) -> Result<Option<(Ended, DesignVector)>, InverseDesignError> {
-    let state = State::read(&scene.output().join(STATE_FILE), scene)?;
+    let state = RunState::read(&scene.output().join(STATE_FILE), scene)?;
     Ok(state.map(|state| (state.left(), state.search.best)))
 }
 
@@ -178,7 +178,7 @@ impl Designed {
         Ok(Self {
             ended: Ended::Stopped,
             history: vec![record],
-            contradicted: false,
+            branch_mismatch: false,
             rungs: Vec::new(),
             design,
             best: start.clone(),
@@ -193,14 +193,14 @@ impl Designed {
         scene: &Scene,
         stop: Arc<AtomicBool>,
     ) -> Result<Option<Self>, InverseDesignError> {
-        let Some(state) = State::read(&scene.output().join(STATE_FILE), scene)? else {
+        let Some(state) = RunState::read(&scene.output().join(STATE_FILE), scene)? else {
             return Ok(None);
         };
         let mut problem = scene.problem()?;
         problem.stop_by(stop);
         let start = (problem.evaluate(&scene.start())).map_err(InverseDesignError::Start)?;
         let ended = state.left();
-        let State {
+        let RunState {
             rungs, mut search, ..
         } = state;
         search.pause(&problem);
@@ -221,7 +221,7 @@ impl Designed {
         Ok(Self {
             problem,
             ended,
-            contradicted: search.contradicted(),
+            branch_mismatch: search.branch_mismatch(),
             history: search.history,
             design: search.best,
             start,
@@ -261,7 +261,7 @@ pub fn design_after(
     wide_enough(scene, &start)?;
     let (optimiser, model) = (&scene.config.optimiser, scene.model_hash());
     let mut rungs = rungs;
-    let mut search = match State::read(&path, scene)? {
+    let mut search = match RunState::read(&path, scene)? {
         Some(state) => {
             rungs = state.rungs;
             state.search
@@ -275,7 +275,7 @@ pub fn design_after(
     };
     let inputs = run_inputs::keep(scene)?;
     let save = |search: &SearchState, ended: Option<&Ended>| {
-        let state = State {
+        let state = RunState {
             scene: scene.config.clone(),
             model: model.clone(),
             inputs: inputs.clone(),
@@ -319,7 +319,7 @@ fn wide_enough(scene: &Scene, start: &Evaluation) -> Result<(), InverseDesignErr
     Ok(())
 }
 
-impl State {
+impl RunState {
     /// How the search was left.
     fn left(&self) -> Ended {
         match &self.ended {

@@ -66,7 +66,7 @@ pub enum InvalidScene {
     )]
     NoDown,
     #[error(
-        "posture.down belongs to another kind than {0:?}: gravity is in the plane of a hanging sheet alone: remove the key or \
+        "posture.down is not valid for the kind {0:?}: only in a hanging sheet gravity acts in the plane. Remove the key or \
          change `kind`"
     )]
     OtherPosture(Posture),
@@ -220,8 +220,8 @@ fn ratios([least, most]: [f64; 2]) -> String {
 #[allow(missing_docs, reason = "the message of a variant is its documentation")]
 pub enum WeightsMismatch {
     #[error(
-        "another material law than that of the scene: `{trained}` ({trained_law}, that of the file `{file}` is {law}). Name \
-         the material file of the training, with its thickness; the key `thickness` of the scene gives that of the sheet. \
+        "another material law than the scene: `{trained}` ({trained_law}; the file `{file}` has {law}). Name \
+         the material file of the training, with its thickness; the key `thickness` of the scene gives the sheet another. \
          If its numbers have changed, train again"
     )]
     Law {

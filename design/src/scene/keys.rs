@@ -5,7 +5,7 @@ use crate::objective::target::TargetShape;
 use crate::objective::terms::ObjectiveConfig;
 use crate::optimise::search::SearchMethod;
 use crate::scene::actuation::{
-    DriveConfig, EdgeLoadConfig, LoadConfig, OpeningCoupleConfig, SupportConfig,
+    Attached, DriveConfig, EdgeLoadConfig, LoadConfig, OpeningCoupleConfig, SupportConfig, name,
 };
 use crate::scene::cutting::CuttingConfig;
 use crate::scene::hinge_model::{LinearConstants, PinConfig, SurrogateFile};
@@ -118,7 +118,7 @@ pub(super) fn folder(scene: &Path) -> &Path {
 }
 
 /// A path written relative to the scene file, without `.` inside.
-pub(super) fn beside(scene: &Path, path: &Path) -> PathBuf {
+pub(super) fn resolved(scene: &Path, path: &Path) -> PathBuf {
     folder(scene).join(path).components().collect()
 }
 
@@ -127,6 +127,27 @@ fn default_load_steps() -> usize {
 }
 
 impl SceneConfig {
+    /// The points at which supports and loads of single panels act, in that order.
+    pub(super) fn attached(&self) -> impl Iterator<Item = Attached> {
+        let supports = self.supports.iter().enumerate().map(|(i, of)| Attached {
+            key: format!("supports[{i}]"),
+            kind: name(of.kind),
+            panel: of.panel,
+            at: of.at,
+            hole: of.hole,
+            clip: of.clip,
+        });
+        let loads = self.loads.iter().enumerate().map(|(i, of)| Attached {
+            key: format!("loads[{i}]"),
+            kind: "load".to_owned(),
+            panel: of.panel,
+            at: of.at,
+            hole: of.hole,
+            clip: of.clip,
+        });
+        supports.chain(loads)
+    }
+
     /// The scene as a TOML file, without comments.
     pub fn to_toml(&self) -> Result<String, toml::ser::Error> {
         toml::to_string(self)
@@ -136,6 +157,15 @@ impl SceneConfig {
     pub(super) fn scale(&self, material: &SheetMaterial) -> f64 {
         self.thickness
             .map_or(1.0, |thickness| thickness / material.thickness)
+    }
+
+    /// Removes supports, loads and drive.
+    pub(crate) fn clear_actuation(&mut self) {
+        self.supports.clear();
+        self.loads.clear();
+        self.edge_loads.clear();
+        self.opening_couples.clear();
+        self.drive = None;
     }
 
     /// Whether there is a load: on panels, on edges or on hinges.

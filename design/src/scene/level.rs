@@ -12,14 +12,26 @@
 use crate::equilibrium::settings::SolverSettings;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use std::fmt;
 
 /// How much of the hinges of a scene is modelled, from the cheapest level to the most expensive; each hinge law reads the
 /// section that it needs.
 #[derive(
-    Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema,
+    Clone,
+    Copy,
+    Debug,
+    PartialEq,
+    Eq,
+    PartialOrd,
+    Ord,
+    Serialize,
+    Deserialize,
+    JsonSchema,
+    strum::Display,
+    strum::EnumString,
+    strum::IntoStaticStr,
 )]
 #[serde(rename_all = "kebab-case")]
+#[strum(serialize_all = "kebab-case")]
 pub enum Level {
     /// Pins that all open by the same angle, without equilibrium: section 3.1.
     Pin,
@@ -52,19 +64,12 @@ impl Level {
 
     /// Its name in a scene.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Pin => "pin",
-            Self::Linear => "linear",
-            Self::Draft => "draft",
-            Self::Standard => "standard",
-            Self::Fine => "fine",
-            Self::Final => "final",
-        }
+        self.into()
     }
 
     /// The level with a name.
     pub fn named(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|level| level.name() == name)
+        name.parse().ok()
     }
 
     /// What its hinges are, for reports.
@@ -101,11 +106,5 @@ impl Level {
             },
             _ => settings,
         }
-    }
-}
-
-impl fmt::Display for Level {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        f.write_str(self.name())
     }
 }

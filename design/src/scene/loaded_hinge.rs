@@ -4,7 +4,7 @@ use crate::equilibrium::tangent::MIN_PIVOT_RATIO;
 use crate::hinge_law::{Contact, DamageMeasure, HingeLaw, LinearLaw, MeanLaw, Order, SurrogateLaw};
 use crate::scene::hinge_model::LinearConstants;
 use crate::scene::invalid_scene::{InvalidScene, WeightsMismatch};
-use crate::scene::keys::{SceneConfig, beside};
+use crate::scene::keys::{SceneConfig, resolved};
 use crate::scene::level::Level;
 use crate::scene::scene_error::SceneError;
 use crate::scene::solved_hinges::SolvedHinges;
@@ -139,7 +139,7 @@ fn networks(
     path: &Path,
 ) -> Result<Vec<Surrogate>, SceneError> {
     let load = |weights: PathBuf| {
-        let file = beside(path, &weights);
+        let file = resolved(path, &weights);
         if !file.is_file() {
             return Err(SceneError::at(path)(InvalidScene::NoWeights { file }));
         }

@@ -41,11 +41,7 @@ impl Scene {
                     opening_deg: PIN_OPENING,
                     held: false,
                 });
-                config.supports.clear();
-                config.loads.clear();
-                config.edge_loads.clear();
-                config.opening_couples.clear();
-                config.drive = None;
+                config.clear_actuation();
             }
             Level::Linear => {
                 let springs = |weights| springs_at_start(&self.config, weights);

@@ -110,7 +110,7 @@ impl Scene {
         let steps = level.load_steps(self.config.load_steps);
         let solver = EquilibriumSolver::new(self.grid(), &supports, &loads, steps, settings)?;
         let solver = solver
-            .gripping(actuation.grips())
+            .attached_at(actuation.grips())
             .with_weight(self.weight_by_area())?;
         match self.config.drive {
             Some(drive) => solver.driven(drive.stroke),

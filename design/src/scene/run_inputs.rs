@@ -14,7 +14,7 @@
 
 use crate::scene::checked_scene::Scene;
 use crate::scene::hinge_model::SurrogateFile;
-use crate::scene::keys::{SceneConfig, beside};
+use crate::scene::keys::{SceneConfig, resolved};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::io;
@@ -112,11 +112,11 @@ pub(super) fn keep(scene: &Scene) -> Result<InputHashes, FileError> {
     config.material = kept.write(MATERIAL_FILE, &toml(&scene.measured, &folder)?)?;
     if let Some((file, kind)) = config.target.file_mut() {
         let name = format!("{INPUTS}/target.{kind}");
-        *file = kept.copy(&beside(&scene.path, file), &name)?;
+        *file = kept.copy(&resolved(&scene.path, file), &name)?;
     }
     for (name, weights) in config.weights_files_mut() {
         let stem = format!("{INPUTS}/{name}");
-        let original = beside(&scene.path, weights);
+        let original = resolved(&scene.path, weights);
         kept.copy(&original.with_extension("json"), &format!("{stem}.json"))?;
         *weights = kept.copy(&original, &format!("{stem}.safetensors"))?;
     }
@@ -126,7 +126,7 @@ pub(super) fn keep(scene: &Scene) -> Result<InputHashes, FileError> {
         .flat_map(SurrogateFile::further_files_mut)
     {
         let name = format!("{INPUTS}/{name}.json");
-        *file = kept.copy(&beside(&scene.path, file), &name)?;
+        *file = kept.copy(&resolved(&scene.path, file), &name)?;
     }
     kept.write(SCENE_FILE, &toml(&config, &folder)?)?;
     Ok(kept.hashes)

@@ -28,12 +28,12 @@ pub struct Rung {
     pub finer: Level,
     /// The difference of the design to the finer level.
     pub difference: LevelDifference,
-    /// What was asked for (mm).
+    /// The required accuracy (mm).
     pub asked: f64,
 }
 
 impl Rung {
-    /// Whether the panel corners differ by what was asked for at most.
+    /// Whether the panel corners differ by the required accuracy at most.
     pub fn suffices(&self) -> bool {
         self.difference.corners[1] <= self.asked
     }

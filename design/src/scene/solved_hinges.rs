@@ -1,7 +1,7 @@
 //! The hinges of one sheet by finite elements, to which the level `final` corrects the learned energy.
 
 use crate::hinge_law::{CorrectedLaw, Correction, HingeLaw, MissingForces, Order};
-use crate::scene::keys::{SceneConfig, beside};
+use crate::scene::keys::{SceneConfig, resolved};
 use hinge::{HingeDeformation, HingeDesign};
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
@@ -57,7 +57,7 @@ impl SolvedHinges {
     /// The solved hinges that the scene at `path` names.
     pub(super) fn load(config: &SceneConfig, path: &Path) -> Result<Self, SolvedHingesError> {
         let named = (config.surrogate.as_ref()).and_then(|files| files.solved_hinges.as_ref());
-        let file = beside(path, named.ok_or(SolvedHingesError::NoFile)?);
+        let file = resolved(path, named.ok_or(SolvedHingesError::NoFile)?);
         let text = regular_file::read(&file).map_err(FileError::at(&file))?;
         let solved: Self = match sealed_json::from_slice(&text) {
             Ok(solved) => solved,

@@ -1,6 +1,6 @@
 //! The law of released hinges that a scene names for its report.
 
-use crate::scene::keys::{SceneConfig, beside};
+use crate::scene::keys::{SceneConfig, resolved};
 use hinge::SheetMaterial;
 use std::f64::consts::FRAC_PI_2;
 use std::path::{Path, PathBuf};
@@ -11,21 +11,21 @@ use surrogate::{Springback, SpringbackError};
 #[allow(missing_docs, reason = "the message of a variant is its documentation")]
 pub enum SpringbackMismatch {
     #[error(
-        "the law of released hinges is for {law}, and the sheet is of another material law, {sheet}: let hinges of its material go by \
+        "the law of released hinges is for {law}, and the sheet is of another material law, {sheet}: unload hinges of its material by \
          `kirigami surrogate release`"
     )]
     Material { law: String, sheet: String },
     #[error(
-        "the law of released hinges is for holes with a radius of {law} w_lig, and those of the sheet have {sheet:.3} w_lig: set \
-         process.fillet_ratio = {law}, or let hinges with these holes go by `kirigami surrogate release`"
+        "the law of released hinges is for holes with a radius of {law} w_lig, but the sheet has {sheet:.3} w_lig: set \
+         process.fillet_ratio = {law}, or unload hinges with these holes by `kirigami surrogate release`"
     )]
     Hole { law: f64, sheet: f64 },
     #[error(
-        "the law of released hinges is for windows with a radius of {law} mm at this thickness, and those of the sheet have {sheet} mm"
+        "the law of released hinges is for windows with a radius of {law} mm at this thickness, but the sheet has {sheet} mm"
     )]
     Window { law: f64, sheet: f64 },
     #[error(
-        "what stays of a hinge follows from the forces of a learned law: set level = \"standard\""
+        "the residual deformation of a hinge follows from the forces of a learned law: set level = \"standard\""
     )]
     NotLearned,
 }
@@ -53,7 +53,7 @@ pub(super) fn load(
     let Some(file) = config.springback() else {
         return Ok(None);
     };
-    let law = Springback::load(&beside(path, file))?;
+    let law = Springback::load(&resolved(path, file))?;
     check(config, measured, &law).map_err(|source| SpringbackFileError::Other {
         file: file.clone(),
         source,

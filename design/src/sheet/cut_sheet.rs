@@ -62,7 +62,7 @@ pub enum PanelPoint {
 
 /// The point at which a panel is held or pulled.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Grip {
+pub struct AttachmentPoint {
     /// Index of the panel.
     pub panel: usize,
     /// The point of the panel.
@@ -230,8 +230,8 @@ impl Sheet {
     ///
     /// # Panics
     /// If a grip is on a panel that the sheet does not have.
-    pub fn gripped(mut self, grips: &[Grip]) -> Self {
-        for &Grip { panel, point } in grips {
+    pub fn attached_at(mut self, grips: &[AttachmentPoint]) -> Self {
+        for &AttachmentPoint { panel, point } in grips {
             let panel = &mut self.panels[panel];
             panel.point = point;
             panel.reference = panel.position(point);

@@ -31,7 +31,7 @@ impl TaylorRemainders {
         let slope = dot(gradient, direction);
         let steps = std::iter::successors(Some(first), |h| Some(0.5 * h));
         let steps: Vec<f64> = steps.take(count).collect();
-        let remainder = |h: &f64| Ok((f(&beside(x, direction, *h))? - value - h * slope).abs());
+        let remainder = |h: &f64| Ok((f(&moved(x, direction, *h))? - value - h * slope).abs());
         let remainders = steps.iter().map(remainder).collect::<Result<_, E>>()?;
         Ok(Self { steps, remainders })
     }
@@ -52,7 +52,7 @@ impl TaylorRemainders {
 
 /// The slope of `f` at `x` along `direction`, by central differences with the step `h`.
 pub fn central_slope(f: impl Fn(&[f64]) -> f64, x: &[f64], direction: &[f64], h: f64) -> f64 {
-    (f(&beside(x, direction, h)) - f(&beside(x, direction, -h))) / (2.0 * h)
+    (f(&moved(x, direction, h)) - f(&moved(x, direction, -h))) / (2.0 * h)
 }
 
 pub fn dot(a: &[f64], b: &[f64]) -> f64 {
@@ -60,7 +60,7 @@ pub fn dot(a: &[f64], b: &[f64]) -> f64 {
 }
 
 /// x + h d
-fn beside(x: &[f64], direction: &[f64], h: f64) -> Vec<f64> {
+fn moved(x: &[f64], direction: &[f64], h: f64) -> Vec<f64> {
     let pairs = std::iter::zip(x, direction);
     pairs.map(|(x, d)| x + h * d).collect()
 }

@@ -128,13 +128,13 @@ fn a_search_through_jumps_does_not_end_above_its_start() {
         let found = searched((&scene, &problem), steps, &mut |_| {});
         let [start, best] = [&scene.start(), &found.best].map(|of| problem.loss(of).unwrap());
         assert!(best <= start, "{name}: {best} from {start}");
-        assert!(found.contradicted(), "{name} has no jump any more");
+        assert!(found.branch_mismatch(), "{name} has no jump any more");
     }
 }
 
 /// Losses of a design with its path followed and corrected, and by how much their states differ at most.
 fn compared(problem: &DesignProblem, anchor: &DesignVector, design: &DesignVector) -> [f64; 3] {
-    let known = problem.evaluate(anchor).unwrap().deployment.known_path();
+    let known = problem.evaluate(anchor).unwrap().deployment.warm_start();
     let corrected = problem.evaluate_near(design, Some(&known)).unwrap();
     let followed = problem.evaluate(design).unwrap();
     let paths = [&followed, &corrected].map(|evaluation| &evaluation.deployment.path);

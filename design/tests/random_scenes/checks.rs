@@ -1,6 +1,6 @@
 //! What must hold for every sheet, and what is counted where it does not.
 
-use crate::dense::Judged;
+use crate::dense::DenseCheck;
 use crate::drawn::{Drawn, DrawnLaw};
 use design::equilibrium::load_step::{DescentEnd, LoadStep, Status};
 use design::objective::design_problem::{Deployment, DesignProblem};
@@ -31,7 +31,7 @@ impl Finding {
     const FULL_LOAD: Self = Self(3, "full load reached", false);
     const JUMPED: Self = Self(4, "with a jump", false);
     const ALMOST: Self = Self(5, "last state `almost`", false);
-    const CORRECTED: Self = Self(6, "paths corrected for a design beside", false);
+    const CORRECTED: Self = Self(6, "paths corrected for a design nearby", false);
     const SEARCHED: Self = Self(7, "searches", false);
     const NOT_CUT: Self = Self(8, "pattern without a sheet", false);
     const LOCKED: Self = Self(9, "panels touch before the end of the stroke", false);
@@ -107,7 +107,7 @@ pub fn findings(seed: u64) -> Findings {
     if last.status == Status::Almost {
         add(Finding::ALMOST, last.to_string());
     }
-    judged(&drawn, &problem, &deployment, &mut add);
+    check_states(&drawn, &problem, &deployment, &mut add);
     same_elsewhere(&drawn, &deployment, &mut add);
     corrected(&drawn, &problem, &deployment, &mut add);
     if drawn.grid.hinge_count() <= SEARCHED && seed.is_multiple_of(4) {
@@ -117,7 +117,7 @@ pub fn findings(seed: u64) -> Findings {
 }
 
 /// The load steps by full matrices.
-fn judged(
+fn check_states(
     drawn: &Drawn,
     problem: &DesignProblem,
     deployment: &Deployment,
@@ -125,16 +125,16 @@ fn judged(
 ) {
     let mut force = 0.0;
     for step in &deployment.path {
-        let judged = Judged::new(drawn, problem, &deployment.sheet, step, force);
-        force = judged.force;
-        let allowed = BALANCED.max(10.0 * step.rounding.max(judged.rounding));
+        let dense = DenseCheck::new(drawn, problem, &deployment.sheet, step, force);
+        force = dense.force;
+        let allowed = BALANCED.max(10.0 * step.rounding.max(dense.rounding));
         let claimed = step.status != Status::Almost;
-        if claimed && judged.residual > allowed {
-            let details = format!("{:.1e}, {step}", judged.residual);
+        if claimed && dense.residual > allowed {
+            let details = format!("{:.1e}, {step}", dense.residual);
             add(Finding::UNBALANCED, details);
         }
-        if claimed && judged.lowest < -ROUNDING {
-            add(Finding::UNSTABLE, format!("{:.1e}, {step}", judged.lowest));
+        if claimed && dense.lowest < -ROUNDING {
+            add(Finding::UNSTABLE, format!("{:.1e}, {step}", dense.lowest));
         }
     }
 }
@@ -184,11 +184,11 @@ fn same_elsewhere(drawn: &Drawn, deployment: &Deployment, add: &mut impl FnMut(F
         }
         let apart = distance(&step.configuration, &expected, size);
         // Where rounding leaves forces unbalanced, soft motions are known to less.
-        let judged = Judged::new(&other, &problem, &found.sheet, step, 0.0);
-        let known = SAME.max(10.0 * step.rounding.max(judged.rounding) / judged.lowest.abs());
+        let dense = DenseCheck::new(&other, &problem, &found.sheet, step, 0.0);
+        let known = SAME.max(10.0 * step.rounding.max(dense.rounding) / dense.lowest.abs());
         if apart > known {
             let jumped = jumps(&found) || jumps(deployment);
-            let details = format!("{apart:.1e}, lowest {:.1e}; {step}; {last}", judged.lowest);
+            let details = format!("{apart:.1e}, lowest {:.1e}; {step}; {last}", dense.lowest);
             add(if jumped { after_jump } else { fault }, details);
         }
     }
@@ -214,23 +214,23 @@ fn corrected(
 ) {
     let design = drawn.design();
     let flat = std::iter::zip(design.to_flat(), 1..);
-    let beside: Vec<f64> = flat.map(|(x, i)| x + 0.02 * f64::from(i).sin()).collect();
-    let beside = design.with_flat(&beside);
-    let Ok(near) = problem.evaluate_near(&beside, Some(&deployment.known_path())) else {
+    let moved: Vec<f64> = flat.map(|(x, i)| x + 0.02 * f64::from(i).sin()).collect();
+    let moved = design.with_flat(&moved);
+    let Ok(near) = problem.evaluate_near(&moved, Some(&deployment.warm_start())) else {
         return;
     };
     if near.deployment.followed {
         return;
     }
     add(Finding::CORRECTED, String::new());
-    judged(drawn, problem, &near.deployment, add);
-    let followed = problem.deploy(&beside).unwrap();
+    check_states(drawn, problem, &near.deployment, add);
+    let followed = problem.deploy(&moved).unwrap();
     let last = followed.final_step();
     if last.status == Status::Diverged {
         missed(drawn, last, add);
         return;
     }
-    let apart = (near.loss / problem.loss(&beside).unwrap() - 1.0).abs();
+    let apart = (near.loss / problem.loss(&moved).unwrap() - 1.0).abs();
     if apart > SAME_LOSS {
         let panels = near.deployment.sheet.panels.len() as f64;
         let size = (near.deployment.sheet.outline.area() / panels).sqrt();
@@ -273,7 +273,7 @@ fn searched(
         let details = format!("{best} from {}", evaluation.loss);
         add(Finding::WORSE_THAN_START, details);
     }
-    if !state.contradicted() && best > least * (1.0 + SAME_LOSS) {
+    if !state.branch_mismatch() && best > least * (1.0 + SAME_LOSS) {
         add(
             Finding::FALSE_BEST,
             format!("{least}, {best} when followed"),

@@ -17,7 +17,7 @@ use faer::{Mat, Side, c64};
 use hinge::HingeDeformation;
 
 /// The unbalanced forces and the lowest stiffness of a state.
-pub struct Judged {
+pub struct DenseCheck {
     /// The largest force on a panel, in this state or before (N).
     pub force: f64,
     /// Maximum unbalanced force, relative to that.
@@ -74,7 +74,7 @@ fn deformation(sheet: &Sheet, hinge: usize, configuration: &[[f64; 3]]) -> Defor
     ([moved.re, moved.im, phi_b - phi_a], first, second)
 }
 
-impl Judged {
+impl DenseCheck {
     /// The state of a load step; `before` is the largest force of those before (N).
     pub fn new(
         drawn: &Drawn,

@@ -1,5 +1,5 @@
 //! Random sheets: sizes, hinge laws, supports, loads, drives, contacts, weight and ratios of stiffness from common to
-//! extreme. Every equilibrium is judged by full matrices written independently of the solver; the mirror image, a sheet of half the size
+//! extreme. Every equilibrium is checked by full matrices written independently of the solver; the mirror image, a sheet of half the size
 //! and other load steps must deploy alike; corrected paths and searches must have the loss of the followed path.
 //!
 //! `RUNS=n` draws n sheets instead of the few of every day, `FIRST=k` begins with the seed k, and a table is printed with

@@ -31,7 +31,7 @@ fn the_stroke_of_a_load_reproduces_the_load() {
     let several = vec![pull(5, 0.8), load(5, Dof::UY, 0.3), load(7, Dof::Phi, 0.2)];
     let opening = opening_moments(&sheet, 3, 0.5);
     let sum = couples(&opening);
-    // Beside forces, a couple does not count.
+    // If there are forces, a couple does not count.
     let (one, both) = (vec![pull(5, 1.5)], f64::hypot(0.8, 0.3));
     for (loads, size) in [(one, 1.5), (several, both), (opening, sum)] {
         let end = path(&sheet, &law, &clamp(3), &loads, 4).pop().unwrap();

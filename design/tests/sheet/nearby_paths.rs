@@ -1,7 +1,7 @@
 //! Paths corrected from the paths of designs near them are the paths that are followed, or none.
 
 use crate::prelude::*;
-use design::equilibrium::nearby_path::KnownPath;
+use design::equilibrium::warm_start::WarmStart;
 
 /// A random design of a polyester sheet with learned hinges.
 fn learned(noise: f64, seed: u64) -> Scene {
@@ -12,16 +12,16 @@ fn learned(noise: f64, seed: u64) -> Scene {
 }
 
 /// The design with its coordinates changed by `by` at most.
-fn beside(design: &DesignVector, by: f64) -> DesignVector {
+fn moved(design: &DesignVector, by: f64) -> DesignVector {
     let flat = std::iter::zip(design.to_flat(), 1..);
     let flat: Vec<f64> = flat.map(|(x, i)| x + by * f64::from(i).sin()).collect();
     design.with_flat(&flat)
 }
 
-/// Evaluations of the design `by` beside a start: followed, and corrected from the path of the start.
+/// Evaluations of the design that differs by `by` from a start: followed, and corrected from the path of the start.
 fn both(problem: &DesignProblem, start: &DesignVector, by: f64) -> [Evaluation; 2] {
-    let known = problem.evaluate(start).unwrap().deployment.known_path();
-    let near = beside(start, by);
+    let known = problem.evaluate(start).unwrap().deployment.warm_start();
+    let near = moved(start, by);
     [None, Some(&known)].map(|known| problem.evaluate_near(&near, known).unwrap())
 }
 
@@ -81,14 +81,14 @@ fn a_path_that_cannot_be_corrected_is_followed() {
     let scene = learned(0.5, 3);
     let problem = scene.problem().unwrap();
     let start = scene.start();
-    let known = problem.evaluate(&start).unwrap().deployment.known_path();
-    let followed = |design: &DesignVector, known: &KnownPath| {
+    let known = problem.evaluate(&start).unwrap().deployment.warm_start();
+    let followed = |design: &DesignVector, known: &WarmStart| {
         let evaluation = problem.evaluate_near(design, Some(known)).unwrap();
         evaluation.deployment.followed
     };
-    assert!(!followed(&beside(&start, 0.01), &known));
+    assert!(!followed(&moved(&start, 0.01), &known));
     // Another design altogether.
-    assert!(followed(&beside(&start, 3.0), &known));
+    assert!(followed(&moved(&start, 3.0), &known));
     // A known path that jumps, or ends early.
     let [mut jumps, mut short] = [known.clone(), known];
     jumps.steps[3].jumps = 1;

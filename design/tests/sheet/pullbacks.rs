@@ -63,13 +63,13 @@ fn gradients_in_the_sheet_are_pulled_back_to_the_design() {
                 ..AT_TIP
             };
             options.process.hole = Hole::Diameter(0.3);
-            let gripped = |design: &DesignVector| {
+            let attached = |design: &DesignVector| {
                 let (pattern, sheet) = cut(design, outline, options);
-                (pattern, sheet.gripped(&GRIPS))
+                (pattern, sheet.attached_at(&GRIPS))
             };
-            let (pattern, sheet) = gripped(&design);
+            let (pattern, sheet) = attached(&design);
             let weights = random_weights(&sheet);
-            let value = |design: &DesignVector| weighted(&gripped(design).1, &weights);
+            let value = |design: &DesignVector| weighted(&attached(design).1, &weights);
             let found = pulled_back(&pattern, &sheet, &weights, &design);
             assert_slopes(value, &design, &found);
         }
@@ -77,12 +77,12 @@ fn gradients_in_the_sheet_are_pulled_back_to_the_design() {
 }
 
 /// One point of each kind besides the centroid.
-const GRIPS: [Grip; 2] = [
-    Grip {
+const GRIPS: [AttachmentPoint; 2] = [
+    AttachmentPoint {
         panel: 1,
         point: PanelPoint::Middle([0, 1]),
     },
-    Grip {
+    AttachmentPoint {
         panel: 5,
         point: PanelPoint::Fixed([2.5, 1.5]),
     },

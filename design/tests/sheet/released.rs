@@ -44,7 +44,7 @@ fn release(stiffness: [f64; 3], scale: f64) -> Release {
 }
 
 /// A model whose sheet is compared with its target after it was unloaded.
-fn let_go(mut model: Model, release: Release) -> Model {
+fn unload(mut model: Model, release: Release) -> Model {
     mechanics_of(&mut model).release = Some(release);
     model
 }
@@ -57,13 +57,13 @@ fn springs_that_are_let_go() {
         for east in EASTS {
             let units = scale.powi(-3);
             let release = release(stiffness.map(|k| units * k), scale);
-            let model = let_go(held(springs(), 240.0, east), release);
+            let model = unload(held(springs(), 240.0, east), release);
             assert_order_two(&problem(model, HingePoint::Corner), &start());
         }
     }
     let pulled = held(springs(), 240.0, East::Pulled(12.0));
     let model = hung(pulled, [1e-5, -5e-5]);
-    let model = let_go(model, release(stiffness, 1.0));
+    let model = unload(model, release(stiffness, 1.0));
     assert_order_two(&problem(model, HingePoint::Corner), &start());
 }
 
@@ -71,7 +71,7 @@ fn springs_that_are_let_go() {
 #[test]
 fn learned_hinges_that_are_let_go() {
     let driven = held(tiny(), 40.0, East::Driven(2.0, 18.0));
-    let model = let_go(driven, release([300.0, 200.0, 100.0], 1.0));
+    let model = unload(driven, release([300.0, 200.0, 100.0], 1.0));
     let problem = problem(model, HingePoint::CutTip);
     let alone = problem.evaluate(&start()).unwrap();
     let released = alone.deployment.released.as_ref().unwrap();

@@ -100,7 +100,7 @@ fn the_gradient_in_every_input() {
         assert!(response.deployment.followed);
         let by = cotangent(&response);
         let found = problem.response_pullback(&design, &response, &by).unwrap();
-        let known = response.deployment.known_path();
+        let known = response.deployment.warm_start();
         // 1 where the response is a differentiable function of the load.
         let driven = problem.model.mechanics().unwrap().solver.is_driven();
         let variable = |panel: usize, d: usize| {
@@ -178,7 +178,7 @@ fn a_known_configuration_gives_the_same_response() {
 fn a_draft_is_the_equilibrium_that_a_path_leads_to_where_there_is_one() {
     for scene in SCENES {
         let (problem, design) = problem(scene);
-        let known = problem.deploy(&design).unwrap().known_path();
+        let known = problem.deploy(&design).unwrap().warm_start();
         // Beyond the distance at which a path is corrected from a known one, but without a jump.
         let mut wider = design.clone();
         wider.omega.iter_mut().for_each(|omega| *omega += 0.3);

@@ -39,10 +39,7 @@ pub struct Frame {
 
 /// Why the output of a window solve is rejected.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[allow(
-    missing_docs,
-    reason = "the message of each variant is its documentation"
-)]
+#[allow(missing_docs, reason = "the message of a variant is its documentation")]
 pub enum DatError {
     #[error("the solver's output, line {line}: {what}")]
     Line { line: usize, what: &'static str },

@@ -14,7 +14,7 @@ use std::time::Duration;
 use support::file_error::FileError;
 use support::program::{ToolError, output_file, remove_stale, tail};
 
-/// The word with which CalculiX begins what it says of a problem that it cannot solve, at the end of its log.
+/// The word with which CalculiX begins its message on a problem that it cannot solve, at the end of its log.
 const ERROR: &str = "*ERROR";
 
 /// What CalculiX has made of a deck.

@@ -30,10 +30,7 @@ pub struct ArrayScript {
 
 /// Why there is no script.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[allow(
-    missing_docs,
-    reason = "the message of each variant is its documentation"
-)]
+#[allow(missing_docs, reason = "the message of a variant is its documentation")]
 pub enum ScriptError {
     /// A word between two `@` of a template is not a key.
     #[error("the template has the unknown key `@{key}@`; the keys are {known}")]

@@ -59,10 +59,7 @@ pub struct Campaign {
 
 /// Why a campaign cannot be read, planned, run or collected.
 #[derive(Debug, thiserror::Error)]
-#[allow(
-    missing_docs,
-    reason = "the message of each variant is its documentation"
-)]
+#[allow(missing_docs, reason = "the message of a variant is its documentation")]
 pub enum CampaignError {
     #[error(transparent)]
     Config(#[from] ConfigError),

@@ -14,10 +14,7 @@ use support::{csv_table, regular_file, whole_file};
 
 /// A file that is not a valid list of rays, or that cannot be written.
 #[derive(Debug, thiserror::Error)]
-#[allow(
-    missing_docs,
-    reason = "the message of each variant is its documentation"
-)]
+#[allow(missing_docs, reason = "the message of a variant is its documentation")]
 pub enum ExtraRaysError {
     #[error(transparent)]
     File(#[from] FileError),

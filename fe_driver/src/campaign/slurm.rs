@@ -13,10 +13,7 @@ use support::{lock_file, verbose, whole_file};
 
 /// Why an array was not submitted.
 #[derive(Debug, thiserror::Error)]
-#[allow(
-    missing_docs,
-    reason = "the message of each variant is its documentation"
-)]
+#[allow(missing_docs, reason = "the message of a variant is its documentation")]
 pub enum SlurmError {
     #[error("cannot start {program}: {source}; is Slurm installed on this host?")]
     NotFound {

@@ -2,10 +2,7 @@
 
 /// Why a sheet problem cannot be solved.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[allow(
-    missing_docs,
-    reason = "the message of each variant is its documentation"
-)]
+#[allow(missing_docs, reason = "the message of a variant is its documentation")]
 pub enum InvalidSheetProblem {
     #[error("panel {0} has no nodes where it is held or pulled")]
     NoPanel(usize),

@@ -19,10 +19,7 @@ use support::worker_pool::{NoThread, Reports, work_through};
 
 /// Why a list of solves ended before its last solve. What was solved until then is kept.
 #[derive(Debug, thiserror::Error)]
-#[allow(
-    missing_docs,
-    reason = "the message of each variant is its documentation"
-)]
+#[allow(missing_docs, reason = "the message of a variant is its documentation")]
 pub enum SolveListError {
     #[error(transparent)]
     File(#[from] FileError),

@@ -47,10 +47,7 @@ impl TryFrom<Vec<Knot>> for DeformationPath {
 
 /// Why a file is not a valid deformation path.
 #[derive(Debug, thiserror::Error)]
-#[allow(
-    missing_docs,
-    reason = "the message of each variant is its documentation"
-)]
+#[allow(missing_docs, reason = "the message of a variant is its documentation")]
 pub enum PathError {
     #[error(transparent)]
     Read(#[from] FileError),

@@ -1,4 +1,4 @@
-//! Why an attempt failed: what the solver says of the problem, or what happened on the machine.
+//! Why an attempt failed: the message of the solver on the problem, or what happened on the machine.
 
 use crate::solve::solve_error::SolveError;
 use mesher::MeshError;
@@ -66,7 +66,7 @@ impl UnknownFailure {
 
 /// The message in a program's log when the disk is full.
 const DISK_FULL: &str = "No space left on device";
-/// The word with which gmsh begins what it says of a mesh that it cannot make.
+/// The word with which gmsh begins its message on a mesh that it cannot make.
 const GMSH_ERROR: &str = "Error";
 /// The message of CalculiX when the memory is full.
 const MEMORY_FULL: &str = "error allocating memory";

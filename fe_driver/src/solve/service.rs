@@ -390,7 +390,7 @@ mod tests {
         let message = solved[1].complete().unwrap_err().to_string();
         assert!(message.starts_with("bar of 0.3 N: "), "{message}");
         assert!(message.contains("diverged"), "{message}");
-        // The store keeps windows beside it.
+        // The store keeps windows next to it.
         assert_eq!(windows.solve(&solves()).unwrap().len(), 3);
         let kept = windows.store.solve(&needs_more.id());
         assert!(kept.0.join("forces.json").exists());

@@ -10,10 +10,7 @@ use support::program::ToolError;
 
 /// Why a solve has no samples, or only samples of a part of the path.
 #[derive(Debug, thiserror::Error)]
-#[allow(
-    missing_docs,
-    reason = "the message of each variant is its documentation"
-)]
+#[allow(missing_docs, reason = "the message of a variant is its documentation")]
 pub enum SolveError {
     #[error(transparent)]
     Material(#[from] InvalidMaterial),

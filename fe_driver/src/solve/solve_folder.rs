@@ -137,7 +137,7 @@ impl SolveFolder {
         };
         let record = match or_damage(self.record())? {
             Ok(record) => record,
-            Err(_) => return damaged("result.json cannot be read, or is that of another job"),
+            Err(_) => return damaged("result.json cannot be read, or belongs to another job"),
         };
         if solve.as_ref().is_some_and(|solve| solve.id() != self.id()) {
             return damaged("job.json has changed: its hash is not the name of its folder");

@@ -185,7 +185,7 @@ fn a_solver_that_hangs_is_ended_and_tried_again_on_request() {
     assert_eq!(timeless(&jobs(folder.path())), timeless(&RECORDING.jobs));
 }
 
-/// What the solver says of the problem is kept with the increments that converged.
+/// The message of the solver is kept with the increments that converged.
 #[test]
 fn a_solve_that_diverges_keeps_its_converged_increments() {
     let folder = tempfile::tempdir().unwrap();

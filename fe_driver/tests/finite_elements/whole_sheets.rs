@@ -1,4 +1,4 @@
-//! Sheets solved as a whole with gmsh and CalculiX: two panels and one hinge, beside the window of that hinge.
+//! Sheets solved as a whole with gmsh and CalculiX: two panels and one hinge, compared with the window of that hinge.
 
 use crate::common::film;
 use fe_driver::{

@@ -1,9 +1,10 @@
 //! The training domain of given states.
 
 use crate::domain::TrainingDomain;
-use crate::domain::directions::{DIRECTION, DIRECTIONS, dot, norm};
+use crate::domain::directions::{DIRECTION, DIRECTIONS, norm};
 use crate::{HingeDeformation, HingeDesign};
 use std::array::from_fn;
+use support::vectors::dot;
 
 /// Maximum number of widths at which the supports are stored.
 pub(super) const MOST_WIDTHS: usize = 5;
@@ -96,13 +97,13 @@ impl TrainingDomain {
     /// s(m) of scaled states and of the flat state, which must be inside the domain.
     fn support(&self, states: impl IntoIterator<Item = [f64; 3]>) -> [f64; DIRECTIONS] {
         let flat = self.scaled([0.0; 3]);
-        let along = |y: [f64; 3]| -> [f64; DIRECTIONS] { from_fn(|m| dot(DIRECTION[m], y)) };
+        let along = |y: [f64; 3]| -> [f64; DIRECTIONS] { from_fn(|m| dot(&DIRECTION[m], &y)) };
         let minimum = along(flat).map(|s| s.max(LEAST_SIZE));
         let support = states.into_iter().fold(minimum, |support, y| {
             let along = along(y);
             from_fn(|m| along[m].max(support[m]))
         });
-        let grown = norm(from_fn(|m| dot(DIRECTION[m], flat) / support[m])) / FLAT;
+        let grown = norm(from_fn(|m| dot(&DIRECTION[m], &flat) / support[m])) / FLAT;
         support.map(|s| grown.max(1.0) * s)
     }
 }

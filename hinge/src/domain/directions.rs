@@ -31,7 +31,3 @@ pub(super) fn norm(ratios: [f64; DIRECTIONS]) -> f64 {
     let powers = ratios.map(|t| (t.max(0.0) / largest).powi(EXPONENT as i32));
     largest * powers.into_iter().sum::<f64>().powf(1.0 / EXPONENT)
 }
-
-pub(super) fn dot(x: [f64; 3], y: [f64; 3]) -> f64 {
-    x[0] * y[0] + x[1] * y[1] + x[2] * y[2]
-}

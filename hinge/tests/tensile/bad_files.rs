@@ -1,7 +1,7 @@
 //! Each bad file gets a message that names the file, the place and what to do.
 
 use super::{HEADER, OPTIONS, VOCE, csv, write};
-use hinge::tensile::{MaterialFit, RecordOptions};
+use tensile::{MaterialFit, RecordOptions};
 
 /// The message for one text.
 fn message(text: &str) -> String {

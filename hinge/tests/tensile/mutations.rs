@@ -2,8 +2,8 @@
 
 use super::{FILM, HEADER, OPTIONS, VOCE, csv, facts, write};
 use crate::synthetic::Noise;
-use hinge::SheetMaterial;
-use hinge::tensile::{MaterialFit, RecordOptions, material_file};
+use hinge::{SheetMaterial, material_file};
+use tensile::{MaterialFit, RecordOptions};
 
 /// A text with one to three random changes of bytes and lines.
 fn mutated(text: &str, random: &mut Noise) -> Vec<u8> {
@@ -53,7 +53,7 @@ fn mutated_files_are_refused_or_give_a_valid_material() {
                 }
             };
             fitted += 1;
-            if let Ok(material) = fit.material(&facts()) {
+            if let Ok(material) = SheetMaterial::fitted(&fit, &facts()) {
                 let text = material_file(&fit, &facts());
                 let path = write(folder.path(), "material.toml", &text);
                 assert_eq!(SheetMaterial::load(&path).unwrap(), material, "{text}");

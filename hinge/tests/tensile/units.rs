@@ -2,7 +2,7 @@
 
 use super::{OPTIONS, fit_with, write};
 use crate::synthetic::Law;
-use hinge::tensile::{MaterialFit, Quantity, RecordOptions, TensileError};
+use tensile::{MaterialFit, Quantity, RecordOptions, TensileError};
 
 /// sigma = 30.164 + 15 (1 - exp(-eps_p / 0.03)), of a specimen of 10 x 0.5 mm with a gauge length of 50 mm.
 const POLYMER: Law = Law {
@@ -339,8 +339,8 @@ fn specimens_of_one_file_are_evaluated_one_by_one() {
         text(law, header, 1.0, 1.0)
     });
     let lines = one.lines().zip(two.lines());
-    let beside: Vec<String> = lines.map(|(one, two)| format!("{one},{two}")).collect();
-    for text in [format!("{one}{two}"), beside.join("\n")] {
+    let columns: Vec<String> = lines.map(|(one, two)| format!("{one},{two}")).collect();
+    for text in [format!("{one}{two}"), columns.join("\n")] {
         let fit = read(&text, &RecordOptions::default()).unwrap();
         let [first, second] = &fit.specimens[..] else {
             panic!("{} specimens", fit.specimens.len())

@@ -287,7 +287,7 @@ mod tests {
 
     #[test]
     fn gradings_give_the_prescribed_first_element() {
-        for tier in Tier::ALL {
+        for tier in Tier::all() {
             let PlaneRecipe::Structured(recipe) = tier.recipe().plane else {
                 continue;
             };

@@ -65,7 +65,7 @@ fn every_tier_covers_the_window_without_folded_elements() {
     // The documented number of bricks; the number of wedges of `paper` depends on the hinge.
     let films = [36, 104, 228, 400, 912].map(Some).into_iter();
     let bricks = films.chain([None]).chain([72, 160, 768].map(Some));
-    for (tier, bricks) in Tier::ALL.into_iter().zip(bricks) {
+    for (tier, bricks) in Tier::all().zip(bricks) {
         for (w, alpha) in [
             (5.0, 25.0),
             (5.0, 150.0),
@@ -93,10 +93,7 @@ fn every_tier_covers_the_window_without_folded_elements() {
 fn holes_of_2_to_40_percent_of_the_ligament_are_meshed() {
     // At 0.079 a collar would be a ring of slivers.
     for fillet_ratio in [0.02, 0.039, 0.05, 0.058, 0.079, 0.3, 0.4] {
-        for (tier, alpha) in Tier::ALL
-            .into_iter()
-            .flat_map(|tier| [60.0, 90.0].map(|alpha| (tier, alpha)))
-        {
+        for (tier, alpha) in Tier::all().flat_map(|tier| [60.0, 90.0].map(|alpha| (tier, alpha))) {
             let design = HingeDesign {
                 fillet_ratio,
                 ..design(12.0, alpha)

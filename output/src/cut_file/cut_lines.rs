@@ -6,7 +6,7 @@
 //!
 //! **Ligament.** w_lig is the material between O and the finished edge of the secondary cut, as in the window:
 //! the distance of O from the line of that cut is larger by half a kerf. The hole reduces the ligament by its radius,
-//! so that a caliper beside the hole reads (1 - rho_f) w_lig, [`CutLines::caliper`].
+//! so that a caliper next to the hole reads (1 - rho_f) w_lig, [`CutLines::caliper`].
 //!
 //! **Kerf.** A slit is one pass of the tool along its line and removes the kerf, half on each flank:
 //! the tool's kerf is the design kerf w_c of (7). Holes and outline are closed paths, offset by half

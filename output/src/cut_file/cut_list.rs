@@ -5,7 +5,7 @@ use crate::cut_file::totals::{Totals, holes_by_diameter};
 use design::geometry::polygon::distance;
 use design::sheet::cut_sheet::Sheet;
 
-/// One row a hinge: its hole, its ligament as designed and as measured by a caliper beside the hole, and its panels.
+/// One row a hinge: its hole, its ligament as designed and as measured by a caliper next to the hole, and its panels.
 pub fn cut_list(sheet: &Sheet, cuts: &CutLines) -> String {
     let mut text = "hinge,hole_diameter_mm,w_lig_mm,caliper_mm,panel_a,panel_b\n".to_owned();
     for (h, (hinge, hole)) in std::iter::zip(&sheet.hinges, &cuts.holes).enumerate() {

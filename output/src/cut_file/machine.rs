@@ -94,7 +94,7 @@ pub struct Features {
     pub hole: f64,
     /// Width of the slits.
     pub slot: f64,
-    /// The narrowest ligament beside its hole.
+    /// The narrowest ligament next to its hole.
     pub bridge: f64,
     /// The least distance of a hole from the outline.
     pub edge: f64,
@@ -290,7 +290,7 @@ impl fmt::Display for Features {
         let [width, height] = self.size;
         write!(
             f,
-            "smallest hole {:.2} mm, slits {:.2} mm, narrowest ligament beside its hole {:.2} mm, hole to edge {:.2} mm; sheet {width:.1} \
+            "smallest hole {:.2} mm, slits {:.2} mm, narrowest ligament next to its hole {:.2} mm, hole to edge {:.2} mm; sheet {width:.1} \
              x {height:.1} mm",
             self.hole, self.slot, self.bridge, self.edge
         )

@@ -23,7 +23,7 @@ const DISTANCES: [f64; 8] = [1.2, 1.6, 2.0, 2.5, 3.0, 4.0, 5.5, 7.0];
 /// A number that has no room is tried again at smaller heights.
 const HEIGHTS: [f64; 6] = [1.0, 0.7, 0.5, 0.35, 0.25, 0.15];
 
-/// The number `P<k>` of every panel in its middle and the number of every hinge beside its hole: panels first, row by
+/// The number `P<k>` of every panel in its middle and the number of every hinge next to its hole: panels first, row by
 /// row.
 pub(super) fn numbers(cuts: &CutLines, sheet: &Sheet) -> (Vec<Text>, Vec<Text>) {
     let mut panels: Vec<Taken> = (0..sheet.panels.len())

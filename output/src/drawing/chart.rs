@@ -31,10 +31,10 @@ impl Chart {
                 let mut place = ranges.map(|[from, _]| from);
                 place[i] = value;
                 let [x, y] = chart.at(place);
-                let beside = |[dx, dy]: [f64; 2]| [x + dx * u, y + dy * u];
-                sketch.canvas.line([x, y], beside(end), axis);
+                let shifted = |[dx, dy]: [f64; 2]| [x + dx * u, y + dy * u];
+                sketch.canvas.line([x, y], shifted(end), axis);
                 sketch.text(
-                    beside(label),
+                    shifted(label),
                     12.0 * u,
                     Anchor::Middle,
                     muted,

@@ -17,7 +17,7 @@ use design::sheet::kinematics::{
 use design::sheet::topology::is_even;
 
 /// What a state without loads is called.
-const LET_GO: &str = "Loads taken off";
+const UNLOADED: &str = "Loads taken off";
 
 /// The sheet of a scene in the state that is compared with the target, with the loads there.
 pub fn deployed(scene: &Scene, deployment: &Deployment) -> String {
@@ -36,7 +36,7 @@ pub fn deployed(scene: &Scene, deployment: &Deployment) -> String {
     let subtitle = format!(
         "{}: mean hinge opening {mean:.1}\u{b0}, maximum {max:.1}\u{b0}{actuation}. Target dashed",
         match deployment.released {
-            Some(_) => LET_GO,
+            Some(_) => UNLOADED,
             None => "Deployed",
         }
     );
@@ -50,7 +50,7 @@ pub fn deployment_frames(scene: &Scene, designed: &Designed, most: usize) -> Vec
     let deployment = &designed.best.deployment;
     let before = states_before(&designed.problem, deployment);
     let loaded = before.iter().chain(&deployment.path);
-    let all: Vec<&LoadStep> = loaded.chain(deployment.let_go()).collect();
+    let all: Vec<&LoadStep> = loaded.chain(deployment.unloaded()).collect();
     let steps = before.len() + deployment.path.len();
     let index = kept(all.len(), most);
     let states: Vec<State> = (index.iter())
@@ -63,7 +63,7 @@ pub fn deployment_frames(scene: &Scene, designed: &Designed, most: usize) -> Vec
     let scale = ColourScale::covering(openings);
     let frame = |(&i, state): (&usize, &State)| {
         let place = if i == steps {
-            LET_GO.to_lowercase()
+            UNLOADED.to_lowercase()
         } else if scene.hinge.carries_load() {
             format!(
                 "load step {i} of {}, load factor {:.2}",

@@ -86,7 +86,7 @@ fn ligaments(sketch: &mut Sketch, sheet: &Sheet) {
     }
 }
 
-/// The middle of the number of a hinge, on panel B beside the main cut, at the distance `reach` from the hinge (mm).
+/// The middle of the number of a hinge, on panel B next to the main cut, at the distance `reach` from the hinge (mm).
 fn number_place(hinge: &Hinge, window: &Window, reach: f64) -> [f64; 2] {
     let along = hinge.alpha / 2.0;
     window.point(reach * along.cos(), -reach * along.sin())

@@ -1,12 +1,12 @@
-//! A measured sheet beside its prediction, after Fig. 10 (d)-(h) of the paper: outlines superposed with magnified
+//! A measured sheet and its prediction, after Fig. 10 (d)-(h) of the paper: outlines superposed with magnified
 //! residuals, hinge openings measured against predicted, errors of the panel centres against the floor.
 
 use crate::display::{Anchor, Style};
 use crate::drawing::chart::Chart;
 use crate::drawing::page::{ACCENT, INK, MUTED, PANELS, Page, Sketch, TEAL};
 use crate::measurement::MeasurementReport;
-use design::analysis::marks::FittedPoint;
 use design::analysis::measured_openings::MeasuredOpening;
+use design::analysis::measured_points::FittedPoint;
 use design::analysis::path_fit::Fit;
 use design::geometry::polygon::bounds;
 use design::sheet::cut_sheet::Sheet;

@@ -1,7 +1,7 @@
 //! Residual opening of a sheet when its loads are taken off, in numbers.
 
 use crate::drawing;
-use design::analysis::springback::{LetGoError, WhatStays, let_go_in_domain};
+use design::analysis::springback::{ResidualShape, UnloadError, unload_in_domain};
 use design::objective::design_problem::{Deployment, DesignProblem};
 use design::pattern::design_vector::DesignVector;
 use design::scene::Scene;
@@ -14,13 +14,13 @@ use surrogate::{Springback, SpringbackErrors};
 pub struct SpringbackListing {
     /// The residual opening.
     #[serde(flatten)]
-    pub stays: WhatStays,
+    pub stays: ResidualShape,
     /// Mean rotation of the hinges without load over that under load; `None` if they have not opened.
     pub share: Option<f64>,
     /// Errors of the law at hinges that it has not seen; `None` if they were not measured.
     pub law: Option<SpringbackErrors>,
     #[serde(skip)]
-    let_go: Deployment,
+    unloaded: Deployment,
 }
 
 impl SpringbackListing {
@@ -30,14 +30,14 @@ impl SpringbackListing {
         problem: &DesignProblem,
         design: &DesignVector,
         law: &Springback,
-    ) -> Result<Self, LetGoError> {
+    ) -> Result<Self, UnloadError> {
         let deployment = problem.deploy(design)?;
-        let (released, stays) = let_go_in_domain(scene, problem, law, &deployment)?;
+        let (released, stays) = unload_in_domain(scene, problem, law, &deployment)?;
         Ok(Self {
             share: stays.share(),
             stays,
             law: law.errors,
-            let_go: Deployment {
+            unloaded: Deployment {
                 released: Some(released),
                 ..deployment
             },
@@ -46,13 +46,13 @@ impl SpringbackListing {
 
     /// The sheet without loads (SVG).
     pub fn picture(&self, scene: &Scene) -> String {
-        drawing::deployed(scene, &self.let_go)
+        drawing::deployed(scene, &self.unloaded)
     }
 }
 
 impl fmt::Display for SpringbackListing {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        let WhatStays {
+        let ResidualShape {
             rest_rotations,
             displacement,
             displacement_unit,
@@ -64,7 +64,7 @@ impl fmt::Display for SpringbackListing {
         let [loaded, free] = self.stays.mean_rotations().map(f64::to_degrees);
         let alone = rest_rotations.iter().map(|theta| theta.abs()).sum::<f64>();
         let alone = (alone / rest_rotations.len() as f64).to_degrees();
-        writeln!(f, "{:<44}{:>12}{:>12}", "", "loaded", "let go")?;
+        writeln!(f, "{:<44}{:>12}{:>12}", "", "loaded", "unloaded")?;
         writeln!(
             f,
             "{:<44}{loaded:>12.2}{free:>12.2}",

@@ -27,7 +27,8 @@ const NEVER_MODELLED: [&str; 3] = [
 ];
 
 /// What the model leaves out of an unloaded sheet.
-const UNDER_LOAD: &str = "the law of released hinges: the errors are those of the sheet under load, before it was let go";
+const UNDER_LOAD: &str =
+    "the law of released hinges: the errors apply to the sheet under load, before it was unloaded";
 
 /// What the page and the report say above the table.
 pub(crate) const BUDGET_HEADING: &str =

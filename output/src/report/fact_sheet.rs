@@ -1,8 +1,8 @@
 //! The facts of a run: what the sheet is made of, how far it opens under which load, what the hinge law rests on.
 
 use crate::report::columns::rounded;
+use crate::report::creep_and_springback::CreepAndSpringback;
 use crate::report::hinge_row::HingeRow;
-use crate::report::lasting_shape::LastingShape;
 use crate::report::self_weight::SelfWeight;
 use design::analysis::actuation_curve::{ActuationCurve, LimitPoint, LoadPeak, Mover};
 use design::equilibrium::load_step::Status;
@@ -39,7 +39,7 @@ pub struct FactSheet {
     /// The weight of the uncut sheet and how it acts.
     pub self_weight: SelfWeight,
     /// Creep and springback; `None` if the hinges carry no load.
-    pub lasting_shape: Option<LastingShape>,
+    pub creep_and_springback: Option<CreepAndSpringback>,
     /// [columns, rows]
     pub panels: [usize; 2],
     /// Extent of the flat sheet along x and y (mm).
@@ -104,12 +104,12 @@ pub struct WeightFacts {
     /// Relative root mean square errors (%): W, F_a, F_s, M_theta, D and, if it is predicted, D_peak.
     pub errors_percent: Vec<f64>,
     /// The spot check of the weights, if there was one.
-    pub spot_check: Option<SpotCheck>,
+    pub spot_check: Option<SpotCheckFacts>,
 }
 
 /// Errors of weights at random states that no training has seen.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct SpotCheck {
+pub struct SpotCheckFacts {
     /// Number of states.
     pub states: usize,
     /// Number of states inside the training domain.
@@ -140,7 +140,7 @@ impl FactSheet {
             thickness: material.thickness,
             mass_kg,
             self_weight: SelfWeight::new(scene, mass_kg, reached.as_ref().and_then(Reached::force)),
-            lasting_shape: LastingShape::new(scene, problem, deployment),
+            creep_and_springback: CreepAndSpringback::new(scene, problem, deployment),
             panels: scene.config.sheet.panels,
             flat_size: extent(flat.iter().copied()),
             target_state: scene.config.objective.target_state,
@@ -199,7 +199,11 @@ impl FactSheet {
             );
             facts.extend(self.self_weight.rows());
         }
-        facts.extend(self.lasting_shape.iter().flat_map(LastingShape::rows));
+        facts.extend(
+            self.creep_and_springback
+                .iter()
+                .flat_map(CreepAndSpringback::rows),
+        );
         if let Some(gamma) = self.gamma_min {
             let gamma = rounded(gamma, 4);
             facts.push((
@@ -336,7 +340,7 @@ impl WeightFacts {
             training_rays: card.training_rays,
             test_rows: card.test_errors.rows,
             errors_percent: errors(&card.test_errors),
-            spot_check: card.spot_check.as_ref().map(|check| SpotCheck {
+            spot_check: card.spot_check.as_ref().map(|check| SpotCheckFacts {
                 states: check.errors.rows,
                 inside: check.inside,
                 errors_percent: errors(&check.errors),

@@ -49,28 +49,28 @@ const FALLS: f64 = 2.6;
 /// Rounding of lengths (mm).
 const ROUNDING: f64 = 1e-6;
 
-pub(super) struct Judged<'a> {
+pub(super) struct RuleInput<'a> {
     pub scene: &'a Scene,
     pub deployment: &'a Deployment,
     /// The cut lines of the sheet.
     pub cuts: &'a Result<CutLines, FabricationError>,
     /// All hinges.
     pub hinges: &'a [HingeRow],
-    /// The run whose best design is judged; `None` for a design alone.
-    pub run: Option<JudgedRun<'a>>,
+    /// The run whose best design is input; `None` for a design alone.
+    pub run: Option<RunContext<'a>>,
 }
 
-pub(super) struct JudgedRun<'a> {
+pub(super) struct RunContext<'a> {
     pub designed: &'a Designed,
     pub facts: &'a FactSheet,
     /// The scores of the best design.
     pub after: &'a Scores,
 }
 
-type Rule = fn(&Judged) -> Option<Warning>;
+type Rule = fn(&RuleInput) -> Option<Warning>;
 
 /// First how well a run meets its target, then those about its design, then those about the run as a whole: what its model leaves
-/// out, what its weights are worth.
+/// out, how accurate its weights are.
 const RULES: [Rule; 25] = [
     missed,
     panels_overlap,
@@ -100,15 +100,15 @@ const RULES: [Rule; 25] = [
 ];
 
 /// All that the rules find, the most severe first.
-pub(super) fn warnings(judged: &Judged) -> Vec<Warning> {
-    let mut found: Vec<Warning> = RULES.iter().filter_map(|rule| rule(judged)).collect();
+pub(super) fn warnings(input: &RuleInput) -> Vec<Warning> {
+    let mut found: Vec<Warning> = RULES.iter().filter_map(|rule| rule(input)).collect();
     found.sort_by_key(|warning| std::cmp::Reverse(warning.severity));
     found
 }
 
-impl Judged<'_> {
+impl RuleInput<'_> {
     /// The hinges whose rows `overstep`.
-    fn those(&self, overstep: impl Fn(&HingeRow) -> bool) -> Vec<usize> {
+    fn hinges_where(&self, overstep: impl Fn(&HingeRow) -> bool) -> Vec<usize> {
         let rows = self.hinges.iter().filter(|row| overstep(row));
         rows.map(|row| row.hinge).collect()
     }
@@ -124,12 +124,12 @@ fn about(concern: Concern, hinges: Vec<usize>, message: String) -> Option<Warnin
 
 /// Panels cannot lie over each other, whatever the hinge law. On the way the edges of closed cuts, which are softer in the model than in
 /// the sheet, may let them by a little.
-fn panels_overlap(judged: &Judged) -> Option<Warning> {
-    let deployment = judged.deployment;
+fn panels_overlap(input: &RuleInput) -> Option<Warning> {
+    let deployment = input.deployment;
     let of = |step: &LoadStep| overlap(&deployment.sheet, &step.configuration);
     let at_the_end = of(deployment.compared());
-    let openings = judged.hinges.iter().map(|row| row.theta_deg.to_radians());
-    let mean = openings.sum::<f64>() / judged.hinges.len() as f64;
+    let openings = input.hinges.iter().map(|row| row.theta_deg.to_radians());
+    let mean = openings.sum::<f64>() / input.hinges.len() as f64;
     let lie = |most: f64| {
         let most = rounded(100.0 * most, 2);
         format!("panels lie over each other, by up to {most} % of the area of a panel")
@@ -161,8 +161,8 @@ fn panels_overlap(judged: &Judged) -> Option<Warning> {
     })
 }
 
-fn windows_overlap(judged: &Judged) -> Option<Warning> {
-    let sheet = &judged.deployment.sheet;
+fn windows_overlap(input: &RuleInput) -> Option<Warning> {
+    let sheet = &input.deployment.sheet;
     let windows = Window::of_sheet(sheet);
     let overlapping = |h: &usize| {
         let mut others = windows.iter().enumerate().filter(|(other, _)| other != h);
@@ -177,8 +177,8 @@ fn windows_overlap(judged: &Judged) -> Option<Warning> {
     about(Concern::WindowsOverlap, hinges, message)
 }
 
-fn windows_leave_panels(judged: &Judged) -> Option<Warning> {
-    let sheet = &judged.deployment.sheet;
+fn windows_leave_panels(input: &RuleInput) -> Option<Warning> {
+    let sheet = &input.deployment.sheet;
     let windows = Window::of_sheet(sheet).into_iter().zip(&sheet.hinges);
     let leaving = windows.enumerate().filter(|(_, (window, hinge))| {
         let [a, b] = [hinge.panel_a(), hinge.panel_b()].map(|panel| &sheet.panels[panel]);
@@ -193,12 +193,12 @@ fn windows_leave_panels(judged: &Judged) -> Option<Warning> {
     )
 }
 
-fn cutting(judged: &Judged) -> Option<Warning> {
-    let cuts = match judged.cuts {
+fn cutting(input: &RuleInput) -> Option<Warning> {
+    let cuts = match input.cuts {
         Ok(cuts) => cuts,
         Err(error) => return Some(Concern::CannotBeCut.of_sheet(error.to_string())),
     };
-    let hinges = judged.deployment.sheet.hinges.iter().enumerate();
+    let hinges = input.deployment.sheet.hinges.iter().enumerate();
     let close = hinges.filter(|(h, hinge)| cuts.clearance(*h) < hinge.w_lig - ROUNDING);
     let message = "another cut is closer to the tip than w_lig".into();
     about(
@@ -209,8 +209,8 @@ fn cutting(judged: &Judged) -> Option<Warning> {
 }
 
 /// The cuts of a sheet are within the stock that it is cut from.
-fn stock(judged: &Judged) -> Option<Warning> {
-    let cuts = judged.cuts.as_ref().ok()?;
+fn stock(input: &RuleInput) -> Option<Warning> {
+    let cuts = input.cuts.as_ref().ok()?;
     let stock = cuts.cutting.stock?.size();
     let [low, high] = Shape::extent(cuts.drawing().cuts());
     let taken = [0, 1].map(|axis| high[axis] - low[axis]);
@@ -224,12 +224,12 @@ fn stock(judged: &Judged) -> Option<Warning> {
     })
 }
 
-fn ligaments_outside(judged: &Judged) -> Option<Warning> {
-    let domain = judged.scene.surrogate()?.domain();
+fn ligaments_outside(input: &RuleInput) -> Option<Warning> {
+    let domain = input.scene.surrogate()?.domain();
     let outside = |[min, max]: [f64; 2], value: f64| !(min..=max).contains(&value);
     let alpha_deg = domain.alpha.map(f64::to_degrees);
-    let hinges =
-        judged.those(|row| outside(domain.w_lig, row.w_lig) || outside(alpha_deg, row.alpha_deg));
+    let hinges = input
+        .hinges_where(|row| outside(domain.w_lig, row.w_lig) || outside(alpha_deg, row.alpha_deg));
     let message = format!(
         "ligaments are outside the training domain of the hinge law, w_lig {:.1} to {:.1} mm and alpha \
          {:.0} to {:.0} deg",
@@ -238,26 +238,26 @@ fn ligaments_outside(judged: &Judged) -> Option<Warning> {
     about(Concern::LigamentsOutsideDomain, hinges, message)
 }
 
-fn states_outside(judged: &Judged) -> Option<Warning> {
-    judged.scene.surrogate()?;
+fn states_outside(input: &RuleInput) -> Option<Warning> {
+    input.scene.surrogate()?;
     let message = "deformations leave the training domain of the hinge law along the path: energy and forces of these \
                    hinges are extrapolated, and their damage is not known";
-    let hinges = judged.those(|row| !row.inside);
+    let hinges = input.hinges_where(|row| !row.inside);
     about(Concern::StatesOutsideDomain, hinges, message.into())
 }
 
 /// A learned law was measured along rays.
-fn path_dependence(judged: &Judged) -> Option<Warning> {
-    let law = judged.scene.surrogate()?;
-    let widest = judged.scene.config.ligament.range[1];
-    let (safe, page) = match judged.scene.material.regime(widest) {
+fn path_dependence(input: &RuleInput) -> Option<Warning> {
+    let law = input.scene.surrogate()?;
+    let widest = input.scene.config.ligament.range[1];
+    let (safe, page) = match input.scene.material.regime(widest) {
         Regime::Film => (SAFE_SEPARATION_OF_FILM, "docs/TRIED.md"),
         Regime::Plate if law.card().bent_rays => {
             (SAFE_SEPARATION_OF_BENT_RAYS, "docs/results/plates")
         }
         Regime::Plate => (SAFE_SEPARATION_OF_PLATE, "docs/results/plates"),
     };
-    let bent = judged.those(|row| row.path_separation > safe);
+    let bent = input.hinges_where(|row| row.path_separation > safe);
     let message = format!(
         "paths depart by more than {safe} ligament widths from the rays of the hinge law: energy, forces and damage depend on the \
          path there ({page}); check by `kirigami verify`"
@@ -266,10 +266,10 @@ fn path_dependence(judged: &Judged) -> Option<Warning> {
 }
 
 /// Windows have no contact.
-fn flanks_touch(judged: &Judged) -> Option<Warning> {
-    judged.scene.surrogate()?;
-    let touching = judged.those(|row| row.flank_gap < 0.0);
-    let gaps = judged.hinges.iter().map(|row| row.flank_gap);
+fn flanks_touch(input: &RuleInput) -> Option<Warning> {
+    input.scene.surrogate()?;
+    let touching = input.hinges_where(|row| row.flank_gap < 0.0);
+    let gaps = input.hinges.iter().map(|row| row.flank_gap);
     let most = -gaps.fold(f64::INFINITY, f64::min);
     let message = format!(
         "the flanks of their cuts are pushed into each other, by up to {} mm: contact between them is not modelled, and the load is \
@@ -279,9 +279,9 @@ fn flanks_touch(judged: &Judged) -> Option<Warning> {
     about(Concern::FlanksTouch, touching, message)
 }
 
-fn tearing(judged: &Judged) -> Option<Warning> {
+fn tearing(input: &RuleInput) -> Option<Warning> {
     // The mean reaches 1 later than the peak; weights without D_peak predict the mean only.
-    let torn = judged.those(|row| {
+    let torn = input.hinges_where(|row| {
         row.damage_peak
             .or(row.damage)
             .is_some_and(|damage| damage >= 1.0)
@@ -290,7 +290,7 @@ fn tearing(judged: &Judged) -> Option<Warning> {
         let peak = DamageMeasure::Peak.known(damage);
         peak.unwrap_or(damage.d) >= 1.0
     };
-    let mut weighed = judged.deployment.weight_steps().iter();
+    let mut weighed = input.deployment.weight_steps().iter();
     let cause = if weighed.any(|step| step.damage.iter().any(tears)) {
         ", under the weight of the sheet alone: hang it from more points, or use wider ligaments"
     } else {
@@ -300,8 +300,8 @@ fn tearing(judged: &Judged) -> Option<Warning> {
     about(Concern::Tearing, torn, message)
 }
 
-fn overstrained(judged: &Judged) -> Option<Warning> {
-    let beyond = judged.those(|row| row.eta_a.abs().max(row.eta_s.abs()) > 1.0);
+fn overstrained(input: &RuleInput) -> Option<Warning> {
+    let beyond = input.hinges_where(|row| row.eta_a.abs().max(row.eta_s.abs()) > 1.0);
     let message =
         "ligaments translate by more than their width at full load, where no hinge law is valid: \
                    reduce the load or the size of the target"
@@ -309,13 +309,13 @@ fn overstrained(judged: &Judged) -> Option<Warning> {
     about(Concern::Overstrained, beyond, message)
 }
 
-fn path(judged: &Judged) -> Option<Warning> {
-    let weighed = judged.deployment.weight_steps().len();
+fn path(input: &RuleInput) -> Option<Warning> {
+    let weighed = input.deployment.weight_steps().len();
     // Under a prescribed stroke or motion a jump is no maximum of the load.
-    let dead = judged.scene.config.has_loads() && judged.scene.config.drive.is_none();
+    let dead = input.scene.config.has_loads() && input.scene.config.drive.is_none();
     let mut before = "the beginning".to_owned();
     let mut found = Vec::new();
-    for (i, step) in judged.deployment.path.iter().enumerate() {
+    for (i, step) in input.deployment.path.iter().enumerate() {
         let by_weight = i < weighed;
         let place = match (by_weight, step.weight == 1.0) {
             (true, true) => "the whole weight".to_owned(),
@@ -338,7 +338,7 @@ fn path(judged: &Judged) -> Option<Warning> {
         found.join(", ")
     );
     let mut warning = Concern::Path.of_sheet(message);
-    if judged.deployment.final_step().status == Status::Diverged {
+    if input.deployment.final_step().status == Status::Diverged {
         warning.severity = Severity::Error;
     }
     Some(warning)
@@ -360,8 +360,8 @@ fn departure(step: &LoadStep, peaks: &str, before: &str, place: &str) -> Option<
     })
 }
 
-fn target(judged: &Judged) -> Option<Warning> {
-    judged.scene.target.crossing.map(|[x, y]| {
+fn target(input: &RuleInput) -> Option<Warning> {
+    input.scene.target.crossing.map(|[x, y]| {
         Concern::TargetCrosses.of_sheet(format!(
             "the target outline crosses or touches itself near ({x:.1}, {y:.1}) mm: its inside is not defined; order \
              its vertices around the outline"
@@ -370,9 +370,9 @@ fn target(judged: &Judged) -> Option<Warning> {
 }
 
 /// A point at which a panel is held or pulled does not move with its cuts.
-fn point_outside(judged: &Judged) -> Option<Warning> {
-    let panels = &judged.deployment.sheet.panels;
-    let attachments = judged.scene.actuation().attachments;
+fn point_outside(input: &RuleInput) -> Option<Warning> {
+    let panels = &input.deployment.sheet.panels;
+    let attachments = input.scene.actuation().attachments;
     let outside: Vec<String> = (attachments.iter())
         .filter(|attachment| matches!(attachment.point, PanelPoint::Fixed(_)))
         .filter(|attachment| {
@@ -390,17 +390,17 @@ fn point_outside(judged: &Judged) -> Option<Warning> {
     })
 }
 
-fn not_modelled(judged: &Judged) -> Option<Warning> {
-    judged.scene.surrogate()?;
-    let missing = judged.run.as_ref()?.facts.self_weight.left_out()?;
+fn not_modelled(input: &RuleInput) -> Option<Warning> {
+    input.scene.surrogate()?;
+    let missing = input.run.as_ref()?.facts.self_weight.left_out()?;
     Some(Concern::NotModelled.of_sheet(format!(
         "the panels stay in the plane in the model. Not modelled: {missing}"
     )))
 }
 
 /// Panels that leave the plane unless something holds them flat.
-fn leaves_plane(judged: &Judged) -> Option<Warning> {
-    let posture = judged.scene.config.posture?.kind;
+fn leaves_plane(input: &RuleInput) -> Option<Warning> {
+    let posture = input.scene.config.posture?.kind;
     if posture == Posture::HeldFlat {
         return None;
     }
@@ -408,11 +408,11 @@ fn leaves_plane(judged: &Judged) -> Option<Warning> {
         Posture::Lying => "only its weight keeps the panels down on the surface",
         _ => "nothing keeps the panels in the plane",
     };
-    let widest = (judged.hinges.iter()).fold(0.0, |most, row| row.w_lig.max(most));
-    let stability = |problem| Stability::new(judged.scene, &problem, judged.deployment);
-    Some(match judged.scene.material.regime(widest) {
-        Regime::Plate => plate_leaves_plane(kept, judged.scene.problem().ok().and_then(stability)),
-        Regime::Film => film_leaves_plane(judged, posture, kept, widest),
+    let widest = (input.hinges.iter()).fold(0.0, |most, row| row.w_lig.max(most));
+    let stability = |problem| Stability::new(input.scene, &problem, input.deployment);
+    Some(match input.scene.material.regime(widest) {
+        Regime::Plate => plate_leaves_plane(kept, input.scene.problem().ok().and_then(stability)),
+        Regime::Film => film_leaves_plane(input, posture, kept, widest),
     })
 }
 
@@ -449,8 +449,8 @@ fn plate_leaves_plane(kept: &str, stability: Option<Stability>) -> Warning {
 }
 
 /// A film, whose ligaments buckle and tilt its panels.
-fn film_leaves_plane(judged: &Judged, posture: Posture, kept: &str, widest: f64) -> Warning {
-    let (sheet, material) = (&judged.deployment.sheet, &judged.scene.material);
+fn film_leaves_plane(input: &RuleInput, posture: Posture, kept: &str, widest: f64) -> Warning {
+    let (sheet, material) = (&input.deployment.sheet, &input.scene.material);
     let r_win = sheet.options.process.r_win;
     let on_table = (posture == Posture::Lying)
         .then(|| error_on_table(material, r_win))
@@ -483,9 +483,9 @@ fn film_leaves_plane(judged: &Judged, posture: Posture, kept: &str, widest: f64)
 }
 
 /// A weight that acts in the plane of the sheet but not in the model.
-fn weightless(judged: &Judged) -> Option<Warning> {
-    judged.scene.surrogate()?;
-    let weight = &judged.run.as_ref()?.facts.self_weight;
+fn weightless(input: &RuleInput) -> Option<Warning> {
+    input.scene.surrogate()?;
+    let weight = &input.run.as_ref()?.facts.self_weight;
     let left_out =
         !weight.is_modelled && matches!(weight.posture?, Posture::Hanging | Posture::Free);
     let ratio = weight
@@ -498,9 +498,9 @@ fn weightless(judged: &Judged) -> Option<Warning> {
 }
 
 /// Friction that the design does not know of.
-fn friction(judged: &Judged) -> Option<Warning> {
-    judged.scene.surrogate()?;
-    let weight = &judged.run.as_ref()?.facts.self_weight;
+fn friction(input: &RuleInput) -> Option<Warning> {
+    input.scene.surrogate()?;
+    let weight = &input.run.as_ref()?.facts.self_weight;
     weight.lying.as_ref()?;
     let ratio = FRICTION * weight.over_load?;
     (ratio > HEAVY).then(|| {
@@ -512,8 +512,8 @@ fn friction(judged: &Judged) -> Option<Warning> {
     })
 }
 
-fn hung_weight(judged: &Judged) -> Option<Warning> {
-    let weight = &judged.run.as_ref()?.facts.self_weight;
+fn hung_weight(input: &RuleInput) -> Option<Warning> {
+    let weight = &input.run.as_ref()?.facts.self_weight;
     let ratio = weight.hung.filter(|ratio| *ratio > HUNG)?;
     Some(Concern::HungWeight.of_sheet(format!(
         "the weights that hang from the sheet have {} times its mass: mass_g is in grams; write 2 for two grams",
@@ -521,8 +521,8 @@ fn hung_weight(judged: &Judged) -> Option<Warning> {
     )))
 }
 
-fn load_peak(judged: &Judged) -> Option<Warning> {
-    let reached = judged.run.as_ref()?.facts.reached.as_ref()?;
+fn load_peak(input: &RuleInput) -> Option<Warning> {
+    let reached = input.run.as_ref()?.facts.reached.as_ref()?;
     let peak = reached.peak?;
     let carried = peak.dead_load_reaches?;
     let [length, force] = reached.units;
@@ -554,17 +554,15 @@ fn load_peak(judged: &Judged) -> Option<Warning> {
 }
 
 /// Weights whose forces are off by more than a tenth, at unseen rays or at their spot check.
-fn inaccurate(judged: &Judged) -> Option<Warning> {
-    let weights = judged.run.as_ref()?.facts.weights.as_ref()?;
-    let spot_check = weights.spot_check.as_ref();
-    let errors = [
-        (Some(&weights.errors_percent), "unseen"),
-        (spot_check.map(|check| &check.errors_percent), "random"),
-    ];
-    let names = ["F_a", "F_s", "M_theta"];
-    let forces = errors.iter().flat_map(|(errors, states)| {
-        let forces = errors.iter().flat_map(|errors| &errors[1..4]);
-        std::iter::zip(names, forces).map(move |(name, error)| (*error, name, *states))
+fn inaccurate(input: &RuleInput) -> Option<Warning> {
+    let weights = input.run.as_ref()?.facts.weights.as_ref()?;
+    let card = input.scene.weights()?.card();
+    let spot_check = card.spot_check.iter();
+    let errors = spot_check.map(|check| (&check.errors, "random"));
+    let errors = std::iter::once((&card.test_errors, "unseen")).chain(errors);
+    let forces = errors.flat_map(|(of, states)| {
+        let forces = [("F_a", of.f_a), ("F_s", of.f_s), ("M_theta", of.m_theta)];
+        forces.map(|(name, error)| (100.0 * error.relative_rmse, name, states))
     });
     let (error, name, states) = forces
         .filter(|(error, ..)| *error > INACCURATE)
@@ -578,8 +576,8 @@ fn inaccurate(judged: &Judged) -> Option<Warning> {
 }
 
 /// Weights whose spot check mostly lies outside their training domain.
-fn outside(judged: &Judged) -> Option<Warning> {
-    let weights = judged.run.as_ref()?.facts.weights.as_ref()?;
+fn outside(input: &RuleInput) -> Option<Warning> {
+    let weights = input.run.as_ref()?.facts.weights.as_ref()?;
     let check = weights.spot_check.as_ref()?;
     (2 * check.inside < check.states).then(|| {
         Concern::WeakWeights.of_sheet(format!(
@@ -590,8 +588,8 @@ fn outside(judged: &Judged) -> Option<Warning> {
     })
 }
 
-fn missed(judged: &Judged) -> Option<Warning> {
-    let JudgedRun { facts, after, .. } = judged.run.as_ref()?;
+fn missed(input: &RuleInput) -> Option<Warning> {
+    let RunContext { facts, after, .. } = input.run.as_ref()?;
     let error = after.outline_error;
     let ratio = error / facts.longer_side();
     let [noted, warned, refused] = MISSED;
@@ -612,31 +610,31 @@ fn missed(judged: &Judged) -> Option<Warning> {
 }
 
 /// A learned law has the kerf of its training; the effect of another one was measured in a range.
-fn kerf(judged: &Judged) -> Option<Warning> {
-    let known = judged.scene.surrogate()?.card().hinge.kerf;
-    let kerf = judged.deployment.sheet.options.process.kerf;
+fn kerf(input: &RuleInput) -> Option<Warning> {
+    let known = input.scene.surrogate()?.card().hinge.kerf;
+    let kerf = input.deployment.sheet.options.process.kerf;
     if (kerf / known - 1.0).abs() < SAME_KERF {
         return None;
     }
-    let regime = judged
+    let regime = input
         .scene
         .material
-        .regime(judged.scene.config.ligament.start);
+        .regime(input.scene.config.ligament.start);
     let [least, most] = match regime {
         Regime::Film => MEASURED_KERF_OF_FILM,
         Regime::Plate => MEASURED_KERF_OF_PLATE,
     };
-    let beyond = judged.those(|row| !(least..=most).contains(&(kerf / row.w_lig)));
+    let beyond = input.hinges_where(|row| !(least..=most).contains(&(kerf / row.w_lig)));
     let message = format!(
-        "the kerf of {kerf} mm is not that of the weights, {} mm, nor between {least} and {most} ligament widths, where its effect on the hinge energy was measured: \
+        "the kerf of {kerf} mm is neither the kerf of the weights, {} mm, nor between {least} and {most} ligament widths, where its effect on the hinge energy was measured: \
          use a narrower tool or wider ligaments",
         rounded(known, 4)
     );
     about(Concern::KerfUnknown, beyond, message)
 }
 
-fn other_branch(judged: &Judged) -> Option<Warning> {
-    judged.run.as_ref()?.designed.contradicted.then(|| {
+fn other_branch(input: &RuleInput) -> Option<Warning> {
+    input.run.as_ref()?.designed.branch_mismatch.then(|| {
         Concern::OtherBranch.of_sheet(
             "during the search a corrected path was on another branch than the path followed from the flat sheet: the designs \
              found by it are not used, and the search went on from the best design whose path was followed"

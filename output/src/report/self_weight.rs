@@ -1,4 +1,4 @@
-//! The weight of a sheet beside its load, and what follows from how the sheet is held out of its plane.
+//! The weight of a sheet compared with its load, and what follows from how the sheet is held out of its plane.
 
 use crate::report::columns::rounded;
 use design::analysis::localisation::elasto_gravity_length;
@@ -34,7 +34,7 @@ pub struct Lying {
 }
 
 impl SelfWeight {
-    /// Of a sheet with the given mass (kg), beside a force (N) if there is one.
+    /// The weight of a sheet with the given mass (kg), compared with a force (N) if there is one.
     pub(super) fn new(scene: &Scene, mass_kg: f64, load: Option<f64>) -> Self {
         let weight = hinge::STANDARD_GRAVITY * mass_kg;
         let load = load.map(f64::abs).filter(|load| *load > 0.0);
@@ -54,20 +54,20 @@ impl SelfWeight {
         }
     }
 
-    /// What the model leaves out because of how the sheet is held; `None` if the scene does not say.
+    /// Effects that are not modelled for the out-of-plane restraint; `None` if the scene states none.
     pub(super) fn left_out(&self) -> Option<&'static str> {
         Some(match self.posture? {
             Posture::HeldFlat => {
                 "what holds the panels flat, and its friction; the weight of the sheet, if its plane is not horizontal"
             }
             Posture::Lying => {
-                "panels that lift off the surface, as those of a thin sheet do near their ligaments; in the design, friction"
+                "panels that lift off the surface, as in a thin sheet near the ligaments; in the design, friction"
             }
             Posture::Hanging if self.is_modelled => {
-                "panels that leave the plane, as those of a thin sheet do"
+                "panels that leave the plane, as in a thin sheet"
             }
             Posture::Hanging | Posture::Free => {
-                "panels that leave the plane, as those of a thin sheet do; the weight of the sheet"
+                "panels that leave the plane, as in a thin sheet; the weight of the sheet"
             }
         })
     }
@@ -87,11 +87,11 @@ impl SelfWeight {
         rows
     }
 
-    /// A force beside the load at the end of the path.
+    /// A force compared with the load at the end of the path.
     pub(super) fn beside_load(&self, force: f64) -> String {
         let ratio = self.over_load.map(|ratio| ratio * force / self.weight);
-        let beside = ratio.map_or(String::new(), |ratio| format!(", {}", of_the_load(ratio)));
-        format!("{} N{beside}", rounded(force, 3))
+        let relative = ratio.map_or(String::new(), |ratio| format!(", {}", of_the_load(ratio)));
+        format!("{} N{relative}", rounded(force, 3))
     }
 }
 

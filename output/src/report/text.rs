@@ -21,7 +21,7 @@ D        maximum along the path of the mean damage of the ligament, and D_peak o
 domain   whether every state of the path is inside the training domain
 ";
 
-const GAMMA: &str = "Gamma    (21): moment of the weight of a panel that lies on a surface over that of its folded ligament\n";
+const GAMMA: &str = "Gamma    (21): moment of the weight of a panel that lies on a surface over the moment of its folded ligament\n";
 
 const OUTLINE_ROSE: &str = "\
 The outline error is larger than at the start although the loss is smaller: the loss also weighs how well the outline

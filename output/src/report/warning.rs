@@ -56,7 +56,7 @@ pub enum Concern {
     /// The outline is further from the target than 1 % of the sheet (a warning from 3 %, an error from 20 %), or than twice what the
     /// model does not know of its corners.
     TargetMissed,
-    /// What the model leaves out of a sheet that is held as the scene says.
+    /// Effects that are not modelled for the given out-of-plane restraint.
     NotModelled,
     /// Whether the panels of a sheet that is not held flat stay in the plane, and what follows if not.
     LeavesPlane,

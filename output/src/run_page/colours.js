@@ -129,7 +129,7 @@ function range(quantity) {
 /** The share of the ground in the colours of panels. */
 const PANEL_SHARE = 0.62;
 
-/** The colours of all hinges and panels; a panel has that of its hinge with the largest value. */
+/** The colours of all hinges and panels; a panel has the colour of its hinge with the largest value. */
 function colours(quantity, state) {
   const [low, high] = range(quantity);
   const values = new Float32Array(hingeCount);

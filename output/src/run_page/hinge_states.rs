@@ -27,7 +27,7 @@ pub(super) struct HingeStates {
     index: Vec<usize>,
     load_factor: Vec<f64>,
     /// Whether the last state is the state after the loads were taken off.
-    let_go: bool,
+    unloaded: bool,
     /// Number of load steps in which the weight comes on, before the steps of the loads.
     weight_steps: usize,
     status: Vec<Status>,
@@ -70,7 +70,7 @@ impl HingeStates {
         let sheet = &deployment.sheet;
         let before = states_before(problem, deployment);
         let loaded = before.iter().chain(&deployment.path);
-        let all: Vec<&LoadStep> = loaded.chain(deployment.let_go()).collect();
+        let all: Vec<&LoadStep> = loaded.chain(deployment.unloaded()).collect();
         let steps = before.len() + deployment.path.len();
         let size = OF_PANEL * sheet.panels.len() + OF_HINGE * sheet.hinges.len();
         let index = kept(all.len(), MOST_NUMBERS / size);
@@ -95,7 +95,7 @@ impl HingeStates {
             of: all.len(),
             load_factor: shown.iter().map(|state| state.load_factor).collect(),
             status: shown.iter().map(|state| state.status).collect(),
-            let_go: deployment.released.is_some(),
+            unloaded: deployment.released.is_some(),
             weight_steps,
             curve: curve.map(|curve| {
                 let before = std::iter::repeat_n(None, weight_steps);
@@ -134,7 +134,7 @@ impl HingeStates {
     }
 }
 
-/// (F_a, F_s, M_theta) of every hinge and (F_x, F_y, M) of every support of the scene in states, of which some are `let_go`.
+/// (F_a, F_s, M_theta) of every hinge and (F_x, F_y, M) of every support of the scene in states, of which some are `unloaded`.
 fn forces_and_reactions<'a>(
     scene: &Scene,
     mechanics: &Mechanics,
@@ -146,8 +146,8 @@ fn forces_and_reactions<'a>(
     let released = deployment.released.as_ref();
     let released = ReleasedLaw(released.map_or(&[], |released| &released.hinges));
     let (mut forces, mut reactions) = (Vec::new(), Vec::new());
-    for (state, let_go) in states {
-        let law: &dyn PreparedLaw = if let_go { &released } else { &*law };
+    for (state, unloaded) in states {
+        let law: &dyn PreparedLaw = if unloaded { &released } else { &*law };
         let hinged = mechanics.hinged(&deployment.sheet, law, false);
         let energies = hinged.energies(&state.deformations, Order::Forces);
         forces.extend(energies.iter().flat_map(|energy| energy.forces));

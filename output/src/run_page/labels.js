@@ -14,7 +14,7 @@ const overlap = (a, b) =>
 
 /**
  * Places labels { text, x, y, dx, dy, colour } at the points (x, y), on the side (dx, dy) if there is room, and draws
- * them; a label that does not fit beside its point is moved away and joined to it by a line.
+ * them; a label that does not fit next to its point is moved away and joined to it by a line.
  */
 function placeLabels(parent, labels, obstacles, width, height) {
   const size = 13;

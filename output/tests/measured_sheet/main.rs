@@ -3,8 +3,8 @@
 mod accuracy;
 mod mistakes;
 
-use design::analysis::marks::{Mark, MeasuredPoint};
 use design::analysis::measured_openings::{MeasuredPanel, openings, scatter, slip};
+use design::analysis::measured_points::{Mark, MeasuredPoint};
 use design::analysis::measured_sheet::{MeasuredSheet, MeasurementError, PointFault};
 use design::analysis::shape_path::ShapePath;
 use design::equilibrium::settings::SolverSettings;

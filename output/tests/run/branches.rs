@@ -29,7 +29,7 @@ fn a_search_keeps_a_design_whose_path_was_followed() {
         let folder = tempfile::tempdir().unwrap();
         let scene = circle(folder.path(), start);
         let designed = run(&scene, None).unwrap();
-        assert!(designed.contradicted, "{start:?}");
+        assert!(designed.branch_mismatch, "{start:?}");
         assert!(designed.best.loss < 0.5 * designed.start.loss, "{start:?}");
         // The design in the run folder has the loss that the report states, and no step found a lower one.
         let stored = design_of_run(&scene).unwrap().unwrap();
@@ -83,7 +83,7 @@ fn a_stopped_search_that_is_refuted_resumes_to_the_same_trajectory() {
 #[test]
 fn a_search_without_a_contradiction_is_not_noted() {
     let run = Finished::new(SCENE);
-    assert!(!run.designed.contradicted);
+    assert!(!run.designed.branch_mismatch);
     assert!(found(&run.report, Concern::OtherBranch).is_empty());
 }
 

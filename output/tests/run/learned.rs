@@ -145,7 +145,7 @@ fn a_path_that_departs_from_its_ray_is_named() {
     assert_eq!(named(&deployment), Some((Severity::Note, vec![3])));
 }
 
-/// Writes weights beside the scene that predict D_peak in proportion to `peak_scale`.
+/// Writes weights next to the scene that predict D_peak in proportion to `peak_scale`.
 pub fn brittle(folder: &Path, peak_scale: f64) {
     let cases = Path::new(env!("CARGO_MANIFEST_DIR")).join("../surrogate/tests/cases");
     let random = Surrogate::load(&cases.join("chi_domain.safetensors")).unwrap();

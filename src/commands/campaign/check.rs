@@ -1,13 +1,14 @@
 //! `kirigami campaign check`
 
 use crate::commands::campaign::campaign_args::CampaignArgs;
+use crate::commands::solve_args::FeSolver;
 use crate::ui::count::count;
 use crate::ui::interrupt;
 use crate::ui::progress::Progress;
 use crate::ui::table::table;
 use anyhow::{Result, ensure};
 use clap::Args;
-use fe_driver::{CalculiX, solve_again};
+use fe_driver::solve_again;
 use std::num::NonZeroUsize;
 use std::sync::atomic::Ordering;
 
@@ -28,7 +29,7 @@ pub struct CheckCommand {
 impl CheckCommand {
     pub fn run(&self) -> Result<()> {
         let (campaign, folder) = (self.campaign.load()?, self.campaign.folder());
-        let (solver, stop) = (CalculiX::find()?, interrupt::stop_flag()?);
+        let (solver, stop) = (FeSolver::find()?, interrupt::stop_flag()?);
         let bar = Progress::new(0, "rays");
         let mut show = |done, all| {
             bar.set_total(all);
@@ -49,8 +50,7 @@ impl CheckCommand {
         let (all, versions) = (solved.len(), solver.versions());
         ensure!(
             all > 0 || stop.load(Ordering::Relaxed),
-            "no ray of {} was solved there to its end at the first attempt: nothing to compare with. Restored rays may be \
-             those of a retry",
+            "no ray of {} was solved there to its end at the first attempt; restored rays may stem from a retry",
             folder.display()
         );
         println!("{all} rays solved again with {versions}; {count} differ");
@@ -59,8 +59,8 @@ impl CheckCommand {
         }
         ensure!(
             count == 0,
-            "{count} of {all} rays differ from their first solve: the solver, this host or that of the first solve is \
-             not deterministic"
+            "{count} of {all} rays differ from their first solve: the solver or one of the two hosts is not \
+             deterministic"
         );
         Ok(())
     }

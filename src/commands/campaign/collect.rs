@@ -7,7 +7,7 @@ use clap::Args;
 use dataset::{Collected, Database, SplitPlan};
 use fe_driver::{JobPart, Solved, Tally, finished_windows};
 use std::path::PathBuf;
-use verification::{SpotCheck, rows};
+use verification::{SpotStates, rows};
 
 /// Collect the samples of all finished jobs: the database hinges.parquet, and spot-check.parquet, on which weights are tested
 ///
@@ -58,7 +58,7 @@ impl CollectCommand {
         let collected = Collected::write(rays, &plan, &out, self.replace)?;
         println!("{collected}\n{missing}\nwritten to {}", out.display());
         if campaign.spot_rays > 0 {
-            let check = SpotCheck::collected(&campaign, &parts, &folder)?;
+            let check = SpotStates::collected(&campaign, &parts, &folder)?;
             let states = check.rows.len();
             let spot = Database::collect(check.rows, &plan);
             match spot.context("too few rays of the spot check are solved") {

@@ -1,12 +1,12 @@
 //! `kirigami campaign plan`
 
 use crate::commands::campaign::campaign_args::{CampaignArgs, print_tally};
+use crate::commands::solve_args::FeSolver;
 use crate::ui::processors;
 use crate::ui::progress::duration;
 use crate::ui::table::table;
 use anyhow::Result;
 use clap::Args;
-use fe_driver::CalculiX;
 
 /// Print what a run would solve, why, and the estimated time
 #[derive(Args)]
@@ -21,7 +21,7 @@ pub struct PlanCommand {
 impl PlanCommand {
     pub fn run(&self) -> Result<()> {
         let folder = self.campaign.folder();
-        let versions = CalculiX::find()?.versions();
+        let versions = FeSolver::find()?.versions();
         let plan = fe_driver::plan(&self.campaign.load()?, &folder, &versions)?;
         if self.json {
             println!("{}", serde_json::to_string_pretty(&plan)?);

@@ -1,13 +1,13 @@
 //! `kirigami campaign run`
 
 use crate::commands::campaign::campaign_args::{CampaignArgs, print_tally};
-use crate::commands::solve_args::SolveArgs;
+use crate::commands::solve_args::{FeSolver, SolveArgs};
 use crate::ui::exit::Unfinished;
 use crate::ui::interrupt;
 use crate::ui::progress::Progress;
 use anyhow::{Result, bail, ensure};
 use clap::Args;
-use fe_driver::{CalculiX, RunOptions, Shard, Tally};
+use fe_driver::{RunOptions, Shard, Tally};
 use std::path::Path;
 use std::time::Duration;
 use verification::VerificationError;
@@ -38,7 +38,7 @@ impl RunCommand {
             workers: self.solve.workers(),
             time_limit: self.time_limit,
         };
-        let (campaign, solver) = (self.campaign.load()?, CalculiX::find()?);
+        let (campaign, solver) = (self.campaign.load()?, FeSolver::find()?);
         let (stop, bar) = (interrupt::stop_flag()?, RayProgress::new(campaign.size()));
         let show = &mut |now: &fe_driver::Progress| bar.show(now);
         let ended = fe_driver::run(&campaign, &folder, &solver, &options, stop, show)?;

@@ -1,11 +1,12 @@
 //! `kirigami campaign submit`
 
 use crate::commands::campaign::campaign_args::CampaignArgs;
+use crate::commands::solve_args::FeSolver;
 use crate::ui::count::{count, jobs};
 use crate::ui::progress::duration;
 use anyhow::{Context, Result};
 use clap::Args;
-use fe_driver::{ArrayScript, CalculiX, SLURM, slurm_folder, submit_array};
+use fe_driver::{ArrayScript, SLURM, slurm_folder, submit_array};
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf, absolute};
 use support::text_file;
@@ -45,7 +46,7 @@ impl SubmitCommand {
             print!("{script}");
             return Ok(());
         }
-        let versions = CalculiX::find()?.versions();
+        let versions = FeSolver::find()?.versions();
         let plan = fe_driver::plan(&campaign, &folder, &versions)?;
         let rays = plan.tally.to_run();
         if rays == 0 {

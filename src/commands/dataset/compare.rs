@@ -29,18 +29,18 @@ pub struct CompareCommand {
 
 impl CompareCommand {
     pub fn run(&self) -> Result<()> {
-        let judged = Database::read(&self.database)?;
+        let database = Database::read(&self.database)?;
         let reference = (self.reference.as_ref()).map(|file| Database::read(file));
         let reference = reference.transpose()?;
         let (rays, finer) = match &reference {
             Some(reference) => (
-                compare(&judged, reference),
+                compare(&database, reference),
                 reference.manifest().tier.clone(),
             ),
             None => {
-                let finer = judged.manifest().finer.as_ref();
+                let finer = database.manifest().finer.as_ref();
                 let finer = finer.map_or(String::new(), |finer| finer.tier.clone());
-                (judged.on_both_meshes(), finer)
+                (database.on_both_meshes(), finer)
             }
         };
         ensure!(
@@ -50,10 +50,10 @@ impl CompareCommand {
         );
         let states: Vec<_> = rays.iter().map(ComparedRay::states).collect();
         output_file::create_folder(&self.out)?;
-        let tiers = [judged.manifest().tier.clone(), finer];
+        let tiers = [database.manifest().tier.clone(), finer];
         let mut summary = summary(&rays, &states, &tiers)?;
         match left_out(&rays) {
-            Ok(judged) => summary += &correction(&judged)?,
+            Ok(checked) => summary += &correction(&checked)?,
             // The comparison is valid without it.
             Err(reason) => {
                 eprintln!("cannot evaluate what a correction would leave: {reason}")
@@ -73,12 +73,12 @@ impl CompareCommand {
 fn summary(
     rays: &[ComparedRay],
     states: &[Vec<ComparedState>],
-    [judged, reference]: &[String; 2],
+    [tier, reference]: &[String; 2],
 ) -> Result<String> {
     let count = rays.iter().map(|ray| ray.rows.len()).sum::<usize>();
     let cpu = [0, 1].map(|i| rays.iter().map(|ray| ray.cpu_s[i]).sum::<f64>() / rays.len() as f64);
     let heading = format!(
-        "## Tier {judged} against tier {reference}, over all common states\n\n\
+        "## Tier {tier} against tier {reference}, over all common states\n\n\
          {count} states of {} rays, {:.1} and {:.1} CPU s per ray. Differences are root mean squares relative \
          to the root mean square of the tier {reference}: {SCALE}. `kirigami dataset compare`.\n\n\
          ",
@@ -90,9 +90,9 @@ fn summary(
 }
 
 /// The remaining differences when every ray is corrected by the others.
-pub fn correction(judged: &LeftOut) -> Result<String> {
-    let table = spread_table(&groups(&judged.states), "ray");
-    let note = match &judged.uncorrected()[..] {
+pub fn correction(checked: &LeftOut) -> Result<String> {
+    let table = spread_table(&groups(&checked.states), "ray");
+    let note = match &checked.uncorrected()[..] {
         [] => String::new(),
         left => format!(
             " Not corrected, because that does not reduce the differences: {}.",
@@ -101,7 +101,7 @@ pub fn correction(judged: &LeftOut) -> Result<String> {
     };
     Ok(format!(
         "\nRemaining differences when each of the {} rays is corrected by the others.{note}\n\n{table}",
-        judged.states.len()
+        checked.states.len()
     ))
 }
 
@@ -110,20 +110,20 @@ fn groups(states: &[Vec<ComparedState>]) -> Vec<&[ComparedState]> {
 }
 
 /// A ray with its relative differences.
-type Judged<'a> = (&'a ComparedRay<'a>, [f64; 6]);
+type Ranked<'a> = (&'a ComparedRay<'a>, [f64; 6]);
 
 /// The rays with their differences, those with the largest in W first.
-fn ranked<'a>(rays: &'a [ComparedRay<'a>], states: &[Vec<ComparedState>]) -> Vec<Judged<'a>> {
-    let mut ranked: Vec<Judged> = rays.iter().zip(each_relative(&groups(states))).collect();
+fn ranked<'a>(rays: &'a [ComparedRay<'a>], states: &[Vec<ComparedState>]) -> Vec<Ranked<'a>> {
+    let mut ranked: Vec<Ranked> = rays.iter().zip(each_relative(&groups(states))).collect();
     ranked.sort_by(|(_, x), (_, y)| y[0].total_cmp(&x[0]));
     ranked
 }
 
 /// A ray a row.
-fn table<'a>() -> Table<'a, Judged<'a>> {
+fn table<'a>() -> Table<'a, Ranked<'a>> {
     let mut table = Table::new();
     for (i, (name, decimals)) in PLACE.into_iter().enumerate() {
-        table = table.column(name, move |(ray, _): &Judged| {
+        table = table.column(name, move |(ray, _): &Ranked| {
             Cell::fixed(place(ray)[i], decimals)
         });
     }

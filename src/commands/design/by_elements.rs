@@ -9,7 +9,7 @@ use design::optimise::outer_loop::Ended;
 use design::scene::run_inputs::{SCENE_FILE, holds_a_run};
 use design::scene::{Level, Scene, SceneConfig};
 use output::report::Report;
-use verification::{ElementWindows, final_design, judging_tier, most_cpu_seconds};
+use verification::{ElementWindows, final_design, most_cpu_seconds, verification_tier};
 
 impl DesignCommand {
     /// A search that goes on with the hinges solved by finite elements.
@@ -20,7 +20,7 @@ impl DesignCommand {
     ) -> Result<(Report, Ended)> {
         refuse_run_of_another_level(scene)?;
         let weights = scene.weights();
-        let tier = judging_tier(None, weights.context(
+        let tier = verification_tier(None, weights.context(
             "the level `final` corrects a learned energy: give the scene weights (surrogate.weights)",
         )?)?;
         let arguments = SolveArgs::default();

@@ -31,7 +31,7 @@ const HELD: f64 = 0.21;
 const PULLED: f64 = 0.14;
 /// Name of the law of released hinges in the folder of weights.
 const SPRINGBACK: &str = "springback.json";
-/// The network of drafts beside weights.
+/// The network of drafts that stands next to weights.
 const DRAFT: &str = "small.safetensors";
 /// Kerf of the shipped plate, which is as wide as the kerf of the shipped film or wider (mm).
 const WIDEST_KERF: f64 = 0.2;
@@ -111,7 +111,7 @@ impl FirstScene {
             &format!(
                 "# A sheet whose middle panel at the bottom is moved away from that at the top, written by `kirigami init`.\n{}\
                  # Lengths in mm, forces in N, couples in N mm; paths are relative to this file.\n\n",
-                template.says
+                template.description
             ),
         );
         set(&mut scene["title"], "My first sheet");
@@ -131,7 +131,7 @@ impl FirstScene {
         set(&mut surrogate["weights"], weights.display().to_string());
         if let Some(surrogate) = surrogate.as_table_mut() {
             surrogate.remove("ensemble");
-            // The law of released hinges and the smaller network stand beside the weights of their material.
+            // The law of released hinges and the smaller network stand next to the weights of their material.
             for (key, name) in [("springback", SPRINGBACK), ("draft", DRAFT)] {
                 match weights.with_file_name(name) {
                     file if file.is_file() => {

@@ -7,7 +7,7 @@ pub(super) struct Template {
     /// A shipped scene of A4.
     pub scene: &'static str,
     /// What the new scene is, for its head.
-    pub says: &'static str,
+    pub description: &'static str,
     /// Thickness of the shipped scene's sheet (mm).
     pub thickness: f64,
     /// Radius of the windows of the shipped scene (mm).
@@ -26,7 +26,7 @@ pub(super) struct Template {
 
 const FILM: Template = Template {
     scene: include_str!("../../../configs/scenes/a4-polyester.toml"),
-    says: "# The panels are held flat, as between two clear plates that lie: a thin sheet that nothing holds leaves its plane\n\
+    description: "# The panels are held flat, as between two clear plates that lie: a thin sheet that nothing holds leaves its plane\n\
            # and opens less. Friction on the plates is not modelled.\n",
     thickness: 0.1,
     r_win: 20.0,
@@ -40,7 +40,7 @@ const FILM: Template = Template {
 
 const PLATE: Template = Template {
     scene: include_str!("../../../configs/scenes/a4-plate.toml"),
-    says: "# Its ligaments are narrower than the plate is thick: they bend in its plane. Nothing holds its panels there:\n\
+    description: "# Its ligaments are narrower than the plate is thick: they bend in its plane. Nothing holds its panels there:\n\
            # the report says whether they stay. It hangs from a clip at its upper edge. The clip hangs from a hook and swings: gravity and pull are along the\n\
            # line from clip to clip of the opened sheet, in the frame of the held panel.\n",
     thickness: 3.0,

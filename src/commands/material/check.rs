@@ -130,6 +130,6 @@ fn print(material: &SheetMaterial, check: &MaterialCheck) {
     }
     println!("{widths}\n");
     for verdict in &check.verdicts {
-        println!("{}: {}", verdict.severity, verdict.message);
+        println!("{verdict}");
     }
 }

@@ -6,11 +6,12 @@ use crate::ui::table::{Table, table};
 use crate::ui::{output_file, picture, run_folder};
 use anyhow::{Result, ensure};
 use clap::Args;
-use hinge::tensile::{
-    Cause, FitOptions, FractureSource, MaterialFit, Origin, Quantity, RecordOptions, SheetFacts,
-    Specimen, SpecimenOptions, Statistic, material_file,
-};
+use hinge::{SheetFacts, SheetMaterial, material_file};
 use std::path::{Path, PathBuf};
+use tensile::{
+    Cause, FitOptions, FractureSource, MaterialFit, Origin, Quantity, RecordOptions, Specimen,
+    SpecimenOptions, Statistic,
+};
 
 /// Fit a material to tensile tests: modulus, yield, hardening, fracture strain
 ///
@@ -111,7 +112,7 @@ impl FitCommand {
             poisson_assumed: self.poisson.is_none(),
             density_kg_m3: self.density_kg_m3,
         };
-        let material = fit.material(&facts)?;
+        let material = SheetMaterial::fitted(&fit, &facts)?;
         let _held = run_folder::hold(&self.out)?;
         run_folder::write(&self.out, &name, &material_file(&fit, &facts))?;
         let chart = tensile_test(&fit, &self.name)?;
@@ -254,7 +255,7 @@ fn specimen_table(specimens: &[Specimen]) -> Table {
         "draw ratio",
     ]);
     for it in specimens {
-        let draw = |value: fn(&hinge::tensile::Draw) -> f64, digits: usize| {
+        let draw = |value: fn(&tensile::Draw) -> f64, digits: usize| {
             it.draw
                 .as_ref()
                 .map_or("-".into(), |draw| format!("{:.digits$}", value(draw)))
@@ -327,7 +328,7 @@ fn notes(fit: &MaterialFit) -> Vec<String> {
     if let Some([from, to]) = ends(Origin::Drawn) {
         notes.push(format!(
             "between the plastic strains {from:.3} and {to:.3} a neck runs along the specimen and the record is not \
-             local: the curve there is constructed, such that its work is that of the machine"
+             local: the curve there is constructed, such that its work equals the work of the machine"
         ));
     }
     if let Some(yields) = fit.cut_yield {
@@ -352,7 +353,7 @@ fn notes(fit: &MaterialFit) -> Vec<String> {
             if removed {
                 "the difference to the given modulus is removed as the compliance of the machine"
             } else {
-                "as that of an extensometer it is not corrected, and the given modulus is the slope to Rp0.2"
+                "it is not corrected, as the strain of an extensometer, and the given modulus is the slope to Rp0.2"
             }
         ));
     }
@@ -388,7 +389,7 @@ const FEW_ROWS: usize = 5;
 /// Largest standard error of a modulus, and largest distance to the median of the specimens, over the modulus.
 const DOUBTFUL: f64 = 0.1;
 
-/// Measured moduli from few rows, with a large error, or far from those of the other specimens; one sentence each.
+/// Measured moduli from few rows, with a large error, or far from the moduli of the other specimens; one sentence each.
 fn doubtful_moduli(fit: &MaterialFit) -> Vec<String> {
     let mut moduli: Vec<f64> = fit.specimens.iter().map(|it| it.linear.young).collect();
     moduli.sort_by(f64::total_cmp);

@@ -12,7 +12,7 @@ use crate::commands::init::first_scene::THINNEST_PLATE;
 use crate::commands::init::{self, edited};
 use crate::commands::material::learn::conclusion::conclusion;
 use crate::commands::material::learn::fine_tuning::FineTuning;
-use crate::commands::solve_args::{SolveArgs, task_error};
+use crate::commands::solve_args::{FeSolver, SolveArgs, task_error};
 use crate::ui::exit::Unfinished;
 use crate::ui::interrupt;
 use crate::ui::progress::duration;
@@ -22,7 +22,7 @@ use ::train::{TrainingConfig, check_pretrained};
 use anyhow::{Context, Result, bail, ensure};
 use clap::Args;
 use dataset::{Database, SplitPlan};
-use fe_driver::{CalculiX, Campaign, Progress, random_paths};
+use fe_driver::{Campaign, Progress, random_paths};
 use hinge::{Regime, SheetMaterial, TrainingDomain};
 use mesher::Tier;
 use std::path::{Path, PathBuf};
@@ -122,7 +122,7 @@ impl LearnCommand {
         for (parent, file) in parents.iter().zip(&from) {
             ensure!(
                 config.clone().with_sizes_of(parent) == config,
-                "{}: its layers have other sizes than those of {}: all --from need the same",
+                "{}: its layers have other sizes than the layers of {}: all --from need the same",
                 file.display(),
                 from[0].display()
             );
@@ -145,7 +145,7 @@ impl LearnCommand {
         let task = LearningTask {
             campaign: &campaign,
             folder: &self.out.join("campaign"),
-            solver: &CalculiX::find()?,
+            solver: &FeSolver::find()?,
             workers: self.solve.workers(),
             first_rays: usize::from(self.rays),
             spot: spot.rows(),

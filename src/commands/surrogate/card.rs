@@ -8,7 +8,7 @@ use surrogate::{Surrogate, Teacher};
 
 /// Print what weights were trained on, and their test errors
 ///
-/// All numbers are in the JSON file beside the weights.
+/// All numbers are in the JSON file next to the weights.
 #[derive(Args)]
 pub struct CardCommand {
     /// Weights (safetensors with their card)

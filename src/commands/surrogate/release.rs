@@ -12,7 +12,7 @@ use std::fmt;
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 use surrogate::{FEWEST, Springback, Surrogate};
-use verification::{first_guess, judging_tier, releases};
+use verification::{first_guess, releases, verification_tier};
 
 /// Deform hinges by finite elements, unload them, and learn their residual deformation
 ///
@@ -26,7 +26,7 @@ pub struct ReleaseCommand {
     /// Weights (safetensors with their card)
     #[arg(value_name = "WEIGHTS")]
     weights: PathBuf,
-    /// Number of hinges; the law is judged by the last 30 of them, and not fitted to these
+    /// Number of hinges; the law is tested on the last 30 of them, and not fitted to these
     #[arg(long, value_name = "N", default_value = "80", value_parser = count::<NonZeroUsize>)]
     count: NonZeroUsize,
     /// Seed of the random states
@@ -46,7 +46,7 @@ pub struct ReleaseCommand {
     solve: SolveArgs,
 }
 
-/// Number of hinges that the law is judged by.
+/// Number of hinges that the law is tested on.
 const UNSEEN: usize = 30;
 
 impl ReleaseCommand {
@@ -59,7 +59,7 @@ impl ReleaseCommand {
             self.count,
             self.count.get().saturating_sub(UNSEEN)
         );
-        let tier = judging_tier(self.tier, &surrogate)?;
+        let tier = verification_tier(self.tier, &surrogate)?;
         let _held = run_folder::hold(&self.out)?;
         let windows = self.solve.service(&self.out)?;
         // A law knows one hole, the reference hole.
@@ -75,11 +75,11 @@ impl ReleaseCommand {
         let guess = |design: &_, reached: &_| first_guess(&material, design, reached);
         let found = releases(&windows, &hinges, &material, tier, guess).map_err(task_error)?;
         for reason in &found.failed {
-            println!("not let go: {reason}");
+            println!("not unloaded: {reason}");
         }
         ensure!(
             !found.rows.is_empty(),
-            "no hinge was let go; see {}",
+            "no hinge was unloaded; see {}",
             self.out.display()
         );
         let mut writer = csv::Writer::from_writer(Vec::new());
@@ -88,7 +88,7 @@ impl ReleaseCommand {
         }
         run_folder::write(&self.out, "released.csv", &writer.into_inner()?)?;
         println!(
-            "{} of {} hinges were let go on tier {tier}: {} windows, {:.0} s of one core",
+            "{} of {} hinges were unloaded on tier {tier}: {} windows, {:.0} s of one core",
             found.rows.len(),
             hinges.len(),
             found.windows,
@@ -126,7 +126,7 @@ impl fmt::Display for SpringbackCard<'_> {
         )?;
         for (name, [a, s, theta]) in [
             ("springs back", errors.sprung),
-            ("error of what stays", errors.rest),
+            ("error of the residual", errors.rest),
         ] {
             writeln!(f, "{name:<34}{a:>9.4}{s:>9.4}{:>12.2}", theta.to_degrees())?;
         }

@@ -55,9 +55,9 @@ impl TrainCommand {
         Ok(())
     }
 
-    /// The best of the seeds and, beside it, the others.
+    /// The best of the seeds, followed by the others.
     fn ensemble(&self) -> impl Iterator<Item = PathBuf> {
-        let others = (1..SEEDS).map(|i| self.beside(&format!("{i}.safetensors")));
+        let others = (1..SEEDS).map(|i| self.with_suffix(&format!("{i}.safetensors")));
         std::iter::once(self.out.clone()).chain(others)
     }
 

@@ -1,6 +1,6 @@
 //! Trainings that differ only in their seed, and the choice among them.
 //!
-//! Every seed has its own files beside the weights `X`: `X-seed-S.safetensors`, and `X-seed-S.state`, from which a stopped
+//! Every seed has its own files next to the weights `X`: `X-seed-S.safetensors`, and `X-seed-S.state`, from which a stopped
 //! training continues. The states remain: from them the command that finds all seeds trained writes the weights, the curves
 //! and the comparison.
 
@@ -132,7 +132,7 @@ impl TrainCommand {
         let (best, _) = best.context("`--seeds` must be at least 1")?;
         let rows = (configs.iter().zip(&members).enumerate())
             .map(|(place, (config, member))| self.cells(config, member, place == best));
-        let name = self.beside("seeds");
+        let name = self.with_suffix("seeds");
         let folder = name.parent().unwrap_or(Path::new(""));
         let name = name.file_name().unwrap_or_default().to_string_lossy();
         println!("{}\n", comparison::write(folder, &name, COLUMNS, rows)?);
@@ -163,7 +163,7 @@ impl TrainCommand {
 
     /// The path of the weights of one of several seeds.
     pub(super) fn member(&self, seed: u64) -> PathBuf {
-        self.beside(&format!("seed-{seed}.safetensors"))
+        self.with_suffix(&format!("seed-{seed}.safetensors"))
     }
 }
 

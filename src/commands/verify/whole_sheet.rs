@@ -1,13 +1,13 @@
 //! `kirigami verify --sheet`: the whole sheet by finite elements.
 
-use crate::commands::solve_args::task_error;
+use crate::commands::solve_args::{FeSolver, task_error};
 use crate::commands::verify::VerifyCommand;
 use crate::ui::progress::{announce, duration, watched};
 use crate::ui::{interrupt, output_file, picture, run_folder};
 use anyhow::{Result, anyhow, bail};
 use design::pattern::design_vector::DesignVector;
 use design::scene::{Posture, Scene};
-use fe_driver::{CalculiX, SheetSolve, Solve, sheet_reached};
+use fe_driver::{SheetSolve, Solve, sheet_reached};
 use output::drawing::{Surface, View, surface};
 use std::time::Duration;
 use support::memory;
@@ -44,7 +44,7 @@ impl VerifyCommand {
         let tier = self.tier.unwrap_or_else(|| usual_sheet_tier(scene));
         let task = SheetTask::new(scene, design, self.support, tier, self.patch);
         let task = task.map_err(task_error)?;
-        let calculix = CalculiX::find()?;
+        let calculix = FeSolver::find()?;
         let solve = task.solve(&calculix.versions()).map_err(task_error)?;
         let _held = run_folder::hold(&self.out)?;
         self.state_cost(&calculix, &solve)?;
@@ -70,7 +70,7 @@ impl VerifyCommand {
     }
 
     /// Meshes the sheet once, and says what its solves cost before they begin.
-    fn state_cost(&self, calculix: &CalculiX, solve: &SheetSolve) -> Result<()> {
+    fn state_cost(&self, calculix: &FeSolver, solve: &SheetSolve) -> Result<()> {
         let folder = self.out.join("mesh");
         output_file::create_folder(&folder)?;
         let limit = Duration::from_secs(600);

@@ -1,6 +1,6 @@
 // Requests to the studio, and what it refuses.
 
-/** This page among those of the studio, and the number of its changes. */
+/** This page among the pages of the studio, and the number of its changes. */
 const me = Math.random().toString(36).slice(2);
 let changes = 0;
 

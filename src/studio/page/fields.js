@@ -178,7 +178,7 @@ function writeLevels(box) {
   choiceField(box, "Level", "level", choices, (level) => ask({ do: "level", level }));
   const [, hinges] = shop.levels.find(([name]) => name === scene.level) ?? [];
   write(box, "p", `Hinges: ${hinges ?? scene.level}.`, "note");
-  button(box, "Compare levels", () => ask({ do: "levels" }), "Time of a search and distance of the corners from those of the finest level, for this sheet");
+  button(box, "Compare levels", () => ask({ do: "levels" }), "Time of a search and distance of the corners from the finest level, for this sheet");
 }
 
 /** Loads in proportion to those at the beginning of a drag. */
@@ -207,7 +207,7 @@ function strokeNow() {
   return reached ? reached[0] : 0.1 * Math.max(...(scene.sheet.size ?? [100]));
 }
 
-/** Another thickness: ligaments, holes and windows in proportion, as the weights require; the kerf is that of the tool. */
+/** Another thickness: ligaments, holes and windows in proportion, as the weights require; the kerf is the tool's. */
 function setThickness(thickness) {
   if (!(thickness > 0)) return;
   const factor = thickness / scene.thickness;

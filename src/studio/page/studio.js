@@ -162,7 +162,7 @@ connect({
   },
 });
 
-/** Says what is under way, beside the buttons and at the sheet. */
+/** Shows what is under way, next to the buttons and at the sheet. */
 function sayWork(text) {
   byId("progress").textContent = byId("left").textContent = text;
 }
@@ -214,7 +214,7 @@ function showDraft({ sheet }) {
   const quantity = quantities[shownNow.quantity];
   drawSheet(shownNow.state, quantity, shownNow.hinge);
   drawScale(quantity);
-  byId("state").textContent = `${states.let_go ? "Loads taken off" : "At full load"} (draft)`;
+  byId("state").textContent = `${states.unloaded ? "Loads taken off" : "At full load"} (draft)`;
   writeMiss();
   setStale(true);
 }
@@ -361,7 +361,7 @@ stage.addEventListener("pointerdown", (event) => {
 }, true);
 stage.addEventListener("pointermove", (event) => { if (grabbed >= 0) { event.stopImmediatePropagation(); moveHandle(grabbed, toMm(pixelOf(event))); } }, true);
 window.addEventListener("pointerup", () => { grabbed = -1; });
-// The fields of a hinge are those of the hinge that is selected.
+// The fields of a hinge describe the selected hinge.
 stage.addEventListener("click", () => { if (mode() === "look") writeFields(); });
 byId("hinge-number").addEventListener("change", writeFields);
 const setDropping = (dropping) => document.body.classList.toggle("dropping", dropping);

@@ -30,10 +30,10 @@ fn parity_chart(
     area: &Area,
     title: &str,
     points: &[(f64, f64)],
-    [computed, judged]: [&str; 2],
+    [computed, predicted]: [&str; 2],
 ) -> ChartResult {
     let range = padded(points.iter().flat_map(|&(target, value)| [target, value]));
-    let [across, up] = [computed, judged].map(|name| Axis::new(range.clone(), name));
+    let [across, up] = [computed, predicted].map(|name| Axis::new(range.clone(), name));
     let mut chart = axes(area, title, across, up)?;
     let diagonal = [range.start, range.end].map(|v| (v, v));
     chart.draw_series(LineSeries::new(diagonal, GUIDE))?;

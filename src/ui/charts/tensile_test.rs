@@ -2,8 +2,8 @@
 
 use super::axes::{Axis, Chart, axes, line, names};
 use super::*;
-use hinge::tensile::{HardeningRow, MaterialFit, Origin, Specimen};
 use plotters::coord::types::RangedCoordf64;
+use tensile::{HardeningRow, MaterialFit, Origin, Specimen};
 
 /// Maximum number of points of a drawn curve; a record may have a hundred thousand.
 const POINTS: usize = 1500;

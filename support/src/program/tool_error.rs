@@ -8,10 +8,7 @@ use std::time::Duration;
 
 /// Why an external program gave no result.
 #[derive(Debug, thiserror::Error)]
-#[allow(
-    missing_docs,
-    reason = "the message of each variant is its documentation"
-)]
+#[allow(missing_docs, reason = "the message of a variant is its documentation")]
 pub enum ToolError {
     #[error(
         "{name} was not found{at}; install it ({install}) or set {variable} to its path",

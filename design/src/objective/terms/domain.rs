@@ -49,9 +49,7 @@ impl Term for DomainPenalty {
                 let state = &step.deformations[h];
                 let (excess, by) = excess_of_state(domain, design, state);
                 value += per_state * excess;
-                for (slope, by) in std::iter::zip(slopes, by) {
-                    *slope += weight * per_state * by;
-                }
+                *slopes += by * (weight * per_state);
             }
         }
         value
@@ -67,14 +65,12 @@ fn excess_of_state(
     let width = excess(domain.w_lig, design.w_lig);
     let angle = excess(domain.alpha, design.alpha);
     let mut value = width.0 + angle.0;
-    let mut gradient = [0.0, 0.0, 0.0, width.1, angle.1, 0.0];
+    let mut gradient = HingeGradient::from([0.0, 0.0, 0.0, width.1, angle.1, 0.0]);
     if domain.gauge(design, state) > EDGE {
         let gauge = domain.gauge_jet(design, state);
         let scaled = PER_HALF_RANGE * (gauge.value - EDGE);
         value += scaled * scaled;
-        for (component, slope) in std::iter::zip([0, 1, 2, 3, 5], gauge.gradient) {
-            gradient[component] += 2.0 * PER_HALF_RANGE * scaled * slope;
-        }
+        gradient += HingeGradient::from_jet(gauge.gradient) * (2.0 * PER_HALF_RANGE * scaled);
     }
     (value, gradient)
 }
@@ -157,6 +153,7 @@ mod tests {
                 let state = [x[0], x[1], x[2]].into();
                 let (_, gradient) = excess_of_state(&domain, &design(&x), &state);
                 let allowed = |slope: f64| 1e-6 * slope.abs().max(1.0);
+                let gradient = gradient.to_array();
                 assert_gradient(|x| value_in(&domain, x), &x, &gradient, 1e-6, allowed);
             }
         }

@@ -1,0 +1,450 @@
+//! Equilibria on a branch of the path: prediction corrected by Newton's method, in the plane normal to the path or at a
+//! given load.
+//!
+//! With d_0 the correction at constant load, q' the rate with the load and p the rate along the path, the
+//! correction in the plane is
+//!
+//! ```text
+//! d = d_0 + dt q',     dt = -(p . d_0) / (p . q')
+//! ```
+//!
+//! which is regular where the load has a maximum along the path. One factorisation serves as many corrections as it
+//! contracts fast enough.
+
+use crate::equilibrium::displacement_control::HeldFactor;
+use crate::equilibrium::hinged_sheet::HingedSheet;
+use crate::equilibrium::load_step::Effort;
+use crate::equilibrium::newton::Minimum;
+use crate::equilibrium::potential::{Potential, Stage, State, moved};
+use crate::equilibrium::predictor::PathPoint;
+use crate::equilibrium::solver::EquilibriumSolver;
+use crate::hinge_law::Order;
+
+/// Maximum number of corrections.
+const CORRECTIONS: usize = 10;
+/// Ratio of two successive corrections above which the tangent is factorised again.
+const CONTRACTION: f64 = 0.1;
+/// Ratio of two successive corrections by a new tangent above which the corrections do not converge.
+const DIVERGENCE: f64 = 0.5;
+/// Expected length of the next correction (rad, or panel sizes) from which it is not needed to follow the path. Stiff
+/// hinges amplify the error of the hinge forces.
+const CLOSE: f64 = 1e-8;
+/// Expected length of the next correction below which a balanced state is as smooth in the design as rounding allows.
+const EXACT: f64 = 1e-13;
+/// Length of the first correction of a load step (rad, or panel sizes) up to which the factors of the predicted tangent
+/// are kept.
+const NEAR: f64 = 1e-4;
+/// Relative change of a rate below which it is not refined further, and the maximum number of refinements.
+const RATE: (f64, usize) = (1e-3, 3);
+
+/// The equilibria of a sheet under the loads, stroke and support motions of a solver.
+pub(crate) struct Branch<'a> {
+    pub solver: &'a EquilibriumSolver,
+    pub stage: Stage,
+    pub sheet: HingedSheet<'a>,
+    /// Lower bound of the force that residuals are relative to (N).
+    pub force: f64,
+    pub panel_size: f64,
+    /// Counts what the branch costs.
+    pub effort: Effort,
+    /// Memory of factors that are not needed any more.
+    pub spare: Vec<f64>,
+}
+
+/// An equilibrium close enough to the path to follow it.
+pub(crate) struct Corrected {
+    pub place: PathPoint,
+    /// The state at the place, the factors of a tangent near it, and the rate with the load parameter by them.
+    pub state: State,
+    pub factor: HeldFactor,
+    pub rate: Vec<[f64; 3]>,
+    /// Length of the first correction: the error of the prediction (rad, or panel sizes).
+    pub error: f64,
+}
+
+struct Linearised {
+    state: State,
+    values: Vec<f64>,
+    factor: HeldFactor,
+}
+
+struct Correction {
+    at: f64,
+    motion: Vec<[f64; 3]>,
+    /// rad, or panel sizes
+    length: f64,
+}
+
+pub(crate) struct Point {
+    pub place: PathPoint,
+    /// The rate along the path; the fastest hinge moves by one (rad, or panel sizes).
+    pub rate: PathPoint,
+    /// Maximum rate of rotation (rad).
+    pub turning: f64,
+    /// Factors of a tangent near the place.
+    pub factor: Option<HeldFactor>,
+}
+
+impl Point {
+    /// A place without a known rate: from there the path goes on by its load parameter.
+    pub fn still(place: PathPoint) -> Self {
+        let rate = PathPoint {
+            at: 1.0,
+            configuration: vec![[0.0; 3]; place.configuration.len()],
+            forces: vec![[0.0; 3]; place.forces.len()],
+        };
+        Self {
+            place,
+            rate,
+            turning: 0.0,
+            factor: None,
+        }
+    }
+
+    pub fn is_still(&self) -> bool {
+        self.rate
+            .configuration
+            .as_flattened()
+            .iter()
+            .all(|rate| *rate == 0.0)
+    }
+}
+
+impl<'a> Branch<'a> {
+    pub fn new(solver: &'a EquilibriumSolver, sheet: HingedSheet<'a>, stage: Stage) -> Self {
+        let area: f64 = sheet.sheet.panels.iter().map(|panel| panel.area).sum();
+        let mut branch = Self {
+            solver,
+            stage,
+            sheet,
+            force: 0.0,
+            panel_size: (area / sheet.sheet.panels.len() as f64).sqrt(),
+            effort: Effort::default(),
+            spare: Vec::new(),
+        };
+        if solver.drive.is_none() {
+            let loads = solver.loads.iter().copied();
+            branch.force = branch.potential(0.0).largest(loads);
+        }
+        branch
+    }
+
+    /// The potential at a point of the path.
+    pub fn potential(&self, at: f64) -> Potential<'a> {
+        Potential {
+            solver: self.solver,
+            stage: self.stage,
+            sheet: self.sheet,
+            at,
+            force: self.force,
+            panel_size: self.panel_size,
+        }
+    }
+
+    /// Moves supports and stroke of a place to their values at its load parameter; their values in `known` must be right.
+    pub fn hold(&self, place: &mut PathPoint, known: &PathPoint) {
+        let ahead = match self.stage {
+            Stage::Weight => 0.0,
+            Stage::Actuation => place.at - known.at,
+        };
+        for support in &self.solver.supports {
+            let (panel, dof) = (support.panel, support.dof.index());
+            place.configuration[panel][dof] =
+                known.configuration[panel][dof] + ahead * support.value;
+        }
+        if let Some((stroke, full)) = &self.solver.drive {
+            let of =
+                |place: &PathPoint| stroke.of(&self.solver.pattern.gather(&place.configuration));
+            let short = of(known) + ahead * full - of(place);
+            let motion = self.solver.pattern.spread(&stroke.motion(short));
+            place.configuration = moved(&place.configuration, &motion, 1.0);
+        }
+    }
+
+    /// The equilibrium near a predicted place: in the plane normal to the rate `normal`, or at the load of the place.
+    /// Otherwise the error of the prediction if that is larger than `limit`, infinite if the corrections do not
+    /// converge.
+    pub fn close(
+        &mut self,
+        mut place: PathPoint,
+        normal: Option<&PathPoint>,
+        limit: f64,
+    ) -> Result<Corrected, f64> {
+        const DIVERGED: f64 = f64::INFINITY;
+        let (mut error, mut before) = (None, DIVERGED);
+        for _ in 0..CORRECTIONS {
+            let near = self.state(&place, Order::Tangent).and_then(|state| {
+                let expected = Some(place.forces.clone());
+                self.linearised(place.at, State { expected, ..state })
+            });
+            let mut near = near.ok_or(DIVERGED)?;
+            let rate = self.rate(&self.potential(place.at), &near.state, &near.factor);
+            let in_plane = normal.map(|normal| (&rate[..], normal));
+            let mut last = self.correction(&near.state, &near.factor, in_plane);
+            if last.length.is_nan() || last.length > DIVERGENCE * before {
+                return Err(DIVERGED);
+            }
+            let error = *error.get_or_insert(last.length);
+            if error > limit {
+                return Err(error);
+            }
+            before = last.length;
+            place = self.corrected(place.at, &near.state, &last);
+            // The other corrections need only the forces of the hinges.
+            let mut next = before;
+            while next > CLOSE {
+                let state = self.state(&place, Order::Forces).ok_or(DIVERGED)?;
+                near.state = state.with_stiffness_of(&near.state);
+                let again = self.correction(&near.state, &near.factor, in_plane);
+                if again.length.is_nan() || again.length > CONTRACTION * last.length {
+                    break;
+                }
+                place = self.corrected(place.at, &near.state, &again);
+                next = again.length * again.length / last.length;
+                last = again;
+            }
+            if next <= CLOSE {
+                let state = self.state(&place, Order::Tangent).ok_or(DIVERGED)?;
+                return Ok(Corrected {
+                    place: PathPoint {
+                        forces: state.forces(),
+                        ..place
+                    },
+                    state,
+                    factor: near.factor,
+                    rate,
+                    error,
+                });
+            }
+        }
+        Err(DIVERGED)
+    }
+
+    /// The equilibrium near a predicted place, at its load, with a residual within the tolerance.
+    pub fn balanced(&mut self, mut place: PathPoint) -> Option<Minimum> {
+        let tolerance = self.solver.settings.tolerance;
+        let mut before = f64::INFINITY;
+        for _ in 0..CORRECTIONS {
+            let mut state = self.state(&place, Order::Tangent)?;
+            if state.is_balanced(tolerance) {
+                return self.linearised(place.at, state).map(Minimum::from);
+            }
+            state.expected = Some(place.forces.clone());
+            let mut near = self.linearised(place.at, state)?;
+            let first = self.correction(&near.state, &near.factor, None);
+            if first.length.is_nan() || first.length > DIVERGENCE * before {
+                return None;
+            }
+            before = first.length;
+            let mut next = before * before;
+            let mut last = first;
+            let mut polished = false;
+            place = self.corrected(place.at, &near.state, &last);
+            for _ in 0..CORRECTIONS {
+                // One more correction makes a balanced state as smooth in the design as rounding allows.
+                let ready = polished || next <= EXACT;
+                let order = if !ready {
+                    Order::Forces
+                } else if self.sheet.damage_gradient {
+                    Order::Design
+                } else {
+                    Order::Tangent
+                };
+                let mut state = self.state(&place, order)?;
+                state.rounding = state.rounding.max(near.state.rounding);
+                let balanced = state.is_balanced(tolerance);
+                if balanced && ready {
+                    // Factors of a tangent this close serve as its own, after refinement.
+                    if before > NEAR {
+                        return self.linearised(place.at, state).map(Minimum::from);
+                    }
+                    return Some(Minimum {
+                        tangent: self.potential(place.at).tangent(&state),
+                        factor: Some(near.factor),
+                        state,
+                    });
+                }
+                polished = balanced;
+                let again = self.correction(&state, &near.factor, None);
+                if again.length.is_nan() || (!balanced && again.length > CONTRACTION * last.length)
+                {
+                    break;
+                }
+                near.state = state.with_stiffness_of(&near.state);
+                place = self.corrected(place.at, &near.state, &again);
+                next = again.length * again.length / last.length;
+                last = again;
+            }
+        }
+        None
+    }
+
+    /// The state at a place; `None` if its energy is not finite.
+    pub fn state(&self, place: &PathPoint, order: Order) -> Option<State> {
+        let configuration = place.configuration.clone();
+        self.potential(place.at).state_up_to(configuration, order)
+    }
+
+    fn linearised(&mut self, at: f64, state: State) -> Option<Linearised> {
+        let potential = self.potential(at);
+        let (values, factor) = self.factor(&potential, &state);
+        Some(Linearised {
+            state,
+            values,
+            factor: factor?,
+        })
+    }
+
+    /// The tangent of a state and its factors.
+    pub fn factor(
+        &mut self,
+        potential: &Potential,
+        state: &State,
+    ) -> (Vec<f64>, Option<HeldFactor>) {
+        self.effort.factorisations += 1;
+        let values = potential.tangent(state);
+        let factor = potential.factorise(&values, std::mem::take(&mut self.spare));
+        (values, factor)
+    }
+
+    /// The correction of a state by factors: with the rate with the load parameter in the plane normal to the path, or at
+    /// constant load.
+    fn correction(
+        &mut self,
+        state: &State,
+        factor: &HeldFactor,
+        in_plane: Option<(&[[f64; 3]], &PathPoint)>,
+    ) -> Correction {
+        let direct = self.direct(state, factor);
+        let (motion, at) = match in_plane {
+            Some((rate, normal)) => self.in_plane(&direct, rate, normal),
+            None => (direct, 0.0),
+        };
+        let length = self.potential(0.0).length(state, &motion);
+        self.effort.iterations += usize::from(length > 0.0);
+        Correction { at, motion, length }
+    }
+
+    fn corrected(&self, at: f64, state: &State, by: &Correction) -> PathPoint {
+        let rates = self.potential(at).force_rates(state, &by.motion);
+        PathPoint {
+            at: at + by.at,
+            configuration: moved(&state.configuration, &by.motion, 1.0),
+            forces: moved(&state.forces(), &rates, 1.0),
+        }
+    }
+
+    /// The correction d_0 of a state at constant load.
+    pub fn direct(&self, state: &State, factor: &HeldFactor) -> Vec<[f64; 3]> {
+        let downhill: Vec<f64> = state.gradient.iter().map(|g| -g).collect();
+        let pattern = &self.solver.pattern;
+        pattern.spread(&factor.solve(pattern, &downhill))
+    }
+
+    /// The correction in the plane normal to the path, and the correction of the load parameter.
+    pub fn in_plane(
+        &self,
+        direct: &[[f64; 3]],
+        rate: &[[f64; 3]],
+        normal: &PathPoint,
+    ) -> (Vec<[f64; 3]>, f64) {
+        let along = |motion: &[[f64; 3]]| self.product(&normal.configuration, motion);
+        let dt = -along(direct) / along(rate);
+        (moved(direct, rate, dt), dt)
+    }
+
+    /// The product of two motions; lengths are divided by the size of a panel.
+    pub fn product(&self, a: &[[f64; 3]], b: &[[f64; 3]]) -> f64 {
+        let scale = 1.0 / (self.panel_size * self.panel_size);
+        std::iter::zip(a, b)
+            .map(|([ax, ay, phi], [bx, by, psi])| scale * (ax * bx + ay * by) + phi * psi)
+            .sum()
+    }
+
+    /// The point of the branch at a corrected place, seen along the rate `before`.
+    pub fn point(&self, corrected: Corrected, before: Option<&PathPoint>) -> Point {
+        let Corrected {
+            place,
+            state,
+            factor,
+            rate,
+            ..
+        } = corrected;
+        let potential = self.potential(place.at);
+        let rate = self.refined_rate(&potential, &state, &factor, rate);
+        let size = potential.length(&state, &rate);
+        // Without any motion the path is followed by its load parameter.
+        let size = if size > 0.0 { size } else { 1.0 };
+        // A stable branch goes on to higher loads, however sharply it turns where hinges lock; beyond a limit point the
+        // path goes on in the direction in which it came.
+        let unstable = factor.unstable_directions() > 0;
+        let backwards = before
+            .is_some_and(|before| unstable && self.product(&before.configuration, &rate) < 0.0);
+        let scale = if backwards { -1.0 / size } else { 1.0 / size };
+        let forces = potential.force_rates(&state, &rate);
+        let rate = PathPoint {
+            at: 1.0,
+            configuration: rate,
+            forces,
+        };
+        let rate = PathPoint::sum([(scale, &rate)]);
+        let turning = |most: f64, rate: &[f64; 3]| rate[2].abs().max(most);
+        Point {
+            turning: rate.configuration.iter().fold(0.0, turning),
+            rate,
+            place,
+            factor: Some(factor),
+        }
+    }
+
+    /// A rate with the load parameter, refined by products with the tangent of the state.
+    fn refined_rate(
+        &self,
+        potential: &Potential,
+        state: &State,
+        factor: &HeldFactor,
+        mut rate: Vec<[f64; 3]>,
+    ) -> Vec<[f64; 3]> {
+        let pattern = &self.solver.pattern;
+        let driving = potential.driving(state);
+        for _ in 0..RATE.1 {
+            let resisted = potential.resistance(state, &rate);
+            let missing = moved(&driving, &resisted, -1.0);
+            let change = pattern.spread(&factor.solve(pattern, &pattern.gather(&missing)));
+            let [before, by] = [&rate, &change].map(|motion| potential.length(state, motion));
+            rate = moved(&rate, &change, 1.0);
+            if by <= RATE.0 * before {
+                break;
+            }
+        }
+        rate
+    }
+
+    /// The rate of the configuration with the load parameter.
+    pub fn rate(&self, potential: &Potential, state: &State, factor: &HeldFactor) -> Vec<[f64; 3]> {
+        let solver = self.solver;
+        let (supports, stroke) = if self.stage == Stage::Actuation {
+            let stroke = solver.drive.as_ref().map_or(0.0, |(_, stroke)| *stroke);
+            (solver.support_motions(), stroke)
+        } else {
+            (vec![[0.0; 3]; solver.grid.panel_count()], 0.0)
+        };
+        let mut b = potential.driving(state);
+        if supports.as_flattened().iter().any(|motion| *motion != 0.0) {
+            b = moved(&b, &potential.resistance(state, &supports), -1.0);
+        }
+        let b = solver.pattern.gather(&b);
+        let (free, _) = factor.solve_bordered(&solver.pattern, &b, stroke);
+        moved(&supports, &solver.pattern.spread(&free), 1.0)
+    }
+}
+
+impl From<Linearised> for Minimum {
+    fn from(near: Linearised) -> Self {
+        Self {
+            state: near.state,
+            tangent: near.values,
+            factor: Some(near.factor),
+        }
+    }
+}

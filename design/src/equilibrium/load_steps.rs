@@ -1,0 +1,363 @@
+//! Load steps of an equilibrium path, from the flat sheet or from the end of another path.
+//!
+//! Newton's method follows the path in increments of its own, and the load steps are read off it: the cubic between two
+//! points of the path is the start of a correction at the load of the step.
+
+use crate::equilibrium::continuation::{Follower, LEAP};
+use crate::equilibrium::corrector::{Branch, Point};
+use crate::equilibrium::displacement_control::{HeldFactor, work};
+use crate::equilibrium::hinged_sheet::HingedSheet;
+use crate::equilibrium::load_step::{DescentEnd, LoadStep, Status, StepTangent};
+use crate::equilibrium::newton::{Failure, Minimum};
+use crate::equilibrium::potential::{Stage, State, moved};
+use crate::equilibrium::predictor::PathPoint;
+use crate::equilibrium::solver::EquilibriumSolver;
+use crate::hinge_law::Order;
+use crate::sheet::kinematics::Configuration;
+
+/// The end of an increment of a path.
+#[derive(Clone, Debug)]
+pub struct Increment {
+    /// Load parameter: the fraction of the loads or, if they are prescribed, of the stroke and the support motions.
+    pub at: f64,
+    /// zeta
+    pub load_factor: f64,
+    /// q: the motion of every panel.
+    pub configuration: Configuration,
+}
+
+impl EquilibriumSolver {
+    /// Follows the equilibrium path from the flat sheet: first the load steps of the weight, then the load steps of the loads. The
+    /// path ends early if no equilibrium is found.
+    ///
+    /// # Panics
+    /// If the grids of sheet and solver differ.
+    pub fn path(&self, sheet: HingedSheet) -> Vec<LoadStep> {
+        let mut path = self.weighed(sheet);
+        let start = match path.last() {
+            Some(last) if last.status == Status::Diverged => return path,
+            Some(last) => last.configuration.clone(),
+            None => self.flat(),
+        };
+        path.extend(self.path_from(sheet, start));
+        path
+    }
+
+    /// The load steps of the weight; none without weight.
+    fn weighed(&self, sheet: HingedSheet) -> Vec<LoadStep> {
+        if self.weight_steps() == 0 {
+            return Vec::new();
+        }
+        let start = self.start(sheet.sheet).unwrap_or_else(|| self.flat());
+        self.read(sheet, Stage::Weight, start, self.ends(Stage::Weight))
+    }
+
+    /// Load factor and configuration of the sheet before the loads: flat, or under its weight.
+    pub(crate) fn before_loads(&self, sheet: HingedSheet) -> (f64, Configuration) {
+        let weighed = self.weighed(sheet).pop();
+        weighed.map_or_else(
+            || (0.0, self.flat()),
+            |last| (last.load_factor, last.configuration),
+        )
+    }
+
+    /// Follows the equilibrium path from a start that is an equilibrium under the weight and the forces held constant.
+    ///
+    /// # Panics
+    /// If the sheet or the start has another grid than the solver.
+    pub(crate) fn path_from(&self, sheet: HingedSheet, start: Configuration) -> Vec<LoadStep> {
+        self.read(sheet, Stage::Actuation, start, self.ends(Stage::Actuation))
+    }
+
+    /// The load parameters of the load steps of a part of the path.
+    pub(crate) fn ends(&self, stage: Stage) -> impl Iterator<Item = f64> + use<> {
+        let steps = match stage {
+            Stage::Weight => self.weight_steps(),
+            Stage::Actuation => self.steps,
+        };
+        (1..=steps).map(move |i| i as f64 / steps as f64)
+    }
+
+    /// The equilibria at load parameters, in ascending order, on the path from the sheet before the loads: fractions of the loads or,
+    /// if they are prescribed, of the stroke and the support motions.
+    ///
+    /// # Panics
+    /// If the grids of sheet and solver differ.
+    pub fn readings(&self, sheet: HingedSheet, parameters: &[f64]) -> Vec<LoadStep> {
+        let (_, start) = self.before_loads(sheet);
+        self.read(sheet, Stage::Actuation, start, parameters.iter().copied())
+    }
+
+    /// The load step at full load in a configuration that is in equilibrium there, as one of a path is.
+    ///
+    /// # Panics
+    /// If the grids of sheet and solver differ.
+    pub fn full_load(&self, sheet: HingedSheet, configuration: Configuration) -> LoadStep {
+        let mut branch = Branch::new(self, sheet, Stage::Actuation);
+        let potential = branch.potential(1.0);
+        let Some(state) = potential.state_up_to(configuration.clone(), Order::Design) else {
+            return not_finite(sheet, configuration);
+        };
+        let (tangent, factor) = branch.factor(&potential, &state);
+        let found = state.residual <= self.settings.loose_tolerance().max(state.rounding);
+        let minimum = Minimum {
+            state,
+            tangent,
+            factor,
+        };
+        let step = branch.load_step(minimum, 0);
+        if found {
+            return step;
+        }
+        LoadStep {
+            status: Status::Diverged,
+            ..step
+        }
+    }
+
+    /// The forces (F_x, F_y, M) by which the supports hold the panels in an equilibrium at full load (N, N, N mm); zero at free
+    /// degrees of freedom.
+    pub fn reactions(&self, sheet: HingedSheet, configuration: &[[f64; 3]]) -> Vec<[f64; 3]> {
+        let potential = Branch::new(self, sheet, Stage::Actuation).potential(1.0);
+        let state = potential.state_up_to(configuration.to_vec(), Order::Forces);
+        let state = state.expect("the energy of an equilibrium is finite");
+        self.at_supports(&state.unbalanced)
+    }
+
+    /// The load steps that end at load parameters in ascending order. The path ends early if no equilibrium is found.
+    fn read(
+        &self,
+        sheet: HingedSheet,
+        stage: Stage,
+        start: Configuration,
+        ends: impl Iterator<Item = f64>,
+    ) -> Vec<LoadStep> {
+        let Some(mut follower) = self.follower(sheet, stage, start.clone()) else {
+            return vec![not_finite(sheet, start)];
+        };
+        let mut path: Vec<LoadStep> = Vec::with_capacity(self.steps);
+        for end in ends {
+            let mut step = follower.load_step(end);
+            if self.is_stopped() {
+                step.status = Status::Diverged;
+                step.descent_end = Some(DescentEnd::Stopped);
+            }
+            let diverged = step.status == Status::Diverged;
+            path.push(step);
+            if diverged {
+                break;
+            }
+        }
+        path
+    }
+
+    /// The ends of the increments of the path from the sheet before the loads, which are close together where it bends.
+    ///
+    /// # Panics
+    /// If the grids of sheet and solver differ.
+    pub fn increments(&self, sheet: HingedSheet) -> Vec<Increment> {
+        let (_, start) = self.before_loads(sheet);
+        let follower = self.follower(sheet, Stage::Actuation, start);
+        let ends = follower.into_iter().flat_map(|mut follower| {
+            std::iter::from_fn(move || {
+                let goes_on = follower.last.place.at < 1.0 && follower.advance().is_ok();
+                goes_on.then(|| follower.end_of_increment())
+            })
+        });
+        ends.collect()
+    }
+
+    /// The beginning of the path from a start; `None` if the energy there is not finite.
+    fn follower<'a>(
+        &'a self,
+        sheet: HingedSheet<'a>,
+        stage: Stage,
+        start: Configuration,
+    ) -> Option<Follower<'a>> {
+        assert_eq!(
+            self.grid, sheet.sheet.grid,
+            "the grids of solver and sheet must be the same"
+        );
+        assert_eq!(start.len(), self.grid.panel_count(), "one motion per panel");
+        Follower::new(self, sheet, stage, start)
+    }
+}
+
+/// The end of a path in a configuration whose energy is not finite.
+fn not_finite(sheet: HingedSheet, configuration: Configuration) -> LoadStep {
+    LoadStep {
+        load_factor: 0.0,
+        status: Status::Diverged,
+        residual: f64::INFINITY,
+        descent_end: Some(DescentEnd::NotFinite),
+        ..LoadStep::ideal(sheet.sheet, configuration)
+    }
+}
+
+impl Follower<'_> {
+    fn load_step(&mut self, to: f64) -> LoadStep {
+        let found = self.followed(to);
+        let jumps = std::mem::take(&mut self.jumps);
+        match found {
+            Ok(minimum) => self.branch.load_step(minimum, jumps),
+            Err(Failure { residual, end }) => LoadStep {
+                residual,
+                descent_end: Some(end),
+                ..self.last_point(jumps)
+            },
+        }
+    }
+
+    fn end_of_increment(&self) -> Increment {
+        let state = self.last_state(Order::Forces);
+        Increment {
+            at: self.last.place.at,
+            load_factor: state.load_factor,
+            configuration: state.configuration,
+        }
+    }
+
+    fn last_state(&self, order: Order) -> State {
+        let state = self.branch.state(&self.last.place, order);
+        state.expect("this state was computed before")
+    }
+
+    /// The last point that was found, without a tangent: where the path ends.
+    fn last_point(&mut self, jumps: usize) -> LoadStep {
+        let state = self.last_state(Order::Tangent);
+        self.branch.reported(state, None, Status::Diverged, jumps)
+    }
+
+    /// The equilibrium at `to` on the path.
+    fn followed(&mut self, to: f64) -> Result<Minimum, Failure> {
+        while self.last.place.at < to {
+            if let Err(failure) = self.advance() {
+                // A sheet without stiffness is at rest in any state; beyond the increments the load steps go on.
+                let (minimum, moved) = match failure.end {
+                    DescentEnd::Stagnated | DescentEnd::Increments => {
+                        self.minimised(to).map_err(|_| failure)?
+                    }
+                    _ => return Err(failure),
+                };
+                self.jumps += usize::from(moved > LEAP);
+                return Ok(minimum);
+            }
+        }
+        let mut place = match &self.arc {
+            Some(arc) => arc.reading(to),
+            None => PathPoint {
+                at: to,
+                ..self.last.place.clone()
+            },
+        };
+        self.branch.hold(&mut place, &self.last.place);
+        let start = place.clone();
+        let found = self.branch.balanced(place);
+        let stable = |held: &HeldFactor| held.unstable_directions() == 0;
+        let minimum = match found.filter(|found| found.factor.as_ref().is_some_and(stable)) {
+            Some(found) => found,
+            None => self.branch.minimum(&start)?,
+        };
+        let moved = self.branch.moved(&minimum, &start);
+        // Without an arc the start is a place at a higher load.
+        self.jumps += usize::from(self.arc.is_some() && moved > LEAP);
+        Ok(minimum)
+    }
+
+    /// The minimum at `to` that is reached from the last point, from where the path goes on, and its distance.
+    fn minimised(&mut self, to: f64) -> Result<(Minimum, f64), Failure> {
+        let mut start = PathPoint {
+            at: to,
+            ..self.last.place.clone()
+        };
+        self.branch.hold(&mut start, &self.last.place);
+        let minimum = self.branch.minimum(&start)?;
+        let moved = self.branch.moved(&minimum, &start);
+        self.last = Point::still(PathPoint {
+            at: to,
+            configuration: minimum.state.configuration.clone(),
+            forces: minimum.state.forces(),
+        });
+        self.begin();
+        Ok((minimum, moved))
+    }
+}
+
+impl Branch<'_> {
+    /// The load step at a minimum, `jumps` jumps after the last.
+    pub fn load_step(&mut self, minimum: Minimum, jumps: usize) -> LoadStep {
+        let status = self.status(&minimum, jumps > 0);
+        let tangent = StepTangent {
+            values: minimum.tangent,
+            factor: minimum.factor,
+        };
+        self.force = minimum.state.force;
+        self.reported(minimum.state, Some(tangent), status, jumps)
+    }
+
+    /// The load step in a state, with what it cost since the last.
+    fn reported(
+        &mut self,
+        state: State,
+        tangent: Option<StepTangent>,
+        status: Status,
+        jumps: usize,
+    ) -> LoadStep {
+        let effort = std::mem::take(&mut self.effort);
+        // Under a drive the minimised function does not contain the work of the loads.
+        let driven = match self.solver.drive {
+            Some(_) => state.load_factor * work(&self.solver.loads, &state.configuration),
+            None => 0.0,
+        };
+        let deformations = state.deformations();
+        let factor = tangent.as_ref().and_then(|tangent| tangent.factor.as_ref());
+        let factor = factor.map(|held| &held.factor);
+        let (law, damage_gradient) = (self.sheet.law, self.sheet.damage_gradient);
+        LoadStep {
+            load_factor: state.load_factor,
+            inside: law.inside(&deformations),
+            damage: law.damage(&deformations, damage_gradient),
+            deformations,
+            energies: state.energies.iter().map(|energy| energy.w).collect(),
+            weight: state.weight,
+            potential: state.potential - driven,
+            status,
+            descent_end: None,
+            residual: state.residual,
+            rounding: state.rounding,
+            effort,
+            jumps,
+            negative_pivots: factor.map_or(0, |factor| factor.negative_pivots),
+            pivot_ratio: factor.map_or(0.0, |factor| factor.pivot_ratio),
+            configuration: state.configuration,
+            tangent,
+            hinges: state.energies,
+            order: state.order,
+        }
+    }
+
+    /// The maximum rotation or hinge translation from a place to a minimum.
+    pub fn moved(&self, minimum: &Minimum, start: &PathPoint) -> f64 {
+        let motion = moved(&minimum.state.configuration, &start.configuration, -1.0);
+        let potential = self.potential(start.at);
+        potential.length(&minimum.state, &motion)
+    }
+
+    fn status(&self, minimum: &Minimum, jumped: bool) -> Status {
+        let stable = (minimum.factor.as_ref()).is_some_and(|held| held.unstable_directions() == 0);
+        let settings = &self.solver.settings;
+        // Rounding may explain a residual above the loose tolerance; it is no converged state nevertheless.
+        let balanced = minimum.state.is_balanced(settings.tolerance)
+            && minimum.state.residual <= settings.loose_tolerance();
+        let law = self.sheet.law;
+        if !balanced || !stable {
+            Status::Almost
+        } else if jumped {
+            Status::LimitPoint
+        } else if law.inside(&minimum.state.deformations()).contains(&false) {
+            Status::LeftDomain
+        } else {
+            Status::Converged
+        }
+    }
+}

@@ -1,0 +1,80 @@
+//! A sheet that is unloaded: from a configuration to the equilibrium without loads.
+//!
+//! The forces that would hold the panels in the configuration are taken off in proportion. The path begins in balance also
+//! where the forces of the hinge law differ from the forces under load. Supports that rest and the weight of the sheet stay;
+//! supports that moved the sheet are removed, too.
+
+use crate::equilibrium::corrector::Branch;
+use crate::equilibrium::hinged_sheet::HingedSheet;
+use crate::equilibrium::load_step::LoadStep;
+use crate::equilibrium::potential::Stage;
+use crate::equilibrium::solver::{EquilibriumError, EquilibriumSolver};
+use crate::equilibrium::supports::Support;
+use crate::hinge_law::Order;
+use crate::sheet::cut_sheet::Sheet;
+use crate::sheet::kinematics::Configuration;
+use hinge::ReleasedHinge;
+
+/// Number of steps in which the loads are taken off.
+const STEPS: usize = 10;
+
+/// A sheet without loads, after they have opened it.
+#[derive(Clone)]
+pub struct ReleasedSheet {
+    /// The hinges.
+    pub hinges: Vec<ReleasedHinge>,
+    /// The load steps from the deployed sheet to that without loads. Their load factor is the part of the holding forces that is left.
+    pub path: Vec<LoadStep>,
+}
+
+impl ReleasedSheet {
+    /// The state without loads, or that at which the path ended before.
+    pub fn last(&self) -> &LoadStep {
+        self.path.last().expect("a path has at least one step")
+    }
+}
+
+impl EquilibriumSolver {
+    /// The load steps from the configuration `start`, of which the last one is without loads. Their load factor is the part of the holding
+    /// forces that is left.
+    pub fn unload(
+        &self,
+        sheet: HingedSheet,
+        start: Configuration,
+    ) -> Result<Vec<LoadStep>, EquilibriumError> {
+        let mut free = self.unloaded(sheet.sheet)?;
+        if let Some(holding) = free.holding(sheet, start.clone()) {
+            free.loads = holding.iter().map(|force| force.map(|x| -x)).collect();
+            free.held = holding.into();
+        }
+        let path = free.path_from(sheet, start).into_iter();
+        Ok(path
+            .map(|step| LoadStep {
+                load_factor: 1.0 - step.load_factor,
+                ..step
+            })
+            .collect())
+    }
+
+    /// The same problem without loads, and without the supports that moved the sheet.
+    pub(crate) fn unloaded(&self, sheet: &Sheet) -> Result<Self, EquilibriumError> {
+        let resting = self.supports.iter().filter(|support| support.value == 0.0);
+        let resting: Vec<Support> = resting.copied().collect();
+        let free = Self {
+            weight: self.weight,
+            grips: self.grips.clone(),
+            ..Self::new(self.grid, &resting, &[], STEPS, self.settings)?
+        };
+        match free.check_supports(sheet) {
+            Ok(()) => Ok(free),
+            Err(_) => Err(EquilibriumError::HeldByMoved),
+        }
+    }
+
+    /// The forces (F_x, F_y, M) on the free panels that balance a configuration without loads; `None` if its energy is not finite.
+    fn holding(&self, sheet: HingedSheet, configuration: Configuration) -> Option<Vec<[f64; 3]>> {
+        let potential = Branch::new(self, sheet, Stage::Actuation).potential(0.0);
+        let state = potential.state_up_to(configuration, Order::Forces)?;
+        Some(self.pattern.spread(&state.gradient))
+    }
+}

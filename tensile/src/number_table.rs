@@ -1,0 +1,274 @@
+//! The tables of a file of a testing machine, one a specimen: side by side, with the names of the columns repeated in one line, or below
+//! each other, with the line of names repeated.
+//!
+//! Lines before the first row of numbers are a preamble. Of these, the last one, or the last one above a row of units,
+//! names the columns. Lines that start with `#` are comments.
+
+use crate::error::TensileError;
+use crate::quantity::{Quantity, are_units, bare};
+use std::collections::BTreeMap;
+use std::path::Path;
+use support::file_error::FileError;
+use support::text_table::{NumberStyle, TextRow, TextTable};
+use support::{regular_file, text_file};
+
+/// The cells of one specimen; they are converted to numbers where they are used.
+#[derive(Clone, Debug)]
+pub(super) struct NumberTable {
+    /// Name of each column of the file with its unit, empty if the file names none or the column is of another specimen.
+    pub labels: Vec<String>,
+    /// The lines above the names.
+    pub preamble: Vec<TextRow>,
+    /// The rows below the names.
+    pub rows: Vec<TextRow>,
+    /// How numbers are written.
+    pub style: NumberStyle,
+}
+
+impl NumberTable {
+    /// The tables of a file, and its BLAKE3 hash, 16 hexadecimal digits.
+    pub fn read_all(path: &Path) -> Result<(Vec<Self>, String), TensileError> {
+        let bytes = regular_file::read(path).map_err(FileError::at(path))?;
+        let hash = blake3::hash(&bytes).to_hex()[..16].to_owned();
+        let text = text_file::decoded(&bytes).map_err(FileError::at(path))?;
+        let tables = Self::parse(&text).map_err(|what| TensileError::File {
+            path: path.to_owned(),
+            what,
+        })?;
+        Ok((tables, hash))
+    }
+
+    fn parse(text: &str) -> Result<Vec<Self>, String> {
+        let TextTable { rows, style } = TextTable::parse(text);
+        let Some((start, width)) = first_row(&rows, style) else {
+            return Err(no_table(text));
+        };
+        let (above, below) = rows.split_at(start);
+        let labels = labels(above, width, style)?;
+        let names = above.len() - usize::from(above.last().is_some_and(has_units));
+        let head = above[..names].last();
+        let parts = below.chunk_by(|_, row| head.is_none_or(|head| row.cells != head.cells));
+        let mut preamble = above.to_vec();
+        let mut tables = Vec::new();
+        for part in parts {
+            let begin = usize::from(head.is_some_and(|head| part[0].cells == head.cells));
+            let last = part.iter().rposition(|row| row.numbers(style) > 0);
+            // The title of the next specimen stands above its names.
+            let end = match last {
+                _ if part.len() == below.len() => part.len(),
+                Some(last) => last + 1,
+                None => continue,
+            };
+            let preamble = std::mem::replace(&mut preamble, part[end..].to_vec());
+            let rows = part[begin..end].iter().skip_while(|row| has_units(row));
+            let filled =
+                |row: &&TextRow| !row.is_comment() && row.cells.iter().any(|cell| !cell.is_empty());
+            tables.push(Self {
+                labels: labels.clone(),
+                preamble,
+                rows: rows.filter(filled).cloned().collect(),
+                style,
+            });
+        }
+        Ok(tables)
+    }
+
+    /// The tables of specimens that stand side by side, with the same names in the same order; `None` if there is one.
+    pub fn side_by_side(&self) -> Option<Vec<Self>> {
+        // Specimens may be numbered.
+        let letters = |c: char| !c.is_ascii_digit();
+        let name = |label: &String| {
+            label
+                .to_lowercase()
+                .chars()
+                .filter(|c| letters(*c))
+                .collect()
+        };
+        let names: Vec<String> = self.labels.iter().map(name).collect();
+        let width = (2..names.len()).find(|&width| {
+            let mut parts = names.chunks(width);
+            let named = names[..width].iter().any(|name| !name.is_empty());
+            named && names.len().is_multiple_of(width) && parts.all(|part| part == &names[..width])
+        })?;
+        let of = |first: usize| {
+            let columns = first..first + width;
+            let mut table = self.clone();
+            for (column, label) in table.labels.iter_mut().enumerate() {
+                if !columns.contains(&column) {
+                    label.clear();
+                }
+            }
+            // A shorter record ends in empty cells.
+            let filled = |cell: usize, row: &TextRow| {
+                row.cells.get(cell).is_some_and(|cell| !cell.is_empty())
+            };
+            table
+                .rows
+                .retain(|row| columns.clone().any(|cell| filled(cell, row)));
+            table
+        };
+        Some((0..names.len()).step_by(width).map(of).collect())
+    }
+
+    /// The number in a cell, or its text if it is not a finite number.
+    pub fn number<'a>(&self, row: &'a TextRow, column: usize) -> Result<f64, &'a str> {
+        let text = row.cells.get(column).map_or("", String::as_str);
+        self.style.number(text).ok_or(text)
+    }
+
+    /// A number to the right of the last column: a sign in another number separates the cells.
+    pub fn beyond<'a>(&self, row: &'a TextRow) -> Option<&'a str> {
+        let mut cells = row.cells.iter().skip(self.labels.len());
+        let cell = cells.find(|cell| self.style.number(cell).is_some())?;
+        Some(cell)
+    }
+
+    /// A row in which the decimal sign of a column separates thousands: 999 is followed by 1.003, and all numbers with
+    /// the sign have three digits after it.
+    pub fn thousands(&self, column: usize) -> Option<&TextRow> {
+        let sign = if self.style.comma { ',' } else { '.' };
+        let (mut found, mut whole) = (None, 0.0_f64);
+        for row in &self.rows {
+            let text = row.cells.get(column)?;
+            let number = self.number(row, column).ok()?.abs();
+            match text.split_once(sign) {
+                None => whole = number,
+                Some((_, digits)) if digits.len() != 3 || number < 1.0 => return None,
+                // Closer to 1000 times the number than to the number.
+                Some(_) if whole.powi(2) > 1e3 * number.powi(2) => found = found.or(Some(row)),
+                Some(_) => whole = 0.0,
+            }
+        }
+        found
+    }
+}
+
+/// Index and number of cells of the first row of numbers. It has as many cells and numbers as most rows, so that a
+/// preamble with two numbers in a line is not taken for the table.
+fn first_row(rows: &[TextRow], style: NumberStyle) -> Option<(usize, usize)> {
+    let shape = |row: &TextRow| {
+        if row.is_comment() {
+            (0, 0)
+        } else {
+            (row.cells.len(), row.numbers(style))
+        }
+    };
+    let mut counts: BTreeMap<(usize, usize), usize> = BTreeMap::new();
+    for shape in rows.iter().map(shape).filter(|(_, numbers)| *numbers > 0) {
+        *counts.entry(shape).or_default() += 1;
+    }
+    let (usual, _) = counts.into_iter().max_by_key(|(_, count)| *count)?;
+    let start = rows.iter().position(|row| shape(row) == usual)?;
+    Some((start, usual.0))
+}
+
+/// The cells of a line above the table, which may be a comment.
+fn words(row: &TextRow) -> Vec<String> {
+    let cells = row.cells.iter();
+    cells
+        .map(|cell| cell.trim_start_matches('#').trim().to_owned())
+        .collect()
+}
+
+fn has_units(row: &TextRow) -> bool {
+    are_units(&words(row))
+}
+
+/// Name and unit of each column from the lines above the first row of numbers.
+fn labels(above: &[TextRow], width: usize, style: NumberStyle) -> Result<Vec<String>, String> {
+    let mut lines = above.iter().rev().peekable();
+    let units = lines
+        .next_if(|row| has_units(row))
+        .map_or(Vec::new(), words);
+    let mut names = lines.next().map_or(Vec::new(), words);
+    let known = |names: &[String]| {
+        names
+            .iter()
+            .all(|name| Quantity::from_label(name).is_some())
+    };
+    if width == 2 * names.len() && known(&names) {
+        return Err(format!(
+            "names {} columns, but the rows have {width} cells: if the comma is the decimal sign, save the \
+             file with semicolons between the columns",
+            names.len()
+        ));
+    }
+    let named = names.len() == width && names.iter().all(|name| style.number(name).is_none());
+    if !named {
+        names = vec![String::new(); width];
+    }
+    if named || units.len() == width {
+        let units = units.iter().map(|unit| bare(unit));
+        for (name, unit) in names
+            .iter_mut()
+            .zip(units)
+            .filter(|(_, unit)| !unit.is_empty())
+        {
+            *name = format!("{name} ({unit})").trim().to_owned();
+        }
+    }
+    Ok(names)
+}
+
+/// Why a text contains no table.
+fn no_table(text: &str) -> String {
+    let [[point, comma], _] = NumberStyle::ALL;
+    let number = |line: &str| point.number(line).or(comma.number(line));
+    if text.lines().any(|line| number(line).is_some()) {
+        "has one column of numbers: a tensile curve needs two, force or stress and extension or strain, separated by \
+         commas, semicolons or tabs"
+            .into()
+    } else {
+        "has no rows of numbers: save the curve as text, in columns separated by commas, semicolons or tabs".into()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_preamble_is_kept_and_a_row_of_units_is_joined_to_the_names() {
+        let text = "Specimen;3\nWidth;10,0;mm\nDimensions;10,0;0,5\n\nTime;Load;Extension\n(s);(kN);[mm]\n\
+                    0,0;0,0;0,0\n0,1;0,2;0,3\n";
+        let tables = NumberTable::parse(text).unwrap();
+        let [table] = &tables[..] else { panic!() };
+        assert_eq!(table.labels, ["Time (s)", "Load (kN)", "Extension (mm)"]);
+        let lines: Vec<u64> = table.rows.iter().map(|row| row.line).collect();
+        assert_eq!(lines, [7, 8]);
+        assert_eq!(table.number(&table.rows[1], 2), Ok(0.3));
+        assert_eq!(table.preamble[1].cells, ["Width", "10,0", "mm"]);
+        assert!(table.side_by_side().is_none());
+    }
+
+    #[test]
+    fn specimens_below_each_other_and_side_by_side_are_told_apart() {
+        let below = "Bar 1\nLoad,Way\nN,mm\n1,2\n3,4\nBar 2\nWidth,9\nLoad,Way\nN,mm\n5,6\n";
+        let beside = "Bar 1,,Bar 2\nLoad 1 (N),Way 1 (mm),Load 2 (N),Way 2 (mm)\n1,2,5,6\n3,4,,\n";
+        let tables = NumberTable::parse(below).unwrap();
+        let side = NumberTable::parse(beside).unwrap()[0]
+            .side_by_side()
+            .unwrap();
+        for tables in [&tables, &side] {
+            let rows: Vec<usize> = tables.iter().map(|table| table.rows.len()).collect();
+            assert_eq!(rows, [2, 1]);
+        }
+        assert_eq!(tables[1].number(&tables[1].rows[0], 0), Ok(5.0));
+        assert_eq!(tables[1].preamble[1].cells, ["Width", "9"]);
+        assert_eq!(side[1].labels, ["", "", "Load 2 (N)", "Way 2 (mm)"]);
+    }
+
+    #[test]
+    fn a_file_without_a_table_says_what_it_lacks() {
+        for (text, expected) in [
+            ("", "no rows of numbers"),
+            ("stress,strain\n", "no rows of numbers"),
+            ("stress\n1\n2\n3\n", "one column"),
+            ("stress\n1,5\n2,5\n", "decimal sign"),
+            ("strain,stress\n0,1,2,5\n0,2,3,5\n", "decimal sign"),
+        ] {
+            let message = NumberTable::parse(text).unwrap_err();
+            assert!(message.contains(expected), "{text}: {message}");
+        }
+    }
+}

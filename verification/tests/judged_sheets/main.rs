@@ -1,5 +1,0 @@
-//! Sheets, weights and rays judged by finite elements, of a fake solver and of CalculiX.
-
-mod fake_windows;
-mod released;
-mod sheet_checks;
