@@ -210,8 +210,7 @@ mod tests {
 
     #[test]
     fn pieces_whose_ends_meet_are_one_outline() {
-        let pieces =
-            "<path d='M0 0H10'/><line x1='10' y1='8' x2='10' y2='0'/><path d='M10 8H0V0'/>";
+        let pieces = "<path d='M0 0H10'/><line x1='10' y1='8' x2='10' y2='0' fill='#000'/><path d='M10 8H0V0'/>";
         assert_eq!(area(&svg(pieces)), 80.0);
         // Twice the same line is one line.
         assert_eq!(area(&svg(&format!("{pieces}<path d='M0 0H10'/>"))), 80.0);

@@ -155,11 +155,11 @@ fn records(text: &str) -> Result<Vec<Record<'_>>, DrawingError> {
     Ok(records)
 }
 
+/// Points, and whether they are closed.
+type Points = (Vec<[f64; 2]>, bool);
+
 /// The points of an entity, and whether they are closed; `None` if it is a note. `further` are the records after it.
-fn contour(
-    entity: &Record,
-    further: &[Record],
-) -> Result<Option<(Vec<[f64; 2]>, bool)>, DrawingError> {
+fn contour(entity: &Record, further: &[Record]) -> Result<Option<Points>, DrawingError> {
     let centre = entity.at(10);
     // Arcs and polylines that are seen from below are mirrored.
     let below = entity.number(230) < 0.0;

@@ -152,9 +152,10 @@ impl Subpath {
         .sqrt();
         let at = |p: [f64; 2]| transformed(transform, [p[0] + origin[0], p[1] + origin[1]]);
         Contour {
-            points: self.points.into_iter().map(at).collect(),
             closed: self.closed,
-            filled,
+            // A line has no inside.
+            filled: filled && self.points.len() > 2,
+            points: self.points.into_iter().map(at).collect(),
             rounding: WELD * largest * scale,
         }
     }
