@@ -1,11 +1,15 @@
-//! Plane geometry: points, polygons, smooth extrema, distances between outlines, paths of SVG files.
+//! Plane geometry: points, polygons, smooth extrema, distances between outlines, outlines of drawings.
 
+pub mod bulged;
 pub mod chamfer;
+pub mod contour;
+pub mod drawn_outline;
+mod dxf_contours;
 mod near_origin;
 pub mod outline_points;
 pub mod plane;
 pub mod polygon;
 pub mod similarity;
 pub mod smooth_extrema;
-pub mod svg_path;
+mod svg_path;
 pub mod symmetric_difference;

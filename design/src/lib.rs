@@ -14,7 +14,7 @@
 //!
 //! | room | contents |
 //! |---|---|
-//! | [`geometry`] | points, polygons, distances of outlines, SVG paths |
+//! | [`geometry`] | points, polygons, distances of outlines, outlines of drawings |
 //! | [`pattern`] | the cut pattern (2)-(5) and its coordinates |
 //! | [`sheet`] | panels and hinges of a pattern, their kinematics (6)-(8) |
 //! | [`hinge_law`] | the energy of a hinge: linear (11), learned (14), contact |

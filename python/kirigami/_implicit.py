@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from kirigami._kirigami import Problem
+from kirigami._kirigami import Problem, State
 
 
 class Inputs(NamedTuple):
@@ -40,15 +40,20 @@ def output_shapes(problem: Problem) -> Solution:
     return Solution((panels, 4, 2), (panels, 3), (), (panels, 3))
 
 
-def solve(problem: Problem, inputs: Inputs) -> Solution:
-    """All equilibria: a single one from the last state of the problem, several over all threads."""
+def solve(problem: Problem, inputs: Inputs, strict: bool) -> Solution:
+    """All equilibria: a single one from the last state of the problem, several over all threads. One that is not found is raised if
+    `strict`, and is otherwise NaN."""
     lead = inputs.x.shape[:-1]
-    if lead:
-        states = problem.solve_many(*_flat(inputs, lead))
+    if lead or not strict:
+        states = problem.solve_many(*_flat(inputs, lead), strict=strict)
     else:
         states = [problem.solve(inputs.x, inputs.loads, float(inputs.thickness), float(inputs.stress))]
-    columns = ([getattr(state, name) for state in states] for name in Solution._fields)
     shapes = output_shapes(problem)
+
+    def output(state, name: str):
+        return getattr(state, name) if isinstance(state, State) else np.full(getattr(shapes, name), np.nan)
+
+    columns = ([output(state, name) for state in states] for name in Solution._fields)
     return Solution(*(np.reshape(column, lead + shape) for column, shape in zip(columns, shapes)))
 
 
@@ -60,6 +65,8 @@ def pullback(problem: Problem, inputs: Inputs, solution: Solution) -> Inputs:
     def one(i: int) -> Inputs:
         x, loads, thickness, stress = (column[i] for column in flat)
         corners, reactions, load_factor, configuration = (column[i] for column in given)
+        if np.isnan(configuration).any():
+            return Inputs(*(np.full(shape, np.nan) for shape in input_shapes(problem)))
         by = problem.pullback(x, configuration, corners, reactions, float(load_factor), loads, float(thickness), float(stress))
         return Inputs(by["design"], by["loads"], by["thickness"] or 0.0, by["stress"] or 0.0)
 

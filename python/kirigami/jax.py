@@ -34,20 +34,20 @@ class Equilibrium(NamedTuple):
     """zeta: 1 under dead loads; under a prescribed stroke the load over the load of the scene."""
 
 
-def equilibrium(problem: Problem) -> Callable[..., Equilibrium]:
+def equilibrium(problem: Problem, strict: bool = True) -> Callable[..., Equilibrium]:
     """The function f(x, loads=None, thickness=None, stress=None) -> Equilibrium of a problem.
 
     x: design, shape (size,); loads: (F_x, F_y, M) on every panel, shape (panels, 3); thickness (mm); stress: all stresses at equal strain
     over the stresses of the material. What is not given is the scene's. Its reverse-mode derivative is implicit: one adjoint solve.
 
     Raises TypeError without double precision, and where a derivative in thickness or stress does not exist. Inside of compiled functions an
-    equilibrium that is not found is raised by JAX, with the message of NoEquilibrium.
+    equilibrium that is not found is raised by JAX, with the message of NoEquilibrium; without `strict` its outputs and gradient are NaN.
     """
     shapes = _implicit.input_shapes(problem)
     defaults = _implicit.Inputs(None, problem.loads, problem.thickness, 1.0)
 
     def solve(*inputs):
-        return _implicit.solve(problem, _implicit.Inputs(*inputs))
+        return _implicit.solve(problem, _implicit.Inputs(*inputs), strict)
 
     def pullback(*arrays):
         return _implicit.pullback(problem, _implicit.Inputs(*arrays[:4]), _implicit.Solution(*arrays[4:]))

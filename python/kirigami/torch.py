@@ -35,6 +35,7 @@ def equilibrium(
     loads: torch.Tensor | None = None,
     thickness: torch.Tensor | None = None,
     stress: torch.Tensor | None = None,
+    strict: bool = True,
 ) -> Equilibrium:
     """The equilibrium of a problem at full load, differentiable once.
 
@@ -43,7 +44,7 @@ def equilibrium(
     all threads.
 
     Raises TypeError for other than double precision, and where a derivative in thickness or stress does not exist; NoEquilibrium; and in the
-    backward pass SingularTangent.
+    backward pass SingularTangent. Without `strict` the outputs and the gradient of an equilibrium that is not found are NaN.
     """
     if x.dtype != torch.float64:
         raise TypeError(f"`x` is {x.dtype}: equilibria are solved in double precision (torch.float64)")
@@ -57,13 +58,13 @@ def equilibrium(
             raise ValueError(f"`{name}` has the shape {tuple(value.shape)}, expected {(*lead, *shape)}")
         inputs.append(value.expand((*lead, *shape)))
     _implicit.refuse(problem, {name: given.requires_grad for name, given in zip(shapes._fields[2:], inputs[2:])})
-    return Equilibrium(*_Solve.apply(problem, *inputs))
+    return Equilibrium(*_Solve.apply(problem, strict, *inputs))
 
 
 class _Solve(torch.autograd.Function):
     @staticmethod
-    def forward(ctx, problem, *inputs):
-        solution = _implicit.solve(problem, _implicit.Inputs(*map(_array, inputs)))
+    def forward(ctx, problem, strict, *inputs):
+        solution = _implicit.solve(problem, _implicit.Inputs(*map(_array, inputs)), strict)
         *outputs, configuration = (torch.from_numpy(np.array(column)) for column in solution)
         ctx.problem = problem
         ctx.save_for_backward(*inputs, configuration)
@@ -72,7 +73,7 @@ class _Solve(torch.autograd.Function):
     @staticmethod
     def backward(ctx, *by_outputs):
         *inputs, configuration = ctx.saved_tensors
-        return None, *_Pullback.apply(ctx.problem, *inputs, *by_outputs, configuration)
+        return None, None, *_Pullback.apply(ctx.problem, *inputs, *by_outputs, configuration)
 
 
 class _Pullback(torch.autograd.Function):

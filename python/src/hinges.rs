@@ -4,6 +4,7 @@ use crate::arrays::{
     Doubles, Numbers, array, bools, followed_by, numbers, plain, tuple, wrong_shape,
 };
 use crate::errors;
+use crate::waiting::unlocked;
 use design::hinge_law::{HingeDamage, HingeEnergy, Order, PreparedLaw, PreparedSurrogate};
 use hinge::{DesignGradient, HingeConstants, HingeDeformation, HingeDesign};
 use numpy::PyArrayDyn;
@@ -24,6 +25,8 @@ use surrogate::mean_and_variance;
 pub(crate) struct Surrogate {
     /// Its own network first, then the networks of the ensemble.
     networks: Vec<Arc<surrogate::Surrogate>>,
+    /// Their files, from which another process reads it.
+    files: Vec<PathBuf>,
 }
 
 /// Hinges of given designs, prepared once for any number of evaluations.
@@ -57,18 +60,31 @@ pub(crate) struct HingeStates {
 impl Surrogate {
     /// Weights (.safetensors) with the card (.json) next to them, and further networks of the same training, whose
     /// disagreement is the spread.
+    #[new]
+    #[pyo3(signature = (weights, ensemble=Vec::new()))]
+    fn new(py: Python, weights: PathBuf, ensemble: Vec<PathBuf>) -> PyResult<Self> {
+        let files = std::iter::once(weights).chain(ensemble);
+        let files: Vec<PathBuf> = files.map(std::path::absolute).collect::<Result<_, _>>()?;
+        let networks = unlocked(py, || {
+            (files.iter())
+                .map(|file| surrogate::Surrogate::load(file).map(Arc::new))
+                .collect::<Result<_, _>>()
+        })?;
+        let networks = networks.map_err(errors::weights)?;
+        Ok(Self { networks, files })
+    }
+
+    /// The same as `Surrogate(weights, ensemble)`.
     #[staticmethod]
     #[pyo3(signature = (weights, ensemble=Vec::new()))]
     fn load(py: Python, weights: PathBuf, ensemble: Vec<PathBuf>) -> PyResult<Self> {
-        let files = std::iter::once(weights).chain(ensemble);
-        let networks = py.detach(|| {
-            files
-                .map(|file| surrogate::Surrogate::load(&file).map(Arc::new))
-                .collect::<Result<_, _>>()
-        });
-        Ok(Self {
-            networks: networks.map_err(errors::weights)?,
-        })
+        Self::new(py, weights, ensemble)
+    }
+
+    /// What the class is made of again when it is unpickled.
+    fn __getnewargs__(&self) -> (PathBuf, Vec<PathBuf>) {
+        let mut files = self.files.iter().cloned();
+        (files.next().unwrap_or_default(), files.collect())
     }
 
     /// The card of the weights: units, scaling, training data, training domain, test errors.
@@ -175,7 +191,7 @@ impl Surrogate {
             design.validate().map_err(wrong)
         })?;
         let networks = self.networks.clone();
-        let laws = py.detach(|| prepared(&networks[0], &designs));
+        let laws = unlocked(py, || prepared(&networks[0], &designs))?;
         Ok(Hinges(Arc::new(Prepared {
             networks,
             laws,
@@ -241,11 +257,11 @@ impl Hinges {
             .map(|state| HingeDeformation::from(*state))
             .collect();
         let hinges = Arc::clone(&self.0);
-        let energies = py.detach(|| {
+        let energies = unlocked(py, || {
             by_chunk(&hinges.laws, &deformations, |law, states| {
                 law.energies(states, order)
             })
-        });
+        })?;
         Ok(HingeStates {
             hinges,
             deformations,
@@ -297,14 +313,14 @@ impl HingeStates {
 
     /// D, the mean plastic strain of the ligament over that at fracture; nan outside the training domain, where it is not known.
     #[getter]
-    fn damage<'py>(&self, py: Python<'py>) -> Doubles<'py> {
+    fn damage<'py>(&self, py: Python<'py>) -> PyResult<Doubles<'py>> {
         self.damaged(py, |damage| Some(damage.d))
     }
 
     /// D_peak, the damage of the most strained 1 % of the ligament: it tears at 1. nan outside the training domain, and if the weights do
     /// not predict it.
     #[getter]
-    fn damage_peak<'py>(&self, py: Python<'py>) -> Doubles<'py> {
+    fn damage_peak<'py>(&self, py: Python<'py>) -> PyResult<Doubles<'py>> {
         self.damaged(py, |damage| damage.d_peak)
     }
 
@@ -319,9 +335,10 @@ impl HingeStates {
 
     /// Whether each state, the width, the angle and the hole of its hinge are inside the training domain (bool).
     #[getter]
-    fn inside<'py>(&self, py: Python<'py>) -> Bound<'py, PyArrayDyn<bool>> {
-        let inside = py.detach(|| by_chunk(&self.hinges.laws, &self.deformations, Law::inside));
-        bools(py, inside.concat(), &self.hinges.shape)
+    fn inside<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<bool>>> {
+        let inside = || by_chunk(&self.hinges.laws, &self.deformations, Law::inside);
+        let inside = unlocked(py, inside)?.concat();
+        Ok(bools(py, inside, &self.hinges.shape))
     }
 
     /// Standard deviation over the networks of the ensemble of (W, F_a, F_s, M_theta), shape (..., 4).
@@ -338,7 +355,7 @@ impl HingeStates {
                 "one network has no spread: load its ensemble, Surrogate.load(weights, ensemble=[...])",
             ));
         }
-        let spreads = py.detach(|| {
+        let spreads = unlocked(py, || {
             let forces =
                 |law: &Law, states: &[HingeDeformation]| law.energies(states, Order::Forces);
             let of_networks: Vec<Vec<HingeEnergy>> = (networks.iter())
@@ -359,7 +376,7 @@ impl HingeStates {
             (0..4 * designs.len())
                 .map(|i| spread(i / 4, i % 4))
                 .collect()
-        });
+        })?;
         Ok(array(py, spreads, &followed_by(shape, &[4])))
     }
 }
@@ -388,15 +405,16 @@ impl HingeStates {
         &self,
         py: Python<'py>,
         of: impl Fn(&HingeDamage) -> Option<f64> + Sync,
-    ) -> Doubles<'py> {
+    ) -> PyResult<Doubles<'py>> {
         let known = |law: &Law, states: &[HingeDeformation]| -> Vec<f64> {
             let damages = law.damage(states, false);
             let known = std::iter::zip(&damages, law.inside(states));
             let known = known.map(|(damage, inside)| of(damage).filter(|_| inside));
             known.map(|damage| damage.unwrap_or(f64::NAN)).collect()
         };
-        let values = py.detach(|| by_chunk(&self.hinges.laws, &self.deformations, known));
-        array(py, values.concat(), &self.hinges.shape)
+        let values = || by_chunk(&self.hinges.laws, &self.deformations, known);
+        let values = unlocked(py, values)?.concat();
+        Ok(array(py, values, &self.hinges.shape))
     }
 }
 

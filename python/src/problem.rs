@@ -6,7 +6,7 @@ use crate::arrays::{
 use crate::deployment::{Deployment, State};
 use crate::errors;
 use crate::flat_sheet::Sheet;
-use crate::waiting::while_polling;
+use crate::waiting::{unlocked, while_polling};
 use design::equilibrium::warm_start::WarmStart;
 use design::objective::response::{Conditions, Response, ResponseCotangent, ResponseGradient};
 use design::scene::design_run::{design_of_run, stored_design};
@@ -90,16 +90,16 @@ impl Problem {
                     "`scene` is neither a path nor a dict with the keys of a scene",
                 )
             })?;
-            py.detach(|| {
+            unlocked(py, || {
                 let path = scene_file(&path).map_err(errors::scene)?;
                 Scene::read(&path).map_err(errors::scene)
-            })?
+            })??
         };
         let scene = match level {
             Some(name) => scene.at_level(read_level(name)?).map_err(errors::scene)?,
             None => scene,
         };
-        let mut problem = py.detach(|| scene.problem()).map_err(errors::scene)?;
+        let mut problem = unlocked(py, || scene.problem())?.map_err(errors::scene)?;
         let stop = Arc::<AtomicBool>::default();
         problem.stop_by(Arc::clone(&stop));
         Ok(Self {
@@ -350,10 +350,10 @@ impl Problem {
             reactions: self.by_panel(reactions, "reactions")?,
             load_factor,
         };
-        let gradient = py.detach(|| {
+        let gradient = unlocked(py, || {
             let response = problem.response_at(&design, &configuration)?;
             problem.response_pullback(&design, &response, &by)
-        });
+        })?;
         let ResponseGradient {
             design,
             loads,
@@ -434,7 +434,7 @@ impl Problem {
                 Ok::<_, PyErr>(())
             })
         };
-        let (search, ended) = py.detach(|| {
+        let (search, ended) = unlocked(py, || {
             let evaluation = problem.evaluate(&start).map_err(errors::design)?;
             let mut search = SearchState::new(problem, start, &evaluation, method, rate);
             report(&search)?;
@@ -442,7 +442,7 @@ impl Problem {
                 report(search)
             })?;
             Ok::<_, PyErr>((search, ended))
-        })?;
+        })??;
         let best = array(py, search.best.to_flat(), &[self.size()]);
         let (ended, history) = (plain(py, &ended)?, plain(py, &search.history)?);
         PyTuple::new(py, [best.into_any(), ended, history])
@@ -468,6 +468,13 @@ impl Problem {
     /// Forgets the last states: the next solves follow their paths from the flat sheet.
     fn forget(&self) {
         *self.warm() = Warm::default();
+    }
+
+    /// The keys of the scene with absolute paths, of which the problem is made again when it is unpickled, without its last states.
+    fn __getnewargs__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>,)> {
+        let keys = self.scene.located().map_err(errors::scene)?;
+        let keys = toml::Value::try_from(&keys).map_err(errors::scene)?;
+        Ok((plain(py, &keys)?,))
     }
 
     fn __repr__(&self) -> String {
@@ -630,8 +637,7 @@ fn scene_of(keys: &Bound<PyDict>, folder: &Path) -> PyResult<Scene> {
     let keys: toml::Value = serde_json::from_str(&text).map_err(errors::scene)?;
     let text = toml::to_string(&keys).map_err(errors::scene)?;
     let config: SceneConfig = support::toml_file::parse(&text, &path).map_err(errors::scene)?;
-    py.detach(|| Scene::new(config, &path))
-        .map_err(errors::scene)
+    unlocked(py, || Scene::new(config, &path))?.map_err(errors::scene)
 }
 
 fn read_level(name: &str) -> PyResult<Level> {

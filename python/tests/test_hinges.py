@@ -1,6 +1,8 @@
 """The learned hinge energy from Python: derivatives, shapes, and arguments that are refused."""
 
 
+import pickle
+
 import kirigami as kg
 import numpy as np
 import pytest
@@ -22,6 +24,11 @@ def test_forces_and_tangent_are_derivatives_of_the_energy(film):
         forces = slope(lambda x: film(x, WIDTH, ANGLE).forces, states, direction, 3e-4)
         np.testing.assert_allclose(at.forces[:, c], energy, rtol=1e-8, atol=1e-8)
         np.testing.assert_allclose(at.tangent[:, :, c], forces, rtol=1e-7, atol=1e-7)
+
+
+def test_a_pickled_surrogate_has_its_ensemble(film):
+    again, states = pickle.loads(pickle.dumps(film)), random_states(4)
+    np.testing.assert_array_equal(again(states, WIDTH, ANGLE).spread, film(states, WIDTH, ANGLE).spread)
 
 
 def test_derivatives_in_the_design(film):

@@ -44,6 +44,16 @@ def test_gradients_in_all_inputs(problem, equilibrium):
     check_grads(scaled, (jnp.asarray(problem.start), 1.0, 1.0, 1.0), order=1, modes=["rev"], atol=1e-6, rtol=1e-6, eps=1e-4)
 
 
+def test_what_has_no_equilibrium_is_nan_on_request(problem):
+    designs = np.array([problem.start, problem.start])
+    designs[1, problem.blocks["z"]] = 800.0
+    equilibrium = kirigami.jax.equilibrium(problem, strict=False)
+    values, gradients = jax.vmap(jax.value_and_grad(lambda x: equilibrium(x).corners[:, :, 0].max()))(designs)
+    assert np.isfinite(values[0]) and np.isfinite(gradients[0]).all()
+    assert np.isnan(values[1]) and np.isnan(gradients[1]).all()
+    assert np.isnan(equilibrium(designs[1]).load_factor)
+
+
 def test_jit_and_vmap_agree_with_single_calls(problem, equilibrium):
     designs = problem.start + 0.02 * np.random.default_rng(1).standard_normal((4, problem.size))
 

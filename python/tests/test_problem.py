@@ -1,6 +1,8 @@
 """Prepared problems from Python: states, paths, gradients against central differences, warm starts, batches, errors."""
 
 import json
+import multiprocessing
+import pickle
 import signal
 import subprocess
 import threading
@@ -139,6 +141,30 @@ def test_what_has_no_equilibrium_in_a_batch_is_named(film_problem):
     assert len(problem.solve_many(x, loads=loads, strict=False)) == 2
     with pytest.raises(ValueError, match=r"`loads` has the shape \(2, 9, 3\), expected .* \(3, ...\) of these"):
         problem.solve_many(np.stack([x, x, x]), loads=loads)
+
+
+def test_a_pickled_problem_is_the_same_problem_in_another_folder(problem, tmp_path, monkeypatch):
+    stored = pickle.dumps(problem)
+    monkeypatch.chdir(tmp_path)
+    again = pickle.loads(stored)
+    np.testing.assert_array_equal(again.solve(again.start).corners, problem.solve(problem.start, warm=False).corners)
+
+
+INHERITED = []
+
+
+def solved(problem=None):
+    problem = problem or INHERITED[0]
+    return problem.solve(problem.start).load_factor
+
+
+def test_processes_are_spawned_and_a_fork_is_an_error_at_once(film_problem):
+    expected = solved(film_problem)
+    with multiprocessing.get_context("spawn").Pool(1) as pool:
+        assert pool.map(solved, [film_problem]) == [expected]
+    INHERITED.append(film_problem)
+    with multiprocessing.get_context("fork").Pool(1) as pool, pytest.raises(RuntimeError, match="spawn"):
+        pool.apply_async(solved).get(timeout=30)
 
 
 def test_a_scene_from_a_dict(film_problem):

@@ -30,6 +30,16 @@ def test_gradcheck_in_all_inputs(problem):
     assert torch.autograd.gradcheck(scaled, (x, one(), one(), one()), eps=1e-4, atol=1e-6, rtol=1e-4, fast_mode=True)
 
 
+def test_what_has_no_equilibrium_is_nan_on_request(problem):
+    designs = np.array([problem.start, problem.start])
+    designs[1, problem.blocks["z"]] = 800.0
+    x = torch.tensor(designs, requires_grad=True)
+    corners = kirigami.torch.equilibrium(problem, x, strict=False).corners
+    corners[..., 0].amax((1, 2)).sum().backward()
+    assert corners[0].isfinite().all() and x.grad[0].isfinite().all()
+    assert corners[1].isnan().all() and x.grad[1].isnan().all()
+
+
 def test_a_batch_is_its_elements(problem):
     designs = problem.start + 0.02 * np.random.default_rng(1).standard_normal((3, problem.size))
     x = torch.tensor(designs, requires_grad=True)

@@ -34,7 +34,7 @@ pub struct CutCommand {
     /// Write tiles for this paper: a5 to a0, letter or tabloid
     #[arg(long, value_name = "PAPER", value_parser = paper)]
     paper: Option<Paper>,
-    /// Write one DXF and one SVG for this machine: laser-service, lightburn, knife or plain; for a service
+    /// Write one DXF and one SVG for this machine: laser-service, ponoko, lightburn, knife or plain; for a service
     /// list which refuse the sheet, and why. With --design start before the search
     #[arg(long = "for", value_name = "MACHINE", conflicts_with = "paper")]
     machine: Option<String>,

@@ -103,10 +103,10 @@ impl Project {
     /// Stores a drawing; returns the name of its file.
     pub fn keep_drawing(&self, Drawing { name, svg }: &Drawing) -> Result<PathBuf> {
         let hash = blake3::hash(svg.as_bytes()).to_hex();
-        let name = slug(name.strip_suffix(".svg").unwrap_or(name));
-        let name = PathBuf::from(format!("target-{name}-{}.svg", &hash[..6]));
+        let (stem, kind) = name.rsplit_once('.').unwrap_or((name, "svg"));
+        let name = format!("target-{}-{}.{}", slug(stem), &hash[..6], slug(kind));
         output_file::write(&self.folder.join(&name), svg)?;
-        Ok(name)
+        Ok(name.into())
     }
 
     /// The name of the next run folder.

@@ -65,7 +65,7 @@ pub(crate) struct NewSheet {
 pub(crate) struct Drawing {
     /// The name of its file.
     pub name: String,
-    /// Text of the SVG file.
+    /// Text of the SVG or DXF file.
     pub svg: String,
 }
 

@@ -244,7 +244,7 @@ impl Session {
         let target = TargetShape::Svg {
             file,
             centre,
-            height,
+            height: Some(height),
             rotation_deg: 0.0,
         };
         let config = SceneConfig {

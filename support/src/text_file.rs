@@ -7,7 +7,7 @@ use std::io::{self, ErrorKind};
 use std::path::Path;
 
 /// First bytes of files that are no texts, with what they are and the way out.
-const OTHERS: [(&[u8], &str); 5] = [
+const OTHERS: [(&[u8], &str); 7] = [
     (
         b"PK\x03\x04",
         "a workbook (xlsx) or another ZIP archive: save its sheet as CSV",
@@ -18,6 +18,8 @@ const OTHERS: [(&[u8], &str); 5] = [
     ),
     (b"\x1F\x8B", "compressed by gzip: unpack it with `gunzip`"),
     (b"PAR1", "a Parquet table: write it as CSV"),
+    (b"AC10", "a DWG drawing: save it as DXF"),
+    (b"AutoCAD Binary DXF", "a binary DXF file: save it as text"),
     (b"%PDF", "a PDF document: export its contents as text"),
 ];
 

@@ -169,3 +169,27 @@ fn a_hostile_title_is_only_text_and_the_page_prints_on_two_sheets() {
     assert!(!document.contains("<title>taken"));
     assert_eq!(printed_pages(&work), 2);
 }
+
+/// A browser, the second reader of cut files: slots and outline have the size of the sheet, arcs included, 5 mm from the corner of the page.
+#[test]
+fn a_browser_reads_the_cut_file_as_large_as_the_sheet() {
+    let work = Workplace::new();
+    let scene = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/configs/scenes/a4-plate-service.toml"
+    );
+    let cut = format!("cut {scene} --for laser-service --design start --json --out cut");
+    let said = work.output(&cut);
+    let said: Value = serde_json::from_str(&said).unwrap();
+    let mut tab = Tab::open(&format!("file://{}", work.path("cut/cut.svg").display()));
+    let found = tab.value(
+        "(() => { const box = document.querySelector('#OUTLINE path').getBBox(), view = document.documentElement.viewBox.baseVal; \
+         return [view.x, view.y, box.x, box.y, box.width, box.height, document.querySelectorAll('#CUT path').length]; })()",
+    );
+    let found: Vec<f64> = serde_json::from_value(found).unwrap();
+    let size = |axis: usize| said["features"]["size"][axis].as_f64().unwrap();
+    for (found, expected) in found.iter().zip([0.0, 0.0, 5.0, 5.0, size(0), size(1)]) {
+        assert!((found - expected).abs() < 1e-3, "{found} {expected}");
+    }
+    assert!(found[6] > 0.0);
+}

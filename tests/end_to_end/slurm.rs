@@ -255,6 +255,24 @@ fn an_array_is_not_submitted_twice() {
     assert_eq!(slurm.submit().1, 2);
 }
 
+/// The campaign has 40 rays and the 3 of its spot check. A site that refuses an array says only that its specification is invalid.
+#[test]
+fn an_array_has_no_more_tasks_than_rays_and_a_refusal_names_the_limit() {
+    let slurm = Scripted::new();
+    slurm.answer("true");
+    let refused = "Batch job submission failed: Invalid job array specification";
+    slurm.script("sbatch", &format!("echo '{refused}' >&2; exit 1"));
+    for (shards, tasks) in [(4, 4), (5000, 43)] {
+        let submit = format!("submit {CAMPAIGN} --shards {shards} --time 1");
+        let message = failure(&mut slurm.campaign(&submit));
+        assert!(message.contains(&format!("{tasks} tasks: ")), "{message}");
+        assert!(
+            message.contains("MaxArraySize") && message.contains("--shards"),
+            "{message}"
+        );
+    }
+}
+
 #[test]
 fn two_submissions_at_once_submit_one_array() {
     let slurm = Scripted::new();

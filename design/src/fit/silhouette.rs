@@ -296,7 +296,7 @@ mod tests {
         let shape = TargetShape::Svg {
             file,
             centre,
-            height,
+            height: Some(height),
             rotation_deg,
         };
         Target::sample(&shape, &folder, 400).unwrap().points

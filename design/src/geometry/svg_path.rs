@@ -1,94 +1,25 @@
-//! The visible path of an SVG file as a polygon; Bezier curves are approximated by segments.
+//! The visible paths of an SVG file as contours; Bezier curves are approximated by segments.
 //!
 //! usvg reads the document: it converts rect, circle, ellipse and polygon to paths and arcs to
-//! cubic curves, and it resolves styles, `<use>` and transforms. There must be one visible path, once for the fill and once for the
-//! stroke, and it must be one closed contour that neither crosses nor touches itself. A clip may surround it. The y axis of SVG points downwards; the result has y
-//! upwards. The size of the outline is set by the scene.
+//! cubic curves, and it resolves styles, `<use>` and transforms. A clip may surround a path, and hides nothing of it.
 
+use crate::geometry::contour::{Contour, DrawingError, WELD};
 use crate::geometry::{near_origin, polygon};
-use support::text_file;
 use usvg::tiny_skia_path::{PathSegment, Point};
 use usvg::{ClipPath, Group, ImageHrefResolver, Node, Options, Path, Transform, Tree};
 
 /// Number of segments of a flattened curve.
 const SEGMENTS: usize = 32;
-/// Points closer than this fraction of the largest coordinate are merged: usvg rounds to f32.
-const WELD: f64 = 1e-6;
-/// Largest coordinate over the size of an outline from which its rounding shows.
-const TOO_FAR: f64 = 1000.0;
-/// Maximum number of points of an outline, 3000 curves: the worst one of them is checked for crossings in seconds.
-const MOST_POINTS: usize = 100_000;
 /// How far a path may reach out of a clip around it, over the length of an edge of the clip: rounding.
 const FRAME: f64 = 1e-5;
-/// Removes the background colour of the root element, which usvg would draw as a path.
-const NO_BACKGROUND: &str = "svg { background-color: none !important }";
+/// Removes the background colour of the root element and markers, which usvg would draw as paths.
+const OUTLINES_ALONE: &str = "svg { background-color: none !important } \
+    * { marker-start: none !important; marker-mid: none !important; marker-end: none !important }";
 
-/// Why a file has no outline; coordinates are given as in the path data.
-#[derive(Debug, thiserror::Error)]
-#[allow(missing_docs, reason = "the message of a variant is its documentation")]
-pub enum SvgPathError {
-    #[error("the file is empty; draw one closed outline and save it as SVG")]
-    Empty,
-    #[error("the file is not readable as SVG: {0}; save the drawing as plain SVG")]
-    NotSvg(usvg::Error),
-    #[error("the file is no drawing: {0}")]
-    NotText(std::io::Error),
-    #[error(
-        "there is no visible path in the file; draw the outline as a path, polygon, rect, circle \
-         or ellipse with a fill or a stroke, outside of <defs>"
-    )]
-    NoPath,
-    #[error(
-        "the file has text alone; convert it to paths in the drawing program (Inkscape: Path, Object to Path)"
-    )]
-    Text,
-    #[error(
-        "the file has {found} visible paths, the largest of them {largest}; keep the outline and hide or delete the others"
-    )]
-    SeveralPaths { found: usize, largest: String },
-    #[error(
-        "the path is drawn in part alone, because of the {element} `{id}`; release it in the drawing program, so that the \
-         path itself is the outline"
-    )]
-    Cut { element: &'static str, id: String },
-    #[error("the path has {found} points; simplify the outline to at most {MOST_POINTS}")]
-    TooManyPoints { found: usize },
-    #[error(
-        "the path has a second contour at ({x}, {y}); keep one closed contour and \
-         delete the others"
-    )]
-    SecondContour { x: f64, y: f64 },
-    #[error(
-        "the path ends open at ({x}, {y}); end its data with Z, or correct the \
-         mistake in the data after this point"
-    )]
-    Open { x: f64, y: f64 },
-    #[error(
-        "the outline is {times:.0} times its own size away from the origin of its coordinates, and is read with seven digits; \
-         move it to the origin"
-    )]
-    TooFar { times: f64 },
-    #[error("the path has {found} different points; draw an outline of at least 3 points")]
-    TooFewPoints { found: usize },
-    #[error(
-        "the path crosses or touches itself near ({x}, {y}); move its points until \
-         the outline is one simple loop"
-    )]
-    SelfCrossing { x: f64, y: f64 },
-}
-
-/// The vertices of the only visible path in an SVG file, y upwards.
-pub(crate) fn of_file(bytes: &[u8]) -> Result<Vec<[f64; 2]>, SvgPathError> {
-    vertices(&text_file::decoded(bytes).map_err(SvgPathError::NotText)?)
-}
-
-/// The vertices of the only visible path in an SVG text, y upwards.
-fn vertices(svg: &str) -> Result<Vec<[f64; 2]>, SvgPathError> {
-    if svg.trim().is_empty() {
-        return Err(SvgPathError::Empty);
-    }
+/// The contours of the visible paths of an SVG text in the coordinates of its page, y downwards.
+pub(super) fn contours(svg: &str) -> Result<Vec<Contour>, DrawingError> {
     let options = Options {
-        style_sheet: Some(NO_BACKGROUND.to_owned()),
+        style_sheet: Some(OUTLINES_ALONE.to_owned()),
         // An image has no outline; its file is not opened.
         image_href_resolver: ImageHrefResolver {
             resolve_data: Box::new(|_, _, _| None),
@@ -101,57 +32,28 @@ fn vertices(svg: &str) -> Result<Vec<[f64; 2]>, SvgPathError> {
         Some((svg, origin)) => (svg.as_str(), *origin),
         None => (svg, [0.0; 2]),
     };
-    let tree = Tree::from_str(svg, &options).map_err(SvgPathError::NotSvg)?;
+    let tree = Tree::from_str(svg, &options).map_err(DrawingError::NotSvg)?;
     let mut paths = Vec::new();
     add_visible(tree.root(), &mut paths)?;
-    // Programs write the fill and the stroke of a shape one after the other.
-    paths.dedup_by(|a, b| a.data() == b.data() && a.abs_transform() == b.abs_transform());
-    let path = match paths[..] {
-        [] if svg.contains("<text") => return Err(SvgPathError::Text),
-        [] => return Err(SvgPathError::NoPath),
-        [path] => path,
-        _ => return Err(several(&paths, origin)),
+    if paths.is_empty() && svg.contains("<text") {
+        return Err(DrawingError::Text);
+    }
+    let of_path = |path: &Path| -> Vec<Contour> {
+        let (transform, filled) = (path.abs_transform(), is_filled(path));
+        let parts = subpaths(path).into_iter();
+        parts
+            .map(|part| part.contour(transform, origin, filled))
+            .collect()
     };
-    let points = contour(path, origin)?;
-    let times = near_origin::distance_over_size(&points);
-    if times > TOO_FAR {
-        return Err(SvgPathError::TooFar { times });
-    }
-    let found = points.len();
-    if found < 3 {
-        return Err(SvgPathError::TooFewPoints { found });
-    }
-    if found > MOST_POINTS {
-        return Err(SvgPathError::TooManyPoints { found });
-    }
-    if let Some(point) = polygon::self_crossing(&points) {
-        let [x, y] = in_file(point, origin);
-        return Err(SvgPathError::SelfCrossing { x, y });
-    }
-    let transform = path.abs_transform();
-    let turned = |point: &[f64; 2]| {
-        let [x, y] = transformed(transform, *point);
-        [x, -y]
-    };
-    Ok(points.iter().map(turned).collect())
+    Ok(paths.into_iter().flat_map(of_path).collect())
 }
 
-/// The paths with the sizes and places of the three largest, in the coordinates of the file.
-fn several(paths: &[&Path], [x0, y0]: [f64; 2]) -> SvgPathError {
-    let mut boxes: Vec<_> = paths.iter().map(|path| path.abs_bounding_box()).collect();
-    boxes.sort_by(|a, b| (b.width() * b.height()).total_cmp(&(a.width() * a.height())));
-    let words = boxes.iter().take(3).map(|it| {
-        let [x, y] = [f64::from(it.x()) + x0, f64::from(it.y()) + y0];
-        format!("{} x {} at ({x}, {y})", it.width(), it.height())
-    });
-    SvgPathError::SeveralPaths {
-        found: paths.len(),
-        largest: words.collect::<Vec<_>>().join(", "),
-    }
+fn is_filled(path: &Path) -> bool {
+    path.fill().is_some_and(|fill| fill.opacity().get() > 0.0)
 }
 
 /// Adds the visible paths of a group, in document order; an error if only a part of them is drawn.
-fn add_visible<'a>(group: &'a Group, paths: &mut Vec<&'a Path>) -> Result<(), SvgPathError> {
+fn add_visible<'a>(group: &'a Group, paths: &mut Vec<&'a Path>) -> Result<(), DrawingError> {
     if group.opacity().get() == 0.0 {
         return Ok(());
     }
@@ -160,9 +62,8 @@ fn add_visible<'a>(group: &'a Group, paths: &mut Vec<&'a Path>) -> Result<(), Sv
         match node {
             Node::Group(group) => add_visible(group, paths)?,
             Node::Path(path) => {
-                let filled = path.fill().is_some_and(|fill| fill.opacity().get() > 0.0);
                 let stroked = (path.stroke()).is_some_and(|stroke| stroke.opacity().get() > 0.0);
-                if path.is_visible() && (filled || stroked) {
+                if path.is_visible() && (is_filled(path) || stroked) {
                     paths.push(path);
                 }
             }
@@ -176,7 +77,7 @@ fn add_visible<'a>(group: &'a Group, paths: &mut Vec<&'a Path>) -> Result<(), Sv
     match cut {
         Some((element, id)) if paths.len() > before => {
             let id = id.to_owned();
-            Err(SvgPathError::Cut { element, id })
+            Err(DrawingError::Cut { element, id })
         }
         _ => Ok(()),
     }
@@ -240,49 +141,28 @@ fn subpaths(path: &Path) -> Vec<Subpath> {
     parts
 }
 
-/// The distinct points of a path that is one closed contour, before its transform, from the origin of the moved drawing.
-fn contour(path: &Path, origin: [f64; 2]) -> Result<Vec<[f64; 2]>, SvgPathError> {
-    let mut parts = subpaths(path).into_iter();
-    let Some(Subpath {
-        mut points,
-        mut closed,
-    }) = parts.next()
-    else {
-        return Err(SvgPathError::TooFewPoints { found: 1 });
-    };
-    if let Some(second) = parts.next() {
-        let [x, y] = in_file(second.points[0], origin);
-        return Err(SvgPathError::SecondContour { x, y });
-    }
-    let largest = points.as_flattened().iter().map(|c| c.abs());
-    let weld = WELD * largest.fold(0.0, f64::max);
-    let near = |p: [f64; 2], q: [f64; 2]| f64::hypot(p[0] - q[0], p[1] - q[1]) <= weld;
-    let mut last = [f64::NAN; 2];
-    points.retain(|point| {
-        let kept = !near(*point, last);
-        if kept {
-            last = *point;
+impl Subpath {
+    /// It on the page. Coordinates are rounded to 24 bits before the transform, from the origin of the moved drawing.
+    fn contour(self, transform: Transform, origin: [f64; 2], filled: bool) -> Contour {
+        let largest = self.points.as_flattened().iter().map(|c| c.abs());
+        let largest = largest.fold(0.0, f64::max);
+        let scale = (f64::from(transform.sx) * f64::from(transform.sy)
+            - f64::from(transform.kx) * f64::from(transform.ky))
+        .abs()
+        .sqrt();
+        let at = |p: [f64; 2]| transformed(transform, [p[0] + origin[0], p[1] + origin[1]]);
+        Contour {
+            closed: self.closed,
+            // A line has no inside.
+            filled: filled && self.points.len() > 2,
+            points: self.points.into_iter().map(at).collect(),
+            rounding: WELD * largest * scale,
         }
-        kept
-    });
-    while points.len() > 1 && near(points[0], points[points.len() - 1]) {
-        points.pop();
-        closed = true;
     }
-    if !closed {
-        let [x, y] = in_file(last, origin);
-        return Err(SvgPathError::Open { x, y });
-    }
-    Ok(points)
 }
 
 fn pair(point: Point) -> [f64; 2] {
     [f64::from(point.x), f64::from(point.y)]
-}
-
-/// The coordinates that the file has for a point of the moved drawing, rounded for messages.
-fn in_file(point: [f64; 2], origin: [f64; 2]) -> [f64; 2] {
-    [0, 1].map(|c| (1e5 * (point[c] + origin[c])).round() / 1e5)
 }
 
 /// Appends a Bezier curve that starts at the last point, by de Casteljau's algorithm.
@@ -310,20 +190,30 @@ fn transformed(transform: Transform, [x, y]: [f64; 2]) -> [f64; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::contour::MOST_POINTS;
+    use crate::geometry::drawn_outline::of_text;
+
+    fn vertices(svg: &str) -> Result<Vec<[f64; 2]>, DrawingError> {
+        of_text(svg, None).map(|outline| outline.vertices)
+    }
 
     /// The outline of a document with this content.
-    fn drawn(content: &str) -> Result<Vec<[f64; 2]>, SvgPathError> {
+    fn drawn(content: &str) -> Result<Vec<[f64; 2]>, DrawingError> {
         vertices(&format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\">{content}</svg>"
         ))
     }
 
-    fn of(data: &str) -> Result<Vec<[f64; 2]>, SvgPathError> {
+    fn of(data: &str) -> Result<Vec<[f64; 2]>, DrawingError> {
         drawn(&format!("<path id=\"x\" d=\"{data}\" stroke='none'/>"))
     }
 
+    fn stroked(data: &str) -> Result<Vec<[f64; 2]>, DrawingError> {
+        drawn(&format!("<path d=\"{data}\" fill='none' stroke='#000'/>"))
+    }
+
     /// [left, right, low, high] of the outline.
-    fn bounds(outline: Result<Vec<[f64; 2]>, SvgPathError>) -> [f64; 4] {
+    fn bounds(outline: Result<Vec<[f64; 2]>, DrawingError>) -> [f64; 4] {
         let points = outline.unwrap_or_else(|error| panic!("{error}"));
         let extent = |axis: usize| {
             let values = || points.iter().map(|point| point[axis]);
@@ -340,7 +230,7 @@ mod tests {
         assert!(all_near, "{found:?} is not {expected:?}");
     }
 
-    fn assert_refused(outline: Result<Vec<[f64; 2]>, SvgPathError>, part: &str) {
+    fn assert_refused(outline: Result<Vec<[f64; 2]>, DrawingError>, part: &str) {
         let error = outline.unwrap_err().to_string();
         assert!(error.contains(part), "{error}");
     }
@@ -403,7 +293,7 @@ mod tests {
         ] {
             assert_near(bounds(drawn(content)), expected);
         }
-        assert_refused(drawn(&(nested + SMALL)), "2 visible paths");
+        assert_refused(drawn(&(nested + SMALL)), "2 contours");
     }
 
     #[test]
@@ -444,7 +334,15 @@ mod tests {
             "{LARGE}{}",
             LARGE.replace("/>", " fill='none' stroke='#000'/>")
         );
+        let marked = format!(
+            "<marker id='m'>{SMALL}</marker>{}",
+            LARGE.replace(
+                "/>",
+                " marker-mid='url(#m)' style='marker-start: url(#m)'/>"
+            )
+        );
         for (content, expected) in [
+            (marked, [0.0, 10.0, -20.0, 0.0]),
             (framed, [0.0, 10.0, -20.0, 0.0]),
             (artboard, [5.0, 25.0, -40.0, 0.0]),
             (symbol, [0.0, 10.0, -20.0, 0.0]),
@@ -466,7 +364,7 @@ mod tests {
         let two = format!("{SMALL}{LARGE}");
         assert_refused(
             drawn(&two),
-            "2 visible paths, the largest of them 10 x 20 at (0, 0), 1 x 1 at (0, 0)",
+            "2 contours, by size #1 10 x 20 at (0, 0), #2 1 x 1 at (0, 0)",
         );
     }
 
@@ -542,7 +440,7 @@ mod tests {
             }
             assert_eq!(found.len(), 60);
         }
-        let open = of(&format!("M{far}"));
+        let open = stroked(&format!("M{far}"));
         assert_refused(open, "ends open at (2506756.48");
         let crossing = of("M 5000000 7 l 10 10 v -10 l -10 10 Z");
         assert_refused(crossing, "near (5000005, 12)");
@@ -562,13 +460,13 @@ mod tests {
             (vertices("<svg/>"), "no visible path"),
             (drawn(&hidden), "no visible path"),
             (of("M0 0 L x"), "no visible path"),
+            (of("M0 0 L1 0 L1 1 Z M5 5 L6 6 H5Z"), "#2 1 x 1 at (5, 5)"),
+            (of("M0 0 L1 0 L1 1 Z L6 6 H5Z"), "#2 1 x 1 at (0, 0)"),
             (
-                of("M0 0 L1 0 L1 1 Z M5 5 L6 6 H5Z"),
-                "second contour at (5, 5)",
+                stroked("M0 0 H10 V10"),
+                "ends open at (10, 10), 14.14214 from",
             ),
-            (of("M0 0 L1 0 L1 1 Z L6 6 H5Z"), "second contour at (0, 0)"),
-            (of("M0 0 H10 V10"), "ends open at (10, 10)"),
-            (of("M0 0 H10 V10 L x 3 Z"), "ends open at (10, 10)"),
+            (stroked("M0 0 H10 V10 L x 3 Z"), "ends open at (10, 10)"),
             (of("M0 0 H10 Z"), "2 different points"),
         ] {
             assert_refused(outline, part);

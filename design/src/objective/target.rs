@@ -1,9 +1,10 @@
 //! The target outline T of (16): a closed curve, sampled densely at equal arc lengths.
 
+use crate::geometry::contour::DrawingError;
+use crate::geometry::drawn_outline;
 use crate::geometry::outline_points::{self, PointsError};
 use crate::geometry::plane::{complex, point};
 use crate::geometry::polygon;
-use crate::geometry::svg_path::{self, SvgPathError};
 use faer::c64;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -52,16 +53,16 @@ pub enum TargetShape {
         /// Path of the file, relative to the folder of the scene.
         file: PathBuf,
     },
-    /// The only visible path of an SVG file, transforms applied; it must be one closed contour that does not cross
-    /// itself.
+    /// The outline in a drawing (SVG, SVGZ or DXF): one closed contour that does not cross itself.
     Svg {
-        /// Path of the file, relative to the folder of the scene.
+        /// Path of the file, relative to the folder of the scene; of several contours behind `#` the number, the largest first:
+        /// `parts.dxf#2`.
         file: PathBuf,
         /// Centre of the bounding box of the outline (mm).
         centre: [f64; 2],
-        /// Height of the bounding box (mm); the width follows from the drawing.
+        /// Height of the bounding box (mm); the width follows from the drawing. A DXF file with a unit has its own.
         #[schemars(range(min = 1e-3))]
-        height: f64,
+        height: Option<f64>,
         /// Rotation about the centre, counter-clockwise (deg).
         #[serde(default)]
         rotation_deg: f64,
@@ -73,7 +74,11 @@ impl TargetShape {
     pub(crate) fn file_mut(&mut self) -> Option<(&mut PathBuf, &'static str)> {
         match self {
             Self::Csv { file } => Some((file, "csv")),
-            Self::Svg { file, .. } => Some((file, "svg")),
+            Self::Svg { file, .. } => {
+                let text = file.to_string_lossy().to_lowercase();
+                let is_dxf = text.contains(".dxf");
+                Some((file, if is_dxf { "dxf" } else { "svg" }))
+            }
             Self::Circle { .. }
             | Self::Rectangle { .. }
             | Self::Polygon { .. }
@@ -91,7 +96,7 @@ pub enum TargetError {
     #[error(transparent)]
     Points(#[from] PointsError),
     #[error("{path}: {source}", path = .path.display())]
-    Svg { path: PathBuf, source: SvgPathError },
+    Drawing { path: PathBuf, source: DrawingError },
     #[error(transparent)]
     OutOfRange(#[from] OutOfRange),
     #[error("the target outline encloses no area: give at least three corners in order")]
@@ -107,6 +112,8 @@ pub struct Target {
     pub length: f64,
     /// A point at which the outline crosses or touches itself, so that its inside is not defined (mm).
     pub crossing: Option<[f64; 2]>,
+    /// Length of the straight line that closes a path which its drawing leaves open (mm); 0 for a closed one.
+    pub gap: f64,
 }
 
 impl Target {
@@ -125,6 +132,7 @@ impl Target {
                     points,
                     length: TAU * radius,
                     crossing: None,
+                    gap: 0.0,
                 })
             }
             TargetShape::Rectangle {
@@ -150,11 +158,22 @@ impl Target {
                 height,
                 rotation_deg,
             } => {
-                let path = folder.join(file);
+                let (path, number) = drawn_outline::numbered(&folder.join(file));
                 let bytes = regular_file::read(&path).map_err(FileError::at(&path))?;
-                let drawn = svg_path::of_file(&bytes)
-                    .map_err(|source| TargetError::Svg { path, source })?;
-                along_polygon(&placed(&drawn, *centre, *height, *rotation_deg)?, count)
+                let refused = |source| TargetError::Drawing {
+                    path: path.clone(),
+                    source,
+                };
+                let drawn = drawn_outline::of_file(&bytes, number).map_err(&refused)?;
+                let [low, high] = polygon::bounds(drawn.vertices.iter().copied());
+                let own = high[1] - low[1];
+                let height = height.or(drawn.has_unit.then_some(own));
+                let height = height.ok_or_else(|| refused(DrawingError::NoUnit))?;
+                let placed = placed(&drawn.vertices, *centre, height, *rotation_deg)?;
+                Ok(Self {
+                    gap: drawn.gap * height / own,
+                    ..along_polygon(&placed, count)?
+                })
             }
         }
     }
@@ -215,6 +234,7 @@ fn along_polygon(vertices: &[[f64; 2]], count: usize) -> Result<Target, TargetEr
         points,
         length,
         crossing: polygon::self_crossing(&distinct),
+        gap: 0.0,
     })
 }
 
@@ -364,7 +384,7 @@ mod tests {
             let shape = TargetShape::Svg {
                 file: name.into(),
                 centre: [0.0, 0.0],
-                height: 1.0,
+                height: Some(1.0),
                 rotation_deg: 0.0,
             };
             let target = Target::sample(&shape, &folder, 2000).unwrap();
@@ -381,7 +401,7 @@ mod tests {
         let shape = TargetShape::Svg {
             file: "star.svg".into(),
             centre: [0.0, 0.0],
-            height: 100.0,
+            height: Some(100.0),
             rotation_deg: 0.0,
         };
         let error = Target::sample(&shape, folder.path(), 100).unwrap_err();

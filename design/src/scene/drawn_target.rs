@@ -8,7 +8,7 @@ use std::path::Path;
 /// Points along a drawn outline from which its area is computed.
 const DRAWING_POINTS: usize = 2000;
 
-/// Centre of the bounding box and height (mm) at which the outline of a drawing (SVG) has the given area (mm^2) and the mean of its
+/// Centre of the bounding box and height (mm) at which the outline of a drawing (SVG or DXF) has the given area (mm^2) and the mean of its
 /// points at `centre` (mm).
 pub fn place_drawing(
     file: &Path,
@@ -18,7 +18,7 @@ pub fn place_drawing(
     let of_height_1 = TargetShape::Svg {
         file: file.to_owned(),
         centre: [0.0; 2],
-        height: 1.0,
+        height: Some(1.0),
         rotation_deg: 0.0,
     };
     let outline = Target::sample(&of_height_1, Path::new(""), DRAWING_POINTS)?;
@@ -66,7 +66,7 @@ impl TargetShape {
             } => Self::Svg {
                 file,
                 centre: at(centre),
-                height: scaled(height),
+                height: height.map(scaled),
                 rotation_deg: turned(rotation_deg),
             },
         }

@@ -4,7 +4,7 @@
 //! |---|---|
 //! | `scene.toml` | the keys of the run; its paths name the files below |
 //! | `inputs/material.toml` | the material, with its measured curve as `plastic` |
-//! | `inputs/target.csv`, `.svg` | the target, if the scene names a file |
+//! | `inputs/target.csv`, `.svg`, `.dxf` | the target, if the scene names a file |
 //! | `inputs/weights.safetensors`, `.json` | weights and card, if the hinge law reads them |
 //! | `inputs/ensemble-N.safetensors`, `inputs/draft.safetensors`, their `.json` | the further networks, from 1, and the network of drafts |
 //! | `inputs/springback.json` | the law of released hinges, if the scene names one |
@@ -12,6 +12,7 @@
 //!
 //! The state of the run holds the BLAKE3 hash of each of them.
 
+use crate::geometry::drawn_outline::numbered;
 use crate::scene::checked_scene::Scene;
 use crate::scene::hinge_model::SurrogateFile;
 use crate::scene::keys::{SceneConfig, resolved};
@@ -112,7 +113,11 @@ pub(super) fn keep(scene: &Scene) -> Result<InputHashes, FileError> {
     config.material = kept.write(MATERIAL_FILE, &toml(&scene.measured, &folder)?)?;
     if let Some((file, kind)) = config.target.file_mut() {
         let name = format!("{INPUTS}/target.{kind}");
-        *file = kept.copy(&resolved(&scene.path, file), &name)?;
+        let (original, number) = numbered(&resolved(&scene.path, file));
+        *file = kept.copy(&original, &name)?;
+        if let Some(number) = number {
+            *file = format!("{name}#{number}").into();
+        }
     }
     for (name, weights) in config.weights_files_mut() {
         let stem = format!("{INPUTS}/{name}");

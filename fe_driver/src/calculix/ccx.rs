@@ -64,3 +64,25 @@ impl Ccx {
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::CCX;
+
+    #[test]
+    fn releases_and_builds_between_them_have_a_version() {
+        for (printed, version) in [
+            ("\nThis is Version 2.20\n\n", Some("2.20")),
+            ("\nThis is Version 2.23\n", Some("2.23")),
+            ("This is Version DEVELOPMENT\n", Some("DEVELOPMENT")),
+            ("This is Version \n", None),
+            (
+                "ccx: error while loading shared libraries: libspooles.so.2.2",
+                None,
+            ),
+            ("", None),
+        ] {
+            assert_eq!((CCX.version_in)(printed), version, "{printed}");
+        }
+    }
+}

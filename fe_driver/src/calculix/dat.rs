@@ -252,8 +252,16 @@ pub(crate) fn numbers<const N: usize>(fields: &[&str]) -> Option<[f64; N]> {
     Some(values)
 }
 
+/// A finite number. Fortran leaves out the E before an exponent of three digits, as in `1.5-101`.
 fn number_in(field: &str) -> Option<f64> {
-    field.trim().parse().ok().filter(|x: &f64| x.is_finite())
+    let field = field.trim();
+    let without_e = || {
+        let at = field.rfind(['+', '-']).filter(|at| at + 4 == field.len());
+        let (digits, exponent) = field.split_at(at.filter(|at| *at > 0)?);
+        format!("{digits}E{exponent}").parse::<f64>().ok()
+    };
+    let number = field.parse::<f64>().ok().or_else(without_e);
+    number.filter(|x| x.is_finite())
 }
 
 #[cfg(test)]
@@ -287,6 +295,21 @@ mod tests {
             points("  1.5E-02"),
             points("  1.0 2.0 3.0 4.0 5.0 6.0")
         )
+    }
+
+    #[test]
+    fn exponents_of_three_digits_are_read_with_and_without_e() {
+        for (field, value) in [
+            ("-1.5E-101", Some(-1.5e-101)),
+            ("-1.5-101", Some(-1.5e-101)),
+            ("1.5+101", Some(1.5e101)),
+            ("1.5-10", None),
+            ("-101", Some(-101.0)),
+            ("1.5E+999", None),
+            ("1.5+999", None),
+        ] {
+            assert_eq!(number_in(field), value, "{field}");
+        }
     }
 
     fn two_increments() -> String {

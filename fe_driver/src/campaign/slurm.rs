@@ -25,6 +25,10 @@ pub enum SlurmError {
         program: &'static str,
         message: String,
     },
+    #[error(
+        "{tasks} tasks: {message}; the site allows fewer than its MaxArraySize (`scontrol show config`): choose a smaller --shards"
+    )]
+    TooManyTasks { tasks: usize, message: String },
     #[error("{0}: wait until it ends, or cancel it with `scancel {id}`", id = .0.array)]
     Active(ArrayStates),
     #[error(
@@ -161,8 +165,14 @@ pub fn submit_array(
         let id = output("sbatch", &mut command)?;
         Ok::<_, SlurmError>(id.trim().split(';').next().unwrap_or_default().to_owned())
     };
+    let array = sbatch(&format!("--array=1-{tasks}"), None).map_err(|error| match error {
+        SlurmError::Refused { message, .. } if message.contains("Invalid job array") => {
+            SlurmError::TooManyTasks { tasks, message }
+        }
+        error => error,
+    })?;
     let mut submission = Submission {
-        array: sbatch(&format!("--array=1-{tasks}"), None)?,
+        array,
         tasks,
         collect: None,
     };

@@ -2,6 +2,7 @@
 
 use crate::display::{Colour, Shape, Style, Text};
 use design::geometry::polygon::{area, mean};
+use serde::Deserialize;
 
 /// The tool or the purpose of a shape, in the order of cutting: what is cut later holds what is cut before.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -12,8 +13,6 @@ pub enum Layer {
     AttachmentHoles,
     /// The slits.
     Cut,
-    /// Without shapes: files declare it, as the files of earlier versions do.
-    Joint,
     /// The edge of the sheet.
     Outline,
     /// The panels of a deployed sheet, which are not cut.
@@ -31,11 +30,10 @@ pub enum Layer {
 }
 
 /// All layers in the order of cutting: their names in DXF and SVG, red, green and blue, and the AutoCAD colour index.
-const LAYERS: [(Layer, &str, Colour, u8); 11] = [
+const LAYERS: [(Layer, &str, Colour, u8); 10] = [
     (Layer::Holes, "HOLES", [0, 0, 255], 5),
     (Layer::AttachmentHoles, "ATTACHMENT_HOLES", [0, 128, 128], 4),
     (Layer::Cut, "CUT", [255, 0, 0], 1),
-    (Layer::Joint, "JOINT", [255, 0, 255], 6),
     (Layer::Outline, "OUTLINE", [0, 0, 0], 7),
     (Layer::Panels, "PANELS", [0, 0, 0], 7),
     (Layer::Attachments, "ATTACHMENTS", [0, 128, 128], 4),
@@ -60,15 +58,15 @@ impl Layer {
     pub fn is_cut(self) -> bool {
         self <= Self::Outline
     }
+}
 
-    /// Red, green and blue, 0 to 255.
-    pub(super) fn rgb(self) -> Colour {
-        LAYERS[self as usize].2
-    }
-
-    pub(super) fn colour_index(self) -> u8 {
-        LAYERS[self as usize].3
-    }
+/// A colour by which machines tell cuts from marks.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub(super) enum Pen {
+    Black,
+    Blue,
+    Red,
 }
 
 /// The shapes of a file in the order in which they are written and cut.
@@ -76,6 +74,8 @@ impl Layer {
 pub struct CutDrawing {
     /// Each shape with its layer.
     pub shapes: Vec<(Layer, Shape)>,
+    /// The colours of cuts and of marks; `None`: each layer has its own.
+    pub(super) pens: Option<[Pen; 2]>,
 }
 
 impl CutDrawing {
@@ -88,6 +88,23 @@ impl CutDrawing {
     pub fn cuts(&self) -> impl Iterator<Item = &Shape> {
         let cut = self.shapes.iter().filter(|(layer, _)| layer.is_cut());
         cut.map(|(_, shape)| shape)
+    }
+
+    /// The layers that have shapes, in the order of cutting.
+    pub(super) fn layers(&self) -> impl Iterator<Item = Layer> {
+        Layer::all().filter(move |layer| self.on(*layer).next().is_some())
+    }
+
+    /// Red, green and blue, 0 to 255, of a layer, and the AutoCAD colour index.
+    pub(super) fn pen(&self, layer: Layer) -> (Colour, u8) {
+        let (_, _, colour, index) = LAYERS[layer as usize];
+        let pen = self.pens.map(|pens| pens[usize::from(!layer.is_cut())]);
+        match pen {
+            None => (colour, index),
+            Some(Pen::Black) => ([0, 0, 0], 7),
+            Some(Pen::Blue) => ([0, 0, 255], 5),
+            Some(Pen::Red) => ([255, 0, 0], 1),
+        }
     }
 
     /// The shapes of a layer.
@@ -104,8 +121,8 @@ impl CutDrawing {
     /// The shapes layer by layer, each with the colour of its layer; lines have this width (mm).
     pub(crate) fn coloured(&self, width: f64) -> impl Iterator<Item = (Style, &Shape)> {
         let style = move |layer: Layer, shape: &Shape| match shape {
-            Shape::Text(_) => Style::fill(layer.rgb()),
-            _ => Style::stroke(layer.rgb(), width),
+            Shape::Text(_) => Style::fill(self.pen(layer).0),
+            _ => Style::stroke(self.pen(layer).0, width),
         };
         Layer::all().flat_map(move |layer| {
             let shapes = self.on(layer);

@@ -46,13 +46,23 @@ impl CutDrawing {
 }
 
 impl Shape {
-    /// Begins a polygon at its corner nearest to a point.
+    /// Begins a polygon or a contour at its corner nearest to a point.
     fn begin_near(&mut self, point: [f64; 2]) {
-        if let Self::Polygon(corners) = self {
-            let nearest = (0..corners.len()).min_by(|&i, &j| {
-                distance(corners[i], point).total_cmp(&distance(corners[j], point))
-            });
-            corners.rotate_left(nearest.unwrap_or_default());
+        let nearest = |count: usize, at: &dyn Fn(usize) -> [f64; 2]| {
+            let off = |i: usize| distance(at(i), point);
+            let nearest = (0..count).min_by(|&i, &j| off(i).total_cmp(&off(j)));
+            nearest.unwrap_or_default()
+        };
+        match self {
+            Self::Polygon(corners) => {
+                let first = nearest(corners.len(), &|i| corners[i]);
+                corners.rotate_left(first);
+            }
+            Self::Contour(vertices) => {
+                let first = nearest(vertices.len(), &|i| vertices[i].0);
+                vertices.rotate_left(first);
+            }
+            _ => {}
         }
     }
 

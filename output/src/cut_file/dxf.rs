@@ -5,13 +5,14 @@
 
 use crate::cut_file::cut_drawing::{CutDrawing, Layer};
 use crate::display::{Anchor, Shape, Text};
+use design::geometry::bulged::Vertex;
 use std::fmt::{Display, Write};
 
 /// The file of a drawing, identical for identical drawings.
 pub fn dxf(drawing: &CutDrawing) -> String {
     let extent = drawing.bounds();
     let mut body = Pairs::default();
-    let model_space = body.tables(extent);
+    let model_space = body.tables(drawing);
     body.section("ENTITIES");
     for (layer, shape) in &drawing.shapes {
         body.entity(model_space, *layer, shape);
@@ -85,7 +86,8 @@ impl Pairs {
     }
 
     /// Writes TABLES and BLOCKS; returns the handle of the model space, which owns the entities.
-    fn tables(&mut self, [low, high]: [[f64; 2]; 2]) -> u32 {
+    fn tables(&mut self, drawing: &CutDrawing) -> u32 {
+        let [low, high] = drawing.bounds();
         self.section("TABLES");
         let table = self.table("VPORT", 1);
         self.record("VPORT", table, "AcDbViewportTableRecord", "*Active");
@@ -107,8 +109,11 @@ impl Pairs {
         }
         self.pair(0, "ENDTAB");
 
-        let table = self.table("LAYER", 1 + Layer::all().count());
-        let layers = Layer::all().map(|layer| (layer.name(), layer.colour_index()));
+        let layers: Vec<_> = drawing.layers().collect();
+        let table = self.table("LAYER", 1 + layers.len());
+        let layers = layers
+            .into_iter()
+            .map(|layer| (layer.name(), drawing.pen(layer).1));
         for (name, colour) in [("0", 7)].into_iter().chain(layers) {
             self.record("LAYER", table, "AcDbLayerTableRecord", name);
             self.pair(62, colour);
@@ -189,7 +194,9 @@ impl Pairs {
         let (kind, class) = match shape {
             Shape::Line(_) => ("LINE", "AcDbLine"),
             Shape::Circle { .. } => ("CIRCLE", "AcDbCircle"),
-            Shape::Polyline(_) | Shape::Polygon(_) => ("LWPOLYLINE", "AcDbPolyline"),
+            Shape::Polyline(_) | Shape::Polygon(_) | Shape::Contour(_) => {
+                ("LWPOLYLINE", "AcDbPolyline")
+            }
             Shape::Text(_) => ("TEXT", "AcDbText"),
         };
         self.object(kind, space, &["AcDbEntity"]);
@@ -204,16 +211,22 @@ impl Pairs {
                 self.point(10, *centre);
                 self.pair(40, radius);
             }
-            Shape::Polyline(points) | Shape::Polygon(points) => {
-                self.pair(90, points.len());
-                let closed = matches!(shape, Shape::Polygon(_));
-                self.pair(70, u8::from(closed));
-                for [x, y] in points {
-                    self.pair(10, x);
-                    self.pair(20, y);
-                }
-            }
+            Shape::Polyline(points) => self.vertices(false, points.iter().map(|p| (*p, 0.0))),
+            Shape::Polygon(points) => self.vertices(true, points.iter().map(|p| (*p, 0.0))),
+            Shape::Contour(vertices) => self.vertices(true, vertices.iter().copied()),
             Shape::Text(text) => self.text(text, class),
+        }
+    }
+
+    fn vertices(&mut self, closed: bool, vertices: impl ExactSizeIterator<Item = Vertex>) {
+        self.pair(90, vertices.len());
+        self.pair(70, u8::from(closed));
+        for ([x, y], bulge) in vertices {
+            self.pair(10, x);
+            self.pair(20, y);
+            if bulge != 0.0 {
+                self.pair(42, bulge);
+            }
         }
     }
 

@@ -1,21 +1,19 @@
 //! Closed contours around what is removed from a sheet: a slit of the kerf's width with the holes at its ends.
 //!
 //! A slit between two hinges is one contour. One that is open on the outline is a notch of the outline, which thereby stays
-//! one contour. Arcs are chords: the contours are polygons.
+//! one contour.
 
 use crate::cut_file::cut_lines::{CutLines, Slit};
+use design::geometry::bulged::Vertex;
 use design::geometry::polygon::{distance, edges, side};
-use std::f64::consts::TAU;
-
-/// Maximum distance of a chord from its arc (mm), a tenth of what a laser repeats.
-const CHORD: f64 = 0.002;
+use std::f64::consts::PI;
 
 /// The contours of a sheet (mm), counter-clockwise.
 pub struct Contours {
     /// One a slit between two hinges.
-    pub inner: Vec<Vec<[f64; 2]>>,
+    pub inner: Vec<Vec<Vertex>>,
     /// The outline with its notches.
-    pub outer: Vec<[f64; 2]>,
+    pub outer: Vec<Vertex>,
 }
 
 impl CutLines {
@@ -62,20 +60,20 @@ impl End {
         [dy.atan2(dx), (self.half_width / self.radius).asin()]
     }
 
-    /// Points on the hole from one flank of the slit around its back to the other, counter-clockwise.
-    fn around(&self) -> Vec<[f64; 2]> {
+    /// The arc on the hole from one flank of the slit around its back to the other, counter-clockwise.
+    fn around(&self) -> [Vertex; 3] {
         let [along, half] = self.mouth();
-        let span = TAU - 2.0 * half;
-        let largest = 2.0 * (1.0 - CHORD / self.radius).max(0.0).acos();
-        let chords = (span / largest).ceil().max(8.0) as usize;
-        let point = |i: usize| {
-            let (sin, cos) = (along + half + span * i as f64 / chords as f64).sin_cos();
-            [
-                self.at[0] + self.radius * cos,
-                self.at[1] + self.radius * sin,
-            ]
-        };
-        (0..=chords).map(point).collect()
+        let bulge = (0.25 * (PI - half)).tan();
+        [
+            (along + half, bulge),
+            (along + PI, bulge),
+            (along - half, 0.0),
+        ]
+        .map(|(angle, bulge)| {
+            let (sin, cos) = angle.sin_cos();
+            let [x, y] = self.at;
+            ([x + self.radius * cos, y + self.radius * sin], bulge)
+        })
     }
 
     /// Where the flanks cross the line through `p` and `q`, in the order of a walk around the sheet.
@@ -96,24 +94,29 @@ impl End {
 }
 
 /// A counter-clockwise outline with a notch for each open slit.
-fn notched(outline: &[[f64; 2]; 4], open: &[End]) -> Vec<[f64; 2]> {
+fn notched(outline: &[[f64; 2]; 4], open: &[End]) -> Vec<Vertex> {
     let sides: Vec<[[f64; 2]; 2]> = edges(outline).map(|(p, q)| [p, q]).collect();
-    let mut notches: Vec<Vec<(f64, Vec<[f64; 2]>)>> = vec![Vec::new(); sides.len()];
+    let mut notches: Vec<Vec<(f64, [Vertex; 5])>> = vec![Vec::new(); sides.len()];
     for end in open {
         // The side on whose line the slit ends.
         let off = |&[p, q]: &[[f64; 2]; 2]| (side((p, q), end.towards) / distance(p, q)).abs();
         let nearest = (0..sides.len()).min_by(|&i, &j| off(&sides[i]).total_cmp(&off(&sides[j])));
         let at = nearest.expect("an outline has sides");
         let [first, second] = end.on_edge(sides[at]);
-        let mut notch = vec![first];
         // Into the sheet, clockwise around the hole, and out.
-        notch.extend(end.around().into_iter().rev());
-        notch.push(second);
+        let [(from, bulge), (back, _), (to, _)] = end.around();
+        let notch = [
+            (first, 0.0),
+            (to, -bulge),
+            (back, -bulge),
+            (from, 0.0),
+            (second, 0.0),
+        ];
         notches[at].push((distance(sides[at][0], first), notch));
     }
     let mut contour = Vec::new();
     for ([corner, _], mut notches) in sides.into_iter().zip(notches) {
-        contour.push(corner);
+        contour.push((corner, 0.0));
         notches.sort_by(|a, b| a.0.total_cmp(&b.0));
         contour.extend(notches.into_iter().flat_map(|(_, notch)| notch));
     }
@@ -123,8 +126,8 @@ fn notched(outline: &[[f64; 2]; 4], open: &[End]) -> Vec<[f64; 2]> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use design::geometry::bulged::flattened;
     use design::geometry::polygon::area;
-    use std::f64::consts::PI;
 
     fn end(at: [f64; 2], towards: [f64; 2]) -> End {
         End {
@@ -148,7 +151,7 @@ mod tests {
         let slot: Vec<_> = ends.iter().flat_map(End::around).collect();
         let exact = 2.0 * removed(12.5);
         // Chords are inside of their arcs.
-        let ratio = area(&slot) / exact;
+        let ratio = area(&flattened(&slot, true)) / exact;
         assert!(1.0 - 2e-3 < ratio && ratio < 1.0, "{ratio}");
     }
 
@@ -162,7 +165,7 @@ mod tests {
         ];
         let contour = notched(&outline, &open);
         let exact = 1200.0 - 2.0 * removed(8.0) - removed(10.0);
-        let found = area(&contour);
+        let found = area(&flattened(&contour, true));
         assert!((found - exact).abs() < 0.05, "{found} {exact}");
     }
 }

@@ -1,6 +1,6 @@
 //! Machines and services: what their files hold, and what they can cut.
 
-use crate::cut_file::cut_drawing::{CutDrawing, Layer};
+use crate::cut_file::cut_drawing::{CutDrawing, Layer, Pen};
 use crate::cut_file::cut_lines::CutLines;
 use crate::cut_file::fabrication_error::FabricationError;
 use crate::cut_file::sheet_drawing::registration_marks;
@@ -48,6 +48,8 @@ pub struct Machine {
     pub services: bool,
     /// Whether marks are drawn.
     marks: bool,
+    /// The colours of cuts and of marks; `None`: each layer has its own.
+    colours: Option<[Pen; 2]>,
 }
 
 /// How a slit is drawn.
@@ -167,6 +169,7 @@ impl Machine {
         if self.marks {
             registration_marks(&mut drawing, self.over_run(cuts));
         }
+        drawing.pens = self.colours;
         Ok(drawing)
     }
 
@@ -253,9 +256,9 @@ fn slots(cuts: &CutLines, tool_kerf: f64) -> Result<CutDrawing, FabricationError
     let contours = cuts.contours(tool_kerf);
     let mut drawing = CutDrawing::default();
     for contour in contours.inner {
-        drawing.add(Layer::Cut, Shape::Polygon(contour));
+        drawing.add(Layer::Cut, Shape::Contour(contour));
     }
-    drawing.add(Layer::Outline, Shape::Polygon(contours.outer));
+    drawing.add(Layer::Outline, Shape::Contour(contours.outer));
     Ok(drawing)
 }
 

@@ -1,6 +1,6 @@
-//! SVG at 1:1, one user unit per millimetre, one group per layer.
+//! SVG at 1:1, one user unit per millimetre from the upper left corner of the page, one group per layer.
 
-use crate::cut_file::cut_drawing::{CutDrawing, Layer};
+use crate::cut_file::cut_drawing::CutDrawing;
 use crate::display::{document, group};
 
 /// Margin around the drawing (mm).
@@ -11,13 +11,14 @@ const LINE: f64 = 0.1;
 /// The file of a drawing, on a page around it.
 pub fn svg(drawing: &CutDrawing) -> String {
     let [low, high] = drawing.bounds();
-    let page = [low.map(|x| x - MARGIN), high.map(|x| x + MARGIN)];
-    let used = Layer::all().filter(|layer| drawing.on(*layer).next().is_some());
-    let groups = used.map(|layer| group(layer.name(), layer.rgb(), LINE, drawing.on(layer)));
-    document(
-        page,
-        page[1][0] - page[0][0],
-        "mm",
-        &groups.collect::<String>(),
-    )
+    let [width, height] = [0, 1].map(|axis| high[axis] - low[axis] + 2.0 * MARGIN);
+    // Some readers take the corner of the view for the origin.
+    let mut moved = drawing.clone();
+    moved.shift([MARGIN - low[0], -MARGIN - high[1]]);
+    let groups = moved.layers().map(|layer| {
+        let (colour, _) = moved.pen(layer);
+        group(layer.name(), colour, LINE, moved.on(layer))
+    });
+    let groups: String = groups.collect();
+    document([[0.0, -height], [width, 0.0]], width, "mm", &groups)
 }

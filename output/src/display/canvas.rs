@@ -2,6 +2,8 @@
 
 use crate::display::shape::{Anchor, Shape, Text, rectangle};
 use crate::display::style::{Colour, Style};
+use design::geometry::bulged::{Vertex, centre};
+use design::geometry::polygon::distance;
 use std::fmt::Write;
 
 /// Height of the capitals of DejaVu Sans, relative to the size of the font.
@@ -131,9 +133,30 @@ fn element(shape: &Shape, attributes: &str) -> String {
         ),
         Shape::Polygon(corners) => format!("polygon points=\"{}\"", points(corners)),
         Shape::Polyline(through) => format!("polyline points=\"{}\"", points(through)),
+        Shape::Contour(vertices) => format!("path d=\"{}\"", path_data(vertices)),
         Shape::Text(text) => return text_element(text, attributes),
     };
     format!("<{element} {attributes}/>\n")
+}
+
+/// Lines and arcs from vertex to vertex, back to the first.
+fn path_data(vertices: &[Vertex]) -> String {
+    let at = |[x, y]: [f64; 2]| format!("{},{}", number(x), number(-y));
+    let mut data = String::new();
+    for (i, &(from, bulge)) in vertices.iter().enumerate() {
+        let to = vertices[(i + 1) % vertices.len()].0;
+        if i == 0 {
+            data = format!("M{}", at(from));
+        }
+        data += &if bulge == 0.0 {
+            format!(" L{}", at(to))
+        } else {
+            let radius = number(distance(centre(from, to, bulge), from));
+            let (large, clockwise) = (u8::from(bulge.abs() > 1.0), u8::from(bulge < 0.0));
+            format!(" A{radius} {radius} 0 {large} {clockwise} {}", at(to))
+        };
+    }
+    data + " Z"
 }
 
 fn text_element(text: &Text, attributes: &str) -> String {
@@ -170,7 +193,10 @@ fn attributes(style: &Style, shape: &Shape) -> String {
         add("stroke-opacity", &number(style.stroke_opacity));
     }
     // A closed line has ends only if it is dashed. Lines thinner than a pixel would show them.
-    let closed = matches!(shape, Shape::Polygon(_) | Shape::Circle { .. });
+    let closed = matches!(
+        shape,
+        Shape::Polygon(_) | Shape::Contour(_) | Shape::Circle { .. }
+    );
     if style.round {
         if !closed || style.dash.is_some() {
             add("stroke-linecap", "round");

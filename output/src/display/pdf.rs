@@ -2,6 +2,7 @@
 
 use crate::display::shape::{Anchor, Shape, Text};
 use crate::display::style::{Colour, Style};
+use design::geometry::bulged::flattened;
 use pdf_writer::{Content, Finish, Name, Pdf, Rect, Ref, Str};
 
 /// Points per mm.
@@ -118,6 +119,10 @@ fn outline(content: &mut Content, shape: &Shape) {
         Shape::Polyline(points) => trace(content, points),
         Shape::Polygon(corners) => {
             trace(content, corners);
+            content.close_path();
+        }
+        Shape::Contour(vertices) => {
+            trace(content, &flattened(vertices, true));
             content.close_path();
         }
         Shape::Circle { centre, radius } => circle(content, *centre, *radius),

@@ -1,5 +1,6 @@
 //! Shapes; lengths in mm, y upwards.
 
+use design::geometry::bulged::{Vertex, flattened};
 use design::geometry::polygon::{bounds, distance, edges};
 use std::f64::consts::TAU;
 
@@ -19,6 +20,8 @@ pub enum Shape {
     },
     /// A closed polygon.
     Polygon(Vec<[f64; 2]>),
+    /// A closed line of segments and arcs.
+    Contour(Vec<Vertex>),
     /// A text of one line.
     Text(Text),
 }
@@ -107,6 +110,7 @@ impl Shape {
             Self::Polyline(points) => [at(points.first()), at(points.last())],
             Self::Circle { centre, .. } => [*centre; 2],
             Self::Polygon(corners) => [at(corners.first()); 2],
+            Self::Contour(vertices) => [at(vertices.first().map(|vertex| &vertex.0)); 2],
             Self::Text(text) => [text.at; 2],
         }
     }
@@ -121,6 +125,7 @@ impl Shape {
                 .sum(),
             Self::Circle { radius, .. } => TAU * radius,
             Self::Polygon(corners) => edges(corners).map(|(p, q)| distance(p, q)).sum(),
+            Self::Contour(vertices) => Self::Polygon(flattened(vertices, true)).length(),
             Self::Text(_) => 0.0,
         }
     }
@@ -133,6 +138,7 @@ impl Shape {
                 [-radius, *radius].map(|r| centre.map(|x| x + r)).to_vec()
             }
             Self::Polyline(points) | Self::Polygon(points) => points.clone(),
+            Self::Contour(vertices) => flattened(vertices, true),
             Self::Text(text) => text.corners().to_vec(),
         }
     }
@@ -149,6 +155,7 @@ impl Shape {
             Self::Line(ends) => ends.iter_mut().for_each(shift),
             Self::Circle { centre, .. } => shift(centre),
             Self::Polyline(points) | Self::Polygon(points) => points.iter_mut().for_each(shift),
+            Self::Contour(vertices) => vertices.iter_mut().for_each(|vertex| shift(&mut vertex.0)),
             Self::Text(text) => shift(&mut text.at),
         }
     }

@@ -361,7 +361,14 @@ fn departure(step: &LoadStep, peaks: &str, before: &str, place: &str) -> Option<
 }
 
 fn target(input: &RuleInput) -> Option<Warning> {
-    input.scene.target.crossing.map(|[x, y]| {
+    let target = &input.scene.target;
+    if target.gap > 0.0 {
+        return Some(Concern::TargetOpen.of_sheet(format!(
+            "the target outline is open in its drawing: a straight line of {:.2} mm was added, as viewers fill it",
+            target.gap
+        )));
+    }
+    target.crossing.map(|[x, y]| {
         Concern::TargetCrosses.of_sheet(format!(
             "the target outline crosses or touches itself near ({x:.1}, {y:.1}) mm: its inside is not defined; order \
              its vertices around the outline"

@@ -143,9 +143,10 @@ fn the_handles_of_the_dxf_are_unique_and_owned() {
     for owner in owners.map(|(_, value)| hex(value)) {
         assert!(owner == 0 || unique.contains(&owner), "{owner:X}");
     }
-    for layer in "HOLES CUT JOINT OUTLINE PANELS REGISTRATION ANNOTATION".split(' ') {
-        assert!(body.contains(&("2", layer)), "{layer}");
-    }
+    let is_declared = |layer: &&str| body.contains(&("2", *layer));
+    let all = Layer::all().map(Layer::name).filter(is_declared);
+    let used = ["HOLES", "CUT", "OUTLINE", "REGISTRATION", "ANNOTATION"];
+    assert_eq!(all.collect::<Vec<_>>(), used);
 }
 
 /// Points and circles of every group of an SVG, in mm.
@@ -178,6 +179,7 @@ fn the_svg_holds_the_simulated_sheet_at_one_to_one() {
     for (sheet, cuts, drawing) in irregular_sheets() {
         let drawing = drawing.annotated();
         let paths = svg_paths(&svg(&drawing));
+        assert!(svg(&drawing).contains("viewBox=\"0 0 "));
         // The page begins 5 mm to the left of the drawing and above it, and y points down.
         let [low, high] = drawing.bounds();
         let in_sheet = |[x, y]: [f64; 2]| [x + low[0] - 5.0, high[1] + 5.0 - y];
@@ -287,7 +289,7 @@ fn the_files_of_every_machine_leave_the_solved_ligaments() {
             assert_eq!(found, drawn, "{}", machine.name);
             match &*machine.name {
                 "laser-service" => contours_leave_the_ligaments(&file, &cuts),
-                "lightburn" => {
+                "lightburn" | "ponoko" => {
                     // A path of the tool half a kerf inside the hole, and slits half a kerf from their flanks.
                     for (_, centre, radius) in &file.circles {
                         let mut holes = cuts.holes.iter();
@@ -316,6 +318,42 @@ fn the_files_of_every_machine_leave_the_solved_ligaments() {
     }
 }
 
+/// Ponoko cuts blue lines and engraves red ones; a layer has one colour, in both files.
+#[test]
+fn cuts_and_marks_have_the_colours_of_the_machine() {
+    let machines = Machines::shipped();
+    let named = |name: &str| machines.machine.iter().find(|it| it.name == name).unwrap();
+    let (_, cuts, _) = irregular_sheets().next().unwrap();
+    for (machine, strokes, indices) in [
+        ("ponoko", &["#0000ff"; 3][..], &["5"; 3][..]),
+        (
+            "lightburn",
+            &["#0000ff", "#ff0000", "#000000"][..],
+            &["5", "1", "7"][..],
+        ),
+    ] {
+        let drawing = named(machine).drawing(&cuts).unwrap();
+        let file = svg(&drawing);
+        let groups = file.split("stroke=\"").skip(1);
+        let found: Vec<&str> = groups.map(|rest| &rest[..7]).collect();
+        assert_eq!(found, strokes, "{machine}");
+        let file = dxf(&drawing);
+        let layers = file.split("AcDbLayerTableRecord").skip(2);
+        let found: Vec<&str> = layers
+            .map(|record| {
+                record
+                    .split(" 62\n")
+                    .nth(1)
+                    .unwrap()
+                    .lines()
+                    .next()
+                    .unwrap()
+            })
+            .collect();
+        assert_eq!(found, indices, "{machine}");
+    }
+}
+
 /// Nothing but closed contours, whose edges are the edges of the finished sheet.
 fn contours_leave_the_ligaments(file: &DxfContents, cuts: &CutLines) {
     assert!(file.lines.is_empty() && file.circles.is_empty() && file.texts.is_empty());
@@ -328,7 +366,7 @@ fn contours_leave_the_ligaments(file: &DxfContents, cuts: &CutLines) {
         let from_centre = |point: [f64; 2]| length([point, hole.centre]);
         let on_hole = |points: &&&Vec<[f64; 2]>| {
             let near = |point: &&[f64; 2]| (from_centre(**point) - hole.radius).abs() < 1e-9;
-            points.iter().filter(near).count() > 6
+            points.iter().filter(near).count() > 100
         };
         assert_eq!(contours.iter().filter(on_hole).count(), 1, "hinge {hinge}");
         // From the tip to all contours but the hole, along the material.

@@ -3,7 +3,9 @@
 Usage: read_dxf.py FILE
 """
 
+import cmath
 import json
+import math
 import sys
 
 import ezdxf
@@ -11,6 +13,18 @@ import ezdxf
 
 def plane(point):
     return [point.x, point.y]
+
+
+def flattened(vertices):
+    """The vertices of a closed polyline, with points on its arcs."""
+    for (x, y, bulge), (u, v, _) in zip(vertices, vertices[1:] + vertices[:1]):
+        yield [x, y]
+        if bulge:
+            p, q = complex(x, y), complex(u, v)
+            centre = (p + q) / 2 + 1j * (q - p) * (1 - bulge**2) / (4 * bulge)
+            for k in range(1, 64):
+                on_arc = centre + (p - centre) * cmath.exp(4j * math.atan(bulge) * k / 64)
+                yield [on_arc.real, on_arc.imag]
 
 
 drawing = ezdxf.readfile(sys.argv[1])
@@ -31,7 +45,7 @@ for entity in drawing.modelspace():
     elif kind == "CIRCLE":
         found["circles"].append([layer, plane(entity.dxf.center), entity.dxf.radius])
     elif kind == "LWPOLYLINE":
-        corners = list(entity.get_points("xy"))
+        corners = list(flattened(list(entity.get_points("xyb"))))
         found["polylines"].append([layer, entity.closed, corners])
     elif kind == "TEXT":
         found["texts"].append(layer)

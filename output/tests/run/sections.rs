@@ -88,4 +88,16 @@ fn a_target_is_drawn_in_an_svg_file() {
         let (x, y) = ((x - 700.0).abs() / 900.0, (y - 550.0).abs() / 450.0);
         assert_close(x.max(y), 1.0, 1e-9);
     }
+    std::fs::write(folder.path().join("outline.svg"), svg.replace(" Z", "")).unwrap();
+    let open = read(folder.path(), &with(&[(TARGET, drawn)]));
+    assert_close(open.target.gap, 900.0, 1e-9);
+
+    // A triangle of 90 x 60 cm.
+    let dxf = "0 SECTION 2 HEADER 9 $INSUNITS 70 5 0 ENDSEC 0 SECTION 2 ENTITIES 0 LWPOLYLINE 70 1 \
+               10 0 20 0 10 90 20 0 10 90 20 60 0 ENDSEC 0 EOF";
+    std::fs::write(folder.path().join("outline.dxf"), dxf.replace(' ', "\n")).unwrap();
+    let drawn = "[target.svg]\nfile = \"outline.dxf#1\"\ncentre = [700.0, 550.0]";
+    let scene = read(folder.path(), &with(&[(TARGET, drawn)]));
+    let length = 900.0 + 600.0 + f64::hypot(900.0, 600.0);
+    assert_close(scene.target.length, length, 1e-9);
 }

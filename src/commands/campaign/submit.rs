@@ -21,7 +21,7 @@ use support::text_file;
 pub struct SubmitCommand {
     #[command(flatten)]
     campaign: CampaignArgs,
-    /// Number of tasks; each solves every N-th ray
+    /// Number of tasks, at most one a ray; each solves every N-th ray
     #[arg(long, value_name = "N", value_parser = count::<NonZeroUsize>)]
     shards: NonZeroUsize,
     /// Time limit of a task (minutes)
@@ -41,7 +41,9 @@ pub struct SubmitCommand {
 impl SubmitCommand {
     pub fn run(&self) -> Result<()> {
         let (campaign, folder) = (self.campaign.load()?, self.campaign.folder());
-        let script = self.script(&folder)?;
+        // Further tasks would have no ray.
+        let tasks = self.shards.get().min(campaign.size());
+        let script = self.script(&folder, tasks)?;
         if self.dry_run {
             print!("{script}");
             return Ok(());
@@ -53,7 +55,6 @@ impl SubmitCommand {
             println!("nothing is left to solve: run `kirigami campaign collect`");
             return Ok(());
         }
-        let tasks = self.shards.get();
         fe_driver::prepare(&campaign, &folder, &versions)?;
         let submission = submit_array(&folder, &script, tasks)?;
         println!(
@@ -69,7 +70,7 @@ impl SubmitCommand {
         Ok(())
     }
 
-    fn script(&self, folder: &Path) -> Result<String> {
+    fn script(&self, folder: &Path, tasks: usize) -> Result<String> {
         let template = match &self.template {
             None => SLURM.to_owned(),
             Some(path) => {
@@ -82,7 +83,7 @@ impl SubmitCommand {
             campaign: self.campaign.campaign.clone(),
             folder: folder.to_owned(),
             logs: absolute(slurm_folder(folder))?,
-            shards: self.shards.get(),
+            shards: tasks,
             cores: self.jobs.get(),
             minutes: self.time,
         };

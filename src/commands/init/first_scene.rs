@@ -14,6 +14,7 @@ use crate::commands::init::edited::{heading, scale, set};
 use crate::commands::init::template::Template;
 use crate::commands::input_file;
 use anyhow::{Context, Result};
+use design::geometry::drawn_outline::numbered;
 use design::scene::{CuttingConfig, Paper, place_drawing, rounded};
 use hinge::Regime;
 use std::path::Path;
@@ -230,7 +231,7 @@ impl FirstScene {
 
 /// The table `[target]` of a drawn outline, centred at `centre` (mm) and the given area (mm^2).
 fn placed(drawing: &Path, centre: [f64; 2], area: f64) -> Result<Item> {
-    input_file::require(drawing, "--target")?;
+    input_file::require(&numbered(drawing).0, "--target")?;
     let file = std::path::absolute(drawing)?;
     let (centre, height) = place_drawing(&file, centre, area)?;
     let mut svg = Table::new();

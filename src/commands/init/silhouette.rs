@@ -99,7 +99,7 @@ fn write_target(document: &mut DocumentMut, target: &TargetShape) {
         set(&mut document["title"], &*name);
         let svg = &mut document["target"]["svg"];
         svg["centre"] = value(numbers(centre));
-        svg["height"] = value(*height);
+        set(&mut svg["height"], height.unwrap_or_default());
         svg["rotation_deg"] = value(*rotation_deg);
     }
 }

@@ -290,7 +290,7 @@ function begin(drawing = null) {
   if ((width === null) !== (height === null)) return refuse("Give both width and height of the sheet, or neither.");
   refuse("");
   const name = byId("new-name");
-  const named = drawing && name.value === name.defaultValue ? drawing.name.replace(/\.svg$/i, "") : name.value;
+  const named = drawing && name.value === name.defaultValue ? drawing.name.replace(/\.(svg|dxf)$/i, "") : name.value;
   ask({ do: "new", name: named, material: byId("new-material").value || null, thickness, size: width && [width, height], drawing });
 }
 

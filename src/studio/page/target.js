@@ -53,10 +53,10 @@ function writeTarget(box) {
     button(line, "Fewer points", () => morePoints(0.5), "Half as many points");
     write(box, "p", `${target.points.length} points. Drag them, or Tab to one and move it with the arrows (Shift: by 10 mm).`, "note");
   }
-  const label = write(box, "label", "Drawing (SVG)");
-  label.title = "An SVG file with one closed path";
+  const label = write(box, "label", "Drawing (SVG, DXF)");
+  label.title = "An SVG or DXF file with one closed outline";
   const file = document.createElement("input");
-  Object.assign(file, { type: "file", accept: ".svg,image/svg+xml", id: "drawing" });
+  Object.assign(file, { type: "file", accept: ".svg,.dxf,image/svg+xml", id: "drawing" });
   file.addEventListener("change", () => takeDrawing(file.files[0]));
   label.appendChild(file);
   write(box, "p", "Or drop one anywhere: one closed path, to which the sheet is fitted.", "note");
@@ -114,7 +114,7 @@ function handles() {
   const angle = (target.rotation_deg ?? 0) / DEG;
   const [cos, sin] = [Math.cos(angle), Math.sin(angle)];
   const place = ([a, b]) => [x + cos * a - sin * b, y + sin * a + cos * b];
-  if (kind === "svg") {
+  if (kind === "svg" && target.height) {
     const move = (to) => { target.height = Math.max(1, 2 * Math.abs(cos * (to[1] - y) - sin * (to[0] - x))); };
     list.push({ at: place([0, target.height / 2]), move });
   }
