@@ -47,7 +47,7 @@ connect({
   },
 
   sheet({ file: opened, command }) {
-    byId("terminal").textContent = `In the terminal: ${command}`;
+    byId("terminal").textContent = atHome(command);
     if (opened !== file) openSheet(opened);
   },
 
