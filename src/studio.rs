@@ -11,6 +11,7 @@ mod draft;
 pub(crate) mod engine;
 pub(crate) mod event;
 mod everyday;
+mod for_service;
 #[cfg(unix)]
 mod http;
 mod key_meanings;

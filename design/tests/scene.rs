@@ -165,6 +165,19 @@ fn a_changed_scene_is_the_one_that_would_be_read() {
     assert_eq!(refused, 2);
 }
 
+/// A search drives widths so near to a bound that they round to it.
+#[test]
+fn a_scene_starts_at_widths_on_their_bounds() {
+    let scene = Scene::read(&shipped("a4-plate-service.toml")).unwrap();
+    let mut design = scene.start();
+    design.omega[0] = 60.0;
+    design.omega[1] = -60.0;
+    let moved = scene.changed(scene.starting_at(&design)).unwrap();
+    let [narrowest, widest] = scene.config.ligament.range;
+    let start = moved.config.start.w_lig.unwrap();
+    assert!((start[0] - widest).abs() < 1e-8 && (start[1] - narrowest).abs() < 1e-8);
+}
+
 #[test]
 fn a_scene_starts_at_a_design_from_any_folder() {
     let path = shipped("a4-polyester.toml");

@@ -18,13 +18,14 @@ use design::scene::design_run::Designed;
 
 const TEMPLATE: &str = include_str!("run_page/page.html");
 const STYLE: &str = include_str!("run_page/page.css");
-const SCRIPTS: [&str; 7] = [
+const SCRIPTS: [&str; 8] = [
     include_str!("run_page/data.js"),
     include_str!("run_page/colours.js"),
     include_str!("run_page/labels.js"),
     include_str!("run_page/sheet.js"),
     include_str!("run_page/charts.js"),
     include_str!("run_page/hinge.js"),
+    include_str!("run_page/paper.js"),
     include_str!("run_page/view.js"),
 ];
 const OF_RUN: &str = include_str!("run_page/page.js");

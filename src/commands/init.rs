@@ -23,7 +23,7 @@ use design::scene::{Scene, Stock};
 use hinge::{Regime, SheetMaterial};
 use std::path::{Path, PathBuf};
 use support::text_file;
-use surrogate::Surrogate;
+use surrogate::{Card, Surrogate};
 use toml_edit::{Array, ArrayOfTables, DocumentMut};
 
 /// Create a folder with material, campaign, training and scene for a sheet of your own
@@ -37,35 +37,35 @@ use toml_edit::{Array, ArrayOfTables, DocumentMut};
 /// kirigami init first --stock a4 --margin 5;
 /// kirigami init film --thickness 0.1;
 /// kirigami init leaf --thickness 2 --size 300x300 --target configs/targets/leaf.svg
-#[derive(Args)]
+#[derive(Args, Default)]
 pub struct InitCommand {
     /// Folder to create
     #[arg(value_name = "FOLDER")]
-    folder: PathBuf,
+    pub(crate) folder: PathBuf,
     /// Sheet material (TOML) [default: configs/materials/polypropylene-3mm.toml, below 2 mm of thickness pet-0.5mm.toml]
     #[arg(long, value_name = "FILE")]
-    material: Option<PathBuf>,
+    pub(crate) material: Option<PathBuf>,
     /// Thickness of the sheet (mm) [default: the thickness in the material file]
     #[arg(long, value_name = "MM")]
-    thickness: Option<f64>,
+    pub(crate) thickness: Option<f64>,
     /// Width and height of the sheet (mm) [default: 210x297 for plates up to 3 mm and films up to 0.1 mm, larger in
     /// proportion to the thickness]
     #[arg(long, value_name = "WIDTHxHEIGHT", value_parser = size)]
-    size: Option<[f64; 2]>,
+    pub(crate) size: Option<[f64; 2]>,
     /// The stock that the sheet is cut from: a5 to a0, letter, tabloid, or width and height (mm). The sheet is smaller by twice the
     /// margin, the over-run and half a kerf, so that its cuts fit
     #[arg(long, value_name = "STOCK", value_parser = stock, conflicts_with = "size")]
-    stock: Option<Stock>,
+    pub(crate) stock: Option<Stock>,
     /// Border of the stock that the machine cannot cut (mm) [default: 0]
     #[arg(long, value_name = "MM", value_parser = length, requires = "stock")]
-    margin: Option<f64>,
+    pub(crate) margin: Option<f64>,
     /// Outline that the sheet opens onto (SVG or DXF; FILE#2 is the second largest of several), in any position and of any size: outline,
     /// cuts and pulls of the sheet are fitted to it [default: the opened sheet's rectangle]
     #[arg(long, value_name = "FILE")]
-    target: Option<PathBuf>,
+    pub(crate) target: Option<PathBuf>,
     /// Weights for this material [default: those for it among the shipped ones]
     #[arg(long, value_name = "FILE")]
-    weights: Option<PathBuf>,
+    pub(crate) weights: Option<PathBuf>,
 }
 
 /// The material of a plate and of a film unless another one is given.
@@ -83,25 +83,6 @@ pub(crate) const WEIGHTS: [&str; 7] = [
 ];
 
 impl InitCommand {
-    /// A new sheet of a material in a thickness (mm) and a size (mm); without them the usual ones.
-    pub(crate) fn new_sheet(
-        folder: PathBuf,
-        material: Option<PathBuf>,
-        thickness: Option<f64>,
-        size: Option<[f64; 2]>,
-    ) -> Self {
-        Self {
-            folder,
-            material,
-            thickness,
-            size,
-            stock: None,
-            margin: None,
-            target: None,
-            weights: None,
-        }
-    }
-
     pub(crate) fn run(&self) -> Result<()> {
         println!("{}", self.create()?);
         Ok(())
@@ -207,9 +188,9 @@ impl InitCommand {
         };
         let mut fitting = Vec::new();
         for file in candidates {
-            let surrogate = Surrogate::load(&file)?;
-            let card = surrogate.card();
+            let card = Card::of(&file)?;
             if card.material_hash == Some(material.law_hash()) {
+                let surrogate = Surrogate::load(&file)?;
                 let regime = material.regime(card.domain.w_lig[1]);
                 fitting.push(Weights {
                     file: std::path::absolute(file)?,

@@ -7,6 +7,7 @@
 //! | `design-N/` | the run folders of the searches, from 1; the first one of an opened run is its copy |
 
 use crate::commands::init::InitCommand;
+use crate::studio::for_service::for_service;
 use crate::studio::request::{Drawing, NewSheet};
 use crate::ui::output_file;
 use anyhow::{Context, Result, ensure};
@@ -52,7 +53,8 @@ impl Project {
             &path.with_extension("")
         };
         let name = named.file_name().unwrap_or_default().to_string_lossy();
-        let project = Self::create(projects, &name)?;
+        let project = Self::named(&name, projects)?;
+        output_file::create_folder(&project.folder)?;
         if path.is_dir() {
             copy_run(path, &project.folder.join(project.next_run()))?;
         }
@@ -60,22 +62,40 @@ impl Project {
         Ok((project, scene))
     }
 
-    /// A new sheet, in a new folder below `projects`.
-    pub fn begin(sheet: &NewSheet, projects: &Path) -> Result<(Self, Scene)> {
-        let folder = free_folder(projects, &sheet.name)?;
-        let (material, size) = (sheet.material.clone(), sheet.size);
-        InitCommand::new_sheet(folder.clone(), material, sheet.thickness, size).create()?;
-        let project = Self { folder };
-        let mut config = Scene::read(&project.scene_file())?.config;
-        config.title.clone_from(&sheet.name);
-        let scene = project.write(config)?;
-        Ok((project, scene))
+    /// The folder of a new sheet below `projects`, which does not exist yet.
+    pub fn named(name: &str, projects: &Path) -> Result<Self> {
+        let folder = free_folder(projects, name)?;
+        Ok(Self { folder })
     }
 
-    fn create(projects: &Path, name: &str) -> Result<Self> {
-        let folder = free_folder(projects, name)?;
-        output_file::create_folder(&folder)?;
-        Ok(Self { folder })
+    /// Removes the folder of a sheet that was refused.
+    pub fn remove(&self) {
+        // The error that is reported is the refusal.
+        let _ = std::fs::remove_dir_all(&self.folder);
+    }
+
+    /// Writes a new sheet.
+    pub fn begin(&self, sheet: &NewSheet) -> Result<Scene> {
+        InitCommand {
+            folder: self.folder.clone(),
+            material: sheet.material.clone(),
+            thickness: sheet.thickness,
+            size: sheet.size.filter(|_| sheet.stock.is_none()),
+            stock: sheet.stock,
+            margin: sheet.margin,
+            ..InitCommand::default()
+        }
+        .create()?;
+        let first = Scene::read(&self.scene_file())?;
+        let mut config = first.config;
+        config.title.clone_from(&sheet.name);
+        if let Some(kerf) = sheet.kerf {
+            config.process.kerf = kerf;
+        }
+        if let Some(service) = &sheet.service {
+            for_service(&mut config, service, first.material.thickness)?;
+        }
+        self.write(config)
     }
 
     /// The scene of the project.

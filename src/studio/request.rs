@@ -1,6 +1,6 @@
 //! What a page asks of the engine.
 
-use design::scene::{Level, SceneConfig};
+use design::scene::{Level, SceneConfig, Stock};
 use serde::Deserialize;
 use std::path::PathBuf;
 
@@ -53,8 +53,16 @@ pub(crate) struct NewSheet {
     pub material: Option<PathBuf>,
     /// Thickness (mm).
     pub thickness: Option<f64>,
-    /// Width and height (mm).
+    /// Width and height (mm), unless there is a stock.
     pub size: Option<[f64; 2]>,
+    /// The stock that it is cut from, and its border that cannot be cut (mm).
+    pub stock: Option<Stock>,
+    /// See `stock`.
+    pub margin: Option<f64>,
+    /// Width that the tool removes (mm).
+    pub kerf: Option<f64>,
+    /// The service that cuts it.
+    pub service: Option<String>,
     /// What it opens onto, instead of the opened rectangle.
     pub drawing: Option<Drawing>,
 }

@@ -8,7 +8,7 @@ use crate::studio::event::{Event, Kind};
 use crate::studio::everyday::{Everyday, Listener, Resting, Shown, refusal, run_name};
 use crate::studio::panels::with_panels;
 use crate::studio::project::Project;
-use crate::studio::request::{Change, Drawing, Files, Request};
+use crate::studio::request::{Change, Drawing, Files, NewSheet, Request};
 use crate::studio::run_listing::files_of_run;
 use crate::studio::shop::is_example;
 use crate::ui::exit::message;
@@ -24,9 +24,9 @@ use design::scene::design_run::inverse_design;
 use design::scene::{Scene, SceneConfig, place_drawing};
 use output::run_page::PageData;
 use serde::Serialize;
-use serde_json::json;
+use serde_json::{Value, json};
 use std::collections::BTreeMap;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Instant;
@@ -142,13 +142,7 @@ impl Session {
 
     fn answer(&mut self, request: Request) -> Result<()> {
         match request {
-            Request::New(sheet) => {
-                let (project, scene) = Project::begin(&sheet, &self.projects)?;
-                self.open(project, scene);
-                if let Some(drawing) = &sheet.drawing {
-                    self.drawing(drawing)?;
-                }
-            }
+            Request::New(sheet) => self.begin(&sheet)?,
             Request::Open { scene } => {
                 ensure!(is_example(&scene), "{} is no example", scene.display());
                 let (project, scene) = Project::open(&scene, &self.projects)?;
@@ -172,6 +166,31 @@ impl Session {
             Request::Write(files) => self.write(&files)?,
         }
         Ok(())
+    }
+
+    /// Begins a new sheet; the one that is shown stays if it is refused.
+    fn begin(&mut self, sheet: &NewSheet) -> Result<()> {
+        let project = Project::named(&sheet.name, &self.projects)?;
+        let begun = self.new_sheet(&project, sheet);
+        if begun.is_err() {
+            project.remove();
+        }
+        let (scene, fit) = begun?;
+        self.open(project, scene);
+        if let Some(fit) = fit {
+            self.tell(Kind::Fit, &fit);
+        }
+        Ok(())
+    }
+
+    /// A new sheet, and what is said of its fit if it is for a drawing.
+    fn new_sheet(&self, project: &Project, sheet: &NewSheet) -> Result<(Scene, Option<Value>)> {
+        let scene = project.begin(sheet)?;
+        let Some(drawing) = &sheet.drawing else {
+            return Ok((scene, None));
+        };
+        let (scene, says) = self.fitted(project, &scene, drawing)?;
+        Ok((scene, Some(says)))
     }
 
     /// Writes the scene, and lets the everyday level be computed.
@@ -226,39 +245,29 @@ impl Session {
     }
 
     fn drawing(&mut self, drawing: &Drawing) -> Result<()> {
-        self.tell(Kind::Working, &"fit");
-        let project = &self.opened()?.project;
-        let file = project.keep_drawing(drawing)?;
-        let path = project.folder.join(&file).display().to_string();
-        // A person knows the drawing by the name that it had.
-        let named = |error| anyhow!(message(&error).replace(&path, &drawing.name));
-        self.fit(file).map_err(named)
-    }
-
-    /// Fits the sheet to a drawing.
-    fn fit(&mut self, file: PathBuf) -> Result<()> {
-        let sheet = self.opened()?;
-        let target = &sheet.scene.target;
-        let path = sheet.project.folder.join(&file);
-        let (centre, height) = place_drawing(&path, target.mean(), target.area())?;
-        let target = TargetShape::Svg {
-            file,
-            centre,
-            height: Some(height),
-            rotation_deg: 0.0,
-        };
-        let config = SceneConfig {
-            target,
-            ..sheet.scene.config.clone()
-        };
-        let drawn = sheet.scene.changed(config)?;
-        let fit = fitted(&drawn)?;
-        let says = expected(&fit);
-        let fitted = self.show(drawn.changed(fit.config)?)?;
-        let says = json!({ "target": fitted.scene.config.target, "says": says });
+        let Opened { project, scene, .. } = self.opened()?;
+        let (scene, says) = self.fitted(project, scene, drawing)?;
+        self.show(scene)?;
         self.tell(Kind::Fit, &says);
         self.tell_scene();
         self.draft()
+    }
+
+    /// A sheet that is fitted to a drawing, and what is said of it.
+    fn fitted(
+        &self,
+        project: &Project,
+        scene: &Scene,
+        drawing: &Drawing,
+    ) -> Result<(Scene, Value)> {
+        self.tell(Kind::Working, &"fit");
+        let file = project.keep_drawing(drawing)?;
+        let path = project.folder.join(&file);
+        let fitted = fitted_to(scene, file, &path);
+        // A person knows the drawing by the name that it had.
+        fitted.map_err(|error| {
+            anyhow!(message(&error).replace(&*path.to_string_lossy(), &drawing.name))
+        })
     }
 
     /// Measures the levels of the sheet that is shown.
@@ -495,6 +504,28 @@ impl Session {
             );
         }
     }
+}
+
+/// A sheet that is fitted to the drawing in a file of its folder, at a path.
+fn fitted_to(scene: &Scene, file: PathBuf, path: &Path) -> Result<(Scene, Value)> {
+    let target = &scene.target;
+    let (centre, height) = place_drawing(path, target.mean(), target.area())?;
+    let target = TargetShape::Svg {
+        file,
+        centre,
+        height: Some(height),
+        rotation_deg: 0.0,
+    };
+    let config = SceneConfig {
+        target,
+        ..scene.config.clone()
+    };
+    let drawn = scene.changed(config)?;
+    let fit = fitted(&drawn)?;
+    let says = expected(&fit);
+    let scene = drawn.changed(fit.config)?;
+    let says = json!({ "target": scene.config.target, "says": says });
+    Ok((scene, says))
 }
 
 const NO_SHEET: &str = "there is no sheet yet: begin one";

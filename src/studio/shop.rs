@@ -8,27 +8,32 @@ use design::scene::Level;
 use hinge::SheetMaterial;
 use output::cut_file::Machines;
 use serde::Serialize;
+use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use support::text_file;
-use surrogate::Surrogate;
+use surrogate::Card;
 
 const MATERIALS: &str = "configs/materials";
 
-/// Scenes that a page offers to open, what they are, and what they become.
-const EXAMPLES: [[&str; 3]; 2] = [
+/// Finished sheets that a page offers to open, what they are, and what they become. Their pictures are next to them.
+const EXAMPLES: [[&str; 3]; 3] = [
     [
-        "configs/scenes/a4-plate-service.toml",
-        "Service plate",
-        "twelve panels of polypropylene, as a laser service cuts them, hang and open by 25 degrees",
+        "configs/examples/heart.toml",
+        "Heart",
+        "an A4 plate of polypropylene for a laser service becomes a heart, to 5 mm; two boards hold it flat",
     ],
     [
-        "configs/scenes/pet-7x7.toml",
+        "configs/examples/service-plate.toml",
+        "Service plate",
+        "an A4 plate of polypropylene for a laser service hangs, and a pull opens its twelve panels",
+    ],
+    [
+        "configs/examples/disc.toml",
         "Disc",
-        "a square of 49 panels of polyester film, which a search makes open into a disc",
+        "49 panels of polyester film, a square of 4.2 m, become a disc",
     ],
 ];
-const HEART: &str = "configs/targets/heart.svg";
 
 /// What a page offers.
 #[derive(Serialize)]
@@ -36,9 +41,10 @@ pub(super) struct Shop {
     materials: Vec<Offered>,
     /// Names and what they are.
     machines: Vec<[String; 2]>,
-    examples: Vec<[&'static str; 3]>,
-    /// A drawing to begin with.
-    heart: Option<String>,
+    /// Names of services that cut.
+    services: Vec<String>,
+    /// Finished sheets, with pictures of the flat and the opened sheet (SVG).
+    examples: Vec<Value>,
     /// Names and what they are; those that a search of the studio can have.
     levels: Vec<[&'static str; 2]>,
     keys: BTreeMap<String, String>,
@@ -61,25 +67,28 @@ struct Offered {
 impl Shop {
     /// What the shipped files offer, in the working folder.
     pub fn open() -> Result<Self> {
-        let machines = Machines::shipped().machine;
+        let Machines { machine, service } = Machines::shipped();
         let mut materials = Vec::new();
         for weights in WEIGHTS
             .iter()
             .map(Path::new)
             .filter(|weights| weights.is_file())
         {
-            materials.extend(offered(&Surrogate::load(weights)?)?);
+            materials.extend(offered(&Card::of(weights)?)?);
         }
         Ok(Self {
             materials,
-            machines: machines
-                .into_iter()
+            machines: (machine.into_iter())
                 .map(|machine| [machine.name, machine.says])
                 .collect(),
+            services: service.into_iter().map(|service| service.name).collect(),
             examples: (EXAMPLES.into_iter())
-                .filter(|[file, ..]| is_example(Path::new(file)))
+                .filter(|[scene, ..]| is_example(Path::new(scene)))
+                .map(|[scene, title, becomes]| {
+                    let picture = text_file::read(&Path::new(scene).with_extension("svg")).ok();
+                    json!({ "scene": scene, "title": title, "becomes": becomes, "picture": picture })
+                })
                 .collect(),
-            heart: text_file::read(Path::new(HEART)).ok(),
             levels: (Level::ALL.into_iter())
                 .filter(|level| *level != Level::Final)
                 .map(|level| [level.name(), level.hinges()])
@@ -96,8 +105,7 @@ pub(super) fn is_example(file: &Path) -> bool {
 }
 
 /// The material of weights, if its file is among the shipped ones.
-fn offered(surrogate: &Surrogate) -> Result<Option<Offered>> {
-    let card = surrogate.card();
+fn offered(card: &Card) -> Result<Option<Offered>> {
     for entry in std::fs::read_dir(MATERIALS)? {
         let file = entry?.path();
         if file.extension().is_none_or(|kind| kind != "toml") {

@@ -12,7 +12,7 @@ use support::regular_file;
 /// Folders of the materials and examples of the studio, and of the files that they name.
 const CONFIGS: [&str; 4] = [
     "configs/materials",
-    "configs/scenes",
+    "configs/examples",
     "configs/targets",
     "configs/tensile",
 ];
@@ -35,7 +35,7 @@ pub(crate) fn write(folder: &Path) -> Result<()> {
         output_file::create_folder_of(&copy)?;
         output_file::write(&copy, bytes)?;
     }
-    let (later, first): (Vec<_>, Vec<_>) = files.iter().partition(|file| is_of_ensemble(file));
+    let (later, first): (Vec<_>, Vec<_>) = files.iter().partition(|file| comes_later(file));
     let listed = json!({ "first": first, "later": later });
     output_file::write(&folder.join("files.json"), listed.to_string())?;
     output_file::write(&folder.join("index.html"), page(Connection::Worker))?;
@@ -62,9 +62,10 @@ fn is_for_designs(file: &Path) -> bool {
     (is("safetensors") || is("json")) && !file.with_extension("parquet").is_file()
 }
 
-/// Whether a file is of a further network of an ensemble, which only examples use: it comes when it is asked for.
-fn is_of_ensemble(file: &Path) -> bool {
-    let name = file.file_stem().unwrap_or_default().to_string_lossy();
-    (name.rsplit_once('-')).is_some_and(|(_, seed)| seed.parse::<u32>().is_ok())
-        && file.starts_with("data")
+/// Whether a file comes when it is asked for: all data but the cards from which the page lists its materials.
+fn comes_later(file: &Path) -> bool {
+    let mut cards = WEIGHTS
+        .iter()
+        .map(|weights| Path::new(weights).with_extension("json"));
+    file.starts_with("data") && !cards.any(|card| file == card)
 }

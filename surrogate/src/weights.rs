@@ -148,6 +148,13 @@ fn load(weights: &Path) -> Result<Surrogate, WeightsError> {
     Surrogate::from_parts(Layers { chi, chi_d, chi_p }, card).map_err(invalid)
 }
 
+impl Card {
+    /// Reads the card of `X.safetensors`, `X.json`, without the weights.
+    pub fn of(weights: &Path) -> Result<Self, WeightsError> {
+        read_card(weights)
+    }
+}
+
 fn save(surrogate: &Surrogate, weights: &Path) -> Result<(), WeightsError> {
     let mut tensors: Vec<(String, Tensor)> = Vec::new();
     let Layers { chi, chi_d, chi_p } = surrogate.layers();

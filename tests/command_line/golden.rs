@@ -2,6 +2,9 @@
 //! not meant to change a design does not. With `KIRIGAMI_WRITE=1` the test writes the file instead, and the commit says why.
 
 use crate::common::Workplace;
+use design::geometry::polygon::bounds;
+use design::scene::Scene;
+use design::sheet::kinematics::deployed_corners;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
@@ -12,11 +15,11 @@ fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
-/// The shipped scenes, but for the scene of the demo, which reads the weights that the demo trains.
-fn scenes() -> Vec<PathBuf> {
-    let folder = std::fs::read_dir(root().join("configs/scenes")).unwrap();
+/// The scenes in a folder, but for the scene of the demo, which reads the weights that the demo trains.
+fn scenes(folder: &str) -> Vec<PathBuf> {
+    let folder = std::fs::read_dir(root().join(folder)).unwrap();
     let mut scenes: Vec<PathBuf> = folder.map(|file| file.unwrap().path()).collect();
-    scenes.retain(|file| !file.ends_with("demo.toml"));
+    scenes.retain(|file| !file.ends_with("demo.toml") && file.extension().unwrap() == "toml");
     scenes.sort();
     scenes
 }
@@ -25,7 +28,7 @@ fn scenes() -> Vec<PathBuf> {
 fn losses_and_cut_files_of_the_shipped_scenes_do_not_change() {
     let work = Workplace::new();
     let mut found = String::new();
-    for scene in scenes() {
+    for scene in [scenes("configs/scenes"), scenes("configs/examples")].concat() {
         let (name, scene) = (
             scene.file_stem().unwrap().to_str().unwrap(),
             scene.display(),
@@ -51,5 +54,61 @@ fn losses_and_cut_files_of_the_shipped_scenes_do_not_change() {
             "{found:?} {golden:?}"
         );
         assert_eq!((found[0], found[2]), (golden[0], golden[2]));
+    }
+}
+
+/// The flat sheet, and the opened one on its target, side by side (SVG).
+fn picture(scene: &Path) -> String {
+    let scene = Scene::read(scene).unwrap();
+    let deployment = scene.problem().unwrap().deploy(&scene.start()).unwrap();
+    let sheet = &deployment.sheet;
+    let flat = vec![[0.0; 3]; sheet.panels.len()];
+    let states = [&flat, &deployment.compared().configuration];
+    let [flat, opened] = states.map(|state| deployed_corners(sheet, state));
+    let target = scene
+        .target
+        .points
+        .iter()
+        .step_by(4)
+        .copied()
+        .collect::<Vec<_>>();
+    let path = |corners: &[[f64; 2]]| -> String {
+        let corners = corners.iter().map(|[x, y]| format!("{x:.1} {:.1}", -y));
+        format!("M{}Z", corners.collect::<Vec<_>>().join("L"))
+    };
+    let panels = |panels: &[[[f64; 2]; 4]]| panels.iter().map(|it| path(it)).collect::<String>();
+    let [[x0, y0], [x1, y1]] = bounds([flat.concat(), opened.concat(), target.clone()].concat());
+    let [width, height] = [x1 - x0, y1 - y0];
+    let (gap, line) = (0.1 * width, 0.004 * width);
+    format!(
+        "<svg xmlns='http://www.w3.org/2000/svg' viewBox='{x0:.1} {:.1} {:.1} {height:.1}' fill='#dcebea' stroke='#1f2933' \
+         stroke-width='{line:.2}' stroke-linejoin='round'><path d='{}'/><g transform='translate({:.1})'><path d='{}'/><path d='{}' \
+         fill='none' stroke='#c2410c' stroke-width='{:.2}' stroke-dasharray='{:.1}'/></g></svg>\n",
+        -y1,
+        2.0 * width + gap,
+        panels(&flat),
+        width + gap,
+        panels(&opened),
+        path(&target),
+        2.0 * line,
+        6.0 * line
+    )
+}
+
+/// With `KIRIGAMI_WRITE=1` the pictures are written instead.
+#[test]
+fn the_pictures_of_the_finished_sheets_show_them() {
+    for scene in scenes("configs/examples") {
+        let file = scene.with_extension("svg");
+        let drawn = picture(&scene);
+        if std::env::var_os("KIRIGAMI_WRITE").is_some() {
+            std::fs::write(&file, &drawn).unwrap();
+        }
+        assert_eq!(
+            std::fs::read_to_string(&file).unwrap(),
+            drawn,
+            "{}",
+            file.display()
+        );
     }
 }

@@ -7,11 +7,14 @@ use std::net::TcpListener;
 use std::path::Path;
 use std::sync::{Arc, Mutex};
 
+/// Request lines, and the bytes of their answers.
+type Asked = Arc<Mutex<Vec<(String, usize)>>>;
+
 /// Serves a folder; returns the address and the list of what was asked for.
-fn serve(folder: &'static str) -> (String, Arc<Mutex<Vec<String>>>) {
+fn serve(folder: &'static str) -> (String, Asked) {
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
     let address = format!("http://{}/", listener.local_addr().unwrap());
-    let asked = Arc::<Mutex<Vec<String>>>::default();
+    let asked = Asked::default();
     let list = Arc::clone(&asked);
     std::thread::spawn(move || {
         for stream in listener.incoming() {
@@ -19,7 +22,6 @@ fn serve(folder: &'static str) -> (String, Arc<Mutex<Vec<String>>>) {
             let mut lines = BufReader::new(&stream).lines().map_while(Result::ok);
             let Some(line) = lines.next() else { continue };
             lines.take_while(|line| !line.is_empty()).for_each(drop);
-            list.lock().unwrap().push(line.clone());
             let name = line.split(' ').nth(1).unwrap().trim_start_matches('/');
             let name = if name.is_empty() { "index.html" } else { name };
             let kind = match name.rsplit('.').next() {
@@ -33,6 +35,7 @@ fn serve(folder: &'static str) -> (String, Arc<Mutex<Vec<String>>>) {
                 Ok(body) => (200, body),
                 Err(_) => (404, Vec::new()),
             };
+            list.lock().unwrap().push((line.clone(), body.len()));
             let head = format!(
                 "HTTP/1.1 {status} \r\nContent-Type: {kind}\r\nContent-Length: {}\r\nConnection: close\r\n\r\n",
                 body.len()
@@ -52,10 +55,18 @@ fn a_silhouette_becomes_a_cut_file_and_nothing_is_sent() {
     let (address, asked) = serve("target/page");
     let mut tab = Tab::open(&address);
     tab.wait("document.getElementById('new-says').textContent.includes('W within')");
+    let folder = tempfile::tempdir().unwrap();
+    let nothing = folder.path().join("nothing.svg");
+    std::fs::write(&nothing, "<svg xmlns='http://www.w3.org/2000/svg'/>").unwrap();
+    tab.drop_file(nothing.to_str().unwrap(), "#studio");
+    tab.wait("document.getElementById('refusal').textContent.includes('nothing.svg')");
     let leaf = Path::new(env!("CARGO_MANIFEST_DIR")).join("configs/targets/leaf.svg");
     tab.drop_file(leaf.to_str().unwrap(), "#studio");
     tab.wait("document.getElementById('fit').textContent.includes('on pins: within')");
     tab.wait("document.documentElement.dataset.working === ''");
+    // What a person waits for: page, program and the weights of one material.
+    let loaded: usize = asked.lock().unwrap().iter().map(|(_, size)| size).sum();
+    assert!(loaded < 12_000_000, "{loaded}");
     tab.click("#design");
     tab.wait("document.getElementById('left').textContent.includes('best so far')");
     // A search pauses, although the worker hears nothing, and goes on.
@@ -70,6 +81,6 @@ fn a_silhouette_becomes_a_cut_file_and_nothing_is_sent() {
         json!(true)
     );
     let asked = asked.lock().unwrap();
-    let sent = |line: &&String| !line.starts_with("GET ") || line.contains('?');
+    let sent = |(line, _): &&(String, usize)| !line.starts_with("GET ") || line.contains('?');
     assert_eq!(asked.iter().find(sent), None);
 }

@@ -166,9 +166,23 @@ const FOUND: &str = "/Search: (\\d+ steps|settled)/.test(document.getElementById
 
 /// Types a number into the field of a key.
 fn type_into(tab: &mut Tab, key: &str, number: &str) {
+    tab.value(&format!("for (let box = document.querySelector('[data-path=\"{key}\"]').closest('details'); box; box = box.parentElement.closest('details')) box.open = true"));
     tab.click(&format!("[data-path='{key}']"));
     tab.value("document.activeElement.select()");
     tab.call("Input.insertText", json!({ "text": number }));
+}
+
+/// A drawing with two paths, which is refused.
+fn two_leaves(work: &Workplace) -> PathBuf {
+    let drawing = work.path("two leaves.svg");
+    let leaf = |at: u32| format!("<path d='M{at} 0L{at} 3L0 3Z'/>");
+    let svg = format!(
+        "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 9 9'>{}{}</svg>",
+        leaf(4),
+        leaf(8)
+    );
+    std::fs::write(&drawing, svg).unwrap();
+    drawing
 }
 
 const A4: &str = "configs/scenes/a4-plate.toml";
@@ -503,9 +517,15 @@ fn a_silhouette_becomes_a_cut_file_without_another_control() {
     tab.wait("document.getElementById('new-says').textContent.includes('W within')");
     let fit = "document.getElementById('fit').textContent.includes('on pins: within')";
     let figure = "document.getElementById('miss').textContent";
+    // A drawing that is refused leaves no sheet; why is said where it was dropped, by its name.
+    let drawing = two_leaves(&work);
+    tab.drop_file(drawing.to_str().unwrap(), "#studio");
+    tab.wait("document.getElementById('refusal').checkVisibility() && document.getElementById('refusal').textContent.includes('two leaves.svg')");
+    tab.wait("document.documentElement.dataset.working === ''");
+    assert!(!work.path("studio/two-leaves").exists());
     let leaf = Path::new(env!("CARGO_MANIFEST_DIR")).join("configs/targets/leaf.svg");
     tab.drop_file(leaf.to_str().unwrap(), "#studio");
-    tab.wait("document.getElementById('progress').textContent.startsWith('Fitting')");
+    tab.wait("document.getElementById('new-work').textContent.startsWith('Fitting')");
     at_rest(&mut tab);
     tab.wait(fit);
     reload(&mut tab, &studio);
@@ -532,14 +552,6 @@ fn a_silhouette_becomes_a_cut_file_without_another_control() {
     assert!(work.path("studio/leaf/design-1/cut.dxf").is_file());
 
     // A drawing that is refused is refused where it was dropped, by its name, also after the sheet is at rest again.
-    let drawing = work.path("two leaves.svg");
-    let leaf = |at: u32| format!("<path d='M{at} 0L{at} 3L0 3Z'/>");
-    let svg = format!(
-        "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 9 9'>{}{}</svg>",
-        leaf(4),
-        leaf(8)
-    );
-    std::fs::write(&drawing, svg).unwrap();
     let scene = scene_on_disk(&work.path("studio/leaf"));
     tab.drop_file(drawing.to_str().unwrap(), "#stage");
     let says = "document.getElementById('drop-says')";
@@ -576,6 +588,91 @@ fn every_control_is_explained_and_no_window_is_too_narrow() {
             assert_eq!(tab.value(wider), json!([]), "{page} at {width} px");
         }
     }
+}
+
+/// The texts of a page whose contrast is below 4.5, and the fields whose border has less than 3, with the contrast.
+const FAINT: &str = r"(() => {
+    const numbers = (colour) => colour.match(/[\d.]+/g).map(Number);
+    const light = (colour) => numbers(colour).slice(0, 3).map((c) => c / 255).map((c) => (c <= 0.03928 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4))
+        .reduce((sum, c, i) => sum + [0.2126, 0.7152, 0.0722][i] * c, 0);
+    const ground = (part) => {
+        const colour = part ? getComputedStyle(part).backgroundColor : 'rgb(255, 255, 255)';
+        return numbers(colour)[3] === 0 ? ground(part.parentElement) : colour;
+    };
+    const contrast = (one, other) => { const [low, high] = [light(one), light(other)].sort((a, b) => a - b); return (high + 0.05) / (low + 0.05); };
+    const shown = [...document.querySelectorAll('body *')].filter((part) => part.checkVisibility() && !part.closest('svg, [disabled], .stale'));
+    const texts = shown.filter((part) => [...part.childNodes].some((node) => node.nodeType === 3 && node.textContent.trim()));
+    const of = (parts, style, least, behind) => parts.map((part) => [part.tagName, part.id, contrast(getComputedStyle(part)[style], ground(behind(part)))])
+        .filter(([, , found]) => found < least);
+    const fields = shown.filter((part) => part.matches('select, input[type=number], input:not([type])'));
+    return [...of(texts, 'color', 4.5, (part) => part), ...of(fields, 'borderTopColor', 3, (part) => part.parentElement)];
+})()";
+
+#[test]
+fn texts_are_legible_and_controls_have_names_on_light_and_dark_screens() {
+    let work = Workplace::new();
+    let studio = Studio::start(&work, "");
+    let mut tab = Tab::open(&studio.address);
+    tab.wait("document.querySelectorAll('#examples img').length === 3");
+    let check = |tab: &mut Tab| {
+        for theme in ["light", "dark"] {
+            tab.prefer(theme);
+            assert_eq!(tab.value(FAINT), json!([]), "{theme}");
+        }
+        let nameless = "[...document.querySelectorAll('input, select, button')].filter((control) => \
+            !control.labels?.length && !control.ariaLabel && !control.textContent.trim()).map((control) => control.outerHTML)";
+        assert_eq!(tab.value(nameless), json!([]));
+        let twice = "[...document.querySelectorAll('[id]')].map(({ id }) => id).filter((id, i, all) => all.indexOf(id) !== i)";
+        assert_eq!(tab.value(twice), json!([]));
+    };
+    check(&mut tab);
+    // A finished sheet opens as it is, and its files are written without a search.
+    tab.click("#examples button");
+    at_rest(&mut tab);
+    tab.value("document.querySelectorAll('#tools details').forEach((box) => { box.open = true; })");
+    check(&mut tab);
+    let widths = || {
+        let scene = scene_on_disk(&work.path("studio/heart"));
+        let line = scene.lines().find(|line| line.starts_with("w_lig"));
+        line.unwrap().to_owned()
+    };
+    let first = widths();
+    tab.click("#write");
+    tab.wait(
+        "[...document.querySelectorAll('#files a')].some((link) => link.textContent === 'cut.dxf')",
+    );
+    assert_eq!(widths(), first);
+    // The cheapest level that is accurate enough for this sheet.
+    tab.value("document.querySelector('[data-fields=search] .actions input').value = 1000");
+    tab.value("[...document.querySelectorAll('button')].find((button) => button.textContent === 'Cheapest within').click()");
+    tab.wait("scene.level === 'pin'");
+}
+
+#[test]
+fn a_new_sheet_has_the_tool_of_its_service_and_fits_on_its_stock() {
+    let work = Workplace::new();
+    let studio = Studio::start(&work, "");
+    let mut events = studio.events();
+    let request = |name: &str, service: &str| json!({ "do": "new", "name": name, "material": null, "thickness": null, "size": null, "stock": "a4", "margin": 5, "kerf": null, "service": service, "drawing": null });
+    assert_eq!(studio.ask(&request("refused", "SnapCut")), 204);
+    let said = next(&mut events, "says");
+    let message = said["message"].as_str().unwrap();
+    assert!(
+        message.contains("SnapCut wants holes of 4.50 mm"),
+        "{message}"
+    );
+    assert!(!work.path("studio/refused").exists());
+    assert_eq!(studio.ask(&request("plate", "SendCutSend")), 204);
+    let scene = &next(&mut events, "scene")["scene"];
+    let process = &scene["process"];
+    assert_eq!(
+        (&process["hole_diameter"], &process["kerf"]),
+        (&json!(1.6), &json!(1.5))
+    );
+    assert_eq!(scene["sheet"]["size"], json!([197.0, 284.0]));
+    // The service accepts every ligament of the range.
+    let narrowest = scene["ligament"]["range"][0].as_f64().unwrap();
+    assert!(narrowest - 0.8 >= 1.5, "{narrowest}");
 }
 
 #[test]

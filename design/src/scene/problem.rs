@@ -37,7 +37,8 @@ impl Scene {
     /// The keys of the scene whose search starts at a design.
     pub fn starting_at(&self, design: &DesignVector) -> SceneConfig {
         let widths = self.width_chart();
-        let w_lig = design.omega.iter().map(|omega| widths.width(*omega));
+        // Further out a width rounds to its bound, and a start lies between the bounds.
+        let w_lig = (design.omega.iter()).map(|omega| widths.width(omega.clamp(-20.0, 20.0)));
         let mut config = self.config.clone();
         config.start = StartConfig::at(&design.pattern, w_lig.collect());
         config.optimiser.start_noise = 0.0;

@@ -116,32 +116,39 @@ impl Machines {
 }
 
 impl Service {
+    /// The smallest features that it cuts in a sheet of the given thickness, and the size of its largest sheet (mm).
+    pub fn limits(&self, thickness: f64) -> Features {
+        let limit = |mm: f64, thicknesses: f64| mm.max(thicknesses * thickness);
+        Features {
+            hole: limit(self.hole, self.hole_t),
+            slot: limit(self.slot, self.slot_t),
+            bridge: limit(self.bridge, self.bridge_t),
+            edge: limit(self.edge, self.edge_t),
+            size: self.size.unwrap_or([f64::INFINITY; 2]),
+        }
+    }
+
     /// What it refuses of a sheet of the given thickness (mm), with both sizes and what to change.
     pub fn refusals(&self, features: &Features, thickness: f64) -> Vec<String> {
-        let limit = |mm: f64, thicknesses: f64| mm.max(thicknesses * thickness);
+        let least = self.limits(thickness);
         let small = [
             (
                 "holes of",
                 features.hole,
-                limit(self.hole, self.hole_t),
+                least.hole,
                 "process.hole_diameter (or fillet_ratio), ligament.range",
             ),
-            (
-                "slits of",
-                features.slot,
-                limit(self.slot, self.slot_t),
-                "process.kerf",
-            ),
+            ("slits of", features.slot, least.slot, "process.kerf"),
             (
                 "ligaments of",
                 features.bridge,
-                limit(self.bridge, self.bridge_t),
+                least.bridge,
                 "ligament.range",
             ),
             (
                 "holes to the edge of",
                 features.edge,
-                limit(self.edge, self.edge_t),
+                least.edge,
                 "ligament.range",
             ),
         ]
@@ -150,13 +157,9 @@ impl Service {
         .map(|(what, found, least, keys)| {
             format!("{what} {found:.2} mm, at least {least:.2} mm ({keys})")
         });
-        let too_large = |most: &[f64; 2]| !fits(features.size, *most);
-        let large = self.size.filter(too_large).map(|most| {
-            let [width, height] = features.size;
-            format!(
-                "a sheet of {width:.0} x {height:.0} mm, at most {:.0} x {:.0} mm",
-                most[0], most[1]
-            )
+        let large = (!fits(features.size, least.size)).then(|| {
+            let ([width, height], [widest, highest]) = (features.size, least.size);
+            format!("a sheet of {width:.0} x {height:.0} mm, at most {widest:.0} x {highest:.0} mm")
         });
         small.chain(large).collect()
     }

@@ -38,8 +38,5 @@ window.addEventListener("hashchange", () => show(fromAddress()));
 Object.assign(shownNow, fromAddress());
 fitView();
 layOut(false);
-window.addEventListener("resize", () => layOut(false));
-// Printing is a change to light.
-darkScreen.addEventListener("change", () => layOut(onPaper));
 document.documentElement.dataset.disagreements = domainDisagreements();
 document.documentElement.dataset.ready = "true";

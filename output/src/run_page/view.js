@@ -68,7 +68,7 @@ function writeBudget() {
   byId("budget").textContent = "";
   for (const [i, cells] of (run.budget?.rows ?? []).entries()) {
     const tr = write(byId("budget"), "tr");
-    cells.forEach((cell) => write(tr, i < 2 ? "th" : "td", cell));
+    cells.forEach((cell) => write(tr, i < 2 && cell ? "th" : "td", cell));
   }
   byId("budget-note").textContent = run.budget ? `${run.budget.heading}. ${run.budget.left_out}.` : "";
 }
@@ -105,7 +105,7 @@ function writeForces(state) {
   table.textContent = "";
   const MOST = 12;
   const head = write(table, "tr");
-  for (const name of ["", "F_x (N)", "F_y (N)", "M (N mm)"]) write(head, "th", name);
+  for (const name of ["", "F_x (N)", "F_y (N)", "M (N mm)"]) write(head, name ? "th" : "td", name);
   const rows = forcesOnSheet(state);
   for (const { name, total: [x, y, couple] } of rows.slice(0, MOST)) {
     const tr = write(table, "tr");
@@ -187,6 +187,9 @@ function connectControls() {
   });
   connectStage();
   connectPrinter();
+  window.addEventListener("resize", () => layOut(false));
+  // Printing is a change to light.
+  darkScreen.addEventListener("change", () => layOut(onPaper));
 }
 
 /** The final state is printed; then the page returns to the state that it showed. */
@@ -267,7 +270,8 @@ function layOut(paper) {
   widths.clear();
   const width = paper ? 700 : stage.clientWidth;
   const aspect = (extent.y1 - extent.y0) / (extent.x1 - extent.x0);
-  const most = paper ? 430 : Math.max(window.innerHeight - 290, 380);
+  if (paper) drawPaper();
+  const most = paper ? paperHeight() : Math.max(window.innerHeight - 290, 380);
   resizeStage(width, Math.round(Math.min(most, Math.max(0.8 * width * aspect + 110, 320))), paper ? 3 : window.devicePixelRatio || 1);
   show({ quantity: shownNow.quantity });
   drawHistory();

@@ -40,6 +40,6 @@ function refuse(why) {
   text.className = "refusal at-field";
   text.setAttribute("role", "alert");
   text.textContent = why;
-  last.closest("details").open = true;
+  for (let box = last.closest("details"); box; box = box.parentElement.closest("details")) box.open = true;
   last.closest("label").after(text);
 }

@@ -96,6 +96,18 @@ function checkField(parent, text, path, checked, changed) {
   label.appendChild(check);
 }
 
+/** The names of the folded groups that are open. */
+const unfolded = new Set();
+
+/** A folded group of fields within another. */
+function folded(parent, name) {
+  const box = write(parent, "details", undefined, "folded");
+  write(box, "summary", name);
+  box.open = unfolded.has(name);
+  box.addEventListener("toggle", () => unfolded[box.open ? "add" : "delete"](name));
+  return box;
+}
+
 /** The groups of fields: what writes each into its part of the page. */
 const groups = {
   load(box) {
@@ -123,18 +135,19 @@ const groups = {
       const ofHinge = box.querySelector("[data-path^='start.']");
       if (ofHinge) ofHinge.parentNode.nextSibling.value = ofHinge.value = inField(width);
     });
+    const more = folded(box, "Limits and single ligaments");
     if (run) {
       const h = shownNow.hinge;
       const text = `Hinge ${h} (mm)`;
       const widths = () => scene.start.w_lig ?? Array(hingeCount).fill(scene.ligament.start);
-      const number = sliderField(box, text, `start.w_lig.${h}`, inside, (width) => {
+      const number = sliderField(more, text, `start.w_lig.${h}`, inside, (width) => {
         scene.start.w_lig = widths();
         set(`start.w_lig.${h}`, width);
       });
       number.parentNode.nextSibling.value = number.value = inField(widths()[h]);
     }
-    numberField(box, "Narrowest (mm)", "ligament.range.0");
-    numberField(box, "Widest (mm)", "ligament.range.1");
+    numberField(more, "Narrowest (mm)", "ligament.range.0");
+    numberField(more, "Widest (mm)", "ligament.range.1");
   },
 
   sheet(box) {
@@ -163,9 +176,10 @@ const groups = {
     writeLevels(box);
     choiceField(box, "Method", "optimiser.method", [["lbfgs", "L-BFGS"], ["adam", "Adam"]]);
     numberField(box, "Steps", "optimiser.steps", (steps) => set("optimiser.steps", Math.max(1, Math.round(steps))));
+    const weights = folded(box, "Weights");
     for (const [text, key] of [["Damage", "damage"], ["Compression", "compression"], ["Panel shape", "panel_shape"], ["Domain", "domain"]])
-      numberField(box, text, `objective.${key}`);
-    write(box, "p", "Weights relative to the outline's distance to the target; docs/KEYS.md describes them.", "note");
+      numberField(weights, text, `objective.${key}`);
+    write(weights, "p", "Relative to the outline's distance to the target; docs/KEYS.md describes them.", "note");
   },
 };
 
@@ -178,7 +192,31 @@ function writeLevels(box) {
   choiceField(box, "Level", "level", choices, (level) => ask({ do: "level", level }));
   const [, hinges] = shop.levels.find(([name]) => name === scene.level) ?? [];
   write(box, "p", `Hinges: ${hinges ?? scene.level}.`, "note");
-  button(box, "Compare levels", () => ask({ do: "levels" }), "Time of a search and distance of the corners from the finest level, for this sheet");
+  const line = write(box, "div", undefined, "actions");
+  button(line, "Compare levels", () => compareLevels(null), "Time of a search and distance of the corners from the finest level, for this sheet");
+  const within = document.createElement("input");
+  Object.assign(within, { type: "number", min: 0, step: "any", value: withinShown, title: "Corners of panels this near to those of the finest level (mm)" });
+  within.setAttribute("aria-label", within.title);
+  button(line, "Cheapest within", () => compareLevels(within.valueAsNumber), "Chooses the cheapest level that is near enough to the finest one for this sheet");
+  line.append(within, " mm");
+}
+
+/** The distance from the finest level (mm) in the control, and the one for which a level is to be chosen. */
+let withinShown = 0.5;
+let wanted = null;
+
+function compareLevels(within) {
+  wanted = within > 0 ? within : null;
+  withinShown = wanted ?? withinShown;
+  ask({ do: "levels" });
+}
+
+/** Takes the cheapest level that is near enough, if one is wanted. The finest has no difference. */
+function chooseLevel() {
+  const near = ({ failure, difference }) => !failure && (difference?.corners[1] ?? 0) <= wanted;
+  const cheapest = wanted && levelCosts.find(near);
+  if (cheapest) ask({ do: "level", level: cheapest.level });
+  wanted = null;
 }
 
 /** Loads in proportion to those at the beginning of a drag. */

@@ -27,5 +27,8 @@ function connect(listeners) {
   stream.addEventListener("error", goOffline);
 }
 
+/** How the command line goes on with the sheet. */
+const atHome = (command) => `In the terminal: ${command}`;
+
 /** The address of a file of the run. */
 const addressOf = (name) => withToken(`files/${name.split("/").map(encodeURIComponent).join("/")}`);

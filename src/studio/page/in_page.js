@@ -43,5 +43,8 @@ function connect(listeners) {
   });
 }
 
+/** How the command line goes on with the sheet. */
+const atHome = () => "The sheet is in this tab alone: save its files. The program at home checks sheets by finite elements (kirigami verify).";
+
 /** The address of a file of the run. */
 const addressOf = (name) => addresses.get(name);

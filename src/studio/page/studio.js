@@ -1,19 +1,20 @@
 // The studio: what its events change on the page, and what its buttons ask.
 
 document.body.classList.add("studio", "empty");
+byId("title").textContent = document.title;
 const mode = () => document.querySelector("#modes input:checked").value;
 
 /** The texts of a report while something newer is drawn. */
 const reported = () => ["summary", "facts-card", "warnings-card", "budget-card", "curve-card", "hinge-card", "forces-card"].map(byId);
 const setStale = (stale) => reported().forEach((card) => card.classList.toggle("stale", stale));
 
-let shop = { materials: [], machines: [], examples: [], levels: [], keys: {} };
+let shop = { materials: [], machines: [], services: [], examples: [], levels: [], keys: {} };
 
 /** What the levels cost for the sheet that is open, if that was measured. */
 let levelCosts = [];
 
 byId("miss").insertAdjacentHTML("afterend", '<p id="search" class="note screen-only"><progress id="bar" aria-label="work under way"></progress> <span id="left"></span></p>');
-byId("state").insertAdjacentHTML("afterend", '<p id="fit" class="note"></p>');
+byId("state").insertAdjacentHTML("afterend", '<p id="fit" class="note screen-only"></p>');
 stage.insertAdjacentHTML("beforeend", '<p id="drop-says" class="refusal screen-only" role="alert" hidden></p>');
 
 /** Whether a search or the writing of files is under way: the sheet is not changed meanwhile. */
@@ -40,12 +41,13 @@ connect({
     sayMaterial();
     writeExamples();
     for (const element of document.querySelectorAll("[data-meaning]")) element.title = meaningOf(element.dataset.meaning);
-    byId("machine").length = 1;
+    byId("machine").length = byId("new-service").length = 1;
     for (const [name] of shop.machines) write(byId("machine"), "option", `for ${name}`).value = name;
+    for (const name of shop.services) write(byId("new-service"), "option", name).value = name;
   },
 
   sheet({ file: opened, command }) {
-    byId("terminal").textContent = `In the terminal: ${command}`;
+    byId("terminal").textContent = atHome(command);
     if (opened !== file) openSheet(opened);
   },
 
@@ -60,7 +62,7 @@ connect({
     const other = JSON.stringify(event.scene) !== JSON.stringify(scene);
     scene = event.scene;
     if (other) writeFields();
-    byId("fit").hidden = JSON.stringify(scene.target) !== fit.target;
+    sayFit();
   },
 
   draft(event) {
@@ -126,7 +128,7 @@ connect({
     sayWork(texts[what] ?? "");
     busy = what !== null && what !== "everyday";
     byId("design").textContent = what === "design" ? "Pause" : "Design";
-    document.querySelectorAll("#tools details input, #tools details select, #tools details button, #grip-menu, #undo, #redo, #another").forEach((element) => { element.inert = busy; });
+    document.querySelectorAll("#new-sheet input, #new-sheet select, #new-sheet button, #tools details input, #tools details select, #tools details button, #grip-menu, #undo, #redo, #another").forEach((element) => { element.inert = busy; });
     document.documentElement.dataset.working = what ?? "";
   },
 
@@ -139,12 +141,13 @@ connect({
 
   fit({ target, says }) {
     fit = { target: JSON.stringify(target), says };
-    byId("fit").textContent = says;
+    sayFit();
     taken = false;
   },
 
   levels(costs) {
     levelCosts = costs;
+    chooseLevel();
     writeFields();
   },
 
@@ -162,9 +165,16 @@ connect({
   },
 });
 
-/** Shows what is under way, next to the buttons and at the sheet. */
+/** Shows what is under way: next to the buttons, at the sheet and in the form. */
 function sayWork(text) {
-  byId("progress").textContent = byId("left").textContent = text;
+  byId("progress").textContent = byId("left").textContent = byId("new-work").textContent = text;
+  byId("new-work").hidden = !text;
+}
+
+/** Says what may be expected of the fitted sheet, while the target is that of the fit. */
+function sayFit() {
+  byId("fit").textContent = fit.says;
+  byId("fit").hidden = JSON.stringify(scene?.target) !== fit.target;
 }
 
 /** Buttons that mend what prevents a cut file: what each says and does, if the sheet has what it changes. */
@@ -286,25 +296,33 @@ function sayMaterial() {
 
 /** Begins a sheet as the form says, for a drawing if there is one. */
 function begin(drawing = null) {
-  const [width, height, thickness] = ["new-width", "new-height", "new-thickness"].map((id) => byId(id).valueAsNumber || null);
-  if ((width === null) !== (height === null)) return refuse("Give both width and height of the sheet, or neither.");
+  const [width, height, thickness, kerf, margin] = ["width", "height", "thickness", "kerf", "margin"].map((id) => byId(`new-${id}`).valueAsNumber || null);
+  const [material, service, chosen] = ["material", "service", "stock"].map((id) => byId(`new-${id}`).value || null);
+  const size = width && height && [width, height];
+  if ((width === null) !== (height === null) || (chosen === "own" && !size)) return refuseNew("Give both width and height, or neither.");
   refuse("");
   const name = byId("new-name");
   const named = drawing && name.value === name.defaultValue ? drawing.name.replace(/\.(svg|dxf)$/i, "") : name.value;
-  ask({ do: "new", name: named, material: byId("new-material").value || null, thickness, size: width && [width, height], drawing });
+  const stock = chosen === "own" ? size : chosen;
+  if (service) byId("machine").value = "laser-service";
+  ask({ do: "new", name: named, material, thickness, size: stock ? null : size, stock, margin: stock && margin, kerf, service, drawing });
+}
+
+/** Refuses a new sheet, or a drawing for one, at the form. */
+function refuseNew(why) {
+  refuse(why);
+  byId("refusal").scrollIntoView({ block: "nearest" });
 }
 
 function writeExamples() {
   const list = byId("examples");
   list.textContent = "";
-  const example = (title, becomes, request) => {
-    const item = write(list, "li");
-    button(item, title, request, `Open a copy: ${becomes}`);
-    write(item, "span", ` ${becomes}`, "note");
-  };
-  const heart = { name: "heart.svg", svg: shop.heart };
-  if (shop.heart) example("Heart", "a plate is fitted to the silhouette of a heart", () => begin(heart));
-  for (const [scene, title, becomes] of shop.examples) example(title, becomes, () => ask({ do: "open", scene }));
+  for (const { scene, title, becomes, picture } of shop.examples) {
+    const open = button(write(list, "li"), "", () => ask({ do: "open", scene }), `Open a copy: ${becomes}`);
+    if (picture) Object.assign(write(open, "img"), { src: `data:image/svg+xml,${encodeURIComponent(picture)}`, alt: "" });
+    write(open, "b", title);
+    write(open, "span", ` ${becomes}`, "note");
+  }
 }
 
 /** Shows the tools of the sheet, or the form of a new one. */
@@ -324,6 +342,10 @@ function openSheet(other) {
 }
 
 byId("new-material").addEventListener("change", sayMaterial);
+byId("new-stock").addEventListener("change", ({ target: { value } }) => {
+  byId("new-margin").disabled = !value;
+  for (const id of ["new-width", "new-height"]) byId(id).disabled = value && value !== "own";
+});
 byId("new-sheet").addEventListener("submit", (event) => {
   event.preventDefault();
   begin();
@@ -376,6 +398,4 @@ document.addEventListener("drop", (event) => {
 document.addEventListener("pointerdown", () => { byId("drop-says").hidden = true; });
 
 connectControls();
-window.addEventListener("resize", () => layOut(false));
-darkScreen.addEventListener("change", () => layOut(onPaper));
 document.documentElement.dataset.ready = "true";

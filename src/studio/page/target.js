@@ -89,7 +89,7 @@ let taken = false;
 
 /** Says something about a drawing where it was dropped. */
 function sayAtSheet(message) {
-  if (document.body.classList.contains("empty") || byId("tools").hidden) refuse(message);
+  if (byId("tools").hidden) refuseNew(message);
   byId("drop-says").hidden = !message;
   byId("drop-says").textContent = message;
 }

@@ -42,6 +42,7 @@ class Files {
       get.open("GET", path, false);
       get.responseType = "arraybuffer";
       get.send();
+      if (get.status !== 200) throw new Error(`${path} is missing on the server (${get.status})`);
       file.bytes = new Uint8Array(get.response);
       file.length = file.bytes.length;
     }
@@ -175,8 +176,9 @@ function wasi(files, onLine) {
       if (!open?.folder) return ERRNO.notdir;
       const out = slice(at, length);
       let end = 0;
-      const listed = files.list(open.path).slice(Number(cookie));
-      listed.forEach(([name, file], i) => {
+      // What is removed between two calls moves nothing.
+      open.listed ??= files.list(open.path);
+      open.listed.slice(Number(cookie)).forEach(([name, file], i) => {
         const encoded = new TextEncoder().encode(name);
         const entry = new Uint8Array(24 + encoded.length);
         const fields = new DataView(entry.buffer);
@@ -211,7 +213,7 @@ function wasi(files, onLine) {
     path_filestat_get(fd, _follow, at, length, into) {
       const path = pathAt(fd, at, length);
       const exists = files.appears(path) ?? files.entries.has(path);
-      return exists ? filestat(into, path, files.at(path)) : ERRNO.noent;
+      return exists ? filestat(into, path, files.entries.get(path)) : ERRNO.noent;
     },
     path_create_directory(fd, at, length) {
       const path = pathAt(fd, at, length);
@@ -228,6 +230,7 @@ function wasi(files, onLine) {
         files.entries.set(to + path.slice(from.length), file);
       }
     },
+    path_remove_directory(fd, at, length) { return calls.path_unlink_file(fd, at, length); },
     path_unlink_file(fd, at, length) { return files.entries.delete(pathAt(fd, at, length)) ? ERRNO.success : ERRNO.noent; },
     path_readlink() { return ERRNO.inval; },
   };
