@@ -43,7 +43,6 @@ mod hinge_energy;
 mod model;
 mod network;
 mod passes;
-mod product;
 mod seen_hinge;
 mod springback;
 mod tanh;
