@@ -9,7 +9,7 @@ use std::path::PathBuf;
 #[serde(tag = "do", rename_all = "kebab-case", deny_unknown_fields)]
 pub(crate) enum Request {
     /// Begin a new sheet.
-    New(NewSheet),
+    New(Box<NewSheet>),
     /// The scene has other keys.
     Change(Change),
     /// The sheet has another number of panels, and is uniform again.

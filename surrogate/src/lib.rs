@@ -43,7 +43,6 @@ mod hinge_energy;
 mod mlp_kernels;
 mod model;
 mod network;
-mod product;
 mod reference_ligament;
 mod springback;
 mod tanh;

@@ -18,8 +18,9 @@
 
 use crate::features::FEATURES;
 use crate::network::{Affine, Network};
-use crate::product::product;
 use crate::tanh::tanh;
+use faer::linalg::matmul::matmul;
+use faer::{Accum, MatMut, MatRef, Par};
 use pulp::{Simd, WithSimd};
 use std::cell::RefCell;
 use std::ops::Range;
@@ -104,8 +105,14 @@ impl Passes {
             });
             let units = affine.bias.len();
             self.output.resize(rows * units, 0.0);
-            let weight = affine.weight.transpose();
-            product(&self.activation, rows, weight, rows, &mut self.output);
+            matmul(
+                MatMut::from_column_major_slice_mut(&mut self.output, rows, units),
+                Accum::Replace,
+                MatRef::from_column_major_slice(&self.activation, rows, affine.weight.ncols()),
+                affine.weight.transpose(),
+                1.0,
+                Par::Seq,
+            );
         }
         let rows = self.rows();
         let last = &network.affine[following.len()];
@@ -120,8 +127,15 @@ impl Passes {
     fn enter(&mut self, first: &Affine) {
         let (n, rows, units) = (self.n, self.rows(), first.bias.len());
         self.output.resize(rows * units, 0.0);
-        let weight = first.weight.transpose();
-        product(&self.inputs, n, weight, rows, &mut self.output);
+        let values = MatMut::from_column_major_slice_mut(&mut self.output, rows, units);
+        matmul(
+            values.subrows_mut(0, n),
+            Accum::Replace,
+            MatRef::from_column_major_slice(&self.inputs, n, FEATURES),
+            first.weight.transpose(),
+            1.0,
+            Par::Seq,
+        );
         for (unit, column) in self.output.chunks_exact_mut(rows).enumerate() {
             for (k, tangent) in self.tangents.clone().zip(column[n..].chunks_exact_mut(n)) {
                 tangent.fill(first.weight[(unit, k)]);
@@ -180,9 +194,17 @@ impl Passes {
 }
 
 /// Multiplies `adjoint` by the weight of a layer, which gives df/dh of the units of the preceding layer.
-fn multiply(adjoint: &[f64], affine: &Affine, n: usize, lambda: &mut Vec<f64>) {
-    lambda.resize(n * affine.weight.ncols(), 0.0);
-    product(adjoint, n, affine.weight.as_ref(), n, lambda);
+fn multiply(adjoint: &[f64], affine: &Affine, n: usize, product: &mut Vec<f64>) {
+    let (outputs, inputs) = affine.weight.shape();
+    product.resize(n * inputs, 0.0);
+    matmul(
+        MatMut::from_column_major_slice_mut(product, n, inputs),
+        Accum::Replace,
+        MatRef::from_column_major_slice(adjoint, n, outputs),
+        affine.weight.as_ref(),
+        1.0,
+        Par::Seq,
+    );
 }
 
 /// Adds the bias to the pre-activations in `block`, replaces them by tanh(a), and writes [tanh(a), sigma'(a) T] to
