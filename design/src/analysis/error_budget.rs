@@ -181,7 +181,7 @@ impl ErrorBudget {
             total: Effect::none(sheet.panels.len()),
         };
         let replaced = |cause: &Cause| residual.is_some() && cause.is_seen_by_elements();
-        for &cause in Cause::VARIANTS.iter().filter(|cause| !replaced(*cause)) {
+        for &cause in Cause::VARIANTS.iter().filter(|cause| !replaced(cause)) {
             let Some(known) = deployed.errors(cause) else {
                 continue;
             };
