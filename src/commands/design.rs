@@ -183,15 +183,18 @@ impl DesignCommand {
         })?;
         bar.finish();
         let listed = compare(&runs, &folder)?;
-        println!("{listed}");
-        for run in &runs {
-            if let Some(failure) = &run.failure {
-                eprintln!("{}: {failure}", run.scene.output().display());
-            }
-        }
-        println!("written to {}", folder.display());
+        println!("{listed}\nwritten to {}", folder.display());
+        let failure = |run: &Run| {
+            let why = run.failure.as_ref()?;
+            Some(format!("\n{}: {why}", run.scene.output().display()))
+        };
+        let failures: String = runs.iter().filter_map(failure).collect();
         match left {
-            0 => ensure!(failed == 0, "{failed} of {} runs failed", runs.len()),
+            0 => ensure!(
+                failed == 0,
+                "{failed} of {} runs failed{failures}",
+                runs.len()
+            ),
             _ => bail!(Unfinished::new(left, "runs")),
         }
         Ok(())

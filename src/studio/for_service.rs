@@ -1,4 +1,4 @@
-//! A new sheet as a service cuts it: with holes, slits and material beside them that are large enough for the service.
+//! A new sheet as a service cuts it: with holes, slits and material next to them that are large enough for the service.
 
 use anyhow::{Context, Result, ensure};
 use design::scene::SceneConfig;
@@ -29,12 +29,12 @@ pub(super) fn for_service(config: &mut SceneConfig, name: &str, thickness: f64) 
             surrogate.springback = None;
         }
     }
-    let beside = least.bridge.max(least.edge) + ROOM;
+    let bridge = least.bridge.max(least.edge) + ROOM;
     let radius = |w_lig: f64| process.hinge(w_lig, FRAC_PI_2).fillet_ratio * w_lig;
-    let narrowest = narrowest.max(beside + radius(widest));
+    let narrowest = narrowest.max(bridge + radius(widest));
     ensure!(
         narrowest <= NARROWEST * widest,
-        "{name} wants holes of {hole:.2} mm and {beside:.2} mm beside them at this thickness, and ligaments of this material are at most \
+        "{name} wants holes of {hole:.2} mm and {bridge:.2} mm next to them at this thickness, and ligaments of this material are at most \
          {widest:.2} mm wide: choose another service"
     );
     config.ligament.range = [narrowest, widest];

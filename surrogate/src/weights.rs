@@ -151,6 +151,10 @@ fn load(weights: &Path) -> Result<Surrogate, WeightsError> {
 impl Card {
     /// Reads the card of `X.safetensors`, `X.json`, without the weights.
     pub fn of(weights: &Path) -> Result<Self, WeightsError> {
+        if weights.extension().is_some_and(|kind| kind == "parquet") {
+            let path = weights.to_owned();
+            return Err(WeightsError::Database { path });
+        }
         read_card(weights)
     }
 }

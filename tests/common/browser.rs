@@ -83,7 +83,8 @@ impl Tab {
     /// Opens another page, or the same one again.
     pub fn go(&mut self, address: &str) {
         self.call("Page.navigate", json!({ "url": address }));
-        self.wait("document.documentElement?.dataset.ready === 'true'");
+        // A drawing has no script that says so.
+        self.wait("document.documentElement?.nodeName === 'svg' || document.documentElement?.dataset.ready === 'true'");
     }
 
     /// The result of a command of the protocol.

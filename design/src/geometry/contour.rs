@@ -9,7 +9,7 @@ const TOO_FAR: f64 = 1000.0;
 /// Maximum number of points of an outline, 3000 curves: the worst one of them is checked for crossings in seconds.
 pub(super) const MOST_POINTS: usize = 100_000;
 
-/// Why a file has no outline; lengths and coordinates are those of the page of an SVG file (px), or of a DXF file (mm if it states its unit).
+/// Why a file has no outline; lengths and coordinates are in the page of an SVG file (px), or in a DXF file (mm if it states its unit).
 #[derive(Debug, thiserror::Error)]
 #[allow(missing_docs, reason = "the message of a variant is its documentation")]
 pub enum DrawingError {

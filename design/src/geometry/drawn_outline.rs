@@ -38,7 +38,7 @@ pub fn numbered(name: &Path) -> (PathBuf, Option<usize>) {
     numbered.unwrap_or_else(|| (name.to_owned(), None))
 }
 
-/// The outline in the bytes of a drawing; if it has several, that of the given number.
+/// The outline in the bytes of a drawing; if it has several, the one with the given number.
 pub(crate) fn of_file(bytes: &[u8], number: Option<usize>) -> Result<Outline, DrawingError> {
     if bytes.starts_with(GZIP) {
         let svg = usvg::decompress_svgz(bytes).map_err(DrawingError::NotSvg)?;
