@@ -51,7 +51,7 @@ pub struct ObjectiveConfig {
     /// Weight of (17); needs a learned level.
     #[schemars(range(min = 0.0, max = 1e9))]
     pub damage: f64,
-    /// The damage measure of (17): `mean`, D as in the paper, or `peak`, D_peak, at which 1 means tearing.
+    /// The damage measure of (17): `mean`, D as in the paper, or `peak`, D_peak, at which 1 means tearing; from 0.9 on a ligament costs more.
     pub damage_measure: DamageMeasure,
     /// Weight of (18).
     #[schemars(range(min = 0.0, max = 1e9))]
