@@ -30,6 +30,7 @@ pub mod dataset;
 #[cfg(feature = "pipeline")]
 pub mod demo;
 pub mod design;
+mod design_checks;
 #[cfg(feature = "pipeline")]
 pub mod doctor;
 pub mod export;

@@ -2,6 +2,7 @@
 //! measured points (section 4.4), paths of the hinges (section 5.2).
 
 pub mod actuation_curve;
+pub mod design_checks;
 pub mod error_budget;
 pub mod flanks;
 pub mod flatness;

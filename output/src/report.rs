@@ -27,6 +27,7 @@ pub use warning::{Concern, Warning};
 
 use crate::cut_file::{CutLines, FabricationError};
 use crate::report::rules::{RuleInput, RunContext};
+use design::analysis::design_checks::DesignChecks;
 use design::analysis::error_budget::ErrorBudget;
 use design::objective::design_problem::Deployment;
 use design::objective::scores::Scores;
@@ -68,6 +69,8 @@ pub struct Report {
     pub hinges: Vec<HingeRow>,
     /// All warnings about the best design, the most severe first.
     pub warnings: Vec<Warning>,
+    /// What was measured of the best design after the search.
+    pub checks: DesignChecks,
 }
 
 /// All warnings about a deployed design with the given cut lines, the most severe first.
@@ -161,11 +164,12 @@ impl Report {
     }
 
     /// The report of a run of `scene`, whose best design has the given cut lines. The cut files are written if there
-    /// are no errors, or if `force`.
+    /// are no errors, or if `force`; `checks` are of that design.
     pub fn new(
         scene: &Scene,
         designed: &Designed,
         cuts: &Result<CutLines, FabricationError>,
+        checks: DesignChecks,
         force: bool,
     ) -> Self {
         let deployment = &designed.best.deployment;
@@ -188,6 +192,7 @@ impl Report {
                 designed,
                 facts: &facts,
                 after: &after,
+                checks: &checks,
             }),
         });
         let mut report = Self {
@@ -211,6 +216,7 @@ impl Report {
             budget,
             facts,
             warnings,
+            checks,
             hinges,
         };
         report.cut_file = cuts.is_ok() && (force || report.errors().next().is_none());

@@ -7,6 +7,7 @@ use crate::cut_file::{
 use crate::drawing;
 use crate::report::{Report, Warning};
 use crate::run_page::run_page;
+use design::analysis::design_checks::CHECKS_FILE;
 use design::objective::design_problem::Deployment;
 use design::scene::Scene;
 use design::scene::design_run::Designed;
@@ -29,6 +30,8 @@ pub struct RunFile {
 pub enum Writer {
     /// The search, about once per second.
     Search,
+    /// The commands that check a design.
+    Checks,
     /// [`write_results`](crate::run_results::write_results), the text or bytes of this function; no file if that is
     /// `None`.
     Results(fn(&Results) -> io::Result<Option<Vec<u8>>>),
@@ -48,11 +51,16 @@ pub struct Results<'a> {
 
 /// The files in the order in which they are written: the report first, so that there is never a cut file without its
 /// report. The copies of the inputs, `scene.toml` and `inputs/`, are not among them: a run may be started from them.
-pub const RUN_FILES: [RunFile; 17] = [
+pub const RUN_FILES: [RunFile; 18] = [
     RunFile {
         name: STATE_FILE,
         contents: "state of the search, from which a stopped run continues, and the hashes of the copies of its inputs",
         writer: Writer::Search,
+    },
+    RunFile {
+        name: CHECKS_FILE,
+        contents: "what `kirigami levels` and `kirigami verify --sheet` found of the design, for report and page",
+        writer: Writer::Checks,
     },
     result("report.json", "the report for programs", |run| {
         Ok(Some(serde_json::to_vec_pretty(run.report)?))

@@ -3,6 +3,7 @@
 use crate::cut_file::{CutLines, SheetDrawing};
 use crate::report::Report;
 use crate::run_files::{RUN_FILES, Results, Writer};
+use design::analysis::design_checks::DesignChecks;
 use design::scene::Scene;
 use design::scene::design_run::{Designed, InverseDesignError};
 use std::io;
@@ -26,7 +27,8 @@ pub fn write_results(
 ) -> Result<Report, ResultsError> {
     let best = &designed.best.deployment;
     let cuts = CutLines::of(scene, best);
-    let report = Report::new(scene, designed, &cuts, force);
+    let checks = DesignChecks::read(&scene.output(), &designed.design)?;
+    let report = Report::new(scene, designed, &cuts, checks, force);
     let drawn = cuts.as_ref().ok().filter(|_| report.cut_file);
     let results = Results {
         scene,

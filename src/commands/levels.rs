@@ -1,5 +1,6 @@
 //! `kirigami levels`: what every level of a scene costs, and how far it is from the finest.
 
+use crate::commands::design_checks::record;
 use crate::commands::inspect::scene_args::Inspected;
 use crate::ui::progress::announce;
 use crate::ui::table::table;
@@ -15,7 +16,8 @@ use std::path::PathBuf;
 /// Deploys the design of the scene's run, or its start design, at every level for which the scene names networks and at those below,
 /// and times ten steps of the search at each. The difference to the finest level is the estimate of a level's error. What no level
 /// lowers, such as the errors of the mesh and of the material, is listed below the table. `kirigami design --within` chooses the level
-/// by itself; docs/CHOOSE.md explains the levels; `kirigami verify` compares the finest one with finite elements.
+/// by itself; docs/CHOOSE.md explains the levels; `kirigami verify` compares the finest one with finite elements. Of the design of a
+/// run, report and page of the run are written again, with the table.
 /// Example: kirigami levels configs/scenes/a4-plate.toml --picture runs/levels.svg
 #[derive(Args)]
 pub struct LevelsCommand {
@@ -31,10 +33,10 @@ pub struct LevelsCommand {
 
 /// The levels with the design that they are of.
 #[derive(Serialize)]
-struct Of {
+struct Of<'a> {
     design: String,
     #[serde(flatten)]
-    levels: Levels,
+    levels: &'a Levels,
 }
 
 impl LevelsCommand {
@@ -50,11 +52,14 @@ impl LevelsCommand {
         if self.json {
             let of = Of {
                 design: name,
-                levels: found,
+                levels: &found,
             };
             println!("{}", serde_json::to_string_pretty(&of)?);
         } else {
             println!("{name}\n\n{}", text(&found));
+        }
+        if self.inspected.is_run(&scene) {
+            record(&scene, &design, |checks| checks.levels = Some(found))?;
         }
         Ok(())
     }

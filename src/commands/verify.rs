@@ -54,7 +54,8 @@ pub struct VerifyCommand {
     #[arg(long, value_name = "LAW", requires = "equilibrium")]
     released: Option<PathBuf>,
     /// Solve the whole sheet, every window and every panel: minutes to an hour. Compares corners, load, openings and energies,
-    /// and says whether the panels stay in their plane. Writes sheet.md, sheet.vtu and pictures from above and from the side
+    /// and says whether the panels stay in their plane. Writes sheet.md, sheet.vtu and pictures from above and from the side. Of the
+    /// design of a run, report and page of the run are written again, with what was found
     #[arg(long, group = "of_sheet", conflicts_with = "sample")]
     sheet: bool,
     /// What keeps the panels of the whole sheet in their plane: held-flat, lying (on a table), hanging, free [default: the

@@ -3,6 +3,7 @@
 use crate::studio::event::{Event, Kind};
 use crate::ui::exit::message;
 use anyhow::{Context, Result};
+use design::analysis::design_checks::DesignChecks;
 use design::equilibrium::warm_start::WarmStart;
 use design::scene::Scene;
 use design::scene::design_run::Designed;
@@ -192,7 +193,7 @@ fn page_of(sheet: &Resting, designed: &Designed, begin: Instant) -> (Event, Warm
     let scene = sheet.scene();
     let best = &designed.best.deployment;
     let cuts = CutLines::of(scene, best);
-    let report = Report::new(scene, designed, &cuts, false);
+    let report = Report::new(scene, designed, &cuts, DesignChecks::default(), false);
     let page = PageData::new(scene, designed, &report);
     let (run, ms) = (sheet.run(), Some(milliseconds(begin)));
     let event = Event::new(Kind::Page, &Shown { page, run, ms });

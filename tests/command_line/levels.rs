@@ -88,3 +88,25 @@ fn levels_are_compared_at_one_design() {
         .filter(|line| line.trim_start().starts_with("0.") || line.contains("1.0000"));
     assert!(lines.count() <= 6, "{draft}");
 }
+
+/// What is measured of a run is in its report and on its page, until its design changes.
+#[test]
+fn the_levels_of_a_run_are_in_its_report() {
+    let work = Workplace::new();
+    work.output(&format!("design {PLATE} --out plate --steps 1 --quiet"));
+    let report =
+        |work: &Workplace| json(&std::fs::read_to_string(work.path("plate/report.json")).unwrap());
+    assert!(report(&work)["checks"]["levels"].is_null());
+    let cut = std::fs::read(work.path("plate/cut.dxf")).unwrap();
+    let measured = json(&work.output("levels plate --json --quiet"));
+    let found = report(&work);
+    assert_eq!(found["checks"]["levels"]["levels"], measured["levels"]);
+    assert_eq!(std::fs::read(work.path("plate/cut.dxf")).unwrap(), cut);
+    let text = std::fs::read_to_string(work.path("plate/report.txt")).unwrap();
+    let row = text.lines().find(|line| line.starts_with("levels "));
+    assert!(row.is_some_and(|row| row.contains("to `fine`")), "{text}");
+    let page = std::fs::read_to_string(work.path("plate/run.html")).unwrap();
+    assert!(page.contains("\"search\":"), "no levels on the page");
+    work.output(&format!("design {PLATE} --out plate --steps 2 --quiet"));
+    assert!(report(&work)["checks"]["levels"].is_null());
+}

@@ -6,6 +6,7 @@ mod bad_input;
 mod common;
 mod cutting;
 mod documents;
+mod extremes;
 #[path = "../common/failing_ccx.rs"]
 mod failing_ccx;
 mod foreign_files;

@@ -4,6 +4,7 @@ use crate::patch::SheetPart;
 use crate::verification_error::VerificationError;
 use crate::whole_sheet::{sheet_problem, with_support};
 use design::analysis::actuation_curve::ActuationCurve;
+use design::analysis::design_checks::WholeSheet;
 use design::analysis::flanks::flank_gap;
 use design::analysis::flatness::Flatness;
 use design::analysis::out_of_plane::margins;
@@ -400,6 +401,19 @@ impl SheetTask {
 }
 
 impl SheetCheck {
+    /// What a run keeps of it; `None` for a part of a sheet, and if there is no state.
+    pub fn summary(&self) -> Option<WholeSheet> {
+        let last = self.last().filter(|_| !self.is_patch)?;
+        let tilts = self.path.iter().map(|state| state.tilt_deg);
+        Some(WholeSheet {
+            support: self.support,
+            tilt_deg: tilts.fold(0.0, f64::max),
+            corners: last.corners,
+            load: last.load,
+            findings: self.findings.clone(),
+        })
+    }
+
     /// The last state of the path.
     pub fn last(&self) -> Option<&StateCheck> {
         self.path.last()

@@ -1,23 +1,10 @@
 //! The page of a whole sheet by finite elements.
 
 use crate::sheet_check::{SheetCheck, StateCheck};
-use design::scene::Posture;
 use std::fmt;
 
 /// Number of rows of a path on the page.
 const ROWS: usize = 12;
-
-impl SheetCheck {
-    /// How the panels are kept in their plane, in words.
-    pub fn kept(&self) -> &'static str {
-        match self.support {
-            Posture::HeldFlat => "panels held flat",
-            Posture::Lying => "lying on a table without friction, under its own weight",
-            Posture::Hanging => "hanging under its own weight, nothing in the way out of the plane",
-            Posture::Free => "free, nothing in the way out of the plane, without weight",
-        }
-    }
-}
 
 impl fmt::Display for SheetCheck {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
@@ -29,7 +16,7 @@ impl fmt::Display for SheetCheck {
              sheet is thick. Every window and every panel is meshed, and nothing is rigid. By law: the equilibrium with the \
              scene's hinge law, whose panels are rigid and stay in the plane; between its load steps it is interpolated.\n",
             self.design,
-            self.kept(),
+            self.support.in_words(),
             self.tier,
         )?;
         if self.is_patch {

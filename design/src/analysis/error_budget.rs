@@ -28,7 +28,7 @@ use crate::objective::design_problem::{Deployment, DesignProblem};
 use crate::objective::response::by_thickness;
 use crate::scene::{Scene, standard_deviation};
 use hinge::{HingeDesign, Regime};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use strum::VariantArray;
 use support::statistics::rms_and_maximum;
 use surrogate::{SpotCheck, Surrogate};
@@ -57,7 +57,15 @@ const MOST_HINGES: usize = 2000;
 
 /// A cause of errors of a deployed sheet, in the order of a budget.
 #[derive(
-    Clone, Copy, Debug, PartialEq, Eq, Serialize, strum::IntoStaticStr, strum::VariantArray,
+    Clone,
+    Copy,
+    Debug,
+    PartialEq,
+    Eq,
+    Serialize,
+    Deserialize,
+    strum::IntoStaticStr,
+    strum::VariantArray,
 )]
 #[serde(rename_all = "kebab-case")]
 #[strum(serialize_all = "lowercase")]
@@ -87,7 +95,7 @@ pub enum Cause {
 }
 
 /// One cause of errors.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Contribution {
     /// What causes the errors.
     pub cause: Cause,
@@ -98,7 +106,7 @@ pub struct Contribution {
 }
 
 /// Standard deviations of a deployed sheet.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Effect {
     /// Of the panel corners (mm): root mean square and maximum.
     pub corners: [f64; 2],

@@ -6,7 +6,7 @@ use crate::objective::design_problem::DesignError;
 use crate::optimise::outer_loop::{SearchState, optimise};
 use crate::pattern::design_vector::DesignVector;
 use crate::scene::{Level, LevelDifference, Scene};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::convert::Infallible;
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
@@ -17,7 +17,7 @@ const TIMED: usize = 10;
 const USUAL: usize = 100;
 
 /// A level of a scene.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct LevelCost {
     /// The level.
     pub level: Level,
@@ -36,7 +36,7 @@ pub struct LevelCost {
 }
 
 /// The levels of a scene at one design.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Levels {
     /// The levels, from the cheapest to the finest.
     pub levels: Vec<LevelCost>,

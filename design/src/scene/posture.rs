@@ -32,6 +32,18 @@ pub enum Posture {
     Free,
 }
 
+impl Posture {
+    /// How the panels are kept in their plane, in words.
+    pub fn in_words(self) -> &'static str {
+        match self {
+            Self::HeldFlat => "panels held flat",
+            Self::Lying => "lying on a table without friction, under its own weight",
+            Self::Hanging => "hanging under its own weight, nothing in the way out of the plane",
+            Self::Free => "free, nothing in the way out of the plane, without weight",
+        }
+    }
+}
+
 impl PostureConfig {
     /// The unit vector along gravity; `None` without a direction.
     pub(super) fn down(&self) -> Option<[f64; 2]> {

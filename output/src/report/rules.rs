@@ -7,6 +7,7 @@ use crate::report::fact_sheet::{FactSheet, miss};
 use crate::report::hinge_row::HingeRow;
 use crate::report::self_weight::of_the_load;
 use crate::report::warning::{Concern, Warning};
+use design::analysis::design_checks::{DesignChecks, WholeSheet};
 use design::analysis::flatness::{Flatness, error_on_table};
 use design::analysis::out_of_plane::{MOST, Stability};
 use design::equilibrium::load_step::{LoadStep, Status};
@@ -65,6 +66,8 @@ pub(super) struct RunContext<'a> {
     pub facts: &'a FactSheet,
     /// The scores of the best design.
     pub after: &'a Scores,
+    /// What was measured of it.
+    pub checks: &'a DesignChecks,
 }
 
 type Rule = fn(&RuleInput) -> Option<Warning>;
@@ -102,11 +105,25 @@ const RULES: [Rule; 25] = [
 /// All that the rules find, the most severe first.
 pub(super) fn warnings(input: &RuleInput) -> Vec<Warning> {
     let mut found: Vec<Warning> = RULES.iter().filter_map(|rule| rule(input)).collect();
+    found.extend(by_elements(input));
     found.sort_by_key(|warning| std::cmp::Reverse(warning.severity));
     found
 }
 
+/// The findings of the whole sheet by finite elements, if it was solved.
+fn by_elements(input: &RuleInput) -> impl Iterator<Item = Warning> {
+    let findings = input.whole_sheet().map(|sheet| &sheet.findings);
+    findings.into_iter().flatten().map(|finding| Warning {
+        severity: finding.severity,
+        ..Concern::WholeSheet.of_sheet(format!("by finite elements, {}", finding.message))
+    })
+}
+
 impl RuleInput<'_> {
+    fn whole_sheet(&self) -> Option<&WholeSheet> {
+        self.run.as_ref()?.checks.whole_sheet.as_ref()
+    }
+
     /// The hinges whose rows `overstep`.
     fn hinges_where(&self, overstep: impl Fn(&HingeRow) -> bool) -> Vec<usize> {
         let rows = self.hinges.iter().filter(|row| overstep(row));
@@ -408,7 +425,8 @@ fn not_modelled(input: &RuleInput) -> Option<Warning> {
 /// Panels that leave the plane unless something holds them flat.
 fn leaves_plane(input: &RuleInput) -> Option<Warning> {
     let posture = input.scene.config.posture?.kind;
-    if posture == Posture::HeldFlat {
+    let solved = |sheet: &WholeSheet| sheet.support == posture;
+    if posture == Posture::HeldFlat || input.whole_sheet().is_some_and(solved) {
         return None;
     }
     let kept = match posture {

@@ -2,6 +2,8 @@
 
 use crate::report::columns::{columns, fixed, rounded};
 use crate::report::{HingeRow, Report};
+use design::analysis::design_checks::WholeSheet;
+use design::analysis::levels::Levels;
 use design::objective::scores::{Scores, shown};
 use std::cmp::Ordering;
 use std::fmt;
@@ -77,6 +79,8 @@ impl Report {
             );
             further.push(("ensemble", text));
         }
+        further.extend(self.checks.levels.as_ref().map(level_row));
+        further.extend(self.checks.whole_sheet.as_ref().map(whole_sheet_row));
         let count = |severity| {
             let severities = self.warnings.iter().map(|warning| warning.severity);
             severities.filter(|found| *found == severity).count()
@@ -152,6 +156,36 @@ impl Report {
         }
         head + &columns(&table, &[])
     }
+}
+
+/// How far the levels of a run are from its finest one.
+fn level_row(levels: &Levels) -> (&'static str, String) {
+    let finest = levels.levels.last().map_or("", |level| level.level.name());
+    let others = levels.levels.iter().filter_map(|level| {
+        let corners = level.difference.as_ref()?.corners[1];
+        Some(format!("`{}` {}", level.level, rounded(corners, 2)))
+    });
+    let others: Vec<String> = others.collect();
+    let text = format!(
+        "largest difference of a corner to `{finest}`, mm: {}",
+        others.join(", ")
+    );
+    ("levels", text)
+}
+
+/// The whole sheet by finite elements in one line.
+fn whole_sheet_row(sheet: &WholeSheet) -> (&'static str, String) {
+    let [rms, largest] = sheet.corners.map(|length| rounded(length, 2));
+    let load = sheet.load.map_or(String::new(), |[law, elements]| {
+        let [law, elements] = [law, elements].map(|load| rounded(load, 4));
+        format!("; load {elements} N, {law} N by the hinge law")
+    });
+    let text = format!(
+        "by finite elements, {}: panels tilt by up to {} deg; corners {rms} mm (rms), {largest} mm at most, from the hinge law{load}",
+        sheet.support.in_words(),
+        rounded(sheet.tilt_deg, 2)
+    );
+    ("whole sheet", text)
 }
 
 impl HingeRow {

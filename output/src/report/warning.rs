@@ -62,6 +62,8 @@ pub enum Concern {
     NotModelled,
     /// Whether the panels of a sheet that is not held flat stay in the plane, and what follows if not.
     LeavesPlane,
+    /// What finite elements of the whole sheet found.
+    WholeSheet,
     /// The weight of the sheet acts in its plane, is more than a twentieth of the load and not modelled.
     Weight,
     /// Friction is more than a twentieth of the load.
@@ -83,7 +85,8 @@ impl Concern {
             | Self::PathDependence
             | Self::OtherBranch
             | Self::TargetMissed
-            | Self::NotModelled => Severity::Note,
+            | Self::NotModelled
+            | Self::WholeSheet => Severity::Note,
             Self::WindowsOverlap
             | Self::LigamentsOutsideDomain
             | Self::KerfUnknown

@@ -13,8 +13,8 @@ function chartWidth(svg) {
 
 /**
  * Draws a chart of series { name, colour, width, points, labelled } into an SVG element.
- * axes: { x: label, y: label, log: whether y is logarithmic, box: [[x0, x1], [y0, y1]] or nothing };
- * marks: points { x, y, colour, hollow } on top.
+ * axes: { x: label, y: label, log and logX: whether y and x are logarithmic, box: [[x0, x1], [y0, y1]] or nothing, exponents if logarithmic };
+ * marks: points { x, y, colour, hollow, text } on top; below: areas { points, colour }.
  */
 function chart(svg, height, axes, series, marks, below = []) {
   svg.textContent = "";
@@ -22,6 +22,7 @@ function chart(svg, height, axes, series, marks, below = []) {
   svg.setAttribute("viewBox", `0 0 ${width} ${height}`);
   svg.style.aspectRatio = `${width} / ${height}`;
   const toY = axes.log ? Math.log10 : (y) => y;
+  const toX = axes.logX ? Math.log10 : (x) => x;
   const points = series.flatMap((s) => s.points).filter(([, y]) => Number.isFinite(toY(y)));
   const bounds = (values) => values.reduce(([low, high], v) => [Math.min(low, v), Math.max(high, v)], [Infinity, -Infinity]);
   let [[x0, x1], [y0, y1]] = axes.box || [bounds(points.map((p) => p[0])), bounds(points.map((p) => toY(p[1])))];
@@ -32,16 +33,18 @@ function chart(svg, height, axes, series, marks, below = []) {
   const yTicks = axes.log ? decades(y0, y1) : ticks(y0, y1, height / 45).map((v) => [v, shown(v)]);
   const left = 34 + Math.max(...yTicks.map(([, text]) => textWidth(text, 11.5)));
   const named = series.filter((s) => s.name);
-  const right = named.length > 1 ? 12 + Math.max(...named.map((s) => textWidth(s.name, 11.5))) : 14;
+  const isNamed = named.length > (axes.box ? 0 : 1);
+  const right = isNamed ? 12 + Math.max(...named.map((s) => textWidth(s.name, 11.5))) : 14;
   const [top, bottom] = [10, 40];
-  const px = (x) => left + ((width - left - right) * (x - x0)) / (x1 - x0);
+  const px = (x) => left + ((width - left - right) * (toX(x) - x0)) / (x1 - x0);
   const py = (y) => height - bottom - ((height - top - bottom) * (toY(y) - y0)) / (y1 - y0);
   for (const [value, text] of yTicks) {
     const y = height - bottom - ((height - top - bottom) * (value - y0)) / (y1 - y0);
     draw(svg, "line", { x1: left, x2: width - right, y1: y, y2: y, stroke: GRID });
     draw(svg, "text", { x: left - 6, y: y + 4, "font-size": 11.5, "text-anchor": "end", class: "muted" }, text);
   }
-  for (const value of roomyTicks(x0, x1, width - left - right)) {
+  const xTicks = axes.logX ? decades(x0, x1).map(([exponent]) => 10 ** exponent) : roomyTicks(x0, x1, width - left - right);
+  for (const value of xTicks) {
     draw(svg, "line", { x1: px(value), x2: px(value), y1: height - bottom, y2: height - bottom + 4, stroke: TICK });
     draw(svg, "text", { x: px(value), y: height - bottom + 17, "font-size": 11.5, "text-anchor": "middle", class: "muted" }, shown(value));
   }
@@ -49,16 +52,18 @@ function chart(svg, height, axes, series, marks, below = []) {
   draw(svg, "text", { x: (left + width - right) / 2, y: height - 6, "font-size": 12, "text-anchor": "middle" }, axes.x);
   const middle = (top + height - bottom) / 2;
   draw(svg, "text", { x: 12, y: middle, "font-size": 12, "text-anchor": "middle", transform: `rotate(-90 12 ${middle})` }, axes.y);
-  for (const area of below)
-    draw(svg, "path", { d: path(area, px, py) + "Z", fill: TEAL, "fill-opacity": 0.12, stroke: TEAL, "stroke-width": 1 });
+  for (const { points, colour } of below)
+    draw(svg, "path", { d: path(points, px, py) + "Z", fill: colour, "fill-opacity": 0.12, stroke: colour, "stroke-width": 1 });
   for (const { points, colour, width: w } of series) {
     const finite = points.filter(([, y]) => Number.isFinite(toY(y)));
     draw(svg, "path", { d: path(finite, px, py), fill: "none", stroke: colour, "stroke-width": w || 1.6, "stroke-linejoin": "round" });
   }
   for (const mark of marks)
-    if (Number.isFinite(toY(mark.y)))
+    if (Number.isFinite(toY(mark.y))) {
       draw(svg, "circle", { cx: px(mark.x), cy: py(mark.y), r: mark.r || 4, fill: mark.hollow ? PAPER : mark.colour, stroke: mark.colour, "stroke-width": 1.6 });
-  if (named.length > 1) nameLines(svg, named.map((s) => ({ name: s.name, colour: s.colour, y: py(s.points[s.points.length - 1][1]) })), width - right + 6, top, height - bottom);
+      if (mark.text) draw(svg, "text", { x: px(mark.x) + 8, y: py(mark.y) + 4, "font-size": 11.5 }, mark.text);
+    }
+  if (isNamed) nameLines(svg, named.map((s) => ({ name: s.name, colour: s.colour, y: py(s.points[s.points.length - 1][1]) })), width - right + 6, top, height - bottom);
 }
 
 function path(points, px, py) {
@@ -140,4 +145,39 @@ function drawHistory() {
   const error = history.outline_error;
   byId("history-note").textContent =
     `Terms of the loss, weighted. Best design: step ${history.step[best]}. Outline error, rms: ${shown(error[0])} mm at the start, ${shown(error[best])} mm at the best design.`;
+}
+
+/** The levels of a run: seconds of a search against the difference to the finest level, and a table. */
+function drawLevels() {
+  byId("levels-card").hidden = !run.levels;
+  if (!run.levels) return;
+  const { levels, others } = run.levels;
+  const marks = levels
+    .filter(({ search, difference }) => search > 0 && difference?.corners[1] > 0)
+    .map(({ level, search, difference }) => ({ x: search, y: difference.corners[1], colour: TEAL, text: level }));
+  const known = (cause) => others.find((other) => other.cause === cause)?.effect?.corners[1];
+  const mesh = known("window-mesh");
+  const causes = [["material-law", "material"], ["loading-path", "loading path"], ["kerf", "kerf"], ["thickness", "thickness"]].filter(([cause]) => known(cause) > 0);
+  const range = (values, [before, after]) => [Math.log10(Math.min(...values)) - before, Math.log10(Math.max(...values)) + after];
+  const heights = [...marks.map((mark) => mark.y), ...causes.map(([cause]) => known(cause)), ...(mesh > 0 ? [mesh] : [])];
+  byId("levels-chart").style.display = marks.length ? "" : "none";
+  if (marks.length) {
+    const box = [range(marks.map((mark) => mark.x), [0.4, 0.9]), range(heights, [0.5, 0.3])];
+    const [[x0, x1], [y0]] = box.map((exponents) => exponents.map((exponent) => 10 ** exponent));
+    const series = causes.map(([cause, name], i) => ({ name, points: [[x0, known(cause)], [x1, known(cause)]], colour: TERM_COLOURS[i + 1], width: 1 }));
+    const below = mesh > 0 ? [{ points: [[x0, y0], [x1, y0], [x1, mesh], [x0, mesh]], colour: TICK }] : [];
+    const axes = { x: "search (s)", y: "largest difference of a corner (mm)", log: true, logX: true, box };
+    chart(byId("levels-chart"), 250, axes, series, marks, below);
+  }
+  const rounded = (x) => (x == null ? "-" : shown(Number(x.toPrecision(2))));
+  const rows = levels.map(({ level, search, difference, failure }) => {
+    if (!difference) return [level, rounded(search), failure ?? "-", "", "", ""];
+    const { corners: [rms, largest], load, damage } = difference;
+    return [level, ...[search, rms, largest, load == null ? null : 100 * load, damage].map(rounded)];
+  });
+  byId("levels").textContent = "";
+  [["level", "search", "corners, rms", "largest", "load", "D_peak"], ["", "s", "mm", "mm", "%", ""], ...rows].forEach((cells, i) => {
+    const tr = write(byId("levels"), "tr");
+    cells.forEach((cell) => write(tr, i < 2 && cell ? "th" : "td", cell));
+  });
 }

@@ -104,7 +104,7 @@ function drawDomain(state, h) {
     const dots = points.map(([x, y], i) => ({ x, y, r: 2.2, colour: outside(i) ? ERROR : INK }));
     const now = { x: points[state][0], y: points[state][1], r: 5, colour: outside(state) ? ERROR : ACCENT };
     const axes = { x: axis === 0 ? "\u03b7_a = a / w_lig" : "\u03b7_s = s / w_lig", y: "\u03b8 (deg)", box: [span(0), span(1)] };
-    chart(byId(axis === 0 ? "plot-a" : "plot-s"), 230, axes, [{ points, colour: INK, width: 1.2 }], dots.concat(now), region.length ? [region] : []);
+    chart(byId(axis === 0 ? "plot-a" : "plot-s"), 230, axes, [{ points, colour: INK, width: 1.2 }], dots.concat(now), region.length ? [{ points: region, colour: TEAL }] : []);
   }
   byId("domain-note").textContent = domainNote(h, cuts);
 }

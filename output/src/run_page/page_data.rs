@@ -4,6 +4,7 @@ use crate::deployment_states::kept;
 use crate::report::{BUDGET_HEADING, HingeRow, Report, Warning, extent, miss, worst_first};
 use crate::run_page::hinge_states::HingeStates;
 use crate::run_page::packed::Packed;
+use design::analysis::levels::Levels;
 use design::objective::design_problem::{Deployment, DesignProblem};
 use design::objective::loss::Objective;
 use design::objective::scores::outline_error;
@@ -38,6 +39,8 @@ pub struct PageData<'a> {
     peak: Option<[f64; 2]>,
     /// The hinge nearest to failure.
     worst: usize,
+    /// What the levels cost, if they were measured.
+    levels: Option<&'a Levels>,
     #[serde(flatten)]
     sheet: SheetData<'a>,
 }
@@ -129,6 +132,7 @@ impl<'a> PageData<'a> {
                 .and_then(|reached| reached.peak)
                 .map(|peak| [peak.displacement, peak.load]),
             worst: worst.map_or(0, |row| row.hinge),
+            levels: report.checks.levels.as_ref(),
             sheet: SheetData::with_hinges(
                 scene,
                 &designed.problem,

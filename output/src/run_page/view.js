@@ -275,5 +275,6 @@ function layOut(paper) {
   resizeStage(width, Math.round(Math.min(most, Math.max(0.8 * width * aspect + 110, 320))), paper ? 3 : window.devicePixelRatio || 1);
   show({ quantity: shownNow.quantity });
   drawHistory();
+  drawLevels();
 }
 

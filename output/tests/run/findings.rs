@@ -4,7 +4,9 @@ use super::learned::{brittle, learned, weights};
 use super::*;
 use design::DesignError;
 use design::analysis::actuation_curve::ActuationCurve;
+use design::analysis::design_checks::{DesignChecks, WholeSheet};
 use design::objective::target::TargetShape;
+use design::scene::Posture;
 use design::scene::design_run::design_of_run;
 use output::listing::equilibrium;
 use support::severity::Severity;
@@ -30,6 +32,48 @@ const HANGING: (&str, &str) = (HELD_FLAT, "kind = \"hanging\"\ndown = [0.0, -2.0
 const WEIGHT: f64 = 1.2 * 1.2 * 0.5e-3 * 1390.0 * 9.81;
 
 const SHORT: (&str, &str) = ("steps = 6", "steps = 1");
+
+/// Finite elements of the whole sheet replace the expectation for their posture, and their findings are the report's; they are of one
+/// design.
+#[test]
+fn a_whole_sheet_by_finite_elements_is_in_the_report() {
+    let run = finished(&[], &[FREE, SHORT]);
+    let expected = one(&run.report, Concern::LeavesPlane).clone();
+    let message = "the panels tilt by up to 7.0 deg".to_owned();
+    let sheet = |support| WholeSheet {
+        support,
+        tilt_deg: 7.0,
+        corners: [1.5, 4.0],
+        load: Some([2.0, 1.9]),
+        findings: vec![Severity::Error.finding(message.clone())],
+    };
+    let again = |support, design| {
+        let checks = DesignChecks {
+            levels: None,
+            whole_sheet: Some(sheet(support)),
+        };
+        checks.write(&run.scene.output(), design).unwrap();
+        write_results(&run.scene, &run.designed, false).unwrap()
+    };
+    let best = &run.designed.design;
+    let report = again(Posture::Free, best);
+    assert!(found(&report, Concern::LeavesPlane).is_empty());
+    let finding = one(&report, Concern::WholeSheet);
+    assert_eq!(finding.severity, Severity::Error);
+    assert_says(&finding.message, &message);
+    assert!(!report.cut_file);
+    assert_says(
+        &run.file("report.txt"),
+        "tilt by up to 7 deg; corners 1.5 mm (rms), 4 mm at most",
+    );
+    // Held in another way it may stay flat: the expectation is stated too.
+    let held = again(Posture::HeldFlat, best);
+    assert_eq!(one(&held, Concern::LeavesPlane), &expected);
+    assert_eq!(found(&held, Concern::WholeSheet).len(), 1);
+    let mut other = best.clone();
+    other.omega[0] += 0.1;
+    assert!(found(&again(Posture::Free, &other), Concern::WholeSheet).is_empty());
+}
 
 #[test]
 fn a_learned_law_states_what_is_not_modelled() {

@@ -77,6 +77,11 @@ impl Inspected {
         (scene.start(), name)
     }
 
+    /// Whether the design that [`read`](Self::read) finds is the design of the scene's run.
+    pub(crate) fn is_run(&self, scene: &Scene) -> bool {
+        self.design.is_none() && scene.output().join(STATE_FILE).exists()
+    }
+
     fn scene(&self) -> Result<Scene> {
         Ok(Scene::read(&scene_file(&self.scene)?)?)
     }

@@ -1,5 +1,6 @@
 //! `kirigami verify --sheet`: the whole sheet by finite elements.
 
+use crate::commands::design_checks::record;
 use crate::commands::solve_args::{FeSolver, task_error};
 use crate::commands::verify::VerifyCommand;
 use crate::ui::progress::{announce, duration, watched};
@@ -60,6 +61,9 @@ impl VerifyCommand {
         run_folder::write(&self.out, "sheet.json", &json)?;
         self.draw(scene, &check)?;
         self.print(&check)?;
+        if let Some(found) = check.summary().filter(|_| self.inspected.is_run(scene)) {
+            record(scene, design, |checks| checks.whole_sheet = Some(found))?;
+        }
         if check.path.is_empty() {
             bail!(
                 "no increment of the sheet converged; see {}",

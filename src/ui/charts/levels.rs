@@ -10,8 +10,9 @@ const SIZE: (u32, u32) = (640, 460);
 /// What the axes reach beyond the first and the last value, as a factor.
 const MARGIN: f64 = 3.0;
 /// Causes of errors that no level lowers, with a line each, and their colours.
-const LINES: [(Cause, RGBColor); 3] = [
+const LINES: [(Cause, RGBColor); 4] = [
     (Cause::MaterialLaw, COLOURS[2]),
+    (Cause::LoadingPath, COLOURS[5]),
     (Cause::Kerf, COLOURS[3]),
     (Cause::Thickness, COLOURS[4]),
 ];
