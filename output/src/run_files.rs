@@ -8,11 +8,11 @@ use crate::drawing;
 use crate::report::{Report, Warning};
 use crate::run_page::run_page;
 use design::objective::design_problem::Deployment;
-use design::scene::Scene;
-use design::scene::design_run::Designed;
-use design::scene::placement::placed;
-use design::scene::run_inputs::STATE_FILE;
 use design::sheet::kinematics::deployed_corners;
+use scene::Scene;
+use scene::design_run::Designed;
+use scene::placement::placed;
+use scene::run_inputs::STATE_FILE;
 use std::io;
 
 /// A file of a run folder.

@@ -1,7 +1,7 @@
 //! The page of a whole sheet by finite elements.
 
 use crate::sheet_check::{SheetCheck, StateCheck};
-use design::scene::Posture;
+use scene::Posture;
 use std::fmt;
 
 /// Number of rows of a path on the page.

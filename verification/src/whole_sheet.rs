@@ -2,13 +2,13 @@
 
 use crate::verification_error::VerificationError;
 use design::pattern::grid::Grid;
-use design::scene::{Posture, PostureConfig, Scene, SupportKind};
 use design::sheet::attachment::Attachment;
 use design::sheet::cut_sheet::{PanelPoint, Sheet};
 use design::sheet::hinge_window::Window;
 use fe_driver::{Held, Keeping, Place, Pulled, SheetProblem};
 use hinge::{HingeDesign, Regime};
 use mesher::{Frame, Imperfection, PanelShape, PlacedWindow, PlaneRecipe, SheetShape, Tier};
+use scene::{Posture, PostureConfig, Scene, SupportKind};
 
 /// Size of the elements of panels over r_win.
 const ELEMENT_SIZE: f64 = 0.8;

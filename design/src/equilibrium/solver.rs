@@ -7,7 +7,7 @@
 //! Self-weight in the plane is applied before the loads, with fixed supports and no prescribed displacement; its work is
 //! subtracted. In unloading the work of the forces that held the sheet is subtracted.
 
-use crate::equilibrium::displacement_control::Stroke;
+use crate::equilibrium::displacement_control::{Stroke, magnitude, work};
 use crate::equilibrium::settings::SolverSettings;
 use crate::equilibrium::supports::{Dof, Load, Support, hold_rigid_body};
 use crate::equilibrium::tangent::TangentPattern;
@@ -211,7 +211,7 @@ impl EquilibriumSolver {
     }
 
     /// The motions (u_x, u_y, phi) of the panels that the supports prescribe at full load.
-    pub(crate) fn support_motions(&self) -> Vec<[f64; 3]> {
+    pub fn support_motions(&self) -> Vec<[f64; 3]> {
         let mut motions = vec![[0.0; 3]; self.loads.len()];
         for support in &self.supports {
             motions[support.panel][support.dof.index()] = support.value;
@@ -222,6 +222,13 @@ impl EquilibriumSolver {
     /// The direction in which the stroke of the loads is prescribed, if it is.
     pub(crate) fn stroke(&self) -> Option<&Stroke> {
         self.drive.as_ref().map(|(stroke, _)| &**stroke)
+    }
+
+    /// The displacement of a configuration along the loads, by which a stroke is prescribed: their work over the sum of their
+    /// magnitudes (mm; rad if there are couples alone). `None` without loads.
+    pub fn displacement(&self, configuration: &[[f64; 3]]) -> Option<f64> {
+        let (size, _) = magnitude(&self.loads)?;
+        Some(work(&self.loads, configuration) / size)
     }
 
     /// Whether the stroke is prescribed and the load factor follows.
@@ -296,7 +303,7 @@ impl EquilibriumSolver {
     }
 
     /// The configuration of the flat sheet.
-    pub(crate) fn flat(&self) -> Configuration {
+    pub fn flat(&self) -> Configuration {
         vec![[0.0; 3]; self.grid.panel_count()]
     }
 }

@@ -380,7 +380,7 @@ impl DesignProblem {
 }
 
 /// The load step, or an error if it is no equilibrium.
-pub(crate) fn converged(step: &LoadStep) -> Result<&LoadStep, DesignError> {
+pub fn converged(step: &LoadStep) -> Result<&LoadStep, DesignError> {
     match step.status {
         Status::Diverged => Err(DesignError::NoEquilibrium {
             reached: step.load_factor,

@@ -9,10 +9,10 @@ use design::objective::loss::Objective;
 use design::objective::scores::outline_error;
 use design::objective::term::in_words;
 use design::optimise::outer_loop::StepRecord;
-use design::scene::design_run::Designed;
-use design::scene::{Actuation, Scene};
 use design::sheet::cut_sheet::Sheet;
 use hinge::TrainingDomain;
+use scene::design_run::Designed;
+use scene::{Actuation, Scene};
 use serde::Serialize;
 use surrogate::Surrogate;
 

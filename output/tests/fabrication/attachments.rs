@@ -1,11 +1,11 @@
 //! Holes for nails and hooks, clips, and where they must not be.
 
 use super::{W_LIG, uniform};
-use design::scene::CuttingConfig;
 use design::sheet::attachment::Attachment;
 use design::sheet::cut_sheet::PanelPoint;
 use output::cut_file::{CutLines, FabricationError, Layer, attachment_list, dxf};
 use output::display::Shape;
+use scene::CuttingConfig;
 
 fn attachment(point: PanelPoint) -> Attachment {
     Attachment {

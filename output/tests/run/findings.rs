@@ -3,10 +3,10 @@
 use super::learned::{brittle, learned, weights};
 use super::*;
 use design::DesignError;
-use design::analysis::actuation_curve::ActuationCurve;
-use design::objective::target::TargetShape;
-use design::scene::design_run::design_of_run;
 use output::listing::equilibrium;
+use scene::analysis::actuation_curve::ActuationCurve;
+use scene::design_run::design_of_run;
+use scene::target::TargetShape;
 use support::severity::Severity;
 
 /// The learned scene, run with changes of the card and of the scene.
