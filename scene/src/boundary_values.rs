@@ -7,8 +7,7 @@ use crate::checked_scene::Scene;
 use design::equilibrium::supports::{Dof, Load, Support};
 use design::geometry::polygon::distance;
 use design::pattern::grid::{EDGES, Grid};
-use design::sheet::attachment::Attachment;
-use design::sheet::cut_sheet::{AttachmentPoint, PanelPoint};
+use design::sheet::cut_sheet::AttachmentPoint;
 use design::sheet::topology::{HingeSite, hinge_sites};
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -22,7 +21,7 @@ pub struct Actuation {
     pub loads: Vec<AppliedLoad>,
     /// The points of panels at which supports and loads of single panels act, in that order.
     #[serde(skip)]
-    pub attachments: Vec<Attachment>,
+    pub attachments: Vec<AttachmentPoint>,
     /// What symbols and curved arrows mean.
     pub legend: String,
 }
@@ -106,15 +105,6 @@ impl Actuation {
         supports.collect()
     }
 
-    /// The points at which panels are held or pulled, if they are not their centroids.
-    pub(super) fn grips(&self) -> Vec<AttachmentPoint> {
-        let moved = |attachment: &&Attachment| attachment.point != PanelPoint::Centroid;
-        let attachments = self.attachments.iter().filter(moved);
-        attachments
-            .map(|&Attachment { panel, point, .. }| AttachmentPoint { panel, point })
-            .collect()
-    }
-
     /// The sum of all loads on free degrees of freedom, by panels.
     pub fn boundary_loads(&self) -> Vec<Load> {
         let mut total: BTreeMap<usize, [f64; 3]> = BTreeMap::new();
@@ -158,9 +148,9 @@ impl SupportConfig {
 }
 
 impl Attached {
-    fn on(&self, grid: Grid) -> Attachment {
+    fn on(&self, grid: Grid) -> AttachmentPoint {
         let [column, row] = self.panel;
-        Attachment {
+        AttachmentPoint {
             name: format!("{}, {}", self.kind, panel_name(grid, self.panel)),
             panel: grid.panel(column, row),
             point: self.at.point(),

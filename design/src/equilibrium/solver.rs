@@ -77,7 +77,7 @@ pub struct EquilibriumSolver {
     /// Weight of a unit of area (N/mm^2), zero without weight.
     pub(crate) weight: [f64; 2],
     /// The points at which panels are held or pulled; the others have their centroids as reference points.
-    pub(crate) grips: Box<[AttachmentPoint]>,
+    pub(crate) attachment_points: Box<[AttachmentPoint]>,
     /// Loads held constant from the beginning of the path.
     pub(crate) held: Box<[[f64; 3]]>,
     /// Under displacement control, the direction of the stroke and its value at full load.
@@ -136,7 +136,7 @@ impl EquilibriumSolver {
             pattern: Arc::new(TangentPattern::new(grid, supported.as_flattened())),
             supports: supports.into(),
             weight: [0.0; 2],
-            grips: Box::default(),
+            attachment_points: Box::default(),
             held: vec![[0.0; 3]; total.len()].into(),
             loads: total.into(),
             drive: None,
@@ -248,15 +248,15 @@ impl EquilibriumSolver {
         Ok(self)
     }
 
-    /// The same problem for panels that are held or pulled at the points of `grips`, to which supports and loads refer.
-    pub fn attached_at(mut self, grips: Vec<AttachmentPoint>) -> Self {
-        self.grips = grips.into();
+    /// The same problem for panels that are held or pulled at `points`, to which supports and loads refer.
+    pub fn attached_at(mut self, points: Vec<AttachmentPoint>) -> Self {
+        self.attachment_points = points.into();
         self
     }
 
     /// The points at which panels are held or pulled.
-    pub fn grips(&self) -> &[AttachmentPoint] {
-        &self.grips
+    pub fn attachment_points(&self) -> &[AttachmentPoint] {
+        &self.attachment_points
     }
 
     /// The same problem with a weight of `by_area` (N/mm^2) in the plane of the sheet.

@@ -24,7 +24,7 @@ use crate::hinge_law::{DamageMeasure, HingeLaw};
 use crate::objective::loss::Objective;
 use crate::objective::shape::{Shape, TargetState};
 use crate::objective::term::Weighted;
-use crate::sheet::attachment::Attachment;
+use crate::sheet::cut_sheet::AttachmentPoint;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -84,7 +84,7 @@ pub struct Setting<'a> {
     /// Radius of the windows of the hinges (mm).
     pub r_win: f64,
     /// The points at which panels are held or pulled.
-    pub attachments: Vec<Attachment>,
+    pub attachments: Vec<AttachmentPoint>,
 }
 
 impl ObjectiveConfig {
@@ -109,7 +109,7 @@ impl ObjectiveConfig {
             Weighted::new(limited, PanelWidth { minimum }),
             Weighted::new(self.domain * area, DomainPenalty { domain }),
         ];
-        let is_fastened = |at: &Attachment| at.hole.or(at.clip).is_some();
+        let is_fastened = |at: &AttachmentPoint| at.hole.or(at.clip).is_some();
         if setting.attachments.iter().any(is_fastened) {
             let attachments = setting.attachments.clone();
             penalties.push(Weighted::new(FASTENINGS * area, Fastenings { attachments }));

@@ -152,6 +152,15 @@ pub fn scene(name: &str, change: impl FnOnce(&mut SceneConfig)) -> Scene {
     Scene::new(config, &path).unwrap()
 }
 
+/// A point at which a panel is held or pulled.
+pub fn attached(panel: usize, point: PanelPoint) -> AttachmentPoint {
+    AttachmentPoint {
+        panel,
+        point,
+        ..AttachmentPoint::default()
+    }
+}
+
 /// The distance of the centroids of two panels in a configuration.
 pub fn apart(sheet: &Sheet, configuration: &[[f64; 3]], panels: [usize; 2]) -> f64 {
     let [[ax, ay], [bx, by]] =

@@ -117,38 +117,34 @@ pub fn fitted(scene: &Scene) -> Result<FittedScene, FitError> {
     let with = |count: usize, place: Similarity| {
         fitted_keys(scene, &fitted, held, &pulls(&candidates, count), place)
     };
-    // The worst first: cuts close, the outline is far, the sheet jumps, the panels leave their plane.
-    let defects = |pulled: &Pulled, near: &Nearness| {
-        let is_close = near.error <= CLOSE * pins.error;
-        let overlaps = pulled.overlap > OVERLAP;
-        [overlaps, !is_close, pulled.jumps, !pulled.is_flat()]
-    };
-    let mut tried: Vec<(Pulled, Nearness, SceneConfig)> = Vec::new();
+    let mut tried: Vec<([bool; 4], Pulled, Nearness, SceneConfig)> = Vec::new();
     for count in 1..=MOST_PULLS {
         let pulling = scene.changed(with(count, place_on_pins))?;
         let Some(pulled) = pulled(&pulling, silhouette, place_on_pins) else {
             continue;
         };
         let near = nearness(&pulled.outline, pulled.place);
-        let defects = defects(&pulled, &near);
+        // The worst first: cuts close, the outline is far, the sheet jumps, the panels leave their plane.
+        let overlaps = pulled.overlap > OVERLAP;
+        let is_close = near.error <= CLOSE * pins.error;
+        let defects = [overlaps, !is_close, pulled.jumps, !pulled.is_flat()];
         let config = with(count, pulled.place);
-        tried.push((pulled, near, config));
+        tried.push((defects, pulled, near, config));
         if defects == [false; 4] {
             break;
         }
     }
     // Of those with the same defects the one with the least of the worst; without defects the one with the fewest pulls.
     let best = tried.into_iter().min_by(|one, other| {
-        let [first, second] = [one, other].map(|(pulled, near, _)| defects(pulled, near));
-        let by_size = match first {
-            [true, ..] => one.0.overlap.total_cmp(&other.0.overlap),
-            [_, true, ..] => one.1.error.total_cmp(&other.1.error),
+        let by_size = match one.0 {
+            [true, ..] => one.1.overlap.total_cmp(&other.1.overlap),
+            [_, true, ..] => one.2.error.total_cmp(&other.2.error),
             _ => Ordering::Equal,
         };
-        first.cmp(&second).then(by_size)
+        one.0.cmp(&other.0).then(by_size)
     });
     let (pulled, stability, mut config) = match best {
-        Some((pulled, near, config)) => (Some(near), pulled.stability, config),
+        Some((_, pulled, near, config)) => (Some(near), pulled.stability, config),
         None => (None, None, with(1, place_on_pins)),
     };
     let regime = scene.material.regime(scene.config.ligament.start);
