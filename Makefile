@@ -12,8 +12,8 @@ test: test-tools
 
 # The tests that need no external program: no gmsh, CalculiX, Slurm, browser, strace or ezdxf.
 test-fast:
-	cargo test --release --locked --workspace --lib --bins --test actuations --test command_line --test data \
-	    --test measured_sheet --test reference --test run --test scene --test sheet --test tensile --test vtk_sheet --test weights
+	cargo test --release --locked --workspace --lib --bins --test command_line --test data \
+	    --test measured_sheet --test reference --test run --test scenes --test sheet --test tensile --test vtk_sheet --test weights
 
 lint:
 	cargo fmt --all --check

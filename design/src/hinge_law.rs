@@ -18,10 +18,8 @@ mod mean;
 mod released;
 mod surrogate;
 
-pub(crate) use corrected::LENGTHS;
-
 pub use contact::{Contact, InvalidContact};
-pub use corrected::{CorrectedLaw, Correction, MissingForces};
+pub use corrected::{CorrectedLaw, Correction, LENGTHS, MissingForces};
 pub use law::{
     DamageMeasure, DesignGradient, HingeDamage, HingeEnergy, HingeGradient, HingeLaw, Order,
     PreparedLaw,

@@ -14,20 +14,18 @@
 //!
 //! | room | contents |
 //! |---|---|
-//! | [`geometry`] | points, polygons, distances of outlines, outlines of drawings |
+//! | [`geometry`] | points, polygons, distances of outlines |
 //! | [`pattern`] | the cut pattern (2)-(5) and its coordinates |
 //! | [`sheet`] | panels and hinges of a pattern, their kinematics (6)-(8) |
 //! | [`hinge_law`] | the energy of a hinge: linear (11), learned (14), contact |
 //! | [`equilibrium`] | equilibrium paths (10) and their adjoint (20) |
 //! | [`objective`] | objective and gradient (16)-(20) |
 //! | [`optimise`](mod@optimise) | the outer loop, Algorithm 1 |
-//! | [`scene`] | a design problem read from TOML, and its run folder |
-//! | [`analysis`] | forces and localisation of a deployed sheet; measured sheets |
 //!
 //! A room uses itself and the rooms above it. Lengths are in mm, forces in N, angles in rad.
 //!
-//! The main types are [`DesignProblem`], [`DesignVector`], [`Deployment`], [`Evaluation`] and [`Scene`]. A scene file
-//! defines a design problem: [`Scene::read`], then [`Scene::problem`]. Without a scene file:
+//! The main types are [`DesignProblem`], [`DesignVector`], [`Deployment`] and [`Evaluation`]. The crate `scene` reads a design
+//! problem from a file. Without one:
 //!
 //! ```
 //! use design::equilibrium::settings::SolverSettings;
@@ -80,15 +78,12 @@
 
 #![warn(missing_docs)]
 
-pub mod analysis;
 pub mod equilibrium;
-pub mod fit;
 pub mod geometry;
 pub mod hinge_law;
 pub mod objective;
 pub mod optimise;
 pub mod pattern;
-pub mod scene;
 pub mod sheet;
 
 pub use equilibrium::solver::EquilibriumSolver;
@@ -103,7 +98,6 @@ pub use optimise::search::SearchMethod;
 pub use pattern::cut_pattern::Outline;
 pub use pattern::design_vector::{DesignVector, WidthChart};
 pub use pattern::grid::Grid;
-pub use scene::Scene;
 pub use sheet::cut_sheet::Sheet;
 
 #[cfg(test)]

@@ -9,6 +9,5 @@ mod released_sheet;
 pub mod response;
 pub mod scores;
 pub mod shape;
-pub mod target;
 pub mod term;
 pub mod terms;

@@ -7,7 +7,7 @@
 //! The cut file of a sheet:
 //!
 //! ```
-//! use design::Scene;
+//! use scene::Scene;
 //! use output::cut_file::{CutLines, SheetDrawing, dxf};
 //! use std::path::Path;
 //!

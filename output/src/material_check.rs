@@ -12,8 +12,8 @@
 //! The range of the strain at the tip comes from window solves, tier `small`, of the five materials of Table 2 at w / t
 //! = 18 and 36 and rotations of 45 and 60 degrees; docs/MATERIALS.md lists them.
 
-use design::analysis::localisation::{critical_edge, gamma};
 use hinge::SheetMaterial;
+use scene::analysis::localisation::{critical_edge, gamma};
 use serde::Serialize;
 use support::severity::{Finding, Severity};
 

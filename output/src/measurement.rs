@@ -7,15 +7,13 @@ mod tables;
 
 pub use agreement::{Agreement, OpeningSpread, Spread};
 
-use design::analysis::measured_openings::{
-    MeasuredOpening, MeasuredPanel, openings, scatter, slip,
-};
-use design::analysis::measured_points::FittedPoint;
-use design::analysis::measured_sheet::MeasuredSheet;
-use design::analysis::path_fit::Fit;
 use design::geometry::plane::point;
 use design::sheet::cut_sheet::Sheet;
 use faer::c64;
+use scene::analysis::measured_openings::{MeasuredOpening, MeasuredPanel, openings, scatter, slip};
+use scene::analysis::measured_points::FittedPoint;
+use scene::analysis::measured_sheet::MeasuredSheet;
+use scene::analysis::path_fit::Fit;
 use serde::Serialize;
 
 /// A measured sheet in numbers.

@@ -27,13 +27,13 @@ pub use warning::{Concern, Warning};
 
 use crate::cut_file::{CutLines, FabricationError};
 use crate::report::rules::{RuleInput, RunContext};
-use design::analysis::design_checks::DesignChecks;
-use design::analysis::error_budget::ErrorBudget;
 use design::objective::design_problem::Deployment;
 use design::objective::scores::Scores;
 use design::optimise::outer_loop::Ended;
-use design::scene::design_run::Designed;
-use design::scene::{Level, LevelDifference, Rung, Scene};
+use scene::analysis::design_checks::DesignChecks;
+use scene::analysis::error_budget::ErrorBudget;
+use scene::design_run::Designed;
+use scene::{Level, LevelDifference, Rung, Scene};
 use serde::Serialize;
 use support::severity::Severity;
 

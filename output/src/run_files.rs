@@ -7,13 +7,13 @@ use crate::cut_file::{
 use crate::drawing;
 use crate::report::{Report, Warning};
 use crate::run_page::run_page;
-use design::analysis::design_checks::CHECKS_FILE;
 use design::objective::design_problem::Deployment;
-use design::scene::Scene;
-use design::scene::design_run::Designed;
-use design::scene::placement::placed;
-use design::scene::run_inputs::STATE_FILE;
 use design::sheet::kinematics::deployed_corners;
+use scene::Scene;
+use scene::analysis::design_checks::CHECKS_FILE;
+use scene::design_run::Designed;
+use scene::placement::placed;
+use scene::run_inputs::STATE_FILE;
 use std::io;
 
 /// A file of a run folder.

@@ -13,8 +13,8 @@ pub use page_data::{History, PageData, SheetData};
 
 use crate::display::text_of_element;
 use crate::report::Report;
-use design::scene::Scene;
-use design::scene::design_run::Designed;
+use scene::Scene;
+use scene::design_run::Designed;
 
 const TEMPLATE: &str = include_str!("run_page/page.html");
 const STYLE: &str = include_str!("run_page/page.css");

@@ -3,9 +3,9 @@
 use crate::cut_file::{CutLines, SheetDrawing};
 use crate::report::Report;
 use crate::run_files::{RUN_FILES, Results, Writer};
-use design::analysis::design_checks::DesignChecks;
-use design::scene::Scene;
-use design::scene::design_run::{Designed, InverseDesignError};
+use scene::Scene;
+use scene::analysis::design_checks::DesignChecks;
+use scene::design_run::{Designed, InverseDesignError};
 use std::io;
 use std::path::Path;
 use support::file_error::FileError;

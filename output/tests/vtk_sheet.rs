@@ -1,8 +1,8 @@
 //! The VTK grids of a deployment against the deployment itself.
 
-use design::scene::Scene;
 use design::sheet::kinematics::deployed_corners;
 use output::vtk_sheet::vtk_states;
+use scene::Scene;
 use std::path::Path;
 use support::vtk::UnstructuredGrid;
 

@@ -9,9 +9,6 @@ use crate::flat_sheet::Sheet;
 use crate::waiting::{unlocked, while_polling};
 use design::equilibrium::warm_start::WarmStart;
 use design::objective::response::{Conditions, Response, ResponseCotangent, ResponseGradient};
-use design::scene::design_run::{design_of_run, stored_design};
-use design::scene::run_inputs::scene_file;
-use design::scene::{Level, Scene, SceneConfig};
 use design::{
     DesignError, DesignProblem, DesignVector, Evaluation, SearchMethod, SearchState, optimise,
 };
@@ -19,6 +16,9 @@ use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList, PyTuple};
 use rayon::prelude::*;
+use scene::design_run::{design_of_run, stored_design};
+use scene::run_inputs::scene_file;
+use scene::{Level, Scene, SceneConfig};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};

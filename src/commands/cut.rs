@@ -5,12 +5,12 @@ use crate::ui::run_folder;
 use anyhow::{Context, Result, ensure};
 use clap::Args;
 use design::objective::design_problem::Deployment;
-use design::scene::{Paper, Scene};
 use output::cut_file::{
     CutDrawing, CutLines, FabricationError, Features, Machine, Machines, OVERLAP, SheetDrawing,
     Tiling, Totals, attachment_list, cut_list, cut_summary, dxf, mark_errors, svg, tiles_pdf,
 };
 use output::report::{Warning, warnings};
+use scene::{Paper, Scene};
 use serde::Serialize;
 use serde_json::json;
 use std::fmt::{self, Display, Formatter};

@@ -4,10 +4,10 @@ use crate::commands::design::write_run;
 use crate::ui::progress::announce;
 use crate::ui::run_folder;
 use anyhow::Result;
-use design::analysis::design_checks::DesignChecks;
 use design::pattern::design_vector::DesignVector;
-use design::scene::Scene;
-use design::scene::design_run::Designed;
+use scene::Scene;
+use scene::analysis::design_checks::DesignChecks;
+use scene::design_run::Designed;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 

@@ -2,9 +2,9 @@
 
 use crate::ui::progress::announce;
 use anyhow::Result;
-use design::analysis::out_of_plane::Stability;
-use design::fit::scene::{FittedScene, Missed, Nearness, fitted, on_larger_stock};
-use design::scene::Scene;
+use scene::Scene;
+use scene::analysis::out_of_plane::Stability;
+use scene::fit::scene::{FittedScene, Missed, Nearness, fitted, on_larger_stock};
 
 /// The number of missed parts that are named.
 const NAMED: usize = 4;

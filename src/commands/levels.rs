@@ -7,7 +7,7 @@ use crate::ui::table::table;
 use crate::ui::{charts, interrupt, output_file};
 use anyhow::Result;
 use clap::Args;
-use design::analysis::levels::{LevelCost, Levels, levels};
+use scene::analysis::levels::{LevelCost, Levels, levels};
 use serde::Serialize;
 use std::path::PathBuf;
 

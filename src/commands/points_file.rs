@@ -2,9 +2,9 @@
 
 use anyhow::{Context, Error, Result, anyhow, bail, ensure};
 use clap::ValueEnum;
-use design::analysis::measured_points::{Mark, MeasuredPoint};
-use design::analysis::measured_sheet::{MeasurementError, PointFault};
 use design::geometry::similarity::Scale;
+use scene::analysis::measured_points::{Mark, MeasuredPoint};
+use scene::analysis::measured_sheet::{MeasurementError, PointFault};
 use std::path::{Path, PathBuf};
 use support::csv_table::{NamedTable, name_and_unit};
 use support::nearest::nearest;

@@ -8,8 +8,8 @@ use crate::studio::static_page;
 use crate::ui::{interrupt, with_unit};
 use anyhow::Result;
 use clap::Args;
-use design::scene::{Level, Scene};
 use rand::random;
+use scene::{Level, Scene};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 

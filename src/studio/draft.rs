@@ -3,9 +3,9 @@
 use crate::studio::everyday::milliseconds;
 use design::equilibrium::warm_start::WarmStart;
 use design::optimise::outer_loop::SearchState;
-use design::scene::Scene;
 use design::{Deployment, DesignError, DesignProblem, DesignVector};
 use output::run_page::{History, SheetData};
+use scene::Scene;
 use serde::Serialize;
 use std::time::{Duration, Instant};
 

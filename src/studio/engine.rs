@@ -10,7 +10,7 @@ use crate::studio::request::Request;
 use crate::studio::session::{Fetched, Next, Session};
 use crate::studio::shop::Shop;
 use anyhow::{Context, Result};
-use design::scene::Scene;
+use scene::Scene;
 use std::collections::VecDeque;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};

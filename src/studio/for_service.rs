@@ -1,9 +1,9 @@
 //! A new sheet as a service cuts it: with holes, slits and material next to them that are large enough for the service.
 
 use anyhow::{Context, Result, ensure};
-use design::scene::SceneConfig;
 use design::sheet::cutting_process::Hole;
 use output::cut_file::{Features, Machines};
+use scene::SceneConfig;
 use std::f64::consts::FRAC_PI_2;
 
 /// What is added to the limits of a service (mm).

@@ -1,6 +1,6 @@
 //! What the keys of a scene mean and which numbers they may have, for the fields of a page: from the types that read the scene.
 
-use design::scene::SceneConfig;
+use scene::SceneConfig;
 use schemars::schema_for;
 use serde_json::Value;
 use std::collections::BTreeMap;

@@ -6,8 +6,8 @@
 
 use crate::commands::init::first_scene::OPENING;
 use anyhow::Result;
-use design::scene::{At, NamedPoint, Scene, SceneConfig, StartConfig, rounded};
-use design::sheet::ideal_deployment::ideal_deployment;
+use scene::fit::pulls::opened_about;
+use scene::{At, NamedPoint, Scene, SceneConfig, StartConfig, rounded};
 
 /// The scene of a uniform sheet with this number of columns and rows.
 pub(super) fn with_panels(scene: &Scene, panels: [usize; 2]) -> Result<Scene> {
@@ -78,23 +78,9 @@ fn ideal_stroke(scene: &Scene) -> Result<Option<f64>> {
     let (_, sheet) = problem.cut(&scene.start())?;
     let supports = scene.actuation().supports;
     let held = supports.first().map_or(0, |support| support.panel);
-    let mut motions = ideal_deployment(&sheet, OPENING);
-    let ([u, v, turn], fixed) = (motions[held], sheet.panels[held].reference);
-    let (sin, cos) = turn.sin_cos();
-    for (motion, panel) in motions.iter_mut().zip(&sheet.panels) {
-        let at = panel.reference;
-        let arm = [
-            at[0] + motion[0] - fixed[0] - u,
-            at[1] + motion[1] - fixed[1] - v,
-        ];
-        *motion = [
-            fixed[0] + cos * arm[0] + sin * arm[1] - at[0],
-            fixed[1] - sin * arm[0] + cos * arm[1] - at[1],
-            motion[2] - turn,
-        ];
-    }
+    let motions = opened_about(&sheet, held, OPENING);
     let mechanics = problem.model.mechanics();
-    Ok(mechanics.and_then(|mechanics| mechanics.stroke(&motions)))
+    Ok(mechanics.and_then(|it| it.solver.displacement(&motions)))
 }
 
 #[cfg(test)]

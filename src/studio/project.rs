@@ -12,10 +12,10 @@ use crate::studio::request::{Drawing, NewSheet};
 use crate::ui::output_file;
 use anyhow::{Context, Result, ensure};
 use design::optimise::outer_loop::Ended;
-use design::scene::design_run::{left_run, stored_design};
-use design::scene::run_inputs::{INPUTS, SCENE_FILE, STATE_FILE, scene_file};
-use design::scene::{Scene, SceneConfig};
 use output::run_files::RUN_FILES;
+use scene::design_run::{left_run, stored_design};
+use scene::run_inputs::{INPUTS, SCENE_FILE, STATE_FILE, scene_file};
+use scene::{Scene, SceneConfig};
 use std::path::{Path, PathBuf};
 use support::{regular_file, text_file};
 

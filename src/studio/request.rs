@@ -1,6 +1,6 @@
 //! What a page asks of the engine.
 
-use design::scene::{Level, SceneConfig, Stock};
+use scene::{Level, SceneConfig, Stock};
 use serde::Deserialize;
 use std::path::PathBuf;
 

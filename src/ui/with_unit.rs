@@ -1,7 +1,7 @@
 //! Values of options with their units: percentages, accuracies and times, and levels.
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
-use design::scene::Level;
+use scene::Level;
 #[cfg(feature = "pipeline")]
 use std::time::Duration;
 

@@ -104,8 +104,8 @@ fn load(weights: &Path) -> Result<Surrogate, WeightsError> {
     let bytes = regular_file::read(weights)
         .map_err(FileError::at(weights))
         .map_err(WeightsError::Read)?;
+    let mut card = Card::of(weights)?;
     let mut tensors = read_tensors(weights, &bytes)?;
-    let mut card = read_card(weights)?;
     let expected = card.weights_hash.take().unwrap_or_default();
     let found = blake3::hash(&bytes).to_hex().to_string();
     if found != expected {
@@ -151,11 +151,36 @@ fn load(weights: &Path) -> Result<Surrogate, WeightsError> {
 impl Card {
     /// Reads the card of `X.safetensors`, `X.json`, without the weights.
     pub fn of(weights: &Path) -> Result<Self, WeightsError> {
+        #[derive(serde::Deserialize)]
+        struct Version {
+            format_version: u64,
+        }
         if weights.extension().is_some_and(|kind| kind == "parquet") {
             let path = weights.to_owned();
             return Err(WeightsError::Database { path });
         }
-        read_card(weights)
+        let path = card_path(weights);
+        let text = regular_file::read(&path).map_err(|source| match source.kind() {
+            io::ErrorKind::NotFound => WeightsError::MissingCard {
+                weights: weights.to_owned(),
+                card: path.clone(),
+            },
+            _ => WeightsError::Read(FileError::at(&path)(source)),
+        })?;
+        let malformed = |source| WeightsError::Card {
+            path: path.clone(),
+            source,
+        };
+        let version: Version = serde_json::from_slice(&text)
+            .map_err(SealError::from)
+            .map_err(malformed)?;
+        if version.format_version != u64::from(FORMAT_VERSION) {
+            return Err(WeightsError::UnknownVersion {
+                path: path.clone(),
+                found: version.format_version,
+            });
+        }
+        sealed_json::from_slice(&text).map_err(malformed)
     }
 }
 
@@ -210,40 +235,7 @@ fn card_path(weights: &Path) -> PathBuf {
     weights.with_extension("json")
 }
 
-fn read_card(weights: &Path) -> Result<Card, WeightsError> {
-    #[derive(serde::Deserialize)]
-    struct Version {
-        format_version: u64,
-    }
-    let path = card_path(weights);
-    let text = regular_file::read(&path).map_err(|source| match source.kind() {
-        io::ErrorKind::NotFound => WeightsError::MissingCard {
-            weights: weights.to_owned(),
-            card: path.clone(),
-        },
-        _ => WeightsError::Read(FileError::at(&path)(source)),
-    })?;
-    let malformed = |source| WeightsError::Card {
-        path: path.clone(),
-        source,
-    };
-    let version: Version = serde_json::from_slice(&text)
-        .map_err(SealError::from)
-        .map_err(malformed)?;
-    if version.format_version != u64::from(FORMAT_VERSION) {
-        return Err(WeightsError::UnknownVersion {
-            path: path.clone(),
-            found: version.format_version,
-        });
-    }
-    sealed_json::from_slice(&text).map_err(malformed)
-}
-
 fn read_tensors(path: &Path, bytes: &[u8]) -> Result<BTreeMap<String, Tensor>, WeightsError> {
-    if bytes.starts_with(b"PAR1") {
-        let path = path.to_owned();
-        return Err(WeightsError::Database { path });
-    }
     let file = SafeTensors::deserialize(bytes).map_err(|source| WeightsError::Malformed {
         path: path.to_owned(),
         source,

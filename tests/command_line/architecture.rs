@@ -204,29 +204,27 @@ fn no_crate_has_circular_imports() {
     }
 }
 
-/// Each room of `design` imports only from itself and the rooms that the page lists before it.
+/// Each room of a crate imports only from itself and the rooms that the page lists before it. Modules outside the listed rooms are the
+/// room with the name of the crate.
 #[test]
-fn the_rooms_of_design_follow_the_order_of_the_page() {
+fn rooms_follow_the_order_of_the_page() {
     let page = std::fs::read_to_string(root().join("docs/ARCHITECTURE.md")).unwrap();
-    let order = page
-        .lines()
-        .find(|line| line.starts_with("Order of rooms: "));
-    let order: Vec<&str> = order.unwrap().split('`').skip(1).step_by(2).collect();
-    let design = Crate::read("design", &root().join("design/src"));
-    let room = |module: &str| module.split("::").next().unwrap().to_owned();
-    let place = |module: &str| order.iter().position(|name| *name == room(module));
-    for (module, others) in design
-        .imports()
-        .into_iter()
-        .filter(|(module, _)| *module != "lib")
-    {
-        let own = place(module)
-            .unwrap_or_else(|| panic!("docs/ARCHITECTURE.md lists no room of {module}"));
-        for other in others {
-            assert!(
-                place(other).is_some_and(|at| at <= own),
-                "{module} imports from {other}, which is not listed before it"
-            );
+    for name in ["design", "scene"] {
+        let beginning = format!("Rooms of `{name}`: ");
+        let order = page.lines().find_map(|line| line.strip_prefix(&beginning));
+        let order: Vec<&str> = order.unwrap().split('`').skip(1).step_by(2).collect();
+        let named = |room: &str| order.iter().position(|other| *other == room);
+        let place = |module: &str| named(module.split("::").next()?).or(named(name));
+        let member = Crate::read(name, &root().join(name).join("src"));
+        for (module, others) in member.imports() {
+            let own = place(module);
+            assert!(own.is_some() || module == "lib", "{module} is in no room");
+            for other in others.into_iter().filter(|_| module != "lib") {
+                assert!(
+                    place(other).is_some_and(|at| Some(at) <= own),
+                    "{module} imports from {other}, which is not listed before it"
+                );
+            }
         }
     }
 }

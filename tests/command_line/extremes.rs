@@ -3,8 +3,8 @@
 
 use design::equilibrium::load_step::Status;
 use design::objective::design_problem::Deployment;
-use design::objective::target::TargetShape;
-use design::scene::{Level, Posture, PostureConfig, Scene, SceneConfig};
+use scene::target::TargetShape;
+use scene::{Level, Posture, PostureConfig, Scene, SceneConfig};
 use std::path::Path;
 
 /// Values of a quantity of the plate, from the smallest to the largest, and how a scene gets them.

@@ -3,8 +3,8 @@
 
 use crate::common::Workplace;
 use design::geometry::polygon::bounds;
-use design::scene::Scene;
 use design::sheet::kinematics::deployed_corners;
+use scene::Scene;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 

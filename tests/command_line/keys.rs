@@ -2,9 +2,9 @@
 //! test writes the page instead.
 
 use dataset::ColumnMeaning;
-use design::scene::SceneConfig;
 use fe_driver::Campaign;
 use hinge::SheetMaterial;
+use scene::SceneConfig;
 use schemars::{Schema, schema_for};
 use serde_json::Value;
 use std::collections::BTreeMap;

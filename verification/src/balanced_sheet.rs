@@ -10,15 +10,15 @@
 use crate::recorded_path::paths_of;
 use crate::replay::{ElementWindows, UnsolvedHinge};
 use crate::verification_error::VerificationError;
-use design::analysis::error_budget::ErrorBudget;
 use design::geometry::polygon::{bounds, distance};
 use design::hinge_law::{CorrectedLaw, Correction, HingeLaw, MissingForces, Order};
 use design::objective::design_problem::{Deployment, DesignError, DesignProblem, Model};
 use design::pattern::design_vector::DesignVector;
-use design::scene::Scene;
 use design::sheet::kinematics::deployed_corners;
 use hinge::HingeSample;
 use mesher::Tier;
+use scene::Scene;
+use scene::analysis::error_budget::ErrorBudget;
 use serde::Serialize;
 use std::sync::Arc;
 

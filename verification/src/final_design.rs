@@ -7,12 +7,12 @@
 use crate::balanced_sheet::{BALANCED, Balanced, DRAFT_ROUNDS, balanced};
 use crate::replay::ElementWindows;
 use crate::verification_error::VerificationError;
-use design::analysis::ladder::Climbed;
-use design::analysis::level_difference::AtLevel;
 use design::optimise::outer_loop::{Ended, SearchState};
-use design::scene::design_run::{design_after, inverse_design};
-use design::scene::{Level, Scene, SolvedHinge, SolvedHinges};
 use mesher::Tier;
+use scene::analysis::ladder::Climbed;
+use scene::analysis::level_difference::AtLevel;
+use scene::design_run::{design_after, inverse_design};
+use scene::{Level, Scene, SolvedHinge, SolvedHinges};
 use std::sync::atomic::AtomicBool;
 use support::file_error::FileError;
 

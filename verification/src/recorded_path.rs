@@ -3,10 +3,10 @@
 use crate::verification_error::VerificationError;
 use design::objective::design_problem::{Deployment, Model};
 use design::pattern::design_vector::DesignVector;
-use design::scene::Scene;
 use fe_driver::{DeformationPath, HingePath, WindowProblem};
 use hinge::{HingeDeformation, HingeDesign, SheetMaterial};
 use mesher::Tier;
+use scene::Scene;
 
 /// The path of one hinge of a sheet, from the flat sheet to full load.
 #[derive(Clone, Debug)]

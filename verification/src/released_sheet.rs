@@ -10,12 +10,12 @@ use crate::recorded_path::paths_of;
 use crate::releases::solved;
 use crate::replay::{ElementWindows, UnsolvedHinge};
 use crate::verification_error::VerificationError;
-use design::analysis::springback::{ResidualShape, unload};
 use design::equilibrium::unloading::ReleasedSheet;
 use design::objective::design_problem::{Deployment, DesignProblem};
-use design::scene::Scene;
 use design::sheet::kinematics::corner_distances;
 use hinge::{HingeDeformation, ReleasedHinge};
+use scene::Scene;
+use scene::analysis::springback::{ResidualShape, unload};
 use serde::Serialize;
 use std::array::from_fn;
 use std::fmt;
@@ -90,7 +90,7 @@ pub fn released_by_elements(
         }
     }
     Ok(ReleasedByElements {
-        by_elements: problem.residual_shape(deployed, &released)?,
+        by_elements: ResidualShape::new(problem, deployed, &released)?,
         by_law,
         corners: distances(&first, &last),
         is_balanced: movements

@@ -1,12 +1,12 @@
 //! Errors of this crate.
 
 use dataset::DatasetError;
-use design::analysis::springback::UnloadError;
 use design::objective::design_problem::DesignError;
-use design::scene::SceneError;
-use design::scene::design_run::InverseDesignError;
 use fe_driver::{CampaignError, SolveListError};
 use mesher::Tier;
+use scene::SceneError;
+use scene::analysis::springback::UnloadError;
+use scene::design_run::InverseDesignError;
 use std::path::PathBuf;
 use support::file_error::FileError;
 

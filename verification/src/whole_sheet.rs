@@ -2,13 +2,12 @@
 
 use crate::verification_error::VerificationError;
 use design::pattern::grid::Grid;
-use design::scene::{Posture, PostureConfig, Scene, SupportKind};
-use design::sheet::attachment::Attachment;
-use design::sheet::cut_sheet::{PanelPoint, Sheet};
+use design::sheet::cut_sheet::{AttachmentPoint, PanelPoint, Sheet};
 use design::sheet::hinge_window::Window;
 use fe_driver::{Held, Keeping, Place, Pulled, SheetProblem};
 use hinge::{HingeDesign, Regime};
 use mesher::{Frame, Imperfection, PanelShape, PlacedWindow, PlaneRecipe, SheetShape, Tier};
+use scene::{Posture, PostureConfig, Scene, SupportKind};
 
 /// Size of the elements of panels over r_win.
 const ELEMENT_SIZE: f64 = 0.8;
@@ -137,7 +136,7 @@ fn held(scene: &Scene, sheet: &Sheet) -> Result<Vec<Held>, VerificationError> {
 }
 
 /// The part of a panel that a support holds: its clip, the whole panel of a clamp without one, or a point.
-fn place(sheet: &Sheet, attachment: &Attachment, kind: SupportKind) -> Place {
+fn place(sheet: &Sheet, attachment: &AttachmentPoint, kind: SupportKind) -> Place {
     let panel = &sheet.panels[attachment.panel];
     match (attachment.clip, attachment.point, kind) {
         (Some(width), PanelPoint::Middle([from, to]), _) => {

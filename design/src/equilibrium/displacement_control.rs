@@ -151,7 +151,7 @@ impl HeldFactor {
 
 /// The sum of the magnitudes of the translational components, or of the rotational ones if the former are zero, and
 /// whether it is the former; `None` if all are zero.
-pub(crate) fn magnitude(by_panel: &[[f64; 3]]) -> Option<(f64, bool)> {
+pub fn magnitude(by_panel: &[[f64; 3]]) -> Option<(f64, bool)> {
     let along: f64 = by_panel.iter().map(|[x, y, _]| x.hypot(*y)).sum();
     let about: f64 = by_panel.iter().map(|[_, _, m]| m.abs()).sum();
     match (along > 0.0, about > 0.0) {
@@ -161,6 +161,7 @@ pub(crate) fn magnitude(by_panel: &[[f64; 3]]) -> Option<(f64, bool)> {
     }
 }
 
-pub(crate) fn work(forces: &[[f64; 3]], motions: &[[f64; 3]]) -> f64 {
+/// The work of the forces (F_x, F_y, M) on panels in motions of them (N mm).
+pub fn work(forces: &[[f64; 3]], motions: &[[f64; 3]]) -> f64 {
     dot(forces.as_flattened(), motions.as_flattened())
 }

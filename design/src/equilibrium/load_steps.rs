@@ -12,8 +12,10 @@ use crate::equilibrium::newton::{Failure, Minimum};
 use crate::equilibrium::potential::{Stage, State, moved};
 use crate::equilibrium::predictor::PathPoint;
 use crate::equilibrium::solver::EquilibriumSolver;
+use crate::equilibrium::weight::weights_of_panels;
 use crate::hinge_law::Order;
-use crate::sheet::kinematics::Configuration;
+use crate::sheet::kinematics::{Configuration, HingeMotion};
+use crate::sheet::panel_vectors::add_at_hinge;
 
 /// The end of an increment of a path.
 #[derive(Clone, Debug)]
@@ -53,7 +55,7 @@ impl EquilibriumSolver {
     }
 
     /// Load factor and configuration of the sheet before the loads: flat, or under its weight.
-    pub(crate) fn before_loads(&self, sheet: HingedSheet) -> (f64, Configuration) {
+    pub fn before_loads(&self, sheet: HingedSheet) -> (f64, Configuration) {
         let weighed = self.weighed(sheet).pop();
         weighed.map_or_else(
             || (0.0, self.flat()),
@@ -67,6 +69,11 @@ impl EquilibriumSolver {
     /// If the sheet or the start has another grid than the solver.
     pub(crate) fn path_from(&self, sheet: HingedSheet, start: Configuration) -> Vec<LoadStep> {
         self.read(sheet, Stage::Actuation, start, self.ends(Stage::Actuation))
+    }
+
+    /// The load parameters of the load steps, from the sheet before the loads to full load.
+    pub fn load_parameters(&self) -> impl Iterator<Item = f64> + use<> {
+        self.ends(Stage::Actuation)
     }
 
     /// The load parameters of the load steps of a part of the path.
@@ -113,6 +120,30 @@ impl EquilibriumSolver {
             status: Status::Diverged,
             ..step
         }
+    }
+
+    /// The forces (F_x, F_y, M) on every panel that hold the sheet in a configuration with a part of its weight: the loads on free
+    /// degrees of freedom, the reactions at supported ones (N, N, N mm).
+    pub fn holding_forces(
+        &self,
+        hinged: HingedSheet,
+        weight: f64,
+        configuration: &[[f64; 3]],
+    ) -> Vec<[f64; 3]> {
+        let sheet = hinged.sheet;
+        let motions = HingeMotion::all(sheet, configuration);
+        let deformations: Vec<_> = motions.iter().map(HingeMotion::deformation).collect();
+        let energies = hinged.energies(&deformations, Order::Forces);
+        let mut forces = vec![[0.0; 3]; sheet.panels.len()];
+        for ((hinge, motion), energy) in sheet.hinges.iter().zip(&motions).zip(energies) {
+            add_at_hinge(&mut forces, hinge, motion.forces(energy.forces));
+        }
+        let by_area = self.weight.map(|component| weight * component);
+        let weights = weights_of_panels(sheet, by_area, configuration);
+        for (force, weight) in std::iter::zip(&mut forces, weights) {
+            (0..3).for_each(|d| force[d] -= weight.force[d]);
+        }
+        forces
     }
 
     /// The forces (F_x, F_y, M) by which the supports hold the panels in an equilibrium at full load (N, N, N mm); zero at free

@@ -7,7 +7,7 @@
 //! Self-weight in the plane is applied before the loads, with fixed supports and no prescribed displacement; its work is
 //! subtracted. In unloading the work of the forces that held the sheet is subtracted.
 
-use crate::equilibrium::displacement_control::Stroke;
+use crate::equilibrium::displacement_control::{Stroke, magnitude, work};
 use crate::equilibrium::settings::SolverSettings;
 use crate::equilibrium::supports::{Dof, Load, Support, hold_rigid_body};
 use crate::equilibrium::tangent::TangentPattern;
@@ -77,7 +77,7 @@ pub struct EquilibriumSolver {
     /// Weight of a unit of area (N/mm^2), zero without weight.
     pub(crate) weight: [f64; 2],
     /// The points at which panels are held or pulled; the others have their centroids as reference points.
-    pub(crate) grips: Box<[AttachmentPoint]>,
+    pub(crate) attachment_points: Box<[AttachmentPoint]>,
     /// Loads held constant from the beginning of the path.
     pub(crate) held: Box<[[f64; 3]]>,
     /// Under displacement control, the direction of the stroke and its value at full load.
@@ -136,7 +136,7 @@ impl EquilibriumSolver {
             pattern: Arc::new(TangentPattern::new(grid, supported.as_flattened())),
             supports: supports.into(),
             weight: [0.0; 2],
-            grips: Box::default(),
+            attachment_points: Box::default(),
             held: vec![[0.0; 3]; total.len()].into(),
             loads: total.into(),
             drive: None,
@@ -211,7 +211,7 @@ impl EquilibriumSolver {
     }
 
     /// The motions (u_x, u_y, phi) of the panels that the supports prescribe at full load.
-    pub(crate) fn support_motions(&self) -> Vec<[f64; 3]> {
+    pub fn support_motions(&self) -> Vec<[f64; 3]> {
         let mut motions = vec![[0.0; 3]; self.loads.len()];
         for support in &self.supports {
             motions[support.panel][support.dof.index()] = support.value;
@@ -222,6 +222,13 @@ impl EquilibriumSolver {
     /// The direction in which the stroke of the loads is prescribed, if it is.
     pub(crate) fn stroke(&self) -> Option<&Stroke> {
         self.drive.as_ref().map(|(stroke, _)| &**stroke)
+    }
+
+    /// The displacement of a configuration along the loads, by which a stroke is prescribed: their work over the sum of their
+    /// magnitudes (mm; rad if there are couples alone). `None` without loads.
+    pub fn displacement(&self, configuration: &[[f64; 3]]) -> Option<f64> {
+        let (size, _) = magnitude(&self.loads)?;
+        Some(work(&self.loads, configuration) / size)
     }
 
     /// Whether the stroke is prescribed and the load factor follows.
@@ -241,15 +248,15 @@ impl EquilibriumSolver {
         Ok(self)
     }
 
-    /// The same problem for panels that are held or pulled at the points of `grips`, to which supports and loads refer.
-    pub fn attached_at(mut self, grips: Vec<AttachmentPoint>) -> Self {
-        self.grips = grips.into();
+    /// The same problem for panels that are held or pulled at `points`, to which supports and loads refer.
+    pub fn attached_at(mut self, points: Vec<AttachmentPoint>) -> Self {
+        self.attachment_points = points.into();
         self
     }
 
     /// The points at which panels are held or pulled.
-    pub fn grips(&self) -> &[AttachmentPoint] {
-        &self.grips
+    pub fn attachment_points(&self) -> &[AttachmentPoint] {
+        &self.attachment_points
     }
 
     /// The same problem with a weight of `by_area` (N/mm^2) in the plane of the sheet.
@@ -296,7 +303,7 @@ impl EquilibriumSolver {
     }
 
     /// The configuration of the flat sheet.
-    pub(crate) fn flat(&self) -> Configuration {
+    pub fn flat(&self) -> Configuration {
         vec![[0.0; 3]; self.grid.panel_count()]
     }
 }

@@ -12,11 +12,11 @@ use std::collections::BTreeSet;
 const HAGER_ROUNDS: usize = 5;
 
 /// A pivot smaller than this, relative to its diagonal entry, is a rounding error.
-pub(crate) const MIN_PIVOT_RATIO: f64 = 1e-13;
+pub const MIN_PIVOT_RATIO: f64 = 1e-13;
 
 /// Sparsity of the tangent in the free degrees of freedom, lower triangle by columns.
 #[derive(Debug)]
-pub(crate) struct TangentPattern {
+pub struct TangentPattern {
     ldl: SparseLdl,
     /// Indices of the free degrees of freedom in the order of elimination, three entries per panel.
     free: Box<[Option<usize>]>,
@@ -26,7 +26,8 @@ pub(crate) struct TangentPattern {
 
 /// LDL^T of a tangent.
 #[derive(Clone, Debug)]
-pub(crate) struct Factor {
+pub struct Factor {
+    /// The entries of L and D.
     pub values: Vec<f64>,
     /// Number of pivots that are not positive beyond rounding: the number of unstable directions.
     pub negative_pivots: usize,

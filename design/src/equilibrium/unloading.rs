@@ -62,7 +62,7 @@ impl EquilibriumSolver {
         let resting: Vec<Support> = resting.copied().collect();
         let free = Self {
             weight: self.weight,
-            grips: self.grips.clone(),
+            attachment_points: self.attachment_points.clone(),
             ..Self::new(self.grid, &resting, &[], STEPS, self.settings)?
         };
         match free.check_supports(sheet) {

@@ -137,7 +137,7 @@ pub fn edges(polygon: &[[f64; 2]]) -> impl Iterator<Item = ([f64; 2], [f64; 2])>
 /// A common point of two edges of a closed polygon, other than the vertices between neighbours.
 ///
 /// Neighbouring edges are near each other: parts of the outline whose boxes do not overlap are not compared.
-pub(crate) fn self_crossing(points: &[[f64; 2]]) -> Option<[f64; 2]> {
+pub fn self_crossing(points: &[[f64; 2]]) -> Option<[f64; 2]> {
     let edges: Vec<Edge> = edges(points).collect();
     let boxes = PartBoxes::of(&edges);
     let neighbours = |i: usize, j: usize| j - i == 1 || j - i == edges.len() - 1;

@@ -22,7 +22,7 @@ pub enum Scale {
 
 impl Scale {
     /// Number of unknowns of a motion with this scale.
-    pub(crate) fn unknowns(self) -> f64 {
+    pub fn unknowns(self) -> f64 {
         match self {
             Self::Given => 3.0,
             Self::Free => 4.0,

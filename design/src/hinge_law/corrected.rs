@@ -36,7 +36,7 @@ pub struct CorrectedLaw {
 
 /// Lengths l of (eta_a, eta_s, theta (rad)): about a third of the extent of a training domain. The forces of a second round
 /// of finite elements are predicted best with 0.06 to 0.15 and 0.2 to 0.5.
-pub(crate) const LENGTHS: [f64; 3] = [0.1, 0.1, 0.3];
+pub const LENGTHS: [f64; 3] = [0.1, 0.1, 0.3];
 
 /// Variance of the noise of all measurements but the last one, relative to the variance of the correction's slopes.
 const NOISE: f64 = 1e-3;

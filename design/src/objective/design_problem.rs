@@ -291,8 +291,10 @@ impl DesignProblem {
     /// The sheet of a pattern with the given ligament widths (mm), held and pulled where the problem's sheet is.
     pub(crate) fn sheet(&self, pattern: &CutPattern, w_lig: &[f64]) -> Result<Sheet, SheetError> {
         let sheet = Sheet::new(pattern, w_lig, self.options)?;
-        let grips = (self.model.mechanics()).map_or(&[][..], |mechanics| mechanics.solver.grips());
-        Ok(sheet.attached_at(grips))
+        Ok(match self.model.mechanics() {
+            Some(mechanics) => sheet.attached_at(mechanics.solver.attachment_points()),
+            None => sheet,
+        })
     }
 
     /// Lines 2-5 of Algorithm 1. A path that diverges ends early; see [`LoadStep::status`].
@@ -380,7 +382,7 @@ impl DesignProblem {
 }
 
 /// The load step, or an error if it is no equilibrium.
-pub(crate) fn converged(step: &LoadStep) -> Result<&LoadStep, DesignError> {
+pub fn converged(step: &LoadStep) -> Result<&LoadStep, DesignError> {
     match step.status {
         Status::Diverged => Err(DesignError::NoEquilibrium {
             reached: step.load_factor,

@@ -15,7 +15,7 @@ use crate::equilibrium::load_step::{LoadStep, Status};
 use crate::equilibrium::solver::EquilibriumError;
 use crate::equilibrium::unloading::ReleasedSheet;
 use crate::hinge_law::{DesignGradient, HingeGradient, Order, PreparedLaw, ReleasedLaw};
-use crate::objective::design_problem::{Deployment, DesignError, Mechanics};
+use crate::objective::design_problem::{Deployment, DesignError, DesignProblem, Mechanics};
 use crate::sheet::cut_sheet::{Sheet, SheetGradient};
 use crate::sheet::kinematics::HingeMotion;
 use crate::sheet::panel_vectors::at_hinge;
@@ -23,9 +23,21 @@ use hinge::ReleasedHinge;
 use std::array::from_fn;
 use surrogate::ByReleased;
 
+impl DesignProblem {
+    /// Takes the loads off a deployed sheet with these hinges.
+    pub fn unload(
+        &self,
+        deployment: &Deployment,
+        hinges: Vec<ReleasedHinge>,
+    ) -> Result<ReleasedSheet, DesignError> {
+        let mechanics = self.model.mechanics().ok_or(DesignError::NoMechanics)?;
+        Ok(mechanics.unload(&deployment.sheet, deployment.at_full_load()?, hinges)?)
+    }
+}
+
 impl Mechanics {
     /// Takes the loads off a sheet in the configuration of a load step, with these hinges.
-    pub(crate) fn unload(
+    fn unload(
         &self,
         sheet: &Sheet,
         step: &LoadStep,

@@ -259,7 +259,7 @@ const FULL_LOAD: [f64; 1] = [1.0];
 
 /// The derivative of (F_a, F_s, M_theta) in the logarithm of the thickness: with all lengths in proportion F_a and F_s grow with its
 /// square and M_theta with its cube.
-pub(crate) fn by_thickness(energy: &HingeEnergy, at: &HingeDeformation, w_lig: f64) -> [f64; 3] {
+pub fn by_thickness(energy: &HingeEnergy, at: &HingeDeformation, w_lig: f64) -> [f64; 3] {
     std::array::from_fn(|c| {
         let degree = if c == 2 { 3.0 } else { 2.0 };
         let [by_a, by_s, _] = energy.tangent[c];

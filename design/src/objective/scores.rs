@@ -42,11 +42,7 @@ pub fn outline_error(objective: &Objective, deployment: &Deployment) -> f64 {
 }
 
 /// The same for a state of the sheet.
-pub(crate) fn outline_error_at(
-    objective: &Objective,
-    deployment: &Deployment,
-    step: &LoadStep,
-) -> f64 {
+pub fn outline_error_at(objective: &Objective, deployment: &Deployment, step: &LoadStep) -> f64 {
     let shape = &objective.shape;
     let points = deployment.sheet.free_outline_corners();
     let outline = shape.placed(&deployment.outline_at(step, &points), deployment.fit);

@@ -23,9 +23,8 @@ pub use symmetric_difference::SymmetricDifference;
 use crate::hinge_law::{DamageMeasure, HingeLaw};
 use crate::objective::loss::Objective;
 use crate::objective::shape::{Shape, TargetState};
-use crate::objective::target::Target;
 use crate::objective::term::Weighted;
-use crate::sheet::attachment::Attachment;
+use crate::sheet::cut_sheet::AttachmentPoint;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -33,8 +32,6 @@ use serde::{Deserialize, Serialize};
 pub const COVERAGE: f64 = 0.5;
 /// Weight of the penalty on holes and clips without room, relative to the Chamfer distance over the area of a panel.
 const FASTENINGS: f64 = 10.0;
-/// Number of points on the target outline.
-pub const TARGET_POINTS: usize = 1000;
 
 /// The weights of (16)-(19), relative to the Chamfer distance divided by the mean panel area: at the
 /// weight 1 a functional with the value 1 costs as much as an outline error of one panel size.
@@ -78,8 +75,8 @@ pub struct ObjectiveConfig {
 
 /// The sheet that an objective is for.
 pub struct Setting<'a> {
-    /// The sampled target.
-    pub target: &'a Target,
+    /// Points on the target, evenly spaced (mm).
+    pub target: &'a [[f64; 2]],
     /// `None` for a sheet on pins, which has no supports and is centred on its target.
     pub law: Option<&'a dyn HingeLaw>,
     /// Area of the sheet divided by the number of panels (mm^2).
@@ -87,7 +84,7 @@ pub struct Setting<'a> {
     /// Radius of the windows of the hinges (mm).
     pub r_win: f64,
     /// The points at which panels are held or pulled.
-    pub attachments: Vec<Attachment>,
+    pub attachments: Vec<AttachmentPoint>,
 }
 
 impl ObjectiveConfig {
@@ -112,7 +109,7 @@ impl ObjectiveConfig {
             Weighted::new(limited, PanelWidth { minimum }),
             Weighted::new(self.domain * area, DomainPenalty { domain }),
         ];
-        let is_fastened = |at: &Attachment| at.hole.or(at.clip).is_some();
+        let is_fastened = |at: &AttachmentPoint| at.hole.or(at.clip).is_some();
         if setting.attachments.iter().any(is_fastened) {
             let attachments = setting.attachments.clone();
             penalties.push(Weighted::new(FASTENINGS * area, Fastenings { attachments }));
@@ -134,13 +131,12 @@ impl ObjectiveConfig {
     }
 
     fn shape(&self, setting: &Setting) -> Shape {
-        let points = &setting.target.points;
         let mut shape = Shape {
             target: Vec::new(),
             coverage_weight: COVERAGE,
             centred: setting.law.is_none(),
         };
-        shape.target = shape.placed(points, None);
+        shape.target = shape.placed(setting.target, None);
         shape
     }
 }
@@ -152,14 +148,13 @@ mod tests {
     use crate::equilibrium::load_step::LoadStep;
     use crate::hinge_law::{HingeDamage, PreparedLaw};
     use crate::objective::hinge_measures::add_by_states;
-    use crate::objective::target::TargetShape;
     use crate::objective::term::{Deployed, Term, TermGradient};
     use crate::pattern::coordinates::PatternCoordinates;
     use crate::pattern::cut_pattern::{CutPattern, Outline};
     use crate::pattern::grid::Grid;
     use crate::sheet::cut_sheet::{HingePoint, Sheet, SheetOptions};
     use hinge::{HingeConstants, HingeDeformation, HingeDesign, TrainingDomain};
-    use std::path::Path;
+    use std::f64::consts::TAU;
 
     const GRID: Grid = Grid { m: 2, n: 2 };
     const STEPS: usize = 3;
@@ -196,14 +191,12 @@ mod tests {
             min_panel_width: 6.0,
             domain: 0.6,
         };
-        let circle = TargetShape::Circle {
-            centre: [90.0, 10.0],
-            radius: 60.0,
-        };
+        let angles = (0..1000).map(|i| TAU * f64::from(i) / 1000.0);
+        let circle = angles.map(|t| [90.0 + 60.0 * t.cos(), 10.0 + 60.0 * t.sin()]);
         let state = [[-0.02, 0.03], [-0.02, 0.02], [0.0, 0.1]];
         let domain = TrainingDomain::from_box(state, [1.0, 2.5], [0.8, 1.5]);
         let mut objective = config.objective(&Setting {
-            target: &Target::sample(&circle, Path::new(""), TARGET_POINTS).unwrap(),
+            target: &circle.collect::<Vec<_>>(),
             law: Some(&Law(domain)),
             mean_panel_area: 10.0,
             r_win: 10.0,

@@ -174,7 +174,7 @@ impl SearchState {
     }
 
     /// Whether the designs of the state have the same dimensions as `start`.
-    pub(crate) fn fits(&self, start: &DesignVector) -> bool {
+    pub fn fits(&self, start: &DesignVector) -> bool {
         let designs = [
             &self.design,
             &self.proposal,
@@ -261,7 +261,7 @@ impl SearchState {
     }
 
     /// Follows the path of the candidate for the best design, without an effect on the search.
-    pub(crate) fn pause(&mut self, problem: &DesignProblem) {
+    pub fn pause(&mut self, problem: &DesignProblem) {
         self.best = self.best_followed.design.clone();
         self.candidate_mismatch = false;
         if let Some(candidate) = &self.candidate {

@@ -83,7 +83,8 @@ impl PatternCoordinates {
         Ok(tau.each_ref().map(logits))
     }
 
-    pub(crate) fn check(&self, grid: Grid) -> Result<(), PatternError> {
+    /// An error unless the coordinates are finite and as many as the grid has.
+    pub fn check(&self, grid: Grid) -> Result<(), PatternError> {
         let expected = grid.edge_cut_counts().map(|count| count + 1);
         let blocks = [
             ("z", &self.z, grid.aspect_ratio_count()),

@@ -29,7 +29,7 @@ pub(crate) const NE: usize = 2;
 pub(crate) const NW: usize = 3;
 
 /// The outline edges in the order of (4), each directed along increasing i or j.
-pub(crate) const EDGES: [[usize; 2]; 4] = [[SW, SE], [SE, NE], [NW, NE], [SW, NW]];
+pub const EDGES: [[usize; 2]; 4] = [[SW, SE], [SE, NE], [NW, NE], [SW, NW]];
 
 impl Grid {
     /// Number of panels, MN.

@@ -1,24 +1,9 @@
-//! A point at which a panel is held or pulled, and the room that its hole or its clip needs.
+//! The room that the hole or the clip at an attachment point needs.
 
 use crate::geometry::plane::{I, add, complex, dot, point};
 use crate::geometry::polygon::{distance, edges, nearest_on_segment};
-use crate::sheet::cut_sheet::{PanelPoint, Sheet, SheetGradient};
+use crate::sheet::cut_sheet::{AttachmentPoint, PanelPoint, Sheet, SheetGradient};
 use faer::c64;
-
-/// A point at which a panel is held or pulled.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Attachment {
-    /// What is attached.
-    pub name: String,
-    /// Index of the panel.
-    pub panel: usize,
-    /// The point of the panel.
-    pub point: PanelPoint,
-    /// Diameter of a hole for a nail or a hook (mm).
-    pub hole: Option<f64>,
-    /// Width of a clip on an edge of the panel (mm).
-    pub clip: Option<f64>,
-}
 
 /// What a hole or a clip is measured to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -44,7 +29,7 @@ pub struct Clearance {
     pub least: f64,
 }
 
-impl Attachment {
+impl AttachmentPoint {
     /// All clearances of its hole and its clip. A hole leaves its radius of material to the edges of its panel; hole and clip
     /// leave the windows of the hinges of the panel free; a clip is no longer than its edge.
     pub fn clearances(&self, sheet: &Sheet) -> Vec<Clearance> {

@@ -60,13 +60,19 @@ pub enum PanelPoint {
     Fixed([f64; 2]),
 }
 
-/// The point at which a panel is held or pulled.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// A point at which a panel is held or pulled.
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct AttachmentPoint {
+    /// What is attached.
+    pub name: String,
     /// Index of the panel.
     pub panel: usize,
     /// The point of the panel.
     pub point: PanelPoint,
+    /// Diameter of a hole for a nail or a hook (mm).
+    pub hole: Option<f64>,
+    /// Width of a clip on an edge of the panel (mm).
+    pub clip: Option<f64>,
 }
 
 /// Options of the sheet that a pattern defines.
@@ -229,9 +235,9 @@ impl Sheet {
     /// The same sheet, held or pulled at other points than the centroids of its panels.
     ///
     /// # Panics
-    /// If a grip is on a panel that the sheet does not have.
-    pub fn attached_at(mut self, grips: &[AttachmentPoint]) -> Self {
-        for &AttachmentPoint { panel, point } in grips {
+    /// If a point is on a panel that the sheet does not have.
+    pub fn attached_at(mut self, points: &[AttachmentPoint]) -> Self {
+        for &AttachmentPoint { panel, point, .. } in points {
             let panel = &mut self.panels[panel];
             panel.point = point;
             panel.reference = panel.position(point);

@@ -105,7 +105,8 @@ pub struct HingeGeometryGradient {
 }
 
 impl HingeMotion {
-    pub(crate) fn all(sheet: &Sheet, configuration: &[[f64; 3]]) -> Vec<Self> {
+    /// The motions of all hinges of a sheet.
+    pub fn all(sheet: &Sheet, configuration: &[[f64; 3]]) -> Vec<Self> {
         let hinges = 0..sheet.hinges.len();
         hinges.map(|h| Self::new(sheet, h, configuration)).collect()
     }

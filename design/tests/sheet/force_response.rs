@@ -1,10 +1,10 @@
 //! The response of an equilibrium to errors of its hinge forces: against equilibria with a law that has them, and in closed form.
 
 use crate::prelude::*;
-use design::analysis::actuation_curve::ActuationCurve;
 use design::equilibrium::force_response::{ForceResponse, Response};
 use design::hinge_law::{CorrectedLaw, Correction, MissingForces};
-use design::scene::{SupportConfig, SupportKind};
+use scene::analysis::actuation_curve::ActuationCurve;
+use scene::{SupportConfig, SupportKind};
 
 /// The A4 sheet after a change, without its ensemble.
 fn film(change: impl Fn(&mut SceneConfig)) -> Scene {

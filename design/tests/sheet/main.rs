@@ -7,7 +7,6 @@ mod closed_forms;
 mod derivatives;
 mod driven;
 mod equilibrium;
-mod error_budget;
 mod extension;
 mod extreme_sheets;
 mod extremes;

@@ -14,13 +14,13 @@ pub use design::objective::design_problem::*;
 pub use design::pattern::coordinates::PatternCoordinates;
 pub use design::pattern::cut_pattern::CutPattern;
 pub use design::pattern::grid::Endpoint;
-pub use design::scene::SceneConfig;
 pub use design::sheet::cut_sheet::*;
 pub use design::sheet::cutting_process::{CuttingProcess, Hole};
 pub use design::sheet::ideal_deployment::ideal_deployment;
 pub use design::sheet::kinematics::{deployed, deployed_corners, hinge_deformations};
 pub use design::*;
 pub use hinge::{HingeDeformation, HingeDesign};
+pub use scene::{Scene, SceneConfig};
 pub use std::sync::Arc;
 
 /// An outline without parallel edges.
@@ -150,6 +150,15 @@ pub fn scene(name: &str, change: impl FnOnce(&mut SceneConfig)) -> Scene {
     let mut config: SceneConfig = support::toml_file::read(&path).unwrap();
     change(&mut config);
     Scene::new(config, &path).unwrap()
+}
+
+/// A point at which a panel is held or pulled.
+pub fn attached(panel: usize, point: PanelPoint) -> AttachmentPoint {
+    AttachmentPoint {
+        panel,
+        point,
+        ..AttachmentPoint::default()
+    }
 }
 
 /// The distance of the centroids of two panels in a configuration.

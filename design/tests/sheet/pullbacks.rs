@@ -63,30 +63,23 @@ fn gradients_in_the_sheet_are_pulled_back_to_the_design() {
                 ..AT_TIP
             };
             options.process.hole = Hole::Diameter(0.3);
-            let attached = |design: &DesignVector| {
+            // One point of each kind besides the centroid.
+            let points = [
+                attached(1, PanelPoint::Middle([0, 1])),
+                attached(5, PanelPoint::Fixed([2.5, 1.5])),
+            ];
+            let held = |design: &DesignVector| {
                 let (pattern, sheet) = cut(design, outline, options);
-                (pattern, sheet.attached_at(&GRIPS))
+                (pattern, sheet.attached_at(&points))
             };
-            let (pattern, sheet) = attached(&design);
+            let (pattern, sheet) = held(&design);
             let weights = random_weights(&sheet);
-            let value = |design: &DesignVector| weighted(&attached(design).1, &weights);
+            let value = |design: &DesignVector| weighted(&held(design).1, &weights);
             let found = pulled_back(&pattern, &sheet, &weights, &design);
             assert_slopes(value, &design, &found);
         }
     }
 }
-
-/// One point of each kind besides the centroid.
-const GRIPS: [AttachmentPoint; 2] = [
-    AttachmentPoint {
-        panel: 1,
-        point: PanelPoint::Middle([0, 1]),
-    },
-    AttachmentPoint {
-        panel: 5,
-        point: PanelPoint::Fixed([2.5, 1.5]),
-    },
-];
 
 fn random_weights(sheet: &Sheet) -> SheetGradient {
     let mut random = Random::new(7);

@@ -232,14 +232,13 @@ fn surrogate_law_with_drilled_holes() {
 
 /// The same problem for a sheet with a weight, held and pulled at other points than centroids.
 pub fn hung(mut model: Model, by_area: [f64; 2]) -> Model {
-    let grip = |panel, point| AttachmentPoint { panel, point };
-    let grips = vec![
-        grip(3, PanelPoint::Middle([3, 0])),
-        grip(5, PanelPoint::Fixed([0.95 * SIDE, 0.45 * SIDE])),
-        grip(8, PanelPoint::Middle([2, 3])),
+    let points = vec![
+        attached(3, PanelPoint::Middle([3, 0])),
+        attached(5, PanelPoint::Fixed([0.95 * SIDE, 0.45 * SIDE])),
+        attached(8, PanelPoint::Middle([2, 3])),
     ];
     let mechanics = mechanics_of(&mut model);
-    let solver = mechanics.solver.clone().attached_at(grips);
+    let solver = mechanics.solver.clone().attached_at(points);
     mechanics.solver = solver.with_weight(by_area).unwrap();
     model
 }

@@ -35,7 +35,7 @@ struct Pendulum {
 
 const K_THETA: f64 = 0.8;
 
-fn pendulum(grips: &[AttachmentPoint]) -> Pendulum {
+fn pendulum(points: &[AttachmentPoint]) -> Pendulum {
     let grid = Grid { m: 2, n: 2 };
     let outline = Outline::rectangle(2.0, 2.0);
     let coordinates = PatternCoordinates::uniform(grid);
@@ -55,7 +55,7 @@ fn pendulum(grips: &[AttachmentPoint]) -> Pendulum {
         },
         pivot: pivot.attachment,
         supports: [0, 2, 3].into_iter().flat_map(clamp).collect(),
-        sheet: sheet.attached_at(grips),
+        sheet: sheet.attached_at(points),
     }
 }
 
@@ -102,11 +102,11 @@ fn a_pendulum_of_two_panels() {
 #[test]
 fn a_force_at_the_middle_of_an_edge() {
     for point in [PanelPoint::Middle([1, 2]), PanelPoint::Fixed([1.7, 0.2])] {
-        let gripped = pendulum(&[AttachmentPoint { panel: 1, point }]);
-        let arm = [0, 1].map(|c| gripped.sheet.panels[1].reference[c] - gripped.pivot[c]);
+        let moved = pendulum(&[attached(1, point)]);
+        let arm = [0, 1].map(|c| moved.sheet.panels[1].reference[c] - moved.pivot[c]);
         let loads = [pull(1, 0.3), load(1, Dof::UY, -0.7)];
-        let solver = solver(gripped.sheet.grid, &gripped.supports, &loads, 4);
-        for step in path_with(&solver, &gripped.sheet, &gripped.law) {
+        let solver = solver(moved.sheet.grid, &moved.supports, &loads, 4);
+        for step in path_with(&solver, &moved.sheet, &moved.law) {
             let force = [0.3, -0.7].map(|force| step.load_factor * force);
             assert_close(step.configuration[1][2], balance(arm, force), 2e-6);
         }
@@ -117,7 +117,7 @@ fn a_force_at_the_middle_of_an_edge() {
 #[test]
 fn a_sheet_hangs_from_a_nail() {
     let point = PanelPoint::Fixed([0.3, 2.4]);
-    let sheet = sheet_of("p1_3x3_random").attached_at(&[AttachmentPoint { panel: 6, point }]);
+    let sheet = sheet_of("p1_3x3_random").attached_at(&[attached(6, point)]);
     let nail = sheet.panels[6].reference;
     for by_area in [[0.0, -1.0], [0.8, 0.6], [-0.1, 1.0]] {
         let solver = solver(sheet.grid, &pin(6), &[], 1);
@@ -134,7 +134,7 @@ fn a_sheet_hangs_from_a_nail() {
     }
     // At its centre of gravity a sheet hangs in no definite position.
     let point = PanelPoint::Fixed(centre_of_gravity(&sheet, &[[0.0; 3]; 9]));
-    let sheet = sheet.attached_at(&[AttachmentPoint { panel: 4, point }]);
+    let sheet = sheet.attached_at(&[attached(4, point)]);
     let balanced = solver(sheet.grid, &pin(4), &[], 1).with_weight([0.0, -1.0]);
     let checked = balanced.unwrap().check_supports(&sheet);
     assert_eq!(checked, Err(EquilibriumError::Unsupported));
@@ -144,12 +144,11 @@ fn a_sheet_hangs_from_a_nail() {
 #[test]
 fn the_reference_point_of_a_panel_is_a_convention() {
     let plain = sheet_of("p1_3x3_random");
-    let grip = |panel, point| AttachmentPoint { panel, point };
-    let gripped = plain.clone().attached_at(&[
-        grip(4, PanelPoint::Middle([0, 1])),
-        grip(7, PanelPoint::Fixed([5.0, -3.0])),
+    let moved = plain.clone().attached_at(&[
+        attached(4, PanelPoint::Middle([0, 1])),
+        attached(7, PanelPoint::Fixed([5.0, -3.0])),
     ]);
-    let corners = [plain, gripped].map(|sheet| {
+    let corners = [plain, moved].map(|sheet| {
         let solver = solver(sheet.grid, &clamp(3), &[pull(5, 2.0)], 3);
         let solver = solver.with_weight([0.1, -0.2]).unwrap();
         let path = path_with(&solver, &sheet, &uniform(SPRINGS, &sheet)).into_iter();
@@ -165,7 +164,7 @@ fn the_reference_point_of_a_panel_is_a_convention() {
 fn the_work_of_weight_and_loads_is_stored() {
     let by_area = [0.05, -0.2];
     let point = PanelPoint::Middle([1, 2]);
-    let sheet = sheet_of("p1_3x3_random").attached_at(&[AttachmentPoint { panel: 5, point }]);
+    let sheet = sheet_of("p1_3x3_random").attached_at(&[attached(5, point)]);
     let loaded = solver(sheet.grid, &clamp(3), &[pull(5, 2.0)], 400);
     for solver in [loaded.clone(), loaded.driven(0.8).unwrap()] {
         let solver = solver.with_weight(by_area).unwrap();

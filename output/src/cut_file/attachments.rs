@@ -3,8 +3,8 @@
 use crate::cut_file::cut_drawing::{CutDrawing, Layer};
 use crate::cut_file::fabrication_error::FabricationError;
 use crate::display::Shape;
-use design::sheet::attachment::{Attachment, Clearance, Obstacle};
-use design::sheet::cut_sheet::Sheet;
+use design::sheet::attachment::{Clearance, Obstacle};
+use design::sheet::cut_sheet::{AttachmentPoint, Sheet};
 
 /// Half the length of the arms of a mark (mm).
 const ARM: f64 = 2.0;
@@ -26,7 +26,10 @@ pub struct PlacedAttachment {
 
 impl PlacedAttachment {
     /// An attachment on its sheet; an error if its hole or its clip lacks room.
-    pub(super) fn new(sheet: &Sheet, attachment: &Attachment) -> Result<Self, FabricationError> {
+    pub(super) fn new(
+        sheet: &Sheet,
+        attachment: &AttachmentPoint,
+    ) -> Result<Self, FabricationError> {
         let clearances = attachment.clearances(sheet);
         if let Some(short) = clearances.iter().find(|room| room.distance < room.least) {
             return Err(without_room(attachment.name.clone(), *short));

@@ -24,10 +24,10 @@ use crate::display::Shape;
 use design::geometry::polygon::{distance, distance_to_segment, edges};
 use design::objective::design_problem::Deployment;
 use design::pattern::cut_pattern::CutPattern;
-use design::scene::{CuttingConfig, Scene};
-use design::sheet::attachment::Attachment;
+use design::sheet::cut_sheet::AttachmentPoint;
 use design::sheet::cut_sheet::Sheet;
 use design::sheet::topology::hinge_sites;
+use scene::{CuttingConfig, Scene};
 use std::collections::BTreeMap;
 
 /// One straight cut through the sheet.
@@ -79,7 +79,7 @@ impl CutLines {
         pattern: &CutPattern,
         sheet: &Sheet,
         cutting: CuttingConfig,
-        attachments: &[Attachment],
+        attachments: &[AttachmentPoint],
     ) -> Result<Self, FabricationError> {
         let process = sheet.options.process;
         let holes: Vec<Hole> = sheet

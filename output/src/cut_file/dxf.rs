@@ -5,7 +5,7 @@
 
 use crate::cut_file::cut_drawing::{CutDrawing, Layer};
 use crate::display::{Anchor, Shape, Text};
-use design::geometry::bulged::Vertex;
+use scene::drawing::bulged::Vertex;
 use std::fmt::{Display, Write};
 
 /// The file of a drawing, identical for identical drawings.

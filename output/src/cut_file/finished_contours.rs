@@ -4,8 +4,8 @@
 //! one contour.
 
 use crate::cut_file::cut_lines::{CutLines, Slit};
-use design::geometry::bulged::Vertex;
 use design::geometry::polygon::{distance, edges, side};
+use scene::drawing::bulged::Vertex;
 use std::f64::consts::PI;
 
 /// The contours of a sheet (mm), counter-clockwise.
@@ -126,8 +126,8 @@ fn notched(outline: &[[f64; 2]; 4], open: &[End]) -> Vec<Vertex> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use design::geometry::bulged::flattened;
     use design::geometry::polygon::area;
+    use scene::drawing::bulged::flattened;
 
     fn end(at: [f64; 2], towards: [f64; 2]) -> End {
         End {

@@ -1,7 +1,7 @@
 //! A drawing on pages of paper, which overlap.
 
 use crate::cut_file::fabrication_error::FabricationError;
-use design::scene::Paper;
+use scene::Paper;
 
 /// Border that printers leave white (mm).
 pub(super) const BORDER: f64 = 10.0;

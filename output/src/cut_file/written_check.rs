@@ -206,9 +206,9 @@ mod tests {
     use design::pattern::coordinates::PatternCoordinates;
     use design::pattern::cut_pattern::{CutPattern, Outline};
     use design::pattern::grid::Grid;
-    use design::scene::CuttingConfig;
     use design::sheet::cut_sheet::{HingePoint, SheetOptions};
     use hinge::HingeConstants;
+    use scene::CuttingConfig;
 
     /// The uniform sheet of 3 x 3 panels of 400 mm, and its drawing.
     fn uniform() -> (Sheet, CutDrawing) {

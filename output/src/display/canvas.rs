@@ -2,8 +2,8 @@
 
 use crate::display::shape::{Anchor, Shape, Text, rectangle};
 use crate::display::style::{Colour, Style};
-use design::geometry::bulged::{Vertex, centre};
 use design::geometry::polygon::distance;
+use scene::drawing::bulged::{Vertex, centre};
 use std::fmt::Write;
 
 /// Height of the capitals of DejaVu Sans, relative to the size of the font.

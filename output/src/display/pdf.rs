@@ -2,8 +2,8 @@
 
 use crate::display::shape::{Anchor, Shape, Text};
 use crate::display::style::{Colour, Style};
-use design::geometry::bulged::flattened;
 use pdf_writer::{Content, Finish, Name, Pdf, Rect, Ref, Str};
+use scene::drawing::bulged::flattened;
 
 /// Points per mm.
 const POINTS: f64 = 72.0 / 25.4;

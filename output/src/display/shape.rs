@@ -1,7 +1,7 @@
 //! Shapes; lengths in mm, y upwards.
 
-use design::geometry::bulged::{Vertex, flattened};
 use design::geometry::polygon::{bounds, distance, edges};
+use scene::drawing::bulged::{Vertex, flattened};
 use std::f64::consts::TAU;
 
 /// One shape.

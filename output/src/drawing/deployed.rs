@@ -6,15 +6,15 @@ use crate::drawing::load_marks::{self, Mark, marks};
 use crate::drawing::page::{ACCENT, ColourScale, INK, MUTED, PANELS, Page, Sketch};
 use design::equilibrium::load_step::LoadStep;
 use design::objective::design_problem::Deployment;
-use design::scene::Scene;
-use design::scene::design_run::Designed;
-use design::scene::placement::placed;
 use design::sheet::cut_sheet::Sheet;
 use design::sheet::hinge_window::Window;
 use design::sheet::kinematics::{
     Configuration, deployed as moved, deployed_corners, hinge_deformations,
 };
 use design::sheet::topology::is_even;
+use scene::Scene;
+use scene::design_run::Designed;
+use scene::placement::placed;
 
 /// What a state without loads is called.
 const UNLOADED: &str = "Loads taken off";

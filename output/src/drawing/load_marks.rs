@@ -3,10 +3,10 @@
 
 use crate::report::rounded;
 use design::equilibrium::load_step::LoadStep;
-use design::scene::placement::placed;
-use design::scene::{Scene, SupportedPanel};
 use design::sheet::cut_sheet::Sheet;
 use design::sheet::kinematics::deployed as moved;
+use scene::placement::placed;
+use scene::{Scene, SupportedPanel};
 use std::f64::consts::PI;
 
 /// A part of a symbol (mm).

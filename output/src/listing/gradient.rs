@@ -6,8 +6,8 @@ use design::objective::design_problem::{DesignError, DesignProblem};
 use design::objective::loss::TermValues;
 use design::objective::scores::outline_error;
 use design::pattern::design_vector::DesignVector;
-use design::scene::Scene;
-use design::scene::placement::deployed_outline;
+use scene::Scene;
+use scene::placement::deployed_outline;
 use serde_json::json;
 
 /// Lists L of (16), its terms and its gradient in (z, ell, omega) of a design of a scene and its problem.

@@ -1,10 +1,10 @@
 //! Residual opening of a sheet when its loads are taken off, in numbers.
 
 use crate::drawing;
-use design::analysis::springback::{ResidualShape, UnloadError, unload_in_domain};
 use design::objective::design_problem::{Deployment, DesignProblem};
 use design::pattern::design_vector::DesignVector;
-use design::scene::Scene;
+use scene::Scene;
+use scene::analysis::springback::{ResidualShape, UnloadError, unload_in_domain};
 use serde::Serialize;
 use std::fmt;
 use surrogate::{Springback, SpringbackErrors};

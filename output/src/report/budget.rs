@@ -2,8 +2,8 @@
 
 use crate::report::columns::{columns, fixed};
 use crate::report::self_weight::SelfWeight;
-use design::analysis::error_budget::{Effect, ErrorBudget};
 use design::objective::shape::TargetState;
+use scene::analysis::error_budget::{Effect, ErrorBudget};
 use serde::Serialize;
 
 /// The error budget of the best design.

@@ -1,12 +1,12 @@
 //! What becomes of the opening of a sheet: under a load that stays, and when the load is taken off.
 
 use crate::report::columns::rounded;
-use design::analysis::springback::{
+use design::objective::design_problem::{Deployment, DesignProblem};
+use hinge::Creep;
+use scene::Scene;
+use scene::analysis::springback::{
     ResidualShape, TOO_FAR, UnloadError, moment_after_overshoot, unload_in_domain,
 };
-use design::objective::design_problem::{Deployment, DesignProblem};
-use design::scene::Scene;
-use hinge::Creep;
 use serde::Serialize;
 use surrogate::SpringbackErrors;
 

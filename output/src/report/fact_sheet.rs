@@ -4,14 +4,14 @@ use crate::report::columns::rounded;
 use crate::report::creep_and_springback::CreepAndSpringback;
 use crate::report::hinge_row::HingeRow;
 use crate::report::self_weight::SelfWeight;
-use design::analysis::actuation_curve::{ActuationCurve, LimitPoint, LoadPeak, Mover};
 use design::equilibrium::load_step::Status;
 use design::geometry::polygon::{area, bounds};
 use design::objective::design_problem::{Deployment, DesignProblem};
 use design::objective::shape::TargetState;
-use design::scene::{Level, Scene, panel_name};
-use design::sheet::attachment::Attachment;
+use design::sheet::cut_sheet::AttachmentPoint;
 use design::sheet::kinematics::deployed_corners;
+use scene::analysis::actuation_curve::{ActuationCurve, LimitPoint, LoadPeak, Mover};
+use scene::{Level, Scene, panel_name};
 use serde::Serialize;
 use surrogate::TestErrors;
 
@@ -385,7 +385,7 @@ fn errors(percents: &[f64], states: usize, kind: &str) -> String {
 /// Every support and every load of a single panel, with its place in the flat sheet.
 fn attachments(scene: &Scene, deployment: &Deployment) -> Vec<String> {
     let attachments = scene.actuation().attachments.into_iter();
-    let text = |attachment: Attachment| {
+    let text = |attachment: AttachmentPoint| {
         let panel = &deployment.sheet.panels[attachment.panel];
         let [x, y] = panel.position(attachment.point).map(|x| rounded(x, 5));
         let size = |what: &str, size: Option<f64>| {

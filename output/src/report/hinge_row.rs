@@ -1,14 +1,14 @@
 //! One hinge in the report.
 
-use design::analysis::flanks::flank_gap;
-use design::analysis::localisation::gamma;
-use design::analysis::path_separation::PathSeparation;
 use design::geometry::polygon::{distance, edges};
 use design::hinge_law::DamageMeasure;
 use design::objective::design_problem::Deployment;
-use design::scene::{Posture, Scene};
 use design::sheet::cut_sheet::{Hinge, Sheet};
 use hinge::HingeDesign;
+use scene::analysis::flanks::flank_gap;
+use scene::analysis::localisation::gamma;
+use scene::analysis::path_separation::PathSeparation;
+use scene::{Posture, Scene};
 use serde::Serialize;
 use surrogate::Surrogate;
 
@@ -40,7 +40,7 @@ pub struct HingeRow {
     /// [`PathSeparation::whole`].
     pub path_separation: f64,
     /// Minimum along the path of the distance of the flanks of the cut where they come nearest (mm): see
-    /// [`flank_gap`](design::analysis::flanks::flank_gap).
+    /// [`flank_gap`](scene::analysis::flanks::flank_gap).
     pub flank_gap: f64,
     /// (21), with the shortest edge of the two panels; `None` for a sheet that does not lie on a surface.
     pub gamma: Option<f64>,

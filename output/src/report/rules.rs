@@ -7,20 +7,20 @@ use crate::report::fact_sheet::{FactSheet, miss};
 use crate::report::hinge_row::HingeRow;
 use crate::report::self_weight::of_the_load;
 use crate::report::warning::{Concern, Warning};
-use design::analysis::design_checks::{DesignChecks, WholeSheet};
-use design::analysis::flatness::{Flatness, error_on_table};
-use design::analysis::out_of_plane::{MOST, Stability};
 use design::equilibrium::load_step::{LoadStep, Status};
 use design::geometry::polygon::contains;
 use design::hinge_law::{DamageMeasure, HingeDamage};
 use design::objective::design_problem::Deployment;
 use design::objective::scores::Scores;
-use design::scene::design_run::Designed;
-use design::scene::{FRICTION, Posture, Scene};
 use design::sheet::cut_sheet::PanelPoint;
 use design::sheet::hinge_window::Window;
 use design::sheet::validity::{OVERLAP, overlap};
 use hinge::Regime;
+use scene::analysis::design_checks::{DesignChecks, WholeSheet};
+use scene::analysis::flatness::{Flatness, error_on_table};
+use scene::analysis::out_of_plane::{MOST, Stability};
+use scene::design_run::Designed;
+use scene::{FRICTION, Posture, Scene};
 use support::severity::Severity;
 
 /// Weight or friction over load from which a sheet opens otherwise than without it.

@@ -1,8 +1,8 @@
 //! The weight of a sheet compared with its load, and what follows from how the sheet is held out of its plane.
 
 use crate::report::columns::rounded;
-use design::analysis::localisation::elasto_gravity_length;
-use design::scene::{FRICTION, Posture, Scene};
+use scene::analysis::localisation::elasto_gravity_length;
+use scene::{FRICTION, Posture, Scene};
 use serde::Serialize;
 
 /// The weight of the uncut sheet and how it acts.

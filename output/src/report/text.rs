@@ -2,9 +2,9 @@
 
 use crate::report::columns::{columns, fixed, rounded};
 use crate::report::{HingeRow, Report};
-use design::analysis::design_checks::WholeSheet;
-use design::analysis::levels::Levels;
 use design::objective::scores::{Scores, shown};
+use scene::analysis::design_checks::WholeSheet;
+use scene::analysis::levels::Levels;
 use std::cmp::Ordering;
 use std::fmt;
 use support::severity::Severity;

@@ -3,12 +3,12 @@
 use crate::deployment_states::{kept, states_before};
 use crate::report::force_spreads;
 use crate::run_page::packed::Packed;
-use design::analysis::actuation_curve::{ActuationCurve, holding_forces};
 use design::equilibrium::load_step::{LoadStep, Status};
 use design::hinge_law::{DamageMeasure, Order, PreparedLaw, ReleasedLaw};
 use design::objective::design_problem::{Deployment, DesignProblem, Mechanics};
-use design::scene::Scene;
-use design::scene::placement::placed;
+use scene::Scene;
+use scene::analysis::actuation_curve::ActuationCurve;
+use scene::placement::placed;
 use serde::Serialize;
 use surrogate::Surrogate;
 
@@ -151,7 +151,9 @@ fn forces_and_reactions<'a>(
         let hinged = mechanics.hinged(&deployment.sheet, law, false);
         let energies = hinged.energies(&state.deformations, Order::Forces);
         forces.extend(energies.iter().flat_map(|energy| energy.forces));
-        let on_panels = holding_forces(mechanics, hinged, state.weight, &state.configuration);
+        let on_panels = mechanics
+            .solver
+            .holding_forces(hinged, state.weight, &state.configuration);
         reactions.extend(supports.iter().flat_map(|support| {
             let held = std::iter::zip(support.motion, on_panels[support.panel]);
             held.map(|(motion, force)| motion.map_or(0.0, |_| force))

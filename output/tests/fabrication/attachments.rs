@@ -1,23 +1,22 @@
 //! Holes for nails and hooks, clips, and where they must not be.
 
 use super::{W_LIG, uniform};
-use design::scene::CuttingConfig;
-use design::sheet::attachment::Attachment;
+use design::sheet::cut_sheet::AttachmentPoint;
 use design::sheet::cut_sheet::PanelPoint;
 use output::cut_file::{CutLines, FabricationError, Layer, attachment_list, dxf};
 use output::display::Shape;
+use scene::CuttingConfig;
 
-fn attachment(point: PanelPoint) -> Attachment {
-    Attachment {
+fn attachment(point: PanelPoint) -> AttachmentPoint {
+    AttachmentPoint {
         name: "load, panel [1,1]".to_owned(),
         panel: 4,
         point,
-        hole: None,
-        clip: None,
+        ..AttachmentPoint::default()
     }
 }
 
-fn cuts(attachment: Attachment) -> Result<CutLines, FabricationError> {
+fn cuts(attachment: AttachmentPoint) -> Result<CutLines, FabricationError> {
     let (pattern, sheet) = uniform(W_LIG);
     CutLines::new(&pattern, &sheet, CuttingConfig::default(), &[attachment])
 }
@@ -33,7 +32,7 @@ fn middle() -> ([f64; 2], f64) {
 fn a_hole_is_cut_and_listed() {
     let ([x, y], _) = middle();
     let at = [x - 3.0, y + 2.0];
-    let hooked = Attachment {
+    let hooked = AttachmentPoint {
         hole: Some(6.0),
         ..attachment(PanelPoint::Fixed(at))
     };
@@ -53,7 +52,7 @@ fn a_hole_is_cut_and_listed() {
 #[test]
 fn a_clip_lies_on_its_edge_and_is_not_cut() {
     let ([x, y], half) = middle();
-    let clip = |width: f64| Attachment {
+    let clip = |width: f64| AttachmentPoint {
         clip: Some(width),
         ..attachment(PanelPoint::Middle([0, 1]))
     };
@@ -80,7 +79,7 @@ fn a_clip_lies_on_its_edge_and_is_not_cut() {
 fn a_hole_near_an_edge_or_a_hinge_is_refused() {
     let ([x, y], half) = middle();
     let hole = |at: [f64; 2], diameter: f64| {
-        let hooked = Attachment {
+        let hooked = AttachmentPoint {
             hole: Some(diameter),
             ..attachment(PanelPoint::Fixed(at))
         };

@@ -2,8 +2,8 @@
 
 use super::*;
 use design::geometry::polygon::{distance_to_segment, edges};
-use design::scene::Paper;
 use output::cut_file::{Layer, Machines, Tiling, dxf, svg, tiles_pdf};
+use scene::Paper;
 use serde::Deserialize;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;

@@ -16,12 +16,12 @@ mod order_and_numbers;
 use design::pattern::coordinates::PatternCoordinates;
 use design::pattern::cut_pattern::{CutPattern, Outline};
 use design::pattern::grid::Grid;
-use design::scene::CuttingConfig;
 use design::sheet::cut_sheet::{HingePoint, Sheet, SheetOptions};
 use hinge::{HingeConstants, SheetMaterial};
 use output::cut_file::{CutLines, FabricationError, SheetDrawing, Slit};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
+use scene::CuttingConfig;
 
 const W_LIG: f64 = 18.0;
 const FILLET_RATIO: f64 = 0.16;

@@ -3,10 +3,6 @@
 mod accuracy;
 mod mistakes;
 
-use design::analysis::measured_openings::{MeasuredPanel, openings, scatter, slip};
-use design::analysis::measured_points::{Mark, MeasuredPoint};
-use design::analysis::measured_sheet::{MeasuredSheet, MeasurementError, PointFault};
-use design::analysis::shape_path::ShapePath;
 use design::equilibrium::settings::SolverSettings;
 use design::equilibrium::supports::{Dof, Load, Support};
 use design::geometry::similarity::Scale;
@@ -18,6 +14,10 @@ use hinge::HingeConstants;
 use output::measurement::MeasurementReport;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
+use scene::analysis::measured_openings::{MeasuredPanel, openings, scatter, slip};
+use scene::analysis::measured_points::{Mark, MeasuredPoint};
+use scene::analysis::measured_sheet::{MeasuredSheet, MeasurementError, PointFault};
+use scene::analysis::shape_path::ShapePath;
 use std::f64::consts::TAU;
 use std::sync::Arc;
 

@@ -1,9 +1,9 @@
 //! Load against displacement, and the forces that hold a sheet in its states.
 
 use super::*;
-use design::analysis::actuation_curve::{ActuationCurve, Mover, holding_forces};
 use design::equilibrium::load_step::{LoadStep, Status};
 use design::objective::design_problem::{Deployment, DesignProblem};
+use scene::analysis::actuation_curve::{ActuationCurve, Mover};
 
 /// The deployment of a scene with another actuation, in many load steps.
 fn deployed(actuation: &str) -> (DesignProblem, Deployment) {
@@ -66,7 +66,9 @@ fn loads_and_reactions_balance() {
     let step = &deployment.path[100];
     let law = mechanics.law.prepare(&sheet.designs());
     let hinged = mechanics.hinged(sheet, &*law, false);
-    let forces = holding_forces(mechanics, hinged, step.weight, &step.configuration);
+    let forces = mechanics
+        .solver
+        .holding_forces(hinged, step.weight, &step.configuration);
     let (mut sum, mut moment) = ([0.0; 2], 0.0);
     for (k, ([x, y, m], [u_x, u_y, _])) in std::iter::zip(&forces, &step.configuration).enumerate()
     {

@@ -3,7 +3,7 @@
 
 use super::*;
 use design::optimise::outer_loop::Ended;
-use design::scene::design_run::design_of_run;
+use scene::design_run::design_of_run;
 use support::severity::Severity;
 
 /// The scene linear-7x7 from a random start, with 40 steps of an optimiser that follows every tenth path.

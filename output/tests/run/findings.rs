@@ -3,12 +3,12 @@
 use super::learned::{brittle, learned, weights};
 use super::*;
 use design::DesignError;
-use design::analysis::actuation_curve::ActuationCurve;
-use design::analysis::design_checks::{DesignChecks, WholeSheet};
-use design::objective::target::TargetShape;
-use design::scene::Posture;
-use design::scene::design_run::design_of_run;
 use output::listing::equilibrium;
+use scene::Posture;
+use scene::analysis::actuation_curve::ActuationCurve;
+use scene::analysis::design_checks::{DesignChecks, WholeSheet};
+use scene::design_run::design_of_run;
+use scene::target::TargetShape;
 use support::severity::Severity;
 
 /// The learned scene, run with changes of the card and of the scene.

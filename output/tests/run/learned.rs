@@ -3,10 +3,10 @@
 
 use super::*;
 use design::objective::design_problem::Deployment;
-use design::objective::target::TargetShape;
 use output::cut_file::CutLines;
 use output::report::warnings;
 use output::run_results::remove_run;
+use scene::target::TargetShape;
 use support::sealed_json;
 use support::severity::Severity;
 use surrogate::Surrogate;

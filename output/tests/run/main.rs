@@ -11,10 +11,10 @@ mod run_page;
 mod sections;
 
 use design::optimise::outer_loop::SearchState;
-use design::scene::design_run::{Designed, InverseDesignError, inverse_design};
-use design::scene::{Scene, SceneConfig};
 use output::report::{Concern, Report, Warning};
 use output::run_results::write_results;
+use scene::design_run::{Designed, InverseDesignError, inverse_design};
+use scene::{Scene, SceneConfig};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use tempfile::TempDir;

@@ -3,7 +3,7 @@
 
 use super::*;
 use design::optimise::outer_loop::{Ended, StepRecord};
-use design::scene::design_run::design_of_run;
+use scene::design_run::design_of_run;
 use support::sealed_json;
 
 /// The run of the scene with changes.

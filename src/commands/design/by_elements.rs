@@ -6,9 +6,9 @@ use crate::ui::interrupt;
 use crate::ui::progress::{announce, duration};
 use anyhow::{Context, Result, ensure};
 use design::optimise::outer_loop::Ended;
-use design::scene::run_inputs::{SCENE_FILE, holds_a_run};
-use design::scene::{Level, Scene, SceneConfig};
 use output::report::Report;
+use scene::run_inputs::{SCENE_FILE, holds_a_run};
+use scene::{Level, Scene, SceneConfig};
 use verification::{ElementWindows, final_design, most_cpu_seconds, verification_tier};
 
 impl DesignCommand {

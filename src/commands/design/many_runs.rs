@@ -4,7 +4,7 @@
 use crate::ui::comparison;
 use crate::ui::table::Table;
 use anyhow::{Context, Result, ensure};
-use design::scene::Scene;
+use scene::Scene;
 use serde_json::Value;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};

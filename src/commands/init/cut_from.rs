@@ -1,7 +1,7 @@
 //! The stock that a new sheet is cut from.
 
 use anyhow::{Result, ensure};
-use design::scene::Stock;
+use scene::Stock;
 use toml_edit::{Array, Item, Table, value};
 
 /// A stock and its border that the machine cannot cut (mm).
@@ -44,7 +44,7 @@ impl CutFrom {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use design::scene::Paper;
+    use scene::Paper;
 
     #[test]
     fn a_sheet_is_smaller_than_its_stock_by_all_that_is_cut_beyond_its_edge() {

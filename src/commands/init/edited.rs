@@ -1,6 +1,6 @@
 //! Changes of a TOML text that keep its comments.
 
-use design::scene::rounded;
+use scene::rounded;
 use toml_edit::{Array, DocumentMut, Item, Value};
 
 /// Replaces a value and keeps its comment.

@@ -14,9 +14,9 @@ use crate::commands::init::edited::{heading, scale, set};
 use crate::commands::init::template::Template;
 use crate::commands::input_file;
 use anyhow::{Context, Result};
-use design::geometry::drawn_outline::numbered;
-use design::scene::{CuttingConfig, Paper, place_drawing, rounded};
 use hinge::Regime;
+use scene::drawing::drawn_outline::numbered;
+use scene::{CuttingConfig, Paper, place_drawing, rounded};
 use std::path::Path;
 use toml_edit::{Array, DocumentMut, Item, Table, value};
 
@@ -276,7 +276,7 @@ fn whole(panel: [usize; 2]) -> Array {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use design::fit::opening::safe_opening;
+    use scene::fit::opening::safe_opening;
     use surrogate::Surrogate;
 
     /// The published rectangle of the sheet of section 4.3, opened by 25 degrees.

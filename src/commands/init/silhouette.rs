@@ -3,7 +3,7 @@
 use crate::commands::fitting::fit_to_target;
 use crate::commands::init::edited::{heading, set};
 use anyhow::{Context, Result};
-use design::scene::{Posture, Scene, SceneConfig, TargetShape};
+use scene::{Posture, Scene, SceneConfig, TargetShape};
 use toml_edit::{Array, ArrayOfTables, DocumentMut, Item, Table, Value, value};
 
 /// The text of the scene of a first sheet, fitted to its target, and what is expected of it.

@@ -1,6 +1,6 @@
 //! Lengths, the size of a sheet, and its stock as one argument.
 
-use design::scene::{Paper, Stock};
+use scene::{Paper, Stock};
 
 /// Two positive lengths (mm) from a text such as `210x297` or `1200 x 600mm`.
 fn width_by_height(text: &str) -> Option<[f64; 2]> {

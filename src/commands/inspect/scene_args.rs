@@ -3,9 +3,9 @@
 use anyhow::{Context, Result};
 use clap::Args;
 use design::pattern::design_vector::DesignVector;
-use design::scene::Scene;
-use design::scene::design_run::{design_of_run, stored_design};
-use design::scene::run_inputs::{STATE_FILE, scene_file};
+use scene::Scene;
+use scene::design_run::{design_of_run, stored_design};
+use scene::run_inputs::{STATE_FILE, scene_file};
 use std::path::{Path, PathBuf};
 
 /// The value of `--design` that names no file.

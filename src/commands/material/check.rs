@@ -3,10 +3,10 @@
 use crate::ui::table::table;
 use anyhow::{Result, bail, ensure};
 use clap::Args;
-use design::scene::SceneConfig;
-use design::scene::run_inputs::scene_file;
 use hinge::SheetMaterial;
 use output::material_check::{Intended, MaterialCheck};
+use scene::SceneConfig;
+use scene::run_inputs::scene_file;
 use std::path::PathBuf;
 use support::severity::Severity;
 use support::toml_file;

@@ -2,8 +2,8 @@
 
 use super::axes::{Axis, axes, names};
 use super::*;
-use design::analysis::error_budget::Cause;
-use design::analysis::levels::Levels;
+use scene::analysis::error_budget::Cause;
+use scene::analysis::levels::Levels;
 
 /// Size of the chart (px).
 const SIZE: (u32, u32) = (640, 460);

@@ -6,8 +6,6 @@ mod fake_solver;
 use design::hinge_law::Order;
 use design::objective::design_problem::Deployment;
 use design::pattern::design_vector::DesignVector;
-use design::scene::run_inputs::scene_file;
-use design::scene::{Level, Scene, SceneConfig};
 use fake_solver::{FakeSolver, Fault};
 use fe_driver::{
     Campaign, DrawnStates, Progress, Solution, SolveError, SolveService, SolveStore, Solver,
@@ -15,6 +13,8 @@ use fe_driver::{
 };
 use hinge::Regime;
 use mesher::Tier;
+use scene::run_inputs::scene_file;
+use scene::{Level, Scene, SceneConfig};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};

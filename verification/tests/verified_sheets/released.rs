@@ -1,8 +1,6 @@
 //! Unloaded hinges and sheets: by springs that slip, whose rest is known exactly, and by finite elements at the limits.
 
-use design::analysis::springback::released_hinges;
 use design::objective::design_problem::Deployment;
-use design::scene::{Scene, SceneConfig};
 use design::sheet::kinematics::deployed_corners;
 use fe_driver::{
     CalculiX, DrawnStates, HingePath, Ray, Solution, SolveError, SolveService, SolveStore, Solver,
@@ -13,6 +11,8 @@ use hinge::{
     SheetMaterial,
 };
 use mesher::Tier;
+use scene::analysis::springback::{ResidualShape, released_hinges};
+use scene::{Scene, SceneConfig};
 use std::array::from_fn;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
@@ -197,7 +197,7 @@ fn a_sheet_that_is_let_go_has_the_hinges_of_the_solver() {
         })
         .collect();
     let exact = problem.unload(deployed, exact).unwrap();
-    let exact = problem.residual_shape(deployed, &exact).unwrap();
+    let exact = ResidualShape::new(&problem, deployed, &exact).unwrap();
     let [found, exact] = [&released.by_elements, &exact].map(|stays| stays.rotations.clone());
     for ([_, found], [_, exact]) in std::iter::zip(found, exact) {
         assert!((found - exact).abs() < 1e-3, "{found} {exact}");

@@ -1,8 +1,8 @@
 //! Designed sheets solved as a whole with gmsh and CalculiX, compared with the deployment by the hinge law.
 
-use design::scene::{Posture, Scene};
 use fe_driver::{CalculiX, SolveService, SolveStore};
 use mesher::Tier;
+use scene::{Posture, Scene};
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;

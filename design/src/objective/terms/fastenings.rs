@@ -8,7 +8,7 @@
 //! penalty grows without bound as d vanishes.
 
 use crate::objective::term::{Deployed, Term, TermGradient};
-use crate::sheet::attachment::Attachment;
+use crate::sheet::cut_sheet::AttachmentPoint;
 
 /// Distance from which on a clearance costs nothing, over the smallest one that can be made.
 const MARGIN: f64 = 1.1;
@@ -17,7 +17,7 @@ const MARGIN: f64 = 1.1;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fastenings {
     /// The points at which panels are held or pulled.
-    pub attachments: Vec<Attachment>,
+    pub attachments: Vec<AttachmentPoint>,
 }
 
 impl Term for Fastenings {
@@ -80,13 +80,13 @@ mod tests {
         Sheet::new(&pattern, &widths, options).unwrap()
     }
 
-    fn attachment(point: PanelPoint, hole: Option<f64>, clip: Option<f64>) -> Attachment {
-        Attachment {
-            name: String::new(),
+    fn attachment(point: PanelPoint, hole: Option<f64>, clip: Option<f64>) -> AttachmentPoint {
+        AttachmentPoint {
             panel: 1,
             point,
             hole,
             clip,
+            ..AttachmentPoint::default()
         }
     }
 

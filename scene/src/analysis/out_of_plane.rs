@@ -1,0 +1,386 @@
+//! Whether the panels of a plate stay in their plane along the path of its loads.
+//!
+//! Rigid panels may rise by z and tilt by (w_x, w_y) about the points at which they are held or pulled. A ligament joins the
+//! heights of its panels at its middle, bends about the line across it and twists about the line along it, with the stiffnesses
+//!
+//! ```text
+//! k_bend = c K_aa t^2 / 12,      k_twist = J / (t w^3 / 12) k_theta / 3,      k_theta = M / theta,
+//! ```
+//!
+//! with K_aa the stiffness along the ligament by the hinge law, J of the torsion of a rectangle w x t, M the moment about the
+//! middle, k_theta at most its value in the flat sheet, and c a factor from finite elements of whole sheets (docs/results/flatness).
+//! Moments M in the plane turn with the ligament: by the mean tilt w of its panels, M changes by M w x e_z. Forces f act at an arm that
+//! tilts with each panel. The margin of a state is the smallest factor of these forces and moments at which the flat sheet is not
+//! stable. In an equilibrium without couples their stiffness is symmetric; its symmetric part is taken.
+
+use crate::{Scene, SupportKind};
+use design::equilibrium::load_step::LoadStep;
+use design::equilibrium::tangent::TangentPattern;
+use design::geometry::plane::{I, complex, cross, point, turn};
+use design::hinge_law::Order;
+use design::objective::design_problem::{Deployment, DesignProblem};
+use design::sheet::cut_sheet::{Hinge, Sheet};
+use design::sheet::kinematics::{Configuration, deployed};
+use faer::c64;
+use hinge::{HingeDeformation, Regime};
+use serde::Serialize;
+use std::array::from_fn;
+
+/// c. It is above 1 as one side of a ligament that has yielded unloads elastically when it bends.
+const UNLOADING: f64 = 1.7;
+/// Stiffness of a ligament against a difference of heights over K_aa: so large that there is none.
+const RIGID: f64 = 1e3;
+/// The least margin that is distinguished.
+const LEAST_MARGIN: f64 = 0.05;
+/// The largest margin that is distinguished.
+pub const MOST: f64 = 20.0;
+/// Number of halvings of this interval: to 0.2 %.
+const HALVINGS: usize = 12;
+/// Smallest stiffness along a ligament over that in the flat sheet.
+const LEAST: f64 = 1e-3;
+
+/// The stiffness of a hinge in (z, w_x, w_y) of its panels A and B.
+type Block = [[f64; 6]; 6];
+
+/// How a plate stays in its plane along its path.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Stability {
+    /// The least margin.
+    pub margin: f64,
+    /// Mean opening of the hinges (rad) at which the margin first falls below 1; `None` if it does not.
+    pub leaves_at: Option<f64>,
+}
+
+impl Stability {
+    /// Smallest margin of a plate whose panels tilt by less than a degree (docs/results/flatness).
+    pub const SAFE: f64 = 1.2;
+
+    /// Whether nothing needs to hold it flat.
+    pub fn is_safe(self) -> bool {
+        self.margin >= Self::SAFE
+    }
+
+    /// Of a deployed plate; `None` where [`margins`] has none.
+    pub fn new(scene: &Scene, problem: &DesignProblem, deployment: &Deployment) -> Option<Self> {
+        let margins = margins(scene, problem, deployment)?;
+        let states: Vec<[f64; 2]> = std::iter::zip(&margins, &deployment.path)
+            .map(|(margin, step)| [*margin, step.mean_opening()])
+            .collect();
+        let crossing = |pair: &[[f64; 2]]| {
+            let [[before, from], [after, to]] = [pair[0], pair[1]];
+            (after < 1.0).then(|| from + (before - 1.0) / (before - after) * (to - from))
+        };
+        Some(Self {
+            margin: margins.iter().copied().fold(f64::INFINITY, f64::min),
+            leaves_at: match states.first() {
+                Some([margin, opening]) if *margin < 1.0 => Some(*opening),
+                _ => states.windows(2).find_map(crossing),
+            },
+        })
+    }
+}
+
+/// The margin of every load step of a deployed plate, at most [`MOST`]; `None` for a sheet on pins, for a film, and for a sheet whose supports leave it
+/// free to move out of the plane. Clips and clamps of supports hold a panel against rising and tilting, other supports one of its points;
+/// what pulls a panel holds nothing.
+pub fn margins(
+    scene: &Scene,
+    problem: &DesignProblem,
+    deployment: &Deployment,
+) -> Option<Vec<f64>> {
+    let thickness = scene.material.thickness;
+    let is_film = |hinge: &Hinge| scene.material.regime(hinge.w_lig) == Regime::Film;
+    if deployment.sheet.hinges.iter().any(is_film) {
+        return None;
+    }
+    let mechanics = problem.model.mechanics()?;
+    let sheet = &deployment.sheet;
+    let law = mechanics.law.prepare(&sheet.designs());
+    let undeformed = vec![HingeDeformation::default(); sheet.hinges.len()];
+    let flat = law.energies(&undeformed, Order::Tangent);
+    let mut supported = vec![[false; 3]; sheet.panels.len()];
+    let attachments = scene.actuation().attachments;
+    for (support, attachment) in std::iter::zip(&scene.config.supports, &attachments) {
+        let [height, tilts @ ..] = &mut supported[attachment.panel];
+        *height = true;
+        let clipped = support.kind == SupportKind::Clamp || attachment.clip.is_some();
+        tilts.iter_mut().for_each(|held| *held |= clipped);
+    }
+    let pattern = TangentPattern::new(sheet.grid, supported.as_flattened());
+    let of_step = |step: &LoadStep| {
+        let elastic = law.energies(&step.deformations, Order::Tangent);
+        // Contact carries forces, but does not stiffen ligaments.
+        let mut total = elastic.clone();
+        if let Some(contact) = &mechanics.contact {
+            contact.add(&mut total, &step.deformations);
+        }
+        let blocks = (0..sheet.hinges.len()).map(|h| {
+            let ligament = Ligament::new(sheet, h, &step.configuration, total[h].forces);
+            let theta = step.deformations[h].theta;
+            let stiffness = Stiffness::new(
+                [&flat[h].tangent, &elastic[h].tangent],
+                ligament.moment / theta,
+                sheet.hinges[h].w_lig,
+                thickness,
+            );
+            (ligament.elastic(&stiffness), ligament.geometric())
+        });
+        let (elastic, geometric): (Vec<Block>, Vec<Block>) = blocks.unzip();
+        margin(
+            &pattern,
+            &pattern.assemble(elastic.into_iter()),
+            &pattern.assemble(geometric.into_iter().map(symmetric)),
+        )
+    };
+    deployment.path.iter().map(of_step).collect()
+}
+
+/// The symmetric part of a block.
+fn symmetric(block: Block) -> Block {
+    from_fn(|i| from_fn(|j| 0.5 * (block[i][j] + block[j][i])))
+}
+
+/// The smallest multiple of `geometric` at which its sum with `elastic` is not positive definite, from [`LEAST_MARGIN`] to [`MOST`]; `None` if `elastic` is not.
+fn margin(pattern: &TangentPattern, elastic: &[f64], geometric: &[f64]) -> Option<f64> {
+    let is_stable = |multiple: f64| {
+        let sum = std::iter::zip(elastic, geometric).map(|(e, g)| e + multiple * g);
+        let sum: Vec<f64> = sum.collect();
+        let factor = pattern.factorise(&sum, Vec::new());
+        factor.is_some_and(|factor| factor.negative_pivots == 0)
+    };
+    if !is_stable(0.0) {
+        return None;
+    }
+    let [mut stable, mut unstable] = [LEAST_MARGIN, MOST];
+    if is_stable(unstable) {
+        return Some(unstable);
+    }
+    for _ in 0..HALVINGS {
+        let between = (stable * unstable).sqrt();
+        if is_stable(between) {
+            stable = between;
+        } else {
+            unstable = between;
+        }
+    }
+    Some(stable)
+}
+
+/// The stiffnesses of a ligament out of the plane.
+struct Stiffness {
+    /// Against a difference of heights (N/mm).
+    height: f64,
+    /// Against bending and twist (N mm).
+    bend: f64,
+    twist: f64,
+}
+
+impl Stiffness {
+    /// From the tangents of the hinge law in the flat sheet and in a state, and the `secant` stiffness of the rotation there (N mm).
+    fn new([flat, state]: [&[[f64; 3]; 3]; 2], secant: f64, w_lig: f64, thickness: f64) -> Self {
+        let axial = state[0][0].max(LEAST * flat[0][0]);
+        // About the middle, where a rotation causes no axial force.
+        let elastic = flat[2][2] - flat[0][2].powi(2) / flat[0][0];
+        // A hinge that forces turn against its moment, or that has not turned, has the stiffness of the flat sheet.
+        let rotation = if secant > 0.0 {
+            secant.clamp(LEAST * elastic, elastic)
+        } else {
+            elastic
+        };
+        let (least, most) = (w_lig.min(thickness), w_lig.max(thickness));
+        let slender = least / most;
+        let torsion = most * least.powi(3) / 3.0 * (1.0 - 0.63 * slender + 0.052 * slender.powi(5));
+        let bending = thickness * w_lig.powi(3) / 12.0;
+        Self {
+            height: RIGID * flat[0][0],
+            bend: UNLOADING * axial * thickness.powi(2) / 12.0,
+            twist: torsion / bending * rotation / 3.0,
+        }
+    }
+}
+
+/// A ligament in a state of the sheet in its plane.
+struct Ligament {
+    /// Unit vector along it.
+    along: c64,
+    /// From the reference points of panels A and B to its middle (mm).
+    arms: [c64; 2],
+    /// Force on panel A towards B (N), and moment about its middle (N mm).
+    force: c64,
+    moment: f64,
+}
+
+impl Ligament {
+    fn new(
+        sheet: &Sheet,
+        h: usize,
+        configuration: &Configuration,
+        [f_a, f_s, m_theta]: [f64; 3],
+    ) -> Self {
+        let hinge = &sheet.hinges[h];
+        let panels = [hinge.panel_a(), hinge.panel_b()];
+        let turned = 0.5 * (configuration[panels[0]][2] + configuration[panels[1]][2]);
+        let e_sec = complex(hinge.e_sec);
+        let middle = complex(hinge.tip) + 0.5 * hinge.w_lig * I * e_sec;
+        // Mean position of a point of the flat sheet on the two panels.
+        let mean = |flat: c64| {
+            let on = |k: usize| {
+                let panel = &sheet.panels[panels[k]];
+                complex(deployed(panel, configuration[panels[k]], point(flat)))
+            };
+            0.5 * (on(0) + on(1))
+        };
+        let at = mean(middle);
+        let along = e_sec * turn(turned);
+        let force = c64::new(f_a, f_s) * along;
+        let arm = |k: usize| {
+            let [u_x, u_y, _] = configuration[panels[k]];
+            at - complex(sheet.panels[panels[k]].reference) - c64::new(u_x, u_y)
+        };
+        Self {
+            along,
+            arms: [arm(0), arm(1)],
+            force,
+            moment: m_theta + cross(mean(complex(hinge.attachment)) - at, force),
+        }
+    }
+
+    /// The stiffness by its own.
+    fn elastic(&self, stiffness: &Stiffness) -> Block {
+        let [a, b] = self.arms;
+        let turn = |c64 { re: x, im: y }: c64| [0.0, -x, -y, 0.0, x, y];
+        let height = [-1.0, -a.im, a.re, 1.0, b.im, -b.re];
+        let motions = [
+            (stiffness.height, height),
+            (stiffness.twist, turn(self.along)),
+            (stiffness.bend, turn(I * self.along)),
+        ];
+        let mut block = Block::default();
+        for (stiffness, motion) in motions {
+            for (row, by_row) in block.iter_mut().zip(motion) {
+                for (entry, by_column) in row.iter_mut().zip(motion) {
+                    *entry += stiffness * by_row * by_column;
+                }
+            }
+        }
+        block
+    }
+
+    /// The stiffness by its force and moment in the plane.
+    fn geometric(&self) -> Block {
+        let mut block = Block::default();
+        let half = 0.5 * self.moment;
+        for (panel, sign) in [(0, -1.0), (1, 1.0)] {
+            let row = 3 * panel;
+            // M w x e_z, of the mean tilt.
+            for column in [0, 3] {
+                block[row + 1][column + 2] += sign * half;
+                block[row + 2][column + 1] -= sign * half;
+            }
+            // The height w x r of the middle times e_z x f.
+            let (r, f) = (self.arms[panel], self.force);
+            for (column, height) in [(row + 1, r.im), (row + 2, -r.re)] {
+                block[row + 1][column] -= sign * height * f.im;
+                block[row + 2][column] += sign * height * f.re;
+            }
+        }
+        block
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::derivatives::assert_close;
+    use design::pattern::grid::Grid;
+    use std::path::Path;
+
+    fn deployed_scene(name: &str) -> (Scene, Deployment) {
+        let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("../configs/scenes");
+        let scene = Scene::read(&scenes.join(name)).unwrap();
+        let deployment = scene.problem().unwrap().deploy(&scene.start()).unwrap();
+        (scene, deployment)
+    }
+
+    /// A panel that a force pushes towards its hinge with a clamped panel tips over it at the load of a rigid bar on a spring.
+    #[test]
+    fn a_pushed_panel_tips_over_at_the_load_of_a_bar_on_a_spring() {
+        let (load, arm, bend) = (3.0, 40.0, 500.0);
+        let along = turn(0.4);
+        let ligament = Ligament {
+            along,
+            arms: [10.0 * along, -arm * along],
+            force: -load * along,
+            moment: 0.0,
+        };
+        let stiffness = Stiffness {
+            height: 1e6,
+            bend,
+            twist: 0.1 * bend,
+        };
+        let pattern = TangentPattern::new(
+            Grid { m: 2, n: 1 },
+            &[true, true, true, false, false, false],
+        );
+        let [elastic, geometric] = [ligament.elastic(&stiffness), ligament.geometric()]
+            .map(|block| pattern.assemble(std::iter::once(block)));
+        let found = margin(&pattern, &elastic, &geometric).unwrap();
+        assert_close(found, bend / (load * arm), 0.02);
+        // Pulled, it stays.
+        let pulled: Vec<f64> = geometric.iter().map(|entry| -entry).collect();
+        assert_eq!(margin(&pattern, &elastic, &pulled), Some(MOST));
+        // Nothing holds it.
+        let free = TangentPattern::new(Grid { m: 2, n: 1 }, &[false; 6]);
+        let loose = free.assemble(std::iter::once(ligament.elastic(&stiffness)));
+        assert_eq!(margin(&free, &loose, &loose), None);
+    }
+
+    /// As in any equilibrium, the stiffness by the forces is symmetric.
+    #[test]
+    fn forces_in_equilibrium_have_a_symmetric_stiffness() {
+        let (scene, deployment) = deployed_scene("linear-7x7.toml");
+        let problem = scene.problem().unwrap();
+        let (sheet, step) = (&deployment.sheet, deployment.final_step());
+        let mechanics = problem.model.mechanics().unwrap();
+        let prepared = mechanics.law.prepare(&sheet.designs());
+        let hinged = mechanics.hinged(sheet, &*prepared, false);
+        let energies = hinged.energies(&step.deformations, Order::Forces);
+        let mut turning = vec![0.0; sheet.panels.len()];
+        let mut size = 0.0_f64;
+        for (h, energy) in energies.iter().enumerate() {
+            let ligament = Ligament::new(sheet, h, &step.configuration, energy.forces);
+            let block = ligament.geometric();
+            let hinge = &sheet.hinges[h];
+            for (panel, at) in [(hinge.panel_a(), 0), (hinge.panel_b(), 3)] {
+                turning[panel] += block[at + 1][at + 2] - block[at + 2][at + 1];
+                size = size.max(block[at + 1][at + 2].abs());
+            }
+            // Between its panels it is symmetric by itself.
+            let between: [[f64; 3]; 3] = from_fn(|i| from_fn(|j| block[i][j + 3]));
+            let mirrored: [[f64; 3]; 3] = from_fn(|i| from_fn(|j| block[j + 3][i]));
+            assert_eq!(between, mirrored);
+        }
+        let held: Vec<usize> = (scene.config.supports.iter())
+            .map(|support| support.panel[1] * sheet.grid.m + support.panel[0])
+            .collect();
+        let free = (0..turning.len()).filter(|panel| !held.contains(panel));
+        for panel in free {
+            assert!(
+                turning[panel].abs() < 1e-6 * size,
+                "{panel}: {}",
+                turning[panel]
+            );
+        }
+    }
+
+    /// By finite elements its panels tilt by 0.2 deg (docs/results/plates).
+    #[test]
+    fn the_plate_of_the_service_stays_in_its_plane_and_a_film_has_no_margin() {
+        let (scene, deployment) = deployed_scene("a4-plate.toml");
+        let stability = Stability::new(&scene, &scene.problem().unwrap(), &deployment).unwrap();
+        assert!(stability.margin > Stability::SAFE, "{stability:?}");
+        assert_eq!(stability.leaves_at, None);
+        let (film, deployment) = deployed_scene("pet-3x3.toml");
+        assert_eq!(margins(&film, &film.problem().unwrap(), &deployment), None);
+    }
+}

@@ -1,0 +1,206 @@
+//! A deployed sheet that is unloaded: its equilibrium without loads, with hinges that are elastic about their residual
+//! deformations.
+
+use crate::analysis::actuation_curve::{ActuationCurve, Mover};
+use crate::{Scene, SpringbackMismatch};
+use design::equilibrium::unloading::ReleasedSheet;
+use design::hinge_law::{Order, PreparedLaw, Release, ReleasedLaw};
+use design::objective::design_problem::{Deployment, DesignError, DesignProblem, converged};
+use design::objective::scores::outline_error_at;
+use design::sheet::kinematics::corner_distances;
+use hinge::{HingeDeformation, ReleasedHinge};
+use serde::Serialize;
+use std::array::from_fn;
+use support::statistics::rms_and_maximum;
+use surrogate::Springback;
+
+/// Why the unloaded state of a sheet cannot be computed.
+#[derive(Debug, thiserror::Error)]
+#[allow(missing_docs, reason = "the message of a variant is its documentation")]
+pub enum UnloadError {
+    #[error(
+        "{hinges} hinges are outside the training domain at full load, where the law of released hinges is not known"
+    )]
+    OutsideDomain { hinges: usize },
+    #[error(
+        "without its loads the sheet would open further, from {loaded:.1} to {free:.1} deg: the law of released hinges does not hold \
+         here; check by `kirigami verify --equilibrium --released`"
+    )]
+    OpensFurther { loaded: f64, free: f64 },
+    #[error(transparent)]
+    Law(#[from] SpringbackMismatch),
+    #[error(transparent)]
+    Design(#[from] DesignError),
+}
+
+/// The residual opening of a sheet.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ResidualShape {
+    /// Rotation of every hinge under load and without (rad).
+    pub rotations: Vec<[f64; 2]>,
+    /// Rotation at which every hinge by itself would be without forces (rad).
+    pub rest_rotations: Vec<f64>,
+    /// Displacement along the loads, under load and without, in `displacement_unit`; `None` if supports moved the sheet.
+    pub displacement: Option<[f64; 2]>,
+    /// mm, or rad if couples move the sheet.
+    pub displacement_unit: &'static str,
+    /// Movement of the panel corners: root mean square and maximum (mm).
+    pub corners: [f64; 2],
+    /// Whether the sheet snaps to another state while the loads are taken off.
+    pub snaps: bool,
+    /// Root mean square distance of the outline to the target, under load and without (mm).
+    pub outline_error: [f64; 2],
+}
+
+impl ResidualShape {
+    /// The residual opening of a sheet that was unloaded.
+    pub fn new(
+        problem: &DesignProblem,
+        deployment: &Deployment,
+        released: &ReleasedSheet,
+    ) -> Result<Self, DesignError> {
+        let loaded = deployment.at_full_load()?;
+        let free = converged(released.last())?;
+        let sheet = &deployment.sheet;
+        let moved = corner_distances(sheet, &loaded.configuration, &free.configuration);
+        let curve = problem.model.mechanics().and_then(|mechanics| {
+            let start = (loaded.load_factor, loaded.configuration.clone());
+            let end = std::iter::once((0.0, &*free.configuration));
+            ActuationCurve::through(mechanics, sheet, &start, end)
+        });
+        let curve = curve.filter(|curve| curve.mover == Mover::Loads);
+        let rotations = std::iter::zip(&loaded.deformations, &free.deformations);
+        Ok(Self {
+            rotations: rotations.map(|(on, off)| [on.theta, off.theta]).collect(),
+            rest_rotations: released
+                .hinges
+                .iter()
+                .map(|hinge| hinge.rest.theta)
+                .collect(),
+            displacement_unit: match &curve {
+                Some(curve) if !curve.translational => "rad",
+                _ => "mm",
+            },
+            displacement: curve.map(|curve| [curve.points[0][0], curve.points[1][0]]),
+            snaps: released.path.iter().any(|step| step.jumps > 0),
+            corners: rms_and_maximum(moved),
+            outline_error: [loaded, free]
+                .map(|step| outline_error_at(&problem.objective, deployment, step)),
+        })
+    }
+
+    /// Mean rotation of the hinges under load and without (rad).
+    pub fn mean_rotations(&self) -> [f64; 2] {
+        let count = self.rotations.len() as f64;
+        [0, 1].map(|i| self.rotations.iter().map(|pair| pair[i].abs()).sum::<f64>() / count)
+    }
+
+    /// Mean rotation without load over that under load; `None` if the hinges have not opened.
+    pub fn share(&self) -> Option<f64> {
+        let [loaded, free] = self.mean_rotations();
+        (loaded > 0.0).then(|| free / loaded)
+    }
+}
+
+/// The hinges of a deployed sheet of a scene and its problem after they were unloaded, with the forces of the problem's hinge law.
+///
+/// # Errors
+/// As [`Scene::check_springback`], or if the sheet has no equilibrium at full load.
+pub fn released_hinges(
+    scene: &Scene,
+    problem: &DesignProblem,
+    law: &Springback,
+    deployment: &Deployment,
+) -> Result<Vec<ReleasedHinge>, UnloadError> {
+    scene.check_springback(law)?;
+    let mechanics = problem.model.mechanics().ok_or(DesignError::NoMechanics)?;
+    let release = Release::new(law.clone(), scene.scale());
+    let designs = deployment.sheet.designs();
+    let prepared = mechanics.law.prepare(&designs);
+    let states = &deployment.at_full_load()?.deformations;
+    Ok(release.hinges(&*prepared, &designs, states))
+}
+
+/// A deployed sheet of a scene and its problem after it was unloaded, and its residual opening.
+///
+/// # Errors
+/// As [`released_hinges`], or if the sheet has no equilibrium without loads.
+pub fn unload(
+    scene: &Scene,
+    problem: &DesignProblem,
+    law: &Springback,
+    deployment: &Deployment,
+) -> Result<(ReleasedSheet, ResidualShape), UnloadError> {
+    let hinges = released_hinges(scene, problem, law, deployment)?;
+    let released = problem.unload(deployment, hinges)?;
+    let stays = ResidualShape::new(problem, deployment, &released)?;
+    Ok((released, stays))
+}
+
+/// As [`unload`], where the law of released hinges is known to hold.
+///
+/// # Errors
+/// As [`unload`], if hinges are outside the training domain at full load, or if the sheet would open further without its loads.
+pub fn unload_in_domain(
+    scene: &Scene,
+    problem: &DesignProblem,
+    law: &Springback,
+    deployment: &Deployment,
+) -> Result<(ReleasedSheet, ResidualShape), UnloadError> {
+    let hinges = deployment.hinges_outside();
+    if hinges > 0 {
+        return Err(UnloadError::OutsideDomain { hinges });
+    }
+    let (released, stays) = unload(scene, problem, law, deployment)?;
+    let [loaded, free] = stays.mean_rotations().map(f64::to_degrees);
+    if free > loaded {
+        return Err(UnloadError::OpensFurther { loaded, free });
+    }
+    Ok((released, stays))
+}
+
+/// By how much a person opens a sheet too far, in parts of its opening.
+pub const TOO_FAR: f64 = 0.15;
+
+/// The work rate M theta of the hinges of a sheet that was opened [too far](TOO_FAR) and brought back, over the work rate of
+/// a sheet that was not: how firmly it holds. `None` if a hinge leaves the training domain on the way, or if the sheet does not
+/// open at its last load step.
+pub fn moment_after_overshoot(
+    scene: &Scene,
+    problem: &DesignProblem,
+    law: &Springback,
+    deployment: &Deployment,
+) -> Option<f64> {
+    let mechanics = problem.model.mechanics()?;
+    let designs = deployment.sheet.designs();
+    let prepared = mechanics.law.prepare(&designs);
+    let loaded = &deployment.path[deployment.weight_steps().len()..];
+    let [.., before, last] = loaded else {
+        return None;
+    };
+    // Straight on from the last load step.
+    let opens = last.mean_opening() - before.mean_opening();
+    if opens <= 0.0 {
+        return None;
+    }
+    let steps = TOO_FAR * last.mean_opening() / opens;
+    let over: Vec<HingeDeformation> = std::iter::zip(&before.deformations, &last.deformations)
+        .map(|(before, last)| {
+            let (before, last) = (before.to_array(), last.to_array());
+            HingeDeformation::from(from_fn(|i| last[i] + steps * (last[i] - before[i])))
+        })
+        .collect();
+    if prepared.inside(&over).contains(&false) {
+        return None;
+    }
+    let hinges = Release::new(law.clone(), scene.scale()).hinges(&*prepared, &designs, &over);
+    let holds = |law: &dyn PreparedLaw| -> f64 {
+        let energies = law.energies(&last.deformations, Order::Forces);
+        let hinges = std::iter::zip(&energies, &last.deformations);
+        hinges
+            .map(|(energy, state)| energy.forces[2] * state.theta)
+            .sum()
+    };
+    let share = holds(&ReleasedLaw(&hinges)) / holds(&*prepared);
+    share.is_finite().then_some(share)
+}

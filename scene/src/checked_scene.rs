@@ -1,0 +1,231 @@
+//! A scene that was read and checked, together with the files that it names.
+
+use crate::checks;
+use crate::hinge_model::SurrogateFile;
+use crate::keys::{SceneConfig, folder, resolved};
+use crate::level::Level;
+use crate::loaded_hinge::LoadedHinge;
+use crate::posture::PostureConfig;
+use crate::scene_error::SceneError;
+use crate::solved_hinges::SolvedHinges;
+use crate::springback_file::{self, SpringbackMismatch};
+use crate::target::{TARGET_POINTS, Target};
+use design::objective::shape::TargetState;
+use design::sheet::cut_sheet::SheetOptions;
+use hinge::SheetMaterial;
+use std::path::{Path, PathBuf};
+use surrogate::{Springback, Surrogate};
+
+/// Version of geometry, mechanics and objective: raised when a change of the code changes the loss of a design, so that
+/// a run of an earlier version is not continued.
+///
+/// 1: O stands half a kerf further from the line of the secondary cut. 2: the path is followed in increments of its own, so
+/// that a sheet that jumps may end on another branch. 3: where it cannot be followed, it goes on from a minimum that does not
+/// depend on the load steps. 4: a hanging sheet has weight; supports and loads act at their points.
+const MODEL_VERSION: u32 = 4;
+
+/// What the parts of [`Scene::model_hash`] identify, in their order.
+pub(super) const MODEL_PARTS: [&str; 5] = [
+    "version of kirigami",
+    "material",
+    "target",
+    "weights",
+    "law of released hinges",
+];
+
+/// A scene with checked values, its material and its sampled target.
+#[derive(Clone, Debug)]
+pub struct Scene {
+    /// The keys of the scene file.
+    pub config: SceneConfig,
+    /// The material of the sheet, in its thickness.
+    pub material: SheetMaterial,
+    /// The material in the thickness of its file, at which learned laws were trained.
+    pub(crate) measured: SheetMaterial,
+    /// The target outline.
+    pub target: Target,
+    /// The hinge law, with the files that it reads.
+    pub hinge: LoadedHinge,
+    /// The law of released hinges.
+    pub springback: Option<Springback>,
+    pub(super) path: PathBuf,
+}
+
+impl Scene {
+    /// Reads a scene and the files that it names, and checks all values.
+    pub fn read(path: &Path) -> Result<Self, SceneError> {
+        Self::new(support::toml_file::read(path)?, path)
+    }
+
+    /// Reads the material, the target and the weights of a scene whose paths are relative to the
+    /// file at `path`, and checks all values.
+    pub fn new(config: SceneConfig, path: &Path) -> Result<Self, SceneError> {
+        Self::with_networks(config, path, None)
+    }
+
+    /// The scene with other keys, in the same place. Its weights are read again only if the keys that say how they are read changed.
+    pub fn changed(&self, config: SceneConfig) -> Result<Self, SceneError> {
+        let reads = |config: &SceneConfig| {
+            let process = config.process;
+            (
+                (
+                    config.level,
+                    config.surrogate.clone(),
+                    config.material.clone(),
+                ),
+                (config.thickness, config.ligament.range, process),
+            )
+        };
+        let same = reads(&config) == reads(&self.config);
+        let known = same.then_some(&*self.hinge.networks);
+        Self::with_networks(config, &self.path, known)
+    }
+
+    fn with_networks(
+        config: SceneConfig,
+        path: &Path,
+        known: Option<&[Surrogate]>,
+    ) -> Result<Self, SceneError> {
+        checks::config(&config).map_err(SceneError::at(path))?;
+        let material_path = resolved(path, &config.material);
+        let measured = SheetMaterial::load(&material_path)?;
+        let material = SheetMaterial {
+            thickness: config.thickness.unwrap_or(measured.thickness),
+            ..measured.clone()
+        };
+        (material.validate()).map_err(SceneError::at(path))?;
+        let target = Target::sample(&config.target, folder(path), TARGET_POINTS);
+        let target = target.map_err(SceneError::at(path))?;
+        checks::target(&target, &config).map_err(SceneError::at(path))?;
+        let hinge = LoadedHinge::load(&config, &measured, path, known)?;
+        let springback = springback_file::load(&config, &measured, path);
+        let springback = springback.map_err(SceneError::at(path))?;
+        Ok(Self {
+            config,
+            material,
+            measured,
+            target,
+            hinge,
+            springback,
+            path: path.to_owned(),
+        })
+    }
+
+    /// The learned hinge law, if the scene uses one.
+    pub fn surrogate(&self) -> Option<&Surrogate> {
+        self.networks().first()
+    }
+
+    /// The learned hinge law and the other networks of its ensemble; empty if the scene uses none.
+    pub fn networks(&self) -> &[Surrogate] {
+        self.hinge.predictors()
+    }
+
+    /// The keys of the scene for a file in another folder: its paths are absolute.
+    pub fn located(&self) -> std::io::Result<SceneConfig> {
+        let mut config = self.config.clone();
+        let locate = |path: &mut PathBuf| {
+            let file = self.file(path);
+            *path = (file.canonicalize()).or_else(|_| std::path::absolute(&file))?;
+            Ok::<_, std::io::Error>(())
+        };
+        let further = config.surrogate.iter_mut();
+        let further = further.flat_map(SurrogateFile::further_files_mut);
+        let target = config.target.file_mut().map(|(file, _)| file);
+        let named = further.map(|(_, file)| file).chain(target);
+        for path in named.chain([&mut config.material, &mut config.output]) {
+            locate(path)?;
+        }
+        for (_, weights) in config.weights_files_mut() {
+            locate(weights)?;
+        }
+        Ok(config)
+    }
+
+    /// An error if a law of released hinges is not for the hinges of this scene.
+    pub fn check_springback(&self, law: &Springback) -> Result<(), SpringbackMismatch> {
+        springback_file::check(&self.config, &self.measured, law)
+    }
+
+    /// A path that the scene names.
+    pub(crate) fn file(&self, path: &Path) -> PathBuf {
+        resolved(&self.path, path)
+    }
+
+    /// Thickness of the sheet over the thickness of the material file, at which learned laws were trained.
+    pub fn scale(&self) -> f64 {
+        self.config.scale(&self.measured)
+    }
+
+    /// The weights of the learned law.
+    pub fn weights(&self) -> Option<&Surrogate> {
+        self.hinge.networks.first()
+    }
+
+    /// BLAKE3 hash of the keys of the scene without title and paths: neither the title nor the place of a file changes a
+    /// design.
+    pub fn hash(&self) -> String {
+        let keys = SceneConfig {
+            title: String::new(),
+            ..self.config.without_paths()
+        };
+        let keys = serde_json::to_vec(&keys).expect("a run writes the same keys to its state");
+        blake3::hash(&keys).to_hex().to_string()
+    }
+
+    /// Identifies what a run depends on besides the keys of the scene: the version of the model, the material law, the
+    /// target's points, the weights and, if the target is for the released sheet, the law of released hinges. It is the same
+    /// on every machine, whereas the loss differs in its last digits.
+    pub fn model_hash(&self) -> String {
+        let read = match self.config.level {
+            Level::Fine => usize::MAX,
+            _ => 1,
+        };
+        let weights = self.hinge.networks.iter().take(read);
+        let weights = weights.map(Surrogate::hash);
+        let solved = self.hinge.solved.iter().map(SolvedHinges::hash);
+        let weights = weights.chain(solved).collect::<Vec<_>>().join("/");
+        let target = self.target.hash();
+        let material = if self.weight_by_area() == [0.0; 2] {
+            self.material.law_hash()
+        } else {
+            format!(
+                "{}/{}",
+                self.material.law_hash(),
+                self.material.density_kg_m3
+            )
+        };
+        let model = format!("{MODEL_VERSION}-{material}-{target}-{weights}");
+        match self.designed_for_release() {
+            Some(law) => format!("{model}-{}", law.hash()),
+            None => model,
+        }
+    }
+
+    /// The law of released hinges, if the target is for the released sheet.
+    pub(super) fn designed_for_release(&self) -> Option<&Springback> {
+        let released = self.config.objective.target_state == TargetState::Released;
+        self.springback.as_ref().filter(|_| released)
+    }
+
+    /// The weight of a unit of area in the plane of the sheet (N/mm^2); zero unless it hangs and its weight is modelled.
+    pub fn weight_by_area(&self) -> [f64; 2] {
+        let posture = self.config.posture.filter(PostureConfig::is_heavy);
+        let down = posture.and_then(|posture| posture.down());
+        let weight = self.material.weight_by_area();
+        down.map_or([0.0; 2], |down| down.map(|component| weight * component))
+    }
+
+    /// The options that turn a pattern into the sheet of this scene.
+    pub fn sheet_options(&self) -> SheetOptions {
+        SheetOptions {
+            hinge_point: self.hinge.hinge_point,
+            process: self.config.process,
+        }
+    }
+
+    /// The run folder.
+    pub fn output(&self) -> PathBuf {
+        resolved(&self.path, &self.config.output)
+    }
+}

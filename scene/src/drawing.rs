@@ -1,0 +1,9 @@
+//! Outlines in files: drawings (SVG, DXF) and lists of points.
+
+pub mod bulged;
+pub mod contour;
+pub mod drawn_outline;
+mod dxf_contours;
+mod near_origin;
+pub mod outline_points;
+mod svg_path;

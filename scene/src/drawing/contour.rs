@@ -1,0 +1,153 @@
+//! A line in a drawing, and what makes it an outline.
+
+use design::geometry::polygon;
+
+/// Points closer than this fraction of the largest coordinate are merged: usvg rounds to f32.
+pub(super) const WELD: f64 = 1e-6;
+/// Largest coordinate over the size of an outline from which its rounding shows.
+const TOO_FAR: f64 = 1000.0;
+/// Maximum number of points of an outline, 3000 curves: the worst one of them is checked for crossings in seconds.
+pub(super) const MOST_POINTS: usize = 100_000;
+
+/// Why a file has no outline; lengths and coordinates are in the page of an SVG file (px), or in a DXF file (mm if it states its unit).
+#[derive(Debug, thiserror::Error)]
+#[allow(missing_docs, reason = "the message of a variant is its documentation")]
+pub enum DrawingError {
+    #[error("the file is empty; draw one closed outline and save it as SVG or DXF")]
+    Empty,
+    #[error("the file is not readable as SVG: {0}; save the drawing as plain SVG")]
+    NotSvg(usvg::Error),
+    #[error("the file is no drawing: {0}")]
+    NotText(std::io::Error),
+    #[error("line {line} of the DXF file: {what}")]
+    NotDxf { line: usize, what: String },
+    #[error("an entity of the kind {kind} is not read; explode it in the drawing program")]
+    Unread { kind: String },
+    #[error(
+        "there is no visible path in the file; draw the outline as a path, polygon, rect, circle \
+         or ellipse with a fill or a stroke, outside of <defs>, or in DXF as lines, arcs, polylines or splines on a visible layer"
+    )]
+    NoPath,
+    #[error(
+        "the file has text alone; convert it to paths in the drawing program (Inkscape: Path, Object to Path)"
+    )]
+    Text,
+    #[error(
+        "the drawing has {found} contours, by size {listed}; delete the others, or write the number of the outline behind the \
+         name of the file, as in `drawing.svg#1`"
+    )]
+    Several { found: usize, listed: String },
+    #[error("there is no contour {number}: the drawing has {found}, by size {listed}")]
+    NoSuch {
+        number: usize,
+        found: usize,
+        listed: String,
+    },
+    #[error("lines branch at ({x}, {y}): delete those that are not part of the outline")]
+    Branch { x: f64, y: f64 },
+    #[error(
+        "the path is drawn in part alone, because of the {element} `{id}`; release it in the drawing program, so that the \
+         path itself is the outline"
+    )]
+    Cut { element: &'static str, id: String },
+    #[error("the path has {found} points; simplify the outline to at most {MOST_POINTS}")]
+    TooManyPoints { found: usize },
+    #[error(
+        "the path ends open at ({x}, {y}), {gap} from its start; close it (in SVG data with Z), or correct the mistake in the data \
+         after this point"
+    )]
+    Open { x: f64, y: f64, gap: f64 },
+    #[error(
+        "the outline is {times:.0} times its own size away from the origin of its coordinates, and is read with seven digits; \
+         move it to the origin"
+    )]
+    TooFar { times: f64 },
+    #[error("the path has {found} different points; draw an outline of at least 3 points")]
+    TooFewPoints { found: usize },
+    #[error(
+        "the path crosses or touches itself near ({x}, {y}); move its points until \
+         the outline is one simple loop"
+    )]
+    SelfCrossing { x: f64, y: f64 },
+    #[error("the drawing states no unit: give `height` (mm)")]
+    NoUnit,
+}
+
+/// A line of a drawing, flattened to segments.
+#[derive(Clone, Debug)]
+pub(super) struct Contour {
+    pub points: Vec<[f64; 2]>,
+    /// Whether its end is connected to its start.
+    pub closed: bool,
+    /// Whether its inside is filled: viewers close it.
+    pub filled: bool,
+    /// Distance at which two points are one.
+    pub rounding: f64,
+}
+
+impl Contour {
+    /// Width and height of its bounding box.
+    pub fn size(&self) -> [f64; 2] {
+        let [low, high] = polygon::bounds(self.points.iter().copied());
+        [high[0] - low[0], high[1] - low[1]]
+    }
+
+    /// It with each point once; one that returns to its start is closed.
+    pub fn merged(mut self) -> Self {
+        let near = |p: [f64; 2], q: [f64; 2]| polygon::distance(p, q) <= self.rounding;
+        let mut last = [f64::NAN; 2];
+        self.points.retain(|point| {
+            let kept = !near(*point, last);
+            if kept {
+                last = *point;
+            }
+            kept
+        });
+        while self.points.len() > 2 && near(self.points[0], last) {
+            self.points.pop();
+            last = self.points[self.points.len() - 1];
+            self.closed = true;
+        }
+        self
+    }
+
+    /// Checks that it is an outline; returns the length of the line that closes it.
+    pub fn check(&self) -> Result<f64, DrawingError> {
+        let found = self.points.len();
+        if found < 3 {
+            return Err(DrawingError::TooFewPoints { found });
+        }
+        let last = self.points[found - 1];
+        let gap = match self.closed {
+            true => 0.0,
+            false => polygon::distance(self.points[0], last),
+        };
+        if !self.closed && !self.filled {
+            let [x, y] = last.map(rounded);
+            let gap = rounded(gap);
+            return Err(DrawingError::Open { x, y, gap });
+        }
+        let [width, height] = self.size();
+        let times = self.rounding / WELD / width.max(height);
+        if times > TOO_FAR {
+            return Err(DrawingError::TooFar { times });
+        }
+        if found > MOST_POINTS {
+            return Err(DrawingError::TooManyPoints { found });
+        }
+        let [x0, y0] = self.points[0];
+        let near_zero: Vec<_> = self.points.iter().map(|[x, y]| [x - x0, y - y0]).collect();
+        match polygon::self_crossing(&near_zero) {
+            Some([x, y]) => Err(DrawingError::SelfCrossing {
+                x: rounded(x + x0),
+                y: rounded(y + y0),
+            }),
+            None => Ok(gap),
+        }
+    }
+}
+
+/// A coordinate of a message.
+pub(super) fn rounded(x: f64) -> f64 {
+    (1e5 * x).round() / 1e5
+}

@@ -1,0 +1,476 @@
+//! The visible paths of an SVG file as contours; Bezier curves are approximated by segments.
+//!
+//! usvg reads the document: it converts rect, circle, ellipse and polygon to paths and arcs to
+//! cubic curves, and it resolves styles, `<use>` and transforms. A clip may surround a path, and hides nothing of it.
+
+use crate::drawing::contour::{Contour, DrawingError, WELD};
+use crate::drawing::near_origin;
+use design::geometry::polygon;
+use usvg::tiny_skia_path::{PathSegment, Point};
+use usvg::{ClipPath, Group, ImageHrefResolver, Node, Options, Path, Transform, Tree};
+
+/// Number of segments of a flattened curve.
+const SEGMENTS: usize = 32;
+/// How far a path may reach out of a clip around it, over the length of an edge of the clip: rounding.
+const FRAME: f64 = 1e-5;
+/// Removes the background colour of the root element and markers, which usvg would draw as paths.
+const OUTLINES_ALONE: &str = "svg { background-color: none !important } \
+    * { marker-start: none !important; marker-mid: none !important; marker-end: none !important }";
+
+/// The contours of the visible paths of an SVG text in the coordinates of its page, y downwards.
+pub(super) fn contours(svg: &str) -> Result<Vec<Contour>, DrawingError> {
+    let options = Options {
+        style_sheet: Some(OUTLINES_ALONE.to_owned()),
+        // An image has no outline; its file is not opened.
+        image_href_resolver: ImageHrefResolver {
+            resolve_data: Box::new(|_, _, _| None),
+            resolve_string: Box::new(|_, _| None),
+        },
+        ..Options::default()
+    };
+    let moved = near_origin::moved(svg);
+    let (svg, origin) = match &moved {
+        Some((svg, origin)) => (svg.as_str(), *origin),
+        None => (svg, [0.0; 2]),
+    };
+    let tree = Tree::from_str(svg, &options).map_err(DrawingError::NotSvg)?;
+    let mut paths = Vec::new();
+    add_visible(tree.root(), &mut paths)?;
+    if paths.is_empty() && svg.contains("<text") {
+        return Err(DrawingError::Text);
+    }
+    let of_path = |path: &Path| -> Vec<Contour> {
+        let (transform, filled) = (path.abs_transform(), is_filled(path));
+        let parts = subpaths(path).into_iter();
+        parts
+            .map(|part| part.contour(transform, origin, filled))
+            .collect()
+    };
+    Ok(paths.into_iter().flat_map(of_path).collect())
+}
+
+fn is_filled(path: &Path) -> bool {
+    path.fill().is_some_and(|fill| fill.opacity().get() > 0.0)
+}
+
+/// Adds the visible paths of a group, in document order; an error if only a part of them is drawn.
+fn add_visible<'a>(group: &'a Group, paths: &mut Vec<&'a Path>) -> Result<(), DrawingError> {
+    if group.opacity().get() == 0.0 {
+        return Ok(());
+    }
+    let before = paths.len();
+    for node in group.children() {
+        match node {
+            Node::Group(group) => add_visible(group, paths)?,
+            Node::Path(path) => {
+                let stroked = (path.stroke()).is_some_and(|stroke| stroke.opacity().get() > 0.0);
+                if path.is_visible() && (is_filled(path) || stroked) {
+                    paths.push(path);
+                }
+            }
+            Node::Image(_) | Node::Text(_) => {}
+        }
+    }
+    let clip = group.clip_path();
+    let clip = clip.filter(|clip| !surrounds(clip, group.abs_transform(), &paths[before..]));
+    let clip = clip.map(|clip| ("clipPath", clip.id()));
+    let cut = clip.or_else(|| group.mask().map(|mask| ("mask", mask.id())));
+    match cut {
+        Some((element, id)) if paths.len() > before => {
+            let id = id.to_owned();
+            Err(DrawingError::Cut { element, id })
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Whether a clip is one convex path around paths, so that it hides nothing of them, as the frame of an artboard.
+fn surrounds(clip: &ClipPath, transform: Transform, paths: &[&Path]) -> bool {
+    let [Node::Path(frame)] = clip.root().children() else {
+        return false;
+    };
+    let placed = |path: &Path, transform: Transform| -> Vec<[f64; 2]> {
+        let points = subpaths(path).into_iter().flat_map(|part| part.points);
+        points.map(|point| transformed(transform, point)).collect()
+    };
+    let to_page = transform.pre_concat(clip.transform());
+    let frame = placed(frame, to_page.pre_concat(frame.abs_transform()));
+    let sign = polygon::area(&frame).signum();
+    let inside = |p: &[f64; 2]| {
+        polygon::edges(&frame).all(|(a, b)| {
+            let along = [b[0] - a[0], b[1] - a[1]];
+            let off = sign * (along[0] * (p[1] - a[1]) - along[1] * (p[0] - a[0]));
+            off >= -FRAME * (along[0] * along[0] + along[1] * along[1])
+        })
+    };
+    let is_convex = clip.clip_path().is_none() && frame.iter().all(inside);
+    is_convex
+        && paths
+            .iter()
+            .all(|path| placed(path, path.abs_transform()).iter().all(inside))
+}
+
+/// A part of a path between two moves.
+struct Subpath {
+    points: Vec<[f64; 2]>,
+    closed: bool,
+}
+
+/// The parts of a path, before its transform, from the origin of the moved drawing. A move that draws nothing is none.
+fn subpaths(path: &Path) -> Vec<Subpath> {
+    let mut parts: Vec<Subpath> = Vec::new();
+    for segment in path.data().segments() {
+        if let PathSegment::MoveTo(to) = segment {
+            let points = vec![pair(to)];
+            parts.push(Subpath {
+                points,
+                closed: false,
+            });
+        }
+        let Some(Subpath { points, closed }) = parts.last_mut() else {
+            continue;
+        };
+        match segment {
+            PathSegment::MoveTo(_) => {}
+            PathSegment::LineTo(to) => points.push(pair(to)),
+            PathSegment::QuadTo(b, to) => flatten(points, &[pair(b), pair(to)]),
+            PathSegment::CubicTo(b, c, to) => flatten(points, &[pair(b), pair(c), pair(to)]),
+            PathSegment::Close => *closed = true,
+        }
+    }
+    parts.retain(|part| part.points.iter().any(|point| *point != part.points[0]));
+    parts
+}
+
+impl Subpath {
+    /// It on the page. Coordinates are rounded to 24 bits before the transform, from the origin of the moved drawing.
+    fn contour(self, transform: Transform, origin: [f64; 2], filled: bool) -> Contour {
+        let largest = self.points.as_flattened().iter().map(|c| c.abs());
+        let largest = largest.fold(0.0, f64::max);
+        let scale = (f64::from(transform.sx) * f64::from(transform.sy)
+            - f64::from(transform.kx) * f64::from(transform.ky))
+        .abs()
+        .sqrt();
+        let at = |p: [f64; 2]| transformed(transform, [p[0] + origin[0], p[1] + origin[1]]);
+        Contour {
+            closed: self.closed,
+            // A line has no inside.
+            filled: filled && self.points.len() > 2,
+            points: self.points.into_iter().map(at).collect(),
+            rounding: WELD * largest * scale,
+        }
+    }
+}
+
+fn pair(point: Point) -> [f64; 2] {
+    [f64::from(point.x), f64::from(point.y)]
+}
+
+/// Appends a Bezier curve that starts at the last point, by de Casteljau's algorithm.
+fn flatten(points: &mut Vec<[f64; 2]>, controls: &[[f64; 2]]) {
+    let start = points.last().copied();
+    let controls: Vec<[f64; 2]> = start.iter().chain(controls).copied().collect();
+    for i in 1..=SEGMENTS {
+        let t = i as f64 / SEGMENTS as f64;
+        let mut level = controls.clone();
+        while level.len() > 1 {
+            level = (level.windows(2))
+                .map(|pair| [0, 1].map(|c| (1.0 - t) * pair[0][c] + t * pair[1][c]))
+                .collect();
+        }
+        points.push(level[0]);
+    }
+}
+
+fn transformed(transform: Transform, [x, y]: [f64; 2]) -> [f64; 2] {
+    let t = transform;
+    let [sx, kx, ky, sy, tx, ty] = [t.sx, t.kx, t.ky, t.sy, t.tx, t.ty].map(f64::from);
+    [sx * x + kx * y + tx, ky * x + sy * y + ty]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::drawing::contour::MOST_POINTS;
+    use crate::drawing::drawn_outline::of_text;
+
+    fn vertices(svg: &str) -> Result<Vec<[f64; 2]>, DrawingError> {
+        of_text(svg, None).map(|outline| outline.vertices)
+    }
+
+    /// The outline of a document with this content.
+    fn drawn(content: &str) -> Result<Vec<[f64; 2]>, DrawingError> {
+        vertices(&format!(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\">{content}</svg>"
+        ))
+    }
+
+    fn of(data: &str) -> Result<Vec<[f64; 2]>, DrawingError> {
+        drawn(&format!("<path id=\"x\" d=\"{data}\" stroke='none'/>"))
+    }
+
+    fn stroked(data: &str) -> Result<Vec<[f64; 2]>, DrawingError> {
+        drawn(&format!("<path d=\"{data}\" fill='none' stroke='#000'/>"))
+    }
+
+    /// [left, right, low, high] of the outline.
+    fn bounds(outline: Result<Vec<[f64; 2]>, DrawingError>) -> [f64; 4] {
+        let points = outline.unwrap_or_else(|error| panic!("{error}"));
+        let extent = |axis: usize| {
+            let values = || points.iter().map(|point| point[axis]);
+            let high = values().fold(f64::NEG_INFINITY, f64::max);
+            [values().fold(f64::INFINITY, f64::min), high]
+        };
+        let ([left, right], [low, high]) = (extent(0), extent(1));
+        [left, right, low, high]
+    }
+
+    fn assert_near(found: [f64; 4], expected: [f64; 4]) {
+        let near = |(a, b): (&f64, &f64)| (a - b).abs() < 1e-5;
+        let all_near = found.iter().zip(&expected).all(near);
+        assert!(all_near, "{found:?} is not {expected:?}");
+    }
+
+    fn assert_refused(outline: Result<Vec<[f64; 2]>, DrawingError>, part: &str) {
+        let error = outline.unwrap_err().to_string();
+        assert!(error.contains(part), "{error}");
+    }
+
+    const SMALL: &str = "<path d=\"M 0 0 H 1 V 1 H 0 Z\"/>";
+    const LARGE: &str = "<path d=\"M 0 0 H 10 V 20 H 0 Z\"/>";
+
+    #[test]
+    fn lines_absolute_relative_and_repeated() {
+        let square = [[0.0, 0.0], [10.0, 0.0], [10.0, -10.0], [0.0, -10.0]];
+        for data in [
+            "M0 0 L10 0 L10 10 L0 10 Z",
+            "m0,0 10,0 0,10 -10,0z",
+            "M0 0H10V10H0Z",
+            "M0 0h1e1v10-0h-10z",
+            "M0 0H10V10H0V0",
+        ] {
+            let found = of(data).unwrap_or_else(|error| panic!("{data}: {error}"));
+            assert_eq!(found.first(), square.first(), "{data}");
+            assert_eq!(found.last(), square.last(), "{data}");
+        }
+    }
+
+    #[test]
+    fn hidden_paths_are_skipped() {
+        let expected = [0.0, 10.0, -20.0, 0.0];
+        for hidden in [
+            format!("<defs>{SMALL}</defs>"),
+            format!("<!-- {SMALL} -->"),
+            format!("<symbol>{SMALL}</symbol>"),
+            format!("<clipPath id=\"c\">{SMALL}</clipPath>"),
+            format!("<g display=\"none\">{SMALL}</g>"),
+            format!("<g visibility=\"hidden\">{SMALL}</g>"),
+            format!("<g opacity=\"0\">{SMALL}</g>"),
+            format!("<g fill=\"none\">{SMALL}</g>"),
+            format!("<g fill-opacity=\"0\">{SMALL}</g>"),
+            SMALL.replace("<path", "<pathological"),
+            "<image href=\"Cargo.toml\" width=\"1\" height=\"1\"/>".to_owned(),
+        ] {
+            let found = drawn(&(hidden.clone() + LARGE));
+            assert_near(bounds(found), expected);
+        }
+        let background = format!("<svg style=\"background-color: #fff\">{LARGE}</svg>");
+        assert_near(bounds(vertices(&background)), expected);
+    }
+
+    #[test]
+    fn one_path_is_found_in_groups_and_uses_with_their_transforms() {
+        let nested = format!("<g><g>{LARGE}</g></g>");
+        let used = format!("<defs><g id=\"a\">{LARGE}</g></defs><use href=\"#a\" x=\"5\"/>");
+        let turned = LARGE.replace("/>", " transform=\"rotate(90)\"/>");
+        let grouped = format!("<g transform=\"translate(100 7) scale(2 1)\">{turned}</g>");
+        let spaced = "<path d = \"M 0 0 H 10 V 20 H 0 Z\" />";
+        for (content, expected) in [
+            (&*nested, [0.0, 10.0, -20.0, 0.0]),
+            (&used, [5.0, 15.0, -20.0, 0.0]),
+            (&turned, [-20.0, 0.0, -10.0, 0.0]),
+            (&grouped, [60.0, 100.0, -17.0, -7.0]),
+            (spaced, [0.0, 10.0, -20.0, 0.0]),
+        ] {
+            assert_near(bounds(drawn(content)), expected);
+        }
+        assert_refused(drawn(&(nested + SMALL)), "2 contours");
+    }
+
+    #[test]
+    fn curves_arcs_and_basic_shapes_have_their_areas() {
+        let k = 0.552_284_75;
+        let cubics = format!("M1 0 C1 {k} {k} 1 0 1 S-1 {k} -1 0 S-{k} -1 0 -1 S1 -{k} 1 0Z");
+        let path = |data: &str| format!("<path d='{data}'/>");
+        for (shape, area, error) in [
+            (&*path(&cubics), std::f64::consts::PI, 1.5e-3),
+            (&path("M -50 0 A 50 50 0 0 1 50 0 Z"), 3926.99, 1e-3),
+            (
+                &path("M 0 -1 a 2 1 0 1 1 0 2 a 2 1 0 1 1 0 -2 z"),
+                std::f64::consts::TAU,
+                1e-3,
+            ),
+            ("<circle cx=\"7\" cy=\"5\" r=\"3\"/>", 28.274, 2e-3),
+            ("<ellipse rx=\"3\" ry=\"2\"/>", 18.850, 2e-3),
+            ("<rect width=\"4\" height=\"2\"/>", 8.0, 2e-3),
+            ("<rect width=\"4\" height=\"2\" rx=\"0.5\"/>", 7.785, 2e-3),
+            ("<polygon points=\"0,0 4,0 0,2\"/>", 4.0, 2e-3),
+        ] {
+            let found = drawn(shape).unwrap_or_else(|error| panic!("{shape}: {error}"));
+            let found = polygon::area(&found).abs();
+            assert!((found / area - 1.0).abs() < error, "{shape}: {found}");
+        }
+    }
+
+    #[test]
+    fn what_draws_nothing_and_hides_nothing_does_not_count() {
+        let frame = "<clipPath id='f'><rect width='10' height='20'/></clipPath>";
+        let framed = format!("{frame}<g clip-path='url(#f)'>{LARGE}</g>");
+        let artboard =
+            format!("<svg x='5' width='40' height='40' viewBox='0 0 20 20'>{LARGE}</svg>");
+        let symbol = format!(
+            "<symbol id='s' viewBox='0 0 10 20'>{LARGE}</symbol><use href='#s' width='10' height='20'/>"
+        );
+        let twice = format!(
+            "{LARGE}{}",
+            LARGE.replace("/>", " fill='none' stroke='#000'/>")
+        );
+        let marked = format!(
+            "<marker id='m'>{SMALL}</marker>{}",
+            LARGE.replace(
+                "/>",
+                " marker-mid='url(#m)' style='marker-start: url(#m)'/>"
+            )
+        );
+        for (content, expected) in [
+            (marked, [0.0, 10.0, -20.0, 0.0]),
+            (framed, [0.0, 10.0, -20.0, 0.0]),
+            (artboard, [5.0, 25.0, -40.0, 0.0]),
+            (symbol, [0.0, 10.0, -20.0, 0.0]),
+            (twice, [0.0, 10.0, -20.0, 0.0]),
+            (LARGE.replace("Z", "Z M 99 99 z"), [0.0, 10.0, -20.0, 0.0]),
+            (
+                LARGE.replace("d=\"", "d=\"M 99 99 z "),
+                [0.0, 10.0, -20.0, 0.0],
+            ),
+        ] {
+            assert_near(bounds(drawn(&content)), expected);
+        }
+        let narrow = format!(
+            "{}<g clip-path='url(#f)'>{LARGE}</g>",
+            frame.replace("'10'", "'9'")
+        );
+        assert_refused(drawn(&narrow), "clipPath `f`");
+        assert_refused(drawn("<text y='9'>A</text>"), "text alone");
+        let two = format!("{SMALL}{LARGE}");
+        assert_refused(
+            drawn(&two),
+            "2 contours, by size #1 10 x 20 at (0, 0), #2 1 x 1 at (0, 0)",
+        );
+    }
+
+    #[test]
+    fn what_hides_a_part_of_the_path_is_refused_by_its_name() {
+        for (element, attribute) in [("clipPath", "clip-path"), ("mask", "mask")] {
+            let part = format!("<{element} id=\"part\">{SMALL}</{element}>");
+            let cut = format!("{part}<g {attribute}=\"url(#part)\">{LARGE}</g>");
+            assert_refused(drawn(&cut), &format!("{element} `part`"));
+        }
+    }
+
+    #[test]
+    fn an_outline_of_too_many_points_is_refused() {
+        let corners = |count: usize| {
+            let points = (1..count).map(|x| format!(" {x} {}", x % 2));
+            "M0 0".to_owned() + &points.collect::<String>()
+        };
+        let closed = |count: usize| corners(count) + &format!(" {count} 9 0 9Z");
+        assert_refused(of(&closed(MOST_POINTS)), "at most 100000");
+        assert!(of(&closed(1000)).is_ok());
+    }
+
+    #[test]
+    fn outlines_that_cross_or_touch_themselves_are_refused() {
+        for data in [
+            "M 0 -80 L 47 65 L -76 -25 L 76 -25 L -47 65 Z", // a star in one stroke
+            "M 0 0 L 10 10 L 10 0 L 0 10 Z",                 // a bow tie
+            "M 0 0 L 5 5 L 10 0 V 10 L 5 5 L 0 10 Z",        // two triangles that meet in a point
+            "M 0 0 C 40 30 -30 30 10 0 V -5 H 0 V 20 Z",     // a line through a curve
+            "M 0 0 H 10 V 5 H 20 V 0 H 5 V -5 H 0 Z",        // a line along a line
+        ] {
+            assert_refused(of(data), "crosses or touches itself near (");
+        }
+        let error = of("M 0 0 L 10 10 L 10 0 L 0 10 Z").unwrap_err();
+        assert!(error.to_string().contains("(5, 5)"), "{error}");
+    }
+
+    #[test]
+    fn straight_curves_and_slits_do_not_cross() {
+        // All edges of a side lie on one line whose slope is not exact in binary.
+        of("M 0 0 C 0.1 0.3 0.2 0.6 0.3 0.9 L 0.7 1.1 C 0.5 0.6 0.6 0.1 0.1 -0.3 Z").unwrap();
+        of("M 0 0 H 10 V 10 H 5.01 V 1 H 5 V 10 H 0 Z").unwrap();
+        of("M 10000 10000 a 1 1 0 0 1 2 0 a 1 1 0 0 1 -2 0 z").unwrap();
+    }
+
+    /// A circle of points at the coordinates of a map has the shape that it has at the origin.
+    #[test]
+    fn an_outline_far_from_the_origin_has_its_shape() {
+        let at = |i: u32, [x, y]: [f64; 2]| {
+            let (sin, cos) = (f64::from(i) / 60.0 * std::f64::consts::TAU).sin_cos();
+            [x + 3.5 * cos, y - 3.5 * sin]
+        };
+        let text = |centre| {
+            let points = (0..60).map(|i| at(i, centre));
+            let points = points.map(|[x, y]| format!("{x:.4},{y:.4}"));
+            points.collect::<Vec<_>>().join(" ")
+        };
+        let near = drawn(&format!("<polygon points='{}'/>", text([0.0; 2]))).unwrap();
+        let far = text([2_506_753.0, 5_624_646.0]);
+        for content in [
+            format!("<polygon points='{far}'/>"),
+            format!("<path d='M{far}Z'/>"),
+            format!("<g transform='translate(-2506753, -5624646)'><path d='M {far} z'/></g>"),
+            format!("<path display='none' d='M0 0 H9 V9 Z'/><path d='M{far}Z'/>"),
+        ] {
+            let found = drawn(&content).unwrap_or_else(|error| panic!("{error}"));
+            let pairs = std::iter::zip(&found, &near);
+            let from_first = |all: &[[f64; 2]], p: &[f64; 2]| [0, 1].map(|c| p[c] - all[0][c]);
+            for (p, q) in pairs {
+                let (p, q) = (from_first(&found, p), from_first(&near, q));
+                assert!(polygon::distance(p, q) < 2e-4, "{p:?} {q:?}");
+            }
+            assert_eq!(found.len(), 60);
+        }
+        let open = stroked(&format!("M{far}"));
+        assert_refused(open, "ends open at (2506756.48");
+        let crossing = of("M 5000000 7 l 10 10 v -10 l -10 10 Z");
+        assert_refused(crossing, "near (5000005, 12)");
+        // What is not moved is refused.
+        let circle = drawn("<circle cx='5000000' cy='7' r='3'/>");
+        assert_refused(circle, "times its own size away from the origin");
+    }
+
+    #[test]
+    fn files_without_an_outline_are_refused() {
+        let hidden = format!("<defs>{SMALL}</defs>");
+        for (outline, part) in [
+            (vertices(""), "the file is empty"),
+            (vertices(" \n"), "the file is empty"),
+            (vertices("x,y\n0,0\n"), "not readable as SVG"),
+            (vertices("<svg><g></svg>"), "not readable as SVG"),
+            (vertices("<svg/>"), "no visible path"),
+            (drawn(&hidden), "no visible path"),
+            (of("M0 0 L x"), "no visible path"),
+            (of("M0 0 L1 0 L1 1 Z M5 5 L6 6 H5Z"), "#2 1 x 1 at (5, 5)"),
+            (of("M0 0 L1 0 L1 1 Z L6 6 H5Z"), "#2 1 x 1 at (0, 0)"),
+            (
+                stroked("M0 0 H10 V10"),
+                "ends open at (10, 10), 14.14214 from",
+            ),
+            (stroked("M0 0 H10 V10 L x 3 Z"), "ends open at (10, 10)"),
+            (of("M0 0 H10 Z"), "2 different points"),
+        ] {
+            assert_refused(outline, part);
+        }
+    }
+}

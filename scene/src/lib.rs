@@ -1,0 +1,66 @@
+//! The scene: all input of a design run, read from one TOML file.
+//!
+//! A scene names its level, and only the hinge law of that level is loaded: `level = "linear"` reads no
+//! weights. Paths are relative to the scene file. The admissible values stand with their keys. [`Scene::read`] reads a scene and
+//! [`Scene::problem`] makes it a design problem; [`design_run`] searches and keeps its run folder. What is computed of a deployed
+//! sheet is in [`analysis`], the sheet for a silhouette in [`fit`], the outlines of drawings in [`drawing`].
+
+#![warn(missing_docs)]
+
+mod actuation;
+pub mod analysis;
+mod boundary_values;
+mod checked_scene;
+mod checks;
+mod cutting;
+pub mod design_run;
+pub mod drawing;
+mod drawn_target;
+pub mod fit;
+mod hinge_model;
+mod invalid_scene;
+mod keys;
+mod level;
+mod loaded_hinge;
+mod other_level;
+pub mod placement;
+mod posture;
+mod problem;
+pub mod run_inputs;
+mod rung;
+mod scene_error;
+mod sheet_config;
+mod solved_hinges;
+mod springback_file;
+mod stock;
+pub mod target;
+mod tolerances;
+mod weights_files;
+
+pub use actuation::{
+    At, DriveConfig, EdgeLoadConfig, LoadConfig, NamedPoint, OpeningCoupleConfig, SheetEdge,
+    SupportConfig, SupportKind,
+};
+pub use boundary_values::{Actuation, AppliedLoad, SupportedPanel, panel_name};
+pub use checked_scene::Scene;
+pub use cutting::CuttingConfig;
+pub use design::objective::terms::ObjectiveConfig;
+pub use drawn_target::{place_drawing, rounded};
+pub use hinge_model::{LinearConstants, PinConfig, SurrogateFile};
+pub use invalid_scene::{InvalidScene, WeightsMismatch};
+pub use keys::{OptimiserConfig, SceneConfig};
+pub use level::Level;
+pub use loaded_hinge::LoadedHinge;
+pub use posture::{FRICTION, Posture, PostureConfig};
+pub use rung::{LevelDifference, Rung};
+pub use scene_error::SceneError;
+pub use sheet_config::{LigamentConfig, SheetConfig, StartConfig};
+pub use solved_hinges::{SolvedHinge, SolvedHinges, SolvedHingesError};
+pub use springback_file::{SpringbackFileError, SpringbackMismatch};
+pub use stock::{Paper, Stock};
+pub use target::TargetShape;
+pub use tolerances::ToleranceConfig;
+
+#[cfg(test)]
+#[path = "../../design/tests/common/derivatives.rs"]
+mod derivatives;

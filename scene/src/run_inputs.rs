@@ -1,0 +1,199 @@
+//! The inputs of a run, copied to its folder: the design can be replayed where scene, material and weights are missing.
+//!
+//! | file | contents |
+//! |---|---|
+//! | `scene.toml` | the keys of the run; its paths name the files below |
+//! | `inputs/material.toml` | the material, with its measured curve as `plastic` |
+//! | `inputs/target.csv`, `.svg`, `.dxf` | the target, if the scene names a file |
+//! | `inputs/weights.safetensors`, `.json` | weights and card, if the hinge law reads them |
+//! | `inputs/ensemble-N.safetensors`, `inputs/draft.safetensors`, their `.json` | the further networks, from 1, and the network of drafts |
+//! | `inputs/springback.json` | the law of released hinges, if the scene names one |
+//! | `inputs/solved-hinges.json` | the hinges by finite elements, if the scene names them |
+//!
+//! The state of the run holds the BLAKE3 hash of each of them.
+
+use crate::checked_scene::Scene;
+use crate::drawing::drawn_outline::numbered;
+use crate::hinge_model::SurrogateFile;
+use crate::keys::{SceneConfig, resolved};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::io;
+use std::path::{Path, PathBuf};
+use support::file_error::FileError;
+use support::sealed_json::{self, SealError};
+use support::{regular_file, whole_file};
+
+/// The state of a run, in its folder.
+pub const STATE_FILE: &str = "state.json";
+/// The scene of a run, in its folder.
+pub const SCENE_FILE: &str = "scene.toml";
+/// The folder of the copies, in the folder of a run.
+pub const INPUTS: &str = "inputs";
+const MATERIAL_FILE: &str = "inputs/material.toml";
+
+/// The BLAKE3 hash of every input of a run, by its path relative to the run folder.
+pub(super) type InputHashes = BTreeMap<String, String>;
+
+/// Why the inputs of a run cannot be written or read.
+#[derive(Debug, thiserror::Error)]
+#[allow(missing_docs, reason = "the message of a variant is its documentation")]
+pub enum RunInputsError {
+    #[error("cannot use {0}")]
+    File(#[from] FileError),
+    #[error("{path} is a folder without the state of a run: name a scene, or the folder of a run", path = .path.display())]
+    NoRun { path: PathBuf },
+    #[error("{path} is not the state of a run: {source}", path = .path.display())]
+    State { path: PathBuf, source: SealError },
+    #[error(
+        "{path} is not the file that the run was made with (BLAKE3 {found}, not {expected}): copy the whole run folder \
+         again, or run `kirigami design` with the scene again",
+        path = .path.display()
+    )]
+    Changed {
+        path: PathBuf,
+        expected: String,
+        found: String,
+    },
+}
+
+/// The scene file that `path` names: itself, or if it is the folder of a run, the scene of the run, after a check that
+/// none of the copied inputs has changed.
+pub fn scene_file(path: &Path) -> Result<PathBuf, RunInputsError> {
+    /// The part of a run's state that names its inputs.
+    #[derive(Deserialize)]
+    struct Named {
+        inputs: InputHashes,
+    }
+    if !path.is_dir() {
+        return Ok(path.to_owned());
+    }
+    let state = path.join(STATE_FILE);
+    if !state.exists() {
+        let path = path.to_owned();
+        return Err(RunInputsError::NoRun { path });
+    }
+    let text = read(&state)?;
+    let named: Named = match sealed_json::from_slice(&text) {
+        Ok(named) => named,
+        Err(source) => {
+            let path = state;
+            return Err(RunInputsError::State { path, source });
+        }
+    };
+    for (name, expected) in named.inputs {
+        let path = path.join(name);
+        let found = blake3::hash(&read(&path)?).to_hex().to_string();
+        if found != expected {
+            return Err(RunInputsError::Changed {
+                path,
+                expected,
+                found,
+            });
+        }
+    }
+    Ok(path.join(SCENE_FILE))
+}
+
+/// Whether a run has begun to write to a folder: its first file is there.
+pub fn holds_a_run(folder: &Path) -> bool {
+    folder.join(MATERIAL_FILE).is_file()
+}
+
+/// Copies the files that a scene reads to its run folder, and writes the scene that names the copies.
+pub(super) fn keep(scene: &Scene) -> Result<InputHashes, FileError> {
+    let mut kept = Kept {
+        scene,
+        hashes: InputHashes::new(),
+    };
+    let folder = scene.output().join(INPUTS);
+    whole_file::create_folder(&folder).map_err(FileError::at(&folder))?;
+    let mut config = scene.config.without_unread_weights();
+    config.output = ".".into();
+    config.material = kept.write(MATERIAL_FILE, &toml(&scene.measured, &folder)?)?;
+    if let Some((file, kind)) = config.target.file_mut() {
+        let name = format!("{INPUTS}/target.{kind}");
+        let (original, number) = numbered(&resolved(&scene.path, file));
+        *file = kept.copy(&original, &name)?;
+        if let Some(number) = number {
+            *file = format!("{name}#{number}").into();
+        }
+    }
+    for (name, weights) in config.weights_files_mut() {
+        let stem = format!("{INPUTS}/{name}");
+        let original = resolved(&scene.path, weights);
+        kept.copy(&original.with_extension("json"), &format!("{stem}.json"))?;
+        *weights = kept.copy(&original, &format!("{stem}.safetensors"))?;
+    }
+    for (name, file) in config
+        .surrogate
+        .iter_mut()
+        .flat_map(SurrogateFile::further_files_mut)
+    {
+        let name = format!("{INPUTS}/{name}.json");
+        *file = kept.copy(&resolved(&scene.path, file), &name)?;
+    }
+    kept.write(SCENE_FILE, &toml(&config, &folder)?)?;
+    Ok(kept.hashes)
+}
+
+/// Writes a file of a folder unless it has these contents already.
+pub(crate) fn write_to(folder: &Path, name: &str, contents: &[u8]) -> Result<(), FileError> {
+    let path = folder.join(name);
+    if !path.exists() || read(&path)? != contents {
+        whole_file::write(&path, contents).map_err(FileError::at(&path))?;
+    }
+    Ok(())
+}
+
+/// The files that were written to a run folder.
+struct Kept<'a> {
+    scene: &'a Scene,
+    hashes: InputHashes,
+}
+
+impl Kept<'_> {
+    /// Writes a file unless it has these contents already; returns its path relative to the run folder.
+    fn write(&mut self, name: &str, contents: &[u8]) -> Result<PathBuf, FileError> {
+        write_to(&self.scene.output(), name, contents)?;
+        let hash = blake3::hash(contents).to_hex().to_string();
+        self.hashes.insert(name.to_owned(), hash);
+        Ok(name.into())
+    }
+
+    fn copy(&mut self, from: &Path, name: &str) -> Result<PathBuf, FileError> {
+        let contents = read(from)?;
+        self.write(name, &contents)
+    }
+}
+
+impl SceneConfig {
+    /// The same scene without paths: two scenes that differ in paths alone describe one design problem if the files agree.
+    pub(super) fn without_paths(&self) -> Self {
+        let mut config = self.without_unread_weights();
+        if let Some(learned) = &mut config.surrogate {
+            learned.ensemble.clear();
+            learned.draft = None;
+            learned.springback = None;
+            learned.solved_hinges = None;
+        }
+        for (_, path) in config.weights_files_mut() {
+            *path = PathBuf::new();
+        }
+        if let Some((file, _)) = config.target.file_mut() {
+            *file = PathBuf::new();
+        }
+        config.material = PathBuf::new();
+        config.output = PathBuf::new();
+        config
+    }
+}
+
+pub(crate) fn toml(value: &impl Serialize, folder: &Path) -> Result<Vec<u8>, FileError> {
+    let text = toml::to_string(value).map_err(io::Error::other);
+    Ok(text.map_err(FileError::at(folder))?.into_bytes())
+}
+
+pub(crate) fn read(path: &Path) -> Result<Vec<u8>, FileError> {
+    regular_file::read(path).map_err(FileError::at(path))
+}

@@ -1,0 +1,24 @@
+//! Shipped scenes: what is refused, levels, loads, and the error budget.
+
+mod actuations;
+#[path = "../../../design/tests/common/derivatives.rs"]
+mod derivatives;
+mod error_budget;
+mod levels;
+mod refused;
+
+use scene::{Scene, SceneConfig};
+use std::path::{Path, PathBuf};
+
+/// A scene file of the repository.
+fn shipped(name: &str) -> PathBuf {
+    let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("../configs/scenes");
+    scenes.join(name)
+}
+
+/// A scene of the repository, changed.
+fn changed(name: &str, change: impl FnOnce(&mut SceneConfig)) -> Scene {
+    let mut config: SceneConfig = support::toml_file::read(&shipped(name)).unwrap();
+    change(&mut config);
+    Scene::new(config, &shipped(name)).unwrap()
+}
