@@ -34,9 +34,8 @@ mod design_checks;
 #[cfg(feature = "pipeline")]
 pub mod doctor;
 pub mod export;
-pub(crate) mod fitting;
 pub mod init;
-mod input_file;
+
 pub mod inspect;
 pub mod levels;
 pub mod man;

@@ -7,5 +7,7 @@
 #[cfg(unix)]
 pub mod cli;
 pub mod commands;
+mod fitting;
+mod new_project;
 mod studio;
 pub mod ui;

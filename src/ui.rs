@@ -5,6 +5,7 @@ pub mod charts;
 pub mod comparison;
 pub mod count;
 pub mod exit;
+pub(crate) mod input_file;
 pub mod interrupt;
 pub mod output_file;
 pub mod picture;

@@ -5,7 +5,7 @@ mod by_elements;
 mod many_runs;
 
 use crate::commands::design::many_runs::{Run, compare, refuse_shared_folders};
-use crate::commands::fitting::fit_to_target;
+use crate::fitting::fit_to_target;
 use crate::ui::exit::Unfinished;
 use crate::ui::progress::{Progress, announce};
 use crate::ui::with_unit::Accuracy;

@@ -1,9 +1,9 @@
 //! `kirigami solve`: one window solved along one ray or recorded path, printed as a table.
 
-use crate::commands::input_file;
 use crate::commands::solve_args::{FeSolver, LIMIT};
 use crate::commands::window_args::WindowArgs;
 use crate::ui::exit::Unfinished;
+use crate::ui::input_file;
 use crate::ui::progress::watched;
 use crate::ui::table::{Table, table};
 use crate::ui::{interrupt, run_folder};

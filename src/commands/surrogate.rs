@@ -7,7 +7,7 @@ mod test;
 
 pub(crate) use test::{print_errors, record};
 
-use crate::commands::input_file;
+use crate::ui::input_file;
 use ::surrogate::Surrogate;
 use anyhow::{Result, ensure};
 use clap::Args;

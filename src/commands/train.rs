@@ -7,9 +7,9 @@ mod seeds;
 pub use kept_fits::kept_fit;
 
 use crate::commands::dataset::correction;
-use crate::commands::input_file;
 use crate::ui::charts;
 use crate::ui::exit::Unfinished;
+use crate::ui::input_file;
 use crate::ui::progress::Progress;
 use crate::ui::table::{Table, table};
 use crate::ui::{interrupt, output_file, picture, run_folder};

@@ -4,7 +4,7 @@
 //! mirror image of the one before: the pulls and the target would point elsewhere, and the stroke would tear it. So what is held or pulled
 //! moves to the nearest panel that turns in the same sense. The stroke changes as the stroke of the sheet of rigid panels does.
 
-use crate::commands::init::first_scene::OPENING;
+use crate::new_project::first_scene::OPENING;
 use anyhow::Result;
 use scene::fit::pulls::opened_about;
 use scene::{At, NamedPoint, Scene, SceneConfig, StartConfig, rounded};

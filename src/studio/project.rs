@@ -6,7 +6,7 @@
 //! | `target-NAME-HASH.svg` | drawings that were dropped onto the page, with the names of their files |
 //! | `design-N/` | the run folders of the searches, from 1; the first one of an opened run is its copy |
 
-use crate::commands::init::InitCommand;
+use crate::new_project::NewProject;
 use crate::studio::for_service::for_service;
 use crate::studio::request::{Drawing, NewSheet};
 use crate::ui::output_file;
@@ -76,14 +76,14 @@ impl Project {
 
     /// Writes a new sheet.
     pub fn begin(&self, sheet: &NewSheet) -> Result<Scene> {
-        InitCommand {
+        NewProject {
             folder: self.folder.clone(),
             material: sheet.material.clone(),
             thickness: sheet.thickness,
             size: sheet.size.filter(|_| sheet.stock.is_none()),
             stock: sheet.stock,
             margin: sheet.margin,
-            ..InitCommand::default()
+            ..NewProject::default()
         }
         .create()?;
         let first = Scene::read(&self.scene_file())?;

@@ -2,7 +2,7 @@
 
 use crate::commands::cut::{Verdict, machine_file_of_run, tiles_of_run};
 use crate::commands::design::write_run;
-use crate::commands::fitting::expected;
+use crate::fitting::expected;
 use crate::studio::draft::{Draft, Steps, draft};
 use crate::studio::event::{Event, Kind};
 use crate::studio::everyday::{Everyday, Listener, Resting, Shown, refusal, run_name};

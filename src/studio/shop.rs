@@ -1,7 +1,7 @@
 //! What a new sheet can be made of: the materials with weights, and the machines that cut.
 
-use crate::commands::init::WEIGHTS;
-use crate::commands::init::first_scene::PANEL;
+use crate::new_project::WEIGHTS;
+use crate::new_project::first_scene::PANEL;
 use crate::studio::key_meanings::meanings;
 use anyhow::Result;
 use hinge::SheetMaterial;

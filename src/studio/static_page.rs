@@ -1,7 +1,7 @@
 //! The studio as a page of files, which any web server serves: the page, the worker, and the shipped files that designs need. The module
 //! of the worker is this program, compiled for WebAssembly (`make page`).
 
-use crate::commands::init::WEIGHTS;
+use crate::new_project::WEIGHTS;
 use crate::studio::page::{Connection, page};
 use crate::ui::output_file;
 use anyhow::{Context, Result};

@@ -26,20 +26,17 @@ pub struct PlacedAttachment {
 
 impl PlacedAttachment {
     /// An attachment on its sheet; an error if its hole or its clip lacks room.
-    pub(super) fn new(
-        sheet: &Sheet,
-        attachment: &AttachmentPoint,
-    ) -> Result<Self, FabricationError> {
-        let clearances = attachment.clearances(sheet);
+    pub(super) fn new(sheet: &Sheet, at: &AttachmentPoint) -> Result<Self, FabricationError> {
+        let clearances = at.clearances(sheet);
         if let Some(short) = clearances.iter().find(|room| room.distance < room.least) {
-            return Err(without_room(attachment.name.clone(), *short));
+            return Err(without_room(at.name.clone(), *short));
         }
         Ok(Self {
-            name: attachment.name.clone(),
-            panel: attachment.panel,
-            at: sheet.panels[attachment.panel].position(attachment.point),
-            hole: attachment.hole,
-            clip: attachment.clip_ends(sheet),
+            name: at.name.clone(),
+            panel: at.panel,
+            at: sheet.panels[at.panel].position(at.point),
+            hole: at.hole,
+            clip: at.clip_ends(sheet),
         })
     }
 

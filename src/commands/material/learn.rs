@@ -8,11 +8,11 @@ mod conclusion;
 mod fine_tuning;
 
 use crate::commands::campaign::RayProgress;
-use crate::commands::init::first_scene::THINNEST_PLATE;
-use crate::commands::init::{self, edited};
 use crate::commands::material::learn::conclusion::conclusion;
 use crate::commands::material::learn::fine_tuning::FineTuning;
 use crate::commands::solve_args::{FeSolver, SolveArgs, task_error};
+use crate::new_project::first_scene::THINNEST_PLATE;
+use crate::new_project::{self, edited};
 use crate::ui::exit::Unfinished;
 use crate::ui::interrupt;
 use crate::ui::progress::duration;
@@ -189,10 +189,10 @@ impl LearnCommand {
             return Ok(());
         }
         let name = self.out.file_name().unwrap_or_default().to_string_lossy();
-        let text = init::material_text(&self.material, material.thickness)?;
+        let text = new_project::material_text(&self.material, material.thickness)?;
         run_folder::write(&self.out, "material.toml", &text)?;
         let mut campaign: DocumentMut =
-            init::campaign(&name, material.thickness, tier.regime())?.parse()?;
+            new_project::campaign(&name, material.thickness, tier.regime())?.parse()?;
         edited::set(&mut campaign["tier"], tier.to_string());
         // The rounds have one mesh, and a spot check and trainings of their own.
         for key in ["finer_tier", "spot_rays", "training"] {

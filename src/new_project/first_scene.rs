@@ -9,10 +9,10 @@
 //!
 //! It is rotated about the held panel by the rotation that the panel would have in the symmetric deployment.
 
-use crate::commands::init::cut_from::CutFrom;
-use crate::commands::init::edited::{heading, scale, set};
-use crate::commands::init::template::Template;
-use crate::commands::input_file;
+use crate::new_project::cut_from::CutFrom;
+use crate::new_project::edited::{heading, scale, set};
+use crate::new_project::template::Template;
+use crate::ui::input_file;
 use anyhow::{Context, Result};
 use hinge::Regime;
 use scene::drawing::drawn_outline::numbered;

@@ -25,30 +25,30 @@ pub(super) struct Template {
 }
 
 const FILM: Template = Template {
-    scene: include_str!("../../../configs/scenes/a4-polyester.toml"),
+    scene: include_str!("../../configs/scenes/a4-polyester.toml"),
     description: "# The panels are held flat, as between two clear plates that lie: a thin sheet that nothing holds leaves its plane\n\
            # and opens less. Friction on the plates is not modelled.\n",
     thickness: 0.1,
     r_win: 20.0,
     panel: 3.5,
-    campaign: include_str!("../../../configs/campaigns/pet-0.5mm.toml"),
+    campaign: include_str!("../../configs/campaigns/pet-0.5mm.toml"),
     campaign_thickness: 0.5,
-    training: include_str!("../../../configs/training/medium.toml"),
+    training: include_str!("../../configs/training/medium.toml"),
     why: "The sheet is large for its thickness: its ligaments are 20 to 50 thicknesses wide, buckle and fold, and its panels must be \
           held flat.",
 };
 
 const PLATE: Template = Template {
-    scene: include_str!("../../../configs/scenes/a4-plate.toml"),
+    scene: include_str!("../../configs/scenes/a4-plate.toml"),
     description: "# Its ligaments are narrower than the plate is thick: they bend in its plane. Nothing holds its panels there:\n\
            # the report says whether they stay. It hangs from a clip at its upper edge. The clip hangs from a hook and swings: gravity and pull are along the\n\
            # line from clip to clip of the opened sheet, in the frame of the held panel.\n",
     thickness: 3.0,
     r_win: 12.0,
     panel: 5.8,
-    campaign: include_str!("../../../configs/campaigns/polypropylene-3mm.toml"),
+    campaign: include_str!("../../configs/campaigns/polypropylene-3mm.toml"),
     campaign_thickness: 3.0,
-    training: include_str!("../../../configs/training/plate/medium.toml"),
+    training: include_str!("../../configs/training/plate/medium.toml"),
     why: "The sheet is thick for its size: its ligaments are narrower than it is thick and bend in its plane. Nothing holds its \
           panels there; the report says whether they stay.",
 };

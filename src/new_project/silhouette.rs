@@ -1,7 +1,7 @@
 //! The scene of a sheet that opens onto a drawing: what the fit has chosen, written into the first scene.
 
-use crate::commands::fitting::fit_to_target;
-use crate::commands::init::edited::{heading, set};
+use crate::fitting::fit_to_target;
+use crate::new_project::edited::{heading, set};
 use anyhow::{Context, Result};
 use scene::{Posture, Scene, SceneConfig, TargetShape};
 use toml_edit::{Array, ArrayOfTables, DocumentMut, Item, Table, Value, value};

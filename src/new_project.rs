@@ -1,0 +1,366 @@
+//! A folder with the files of a new project, scaled to the thickness of its sheet.
+
+mod cut_from;
+pub(crate) mod edited;
+pub(crate) mod first_scene;
+mod silhouette;
+mod size_args;
+mod template;
+
+use crate::new_project::cut_from::CutFrom;
+use crate::new_project::edited::{heading, scale, set};
+use crate::new_project::first_scene::{FirstScene, THINNEST_PLATE};
+use crate::new_project::silhouette::fitted_text;
+use crate::new_project::size_args::{length, size, stock};
+use crate::new_project::template::Template;
+use crate::ui::input_file;
+use crate::ui::output_file;
+use crate::ui::shell_word::shell_word;
+use anyhow::{Context, Result, bail, ensure};
+use clap::Args;
+use hinge::{Regime, SheetMaterial};
+use scene::fit::opening::safe_opening;
+use scene::{Scene, Stock};
+use std::path::{Path, PathBuf};
+use support::text_file;
+use surrogate::{Card, Surrogate};
+use toml_edit::{Array, ArrayOfTables, DocumentMut};
+
+// What `init` and the studio are given; the comments are the help of `init`.
+#[derive(Args, Default)]
+pub struct NewProject {
+    /// Folder to create
+    #[arg(value_name = "FOLDER")]
+    pub(crate) folder: PathBuf,
+    /// Sheet material (TOML) [default: configs/materials/polypropylene-3mm.toml, below 2 mm of thickness pet-0.5mm.toml]
+    #[arg(long, value_name = "FILE")]
+    pub(crate) material: Option<PathBuf>,
+    /// Thickness of the sheet (mm) [default: the thickness in the material file]
+    #[arg(long, value_name = "MM")]
+    pub(crate) thickness: Option<f64>,
+    /// Width and height of the sheet (mm) [default: 210x297 for plates up to 3 mm and films up to 0.1 mm, larger in
+    /// proportion to the thickness]
+    #[arg(long, value_name = "WIDTHxHEIGHT", value_parser = size)]
+    pub(crate) size: Option<[f64; 2]>,
+    /// The stock that the sheet is cut from: a5 to a0, letter, tabloid, or width and height (mm). The sheet is smaller by twice the
+    /// margin, the over-run and half a kerf, so that its cuts fit
+    #[arg(long, value_name = "STOCK", value_parser = stock, conflicts_with = "size")]
+    pub(crate) stock: Option<Stock>,
+    /// Border of the stock that the machine cannot cut (mm) [default: 0]
+    #[arg(long, value_name = "MM", value_parser = length, requires = "stock")]
+    pub(crate) margin: Option<f64>,
+    /// Outline that the sheet opens onto (SVG or DXF; FILE#2 is the second largest of several), in any position and of any size: outline,
+    /// cuts and pulls of the sheet are fitted to it [default: the opened sheet's rectangle]
+    #[arg(long, value_name = "FILE")]
+    pub(crate) target: Option<PathBuf>,
+    /// Weights for this material [default: those for it among the shipped ones]
+    #[arg(long, value_name = "FILE")]
+    pub(crate) weights: Option<PathBuf>,
+}
+
+/// The material of a plate and of a film unless another one is given.
+const PLATE: &str = "configs/materials/polypropylene-3mm.toml";
+const FILM: &str = "configs/materials/pet-0.5mm.toml";
+/// The shipped weights; those for the material of a sheet are used.
+pub(crate) const WEIGHTS: [&str; 7] = [
+    "data/polypropylene-3mm/medium.safetensors",
+    "data/petg-3mm/medium.safetensors",
+    "data/aluminium-2mm/medium.safetensors",
+    "data/s235-2mm/medium.safetensors",
+    "data/pet-0.5mm/medium.safetensors",
+    "data/polypropylene-0.8mm/weights.safetensors",
+    "data/s235-1.5mm/weights.safetensors",
+];
+
+impl NewProject {
+    /// Writes the files of the project; returns the text of its README.
+    pub(crate) fn create(&self) -> Result<String> {
+        ensure!(
+            !self.folder.exists(),
+            "{} exists already: name a new folder",
+            self.folder.display()
+        );
+        let material = self.material_file();
+        input_file::require(&material, "--material")?;
+        let measured = SheetMaterial::load(&material)?;
+        let sheet = SheetMaterial {
+            thickness: self.thickness.unwrap_or(measured.thickness),
+            ..measured.clone()
+        };
+        sheet.validate()?;
+        let fitting = self.weights_of(&measured)?;
+        let named = self.weights.as_ref().and(fitting.first());
+        let named = named.map(|weights| weights.regime);
+        let cut_from = self.stock.map(|stock| CutFrom {
+            stock,
+            margin: self.margin.unwrap_or(0.0),
+        });
+        let mut first = FirstScene::new(self.size, cut_from, sheet.thickness, named)?;
+        let regime = first.regime;
+        let weights = fitting.iter().find(|weights| weights.regime == regime);
+        let trained = weights.is_some();
+        first.opening = weights.map_or(first_scene::OPENING, |weights| weights.opening);
+        let weights = weights.map_or("weights.safetensors".into(), |weights| weights.file.clone());
+        let scene = first.text(&weights, self.target.as_deref())?;
+        let name = self
+            .folder
+            .file_name()
+            .unwrap_or_default()
+            .to_string_lossy();
+        // The hinges of a plate are solved in its thickness: in the thickness of a film they would be too narrow.
+        let solved = match regime {
+            Regime::Plate if !trained => sheet.thickness,
+            _ => measured.thickness,
+        };
+        let text = material_text(&material, solved)?;
+        let campaign = campaign(&name, solved, regime)?;
+
+        let template = Template::of(regime);
+        let readme = readme(&self.folder, template, regime, trained);
+        output_file::create_folder(&self.folder)?;
+        for (file, contents) in [
+            ("material.toml", &*text),
+            ("campaign.toml", &campaign),
+            (TRAINING, template.training),
+            ("scene.toml", &scene),
+            ("README.md", &readme),
+        ] {
+            output_file::write(&self.folder.join(file), contents)?;
+        }
+        if !trained {
+            return Ok(readme);
+        }
+        let scene_file = self.folder.join("scene.toml");
+        let first = Self::checked_scene(&scene_file)?;
+        if self.target.is_none() {
+            return Ok(readme);
+        }
+        let (text, expected) = fitted_text(&first, &scene)?;
+        output_file::write(&scene_file, &text)?;
+        Self::checked_scene(&scene_file)?;
+        Ok(format!("{readme}\n{expected}"))
+    }
+
+    /// The file of the material that is named, or else the usual one.
+    fn material_file(&self) -> PathBuf {
+        match (&self.material, self.thickness) {
+            (Some(material), _) => material.clone(),
+            (None, Some(thickness)) if thickness < THINNEST_PLATE => FILM.into(),
+            _ => PLATE.into(),
+        }
+    }
+
+    /// The scene that was written; an error if it cannot be designed as it is.
+    fn checked_scene(path: &Path) -> Result<Scene> {
+        let refused = || {
+            let path = path.display();
+            format!("{path} is written, but needs a change before it runs")
+        };
+        Scene::read(path).with_context(refused)
+    }
+
+    /// The weights that are for the material. Weights that are named must be.
+    fn weights_of(&self, material: &SheetMaterial) -> Result<Vec<Weights>> {
+        let candidates = match &self.weights {
+            Some(weights) => {
+                input_file::require(weights, "--weights")?;
+                vec![weights.clone()]
+            }
+            None => {
+                let shipped = WEIGHTS.map(PathBuf::from).into_iter();
+                shipped.filter(|weights| weights.is_file()).collect()
+            }
+        };
+        let mut fitting = Vec::new();
+        for file in candidates {
+            let card = Card::of(&file)?;
+            if card.material_hash == Some(material.law_hash()) {
+                let surrogate = Surrogate::load(&file)?;
+                let regime = material.regime(card.domain.w_lig[1]);
+                fitting.push(Weights {
+                    file: std::path::absolute(file)?,
+                    regime,
+                    opening: {
+                        let [narrowest, widest] = surrogate.domain().w_lig;
+                        safe_opening(
+                            &surrogate,
+                            regime,
+                            0.5 * (narrowest + widest),
+                            first_scene::OPENING,
+                        )
+                    },
+                });
+            } else if self.weights.is_some() {
+                bail!(
+                    "{} are weights for another material than {}: name the material that they were trained on (--material), \
+                     or leave out --weights",
+                    file.display(),
+                    material.name
+                );
+            }
+        }
+        Ok(fitting)
+    }
+}
+
+/// Weights for the material, and the ligaments that they know.
+struct Weights {
+    file: PathBuf,
+    regime: Regime,
+    /// The opening at which its ligaments are safe (rad).
+    opening: f64,
+}
+
+/// File of the training in a new folder.
+const TRAINING: &str = "training.toml";
+
+/// The shipped campaign of a regime, scaled to a sheet of `thickness` (mm); its material is `material.toml` in
+/// the same folder.
+pub(crate) fn campaign(name: &str, thickness: f64, regime: Regime) -> Result<String> {
+    let template = Template::of(regime);
+    let factor = thickness / template.campaign_thickness;
+    let mut campaign: DocumentMut = template.campaign.parse()?;
+    set(&mut campaign["name"], name);
+    set(&mut campaign["material"], "material.toml");
+    heading(
+        &mut campaign,
+        "# Hinge windows of the material, from which its hinge energy is trained.\n",
+    );
+    set(&mut campaign["training"], Array::from_iter([TRAINING]));
+    campaign.remove("extra_rays");
+    for key in ["kerf", "r_win"] {
+        scale(&mut campaign["design"][key], factor);
+    }
+    let boxes = campaign["rays"].as_array_of_tables_mut();
+    for rays in boxes.into_iter().flat_map(ArrayOfTables::iter_mut) {
+        for key in ["w_lig", "full_range_w_lig"] {
+            scale(&mut rays[key], factor);
+        }
+    }
+    Ok(campaign.to_string())
+}
+
+/// What the sheet is, and the commands of the project in their order.
+fn readme(folder: &Path, template: &Template, regime: Regime, trained: bool) -> String {
+    let path = |name: &str| shell_word(&folder.join(name));
+    let (campaign, scene, material) = (
+        path("campaign.toml"),
+        path("scene.toml"),
+        path("material.toml"),
+    );
+    let (jobs, database) = (path("campaign"), path("hinges.parquet"));
+    let (weights, training) = (path("weights.safetensors"), path(TRAINING));
+    let (learned, learned_weights) = (path("learned"), path("learned/weights.safetensors"));
+    let check = match regime {
+        Regime::Film => "--equilibrium   # the deployed sheet by finite elements of its ligaments",
+        Regime::Plate => "--sheet   # the whole sheet by finite elements: whether it stays flat",
+    };
+    let design = format!("kirigami design {scene}\nkirigami verify {scene} {check}\n");
+    let learn = format!("kirigami material learn {material} --out {learned}\n");
+    let with = format!("kirigami design {scene} --weights {learned_weights} --restart\n");
+    let campaign = format!(
+        "kirigami campaign plan {campaign} --folder {jobs}      # number of rays and time\n\
+         kirigami campaign run {campaign} --folder {jobs}\n\
+         kirigami campaign collect {campaign} --folder {jobs} --out {database}\n\
+         kirigami train {database} --config {training} --out {weights}\n"
+    );
+    let parts = if trained {
+        vec![
+            (
+                "The material has weights. Design the sheet, and check it:",
+                design,
+            ),
+            (
+                "After a change to the material, fine-tune weights on about an hour of its solves:",
+                learn + &with,
+            ),
+            ("Or train weights from nothing, in many hours:", campaign),
+        ]
+    } else {
+        vec![
+            (
+                "The material has no weights yet. Fine-tune weights on about an hour of its solves, and design the sheet:",
+                learn + &with,
+            ),
+            (
+                "Or train weights from nothing, in many hours; the scene names these:",
+                campaign + &design,
+            ),
+        ]
+    };
+    let mut text = format!("# A sheet of your own\n\n{}\n", template.why);
+    for (title, commands) in parts {
+        text += &format!("\n{title}\n\n```sh\n{commands}```\n");
+    }
+    text
+}
+
+/// The text of a material file for another folder, in a thickness (mm): the path of its measured curve becomes absolute.
+pub(crate) fn material_text(path: &Path, thickness: f64) -> Result<String> {
+    let text = text_file::read(path).with_context(|| format!("cannot read {}", path.display()))?;
+    let mut material: DocumentMut = text.parse()?;
+    set(&mut material["thickness"], thickness);
+    let curve = material.get("tensile_csv").and_then(|curve| curve.as_str());
+    if let Some(curve) = curve.map(|curve| path.with_file_name(curve)) {
+        let curve = std::path::absolute(curve)?;
+        set(&mut material["tensile_csv"], &*curve.to_string_lossy());
+    }
+    Ok(material.to_string())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_commands_of_a_folder_with_a_space_can_be_copied() {
+        let template = Template::of(Regime::Film);
+        let text = readme(Path::new("my sheet"), template, Regime::Film, true);
+        assert!(
+            text.contains("kirigami design 'my sheet/scene.toml'\n"),
+            "{text}"
+        );
+    }
+
+    #[test]
+    fn a_copied_material_names_the_curve_of_the_original() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("film.toml");
+        std::fs::write(
+            &path,
+            "name = \"film\"\nthickness = 0.5\ntensile_csv = \"curve.csv\" # measured\n",
+        )
+        .unwrap();
+        let curve = folder.path().join("curve.csv");
+        let expected =
+            format!("name = \"film\"\nthickness = 3.0\ntensile_csv = {curve:?} # measured\n");
+        assert_eq!(material_text(&path, 3.0).unwrap(), expected);
+    }
+
+    #[test]
+    fn a_campaign_is_scaled_and_keeps_its_comments() {
+        let text = campaign("thin", 0.1, Regime::Film).unwrap();
+        for line in [
+            "name = \"thin\"",
+            "tier = \"default\"",
+            "r_win = 20.0        # mm; radius of the window",
+            "w_lig = [1.0, 5.0]        # mm",
+            "full_range_w_lig = 1.6     # mm, 16 thicknesses",
+            "training = [\"training.toml\"] # what",
+            "median_deg = 25.0",
+        ] {
+            assert!(text.contains(line), "{line}\n{text}");
+        }
+        // The widths in every box.
+        let boxes = text.matches("[[rays]]").count();
+        for scaled in ["\nw_lig = [1.0, 5.0]", "\nfull_range_w_lig = 1.6"] {
+            assert_eq!(text.matches(scaled).count(), boxes, "{text}");
+        }
+        assert!(
+            text.starts_with("# Hinge windows of the material")
+                && !text.contains("Hinge database")
+                && !text.contains("extra_rays"),
+            "{text}"
+        );
+    }
+}
