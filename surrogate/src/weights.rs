@@ -101,11 +101,12 @@ impl Surrogate {
 }
 
 fn load(weights: &Path) -> Result<Surrogate, WeightsError> {
+    refuse_database(weights)?;
     let bytes = regular_file::read(weights)
         .map_err(FileError::at(weights))
         .map_err(WeightsError::Read)?;
-    let mut card = Card::of(weights)?;
     let mut tensors = read_tensors(weights, &bytes)?;
+    let mut card = Card::of(weights)?;
     let expected = card.weights_hash.take().unwrap_or_default();
     let found = blake3::hash(&bytes).to_hex().to_string();
     if found != expected {
@@ -155,10 +156,7 @@ impl Card {
         struct Version {
             format_version: u64,
         }
-        if weights.extension().is_some_and(|kind| kind == "parquet") {
-            let path = weights.to_owned();
-            return Err(WeightsError::Database { path });
-        }
+        refuse_database(weights)?;
         let path = card_path(weights);
         let text = regular_file::read(&path).map_err(|source| match source.kind() {
             io::ErrorKind::NotFound => WeightsError::MissingCard {
@@ -182,6 +180,14 @@ impl Card {
         }
         sealed_json::from_slice(&text).map_err(malformed)
     }
+}
+
+fn refuse_database(weights: &Path) -> Result<(), WeightsError> {
+    if weights.extension().is_some_and(|kind| kind == "parquet") {
+        let path = weights.to_owned();
+        return Err(WeightsError::Database { path });
+    }
+    Ok(())
 }
 
 fn save(surrogate: &Surrogate, weights: &Path) -> Result<(), WeightsError> {
