@@ -500,8 +500,9 @@ fn flanks_pass(path: &[StateCheck]) -> Option<Finding> {
         .filter_map(|state| state.flank_gap)
         .fold(0.0, f64::min);
     Some(Severity::Warning.finding(format!(
-            "flanks of cuts pass through each other, by up to {:.2} mm: these finite elements have no contact, and from {:.0} % of the \
-             path on they may go where the sheet cannot, as a hinge closes: pull other panels, or more of them",
+            "flanks of cuts pass through each other, by up to {:.2} mm, from {:.0} % of the path on: their contact is modelled neither at \
+             ligaments nor in a sheet with ligaments wider than twice its thickness. The sheet may go another way: pull other panels, or \
+             more of them",
             -deepest,
             100.0 * first.fraction
         ),
