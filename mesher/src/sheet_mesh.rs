@@ -5,11 +5,15 @@ use crate::msh::PlaneMesh;
 use crate::quality::{MAX_AREA_ERROR, MeshDefect, check_elements};
 use crate::sheet_shape::{PlacedWindow, SheetShape};
 use crate::tier::Imperfection;
-use crate::vectors::{cross, dot, minus};
+use crate::vectors::{cross, dot, minus, unit};
 use crate::window::{Side, Window};
 
 /// Largest distance of a node from the arc of its window, over r_win.
 const ON_RIM: f64 = 1e-6;
+/// Largest distance of a node on a straight edge from it (mm).
+const ON_EDGE: f64 = 1e-6;
+/// Distance from the foot of a ligament, over w_lig, up to which a flank belongs to the ligament and its hole.
+const AT_LIGAMENT: f64 = 2.0;
 
 /// What a face or an element of a sheet belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -115,6 +119,35 @@ impl SheetMesh {
         nodes
     }
 
+    /// The side faces of elements that are the flank of a window's main cut on one of its panels, without those at ligaments and
+    /// holes: (element, edge of its lower face). None on a panel that is not a part of the sheet.
+    pub fn flank(&self, shape: &SheetShape, window: usize, side: Side) -> Vec<(usize, usize)> {
+        let Some([from, to]) = shape.flank(window, side) else {
+            return Vec::new();
+        };
+        let (direction, length) = (unit(from, to), dot(minus(to, from), unit(from, to)));
+        let on_flank = |node: &usize| {
+            let point = self.plane.nodes[*node];
+            let arm = minus(point, from);
+            let at = dot(arm, direction);
+            let at_ligament = |window: &PlacedWindow| {
+                let [x, y] = window.frame.local(point);
+                x.hypot(y) < AT_LIGAMENT * window.design.w_lig
+            };
+            cross(direction, arm).abs() < ON_EDGE
+                && (-ON_EDGE..length + ON_EDGE).contains(&at)
+                && !shape.windows.iter().any(at_ligament)
+        };
+        let of_face = |nodes: &Vec<usize>| {
+            let on: Vec<bool> = nodes[..nodes.len() / 2].iter().map(on_flank).collect();
+            (0..on.len()).find(|edge| on[*edge] && on[(edge + 1) % on.len()])
+        };
+        let edges: Vec<Option<usize>> = self.plane.faces.iter().map(of_face).collect();
+        (0..self.elements.len())
+            .filter_map(|element| Some((element, edges[element % edges.len()]?)))
+            .collect()
+    }
+
     /// The corner node of a part's faces that is nearest to a point.
     pub fn nearest(&self, part: Part, point: [f64; 2]) -> Option<usize> {
         let distance = |node: &usize| {
@@ -142,6 +175,18 @@ impl PlacedWindow {
 }
 
 impl SheetShape {
+    /// The finished edge of a panel along the main cut of a window; `None` if the panel is not a part of the sheet.
+    fn flank(&self, window: usize, side: Side) -> Option<[[f64; 2]; 2]> {
+        let [a, b] = self.windows[window].panels;
+        // Edges are counted by the corner at which they begin, counter-clockwise: the flank ends at the corner of A.
+        let (panel, edge) = match side {
+            Side::A => a.map(|(panel, corner)| (panel, (corner + 3) % 4)),
+            Side::B => b,
+        }?;
+        let corners = self.panels[panel].corners;
+        Some([corners[edge], corners[(edge + 1) % 4]])
+    }
+
     /// Area of the sheet (mm^2): windows, and panels without the sectors of their windows.
     fn area(&self) -> f64 {
         let windows = self.windows.iter().map(|window| {

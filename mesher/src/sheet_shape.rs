@@ -7,6 +7,9 @@ use crate::tier::Structured;
 use hinge::HingeDesign;
 use serde::{Deserialize, Serialize};
 
+/// Ligament width over thickness up to which a ligament of a sheet bends in the plane first, and tips over later.
+const IN_PLANE: f64 = 2.0;
+
 /// All that determines the mesh of a sheet.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SheetShape {
@@ -44,6 +47,14 @@ pub struct PlacedWindow {
     pub panels: [Option<(usize, usize)>; 2],
     /// Height of the bump that initiates buckling, over the thickness; its sign is the side to which it points.
     pub bump: f64,
+}
+
+impl SheetShape {
+    /// Whether a ligament of a width (mm) bends in the plane of a sheet of a thickness (mm). Ligaments of one to two thicknesses are
+    /// of no law's regime: a bump as high as the sheet is thick would make them softer than they are (docs/results/plates).
+    pub fn bends_in_plane(w_lig: f64, thickness: f64) -> bool {
+        w_lig <= IN_PLANE * thickness
+    }
 }
 
 impl PanelShape {

@@ -3,6 +3,7 @@
 use crate::patch::SheetPart;
 use crate::verification_error::VerificationError;
 use crate::whole_sheet::{sheet_problem, with_support};
+use design::geometry::polygon::distance;
 use design::hinge_law::{DamageMeasure, Order};
 use design::objective::design_problem::{Deployment, DesignProblem};
 use design::pattern::design_vector::DesignVector;
@@ -331,8 +332,14 @@ impl SheetTask {
             .collect();
         let states = hinge_deformations(sheet, &configuration);
         let regime = |design: &HingeDesign| self.scene.material.regime(design.w_lig);
-        let gaps = std::iter::zip(sheet.designs(), states)
-            .map(|(design, state)| flank_gap(&design, &state, regime(&design)));
+        let hinges = std::iter::zip(&sheet.hinges, sheet.designs());
+        let gaps = std::iter::zip(hinges, states).map(|((hinge, design), state)| {
+            // The cut ends outside of the window, at the other end of its edge of panel A.
+            let (panel, corner) = hinge.site.a;
+            let corners = sheet.panels[panel].corners;
+            let r_win = distance(corners[corner], corners[(corner + 3) % 4]);
+            flank_gap(&HingeDesign { r_win, ..design }, &state, regime(&design))
+        });
         gaps.fold(f64::INFINITY, f64::min)
     }
 
@@ -493,8 +500,9 @@ fn flanks_pass(path: &[StateCheck]) -> Option<Finding> {
         .filter_map(|state| state.flank_gap)
         .fold(0.0, f64::min);
     Some(Severity::Warning.finding(format!(
-            "flanks of cuts pass through each other, by up to {:.2} mm: these finite elements have no contact, and from {:.0} % of the \
-             path on they may go where the sheet cannot, as a hinge closes: pull other panels, or more of them",
+            "flanks of cuts pass through each other, by up to {:.2} mm, from {:.0} % of the path on: their contact is modelled neither at \
+             ligaments nor in a sheet with ligaments wider than twice its thickness. The sheet may go another way: pull other panels, or \
+             more of them",
             -deepest,
             100.0 * first.fraction
         ),

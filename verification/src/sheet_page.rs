@@ -38,7 +38,7 @@ impl fmt::Display for SheetCheck {
         }
         writeln!(
             f,
-            "\nNot modelled here: contact of the flanks of the cuts, friction, creep. {} unknowns, {:.0} CPU s{}.",
+            "\nThe flanks of a cut touch if its ligament is at most twice as wide as the sheet is thick. Not modelled here: friction, creep. {} unknowns, {:.0} CPU s{}.",
             self.unknowns,
             self.cpu_seconds,
             if self.dynamic { ", dynamic" } else { "" },

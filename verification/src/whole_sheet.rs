@@ -19,10 +19,6 @@ const SHRINK: f64 = 0.93;
 const LEAST_RADIUS: f64 = 2.52;
 /// Layers of elements through the thickness.
 const LAYERS: usize = 2;
-/// Ligament width over thickness up to which a ligament of a meshed sheet has the bump of a plate. Ligaments of one to two
-/// thicknesses are of no law's regime: they bend in the plane first and tip over later, and a bump as high as the sheet is
-/// thick would make them softer than they are (docs/results/plates).
-const IN_PLANE: f64 = 2.0;
 
 /// The tier on which a whole sheet is solved unless another one is named.
 pub fn usual_sheet_tier(scene: &Scene) -> Tier {
@@ -246,7 +242,7 @@ fn sheet_shape(sheet: &Sheet, thickness: f64, tier: Tier) -> Result<SheetShape, 
     let windows = std::iter::zip(Window::of_sheet(sheet), &radii);
     let placed = (sheet.hinges.iter().zip(sheet.designs())).zip(windows).map(
         |((hinge, design), (window, radius))| {
-            let regime = if design.w_lig <= IN_PLANE * thickness {
+            let regime = if SheetShape::bends_in_plane(design.w_lig, thickness) {
                 Regime::Plate
             } else {
                 Regime::Film

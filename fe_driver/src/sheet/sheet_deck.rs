@@ -12,7 +12,7 @@ use crate::calculix::panel_motion::PanelMotion;
 use crate::sheet::sheet_nodes::SheetNodes;
 use crate::sheet::sheet_problem::{Held, SECONDS, SheetProblem, interpolated};
 use hinge::STANDARD_GRAVITY;
-use mesher::{ElementKind, Part, SheetMesh};
+use mesher::{ElementKind, Part, SheetMesh, SheetShape, Side};
 use std::fmt::{self, Write};
 
 /// Stiffness of the table below a node (N/mm).
@@ -93,6 +93,7 @@ impl SheetModel<'_> {
         let density = 1e-12 * problem.material.density_kg_m3;
         writeln!(d, "*DENSITY\n{}", real(density))?;
         writeln!(d, "*SOLID SECTION,ELSET=EALL,MATERIAL=SHEET")?;
+        self.write_contact(d)?;
         self.write_table(d)?;
         self.write_stroke(d)?;
         self.write_history(d)?;
@@ -142,6 +143,37 @@ impl SheetModel<'_> {
             let elements = of(&|part| part == Part::Window(hinge));
             write_set(d, "ELSET", &hinge_set(hinge), &elements)
         })
+    }
+
+    /// Contact of the flanks of every cut, without friction, as stiff as a strip of the material as deep as the sheet is thick. Panels on
+    /// ligaments that fold pass each other in space: they have none.
+    fn write_contact(&self, d: &mut String) -> fmt::Result {
+        let shape = &self.problem.shape;
+        let stiffness = real(self.problem.material.young / shape.thickness);
+        writeln!(
+            d,
+            "*SURFACE INTERACTION,NAME=FLANKS\n*SURFACE BEHAVIOR,PRESSURE-OVERCLOSURE=LINEAR\n{stiffness}"
+        )?;
+        for (h, window) in shape.windows.iter().enumerate() {
+            let flanks = Side::BOTH.map(|side| self.mesh.flank(shape, h, side));
+            if !SheetShape::bends_in_plane(window.design.w_lig, shape.thickness)
+                || flanks.iter().any(Vec::is_empty)
+            {
+                continue;
+            }
+            for (name, faces) in std::iter::zip(["A", "B"], flanks) {
+                writeln!(d, "*SURFACE,NAME=FLANK{h}{name}")?;
+                // The first two sides of an element are its lower and its upper face.
+                let mut faces = faces.iter();
+                faces
+                    .try_for_each(|(element, edge)| writeln!(d, "{},S{}", element + 1, edge + 3))?;
+            }
+            writeln!(
+                d,
+                "*CONTACT PAIR,INTERACTION=FLANKS,TYPE=SURFACE TO SURFACE\nFLANK{h}A,FLANK{h}B"
+            )?;
+        }
+        Ok(())
     }
 
     /// One spring below each supported node, which pushes and does not pull.

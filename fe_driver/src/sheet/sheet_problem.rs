@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 
 /// Version of the geometry, the input deck and the evaluation of sheets. It is increased when a change of the code changes
 /// results; solves of an older version are then stale.
-const RECIPE_VERSION: u32 = 1;
+const RECIPE_VERSION: u32 = 2;
 
 /// What keeps the panels in their plane.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]

@@ -227,6 +227,27 @@ fn weight_in_the_plane_comes_on_before_the_stroke() {
     assert!((panel..panel + window).contains(&up), "{up} {panel}");
 }
 
+/// A plate of 3 mm whose pulled panel is pushed against the clamped one: about the ligament, and without contact the far ends of
+/// the flanks would pass each other.
+#[test]
+fn the_flanks_of_a_cut_that_is_pushed_shut_touch() {
+    let mut shut = problem(Keeping::HeldFlat, 0.0);
+    shut.stroke = None;
+    shut.shape.thickness = 3.0;
+    shut.shape.windows[0].bump = 0.02;
+    shut.material.thickness = 3.0;
+    shut.pulled[0].force = [-5.0, 0.0];
+    let sheet = solved(&shut);
+    let gaps = sheet.states.iter().map(|state| {
+        let far_end = |panel: usize, corner: usize| {
+            state.panels[panel].moved(shut.shape.panels[panel].corners[corner])[0]
+        };
+        far_end(1, 0) - far_end(0, 1)
+    });
+    let gaps: Vec<f64> = gaps.collect();
+    assert!((-0.02..0.0).contains(gaps.last().unwrap()), "{gaps:?}");
+}
+
 #[test]
 fn a_sheet_is_solved_once_and_a_snap_is_followed_with_inertia() {
     let folder = tempfile::tempdir().unwrap();
