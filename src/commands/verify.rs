@@ -66,6 +66,10 @@ pub struct VerifyCommand {
     /// move as the hinge law predicts
     #[arg(long, value_name = "COLUMN,ROW", requires = "sheet", value_parser = whole_sheet::panel)]
     patch: Option<[usize; 2]>,
+    /// The flanks of cuts touch in the whole sheet, in place of passing through each other; several times the time. Where they meet, the
+    /// solve may end early
+    #[arg(long, requires = "sheet")]
+    contact: bool,
     /// Print JSON instead of text
     #[arg(long, requires = "of_sheet")]
     json: bool,

@@ -42,6 +42,8 @@ pub struct SheetTask {
     /// What keeps the panels in their plane.
     support: Posture,
     tier: Tier,
+    /// Whether the flanks of its cuts touch; `false` unless set.
+    pub contact: bool,
     /// The panels and hinges that are solved.
     part: SheetPart,
     /// Displacement and load by the law, before the loads and at every load step.
@@ -63,6 +65,8 @@ pub struct SheetCheck {
     pub counts: [usize; 2],
     /// Whether the sheet has others, which move as the hinge law predicts.
     pub is_patch: bool,
+    /// Whether flanks of cuts touch.
+    pub contact: bool,
     /// Longer side of the flat sheet (mm).
     pub size: f64,
     /// Smallest radius of a window in the mesh, and the radius of the windows of the hinge law (mm).
@@ -176,6 +180,7 @@ impl SheetTask {
         Ok(Self {
             support: support.or(posture).ok_or(VerificationError::NoPosture)?,
             tier,
+            contact: false,
             part: match patch {
                 Some(panel) => SheetPart::around(&deployment.sheet, panel)?,
                 None => SheetPart::whole(&deployment.sheet),
@@ -193,7 +198,7 @@ impl SheetTask {
     /// The solve.
     pub fn solve(&self, versions: &ToolVersions) -> Result<SheetSolve, VerificationError> {
         let (scene, sheet) = (&self.scene, &self.deployment.sheet);
-        let problem = sheet_problem(scene, sheet, self.support, self.tier)?;
+        let problem = sheet_problem(scene, sheet, self.support, self.tier, self.contact)?;
         let problem = self.part.of(problem, &self.deployment)?;
         Ok(SheetSolve::new(problem, versions))
     }
@@ -216,6 +221,7 @@ impl SheetTask {
             tier: self.tier,
             counts: [self.part.panels.len(), self.part.hinges.len()],
             is_patch: self.is_patch(),
+            contact: self.contact,
             size: sheet.outline.size(),
             radius: [
                 (problem.shape.windows.iter())
@@ -500,9 +506,8 @@ fn flanks_pass(path: &[StateCheck]) -> Option<Finding> {
         .filter_map(|state| state.flank_gap)
         .fold(0.0, f64::min);
     Some(Severity::Warning.finding(format!(
-            "flanks of cuts pass through each other, by up to {:.2} mm, from {:.0} % of the path on: their contact is modelled neither at \
-             ligaments nor in a sheet with ligaments wider than twice its thickness. The sheet may go another way: pull other panels, or \
-             more of them",
+            "flanks of cuts pass through each other, by up to {:.2} mm, from {:.0} % of the path on: the sheet may go another way. Pull other \
+             panels, or more of them; with --contact the flanks of a plate touch, in several times the time",
             -deepest,
             100.0 * first.fraction
         ),

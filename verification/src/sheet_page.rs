@@ -38,7 +38,12 @@ impl fmt::Display for SheetCheck {
         }
         writeln!(
             f,
-            "\nThe flanks of a cut touch if its ligament is at most twice as wide as the sheet is thick. Not modelled here: friction, creep. {} unknowns, {:.0} CPU s{}.",
+            "\n{} {} unknowns, {:.0} CPU s{}.",
+            if self.contact {
+                "The flanks of a cut touch if its ligament is at most twice as wide as the sheet is thick. Not modelled here: friction, creep."
+            } else {
+                "Not modelled here: contact of the flanks of the cuts, friction, creep."
+            },
             self.unknowns,
             self.cpu_seconds,
             if self.dynamic { ", dynamic" } else { "" },

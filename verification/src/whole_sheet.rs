@@ -46,12 +46,13 @@ pub fn with_support(scene: &Scene, support: Option<Posture>) -> Result<Scene, Ve
     Ok(scene)
 }
 
-/// A sheet of a scene as a finite-element problem, kept in its plane as `support` says.
+/// A sheet of a scene as a finite-element problem, kept in its plane as `support` says, with `contact` of the flanks of its cuts or without.
 pub fn sheet_problem(
     scene: &Scene,
     sheet: &Sheet,
     support: Posture,
     tier: Tier,
+    contact: bool,
 ) -> Result<SheetProblem, VerificationError> {
     let (pulled, held) = (pulled(scene, sheet)?, held(scene, sheet)?);
     let down = match support {
@@ -89,7 +90,8 @@ pub fn sheet_problem(
         rims: Vec::new(),
         stroke: scene.config.drive.map(|drive| drive.stroke),
         down,
-        step: SheetProblem::usual_step(keeping),
+        step: SheetProblem::usual_step(keeping, contact),
+        contact,
         dynamic: false,
     })
 }

@@ -93,7 +93,9 @@ impl SheetModel<'_> {
         let density = 1e-12 * problem.material.density_kg_m3;
         writeln!(d, "*DENSITY\n{}", real(density))?;
         writeln!(d, "*SOLID SECTION,ELSET=EALL,MATERIAL=SHEET")?;
-        self.write_contact(d)?;
+        if problem.contact {
+            self.write_contact(d)?;
+        }
         self.write_table(d)?;
         self.write_stroke(d)?;
         self.write_history(d)?;

@@ -98,6 +98,8 @@ pub struct SheetProblem {
     pub down: Option<[f64; 3]>,
     /// The increments of the solve.
     pub step: StepControl,
+    /// Whether the flanks of cuts touch; otherwise they pass through each other.
+    pub contact: bool,
     /// Whether inertia carries the sheet over a snap that has no static path; the path then takes ten seconds.
     pub dynamic: bool,
 }
@@ -182,7 +184,7 @@ impl SheetProblem {
     }
 
     /// The increments of a sheet: short at first where it may leave its plane.
-    pub fn usual_step(keeping: Keeping) -> StepControl {
+    pub fn usual_step(keeping: Keeping, contact: bool) -> StepControl {
         StepControl {
             initial: match keeping {
                 Keeping::HeldFlat => 0.004,
@@ -193,7 +195,8 @@ impl SheetProblem {
                 Keeping::Table => 1e-5,
                 Keeping::HeldFlat | Keeping::Nothing => 1e-6,
             },
-            greatest: 0.04,
+            // Flanks that meet in a longer increment rarely converge.
+            greatest: if contact { 0.015 } else { 0.04 },
             max_increments: 600,
             ..StepControl::default()
         }

@@ -82,7 +82,8 @@ fn problem(keeping: Keeping, stroke: f64) -> SheetProblem {
         rims: Vec::new(),
         stroke: Some(stroke),
         down: None,
-        step: SheetProblem::usual_step(keeping),
+        step: SheetProblem::usual_step(keeping, false),
+        contact: false,
         dynamic: false,
     }
 }
@@ -233,6 +234,7 @@ fn weight_in_the_plane_comes_on_before_the_stroke() {
 fn the_flanks_of_a_cut_that_is_pushed_shut_touch() {
     let mut shut = problem(Keeping::HeldFlat, 0.0);
     shut.stroke = None;
+    (shut.contact, shut.step) = (true, SheetProblem::usual_step(Keeping::HeldFlat, true));
     shut.shape.thickness = 3.0;
     shut.shape.windows[0].bump = 0.02;
     shut.material.thickness = 3.0;

@@ -44,7 +44,8 @@ impl VerifyCommand {
     ) -> Result<()> {
         let tier = self.tier.unwrap_or_else(|| usual_sheet_tier(scene));
         let task = SheetTask::new(scene, design, self.support, tier, self.patch);
-        let task = task.map_err(task_error)?;
+        let mut task = task.map_err(task_error)?;
+        task.contact = self.contact;
         let calculix = FeSolver::find()?;
         let solve = task.solve(&calculix.versions()).map_err(task_error)?;
         let _held = run_folder::hold(&self.out)?;
