@@ -1,10 +1,10 @@
 //! What commands measure of the design of a run, in the report and the page of the run.
 
-use crate::commands::design::write_run;
 use crate::ui::progress::announce;
 use crate::ui::run_folder;
 use anyhow::Result;
 use design::pattern::design_vector::DesignVector;
+use output::run_results::write_results;
 use scene::Scene;
 use scene::analysis::design_checks::DesignChecks;
 use scene::design_run::Designed;
@@ -27,7 +27,8 @@ pub(crate) fn record(
     let cut = folder.join("cut.dxf").exists();
     match Designed::of_run(scene, Arc::new(AtomicBool::new(false))) {
         Ok(Some(designed)) => {
-            write_run(scene, &designed, cut)?;
+            // The pictures in pixels show the sheet, which is the same.
+            write_results(scene, &designed, cut)?;
             announce(&format!("report and page of {shown} state it"));
         }
         Ok(None) => {}

@@ -137,16 +137,15 @@ impl Outcome {
             let numbers = step.configuration.as_flattened().iter();
             let mut numbers = numbers.chain(&step.energies).chain([&step.potential]);
             assert!(numbers.all(|number| number.is_finite()), "{step}");
+            if step.status == Status::Diverged {
+                return Self::EndsEarly;
+            }
+            assert_ne!(step.status, Status::Almost, "{step}");
+            assert!(step.residual <= step.rounding.max(1e-10), "{step}");
             match step.status {
-                Status::Diverged => Self::EndsEarly,
-                Status::Almost | Status::LimitPoint => Self::Jumps,
-                Status::LeftDomain | Status::Converged => {
-                    assert!(step.residual <= step.rounding.max(1e-10), "{step}");
-                    match step.inside.contains(&false) {
-                        true => Self::OutsideDomain,
-                        false => Self::Solved,
-                    }
-                }
+                Status::LimitPoint => Self::Jumps,
+                _ if step.inside.contains(&false) => Self::OutsideDomain,
+                _ => Self::Solved,
             }
         });
         found.max().unwrap()
