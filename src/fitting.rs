@@ -38,7 +38,11 @@ pub(crate) fn expected(fit: &FittedScene) -> String {
 }
 
 /// Whether something must hold a plate flat.
-fn in_its_plane(Stability { margin, leaves_at }: Stability) -> String {
+fn in_its_plane(
+    Stability {
+        margin, leaves_at, ..
+    }: Stability,
+) -> String {
     match leaves_at {
         Some(opening) => format!(
             "\n  its panels leave the plane where hinges open by {:.0} deg: hold it flat, such as between two boards",

@@ -19,7 +19,7 @@ use crate::ui::shell_word::shell_word;
 use anyhow::{Context, Result, bail, ensure};
 use clap::Args;
 use hinge::{Regime, SheetMaterial};
-use scene::fit::opening::safe_opening;
+use scene::fit::opening::{damage_of_turn, safe_opening};
 use scene::{Scene, Stock};
 use std::path::{Path, PathBuf};
 use support::text_file;
@@ -99,7 +99,10 @@ impl NewProject {
         let regime = first.regime;
         let weights = fitting.iter().find(|weights| weights.regime == regime);
         let trained = weights.is_some();
-        first.opening = weights.map_or(first_scene::OPENING, |weights| weights.opening);
+        if let Some(weights) = weights {
+            first.opening = weights.opening;
+            first.damage = Some(weights.damage);
+        }
         let weights = weights.map_or("weights.safetensors".into(), |weights| weights.file.clone());
         let scene = first.text(&weights, self.target.as_deref())?;
         let name = self
@@ -177,18 +180,13 @@ impl NewProject {
             if card.material_hash == Some(material.law_hash()) {
                 let surrogate = Surrogate::load(&file)?;
                 let regime = material.regime(card.domain.w_lig[1]);
+                let w_lig = 0.5 * surrogate.domain().w_lig.iter().sum::<f64>();
+                let opening = safe_opening(&surrogate, regime, w_lig, first_scene::OPENING);
                 fitting.push(Weights {
                     file: std::path::absolute(file)?,
                     regime,
-                    opening: {
-                        let [narrowest, widest] = surrogate.domain().w_lig;
-                        safe_opening(
-                            &surrogate,
-                            regime,
-                            0.5 * (narrowest + widest),
-                            first_scene::OPENING,
-                        )
-                    },
+                    opening,
+                    damage: damage_of_turn(&surrogate, regime, w_lig, opening),
                 });
             } else if self.weights.is_some() {
                 bail!(
@@ -209,6 +207,8 @@ struct Weights {
     regime: Regime,
     /// The opening at which its ligaments are safe (rad).
     opening: f64,
+    /// The damage term of ligaments opened so.
+    damage: f64,
 }
 
 /// File of the training in a new folder.

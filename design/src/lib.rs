@@ -99,7 +99,3 @@ pub use pattern::cut_pattern::Outline;
 pub use pattern::design_vector::{DesignVector, WidthChart};
 pub use pattern::grid::Grid;
 pub use sheet::cut_sheet::Sheet;
-
-#[cfg(test)]
-#[path = "../tests/common/derivatives.rs"]
-mod derivatives;

@@ -259,15 +259,10 @@ impl Imperfection {
     /// Half-widths of the bump of a ligament as cut, equal to the ligament width.
     pub(crate) const WIDTHS: [f64; 2] = [1.0, 1.0];
 
-    /// The bump of a ligament as cut: of a film the amplitude that the paper measured, of a plate one fiftieth of the
-    /// thickness, because a plate does not warp where it is cut. With one thickness, W of a plate is 13 to 37 % too small.
-    /// Half-widths are equal to the ligament width.
+    /// The bump of a ligament as cut, [`Regime::bump`]. Half-widths are equal to the ligament width.
     pub fn of(regime: Regime) -> Self {
         Self {
-            amplitude: match regime {
-                Regime::Film => 1.0,
-                Regime::Plate => 0.02,
-            },
+            amplitude: regime.bump(),
             widths: Self::WIDTHS,
         }
     }

@@ -60,7 +60,3 @@ pub use springback_file::{SpringbackFileError, SpringbackMismatch};
 pub use stock::{Paper, Stock};
 pub use target::TargetShape;
 pub use tolerances::ToleranceConfig;
-
-#[cfg(test)]
-#[path = "../../design/tests/common/derivatives.rs"]
-mod derivatives;

@@ -284,7 +284,7 @@ fn placed(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::derivatives::assert_close;
+    use testkit::derivatives::assert_close;
 
     fn sample(shape: TargetShape, count: usize) -> Result<Target, TargetError> {
         Target::sample(&shape, Path::new("."), count)

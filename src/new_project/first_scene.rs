@@ -36,6 +36,12 @@ const SPRINGBACK: &str = "springback.json";
 const DRAFT: &str = "small.safetensors";
 /// Kerf of the shipped plate, which is as wide as the kerf of the shipped film or wider (mm).
 const WIDEST_KERF: f64 = 0.2;
+/// Widest ligament of a plate that nothing holds flat, over its thickness: with 0.93, plates of PETG and aluminium leave their plane
+/// (docs/results/flatness).
+const WIDEST_OF_PLATE: f64 = 0.7;
+/// Weight of the damage times the damage term of ligaments that turn freely by the planned opening, as in the shipped plate. The scale
+/// of the term is of the database, so that one weight would be too large for one material and too small for another.
+const DAMAGE_OF_PLATE: f64 = 0.0155;
 /// Fewest panels along a side: below three, no panel has a neighbour on both sides.
 const FEWEST: usize = 3;
 
@@ -47,6 +53,8 @@ pub(super) struct FirstScene {
     cut_from: Option<CutFrom>,
     /// theta of the target (rad).
     pub(super) opening: f64,
+    /// The damage term of ligaments opened so, if there are weights.
+    pub(super) damage: Option<f64>,
 }
 
 impl FirstScene {
@@ -97,6 +105,7 @@ impl FirstScene {
             thickness,
             cut_from,
             opening: OPENING,
+            damage: None,
         })
     }
 
@@ -173,6 +182,15 @@ impl FirstScene {
         if let Some(drawing) = drawing {
             scene["target"] = placed(drawing, centre, size[0] * size[1])?;
             return Ok(scene.to_string());
+        }
+        if let Some(range) = scene["ligament"]["range"].as_array_mut()
+            && self.regime == Regime::Plate
+        {
+            range.replace(1, rounded(WIDEST_OF_PLATE * self.thickness));
+            if let Some(damage) = self.damage {
+                let weight = (1e4 * DAMAGE_OF_PLATE / damage).round() / 1e4;
+                set(&mut scene["objective"]["damage"], weight);
+            }
         }
         let target = &mut scene["target"]["rectangle"];
         set(&mut target["centre"], Array::from_iter(centre.map(rounded)));
@@ -289,6 +307,7 @@ mod tests {
             cut_from: None,
             regime: Regime::Film,
             opening: OPENING,
+            damage: None,
         };
         let target = scene.target([1, 1]);
         assert!((target.size[0] - 2644.5).abs() < 0.5, "{:?}", target.size);

@@ -1,10 +1,10 @@
 //! Invalid input: the message names the file, the key or the program, and the exit code is 1.
 
 use crate::common::{Workplace, failure};
-use crate::failing_ccx::failing_ccx;
 use std::os::unix::fs::PermissionsExt;
 use std::path::Path;
 use support::sealed_json;
+use testkit::failing_ccx;
 
 const DEMO: &str = "configs/campaigns/demo.toml";
 const SCENE: &str = "configs/scenes/linear-7x7.toml";

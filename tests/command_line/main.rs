@@ -7,8 +7,6 @@ mod common;
 mod cutting;
 mod documents;
 mod extremes;
-#[path = "../common/failing_ccx.rs"]
-mod failing_ccx;
 mod foreign_files;
 mod golden;
 mod keys;

@@ -152,6 +152,22 @@ fn a_project_with_all_defaults_is_designed() {
     }
 }
 
+/// With ligaments of 0.93 thicknesses, as in the shipped plate of polypropylene, both would leave their plane.
+#[test]
+fn plates_of_other_materials_stay_in_their_plane() {
+    let work = Workplace::new();
+    for material in ["petg-3mm", "aluminium-2mm"] {
+        let weights = weights().replace("pet-0.5mm", material);
+        let material = format!("--material configs/materials/{material}.toml");
+        work.output(&format!("init plate {material} --weights {weights}"));
+        let widest = keys(&work, "plate/scene.toml")["ligament"]["range"][1].clone();
+        assert!(widest.as_float().unwrap() < 2.2, "{widest}");
+        let said = work.output("design plate/scene.toml");
+        assert!(said.contains("by themselves they stay"), "{said}");
+        std::fs::remove_dir_all(work.path("plate")).unwrap();
+    }
+}
+
 /// Weights of ligaments that buckle do not serve those that bend in the plane.
 #[test]
 fn weights_of_a_film_do_not_serve_a_plate() {

@@ -1,8 +1,6 @@
 //! A campaign that is killed repeatedly, or whose folder is lost, gives the same database.
 
 use crate::common::{Workplace, failure};
-use crate::failing_ccx::failing_ccx;
-use crate::processes::left_running;
 use dataset::{Database, Row};
 use nix::sys::signal::{Signal, kill};
 use nix::unistd::Pid;
@@ -10,6 +8,7 @@ use std::os::unix::fs::PermissionsExt;
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
 use std::time::Duration;
+use testkit::{failing_ccx, left_running};
 
 const CAMPAIGN: &str = "configs/campaigns/demo.toml";
 

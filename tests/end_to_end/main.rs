@@ -4,8 +4,6 @@
 mod browser;
 #[path = "../common/mod.rs"]
 mod common;
-#[path = "../common/failing_ccx.rs"]
-mod failing_ccx;
 #[path = "../../fe_driver/tests/common/fake_solver.rs"]
 mod fake_solver;
 mod killed_runs;
@@ -13,8 +11,6 @@ mod learned_material;
 mod main_job;
 mod own_data;
 mod power_loss;
-#[path = "../../fe_driver/tests/common/processes.rs"]
-mod processes;
 mod regenerated;
 mod run_page;
 mod scale;

@@ -3,12 +3,12 @@
 //! One story in steps, because each needs the files of those before it. A step that fails is named before its message.
 
 use crate::common::Workplace;
-use crate::failing_ccx::failing_ccx;
 use dataset::Database;
 use serde_json::Value;
 use std::collections::BTreeSet;
 use std::path::Path;
 use std::time::{Duration, Instant};
+use testkit::failing_ccx;
 
 const CAMPAIGN: &str = "configs/campaigns/demo.toml";
 const RUN: &str = "campaign run configs/campaigns/demo.toml --folder runs/demo/campaign";

@@ -16,7 +16,7 @@ use scene::analysis::actuation_curve::ActuationCurve;
 use scene::analysis::design_checks::WholeSheet;
 use scene::analysis::flanks::flank_gap;
 use scene::analysis::flatness::Flatness;
-use scene::analysis::out_of_plane::margins;
+use scene::analysis::out_of_plane::{OutOfPlane, out_of_plane};
 use scene::{Posture, Scene};
 use serde::Serialize;
 use support::severity::{Finding, Severity};
@@ -48,8 +48,8 @@ pub struct SheetTask {
     part: SheetPart,
     /// Displacement and load by the law, before the loads and at every load step.
     curve: Vec<[f64; 2]>,
-    /// The margin against leaving the plane by the law at every load step; `None` for a patch, and where the law has none.
-    margins: Option<Vec<f64>>,
+    /// The plate out of its plane by the law at every load step; `None` for a patch, and where the law has none.
+    out_of_plane: Option<Vec<OutOfPlane>>,
 }
 
 /// The result of a task.
@@ -117,6 +117,8 @@ pub struct StateCheck {
     pub opening_deg: [f64; 2],
     /// Largest tilt of a panel (deg).
     pub tilt_deg: f64,
+    /// The largest tilt by the hinge law and the bumps of the ligaments; `None` where there is no margin, and from a margin of 1 on.
+    pub tilt_by_law_deg: Option<f64>,
     /// Lowest and highest point of the panels (mm).
     pub z: [f64; 2],
     /// Largest bending of a panel (mm).
@@ -185,8 +187,8 @@ impl SheetTask {
                 Some(panel) => SheetPart::around(&deployment.sheet, panel)?,
                 None => SheetPart::whole(&deployment.sheet),
             },
-            margins: (patch.is_none())
-                .then(|| margins(&scene, &problem, &deployment))
+            out_of_plane: (patch.is_none())
+                .then(|| out_of_plane(&scene, &problem, &deployment))
                 .flatten(),
             curve,
             deployment,
@@ -322,6 +324,7 @@ impl SheetTask {
             kinetic: state.kinetic_energy / state.internal_energy().max(f64::MIN_POSITIVE),
             flank_gap: (whole && state.tilt() < UPRIGHT).then(|| self.flank_gap(state)),
             margin: self.margin(state.fraction),
+            tilt_by_law_deg: self.tilt_by_law(state.fraction).map(f64::to_degrees),
         }
     }
 
@@ -352,7 +355,19 @@ impl SheetTask {
     /// The margin by the law at the next load step.
     fn margin(&self, fraction: f64) -> Option<f64> {
         let weighed = self.deployment.weight_steps().len();
-        Some(self.margins.as_ref()?[weighed + self.place(fraction).0 - 1])
+        Some(self.out_of_plane.as_ref()?[weighed + self.place(fraction).0 - 1].margin)
+    }
+
+    /// The largest tilt by the law (rad).
+    fn tilt_by_law(&self, fraction: f64) -> Option<f64> {
+        let by_step = &self.out_of_plane.as_ref()?[self.deployment.weight_steps().len()..];
+        let (after, share) = self.place(fraction);
+        let tilt = |number: usize| match number {
+            0 => Some(0.0),
+            _ => by_step[number - 1].tilt(),
+        };
+        let [from, to] = [tilt(after - 1)?, tilt(after)?];
+        Some(from + share * (to - from))
     }
 
     /// The load step at or after a fraction of the loads, counted from 1, and the share of the way to it from the one before.
@@ -575,6 +590,7 @@ mod tests {
             kinetic: 0.0,
             flank_gap: None,
             margin: None,
+            tilt_by_law_deg: None,
         };
         let found = |on_the_way: [f64; 2], support| {
             let path = [

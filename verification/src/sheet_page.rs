@@ -70,9 +70,9 @@ impl SheetCheck {
             "\n## Along the path\n\n\
              Corners: distance in space between the rigid motion that the nodes of a panel follow best and its place by law; at the end \
              {:.3} % of the longer side of the flat sheet, {:.0} mm, in the root mean square. Panels bend by {:.3} mm at most. \
-             Margin: below 1 the panels leave their plane, by law, of its next load step.\n\n\
-             | path, % | stroke, mm | by law | load, N | by law | mean opening, deg | by law | corners, mm | max | tilt, deg | lift, mm | margin |\n\
-             |---|---|---|---|---|---|---|---|---|---|---|---|",
+             Tilt by law is by the bumps of ligaments. Margin: below 1 the panels leave their plane, by law, of its next load step.\n\n\
+             | path, % | stroke, mm | by law | load, N | by law | mean opening, deg | by law | corners, mm | max | tilt, deg | by law | lift, mm | margin |\n\
+             |---|---|---|---|---|---|---|---|---|---|---|---|---|",
             100.0 * last.corners[0] / self.size,
             self.size,
             last.bending
@@ -89,14 +89,16 @@ impl SheetCheck {
                 corners: [rms, most],
                 tilt_deg,
                 z: [_, high],
+                tilt_by_law_deg,
                 margin,
                 ..
             } = state;
             let ([stroke, moved], [load, found]) = (known(*stroke, 3), known(*load, 4));
-            let margin = margin.map_or("-".into(), |margin| format!("{margin:.2}"));
+            let [margin, tilt] = [margin, tilt_by_law_deg]
+                .map(|value| value.map_or("-".into(), |value| format!("{value:.2}")));
             writeln!(
                 f,
-                "| {:.1} | {moved} | {stroke} | {found} | {load} | {opened:.2} | {opening:.2} | {rms:.3} | {most:.3} | {tilt_deg:.2} | {high:.2} | {margin} |",
+                "| {:.1} | {moved} | {stroke} | {found} | {load} | {opened:.2} | {opening:.2} | {rms:.3} | {most:.3} | {tilt_deg:.2} | {tilt} | {high:.2} | {margin} |",
                 100.0 * fraction,
             )?;
         }

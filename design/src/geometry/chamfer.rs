@@ -49,8 +49,8 @@ fn pull(gradient: &mut [f64; 2], weight: f64, p: [f64; 2], t: [f64; 2]) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::derivatives::{assert_close, assert_gradient};
     use std::f64::consts::TAU;
+    use testkit::derivatives::{assert_close, assert_gradient};
 
     const POINTS: [[f64; 2]; 3] = [[0.0, 0.0], [1.0, 0.1], [0.4, 0.9]];
     const TARGET: [[f64; 2]; 2] = [[0.1, 0.0], [0.9, 0.8]];

@@ -39,7 +39,7 @@ pub fn smooth_min(values: &[f64], temperature: f64) -> (f64, Vec<f64>) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::derivatives::assert_gradient;
+    use testkit::derivatives::assert_gradient;
 
     const VALUES: [f64; 4] = [0.2, 0.9, -0.4, 0.85];
 

@@ -162,8 +162,8 @@ fn trapezoids([bottom, top]: [f64; 2], edges: &[&Edge], gradient: &mut [[f64; 2]
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::derivatives::{TaylorRemainders, assert_close, assert_gradient};
     use std::convert::Infallible;
+    use testkit::derivatives::{TaylorRemainders, assert_close, assert_gradient};
 
     type Polygon = Vec<[f64; 2]>;
 

@@ -93,7 +93,7 @@ impl Contact {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::derivatives::assert_gradient;
+    use testkit::derivatives::assert_gradient;
 
     fn contact() -> Contact {
         Contact::new(2.0, -0.3, -0.05).unwrap()

@@ -197,10 +197,10 @@ fn minus(x: [f64; 3], y: [f64; 3]) -> [f64; 3] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::derivatives::assert_gradient;
     use crate::hinge_law::SurrogateLaw;
     use ::surrogate::Surrogate;
     use hinge::HingeConstants;
+    use testkit::derivatives::assert_gradient;
 
     const MISSING: [f64; 3] = [-1.5, 0.7, 40.0];
 

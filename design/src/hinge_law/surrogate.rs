@@ -279,8 +279,8 @@ fn drawn_in([minimum, maximum]: [f64; 2], alpha: f64) -> [f64; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::derivatives::assert_gradient;
     use std::path::Path;
+    use testkit::derivatives::assert_gradient;
 
     fn law(weights: &str) -> SurrogateLaw {
         let weights = Path::new(env!("CARGO_MANIFEST_DIR")).join(weights);

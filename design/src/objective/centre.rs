@@ -57,7 +57,7 @@ fn relative_edges(outline: &[[f64; 2]], origin: [f64; 2]) -> impl Iterator<Item 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::derivatives::assert_gradient;
+    use testkit::derivatives::assert_gradient;
 
     const L: [[f64; 2]; 6] = [
         [5.0, 7.0],

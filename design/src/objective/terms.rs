@@ -144,7 +144,6 @@ impl ObjectiveConfig {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::derivatives::assert_gradient;
     use crate::equilibrium::load_step::LoadStep;
     use crate::hinge_law::{HingeDamage, PreparedLaw};
     use crate::objective::hinge_measures::add_by_states;
@@ -155,6 +154,7 @@ mod tests {
     use crate::sheet::cut_sheet::{HingePoint, Sheet, SheetOptions};
     use hinge::{HingeConstants, HingeDeformation, HingeDesign, TrainingDomain};
     use std::f64::consts::TAU;
+    use testkit::derivatives::assert_gradient;
 
     const GRID: Grid = Grid { m: 2, n: 2 };
     const STEPS: usize = 3;

@@ -3,8 +3,6 @@
 
 mod cases;
 mod closed_forms;
-#[path = "../common/derivatives.rs"]
-mod derivatives;
 mod driven;
 mod equilibrium;
 mod extension;

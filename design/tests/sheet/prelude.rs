@@ -2,7 +2,6 @@
 
 pub use crate::cases::{AT_CORNER, AT_TIP, PROCESS, case, coordinates, difference, get};
 pub use crate::closed_forms::opening_moments;
-pub use crate::derivatives::{TaylorRemainders, assert_close, assert_gradient, assert_ratio, dot};
 pub use crate::random::Random;
 pub use design::equilibrium::hinged_sheet::HingedSheet;
 pub use design::equilibrium::load_step::{LoadStep, Status};
@@ -22,6 +21,9 @@ pub use design::*;
 pub use hinge::{HingeDeformation, HingeDesign};
 pub use scene::{Scene, SceneConfig};
 pub use std::sync::Arc;
+pub use testkit::derivatives::{
+    TaylorRemainders, assert_close, assert_gradient, assert_ratio, dot,
+};
 
 /// An outline without parallel edges.
 pub const TAPERED: Outline = Outline {

@@ -1,11 +1,12 @@
 //! Campaigns run with the real solver: interrupted, resumed, rejected, stale.
 
-use crate::common::{TWO_WORKERS, campaign, fake_ccx, history, job_folder, jobs, run_with};
+use crate::common::{TWO_WORKERS, campaign, history, job_folder, jobs, run_with};
 use fe_driver::{
     CalculiX, Campaign, CampaignError, Ccx, FailureKind, SolveListError, plan, run, status,
 };
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
+use testkit::fake_ccx;
 
 fn run_to_end(campaign: &Campaign, folder: &Path, tools: &CalculiX) {
     let tally = run_with(&TWO_WORKERS, campaign, folder, tools).unwrap();

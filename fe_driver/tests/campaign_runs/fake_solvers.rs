@@ -1,13 +1,14 @@
 //! Solvers that crash, hang, report false success or truncate their output: the errors are typed, and no process
 //! remains.
 
-use crate::common::{fake_ccx, problem};
+use crate::common::problem;
 use fe_driver::{CalculiX, Cause, Ccx, FailureKind, Solution, SolveError, Solver, WindowSolve};
 use mesher::Gmsh;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 use support::program::ToolError;
+use testkit::fake_ccx;
 
 fn solve(body: &str, folder: &Path, limit: Duration) -> Result<Solution, SolveError> {
     let solver = CalculiX {

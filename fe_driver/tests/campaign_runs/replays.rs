@@ -1,8 +1,7 @@
 //! Campaigns whose solver replays recorded output, which takes almost no time: all ways to run them, and all
 //! kinds of solver failure, transient and persistent.
 
-use crate::common::processes::left_running;
-use crate::common::{TWO_WORKERS, campaign, fake_ccx, history, job_folder, jobs, run_with};
+use crate::common::{TWO_WORKERS, campaign, history, job_folder, jobs, run_with};
 use fe_driver::{
     CalculiX, Campaign, CampaignError, Ccx, CollectedWindow, FailureKind, Restored, RunOptions,
     Shard, SolveListError, SolveRecord, Solved, Tally, plan, restore, retry, solve_again, status,
@@ -11,6 +10,7 @@ use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
+use testkit::{fake_ccx, left_running};
 
 const RAYS: usize = 3;
 

@@ -1,18 +1,13 @@
 //! Shared by the tests: the shipped film, the paper's hinge, a problem to solve, fake solvers.
 #![allow(dead_code)] // every test program uses only a part
 
-pub mod processes;
-
 use fe_driver::{
     CalculiX, Campaign, CampaignError, Ccx, Ray, RunOptions, Shard, Solved, Tally, WindowProblem,
     finished_windows, run,
 };
 use hinge::{HingeConstants, HingeDeformation, HingeDesign, Regime, SheetMaterial};
 use mesher::Tier;
-use std::io::ErrorKind;
-use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};
-use std::process::Command;
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
@@ -102,19 +97,4 @@ pub fn rows(text: &str, fields: usize) -> Vec<Vec<f64>> {
     let numbers = |line: &str| line.split_whitespace().map(|f| f.parse().ok()).collect();
     let rows = text.lines().filter_map(numbers);
     rows.filter(|row: &Vec<f64>| row.len() == fields).collect()
-}
-
-/// An executable script in `folder` that prints the version of ccx on request and otherwise runs `body`.
-pub fn fake_ccx(folder: &Path, body: &str) -> PathBuf {
-    let path = folder.join("fake-ccx");
-    let script = format!(
-        "#!/bin/sh\nif [ \"$1\" = -v ]; then echo 'This is Version 2.20'; exit; fi\n{body}\n"
-    );
-    std::fs::write(&path, script).unwrap();
-    std::fs::set_permissions(&path, std::fs::Permissions::from_mode(0o755)).unwrap();
-    // A child process that another test has just forked may still have the script open for writing.
-    while let Err(error) = Command::new(&path).arg("-v").output() {
-        assert_eq!(error.kind(), ErrorKind::ExecutableFileBusy, "{error}");
-    }
-    path
 }

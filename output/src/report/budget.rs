@@ -20,8 +20,9 @@ pub struct Budget {
 }
 
 /// What the model leaves out of every sheet.
-const NEVER_MODELLED: [&str; 3] = [
+const NEVER_MODELLED: [&str; 4] = [
     "creep",
+    "panels and clips that bend, which moves corners little in whole sheets",
     "contact of the flanks of a cut",
     "the error of the finest mesh",
 ];
@@ -31,8 +32,7 @@ const UNDER_LOAD: &str =
     "the law of released hinges: the errors apply to the sheet under load, before it was unloaded";
 
 /// What the page and the report say above the table.
-pub(crate) const BUDGET_HEADING: &str =
-    "error budget of the deployed sheet, panels in the plane: standard deviations";
+pub(crate) const BUDGET_HEADING: &str = "error budget of the deployed sheet: standard deviations";
 
 impl Budget {
     pub(super) fn new(
@@ -67,9 +67,15 @@ impl Budget {
             ]
         }));
         let [rms, maximum, load] = self.cells(Some(&self.errors.total));
-        let squares = "root of the sum of the squares of what is known".to_owned();
-        // Panels and clips bend by what is not known.
-        rows.push(["at least".to_owned(), rms, maximum, load, squares]);
+        let [name, squares] = if self.errors.total.at_least {
+            [
+                "at least",
+                "root of the sum of the squares of what is known",
+            ]
+        } else {
+            ["in all", "root of the sum of the squares"]
+        };
+        rows.push([name.to_owned(), rms, maximum, load, squares.to_owned()]);
         rows
     }
 

@@ -417,9 +417,7 @@ fn point_outside(input: &RuleInput) -> Option<Warning> {
 fn not_modelled(input: &RuleInput) -> Option<Warning> {
     input.scene.surrogate()?;
     let missing = input.run.as_ref()?.facts.self_weight.left_out()?;
-    Some(Concern::NotModelled.of_sheet(format!(
-        "the panels stay in the plane in the model. Not modelled: {missing}"
-    )))
+    Some(Concern::NotModelled.of_sheet(format!("not modelled: {missing}")))
 }
 
 /// Panels that leave the plane unless something holds them flat.
@@ -445,7 +443,12 @@ fn leaves_plane(input: &RuleInput) -> Option<Warning> {
 fn plate_leaves_plane(kept: &str, stability: Option<Stability>) -> Warning {
     let concern = Concern::LeavesPlane;
     let advice = "hold it flat, such as between two boards, take narrower ligaments, or pull more panels; `kirigami verify --sheet` solves it";
-    let Some(Stability { margin, leaves_at }) = stability else {
+    let Some(Stability {
+        margin,
+        tilt,
+        leaves_at,
+    }) = stability
+    else {
         return concern.of_sheet(format!(
             "{kept}, and whether they stay is not known: that needs a hinge law, and a clip or clamp that holds a panel"
         ));
@@ -465,8 +468,9 @@ fn plate_leaves_plane(kept: &str, stability: Option<Stability>) -> Warning {
             Warning {
                 severity: Severity::Note,
                 ..concern.of_sheet(format!(
-                    "{kept}, and by themselves they stay: it would take {more}{percent} % of the forces on the way to move them out of it \
-                     (docs/results/flatness)"
+                    "{kept}, and by themselves they stay: it would take {more}{percent} % of the forces on the way to move them out of it. \
+                     Bumps of ligaments tilt them by {:.2} deg (docs/results/flatness)",
+                    tilt.unwrap_or_default().to_degrees()
                 ))
             }
         }

@@ -54,22 +54,16 @@ impl SelfWeight {
         }
     }
 
-    /// Effects that are not modelled for the out-of-plane restraint; `None` if the scene states none.
+    /// Effects in the plane that are not modelled for the out-of-plane restraint; `None` if there are none, and if the scene states no restraint.
     pub(super) fn left_out(&self) -> Option<&'static str> {
-        Some(match self.posture? {
-            Posture::HeldFlat => {
-                "what holds the panels flat, and its friction; the weight of the sheet, if its plane is not horizontal"
-            }
-            Posture::Lying => {
-                "panels that lift off the surface, as in a thin sheet near the ligaments; in the design, friction"
-            }
-            Posture::Hanging if self.is_modelled => {
-                "panels that leave the plane, as in a thin sheet"
-            }
-            Posture::Hanging | Posture::Free => {
-                "panels that leave the plane, as in a thin sheet; the weight of the sheet"
-            }
-        })
+        match self.posture? {
+            Posture::HeldFlat => Some(
+                "what holds the panels flat, and its friction; the weight of the sheet, if its plane is not horizontal",
+            ),
+            Posture::Lying => Some("in the design, friction"),
+            Posture::Hanging if self.is_modelled => None,
+            Posture::Hanging | Posture::Free => Some("the weight of the sheet"),
+        }
     }
 
     /// Names and values.

@@ -263,8 +263,8 @@ fn load_and_state(step: &LoadStep) -> (f64, &[[f64; 3]]) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::derivatives::assert_close;
     use std::f64::consts::PI;
+    use testkit::derivatives::assert_close;
 
     fn curve(load: impl Fn(f64) -> f64, end: f64) -> ActuationCurve {
         let points = (0..=40).map(|i| end * f64::from(i) / 40.0);

@@ -12,18 +12,19 @@
 //! | loading path | in proportion to the force and the separation from the ray | independent | docs/TRIED.md |
 //! | kerf | of a ligament that is narrower and of a hole that is wider, each by half of its tolerance | common | the scene |
 //! | thickness | by similarity, of its tolerance | common | the scene |
-//! | rigid panels | not known: panels and clips bend | | docs/results/plates, docs/results/whole-sheets |
+//! | tilt | none: heights of the corners, by the bumps of ligaments | | docs/results/flatness |
 //!
 //! Finite elements of all hinges of the sheet replace the first two and the loading path. What they leave is the movement of the
 //! panels in their last round.
 //!
 //! What is not measured is not known: the sum of the others is a lower bound.
 
-use crate::Scene;
 use crate::analysis::actuation_curve::ActuationCurve;
 use crate::analysis::force_errors::{Deviations, ForceErrors};
+use crate::analysis::out_of_plane::out_of_plane;
 use crate::analysis::path_separation::PathSeparation;
 use crate::tolerances::standard_deviation;
+use crate::{Posture, Scene};
 use design::equilibrium::force_response::ForceResponse;
 use design::hinge_law::{HingeEnergy, Order};
 use design::objective::design_problem::{Deployment, DesignProblem};
@@ -51,8 +52,6 @@ const MOST_DETOUR_OF_BENT_RAYS: f64 = 0.4;
 /// Yield strain of that film. The forces of a material that yields at a smaller one depend more on the path: the forces of steel, at a
 /// thirteenth of it, by some fifty times (docs/results/metals). Materials below half of it are not covered.
 const DETOUR_YIELD: f64 = 0.0146;
-/// The effect of panels and clips that bend, from whole sheets in finite elements.
-const RIGID_PANELS: &str = "in whole sheets that stay flat, all errors together move corners by 0.04 to 0.33 % of the sheet (docs/results/plates, flatness, whole-sheets)";
 /// Number of hinges above which no budget is made: it takes three solves a hinge and more.
 const MOST_HINGES: usize = 2000;
 
@@ -88,9 +87,8 @@ pub enum Cause {
     Kerf,
     /// The thickness of the sheet.
     Thickness,
-    /// Panels and clips, which are rigid in the model.
-    #[strum(serialize = "rigid panels")]
-    RigidPanels,
+    /// Panels that tilt, which are in the plane in the model.
+    Tilt,
     /// What is left if the sheet was balanced with finite elements for its hinges.
     Balance,
 }
@@ -207,6 +205,27 @@ impl ErrorBudget {
                 effect,
             });
         }
+        if let Some(heights) = heights(scene, problem, deployment) {
+            let (source, effect) = match heights {
+                Ok(corners) => {
+                    let deviations = Deviations {
+                        corners,
+                        load: None,
+                    };
+                    let source = format!(
+                        "heights of the corners, if all ligaments have a bump of {} thicknesses on the same side (docs/results/flatness)",
+                        Regime::Plate.bump()
+                    );
+                    (source, Some(Effect::new(deviations, load)))
+                }
+                Err(reason) => (reason.to_owned(), None),
+            };
+            budget.contributions.push(Contribution {
+                cause: Cause::Tilt,
+                source,
+                effect,
+            });
+        }
         if let Some(residual) = residual {
             let deviations = Deviations {
                 corners: vec![residual; 4 * sheet.panels.len()],
@@ -232,6 +251,29 @@ impl ErrorBudget {
             ..effects.fold(none, |sum, effect| sum.with(effect))
         }
     }
+}
+
+/// How far the corners of a deployed sheet are from the plane (mm), or why that is not known; `None` if the panels are held flat.
+fn heights(
+    scene: &Scene,
+    problem: &DesignProblem,
+    deployment: &Deployment,
+) -> Option<Result<Vec<f64>, &'static str>> {
+    let Some(posture) = scene.config.posture else {
+        return Some(Err("the scene has no posture"));
+    };
+    if posture.kind == Posture::HeldFlat {
+        return None;
+    }
+    let Some(path) = out_of_plane(scene, problem, deployment) else {
+        return Some(Err(
+            "panels of a film leave the plane (docs/results/flatness)",
+        ));
+    };
+    let configuration = &deployment.final_step().configuration;
+    let heights = path.last()?.heights(&deployment.sheet, configuration);
+    let heights = heights.ok_or("the panels leave the plane (docs/results/flatness)");
+    Some(heights.map(|heights| heights.into_iter().map(f64::abs).collect()))
 }
 
 impl Effect {
@@ -271,15 +313,14 @@ impl Deployed<'_> {
     /// `None` for a cause that there is not by the law alone.
     fn errors(&self, cause: Cause) -> Option<Known> {
         Some(match cause {
-            Cause::Network => self.networks(),
+            Cause::Network => return self.networks(),
             Cause::WindowMesh => self.window_mesh(),
             Cause::MaterialLaw => self.material_law(),
             Cause::Imperfection => self.imperfection(),
             Cause::LoadingPath => self.loading_path(),
             Cause::Kerf => self.kerf(),
             Cause::Thickness => self.thickness(),
-            Cause::RigidPanels => Err(RIGID_PANELS.to_owned()),
-            Cause::Balance => return None,
+            Cause::Tilt | Cause::Balance => return None,
         })
     }
 
@@ -334,7 +375,8 @@ impl Deployed<'_> {
         checked.is_some_and(|checked| trained.is_some_and(|trained| trained != checked))
     }
 
-    fn networks(&self) -> Known {
+    /// `None` if only the spot check knows it, on a finer mesh: it is a part of that row.
+    fn networks(&self) -> Option<Known> {
         let (mut modes, mut sources) = (Vec::new(), Vec::new());
         let networks = self.scene.networks();
         if networks.len() > 1 {
@@ -350,16 +392,15 @@ impl Deployed<'_> {
                 networks.len()
             ));
         }
-        if !self.is_checked_on_finer_mesh()
-            && let Ok((errors, source)) = self.checked()
-        {
+        let on_finer_mesh = self.is_checked_on_finer_mesh();
+        if !on_finer_mesh && let Ok((errors, source)) = self.checked() {
             modes.extend(errors.modes);
             sources.push(source);
         }
         if sources.is_empty() {
-            return Err("no ensemble and no spot check".into());
+            return (!on_finer_mesh).then(|| Err("no ensemble and no spot check".into()));
         }
-        Ok((ForceErrors { modes }, sources.join("; ")))
+        Some(Ok((ForceErrors { modes }, sources.join("; "))))
     }
 
     fn window_mesh(&self) -> Known {

@@ -37,7 +37,7 @@ pub fn gamma(material: &SheetMaterial, w_lig: f64, edge: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::derivatives::assert_close;
+    use testkit::derivatives::assert_close;
 
     fn material(young: f64, density_kg_m3: f64, thickness: f64) -> SheetMaterial {
         let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));

@@ -1,11 +1,11 @@
 //! The error budget of a sheet against sheets that have the errors.
 
 use crate::changed;
-use crate::derivatives::{assert_close, assert_ratio};
 use design::Deployment;
 use design::sheet::kinematics::deployed_corners;
 use scene::analysis::error_budget::{Cause, Effect, ErrorBudget};
-use scene::{Scene, SceneConfig};
+use scene::{Posture, PostureConfig, Scene, SceneConfig};
+use testkit::derivatives::{assert_close, assert_ratio};
 
 fn film(change: impl Fn(&mut SceneConfig)) -> Scene {
     changed("a4-polyester.toml", |config| {
@@ -91,4 +91,34 @@ fn a_verified_sheet_has_the_residual_of_its_rounds() {
     assert!(parts.all(|part| !part.cause.is_seen_by_elements()));
     let found = effect(&budget, Cause::Balance).unwrap();
     assert_close(found.corners[0], 0.02, 1e-15);
+}
+
+/// The heights of a plate that nothing holds flat are a part of the sum, and not known if it leaves its plane.
+#[test]
+fn a_plate_that_tilts_has_the_heights_of_its_corners() {
+    let plate = |posture, change: fn(&mut SceneConfig)| {
+        let scene = changed("a4-plate.toml", |config| {
+            config.posture = Some(PostureConfig {
+                kind: posture,
+                down: None,
+            });
+            change(config);
+        });
+        let budget = budget(&scene, None);
+        let tilt = (budget.contributions.iter()).find(|part| part.cause == Cause::Tilt);
+        tilt.map(|tilt| (tilt.effect.clone(), budget.total))
+    };
+    assert!(plate(Posture::HeldFlat, |_| ()).is_none());
+    let (tilt, total) = plate(Posture::Free, |_| ()).unwrap();
+    let [rms, largest] = tilt.unwrap().corners;
+    assert!(
+        0.1 < rms && rms < largest && largest < 1.0,
+        "{rms} {largest}"
+    );
+    assert!(rms < total.corners[0]);
+    let pushed = plate(Posture::Free, |config| {
+        config.loads[0].force = config.loads[0].force.map(|component| -component);
+        config.drive.as_mut().unwrap().stroke = 20.0;
+    });
+    assert!(pushed.unwrap().0.is_none());
 }

@@ -1,12 +1,12 @@
 //! The levels of a scene: what each takes from it, their derivatives, and the difference to a finer one.
 
-use crate::derivatives::{TaylorRemainders, assert_close};
 use design::hinge_law::{MeanLaw, Order};
 use design::{DesignVector, HingeLaw, SurrogateLaw};
 use hinge::{HingeDeformation, HingeDesign};
 use scene::analysis::level_difference::AtLevel;
 use scene::{Level, Scene};
 use std::sync::Arc;
+use testkit::derivatives::{TaylorRemainders, assert_close};
 
 fn scene(name: &str) -> Scene {
     Scene::read(&crate::shipped(name)).unwrap()

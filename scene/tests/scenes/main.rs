@@ -1,8 +1,6 @@
 //! Shipped scenes: what is refused, levels, loads, and the error budget.
 
 mod actuations;
-#[path = "../../../design/tests/common/derivatives.rs"]
-mod derivatives;
 mod error_budget;
 mod levels;
 mod refused;

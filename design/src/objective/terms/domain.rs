@@ -87,8 +87,8 @@ fn excess([minimum, maximum]: [f64; 2], at: f64) -> (f64, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::derivatives::assert_gradient;
     use hinge::HingeConstants;
+    use testkit::derivatives::assert_gradient;
 
     fn domain() -> TrainingDomain {
         let state = [[-0.8, 0.2], [-0.4, 0.4], [-0.1, 1.3]];

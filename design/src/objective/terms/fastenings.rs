@@ -50,13 +50,13 @@ impl Term for Fastenings {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::derivatives::assert_gradient;
     use crate::pattern::coordinates::PatternCoordinates;
     use crate::pattern::cut_pattern::{CutPattern, Outline};
     use crate::pattern::grid::Grid;
     use crate::sheet::cut_sheet::{HingePoint, PanelPoint, Sheet, SheetOptions};
     use crate::sheet::cutting_process::CuttingProcess;
     use hinge::HingeConstants;
+    use testkit::derivatives::assert_gradient;
 
     const GRID: Grid = Grid { m: 3, n: 3 };
 

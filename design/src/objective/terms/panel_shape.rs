@@ -99,8 +99,8 @@ fn crowded(panel: &Panel, min_distance: f64, gradient: &mut [[f64; 2]; 4]) -> f6
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::derivatives::assert_gradient;
     use crate::sheet::cut_sheet::PanelPoint;
+    use testkit::derivatives::assert_gradient;
 
     fn panel(corners: [[f64; 2]; 4]) -> Panel {
         Panel {

@@ -103,8 +103,8 @@ fn barrier(x: f64) -> (f64, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::derivatives::assert_gradient;
     use crate::sheet::cut_sheet::PanelPoint;
+    use testkit::derivatives::assert_gradient;
 
     fn panel(corners: [[f64; 2]; 4]) -> Panel {
         Panel {

@@ -1,4 +1,4 @@
-//! Finds processes that are still running; also used by the tests of the command line.
+//! Finds processes that are still running.
 
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};

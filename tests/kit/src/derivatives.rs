@@ -5,7 +5,6 @@
 //! ```
 //!
 //! An exact gradient of a smooth function gives the order 2, a wrong one the order 1.
-#![allow(dead_code, reason = "every test program uses only a part")]
 
 /// Taylor remainders along one direction, at h, h/2, h/4, ...
 #[derive(Clone, Debug, PartialEq)]
