@@ -56,6 +56,10 @@ pub struct NewProject {
     /// Weights for this material [default: those for it among the shipped ones]
     #[arg(long, value_name = "FILE")]
     pub(crate) weights: Option<PathBuf>,
+    /// Whether the ligaments of a plate may be wider than stays flat by itself: its sheet is fitted to a drawing afterwards, or a service
+    /// wants wide ones.
+    #[arg(skip)]
+    pub(crate) any_width: bool,
 }
 
 /// The material of a plate and of a film unless another one is given.
@@ -99,6 +103,7 @@ impl NewProject {
         let regime = first.regime;
         let weights = fitting.iter().find(|weights| weights.regime == regime);
         let trained = weights.is_some();
+        first.any_width = self.any_width;
         if let Some(weights) = weights {
             first.opening = weights.opening;
             first.damage = Some(weights.damage);

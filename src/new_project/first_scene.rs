@@ -53,6 +53,8 @@ pub(super) struct FirstScene {
     cut_from: Option<CutFrom>,
     /// theta of the target (rad).
     pub(super) opening: f64,
+    /// Whether the ligaments of a plate may be wider than stays flat by itself.
+    pub(super) any_width: bool,
     /// The damage term of ligaments opened so, if there are weights.
     pub(super) damage: Option<f64>,
 }
@@ -105,6 +107,7 @@ impl FirstScene {
             thickness,
             cut_from,
             opening: OPENING,
+            any_width: false,
             damage: None,
         })
     }
@@ -185,6 +188,7 @@ impl FirstScene {
         }
         if let Some(range) = scene["ligament"]["range"].as_array_mut()
             && self.regime == Regime::Plate
+            && !self.any_width
         {
             range.replace(1, rounded(WIDEST_OF_PLATE * self.thickness));
             if let Some(damage) = self.damage {
@@ -307,6 +311,7 @@ mod tests {
             cut_from: None,
             regime: Regime::Film,
             opening: OPENING,
+            any_width: false,
             damage: None,
         };
         let target = scene.target([1, 1]);

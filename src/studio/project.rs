@@ -83,6 +83,7 @@ impl Project {
             size: sheet.size.filter(|_| sheet.stock.is_none()),
             stock: sheet.stock,
             margin: sheet.margin,
+            any_width: sheet.drawing.is_some() || sheet.service.is_some(),
             ..NewProject::default()
         }
         .create()?;
