@@ -71,7 +71,7 @@ impl Stability {
         self.margin >= Self::SAFE
     }
 
-    /// Of a deployed plate; `None` where [`margins`] has none.
+    /// Of a deployed plate; `None` where [`out_of_plane`] has none.
     pub fn new(scene: &Scene, problem: &DesignProblem, deployment: &Deployment) -> Option<Self> {
         let path = out_of_plane(scene, problem, deployment)?;
         let states: Vec<[f64; 2]> = std::iter::zip(&path, &deployment.path)
