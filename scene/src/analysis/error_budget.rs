@@ -267,7 +267,7 @@ fn heights(
     }
     let Some(path) = out_of_plane(scene, problem, deployment) else {
         return Some(Err(
-            "panels of a film leave the plane (docs/results/flatness)",
+            "panels of a film, and of a plate that no clip or clamp holds, leave the plane (docs/results/flatness)",
         ));
     };
     let configuration = &deployment.final_step().configuration;
