@@ -1,8 +1,7 @@
-//! The user interface of the commands: progress, tables, comparisons, files, pictures, charts, sizes, counts, exit codes.
+//! The user interface of the commands: progress, files, pictures, charts, sizes, counts, exit codes.
 
 pub mod animation;
 pub mod charts;
-pub mod comparison;
 pub mod count;
 pub mod exit;
 pub(crate) mod input_file;
@@ -12,7 +11,6 @@ pub mod picture;
 pub mod progress;
 pub mod run_folder;
 pub mod shell_word;
-pub mod table;
 pub(crate) mod with_unit;
 
 /// Number of processors of this machine.

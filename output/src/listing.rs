@@ -16,11 +16,12 @@ pub use deployment::deployment;
 pub use equilibrium::equilibrium;
 pub use gradient::gradient;
 pub use pattern::pattern;
-pub use springback::SpringbackListing;
+pub use springback::springback;
 
 use serde::Serialize;
 use serde_json::Value;
 use std::fmt;
+use support::document::Document;
 
 /// The numbers of a stage of a design: `Serialize` writes all of them, `Display` a short table.
 #[derive(Clone, Debug, Serialize)]
@@ -29,11 +30,11 @@ pub struct Listing {
     #[serde(flatten)]
     pub numbers: Value,
     #[serde(skip)]
-    text: String,
+    document: Document,
 }
 
 impl fmt::Display for Listing {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        f.write_str(&self.text)
+        self.document.fmt(f)
     }
 }

@@ -1,20 +1,20 @@
 //! The report of a design run: the objective before and after, all hinges, warnings.
 
 mod budget;
-pub(crate) mod columns;
 mod creep_and_springback;
 mod estimate;
 mod fact_sheet;
 mod hinge_row;
+pub(crate) mod numbers;
 mod rules;
 mod self_weight;
 mod text;
 mod warning;
 
 pub(crate) use budget::BUDGET_HEADING;
-pub(crate) use columns::rounded;
 pub(crate) use estimate::force_spreads;
 pub(crate) use fact_sheet::{extent, miss};
+pub(crate) use numbers::rounded;
 pub(crate) use text::worst_first;
 
 pub use budget::Budget;

@@ -66,7 +66,7 @@ pub const RUN_FILES: [RunFile; 18] = [
         Ok(Some(serde_json::to_vec_pretty(run.report)?))
     }),
     result("report.txt", "the report as text", |run| {
-        Ok(Some(run.report.to_string().into()))
+        Ok(Some(run.report.document().to_string().into()))
     }),
     result(
         "run.html",

@@ -1,10 +1,10 @@
 //! `kirigami demo`: the whole chain once, at a small scale.
 
-use crate::ui::table::{Table, table};
 use anyhow::{Result, ensure};
 use clap::Args;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
+use support::table::Table;
 
 /// Run the whole chain once: window solves, database, training, design, cut file
 ///
@@ -58,16 +58,16 @@ impl DemoCommand {
 }
 
 fn time_table(times: &[(&str, f64)]) -> Table {
-    let mut table = table(["step", "seconds"]);
+    let mut table = Table::new(["step", "seconds"]);
     for (what, seconds) in times {
-        table.add_row([(*what).to_owned(), format!("{seconds:.1}")]);
+        table.row([(*what).to_owned(), format!("{seconds:.1}")]);
     }
     table
 }
 
 /// The files that the demo has written.
 fn product_table() -> Table {
-    let mut table = table(["file", "path", "size (kB)"]);
+    let mut table = Table::new(["file", "path", "size (kB)"]);
     for (what, name) in [
         ("hinge database", "hinges.parquet"),
         ("its manifest", "hinges.json"),
@@ -85,7 +85,7 @@ fn product_table() -> Table {
         let size = std::fs::metadata(&path).map_or("missing".into(), |file| {
             format!("{:.1}", file.len() as f64 / 1024.0)
         });
-        table.add_row([what.to_owned(), path.display().to_string(), size]);
+        table.row([what.to_owned(), path.display().to_string(), size]);
     }
     table
 }

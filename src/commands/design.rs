@@ -97,7 +97,7 @@ impl DesignCommand {
                     println!("{}", serde_json::to_string_pretty(&report)?);
                 } else {
                     let folder = scene.output().canonicalize()?;
-                    println!("{report}\nwritten to {}", folder.display());
+                    println!("{}\nwritten to {}", report.document(), folder.display());
                 }
                 check(&scene, &report, &ended)
             }

@@ -8,10 +8,9 @@ use anyhow::{Context, Result};
 use clap::error::ErrorKind;
 use clap::{Args, ValueEnum};
 use design::pattern::design_vector::DesignVector;
-use output::listing::{self, SpringbackListing};
+use output::listing::{self, Listing};
 use scene::{Level, Scene};
 use serde::Serialize;
-use std::fmt::Display;
 use std::path::PathBuf;
 
 /// Print the numbers of one stage of a design
@@ -57,10 +56,10 @@ enum Stage {
 
 /// A listing with the design that it is of.
 #[derive(Serialize)]
-struct Of<T> {
+struct Of {
     design: String,
     #[serde(flatten)]
-    listing: T,
+    listing: Listing,
 }
 
 impl InspectCommand {
@@ -100,7 +99,7 @@ impl InspectCommand {
         }
     }
 
-    fn print(&self, design: String, listing: impl Serialize + Display) -> Result<()> {
+    fn print(&self, design: String, listing: Listing) -> Result<()> {
         if self.json {
             let of = Of { design, listing };
             println!("{}", serde_json::to_string_pretty(&of)?);
@@ -110,14 +109,14 @@ impl InspectCommand {
         Ok(())
     }
 
-    fn springback(&self, scene: &Scene, design: &DesignVector) -> Result<SpringbackListing> {
+    fn springback(&self, scene: &Scene, design: &DesignVector) -> Result<Listing> {
         let law = scene
             .springback
             .as_ref()
             .context("the scene names no law of released hinges: set surrogate.springback")?;
-        let listing = SpringbackListing::new(scene, &scene.problem()?, design, law)?;
+        let (listing, picture) = listing::springback(scene, &scene.problem()?, design, law)?;
         if let Some(path) = &self.picture {
-            output_file::write(path, listing.picture(scene))?;
+            output_file::write(path, picture)?;
         }
         Ok(listing)
     }

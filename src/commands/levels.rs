@@ -3,13 +3,14 @@
 use crate::commands::design_checks::record;
 use crate::commands::inspect::scene_args::Inspected;
 use crate::ui::progress::announce;
-use crate::ui::table::table;
 use crate::ui::{charts, interrupt, output_file};
 use anyhow::Result;
 use clap::Args;
 use scene::analysis::levels::{LevelCost, Levels, levels};
 use serde::Serialize;
 use std::path::PathBuf;
+use support::document::Document;
+use support::table::{Cell, Table};
 
 /// Compare the levels of a scene: seconds of a search, and the difference to the finest level
 ///
@@ -56,7 +57,7 @@ impl LevelsCommand {
             };
             println!("{}", serde_json::to_string_pretty(&of)?);
         } else {
-            println!("{name}\n\n{}", text(&found));
+            println!("{name}\n\n{}", document(&found));
         }
         if self.inspected.is_run(&scene) {
             record(&scene, &design, |checks| checks.levels = Some(found))?;
@@ -65,8 +66,8 @@ impl LevelsCommand {
     }
 }
 
-fn text(found: &Levels) -> String {
-    let mut rows = table([
+fn document(found: &Levels) -> Document {
+    let mut table = Table::new([
         "level",
         "step\ns",
         "search\ns",
@@ -78,41 +79,38 @@ fn text(found: &Levels) -> String {
     found
         .levels
         .iter()
-        .for_each(|level| rows.add_row(cells(level)));
-    let mut text = rows.to_string();
+        .for_each(|level| table.row(cells(level)));
     let finest = found.levels.last().map_or("", |level| level.level.name());
-    text += &format!(
-        "\n\nstep, search: of the search, at the speed of its first ten steps; corners, load, D_peak: differences to `{finest}`\n"
-    );
-    for level in &found.levels {
-        if let Some(failure) = &level.failure {
-            text += &format!("{}: {failure}\n", level.level);
-        }
-    }
-    for other in &found.others {
+    let mut page = Document::default();
+    page.table(table);
+    page.text(format!(
+        "step, search: of the search, at the speed of its first ten steps; corners, load, D_peak: differences to `{finest}`"
+    ));
+    page.list(found.levels.iter().filter_map(|level| {
+        let failure = level.failure.as_ref()?;
+        Some(format!("{}: {failure}", level.level))
+    }));
+    page.list(found.others.iter().map(|other| {
         let corners = other.effect.as_ref().map_or("not known".into(), |effect| {
             format!("{:.3} mm", effect.corners[1])
         });
-        text += &format!("no level lowers: {}, {corners}\n", other.cause.name());
-    }
-    text
+        format!("no level lowers: {}, {corners}", other.cause.name())
+    }));
+    page
 }
 
-fn cells(level: &LevelCost) -> [String; 7] {
-    let shown = |value: Option<f64>, digits: usize| {
-        value.map_or("-".to_owned(), |value| format!("{value:.digits$}"))
-    };
+fn cells(level: &LevelCost) -> [Cell; 7] {
     let difference = level.difference.as_ref();
     [
-        level.level.name().to_owned(),
-        shown(level.step, 4),
-        shown(level.search, 1),
-        shown(difference.map(|found| found.corners[0]), 3),
-        shown(difference.map(|found| found.corners[1]), 3),
-        shown(
+        Cell::text(level.level.name()),
+        Cell::fixed(level.step, 4),
+        Cell::fixed(level.search, 1),
+        Cell::fixed(difference.map(|found| found.corners[0]), 3),
+        Cell::fixed(difference.map(|found| found.corners[1]), 3),
+        Cell::fixed(
             difference.and_then(|found| found.load).map(|x| 100.0 * x),
             2,
         ),
-        shown(difference.and_then(|found| found.damage), 4),
+        Cell::fixed(difference.and_then(|found| found.damage), 4),
     ]
 }

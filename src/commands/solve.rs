@@ -5,7 +5,6 @@ use crate::commands::window_args::WindowArgs;
 use crate::ui::exit::Unfinished;
 use crate::ui::input_file;
 use crate::ui::progress::watched;
-use crate::ui::table::{Table, table};
 use crate::ui::{interrupt, run_folder};
 use anyhow::{Error, Result, bail};
 use clap::Args;
@@ -15,6 +14,7 @@ use mesher::Tier;
 use serde_json::json;
 use std::path::PathBuf;
 use std::time::Duration;
+use support::table::{Cell, Table};
 
 /// Solve one hinge window by finite elements and print its ray
 ///
@@ -128,7 +128,7 @@ impl SolveCommand {
 
 /// The rows of a ray, thinned to about twenty.
 fn ray_table(samples: &[HingeSample]) -> Table {
-    let mut table = table([
+    let mut table = Table::new([
         "lambda",
         "theta\ndeg",
         "a\nmm",
@@ -145,19 +145,19 @@ fn ray_table(samples: &[HingeSample]) -> Table {
     let stride = samples.len().div_ceil(20).max(1);
     for (i, x) in samples.iter().enumerate() {
         if (samples.len() - 1 - i).is_multiple_of(stride) {
-            table.add_row([
-                format!("{:.3}", x.lambda),
-                format!("{:.2}", x.theta.to_degrees()),
-                format!("{:.3}", x.a),
-                format!("{:.3}", x.s),
-                format!("{:.3}", x.w),
-                format!("{:.3}", x.f_a),
-                format!("{:.3}", x.f_s),
-                format!("{:.3}", x.m_theta),
-                format!("{:.5}", x.d),
-                x.d_peak.map_or("-".into(), |peak| format!("{peak:.3}")),
-                format!("{:.2}", x.uz_max),
-                format!("{:.1e}", x.energy_residual),
+            table.row([
+                Cell::fixed(x.lambda, 3),
+                Cell::fixed(x.theta.to_degrees(), 2),
+                Cell::fixed(x.a, 3),
+                Cell::fixed(x.s, 3),
+                Cell::fixed(x.w, 3),
+                Cell::fixed(x.f_a, 3),
+                Cell::fixed(x.f_s, 3),
+                Cell::fixed(x.m_theta, 3),
+                Cell::fixed(x.d, 5),
+                Cell::fixed(x.d_peak, 3),
+                Cell::fixed(x.uz_max, 2),
+                Cell::text(format!("{:.1e}", x.energy_residual)),
             ]);
         }
     }

@@ -11,7 +11,6 @@ use crate::ui::charts;
 use crate::ui::exit::Unfinished;
 use crate::ui::input_file;
 use crate::ui::progress::Progress;
-use crate::ui::table::{Table, table};
 use crate::ui::{interrupt, output_file, picture, run_folder};
 use anyhow::{Context, Result, bail};
 use clap::Args;
@@ -21,7 +20,7 @@ use std::fs::File;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
-use support::table::number_or_dash;
+use support::table::{Cell, Table};
 use surrogate::{ErrorBin, Surrogate, TestErrors};
 use train::{Epoch, Start, Trained, Training, TrainingConfig, TrainingData};
 
@@ -130,7 +129,7 @@ impl TrainCommand {
         }
         let (database, checked) = database.corrected()?;
         if let Some(checked) = checked {
-            println!("{}\n", correction(&checked)?);
+            println!("{}", correction(&checked));
         }
         Ok(database)
     }
@@ -298,19 +297,12 @@ fn located(file: &Path) -> Result<PathBuf> {
 /// The errors of each quantity on `what`.
 pub fn error_table(errors: &TestErrors, what: &str) -> Table {
     let header = format!("on {} {what}", errors.rows);
-    let mut table = table([header.as_str(), "relative RMSE", "median"]);
-    let percent = |error: f64| {
-        if error.is_nan() {
-            "-".to_owned()
-        } else {
-            format!("{:.2} %", 100.0 * error)
-        }
-    };
+    let mut table = Table::new([header.as_str(), "relative RMSE", "median"]);
     for (name, error) in QUANTITIES.into_iter().zip(errors.by_quantity()) {
-        table.add_row([
-            name.to_owned(),
-            percent(error.relative_rmse),
-            percent(error.median),
+        table.row([
+            Cell::text(name),
+            Cell::percent(error.relative_rmse, 2),
+            Cell::percent(error.median, 2),
         ]);
     }
     table
@@ -328,7 +320,7 @@ const QUANTITIES: [&str; 6] = [
 
 /// Relative root mean square errors by bins.
 pub fn bin_table(bins: &[ErrorBin]) -> Table {
-    let mut table = table([
+    let mut table = Table::new([
         "relative RMSE (%)",
         "from",
         "to",
@@ -347,13 +339,13 @@ pub fn bin_table(bins: &[ErrorBin]) -> Table {
     } in bins
     {
         let mut row = vec![
-            quantity.clone(),
-            format!("{lower:.2}"),
-            format!("{upper:.2}"),
-            errors.rows.to_string(),
+            Cell::text(quantity),
+            Cell::fixed(*lower, 2),
+            Cell::fixed(*upper, 2),
+            Cell::text(errors.rows),
         ];
-        row.extend(errors.percents().map(|percent| number_or_dash(percent, 2)));
-        table.add_row(row);
+        row.extend(errors.percents().map(|percent| Cell::fixed(percent, 2)));
+        table.row(row);
     }
     table
 }

@@ -15,9 +15,9 @@ use output::drawing;
 use scene::{Posture, Scene};
 use serde::Serialize;
 use std::collections::BTreeSet;
-use std::fmt::{self, Display};
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
+use support::document::Document;
 use surrogate::{Springback, Surrogate};
 use verification::{
     ElementWindows, ReleasedByElements, Replay, SheetErrors, balanced, recorded_paths,
@@ -87,12 +87,6 @@ struct Released {
     released: ReleasedByElements,
 }
 
-impl Display for Released {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        write!(f, "{}\n{}", self.equilibrium, self.released)
-    }
-}
-
 impl VerifyCommand {
     pub(crate) fn run(&self) -> Result<()> {
         let (scene, design, name) = self.inspected.read()?;
@@ -131,24 +125,31 @@ impl VerifyCommand {
         run_folder::write(&self.out, "deployed.svg", &picture)?;
         let budget = found.budget(scene)?;
         let equilibrium = SheetErrors::new(&found, name, budget.as_ref());
-        run_folder::write(&self.out, "equilibrium.md", &equilibrium.to_string())?;
+        run_folder::write(
+            &self.out,
+            "equilibrium.md",
+            &equilibrium.document().markdown(),
+        )?;
         let Some(law) = law else {
-            return self.print(&equilibrium);
+            return self.print(&equilibrium, &equilibrium.document());
         };
         let released = released_by_elements(scene, &found, &problem, &law, &windows, self.rounds);
         let released = released.map_err(task_error)?;
-        run_folder::write(&self.out, "released.md", &released.to_string())?;
-        self.print(&Released {
+        run_folder::write(&self.out, "released.md", &released.document().markdown())?;
+        let mut document = equilibrium.document();
+        document.append(released.document());
+        let released = Released {
             equilibrium,
             released,
-        })
+        };
+        self.print(&released, &document)
     }
 
-    fn print(&self, found: &(impl Serialize + Display)) -> Result<()> {
+    fn print(&self, found: &impl Serialize, document: &Document) -> Result<()> {
         if self.json {
             println!("{}", serde_json::to_string_pretty(found)?);
         } else {
-            self.print_text(found);
+            self.print_text(document);
         }
         Ok(())
     }
@@ -174,15 +175,15 @@ impl VerifyCommand {
         let of_design = (paths, name);
         let replay = Replay::new(&windows, of_design, &scene.material, surrogate);
         let replay = replay.map_err(task_error)?;
-        run_folder::write(&self.out, "replay.md", &replay.to_string())?;
+        run_folder::write(&self.out, "replay.md", &replay.document().markdown())?;
         run_folder::write(&self.out, "replay.csv", &replay.csv())?;
         let axes = ["finite elements", "surrogate"];
         compared_states::draw(&replay.groups(), axes, &self.out.join("replay"))?;
-        self.print_text(&replay);
+        self.print_text(&replay.document());
         Ok(())
     }
 
-    fn print_text(&self, found: &impl Display) {
-        println!("{found}\nwritten to {}", self.out.display());
+    fn print_text(&self, document: &Document) {
+        println!("{document}\nwritten to {}", self.out.display());
     }
 }

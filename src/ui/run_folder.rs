@@ -6,6 +6,7 @@ use std::fs::File;
 use std::io::ErrorKind;
 use std::path::Path;
 use support::lock_file;
+use support::table::Table;
 
 /// Creates the folder and locks it until the returned file is dropped.
 pub fn hold(folder: &Path) -> Result<File> {
@@ -29,4 +30,10 @@ pub fn lock(path: &Path, taken: impl FnOnce() -> String) -> Result<File> {
 /// Writes a file of the folder atomically.
 pub fn write(folder: &Path, name: &str, contents: &(impl AsRef<[u8]> + ?Sized)) -> Result<()> {
     output_file::write(&folder.join(name), contents)
+}
+
+/// Writes a table to the folder, as `NAME.csv` and `NAME.md`.
+pub fn write_table(folder: &Path, name: &str, table: &Table) -> Result<()> {
+    write(folder, &format!("{name}.csv"), &table.csv())?;
+    write(folder, &format!("{name}.md"), &table.markdown())
 }

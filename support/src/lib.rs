@@ -1,21 +1,23 @@
 //! Domain-independent utilities: configuration files, ranges of their keys, misspelt names, input files, CSV tables, VTK
 //! files, atomic file writes, lock files, external programs, temporary folders, notes of what a command does, a pool of
-//! threads, panics of libraries, shards of a list of jobs, memory of the machine,
+//! threads, panics of libraries, tables and reports for people, shards of a list of jobs, memory of the machine,
 //! the severity of findings.
 //!
 //! ```
-//! use support::table::{Cell, Table};
+//! use support::table::{Cell, Columns};
 //!
-//! let table = Table::new()
-//!     .column("hinge", |row: &(&str, f64)| Cell::text(row.0))
+//! let columns = Columns::new()
+//!     .column("hinge", |row: &(&str, f64)| row.0)
 //!     .column("error of W", |row| Cell::percent(row.1, 1));
-//! assert_eq!(table.markdown(&[("18 mm", 0.012)]), "| hinge | error of W |\n|---|---|\n| 18 mm | 1.2 % |\n");
+//! let page = columns.table(&[("18 mm", 0.012)]).markdown();
+//! assert_eq!(page, "| hinge | error of W |\n|---|---|\n| 18 mm | 1.2 % |\n");
 //! ```
 
 #![warn(missing_docs)]
 
 pub mod caught_panic;
 pub mod csv_table;
+pub mod document;
 pub mod file_error;
 pub mod key_limits;
 pub mod lock_file;

@@ -103,7 +103,7 @@ fn the_levels_of_a_run_are_in_its_report() {
     assert_eq!(found["checks"]["levels"]["levels"], measured["levels"]);
     assert_eq!(std::fs::read(work.path("plate/cut.dxf")).unwrap(), cut);
     let text = std::fs::read_to_string(work.path("plate/report.txt")).unwrap();
-    let row = text.lines().find(|line| line.starts_with("levels "));
+    let row = text.lines().find(|line| line.starts_with(" levels "));
     assert!(row.is_some_and(|row| row.contains("to `fine`")), "{text}");
     let page = std::fs::read_to_string(work.path("plate/run.html")).unwrap();
     assert!(page.contains("\"search\":"), "no levels on the page");

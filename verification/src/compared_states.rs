@@ -1,6 +1,7 @@
 //! Differences of values from finer reference values, group by group: a table of their distribution.
 
 use dataset::{COMPARED, ComparedState, reference_rms, relative_rms};
+use support::table::Table;
 
 /// Lower bound of the scale of a group's difference, relative to the reference of all groups.
 const MIN_SCALE: f64 = 0.1;
@@ -19,11 +20,14 @@ pub fn each_relative(groups: &[&[ComparedState]]) -> Vec<[f64; 6]> {
 }
 
 /// One row per quantity: the difference over all states, and its distribution over the groups.
-pub fn spread_table(groups: &[&[ComparedState]], group: &str) -> String {
-    let mut text = format!(
-        "| quantity | all states | median {group} | 90 % of {group}s | worst {group} |\n\
-         |---|---|---|---|---|\n"
-    );
+pub fn spread_table(groups: &[&[ComparedState]], group: &str) -> Table {
+    let mut table = Table::new([
+        "quantity".to_owned(),
+        "all states".to_owned(),
+        format!("median {group}"),
+        format!("90 % of {group}s"),
+        format!("worst {group}"),
+    ]);
     let all = relative_rms(&groups.concat(), [0.0; 6]);
     let each = each_relative(groups);
     for (i, name) in COMPARED.iter().enumerate() {
@@ -32,15 +36,14 @@ pub fn spread_table(groups: &[&[ComparedState]], group: &str) -> String {
         let mut sorted: Vec<_> = known.map(|(_, rms)| rms[i]).collect();
         sorted.sort_by(f64::total_cmp);
         let Some(last) = sorted.len().checked_sub(1) else {
-            text += &format!("| {name} | not known | | | |\n");
+            table.row([name, "not known", "", "", ""]);
             continue;
         };
         let quantile = |fraction: f64| sorted[(fraction * last as f64).round() as usize];
         let [median, most, worst] = [0.5, 0.9, 1.0].map(|fraction| percent(quantile(fraction)));
-        let all = percent(all[i]);
-        text += &format!("| {name} | {all} | {median} | {most} | {worst} |\n");
+        table.row([(*name).to_owned(), percent(all[i]), median, most, worst]);
     }
-    text
+    table
 }
 
 /// Cuts off at 1000 %: if the reference is almost zero (damage of hinges that do not yield), the ratio is meaningless.

@@ -18,8 +18,9 @@ use scene::Scene;
 use scene::analysis::springback::{ResidualShape, unload};
 use serde::Serialize;
 use std::array::from_fn;
-use std::fmt;
+use support::document::Document;
 use support::statistics::rms_and_maximum;
+use support::table::Table;
 use surrogate::Springback;
 
 /// The results of finite elements for an unloaded sheet.
@@ -164,51 +165,47 @@ fn share(deployed: &Deployment, found: &Balanced, forces: &[Option<[f64; 3]>]) -
     (left / f64::max(loaded, f64::MIN_POSITIVE)).sqrt()
 }
 
-impl fmt::Display for ReleasedByElements {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+impl ReleasedByElements {
+    /// The page of the unloaded sheet.
+    pub fn document(&self) -> Document {
         let [law, elements] = [&self.by_law, &self.by_elements];
         let rotations = |stays: &ResidualShape| stays.mean_rotations().map(f64::to_degrees);
         let [loaded, stay] = std::array::from_fn(|i| [law, elements].map(|of| rotations(of)[i]));
-        writeln!(
-            f,
-            "# The unloaded sheet\n\n| | by the law | by finite elements |\n|---|---|---|"
-        )?;
-        for (what, [law, elements]) in [
-            ("mean rotation of the hinges under load, deg", loaded),
-            ("mean rotation that stays, deg", stay),
-            (
-                "movement of the panel corners, root mean square, mm",
-                [law.corners[0], elements.corners[0]],
-            ),
-        ] {
-            writeln!(f, "| {what} | {law:.2} | {elements:.2} |")?;
-        }
+        let mut page = Document::default();
+        page.heading(1, "The unloaded sheet");
+        let mut table = Table::new(["", "by the law", "by finite elements"]);
+        let mut row = |what: String, pair: [f64; 2]| {
+            let [law, elements] = pair.map(|value| format!("{value:.2}"));
+            table.row([what, law, elements]);
+        };
+        row("mean rotation of the hinges under load, deg".into(), loaded);
+        row("mean rotation that stays, deg".into(), stay);
+        row(
+            "movement of the panel corners, root mean square, mm".into(),
+            [law.corners[0], elements.corners[0]],
+        );
         if let (Some([_, by_law]), Some([_, by_elements])) =
             (law.displacement, elements.displacement)
         {
-            writeln!(
-                f,
-                "| displacement along the loads that stays, {} | {by_law:.2} | {by_elements:.2} |",
-                law.displacement_unit
-            )?;
+            let unit = law.displacement_unit;
+            let what = format!("displacement along the loads that stays, {unit}");
+            row(what, [by_law, by_elements]);
         }
+        page.table(table);
         let [rms, most] = self.corners;
-        writeln!(
-            f,
-            "\nBoth begin with the sheet under load as finite elements have it, states and forces: what differs is the law of released hinges. It places \
+        page.text(format!(
+            "Both begin with the sheet under load as finite elements have it, states and forces: what differs is the law of released hinges. It places \
              the corners of the sheet without loads {rms:.2} mm from finite elements (root mean square), at most {most:.2} mm."
-        )?;
-        writeln!(
-            f,
+        ));
+        page.text(format!(
             "Without loads hinges hold each other with {:.0} % of the forces that they had under load.",
             100.0 * self.own_forces
-        )?;
+        ));
         let movements = self
             .movements
             .iter()
             .map(|movement| format!("{movement:.3}"));
-        writeln!(
-            f,
+        page.text(format!(
             "Rounds, largest movement of a corner, mm: {}{}",
             movements.collect::<Vec<_>>().join(", "),
             if self.is_balanced {
@@ -216,6 +213,7 @@ impl fmt::Display for ReleasedByElements {
             } else {
                 " (still moving: use more --rounds)"
             }
-        )
+        ));
+        page
     }
 }

@@ -4,11 +4,12 @@ use crate::compared_states::{SCALE, spread_table};
 use crate::recorded_path::RecordedPath;
 use crate::replay::{Replay, ReplayedHinge};
 use dataset::{COMPARED, ComparedState};
-use std::fmt;
-use support::table::{Cell, Table};
+use support::document::Document;
+use support::table::{Cell, Columns, Table};
 
-impl fmt::Display for Replay {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+impl Replay {
+    /// The page of the replay.
+    pub fn document(&self) -> Document {
         let (groups, hinges) = (self.groups(), &self.hinges);
         let states = groups.iter().map(|states| states.len()).sum::<usize>();
         let inside = hinges.iter().map(|hinge| hinge.inside).sum::<f64>() / hinges.len() as f64;
@@ -17,49 +18,49 @@ impl fmt::Display for Replay {
             ends.map(energy).sum()
         };
         let (learned, solved) = (total(|end| end.value[0]), total(|end| end.reference[0]));
-        writeln!(
-            f,
-            "# The hinges of a sheet, replayed\n\n\
-             The {}: {states} states of {} hinges on their paths in the sheet, windows of tier {}; {:.0} % of the \
+        let mut page = Document::default();
+        page.heading(1, "The hinges of a sheet, replayed");
+        page.text(format!(
+            "The {}: {states} states of {} hinges on their paths in the sheet, windows of tier {}; {:.0} % of the \
              states inside the training domain. Differences of the surrogate from the finite elements are root mean \
              squares, relative to the root mean square of the finite elements: {SCALE}. D and D_peak of a hinge are known, \
-             and compared, until it leaves the domain.\n\n{}\n\
-             Energy of these hinges at full load: {learned:.1} N mm by the surrogate, {solved:.1} N mm by finite \
-             elements ({:+.2} %).",
+             and compared, until it leaves the domain.",
             self.name,
             hinges.len(),
             self.tier,
             100.0 * inside,
-            spread_table(&groups, "hinge"),
+        ));
+        page.table(spread_table(&groups, "hinge"));
+        page.text(format!(
+            "Energy of these hinges at full load: {learned:.1} N mm by the surrogate, {solved:.1} N mm by finite elements \
+             ({:+.2} %).",
             100.0 * (learned / solved - 1.0),
-        )?;
-        write!(f, "\nAt full load:\n\n{}", ends_table(hinges))?;
+        ));
+        page.text("At full load:");
+        page.table(ends_table(hinges));
         if !self.unsolved.is_empty() {
-            writeln!(
-                f,
-                "\nNot solved, so that the errors at these hinges are not known and count nowhere above:\n"
-            )?;
+            page.text("Not solved, so that the errors at these hinges are not known and count nowhere above:");
         }
-        (self.unsolved.iter()).try_for_each(|hinge| writeln!(f, "* {hinge}"))
+        page.list(&self.unsolved);
+        page
     }
 }
 
 /// Every hinge at full load.
-fn ends_table(hinges: &[ReplayedHinge]) -> String {
+fn ends_table(hinges: &[ReplayedHinge]) -> Table {
     let ends = hinges
         .iter()
         .filter_map(|hinge| Some((hinge, *hinge.states.last()?)));
     let ends: Vec<(&ReplayedHinge, ComparedState)> = ends.collect();
     let eta = |hinge: &ReplayedHinge| hinge.path.end().eta(hinge.path.design.w_lig);
     let degrees = |angle: f64, decimals| Cell::fixed(angle.to_degrees(), decimals);
-    let damage = |d: f64| Cell::known((!d.is_nan()).then(|| Cell::fixed(d, 5)), "-");
     type End<'a> = (&'a ReplayedHinge, ComparedState);
-    let table = Table::new()
-        .column("hinge", |(hinge, _): &End| Cell::text(hinge.path.hinge))
-        .column("w_lig, mm", |(hinge, _)| {
+    Columns::new()
+        .column("hinge", |(hinge, _): &End| hinge.path.hinge)
+        .column("w_lig\nmm", |(hinge, _)| {
             Cell::fixed(hinge.path.design.w_lig, 1)
         })
-        .column("alpha, deg", |(hinge, _)| {
+        .column("alpha\ndeg", |(hinge, _)| {
             degrees(hinge.path.design.alpha, 0)
         })
         .column("eta_a", |(hinge, _)| Cell::fixed(eta(hinge)[0], 3))
@@ -68,13 +69,13 @@ fn ends_table(hinges: &[ReplayedHinge]) -> String {
             degrees(hinge.path.end().theta, 1)
         })
         .column("inside", |(hinge, _)| Cell::percent(hinge.inside, 0))
-        .column("W, N mm", |(_, end)| Cell::fixed(end.value[0], 2))
+        .column("W\nN mm", |(_, end)| Cell::fixed(end.value[0], 2))
         .column("by FE", |(_, end)| Cell::fixed(end.reference[0], 2))
-        .column("M, N mm", |(_, end)| Cell::fixed(end.value[3], 1))
+        .column("M\nN mm", |(_, end)| Cell::fixed(end.value[3], 1))
         .column("by FE", |(_, end)| Cell::fixed(end.reference[3], 1))
-        .column("D", |(_, end)| damage(end.value[4]))
-        .column("by FE", |(_, end)| Cell::fixed(end.reference[4], 5));
-    table.markdown(&ends)
+        .column("D", |(_, end)| Cell::fixed(end.value[4], 5))
+        .column("by FE", |(_, end)| Cell::fixed(end.reference[4], 5))
+        .table(&ends)
 }
 
 impl Replay {
@@ -82,13 +83,13 @@ impl Replay {
     pub fn csv(&self) -> String {
         type State<'a> = (&'a RecordedPath, usize, &'a ComparedState);
         let state = |(path, k, _): &State| path.states[*k];
-        let mut table = Table::new()
-            .column("hinge", |(path, ..): &State| Cell::text(path.hinge))
+        let mut columns = Columns::new()
+            .column("hinge", |(path, ..): &State| path.hinge)
             .column("w_lig_mm", |(path, ..)| number(path.design.w_lig))
             .column("alpha_deg", |(path, ..)| {
                 number(path.design.alpha.to_degrees())
             })
-            .column("step", |(_, k, _)| Cell::text(k + 1))
+            .column("step", |(_, k, _)| k + 1)
             .column("eta_a", move |of| {
                 number(state(of).eta(of.0.design.w_lig)[0])
             })
@@ -97,16 +98,16 @@ impl Replay {
             })
             .column("theta_deg", move |of| number(state(of).theta.to_degrees()));
         for (i, name) in COMPARED.iter().enumerate() {
-            table = table.column(format!("surrogate_{name}"), move |of| number(of.2.value[i]));
+            columns = columns.column(format!("surrogate_{name}"), move |of| number(of.2.value[i]));
         }
         for (i, name) in COMPARED.iter().enumerate() {
-            table = table.column(format!("fe_{name}"), move |of| number(of.2.reference[i]));
+            columns = columns.column(format!("fe_{name}"), move |of| number(of.2.reference[i]));
         }
         let states = self.hinges.iter().flat_map(|hinge| {
             let states = hinge.states.iter().enumerate();
             states.map(|(k, state)| (&hinge.path, k, state))
         });
-        table.csv(&states.collect::<Vec<State>>())
+        columns.table(&states.collect::<Vec<State>>()).csv()
     }
 }
 

@@ -8,8 +8,9 @@ use design::objective::design_problem::Deployment;
 use mesher::Tier;
 use scene::analysis::error_budget::{Cause, Effect, ErrorBudget};
 use serde::Serialize;
-use std::fmt;
+use support::document::Document;
 use support::statistics::rms_and_maximum;
+use support::table::{Cell, Columns, Table};
 
 /// The equilibrium by the hinge law compared with that by finite elements.
 #[derive(Debug, Serialize)]
@@ -101,23 +102,33 @@ impl SheetErrors {
     }
 }
 
-impl fmt::Display for SheetErrors {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        writeln!(
-            f,
-            "# The deployed sheet, by finite elements\n\n\
-             Equilibrium of the {} with finite elements for all {} hinges, panels held flat. Every round solves the hinges along \
-             their paths, corrects the hinge law to their forces and deploys the sheet again; {:.0} CPU minutes in all.\n\n\
-             | round | mesh of the windows | force error | movement, mm |\n|---|---|---|---|",
+impl SheetErrors {
+    /// The page of the comparison.
+    pub fn document(&self) -> Document {
+        let mut page = Document::default();
+        page.heading(1, "The deployed sheet, by finite elements");
+        page.text(format!(
+            "Equilibrium of the {} with finite elements for all {} hinges, panels held flat. Every round solves the hinges along \
+             their paths, corrects the hinge law to their forces and deploys the sheet again; {:.0} CPU minutes in all.",
             self.design,
             self.hinges.len(),
             self.cpu_seconds / 60.0,
-        )?;
+        ));
+        let mut rounds = Table::new([
+            "round",
+            "mesh of the windows",
+            "force error",
+            "movement\nmm",
+        ]);
         for (i, round) in self.rounds.iter().enumerate() {
-            let (percent, movement) = (100.0 * round.force_error, round.movement);
-            let tier = round.tier;
-            writeln!(f, "| {} | {tier} | {percent:.2} % | {movement:.3} |", i + 1)?;
+            rounds.row([
+                Cell::text(i + 1),
+                Cell::text(round.tier),
+                Cell::percent(round.force_error, 2),
+                Cell::fixed(round.movement, 3),
+            ]);
         }
+        page.table(rounds);
         let ended = match self.ended.warning() {
             None => "The panels stay where they are within".into(),
             Some(warning) => format!(
@@ -126,39 +137,101 @@ impl fmt::Display for SheetErrors {
                 self.rounds.last().map_or(f64::NAN, |round| round.movement)
             ),
         };
-        writeln!(
-            f,
-            "\nForce error: finite elements against the law of the round, root mean square over all hinges. Movement: of the \
-             panel corner that moves furthest. {ended} {:.3} mm ({BALANCED:.0e} of the sheet), forces within {:.0} %.\n",
+        page.text(format!(
+            "Force error: finite elements against the law of the round, root mean square over all hinges. Movement: of the \
+             panel corner that moves furthest. {ended} {:.3} mm ({BALANCED:.0e} of the sheet), forces within {:.0} %.",
             BALANCED * self.size,
             100.0 * BALANCED_FORCES,
-        )?;
-        self.write_errors(f)?;
-        self.write_unsolved(f)?;
+        ));
+        self.add_errors(&mut page);
+        self.add_unsolved(&mut page);
         if !self.outside.is_empty() {
             let hinges: Vec<String> = self.outside.iter().map(usize::to_string).collect();
-            writeln!(
-                f,
-                "Outside the training domain: hinge {}. The law has a return force there that finite elements do not have.\n",
+            page.text(format!(
+                "Outside the training domain: hinge {}. The law has a return force there that finite elements do not have.",
                 hinges.join(", ")
-            )?;
+            ));
         }
-        writeln!(
-            f,
-            "| hinge | theta, deg | by FE | D_peak | by FE |\n|---|---|---|---|---|"
-        )?;
-        for hinge in &self.hinges {
-            let [theta, theta_fe] = hinge.theta_deg;
-            let [peak, peak_fe] = hinge
-                .damage_peak
-                .map(|peak| peak.map_or("?".into(), |peak| format!("{peak:.3}")));
-            writeln!(
-                f,
-                "| {} | {theta:.2} | {theta_fe:.2} | {peak} | {peak_fe} |",
-                hinge.hinge
-            )?;
+        let degrees = |i: usize| move |hinge: &HingeErrors| Cell::fixed(hinge.theta_deg[i], 2);
+        let peak = |i: usize| {
+            move |hinge: &HingeErrors| {
+                Cell::known(hinge.damage_peak[i].map(|peak| Cell::fixed(peak, 3)), "?")
+            }
+        };
+        let hinges = Columns::new()
+            .column("hinge", |hinge: &HingeErrors| hinge.hinge)
+            .column("theta\ndeg", degrees(0))
+            .column("by FE", degrees(1))
+            .column("D_peak", peak(0))
+            .column("by FE", peak(1));
+        page.table(hinges.table(&self.hinges));
+        page
+    }
+
+    /// The errors by each mesh, the difference between the meshes, and the budget.
+    fn add_errors(&self, page: &mut Document) {
+        let mut table = Table::new([
+            "at full load, panels held flat",
+            "deployed corners, root mean square",
+            "maximum",
+            "rotation of the hinges, root mean square",
+            "maximum",
+            "load",
+        ]);
+        for errors in &self.errors {
+            let of = format!("error of the hinge law, by `{}`", errors.tier);
+            table.row(errors.cells(of, self.size));
         }
-        Ok(())
+        if let Some(between) = &self.between {
+            let draft = self.errors[self.errors.len() - 2].tier;
+            let of = format!("error of `{draft}`, by `{}`", between.tier);
+            table.row(between.cells(of, self.size));
+        }
+        if let Some(Effect {
+            corners: [rms, maximum],
+            load,
+            at_least,
+            ..
+        }) = &self.budget
+        {
+            let bound = if *at_least { "at least " } else { "" };
+            table.row([
+                "error budget of the report: standard deviation of what finite elements see".into(),
+                format!("{bound}{rms:.3} mm"),
+                format!("{maximum:.3} mm"),
+                "-".into(),
+                "-".into(),
+                load.map_or("-".into(), |load| format!("{:.2} %", 100.0 * load)),
+            ]);
+        }
+        page.table(table);
+        let factors = self.errors.iter();
+        let factors: Vec<String> = factors
+            .map(|errors| format!("{:.4} by `{}`", errors.load_factor, errors.tier))
+            .collect();
+        page.text(format!(
+            "Load factor {:.4} by the law, {}.",
+            self.load_factor,
+            factors.join(", ")
+        ));
+    }
+
+    /// The hinges that were not solved, round by round, and what is not known for it.
+    fn add_unsolved(&self, page: &mut Document) {
+        let rounds = self.rounds.iter().enumerate();
+        let unsolved: Vec<String> = rounds
+            .flat_map(|(i, round)| {
+                let hinges = round.unsolved.iter();
+                hinges.map(move |hinge| format!("round {}, {hinge}", i + 1))
+            })
+            .collect();
+        if !unsolved.is_empty() {
+            page.text(
+                "NOT SOLVED: in these rounds the hinge law, as corrected in the rounds before, stands for the hinge. The force \
+                 error leaves it out, and what finite elements would change there is not known.",
+            );
+        }
+        page.list(unsolved);
     }
 }
 
@@ -177,82 +250,17 @@ impl MeshErrors {
         }
     }
 
-    fn write_row(&self, f: &mut fmt::Formatter, of: &str, size: f64) -> fmt::Result {
+    fn cells(&self, of: String, size: f64) -> [String; 6] {
         let [rms, maximum] = self.corners;
         let percent = |length: f64| 100.0 * length / size;
         let [turned, most_turned] = self.rotations_deg;
-        writeln!(
-            f,
-            "| {of} | {rms:.3} mm, {:.3} % of the sheet | {maximum:.3} mm, {:.3} % | {turned:.3} deg | {most_turned:.3} deg | \
-             {:+.2} % |",
-            percent(rms),
-            percent(maximum),
-            100.0 * self.load,
-        )
-    }
-}
-
-impl SheetErrors {
-    /// The errors by each mesh, the difference between the meshes, and the budget.
-    fn write_errors(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        writeln!(
-            f,
-            "| at full load, panels held flat | deployed corners, root mean square | maximum | rotation of the hinges, root mean \
-             square | maximum | load |\n|---|---|---|---|---|---|"
-        )?;
-        for errors in &self.errors {
-            let of = format!("error of the hinge law, by `{}`", errors.tier);
-            errors.write_row(f, &of, self.size)?;
-        }
-        if let Some(between) = &self.between {
-            let draft = self.errors[self.errors.len() - 2].tier;
-            let of = format!("error of `{draft}`, by `{}`", between.tier);
-            between.write_row(f, &of, self.size)?;
-        }
-        if let Some(Effect {
-            corners: [rms, maximum],
-            load,
-            at_least,
-            ..
-        }) = &self.budget
-        {
-            let load = load.map_or("-".into(), |load| format!("{:.2} %", 100.0 * load));
-            let bound = if *at_least { "at least " } else { "" };
-            writeln!(
-                f,
-                "| error budget of the report: standard deviation of what finite elements see | {bound}{rms:.3} mm | {maximum:.3} mm | - | - | \
-                 {load} |"
-            )?;
-        }
-        let factors = self.errors.iter();
-        let factors: Vec<String> = factors
-            .map(|errors| format!("{:.4} by `{}`", errors.load_factor, errors.tier))
-            .collect();
-        writeln!(
-            f,
-            "\nLoad factor {:.4} by the law, {}.\n",
-            self.load_factor,
-            factors.join(", ")
-        )
-    }
-
-    /// The hinges that were not solved, round by round, and what is not known for it.
-    fn write_unsolved(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        let rounds = self.rounds.iter().enumerate();
-        let unsolved: Vec<_> = rounds
-            .flat_map(|(i, round)| round.unsolved.iter().map(move |hinge| (i + 1, hinge)))
-            .collect();
-        if unsolved.is_empty() {
-            return Ok(());
-        }
-        writeln!(
-            f,
-            "NOT SOLVED: in these rounds the hinge law, as corrected in the rounds before, stands for the hinge. The force \
-             error leaves it out, and what finite elements would change there is not known.\n"
-        )?;
-        for (round, hinge) in unsolved {
-            writeln!(f, "* round {round}, {hinge}")?;
-        }
-        writeln!(f)
+        [
+            of,
+            format!("{rms:.3} mm, {:.3} % of the sheet", percent(rms)),
+            format!("{maximum:.3} mm, {:.3} %", percent(maximum)),
+            format!("{turned:.3} deg"),
+            format!("{most_turned:.3} deg"),
+            format!("{:+.2} %", 100.0 * self.load),
+        ]
     }
 }

@@ -8,6 +8,8 @@ use design::sheet::kinematics::{deployed_corners, hinge_deformations};
 use design::sheet::opening_limits::{CONTACT, Span};
 use design::sheet::validity::overlap;
 use serde_json::json;
+use support::document::Document;
+use support::table::Table;
 
 /// Lists the sheet with the same opening angle `theta` (rad) at every hinge; panel 0 keeps its centroid.
 pub fn deployment(
@@ -48,14 +50,24 @@ pub fn deployment(
         "stretch": stretch,
         "spans": spans,
     });
-    let mut text = format!(
-        "opening  {:>10.2} deg (contact at {touching} and {closed})\noverlap  {overlap:>10.1e} of a panel\n",
-        theta.to_degrees()
-    );
-    for (i, name) in ["across columns", "across rows"].into_iter().enumerate() {
+    let mut table = Table::new(["", "", ""]).left(&[0, 2]);
+    let contact = format!("contact at {touching} and {closed}");
+    table.row([
+        "opening, deg",
+        &format!("{:.2}", theta.to_degrees()),
+        &contact,
+    ]);
+    table.row(["overlap", &format!("{overlap:.1e}"), "of a panel"]);
+    for (i, name) in ["lambda across columns", "lambda across rows"]
+        .into_iter()
+        .enumerate()
+    {
         let (stretch, span) = (stretch[i], spans[i]);
-        let (theta, max) = (span.theta_max.to_degrees(), span.lambda_max);
-        text += &format!("{name:<15} lambda {stretch:.4}, maximum {max:.4} at {theta:.1} deg\n");
+        let (theta, most) = (span.theta_max.to_degrees(), span.lambda_max);
+        let most = format!("at most {most:.4}, at {theta:.1} deg");
+        table.row([name, &format!("{stretch:.4}"), &most]);
     }
-    Ok(Listing { numbers, text })
+    let mut document = Document::default();
+    document.table(table);
+    Ok(Listing { numbers, document })
 }

@@ -10,8 +10,23 @@ use design::pattern::design_vector::DesignVector;
 use design::sheet::kinematics::deployed_corners;
 use design::sheet::validity::overlap;
 use serde_json::{Value, json};
+use support::document::Document;
+use support::table::Table;
 
-const HEAD: &str = "    zeta  weight  status       residual  its  fac  rej  neg  condition     U (N mm)    Pi (N mm)  opening (deg)\n";
+const HEAD: [&str; 12] = [
+    "zeta",
+    "weight",
+    "status",
+    "residual",
+    "iterations",
+    "factorised",
+    "rejected",
+    "negative\npivots",
+    "condition",
+    "U\nN mm",
+    "Pi\nN mm",
+    "opening\ndeg",
+];
 
 /// Follows the equilibrium path of a design and lists its load steps in their order; an error if the model has no equilibrium.
 pub fn equilibrium(problem: &DesignProblem, design: &DesignVector) -> Result<Listing, DesignError> {
@@ -20,15 +35,23 @@ pub fn equilibrium(problem: &DesignProblem, design: &DesignVector) -> Result<Lis
     let law = mechanics.law.prepare(&sheet.designs());
     let hinged = mechanics.hinged(&sheet, &*law, false);
     let list = |step: &LoadStep| list(hinged, step, &mechanics.solver);
-    let (steps, lines): (Vec<Value>, Vec<String>) = path.iter().map(list).unzip();
+    let (steps, rows): (Vec<Value>, Vec<_>) = path.iter().map(list).unzip();
+    let mut table = Table::new(HEAD);
+    rows.into_iter().for_each(|row| table.row(row));
+    let mut document = Document::default();
+    document.table(table);
     Ok(Listing {
         numbers: json!({ "steps": steps }),
-        text: HEAD.to_owned() + &lines.concat(),
+        document,
     })
 }
 
-/// A load step in numbers and as a line.
-fn list(hinged: HingedSheet, step: &LoadStep, solver: &EquilibriumSolver) -> (Value, String) {
+/// A load step in numbers and as a row.
+fn list(
+    hinged: HingedSheet,
+    step: &LoadStep,
+    solver: &EquilibriumSolver,
+) -> (Value, [String; HEAD.len()]) {
     let condition = Some(step.condition(solver)).filter(|condition| condition.is_finite());
     let deformations: Vec<[f64; 3]> = step.deformations.iter().map(|eps| eps.to_array()).collect();
     let of_law = hinged.law.energies(&step.deformations, Order::Forces);
@@ -80,19 +103,19 @@ fn list(hinged: HingedSheet, step: &LoadStep, solver: &EquilibriumSolver) -> (Va
         "overlap": overlap(hinged.sheet, &step.configuration),
     });
     let openings = deformations.iter().map(|eps| eps[2].abs());
-    let line = format!(
-        "{:>8.4}  {:>6.2}  {:<11} {:>9.1e} {:>4} {:>4} {:>4} {:>4}  {:>9.1e} {total:>12.5e} {:>12.5e} {:>14.2}\n",
-        step.load_factor,
-        step.weight,
+    let row = [
+        format!("{:.4}", step.load_factor),
+        format!("{:.2}", step.weight),
         format!("{:?}", step.status),
-        step.residual,
-        step.effort.iterations,
-        step.effort.factorisations,
-        step.effort.rejected,
-        step.negative_pivots,
-        condition.unwrap_or(f64::INFINITY),
-        step.potential,
-        openings.fold(0.0, f64::max).to_degrees(),
-    );
-    (numbers, line)
+        format!("{:.1e}", step.residual),
+        step.effort.iterations.to_string(),
+        step.effort.factorisations.to_string(),
+        step.effort.rejected.to_string(),
+        step.negative_pivots.to_string(),
+        format!("{:.1e}", condition.unwrap_or(f64::INFINITY)),
+        format!("{total:.5e}"),
+        format!("{:.5e}", step.potential),
+        format!("{:.2}", openings.fold(0.0, f64::max).to_degrees()),
+    ];
+    (numbers, row)
 }

@@ -9,6 +9,8 @@ use design::pattern::design_vector::DesignVector;
 use scene::Scene;
 use scene::placement::deployed_outline;
 use serde_json::json;
+use support::document::Document;
+use support::table::Table;
 
 /// Lists L of (16), its terms and its gradient in (z, ell, omega) of a design of a scene and its problem.
 pub fn gradient(
@@ -40,10 +42,11 @@ pub fn gradient(
         // Of the areas inside the deployed outline and inside the target.
         "intersection_over_union": common,
     });
-    let mut text = format!("{:<24}{:>14}{:>14}\n", "", "value", "weight");
+    let number = |value: f64| format!("{value:.6e}");
+    let mut table = Table::new(["", "value", "weight"]);
     let rows = std::iter::zip(found.terms.values(), weights.values());
     for (label, (value, weight)) in std::iter::zip(problem.objective.labels(), rows) {
-        text += &format!("{label:<24}{value:>14.6e}{weight:>14.6e}\n");
+        table.row([label, number(*value), number(*weight)]);
     }
     let norm = |block: &[f64]| block.iter().map(|g| g * g).sum::<f64>().sqrt();
     for (name, value) in [
@@ -55,7 +58,9 @@ pub fn gradient(
         ("outline error (mm)", outline_error),
         ("intersection over union", common),
     ] {
-        text += &format!("{name:<24}{value:>14.6e}\n");
+        table.row([name.to_owned(), number(value), String::new()]);
     }
-    Ok(Listing { numbers, text })
+    let mut document = Document::default();
+    document.table(table);
+    Ok(Listing { numbers, document })
 }

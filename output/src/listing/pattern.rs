@@ -8,6 +8,8 @@ use design::sheet::cut_sheet::Hinge;
 use design::sheet::opening_limits::Span;
 use design::sheet::validity::Validity;
 use serde_json::{Value, json};
+use support::document::Document;
+use support::table::Table;
 
 /// Cuts a design and lists pattern, panels and hinges of its flat sheet.
 pub fn pattern(problem: &DesignProblem, design: &DesignVector) -> Result<Listing, DesignError> {
@@ -46,7 +48,7 @@ pub fn pattern(problem: &DesignProblem, design: &DesignVector) -> Result<Listing
     });
     Ok(Listing {
         numbers,
-        text: text(
+        document: document(
             [pattern.grid.m, pattern.grid.n],
             sheet.hinges.len(),
             &validity,
@@ -82,7 +84,7 @@ fn hinge(hinge: &Hinge) -> Value {
     })
 }
 
-fn text([m, n]: [usize; 2], hinges: usize, validity: &Validity, spans: &[Span; 2]) -> String {
+fn document([m, n]: [usize; 2], hinges: usize, validity: &Validity, spans: &[Span; 2]) -> Document {
     let Validity {
         least_panel_area,
         area_error,
@@ -97,24 +99,39 @@ fn text([m, n]: [usize; 2], hinges: usize, validity: &Validity, spans: &[Span; 2
     } = validity;
     let trained = trained_alpha_deg.map_or(String::new(), |[min, max]| {
         format!(
-            " (trained on {min:.1} to {max:.1}; {untrained_hinges} of {hinges} hinges \
-             outside in angle or width)"
+            " (trained on {min:.1} to {max:.1}; {untrained_hinges} of {hinges} hinges outside in angle or width)"
         )
     });
-    let mut text = format!(
-        "{m} x {n} panels ({}), {hinges} hinges\n\
-         min. panel area      {least_panel_area:>12.4} mm^2\n\
-         area error           {area_error:>12.1e}\n\
-         overlap              {overlap:>12.1e} of a panel\n\
-         min. void side       {least_void_side:>12.4} mm\n\
-         min. hinge spacing   {least_hinge_spacing:>12.4} mm (windows: 2 x {r_win} mm; \
-         {crowded_hinges} of {hinges} hinges closer)\n\
-         cut angles           {min:>12.1} to {max:.1} deg{trained}\n",
-        m * n
-    );
-    for (name, span) in std::iter::zip(["across columns", "across rows"], spans) {
-        let (lambda, theta) = (span.lambda_max, span.theta_max.to_degrees());
-        text += &format!("{name:<20} {lambda:>12.4} lambda_max at {theta:.1} deg\n");
+    let windows =
+        format!("mm (windows: 2 x {r_win} mm; {crowded_hinges} of {hinges} hinges closer)");
+    let mut table = Table::new(["", "", ""]).left(&[0, 2]);
+    for (name, value, note) in [
+        ("min. panel area", format!("{least_panel_area:.4}"), "mm^2"),
+        ("area error", format!("{area_error:.1e}"), ""),
+        ("overlap", format!("{overlap:.1e}"), "of a panel"),
+        ("min. void side", format!("{least_void_side:.4}"), "mm"),
+        (
+            "min. hinge spacing",
+            format!("{least_hinge_spacing:.4}"),
+            &windows,
+        ),
+        (
+            "cut angles",
+            format!("{min:.1}"),
+            &format!("to {max:.1} deg{trained}"),
+        ),
+    ] {
+        table.row([name, &value, note]);
     }
-    text
+    for (name, span) in std::iter::zip(
+        ["lambda_max across columns", "lambda_max across rows"],
+        spans,
+    ) {
+        let at = format!("at {:.1} deg", span.theta_max.to_degrees());
+        table.row([name, &format!("{:.4}", span.lambda_max), &at]);
+    }
+    let mut document = Document::default();
+    document.text(format!("{m} x {n} panels ({}), {hinges} hinges", m * n));
+    document.table(table);
+    document
 }

@@ -1,10 +1,10 @@
 //! The error budget of a run as a table, and what it leaves out.
 
-use crate::report::columns::{columns, fixed};
 use crate::report::self_weight::SelfWeight;
 use design::objective::shape::TargetState;
 use scene::analysis::error_budget::{Effect, ErrorBudget};
 use serde::Serialize;
+use support::table::{Cell, Table};
 
 /// The error budget of the best design.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -51,21 +51,21 @@ impl Budget {
         }
     }
 
-    /// Head, units, one row a cause, and the sum.
-    pub fn rows(&self) -> Vec<[String; 5]> {
-        let head = ["cause", "corners, rms", "maximum", "load", "from"];
-        let units = ["", "mm", "mm", "%", ""];
-        let mut rows = vec![head.map(str::to_owned), units.map(str::to_owned)];
-        rows.extend(self.errors.contributions.iter().map(|part| {
+    /// One row a cause, and the sum.
+    pub fn table(&self) -> Table {
+        let head = [
+            "cause",
+            "corners, rms\nmm",
+            "maximum\nmm",
+            "load\n%",
+            "from",
+        ];
+        let mut table = Table::new(head).left(&[0, 4]);
+        for part in &self.errors.contributions {
             let [rms, maximum, load] = self.cells(part.effect.as_ref());
-            [
-                part.cause.name().to_owned(),
-                rms,
-                maximum,
-                load,
-                part.source.clone(),
-            ]
-        }));
+            let [cause, source] = [part.cause.name(), &part.source].map(Cell::text);
+            table.row([cause, rms, maximum, load, source]);
+        }
         let [rms, maximum, load] = self.cells(Some(&self.errors.total));
         let [name, squares] = if self.errors.total.at_least {
             [
@@ -75,19 +75,18 @@ impl Budget {
         } else {
             ["in all", "root of the sum of the squares"]
         };
-        rows.push([name.to_owned(), rms, maximum, load, squares.to_owned()]);
-        rows
+        table.row([Cell::text(name), rms, maximum, load, Cell::text(squares)]);
+        table
     }
 
-    fn cells(&self, effect: Option<&Effect>) -> [String; 3] {
+    fn cells(&self, effect: Option<&Effect>) -> [Cell; 3] {
         let Some(effect) = effect else {
-            return ["not known", "-", "-"].map(str::to_owned);
+            return ["not known", "-", "-"].map(Cell::text);
         };
-        let [rms, maximum] = effect.corners.map(|length| fixed(length, 3));
+        let [rms, maximum] = effect.corners.map(|length| Cell::fixed(length, 3));
         let load = match effect.load {
-            Some(load) => fixed(100.0 * load, 2),
-            None if self.dead_loads => "prescribed".into(),
-            None => "-".into(),
+            None if self.dead_loads => Cell::text("prescribed"),
+            load => Cell::fixed(load.map(|load| 100.0 * load), 2),
         };
         [rms, maximum, load]
     }
@@ -95,12 +94,5 @@ impl Budget {
     /// What the sum leaves out, as one line.
     pub fn left_out(&self) -> String {
         format!("not in the budget: {}", self.not_modelled.join("; "))
-    }
-
-    /// The table as lines.
-    pub(super) fn text(&self) -> String {
-        let rows = self.rows().into_iter().map(Vec::from);
-        let table = columns(&rows.collect::<Vec<_>>(), &[0, 4]);
-        format!("{BUDGET_HEADING}\n{table}{}\n", self.left_out())
     }
 }

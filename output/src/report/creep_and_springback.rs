@@ -1,6 +1,6 @@
 //! What becomes of the opening of a sheet: under a load that stays, and when the load is taken off.
 
-use crate::report::columns::rounded;
+use crate::report::numbers::rounded;
 use design::objective::design_problem::{Deployment, DesignProblem};
 use hinge::Creep;
 use scene::Scene;

@@ -1,8 +1,8 @@
 //! The facts of a run: what the sheet is made of, how far it opens under which load, what the hinge law rests on.
 
-use crate::report::columns::rounded;
 use crate::report::creep_and_springback::CreepAndSpringback;
 use crate::report::hinge_row::HingeRow;
+use crate::report::numbers::rounded;
 use crate::report::self_weight::SelfWeight;
 use design::equilibrium::load_step::Status;
 use design::geometry::polygon::{area, bounds};

@@ -2,9 +2,9 @@
 
 use crate::cut_file::{CutLines, FabricationError, fits};
 use crate::display::Shape;
-use crate::report::columns::rounded;
 use crate::report::fact_sheet::{FactSheet, miss};
 use crate::report::hinge_row::HingeRow;
+use crate::report::numbers::rounded;
 use crate::report::self_weight::of_the_load;
 use crate::report::warning::{Concern, Warning};
 use design::equilibrium::load_step::{LoadStep, Status};

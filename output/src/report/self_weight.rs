@@ -1,6 +1,6 @@
 //! The weight of a sheet compared with its load, and what follows from how the sheet is held out of its plane.
 
-use crate::report::columns::rounded;
+use crate::report::numbers::rounded;
 use scene::analysis::localisation::elasto_gravity_length;
 use scene::{FRICTION, Posture, Scene};
 use serde::Serialize;

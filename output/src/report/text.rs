@@ -1,13 +1,14 @@
-//! The report as text for people: about sixty lines for a small sheet.
+//! The report as parts for people: about sixty lines for a small sheet.
 
-use crate::report::columns::{columns, fixed, rounded};
-use crate::report::{HingeRow, Report};
+use crate::report::numbers::rounded;
+use crate::report::{BUDGET_HEADING, HingeRow, Report};
 use design::objective::scores::{Scores, shown};
 use scene::analysis::design_checks::WholeSheet;
 use scene::analysis::levels::Levels;
 use std::cmp::Ordering;
-use std::fmt;
+use support::document::Document;
 use support::severity::Severity;
+use support::table::{Cell, Columns, Table};
 
 /// Maximum number of hinges of which all are listed.
 const ALL_LISTED: usize = 24;
@@ -20,47 +21,52 @@ theta    opening in the last state of the path
 eta      a / w_lig and s / w_lig there: axial opening and shear of the ligament over its width
 D        maximum along the path of the mean damage of the ligament, and D_peak of its most strained 1 %,
          which tears at 1; ?: not known, since the hinge left the training domain of its law; -: no prediction
-domain   whether every state of the path is inside the training domain
-";
+domain   whether every state of the path is inside the training domain";
 
-const GAMMA: &str = "Gamma    (21): moment of the weight of a panel that lies on a surface over the moment of its folded ligament\n";
+const GAMMA: &str = "\nGamma    (21): moment of the weight of a panel that lies on a surface over the moment of its folded ligament";
 
 const OUTLINE_ROSE: &str = "\
 The outline error is larger than at the start although the loss is smaller: the loss also weighs how well the outline
-covers the target, and the terms above. Lower their weights in [objective] for a closer outline.
-";
+covers the target, and the terms above. Lower their weights in [objective] for a closer outline.";
 
-impl fmt::Display for Report {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        writeln!(
-            f,
+impl Report {
+    /// The report as parts for people.
+    pub fn document(&self) -> Document {
+        let mut page = Document::default();
+        let mut head = format!(
             "{}: level {}\n{}",
             self.title,
             self.facts.level,
             self.miss()
-        )?;
+        );
         if let Some(text) = self.about_cut_files() {
-            writeln!(f, "{text}")?;
+            head += "\n";
+            head += text;
         }
-        (self.errors()).try_for_each(|error| writeln!(f, "- {error}"))?;
-        writeln!(f, "{}\n\n{}", self.end_of_search(), self.objective())?;
-        let facts = self.fact_rows();
-        let width = facts.iter().map(|(name, _)| name.len()).max().unwrap_or(0);
-        for (name, value) in facts {
-            writeln!(f, "{name:<width$}  {value}")?;
+        page.text(head);
+        page.list(self.errors());
+        page.text(self.end_of_search());
+        page.table(self.objective());
+        if self.rose() {
+            page.text(OUTLINE_ROSE);
         }
+        let mut facts = Table::new(["", ""]).left(&[0, 1]);
+        for (name, value) in self.fact_rows() {
+            facts.row([name, &value]);
+        }
+        page.table(facts);
         if let Some(budget) = &self.budget {
-            write!(f, "\n{}", budget.text())?;
+            page.text(BUDGET_HEADING);
+            page.table(budget.table());
+            page.text(budget.left_out());
         }
-        let gamma = if self.states_gamma() { GAMMA } else { "" };
-        writeln!(f, "\n{}\n{LEGEND}{gamma}", self.hinge_table())?;
+        self.add_hinges(&mut page);
         let warned = (self.warnings.iter()).any(|warning| warning.severity > Severity::Note);
-        writeln!(f, "{}", if warned { "warnings" } else { "no warnings" })?;
-        (self.warnings.iter()).try_for_each(|warning| writeln!(f, "- {warning}"))
+        page.text(if warned { "warnings" } else { "no warnings" });
+        page.list(&self.warnings);
+        page
     }
-}
 
-impl Report {
     /// The facts of the run, the spread of the ensemble and the number of warnings, as names and values with units.
     pub fn fact_rows(&self) -> Vec<(&'static str, String)> {
         let mut rows = self.facts.rows();
@@ -95,7 +101,7 @@ impl Report {
     }
 
     /// The objective at the start and at the best design.
-    fn objective(&self) -> String {
+    fn objective(&self) -> Table {
         let rows = |scores: &Scores| {
             let mut rows = vec![("outline error (mm)".to_owned(), scores.outline_error)];
             let values = scores.terms.values().copied();
@@ -106,56 +112,64 @@ impl Report {
             }
             rows
         };
-        let mut table = vec![["", "start", "best"].map(str::to_owned).to_vec()];
+        let mut table = Table::new(["", "start", "best"]);
         let pairs = std::iter::zip(rows(&self.before), rows(&self.after));
-        table.extend(pairs.map(|((name, before), (_, after))| {
-            vec![format!("{name:<20}"), shown(before), shown(after)]
-        }));
-        let rose = self.after.outline_error > self.before.outline_error;
-        let why = if rose && self.after.loss < self.before.loss {
-            OUTLINE_ROSE
-        } else {
-            ""
-        };
-        columns(&table, &[]) + why
+        for ((name, before), (_, after)) in pairs {
+            table.row([name, shown(before), shown(after)]);
+        }
+        table
     }
 
-    /// Whether Gamma is stated, which is of a sheet that lies on a surface.
-    fn states_gamma(&self) -> bool {
-        self.facts.gamma_min.is_some()
+    /// Whether the outline is further off although the loss is smaller.
+    fn rose(&self) -> bool {
+        let [before, after] = [&self.before, &self.after];
+        after.outline_error > before.outline_error && after.loss < before.loss
     }
 
     /// The hinges; of a large sheet those that are nearest to failure.
-    fn hinge_table(&self) -> String {
+    fn add_hinges(&self, page: &mut Document) {
         let mut listed: Vec<&HingeRow> = self.hinges.iter().collect();
-        let mut head = String::new();
         if listed.len() > ALL_LISTED {
             listed.sort_by(|one, other| worst_first(one, other));
             listed.truncate(WORST_LISTED);
-            head = format!(
-                "the worst {WORST_LISTED} of {} hinges: first those that left the domain, then by damage and strain;\n\
-                 all hinges: report.json and run.html\n",
+            page.text(format!(
+                "the worst {WORST_LISTED} of {} hinges: first those that left the domain, then by damage and strain; \
+                 all hinges: report.json and run.html",
                 self.hinges.len()
-            );
+            ));
         }
-        let names = [
-            "hinge", "panels", "w_lig", "alpha", "theta", "eta_a", "eta_s", "D", "D_peak",
-            "domain", "Gamma",
-        ];
-        let units = ["", "", "mm", "deg", "deg"];
-        let mut table = vec![
-            names.map(str::to_owned).to_vec(),
-            units.map(str::to_owned).to_vec(),
-        ];
-        table.extend(listed.into_iter().map(HingeRow::cells));
-        if !self.states_gamma() {
-            // The last column.
-            table
-                .iter_mut()
-                .for_each(|row| row.truncate(names.len() - 1));
+        let mut columns = hinge_columns();
+        let lies = self.facts.gamma_min.is_some();
+        if lies {
+            columns = columns.column("Gamma", |row| {
+                row.gamma.map_or("-".to_owned(), |gamma| rounded(gamma, 3))
+            });
         }
-        head + &columns(&table, &[])
+        page.table(columns.table(listed));
+        let gamma = if lies { GAMMA } else { "" };
+        page.text(LEGEND.to_owned() + gamma);
     }
+}
+
+/// The columns of a table of hinges.
+fn hinge_columns() -> Columns<'static, HingeRow> {
+    let damage = |row: &HingeRow, damage: Option<f64>| {
+        let unknown = if row.inside { "-" } else { "?" };
+        Cell::known(damage.map(|damage| Cell::fixed(damage, 4)), unknown)
+    };
+    Columns::new()
+        .column("hinge", |row: &HingeRow| row.hinge)
+        .column("panels", |row| {
+            format!("{}-{}", row.panels[0], row.panels[1])
+        })
+        .column("w_lig\nmm", |row| Cell::fixed(row.w_lig, 2))
+        .column("alpha\ndeg", |row| Cell::fixed(row.alpha_deg, 1))
+        .column("theta\ndeg", |row| Cell::fixed(row.theta_deg, 1))
+        .column("eta_a", |row| Cell::fixed(row.eta_a, 3))
+        .column("eta_s", |row| Cell::fixed(row.eta_s, 3))
+        .column("D", move |row| damage(row, row.damage))
+        .column("D_peak", move |row| damage(row, row.damage_peak))
+        .column("domain", |row| if row.inside { "inside" } else { "left" })
 }
 
 /// How far the levels of a run are from its finest one.
@@ -189,25 +203,6 @@ fn whole_sheet_row(sheet: &WholeSheet) -> (&'static str, String) {
 }
 
 impl HingeRow {
-    fn cells(&self) -> Vec<String> {
-        let unknown = if self.inside { "-" } else { "?" };
-        let [damage, peak] = [self.damage, self.damage_peak]
-            .map(|damage| damage.map_or(unknown.into(), |damage| fixed(damage, 4)));
-        vec![
-            self.hinge.to_string(),
-            format!("{}-{}", self.panels[0], self.panels[1]),
-            fixed(self.w_lig, 2),
-            fixed(self.alpha_deg, 1),
-            fixed(self.theta_deg, 1),
-            fixed(self.eta_a, 3),
-            fixed(self.eta_s, 3),
-            damage,
-            peak,
-            if self.inside { "inside" } else { "left" }.to_owned(),
-            self.gamma.map_or("-".to_owned(), |gamma| rounded(gamma, 3)),
-        ]
-    }
-
     /// Damage, or without it the translation of the ligament over its width.
     fn strain(&self) -> f64 {
         let translation = self.eta_a.abs().max(self.eta_s.abs());

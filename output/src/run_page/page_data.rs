@@ -15,6 +15,7 @@ use scene::analysis::levels::Levels;
 use scene::design_run::Designed;
 use scene::{Actuation, Scene};
 use serde::Serialize;
+use support::table::Table;
 use surrogate::Surrogate;
 
 /// Maximum number of steps in the history of the objective, and of points on the target.
@@ -67,7 +68,7 @@ pub struct SheetData<'a> {
 #[derive(Serialize)]
 struct BudgetTable {
     heading: &'static str,
-    rows: Vec<[String; 5]>,
+    table: Table,
     left_out: String,
 }
 
@@ -121,7 +122,7 @@ impl<'a> PageData<'a> {
             facts: report.fact_rows(),
             budget: report.budget.as_ref().map(|budget| BudgetTable {
                 heading: BUDGET_HEADING,
-                rows: budget.rows(),
+                table: budget.table(),
                 left_out: budget.left_out(),
             }),
             warnings: &report.warnings,

@@ -66,9 +66,11 @@ function writeTexts() {
 function writeBudget() {
   byId("budget-card").hidden = !run.budget;
   byId("budget").textContent = "";
-  for (const [i, cells] of (run.budget?.rows ?? []).entries()) {
+  const { head, rows } = run.budget?.table ?? { head: [], rows: [] };
+  const names = head.map((name) => name.replace("\n", ", "));
+  for (const cells of [names, ...rows]) {
     const tr = write(byId("budget"), "tr");
-    cells.forEach((cell) => write(tr, i < 2 && cell ? "th" : "td", cell));
+    cells.forEach((cell) => write(tr, cells === names ? "th" : "td", cell));
   }
   byId("budget-note").textContent = run.budget ? `${run.budget.heading}. ${run.budget.left_out}.` : "";
 }

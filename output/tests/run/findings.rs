@@ -95,7 +95,7 @@ fn a_learned_law_states_what_is_not_modelled() {
         assert_close(weight.weight, WEIGHT, 1e-9);
         assert_close(weight.over_load.unwrap(), WEIGHT / 2.0, 1e-9);
         assert_eq!(weight.is_modelled, posture == HANGING);
-        let text = report.to_string();
+        let text = report.document().to_string();
         assert_says(&text, "9.82 N, 491 % of the load");
         // Gamma is of a sheet that lies.
         assert_eq!(text.contains("minimum Gamma"), posture == LYING, "{text}");
@@ -135,7 +135,7 @@ fn friction_is_a_warning_beside_a_small_load() {
     let stated = shares.iter().any(|share| message.contains(share));
     assert!(stated, "{message}");
     assert_says(
-        &heavy.to_string(),
+        &heavy.document().to_string(),
         "clamp, panel P3 (column 1, row 2), at (",
     );
     // At 4.9 % of the load it is none.
@@ -221,7 +221,7 @@ fn the_largest_load_of_a_driven_path_and_weak_weights_are_stated() {
         &warning.message,
         "such as a hung weight, does not open this sheet",
     );
-    assert_says(&report.to_string(), "largest load");
+    assert_says(&report.document().to_string(), "largest load");
     // The page draws the largest load between the load steps.
     let peak = serde_json::to_string(&[peak.displacement, peak.load]).unwrap();
     assert_says(&steel.file("run.html"), &format!("\"peak\":{peak}"));

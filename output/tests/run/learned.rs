@@ -220,8 +220,12 @@ fn the_report_states_how_far_the_networks_of_an_ensemble_disagree() {
     assert_eq!((estimate.networks, estimate.damage_peak), (2, None));
     assert_close(estimate.energy, expected, 1e-9);
     assert_close(estimate.forces, expected, 1e-9);
-    assert_says(&report.to_string(), "2 networks; standard deviation");
-    let budget = report.budget.as_ref().unwrap().rows();
+    assert_says(
+        &report.document().to_string(),
+        "2 networks; standard deviation",
+    );
+    let table = report.budget.as_ref().unwrap().table();
+    let budget: Vec<_> = table.rows().collect();
     let row = |cause: &str| budget.iter().find(|row| row[0] == cause).unwrap();
     assert!(row("network")[1].parse::<f64>().unwrap() > 0.0);
     assert_eq!(row("network")[3], "prescribed");

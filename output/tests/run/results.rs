@@ -72,7 +72,10 @@ fn panels_too_small_for_their_windows_are_named() {
         finished(&[&SMALL[..], &[("start_noise = 0.05", "start_noise = 0.0")]].concat()).report;
     // Panels of about 130 mm: windows of 100 mm lie inside them but overlap the windows of the next hinge.
     one(&report, Concern::WindowsOverlap);
-    assert_says(&report.to_string(), "windows of 100 mm radius overlap");
+    assert_says(
+        &report.document().to_string(),
+        "windows of 100 mm radius overlap",
+    );
 }
 
 #[test]
@@ -82,7 +85,7 @@ fn a_target_that_crosses_itself_is_named() {
     let report = finished(&[(TARGET, &bow), QUICK]).report;
     assert_eq!(one(&report, Concern::TargetCrosses).hinges, [0; 0]);
     let crosses = "the target outline crosses or touches itself near (6";
-    assert_says(&report.to_string(), crosses);
+    assert_says(&report.document().to_string(), crosses);
 }
 
 #[test]
@@ -97,7 +100,7 @@ fn ligaments_wider_than_their_slits_cannot_be_cut_and_the_report_says_so() {
     assert_eq!(one(report, Concern::CannotBeCut).hinges, [0; 0]);
     assert!(!report.cut_file && !run.scene.output().join("cut.dxf").exists());
     let first = format!(
-        "Test sheet: level linear\n{}\nNO CUT FILE\n- error: ",
+        "Test sheet: level linear\n{}\nNO CUT FILE\n\n- error: ",
         report.miss()
     );
     let text = run.file("report.txt");

@@ -111,8 +111,8 @@ fn damage_is_not_known_once_a_hinge_has_left_the_domain() {
     let pulled = learned(&[("force = [2.0, 0.0]", "force = [8.0, 0.0]")]);
     let run = Finished::within(folder, &pulled);
     let ((_, data), report) = (page(&run), &run.report);
-    let rows = report.budget.as_ref().unwrap().rows();
-    assert_eq!(data["budget"]["rows"], json!(rows));
+    let table = report.budget.as_ref().unwrap().table();
+    assert_eq!(data["budget"]["table"], json!(table));
     assert_equals_report(&data, report);
     let [damage, inside] = ["damage", "inside"].map(|name| floats(&data["states"][name]));
     let largest = floats(&data["hinges"]["damage"]);
@@ -159,7 +159,7 @@ fn a_sheet_on_pins_shows_its_opening_and_nothing_else() {
         let expected = report.hinges[0].theta_deg.to_radians() * i as f64 / 20.0;
         assert_close(f64::from(theta), expected, 1e-6);
     }
-    let text = report.to_string();
+    let text = report.document().to_string();
     assert_says(&text, "pins");
     assert!(!text.contains("load reached"), "{text}");
 }
@@ -198,7 +198,7 @@ fn the_page_of_a_large_sheet_stays_below_five_megabytes() {
     assert_eq!((index[0], index[index.len() - 1]), (0, 20));
     assert_equals_report(&data, report);
     // The text lists the worst hinges only.
-    let text = report.to_string();
+    let text = report.document().to_string();
     assert!(text.lines().count() < 80, "{text}");
     assert_says(&text, "the worst 20 of 7080 hinges");
 }

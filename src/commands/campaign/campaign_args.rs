@@ -1,11 +1,11 @@
 //! The command line arguments that select a campaign, and the printed job counts.
 
 use crate::ui::progress::duration;
-use crate::ui::table::table;
 use anyhow::Result;
 use clap::Args;
 use fe_driver::{Campaign, Tally};
 use std::path::{Path, PathBuf};
+use support::table::Table;
 
 /// File of the database in the folder of a campaign.
 pub const DATABASE: &str = "hinges.parquet";
@@ -54,9 +54,9 @@ pub fn print_tally(tally: &Tally) {
         );
     }
     if !tally.failures.is_empty() {
-        let mut failures = table(["last failure", "rays"]);
+        let mut failures = Table::new(["last failure", "rays"]);
         for (reason, count) in &tally.failures {
-            failures.add_row([reason.to_string(), count.to_string()]);
+            failures.row([reason.to_string(), count.to_string()]);
         }
         println!("{failures}");
     }

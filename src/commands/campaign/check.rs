@@ -5,12 +5,12 @@ use crate::commands::solve_args::FeSolver;
 use crate::ui::count::count;
 use crate::ui::interrupt;
 use crate::ui::progress::Progress;
-use crate::ui::table::table;
 use anyhow::{Result, ensure};
 use clap::Args;
 use fe_driver::solve_again;
 use std::num::NonZeroUsize;
 use std::sync::atomic::Ordering;
+use support::table::Table;
 
 /// Solve some of the finished rays again and compare their samples to the last bit
 ///
@@ -38,14 +38,14 @@ impl CheckCommand {
         let every = self.every.get();
         let solved = solve_again(&campaign, &folder, &solver, every, stop, &mut show)?;
         bar.finish();
-        let mut rows = table(["ray", "samples before", "now", "difference in W"]);
+        let mut rows = Table::new(["ray", "samples before", "now", "difference in W"]);
         let differing = solved
             .iter()
             .filter_map(|ray| Some((&ray.job, ray.difference?)));
         let count = differing.clone().count();
         for (job, difference) in differing {
             let [before, now] = difference.samples.map(|n| n.to_string());
-            rows.add_row([job.clone(), before, now, format!("{:.1e}", difference.w)]);
+            rows.row([job.clone(), before, now, format!("{:.1e}", difference.w)]);
         }
         let (all, versions) = (solved.len(), solver.versions());
         ensure!(

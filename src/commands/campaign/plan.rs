@@ -4,9 +4,9 @@ use crate::commands::campaign::campaign_args::{CampaignArgs, print_tally};
 use crate::commands::solve_args::FeSolver;
 use crate::ui::processors;
 use crate::ui::progress::duration;
-use crate::ui::table::table;
 use anyhow::Result;
 use clap::Args;
+use support::table::Table;
 
 /// Print what a run would solve, why, and the estimated time
 #[derive(Args)]
@@ -29,9 +29,9 @@ impl PlanCommand {
         }
         print_tally(&plan.tally);
         if !plan.reasons.is_empty() {
-            let mut reasons = table(["to be solved because", "rays"]);
+            let mut reasons = Table::new(["to be solved because", "rays"]);
             for (reason, count) in &plan.reasons {
-                reasons.add_row([reason.clone(), count.to_string()]);
+                reasons.row([reason.clone(), count.to_string()]);
             }
             println!("{reasons}");
         }

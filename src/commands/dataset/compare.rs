@@ -6,7 +6,8 @@ use anyhow::{Result, ensure};
 use clap::Args;
 use dataset::{COMPARED, ComparedRay, ComparedState, Database, LeftOut, compare, left_out};
 use std::path::PathBuf;
-use support::table::{Cell, Table};
+use support::document::Document;
+use support::table::{Cell, Columns};
 use verification::{SCALE, each_relative, spread_table};
 
 /// Compare the rays of a database with the same rays on its finer mesh, or in another database
@@ -51,20 +52,20 @@ impl CompareCommand {
         let states: Vec<_> = rays.iter().map(ComparedRay::states).collect();
         output_file::create_folder(&self.out)?;
         let tiers = [database.manifest().tier.clone(), finer];
-        let mut summary = summary(&rays, &states, &tiers)?;
+        let mut page = summary(&rays, &states, &tiers);
         match left_out(&rays) {
-            Ok(checked) => summary += &correction(&checked)?,
+            Ok(checked) => page.append(correction(&checked)),
             // The comparison is valid without it.
             Err(reason) => {
                 eprintln!("cannot evaluate what a correction would leave: {reason}")
             }
         }
-        let csv = table().csv(&ranked(&rays, &states));
+        let csv = columns().table(&ranked(&rays, &states)).csv();
         run_folder::write(&self.out, "compare.csv", &csv)?;
-        run_folder::write(&self.out, "compare.md", &summary)?;
+        run_folder::write(&self.out, "compare.md", &page.markdown())?;
         let axes = [tiers[1].as_str(), &tiers[0]];
         compared_states::draw(&groups(&states), axes, &self.out.join("compare"))?;
-        println!("{summary}\nwritten to {}", self.out.display());
+        println!("{page}\nwritten to {}", self.out.display());
         Ok(())
     }
 }
@@ -74,24 +75,27 @@ fn summary(
     rays: &[ComparedRay],
     states: &[Vec<ComparedState>],
     [tier, reference]: &[String; 2],
-) -> Result<String> {
+) -> Document {
     let count = rays.iter().map(|ray| ray.rows.len()).sum::<usize>();
     let cpu = [0, 1].map(|i| rays.iter().map(|ray| ray.cpu_s[i]).sum::<f64>() / rays.len() as f64);
-    let heading = format!(
-        "## Tier {tier} against tier {reference}, over all common states\n\n\
-         {count} states of {} rays, {:.1} and {:.1} CPU s per ray. Differences are root mean squares relative \
-         to the root mean square of the tier {reference}: {SCALE}. `kirigami dataset compare`.\n\n\
-         ",
+    let mut page = Document::default();
+    page.heading(
+        2,
+        format!("Tier {tier} against tier {reference}, over all common states"),
+    );
+    page.text(format!(
+        "{count} states of {} rays, {:.1} and {:.1} CPU s per ray. Differences are root mean squares relative \
+         to the root mean square of the tier {reference}: {SCALE}. `kirigami dataset compare`.",
         rays.len(),
         cpu[0],
         cpu[1],
-    );
-    Ok(heading + &spread_table(&groups(states), "ray"))
+    ));
+    page.table(spread_table(&groups(states), "ray"));
+    page
 }
 
 /// The remaining differences when every ray is corrected by the others.
-pub fn correction(checked: &LeftOut) -> Result<String> {
-    let table = spread_table(&groups(&checked.states), "ray");
+pub fn correction(checked: &LeftOut) -> Document {
     let note = match &checked.uncorrected()[..] {
         [] => String::new(),
         left => format!(
@@ -99,10 +103,13 @@ pub fn correction(checked: &LeftOut) -> Result<String> {
             left.join(", ")
         ),
     };
-    Ok(format!(
-        "\nRemaining differences when each of the {} rays is corrected by the others.{note}\n\n{table}",
+    let mut page = Document::default();
+    page.text(format!(
+        "Remaining differences when each of the {} rays is corrected by the others.{note}",
         checked.states.len()
-    ))
+    ));
+    page.table(spread_table(&groups(&checked.states), "ray"));
+    page
 }
 
 fn groups(states: &[Vec<ComparedState>]) -> Vec<&[ComparedState]> {
@@ -120,25 +127,25 @@ fn ranked<'a>(rays: &'a [ComparedRay<'a>], states: &[Vec<ComparedState>]) -> Vec
 }
 
 /// A ray a row.
-fn table<'a>() -> Table<'a, Ranked<'a>> {
-    let mut table = Table::new();
+fn columns<'a>() -> Columns<'a, Ranked<'a>> {
+    let mut columns = Columns::new();
     for (i, (name, decimals)) in PLACE.into_iter().enumerate() {
-        table = table.column(name, move |(ray, _): &Ranked| {
+        columns = columns.column(name, move |(ray, _): &Ranked| {
             Cell::fixed(place(ray)[i], decimals)
         });
     }
-    table = table
+    columns = columns
         .column("W, N mm", |(ray, _)| Cell::fixed(ray.end().sample.w, 1))
         .column("CPU s", |(ray, _)| Cell::fixed(ray.cpu_s[0], 1))
         .column("CPU s of the reference", |(ray, _)| {
             Cell::fixed(ray.cpu_s[1], 1)
         });
     for (i, name) in COMPARED.into_iter().enumerate() {
-        table = table.column(name, move |(_, differences)| {
+        columns = columns.column(name, move |(_, differences)| {
             Cell::percent(differences[i], 1)
         });
     }
-    table
+    columns
 }
 
 /// The names of [`place`], and their decimals on a page.

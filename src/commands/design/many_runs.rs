@@ -1,14 +1,14 @@
 //! Several design runs in one command: every scene with every seed, each in a run folder of its own, and one table that
 //! compares them.
 
-use crate::ui::comparison;
-use crate::ui::table::Table;
+use crate::ui::run_folder;
 use anyhow::{Context, Result, ensure};
 use scene::Scene;
 use serde_json::Value;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use support::regular_file;
+use support::table::Table;
 
 /// One design run.
 pub(super) struct Run {
@@ -36,8 +36,12 @@ pub(super) fn refuse_shared_folders(runs: &[Run]) -> Result<()> {
 
 /// Writes `designs.csv` and `designs.md` to `folder`, and returns the table.
 pub(super) fn compare(runs: &[Run], folder: &Path) -> Result<Table> {
-    let rows: Result<Vec<_>> = runs.iter().map(cells).collect();
-    comparison::write(folder, "designs", COLUMNS, rows?)
+    let mut table = Table::new(COLUMNS);
+    for run in runs {
+        table.row(cells(run)?);
+    }
+    run_folder::write_table(folder, "designs", &table)?;
+    Ok(table)
 }
 
 const COLUMNS: [&str; 11] = [

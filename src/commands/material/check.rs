@@ -1,6 +1,5 @@
 //! `kirigami material check`: what a material means for windows and sheets.
 
-use crate::ui::table::table;
 use anyhow::{Result, bail, ensure};
 use clap::Args;
 use hinge::SheetMaterial;
@@ -9,6 +8,7 @@ use scene::SceneConfig;
 use scene::run_inputs::scene_file;
 use std::path::PathBuf;
 use support::severity::Severity;
+use support::table::{Cell, Table};
 use support::toml_file;
 
 /// Check a material before windows are solved with it
@@ -92,13 +92,13 @@ fn print(material: &SheetMaterial, check: &MaterialCheck) {
         material.young, material.poisson
     );
     println!("*PLASTIC:");
-    let mut rows = table(["row", "true stress, MPa", "plastic strain", "slope, MPa"]);
+    let mut rows = Table::new(["row", "true stress, MPa", "plastic strain", "slope, MPa"]);
     for (index, [stress, strain]) in material.plastic.iter().enumerate() {
         let slope = match material.plastic.get(index + 1) {
             Some([next, to]) => format!("{:.0}", (next - stress) / (to - strain)),
             None => "constant".into(),
         };
-        rows.add_row([
+        rows.row([
             (index + 1).to_string(),
             stress.to_string(),
             strain.to_string(),
@@ -106,7 +106,7 @@ fn print(material: &SheetMaterial, check: &MaterialCheck) {
         ]);
     }
     println!("{rows}\n");
-    let mut widths = table([
+    let mut widths = Table::new([
         "w_lig, mm",
         "w/t",
         "buckles at",
@@ -117,15 +117,18 @@ fn print(material: &SheetMaterial, check: &MaterialCheck) {
         "Gamma",
     ]);
     for it in &check.ligaments {
-        widths.add_row([
-            format!("{}", it.w_lig),
-            format!("{:.1}", it.slenderness),
-            format!("{:.2} deg", it.buckles_at_deg),
-            format!("{:.1} deg", it.yields_at_deg),
-            format!("{:.3}", it.surface_strain),
-            format!("{:.3} to {:.3}", it.tip_strain[0], it.tip_strain[1]),
-            format!("{:.0}", it.critical_edge),
-            it.gamma.map_or("-".into(), |gamma| format!("{gamma:.3}")),
+        widths.row([
+            Cell::text(it.w_lig),
+            Cell::fixed(it.slenderness, 1),
+            Cell::text(format!("{:.2} deg", it.buckles_at_deg)),
+            Cell::text(format!("{:.1} deg", it.yields_at_deg)),
+            Cell::fixed(it.surface_strain, 3),
+            Cell::text(format!(
+                "{:.3} to {:.3}",
+                it.tip_strain[0], it.tip_strain[1]
+            )),
+            Cell::fixed(it.critical_edge, 0),
+            Cell::fixed(it.gamma, 3),
         ]);
     }
     println!("{widths}\n");

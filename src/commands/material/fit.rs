@@ -2,12 +2,12 @@
 
 use crate::ui::charts::tensile_test;
 use crate::ui::shell_word::shell_word;
-use crate::ui::table::{Table, table};
 use crate::ui::{output_file, picture, run_folder};
 use anyhow::{Result, ensure};
 use clap::Args;
 use hinge::{SheetFacts, SheetMaterial, material_file};
 use std::path::{Path, PathBuf};
+use support::table::{Cell, Table};
 use tensile::{
     Cause, FitOptions, FractureSource, MaterialFit, Origin, Quantity, RecordOptions, Specimen,
     SpecimenOptions, Statistic,
@@ -212,10 +212,10 @@ fn assignment(text: &str) -> Result<(Quantity, String), String> {
 
 /// The columns that were read, one a row.
 fn column_table(specimens: &[Specimen]) -> Table {
-    let mut table = table(["specimen", "read as", "column", "name", "unit", "factor"]);
+    let mut table = Table::new(["specimen", "read as", "column", "name", "unit", "factor"]);
     for specimen in specimens {
         for column in &specimen.read_as {
-            table.add_row([
+            table.row([
                 file_name(specimen),
                 column.quantity.to_string(),
                 column.number.to_string(),
@@ -238,7 +238,7 @@ fn file_name(specimen: &Specimen) -> String {
 
 /// The specimens, one a row.
 fn specimen_table(specimens: &[Specimen]) -> Table {
-    let mut table = table([
+    let mut table = Table::new([
         "specimen",
         "rows",
         "toe",
@@ -256,23 +256,21 @@ fn specimen_table(specimens: &[Specimen]) -> Table {
     ]);
     for it in specimens {
         let draw = |value: fn(&tensile::Draw) -> f64, digits: usize| {
-            it.draw
-                .as_ref()
-                .map_or("-".into(), |draw| format!("{:.digits$}", value(draw)))
+            Cell::fixed(it.draw.as_ref().map(value), digits)
         };
         let [from, to] = it.linear.strain.map(|strain| 100.0 * strain);
-        table.add_row([
-            file_name(it),
-            it.rows.to_string(),
-            it.dropped_for(Cause::Toe).to_string(),
-            it.dropped_for(Cause::Unloading).to_string(),
-            it.dropped_for(Cause::Broken).to_string(),
-            it.averaged.to_string(),
-            format!("{:.3}", 100.0 * it.toe),
-            format!("{from:.3} to {to:.3}"),
-            format!("{:.0} ± {:.0}", it.linear.young, it.linear.error),
-            format!("{:.2}", it.offset_yield),
-            format!("{:.2}", it.strength),
+        table.row([
+            Cell::text(file_name(it)),
+            Cell::text(it.rows),
+            Cell::text(it.dropped_for(Cause::Toe)),
+            Cell::text(it.dropped_for(Cause::Unloading)),
+            Cell::text(it.dropped_for(Cause::Broken)),
+            Cell::text(it.averaged),
+            Cell::fixed(100.0 * it.toe, 3),
+            Cell::text(format!("{from:.3} to {to:.3}")),
+            Cell::text(format!("{:.0} ± {:.0}", it.linear.young, it.linear.error)),
+            Cell::fixed(it.offset_yield, 2),
+            Cell::fixed(it.strength, 2),
             draw(|draw| draw.upper_yield, 2),
             draw(|draw| draw.plateau, 2),
             draw(|draw| draw.draw_ratio, 3),
@@ -283,12 +281,14 @@ fn specimen_table(specimens: &[Specimen]) -> Table {
 
 /// The numbers of the law with their scatter.
 fn law_table(fit: &MaterialFit) -> Table {
-    let mut table = table(["law", "mean", "standard deviation"]);
+    let mut table = Table::new(["law", "mean", "standard deviation"]);
     let mut row = |name: &str, of: &Statistic, digits: usize| {
-        let deviation = of
-            .deviation
-            .map_or("-".into(), |value| format!("{value:.digits$}"));
-        table.add_row([name.into(), format!("{:.digits$}", of.mean), deviation]);
+        let [mean, deviation] = [Some(of.mean), of.deviation];
+        table.row([
+            Cell::text(name),
+            Cell::fixed(mean, digits),
+            Cell::fixed(deviation, digits),
+        ]);
     };
     row("Young's modulus, MPa", &fit.young, 0);
     row("offset yield Rp0.2, MPa", &fit.offset_yield, 2);

@@ -137,7 +137,6 @@ impl LearnCommand {
             fits: self.out.join("fits"),
         };
         let spot = self.spot_check(&campaign, &region)?;
-        println!("{}", LearningRound::HEADING);
         let accuracy = Accuracy {
             energy: self.accuracy,
             forces: self.forces,
@@ -292,9 +291,10 @@ impl LearningSteps for Steps<'_> {
     }
 
     fn round(&mut self, round: &LearningRound, weights: Surrogate, is_latest: bool) -> Result<()> {
-        println!("{round}");
         self.rounds.push(round.clone());
-        run_folder::write(self.out, "learn.csv", &LearningRound::csv(&self.rounds))?;
+        let table = LearningRound::table(&self.rounds);
+        println!("{table}\n");
+        run_folder::write(self.out, "learn.csv", &table.csv())?;
         // The saved weights are trained on all rays that an earlier command has solved.
         if is_latest {
             weights.save(&weights_file(self.out))?;

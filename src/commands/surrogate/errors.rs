@@ -1,8 +1,8 @@
 //! Errors of weights at given states against finite elements, and the states with the largest errors.
 
-use crate::ui::table::{Table, table};
 use dataset::{COMPARED, ComparedState, Row, reference_rms};
-use std::fmt;
+use support::document::Document;
+use support::table::Table;
 use surrogate::Surrogate;
 
 /// Number of states listed as the worst.
@@ -54,7 +54,7 @@ impl<'a> StateErrors<'a> {
 
     /// Root mean square, median, 90th and 99th percentile and maximum of each quantity's error.
     fn distribution(&self) -> Table {
-        let mut table = table(["error (%)", "rms", "median", "90 %", "99 %", "worst"]);
+        let mut table = Table::new(["error (%)", "rms", "median", "90 %", "99 %", "worst"]);
         let rms = reference_rms(&self.states);
         let mut add = |name: String, errors: Vec<f64>| {
             let mean = errors.iter().map(|e| e * e).sum::<f64>() / errors.len().max(1) as f64;
@@ -64,7 +64,7 @@ impl<'a> StateErrors<'a> {
             };
             let values = [mean.sqrt(), at(0.5), at(0.9), at(0.99), at(1.0)];
             let cells = values.map(|value| format!("{:.2}", 100.0 * value));
-            table.add_row(std::iter::once(name).chain(cells));
+            table.row(std::iter::once(name).chain(cells));
         };
         add("W, relative to its own value".into(), self.of_own_energy());
         for (i, name) in COMPARED.iter().enumerate() {
@@ -78,7 +78,7 @@ impl<'a> StateErrors<'a> {
 
     /// The states with the largest error of the energy, relative to its own value.
     fn worst(&self) -> Table {
-        let mut table = table([
+        let mut table = Table::new([
             "worst states",
             "w_lig",
             "alpha",
@@ -101,7 +101,7 @@ impl<'a> StateErrors<'a> {
         for (rank, &k) in order.iter().take(LISTED).enumerate() {
             let (row, state) = (self.rows[k], &self.states[k]);
             let [eta_a, eta_s] = row.eta();
-            table.add_row([
+            table.row([
                 format!("{}", rank + 1),
                 format!("{:.1} mm", row.design.w_lig),
                 format!("{:.0} deg", row.design.alpha.to_degrees()),
@@ -115,27 +115,29 @@ impl<'a> StateErrors<'a> {
         }
         table
     }
-}
 
-impl fmt::Display for StateErrors<'_> {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+    /// The errors as parts for people.
+    pub fn document(&self) -> Document {
         let (inside, all) = (self.rows.len(), self.rows.len() + self.outside);
-        writeln!(f, "{inside} of {all} states inside the training domain")?;
+        let mut page = Document::default();
+        page.text(format!(
+            "{inside} of {all} states inside the training domain"
+        ));
         if inside == 0 {
-            return Ok(());
+            return page;
         }
-        writeln!(f, "{}", self.distribution())?;
+        page.table(self.distribution());
         let own = self.of_own_energy();
         let percentage = |limit: f64| {
             let met = own.iter().filter(|error| **error <= limit).count();
             100.0 * met as f64 / inside as f64
         };
-        writeln!(
-            f,
+        page.text(format!(
             "W within 5 % in {:.1} % of the states, within 25 % in {:.1} %",
             percentage(0.05),
             percentage(0.25)
-        )?;
-        write!(f, "{}", self.worst())
+        ));
+        page.table(self.worst());
+        page
     }
 }

@@ -8,9 +8,10 @@ use anyhow::{Result, ensure};
 use clap::Args;
 use fe_driver::{DrawnStates, random_paths};
 use mesher::Tier;
-use std::fmt;
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
+use support::document::Document;
+use support::table::Table;
 use surrogate::{FEWEST, Springback, Surrogate};
 use verification::{first_guess, releases, verification_tier};
 
@@ -99,41 +100,42 @@ impl ReleaseCommand {
         let law = Springback::fit(fitted, unseen, &material, &tier.to_string())?;
         let path = self.out.join("springback.json");
         law.save(&path)?;
-        println!("{}", SpringbackCard(&law));
+        print!("{}", card(&law));
         println!("written to {}", path.display());
         Ok(())
     }
 }
 
 /// The errors of a law for a person.
-struct SpringbackCard<'a>(&'a Springback);
-
-impl fmt::Display for SpringbackCard<'_> {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        let Springback { hinges, errors, .. } = self.0;
-        let Some(errors) = errors else {
-            return write!(f, "law of {hinges} hinges, whose errors are not known");
-        };
-        writeln!(
-            f,
-            "law of {hinges} hinges, at {} others with the forces of their windows (root mean squares):",
-            errors.hinges
-        )?;
-        writeln!(
-            f,
-            "{:<34}{:>9}{:>9}{:>12}",
-            "", "eta_a", "eta_s", "theta, deg"
-        )?;
-        for (name, [a, s, theta]) in [
-            ("springs back", errors.sprung),
-            ("error of the residual", errors.rest),
-        ] {
-            writeln!(f, "{name:<34}{a:>9.4}{s:>9.4}{:>12.2}", theta.to_degrees())?;
-        }
-        write!(
-            f,
-            "error of the stiffness about it: {:.1} %",
-            100.0 * errors.stiffness
-        )
+fn card(law: &Springback) -> Document {
+    let hinges = law.hinges;
+    let mut page = Document::default();
+    let Some(errors) = &law.errors else {
+        page.text(format!(
+            "law of {hinges} hinges, whose errors are not known"
+        ));
+        return page;
+    };
+    page.text(format!(
+        "law of {hinges} hinges, at {} others with the forces of their windows (root mean squares):",
+        errors.hinges
+    ));
+    let mut table = Table::new(["", "eta_a", "eta_s", "theta, deg"]);
+    for (name, [a, s, theta]) in [
+        ("springs back", errors.sprung),
+        ("error of the residual", errors.rest),
+    ] {
+        let [a, s, theta] = [
+            format!("{a:.4}"),
+            format!("{s:.4}"),
+            format!("{:.2}", theta.to_degrees()),
+        ];
+        table.row([name, &a, &s, &theta]);
     }
+    page.table(table);
+    page.text(format!(
+        "error of the stiffness about it: {:.1} %",
+        100.0 * errors.stiffness
+    ));
+    page
 }

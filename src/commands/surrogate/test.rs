@@ -59,7 +59,10 @@ pub(crate) fn print_errors(surrogate: &Surrogate, database: &Database) {
         manifest.tier,
         manifest.rays
     );
-    println!("{}", StateErrors::new(surrogate, database.rows()));
+    print!(
+        "{}",
+        StateErrors::new(surrogate, database.rows()).document()
+    );
     if let Some([w, forces]) = ErrorInterval::of(surrogate, database.rows()) {
         println!("all states: W {w}; forces {forces}");
     }

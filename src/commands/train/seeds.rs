@@ -8,13 +8,13 @@ use crate::commands::train::kept_fits::{continued_fit, is_of};
 use crate::commands::train::{TrainCommand, hold};
 use crate::ui::exit::Unfinished;
 use crate::ui::progress::announce;
-use crate::ui::{comparison, interrupt, output_file};
+use crate::ui::{interrupt, output_file, run_folder};
 use ::train::{Trained, TrainingConfig};
 use anyhow::{Context, Result, bail, ensure};
 use dataset::Database;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
-use support::table::number_or_dash;
+use support::table::{Cell, Table};
 use surrogate::Surrogate;
 
 /// What all seeds of one command have in common.
@@ -130,35 +130,30 @@ impl TrainCommand {
         let errors = members.iter().map(validation_error).enumerate();
         let best = errors.min_by(|(_, left), (_, right)| left.total_cmp(right));
         let (best, _) = best.context("`--seeds` must be at least 1")?;
-        let rows = (configs.iter().zip(&members).enumerate())
-            .map(|(place, (config, member))| self.cells(config, member, place == best));
+        let mut table = Table::new(COLUMNS);
+        for (place, (config, member)) in configs.iter().zip(&members).enumerate() {
+            table.row(self.cells(config, member, place == best));
+        }
         let name = self.with_suffix("seeds");
         let folder = name.parent().unwrap_or(Path::new(""));
         let name = name.file_name().unwrap_or_default().to_string_lossy();
-        println!("{}\n", comparison::write(folder, &name, COLUMNS, rows)?);
+        run_folder::write_table(folder, &name, &table)?;
+        println!("{table}\n");
         self.write(&members[best])
     }
 
     /// The cells of one seed in the comparison.
-    fn cells(&self, config: &TrainingConfig, member: &Trained, chosen: bool) -> [String; 13] {
-        let shown = |percent: f64| number_or_dash(percent, 2);
-        let [w, d, d_peak] = validation_errors(member).map(|error| shown(100.0 * error));
-        let [test_w, f_a, f_s, m, test_d, test_d_peak] = member.test_errors.percents().map(shown);
-        [
-            config.seed.to_string(),
-            if chosen { "yes" } else { "no" }.to_owned(),
-            member.history.len().to_string(),
-            w,
-            d,
-            d_peak,
-            test_w,
-            f_a,
-            f_s,
-            m,
-            test_d,
-            test_d_peak,
-            self.member(config.seed).display().to_string(),
-        ]
+    fn cells(&self, config: &TrainingConfig, member: &Trained, chosen: bool) -> Vec<Cell> {
+        let mut cells = vec![
+            Cell::text(config.seed),
+            Cell::text(if chosen { "yes" } else { "no" }),
+            Cell::text(member.history.len()),
+        ];
+        let validation = validation_errors(member).map(|error| 100.0 * error);
+        let errors = validation.into_iter().chain(member.test_errors.percents());
+        cells.extend(errors.map(|percent| Cell::fixed(percent, 2)));
+        cells.push(Cell::text(self.member(config.seed).display()));
+        cells
     }
 
     /// The path of the weights of one of several seeds.

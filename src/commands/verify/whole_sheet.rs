@@ -57,11 +57,12 @@ impl VerifyCommand {
         let solved = watched(1, || sheet_reached(&folder), || service.solve(&solves));
         let solved = solved.map_err(|error| task_error(error.into()))?;
         let check = task.check(name, &solved[0]);
-        run_folder::write(&self.out, "sheet.md", &check.to_string())?;
+        let document = check.document();
+        run_folder::write(&self.out, "sheet.md", &document.markdown())?;
         let json = serde_json::to_string_pretty(&check)?;
         run_folder::write(&self.out, "sheet.json", &json)?;
         self.draw(scene, &check)?;
-        self.print(&check)?;
+        self.print(&check, &document)?;
         if let Some(found) = check.summary().filter(|_| self.inspected.is_run(scene)) {
             record(scene, design, |checks| checks.whole_sheet = Some(found))?;
         }

@@ -328,7 +328,7 @@ fn a_replay_compares_every_state_and_names_what_failed() {
         let design = (paths.clone(), "sheet");
         let replay = Replay::new(&windows, design, &scene.material, surrogate);
         let replay = replay.unwrap();
-        let page = replay.to_string();
+        let page = replay.document().markdown();
         assert_eq!(
             page.contains("Not solved, so that"),
             !replay.unsolved.is_empty(),

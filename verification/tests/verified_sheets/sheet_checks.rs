@@ -98,7 +98,7 @@ fn panels_held_flat_go_where_the_law_has_them() {
     }
     let flat = &check.findings[check.findings.len() - 1];
     assert_eq!(flat.severity, Severity::Note);
-    let page = check.to_string();
+    let page = check.document().markdown();
     for part in [
         "agrees with the hinge law",
         "panels held flat",
@@ -135,7 +135,12 @@ fn a_patch_of_a_sheet_is_where_the_law_has_it() {
     assert!((last.opening_deg[0] - last.opening_deg[1]).abs() < 0.3);
     let numbers: Vec<usize> = branch.panels.iter().map(|panel| panel.panel).collect();
     assert_eq!(numbers, [2, 3, 4, 5]);
-    assert!(check.to_string().contains("A patch of a larger sheet"));
+    assert!(
+        check
+            .document()
+            .to_string()
+            .contains("A patch of a larger sheet")
+    );
 
     let versions = CalculiX::find().unwrap().versions();
     let pulled = task_of([1, 0]).unwrap().solve(&versions).unwrap_err();
@@ -164,7 +169,12 @@ fn a_path_that_ends_early_is_reported_as_far_as_it_goes() {
         message.contains("not known") || message.contains("not solved"),
         "{message}"
     );
-    assert!(check.to_string().contains("free, nothing in the way"));
+    assert!(
+        check
+            .document()
+            .to_string()
+            .contains("free, nothing in the way")
+    );
 }
 
 #[test]
