@@ -9,7 +9,7 @@ mod template;
 
 use crate::new_project::cut_from::CutFrom;
 use crate::new_project::edited::{heading, scale, set};
-use crate::new_project::first_scene::{FirstScene, THINNEST_PLATE};
+use crate::new_project::first_scene::FirstScene;
 use crate::new_project::silhouette::fitted_text;
 use crate::new_project::size_args::{length, size, stock};
 use crate::new_project::template::Template;
@@ -153,7 +153,7 @@ impl NewProject {
     fn material_file(&self) -> PathBuf {
         match (&self.material, self.thickness) {
             (Some(material), _) => material.clone(),
-            (None, Some(thickness)) if thickness < THINNEST_PLATE => FILM.into(),
+            (None, Some(thickness)) if Regime::usual(thickness) == Regime::Film => FILM.into(),
             _ => PLATE.into(),
         }
     }

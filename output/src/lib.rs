@@ -27,7 +27,6 @@ mod deployment_states;
 pub mod display;
 pub mod drawing;
 pub mod listing;
-pub mod material_check;
 pub mod measurement;
 pub mod report;
 pub mod run_files;

@@ -11,6 +11,7 @@ pub mod ladder;
 pub mod level_difference;
 pub mod levels;
 pub mod localisation;
+pub mod material_check;
 pub mod measured_openings;
 pub mod measured_points;
 pub mod measured_sheet;

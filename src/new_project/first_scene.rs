@@ -24,9 +24,6 @@ use toml_edit::{Array, DocumentMut, Item, Table, value};
 pub(crate) const PANEL: f64 = 3.5;
 /// The largest opening of a hinge that is planned for a first sheet (rad): 25 degrees.
 pub(crate) const OPENING: f64 = 0.436;
-/// Thickness (mm) from which a sheet is a plate: the narrowest ligaments of a thinner one, a third of its thickness, would be
-/// too narrow for a hole wider than the kerf.
-pub(crate) const THINNEST_PLATE: f64 = 2.0;
 /// Widths of the clips at the top and at the bottom over the widths of their edges.
 const HELD: f64 = 0.21;
 const PULLED: f64 = 0.14;
@@ -73,7 +70,7 @@ impl FirstScene {
         let CuttingConfig { over_run, .. } = CuttingConfig::default();
         let largest = cut_from.map(|stock| stock.largest_sheet(over_run, WIDEST_KERF));
         let size = size.or(largest.transpose()?);
-        let plate = thickness >= THINNEST_PLATE;
+        let plate = Regime::usual(thickness) == Regime::Plate;
         let regime = match (trained, size) {
             (Some(trained), _) => trained,
             (None, None) if plate => Regime::Plate,
@@ -89,7 +86,7 @@ impl FirstScene {
             let per_thickness = PANEL * template.r_win / template.thickness;
             let thickest = size[0].min(size[1]) / FEWEST as f64 / per_thickness;
             let or_thicker = if regime == Regime::Film {
-                format!(", or a plate from {THINNEST_PLATE} mm on")
+                format!(", or a plate from {} mm on", Regime::THINNEST_PLATE)
             } else {
                 String::new()
             };

@@ -2,10 +2,10 @@
 
 use anyhow::{Result, bail, ensure};
 use clap::Args;
-use hinge::SheetMaterial;
-use output::material_check::{Intended, MaterialCheck};
-use scene::SceneConfig;
+use hinge::{Regime, SheetMaterial};
+use scene::analysis::material_check::{Intended, MaterialCheck, known_slenderness};
 use scene::run_inputs::scene_file;
+use scene::{Posture, SceneConfig};
 use std::path::PathBuf;
 use support::severity::Severity;
 use support::table::{Cell, Table};
@@ -14,7 +14,7 @@ use support::toml_file;
 /// Check a material before windows are solved with it
 ///
 /// Prints the law as the window solver reads it, the critical panel edge L* and Gamma (21)-(22), thickness against
-/// ligament width, buckling against yield, and the strain of a fold against the fracture strain. Exits with 1 if a
+/// ligament width, buckling against yield, and the openings at which ligaments tear. Exits with 1 if a
 /// verdict is an error. Example: kirigami material check configs/materials/pet-0.5mm.toml
 /// configs/scenes/pet-7x7.toml
 #[derive(Args)]
@@ -66,19 +66,22 @@ impl CheckCommand {
     }
 }
 
-/// The use that a scene states, and without a scene ligaments of 10 to 50 thicknesses.
+/// The use that a scene states, and without a scene the widths for which there are hinge data.
 fn intended(material: &SheetMaterial, scene: Option<&SceneConfig>) -> Intended {
-    /// Rotation of the hinges (deg).
-    const OPENING: f64 = 60.0;
-    let pitch = scene.map(|scene| {
-        let panels = scene.sheet.grid().panel_count();
-        (scene.sheet.outline().area() / panels as f64).sqrt()
+    let usual = known_slenderness(Regime::usual(material.thickness));
+    let lying = scene.filter(|scene| {
+        let posture = scene.posture.as_ref();
+        posture.is_none_or(|posture| posture.kind == Posture::Lying)
     });
-    let usual = [10.0, 50.0].map(|ratio| ratio * material.thickness);
     Intended {
-        w_lig: scene.map_or(usual, |scene| scene.ligament.range),
-        pitch,
-        theta: OPENING.to_radians(),
+        w_lig: scene.map_or_else(
+            || usual.map(|ratio| ratio * material.thickness),
+            |scene| scene.ligament.range,
+        ),
+        lying_pitch: lying.map(|scene| {
+            let panels = scene.sheet.grid().panel_count();
+            (scene.sheet.outline().area() / panels as f64).sqrt()
+        }),
     }
 }
 
@@ -107,26 +110,21 @@ fn print(material: &SheetMaterial, check: &MaterialCheck) {
     }
     println!("{rows}\n");
     let mut widths = Table::new([
-        "w_lig, mm",
+        "w_lig\nmm",
         "w/t",
-        "buckles at",
-        "surface yields at",
-        "surface strain",
-        "tip strain",
-        "L*, mm",
+        "buckles at\ndeg",
+        "surface yields at\ndeg",
+        "tears",
+        "L*\nmm",
         "Gamma",
     ]);
     for it in &check.ligaments {
         widths.row([
-            Cell::text(it.w_lig),
-            Cell::fixed(it.slenderness, 1),
-            Cell::text(format!("{:.2} deg", it.buckles_at_deg)),
-            Cell::text(format!("{:.1} deg", it.yields_at_deg)),
-            Cell::fixed(it.surface_strain, 3),
-            Cell::text(format!(
-                "{:.3} to {:.3}",
-                it.tip_strain[0], it.tip_strain[1]
-            )),
+            Cell::fixed(it.w_lig, 2),
+            Cell::fixed(it.slenderness, 2),
+            Cell::fixed(it.buckles_at_deg, 2),
+            Cell::fixed(it.yields_at_deg, 1),
+            Cell::text(it.tears()),
             Cell::fixed(it.critical_edge, 0),
             Cell::fixed(it.gamma, 3),
         ]);

@@ -11,7 +11,6 @@ use crate::commands::campaign::RayProgress;
 use crate::commands::material::learn::conclusion::conclusion;
 use crate::commands::material::learn::fine_tuning::FineTuning;
 use crate::commands::solve_args::{FeSolver, SolveArgs, task_error};
-use crate::new_project::first_scene::THINNEST_PLATE;
 use crate::new_project::{self, edited};
 use crate::ui::exit::Unfinished;
 use crate::ui::interrupt;
@@ -92,23 +91,16 @@ const STATES_PER_RAY: usize = 4;
 const TRAINING_FILE: &str = "fine-tuning.toml";
 const TRAINING: &str = include_str!("../../../configs/training/fine-tuning.toml");
 
-/// The regime of a material, unless a sheet says otherwise.
-fn usual_regime(material: &SheetMaterial) -> Regime {
-    if material.thickness >= THINNEST_PLATE {
-        Regime::Plate
-    } else {
-        Regime::Film
-    }
-}
-
 impl LearnCommand {
     pub(crate) fn run(&self) -> Result<()> {
         let began = Instant::now();
         let material = SheetMaterial::load(&self.material)?;
-        let tier = self.tier.unwrap_or(match usual_regime(&material) {
-            Regime::Film => Tier::Default,
-            Regime::Plate => Tier::Plate,
-        });
+        let tier = self
+            .tier
+            .unwrap_or(match Regime::usual(material.thickness) {
+                Regime::Film => Tier::Default,
+                Regime::Plate => Tier::Plate,
+            });
         let from = match &*self.from {
             [] => shipped_parents(tier.regime()),
             named => named.to_vec(),

@@ -1,19 +1,18 @@
 //! What a material means for the ligaments and panels of an intended sheet, before windows are solved.
 //!
-//! Estimates for a ligament of width w in a sheet of thickness t, folded by theta (sections 4.2 and 5.1):
+//! Estimates for a ligament of width w in a sheet of thickness t (sections 4.2 and 5.1):
 //!
 //! | quantity | value |
 //! |---|---|
-//! | strain at which it buckles | (t / w)^2 / 2, at the rotation t / w |
-//! | surface strain of a fold as long as the ligament is wide | t theta / (2 w) |
-//! | plastic strain of its most strained 1 %, at the tip | 0.05 to 0.3 theta |
+//! | of a film: strain at which it buckles | (t / w)^2 / 2, at the rotation t / w |
+//! | of a film: rotation at which a fold as long as the ligament is wide yields at its surface | 2 w / t times the yield strain |
+//! | rotation at which the most strained 1 % tears, at the tip | fracture strain over [`tip_strain`] |
 //! | critical panel edge, Gamma | (22), (21) |
 //!
-//! The range of the strain at the tip comes from window solves, tier `small`, of the five materials of Table 2 at w / t
-//! = 18 and 36 and rotations of 45 and 60 degrees; docs/MATERIALS.md lists them.
+//! docs/MATERIALS.md has the windows that the strain at the tip comes from.
 
-use hinge::SheetMaterial;
-use scene::analysis::localisation::{critical_edge, gamma};
+use crate::analysis::localisation::{critical_edge, gamma};
+use hinge::{Regime, SheetMaterial};
 use serde::Serialize;
 use support::severity::{Finding, Severity};
 
@@ -22,10 +21,8 @@ use support::severity::{Finding, Severity};
 pub struct Intended {
     /// Minimum and maximum ligament width (mm).
     pub w_lig: [f64; 2],
-    /// Panel edge (mm), if it is known.
-    pub pitch: Option<f64>,
-    /// Rotation of the hinges (rad).
-    pub theta: f64,
+    /// Panel edge (mm) of a sheet that lies on a surface.
+    pub lying_pitch: Option<f64>,
 }
 
 /// Estimates for one ligament width.
@@ -35,14 +32,12 @@ pub struct LigamentEstimate {
     pub w_lig: f64,
     /// Width over thickness.
     pub slenderness: f64,
-    /// Rotation at which the ligament buckles (deg).
-    pub buckles_at_deg: f64,
-    /// Rotation at which the surface of the fold yields (deg).
-    pub yields_at_deg: f64,
-    /// Surface strain of the fold at the intended rotation.
-    pub surface_strain: f64,
-    /// Range of the plastic strain at the tip at the intended rotation.
-    pub tip_strain: [f64; 2],
+    /// Rotation at which the ligament buckles (deg); `None` for a plate.
+    pub buckles_at_deg: Option<f64>,
+    /// Rotation at which the surface of the fold yields (deg); `None` for a plate.
+    pub yields_at_deg: Option<f64>,
+    /// The least and the largest rotation at which the tip tears, at most a half turn (deg).
+    pub tears_at_deg: [f64; 2],
     /// L* (mm).
     pub critical_edge: f64,
     /// Gamma at the intended panel edge.
@@ -62,10 +57,33 @@ pub struct MaterialCheck {
     pub verdicts: Vec<Finding>,
 }
 
+/// Limit of an opening (deg).
+const HALF_TURN: f64 = 180.0;
+
 /// Plastic strain of the most strained 1 % of a ligament over the rotation (1/rad).
-const TIP_STRAIN: [f64; 2] = [0.05, 0.3];
-/// Range of w / t of the shipped polyester data.
-const KNOWN_SLENDERNESS: [f64; 2] = [10.0, 50.0];
+pub const fn tip_strain(regime: Regime) -> [f64; 2] {
+    match regime {
+        Regime::Film => [0.05, 0.3],
+        Regime::Plate => [0.4, 1.7],
+    }
+}
+
+/// Range of w / t of the shipped hinge data.
+pub const fn known_slenderness(regime: Regime) -> [f64; 2] {
+    match regime {
+        Regime::Film => [10.0, 50.0],
+        Regime::Plate => [0.3, 0.95],
+    }
+}
+
+/// The opening of most sheets (deg).
+const fn usual_opening(regime: Regime) -> f64 {
+    match regime {
+        Regime::Film => 60.0,
+        Regime::Plate => 25.0,
+    }
+}
+
 /// Densities below this (kg/m^3) are densities of plastics and papers.
 const LIGHTEST_METAL: f64 = 1700.0;
 /// Maximum of Young's modulus over density of plastics without fibres and of papers (MPa m^3/kg); paper has up to 12.
@@ -75,7 +93,7 @@ const STIFFEST_PLASTIC: f64 = 12.0;
 const STEEPEST_DROP: f64 = 0.07;
 
 impl MaterialCheck {
-    /// Checks a valid material for an intended use with positive lengths and rotation.
+    /// Checks a valid material for an intended use with positive lengths.
     pub fn new(material: &SheetMaterial, intended: &Intended) -> Self {
         let [min, max] = intended.w_lig;
         let estimate = |w_lig| LigamentEstimate::new(material, intended, w_lig);
@@ -86,7 +104,7 @@ impl MaterialCheck {
         verdicts.extend(buckling(material, &ligaments[0]));
         verdicts.extend(slenderness(&ligaments));
         verdicts.extend(panels(intended, &ligaments));
-        verdicts.push(fracture(material, intended, &ligaments[0]));
+        verdicts.push(tearing(material, &ligaments[0]));
         verdicts.sort_by_key(|verdict| std::cmp::Reverse(verdict.severity));
         Self {
             law_hash: material.law_hash(),
@@ -99,17 +117,35 @@ impl MaterialCheck {
 
 impl LigamentEstimate {
     fn new(material: &SheetMaterial, intended: &Intended, w_lig: f64) -> Self {
-        let (t, theta) = (material.thickness, intended.theta);
+        let slenderness = w_lig / material.thickness;
+        let regime = Regime::of(slenderness);
+        let of_film = |angle: f64| (regime == Regime::Film).then_some(angle.to_degrees());
+        let [least, most] = tip_strain(regime).map(|strain| material.fracture_strain / strain);
         Self {
             w_lig,
-            slenderness: w_lig / t,
-            buckles_at_deg: (t / w_lig).to_degrees(),
-            yields_at_deg: (2.0 * w_lig * yield_strain(material) / t).to_degrees(),
-            surface_strain: t * theta / (2.0 * w_lig),
-            tip_strain: TIP_STRAIN.map(|share| share * theta),
+            slenderness,
+            buckles_at_deg: of_film(slenderness.recip()),
+            yields_at_deg: of_film(2.0 * slenderness * yield_strain(material)),
+            tears_at_deg: [most, least].map(|angle| angle.to_degrees().min(HALF_TURN)),
             critical_edge: critical_edge(material, w_lig),
-            gamma: intended.pitch.map(|edge| gamma(material, w_lig, edge)),
+            gamma: (intended.lying_pitch).map(|edge| gamma(material, w_lig, edge)),
         }
+    }
+
+    /// The rotations at which the tip tears, in words.
+    pub fn tears(&self) -> String {
+        let [from, to] = self.tears_at_deg;
+        if from >= HALF_TURN {
+            "at no opening".to_owned()
+        } else if to >= HALF_TURN {
+            format!("at {from:.0} deg or more")
+        } else {
+            format!("at {from:.0} to {to:.0} deg")
+        }
+    }
+
+    fn regime(&self) -> Regime {
+        Regime::of(self.slenderness)
     }
 }
 
@@ -185,11 +221,11 @@ fn stiffness(material: &SheetMaterial) -> Option<Finding> {
     })
 }
 
-/// Whether the narrowest ligament buckles before it yields in its plane.
+/// Whether the narrowest ligament of a film buckles before it yields in its plane.
 fn buckling(material: &SheetMaterial, narrowest: &LigamentEstimate) -> Option<Finding> {
     let yields = yield_strain(material);
     let buckles = 0.5 / narrowest.slenderness.powi(2);
-    (buckles >= yields).then(|| {
+    (narrowest.regime() == Regime::Film && buckles >= yields).then(|| {
         let width = material.thickness / (2.0 * yields).sqrt();
         let message = format!(
             "ligaments narrower than {width:.1} mm yield in their plane, at a strain of {yields:.4}, before they buckle, at \
@@ -200,23 +236,27 @@ fn buckling(material: &SheetMaterial, narrowest: &LigamentEstimate) -> Option<Fi
     })
 }
 
-/// Width over thickness against the range for which hinge data exist.
+/// Width over thickness against the ranges for which hinge data exist.
 fn slenderness(ligaments: &[LigamentEstimate]) -> Option<Finding> {
-    let [least, most] = KNOWN_SLENDERNESS;
     // Rounding of a width given as a multiple of the thickness.
     let slack = 1e-9;
-    let known = least * (1.0 - slack)..=most * (1.0 + slack);
-    let outside = ligaments
-        .iter()
-        .map(|ligament| (ligament.w_lig, ligament.slenderness))
-        .filter(|(_, slenderness)| !known.contains(slenderness));
+    let outside = ligaments.iter().filter(|ligament| {
+        let [least, most] = known_slenderness(ligament.regime());
+        !(least * (1.0 - slack)..=most * (1.0 + slack)).contains(&ligament.slenderness)
+    });
     let found: Vec<String> = outside
-        .map(|(w_lig, slenderness)| format!("{w_lig} mm is {slenderness:.1} thicknesses"))
+        .map(|ligament| {
+            let LigamentEstimate {
+                w_lig, slenderness, ..
+            } = ligament;
+            format!("{w_lig} mm is {slenderness:.1} thicknesses")
+        })
         .collect();
     (!found.is_empty()).then(|| {
+        let [[narrow, wide], [least, most]] = [Regime::Plate, Regime::Film].map(known_slenderness);
         let message = format!(
-            "a ligament of {}: the shipped hinge data cover {least} to {most}, so try a window (kirigami solve) before a \
-             campaign",
+            "a ligament of {}: the shipped hinge data cover {narrow} to {wide} of plates and {least} to {most} of films, so try a \
+             window (kirigami solve) before a campaign",
             found.join(", of ")
         );
         Severity::Warning.finding(message)
@@ -225,7 +265,7 @@ fn slenderness(ligaments: &[LigamentEstimate]) -> Option<Finding> {
 
 /// Gamma at the intended panel edge.
 fn panels(intended: &Intended, ligaments: &[LigamentEstimate]) -> Option<Finding> {
-    let pitch = intended.pitch?;
+    let pitch = intended.lying_pitch?;
     let least = ligaments
         .iter()
         .min_by(|a, b| a.gamma.unwrap_or(0.0).total_cmp(&b.gamma.unwrap_or(0.0)))?;
@@ -246,22 +286,23 @@ fn panels(intended: &Intended, ligaments: &[LigamentEstimate]) -> Option<Finding
 }
 
 /// The strain at the tip against the fracture strain.
-fn fracture(material: &SheetMaterial, intended: &Intended, ligament: &LigamentEstimate) -> Finding {
-    let [least, most] = ligament.tip_strain;
-    let limit = material.fracture_strain;
-    let at = format!(
-        "a fold of {:.0} deg strains the tip of a ligament by {least:.3} to {most:.3}; the fracture strain is {limit}",
-        intended.theta.to_degrees()
-    );
-    let (severity, tears) = match (least >= limit, most >= limit) {
-        (true, _) => (
-            Severity::Error,
-            "tears at its tip; reduce --theta-deg to the rotation that is needed",
-        ),
-        (_, true) => (Severity::Warning, "may tear at its tip"),
-        _ => (Severity::Note, "does not tear"),
+fn tearing(material: &SheetMaterial, ligament: &LigamentEstimate) -> Finding {
+    let regime = ligament.regime();
+    let ([least, most], [from, to]) = (tip_strain(regime), ligament.tears_at_deg);
+    let opening = usual_opening(regime);
+    let (severity, tears) = if to < opening {
+        (Severity::Error, "tears")
+    } else if from < opening {
+        (Severity::Warning, "may tear")
+    } else {
+        (Severity::Note, "does not tear")
     };
-    severity.finding(format!("{at}: the ligament {tears}"))
+    severity.finding(format!(
+        "a {regime} that opens by {opening:.0} deg, as most do, {tears}: the tip of a ligament strains by {least} to {most} for each rad, \
+         and with the fracture strain {} it tears {}",
+        material.fracture_strain,
+        ligament.tears()
+    ))
 }
 
 #[cfg(test)]
@@ -276,8 +317,7 @@ mod tests {
 
     const PAPER: Intended = Intended {
         w_lig: [18.0, 18.0],
-        pitch: Some(406.4),
-        theta: 1.0,
+        lying_pitch: Some(406.4),
     };
 
     fn check(change: impl Fn(&mut SheetMaterial), intended: Intended) -> MaterialCheck {
@@ -306,14 +346,17 @@ mod tests {
         assert!((250.0..350.0).contains(&ligament.gamma.unwrap()));
         assert_eq!(ligament.slenderness, 36.0);
         // At the rotation of yield the surface strain is the yield strain.
-        let at_yield = 0.5 * ligament.yields_at_deg.to_radians() / 36.0;
+        let at_yield = 0.5 * ligament.yields_at_deg.unwrap().to_radians() / 36.0;
         assert!((at_yield - 44.0 / 3000.0).abs() < 1e-12);
     }
 
     #[test]
     fn every_limit_has_its_verdict() {
-        let pitch = Some(50.0);
-        let small = Intended { pitch, ..PAPER };
+        let lying_pitch = Some(50.0);
+        let small = Intended {
+            lying_pitch,
+            ..PAPER
+        };
         let w_lig = [3.0, 30.0];
         let narrow = Intended { w_lig, ..PAPER };
         let with = |change: fn(&mut SheetMaterial)| check(change, PAPER);
@@ -358,5 +401,24 @@ mod tests {
         ] {
             assert!(says(check, severity, text), "{text}: {check:?}");
         }
+    }
+
+    #[test]
+    fn the_ligament_of_a_plate_is_checked_as_one() {
+        let w_lig = [0.15, 0.475];
+        let intended = Intended {
+            w_lig,
+            lying_pitch: None,
+        };
+        let check = check(|material| material.fracture_strain = 1.7, intended);
+        let [ligament, _] = check.ligaments[..] else {
+            panic!("{check:?}")
+        };
+        assert_eq!((ligament.buckles_at_deg, ligament.gamma), (None, None));
+        // 1.7 over 1.7 and over 0.4 for each rad.
+        assert!((ligament.tears_at_deg[0] - 57.2958).abs() < 1e-4);
+        assert_eq!(ligament.tears_at_deg[1], 180.0);
+        let notes = check.verdicts.iter().map(|found| found.severity);
+        assert!(notes.eq([Severity::Note; 3]), "{check:?}");
     }
 }
