@@ -66,14 +66,13 @@ pub struct NewProject {
 const PLATE: &str = "configs/materials/polypropylene-3mm.toml";
 const FILM: &str = "configs/materials/pet-0.5mm.toml";
 /// The shipped weights; those for the material of a sheet are used.
-pub(crate) const WEIGHTS: [&str; 7] = [
+pub(crate) const WEIGHTS: [&str; 6] = [
     "data/polypropylene-3mm/medium.safetensors",
     "data/petg-3mm/medium.safetensors",
     "data/aluminium-2mm/medium.safetensors",
     "data/s235-2mm/medium.safetensors",
     "data/pet-0.5mm/medium.safetensors",
     "data/polypropylene-0.8mm/weights.safetensors",
-    "data/s235-1.5mm/weights.safetensors",
 ];
 
 impl NewProject {

@@ -107,11 +107,16 @@ impl Table {
         rows.map(|row| row.iter().map(|cell| cell.shown.as_str()).collect())
     }
 
+    /// The names of the columns on one line.
+    fn names(&self) -> impl Iterator<Item = String> {
+        let head = self.head.iter();
+        head.map(|name| name.trim_end().replace('\n', ", "))
+    }
+
     /// The table in Markdown, one line a row.
     pub fn markdown(&self) -> String {
         let line = |cells: Vec<String>| format!("| {} |\n", cells.join(" | "));
-        let named = |name: &String| escaped(&name.trim_end().replace('\n', ", "));
-        let mut text = line(self.head.iter().map(named).collect());
+        let mut text = line(self.names().map(|name| escaped(&name)).collect());
         text += &format!("|{}\n", "---|".repeat(self.head.len()));
         for row in &self.rows {
             text += &line(row.iter().map(|cell| escaped(&cell.shown)).collect());
@@ -121,7 +126,8 @@ impl Table {
 
     /// The table as CSV with one line of headings.
     pub fn csv(&self) -> String {
-        let mut text = csv_line(self.head.iter().map(String::as_str));
+        let names: Vec<String> = self.names().collect();
+        let mut text = csv_line(names.iter().map(String::as_str));
         for row in &self.rows {
             text += &csv_line(row.iter().map(|cell| cell.stored.as_str()));
         }
@@ -320,6 +326,7 @@ mod tests {
                 .markdown()
                 .starts_with("| hinge | w_lig, mm | found by |\n")
         );
+        assert!(table.csv().starts_with("hinge,\"w_lig, mm\",found by\n"));
         let mut nameless = Table::new(["", ""]);
         nameless.row(["area", "1.00 mm^2"]);
         assert_eq!(nameless.to_string(), " area   1.00 mm^2");

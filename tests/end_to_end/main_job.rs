@@ -158,7 +158,7 @@ fn hinges_of_the_design_are_solved_once(work: &Workplace) {
             "The design ",
             "runs/demo/design/state.json: ",
             "states of 12 hinges",
-            "| M_theta |",
+            " M_theta ",
         ],
     );
     let states = std::fs::read_to_string(work.path("replay/replay.csv")).unwrap();

@@ -94,6 +94,7 @@ impl Studio {
     /// The stream of events.
     fn events(&self) -> BufReader<TcpStream> {
         let mut stream = TcpStream::connect(self.host()).unwrap();
+        stream.set_read_timeout(Some(PATIENCE)).unwrap();
         write!(
             stream,
             "GET /events?{} HTTP/1.1\r\nHost: {}\r\n\r\n",

@@ -190,10 +190,13 @@ fn a_sheet_on_pins_has_no_equilibria_to_list() {
     assert!(matches!(error, DesignError::NoMechanics));
 }
 
+/// A scene of these tests.
+const STEEL_FILM: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/run/steel-film");
+
 /// The steel sheet buckles at a small stroke, between two load steps of its scene: there the load is largest.
 #[test]
 fn the_largest_load_of_a_driven_path_and_weak_weights_are_stated() {
-    let steel = Finished::shipped("steel-1250x1500", |_| ());
+    let steel = Finished::shipped(STEEL_FILM, |_| ());
     let report = &steel.report;
     let reached = report.facts.reached.as_ref().unwrap();
     let peak = reached.peak.unwrap();
@@ -202,7 +205,7 @@ fn the_largest_load_of_a_driven_path_and_weak_weights_are_stated() {
 
     // The same path at a thousand load steps.
     let stored = design_of_run(&steel.scene).unwrap();
-    let scene = shipped("steel-1250x1500", |config| config.load_steps = 1000);
+    let scene = shipped(STEEL_FILM, |config| config.load_steps = 1000);
     let problem = scene.problem().unwrap();
     let deployment = problem.deploy(&stored.unwrap()).unwrap();
     let mechanics = problem.model.mechanics().unwrap();

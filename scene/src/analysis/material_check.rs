@@ -6,7 +6,7 @@
 //! |---|---|
 //! | of a film: strain at which it buckles | (t / w)^2 / 2, at the rotation t / w |
 //! | of a film: rotation at which a fold as long as the ligament is wide yields at its surface | 2 w / t times the yield strain |
-//! | rotation at which the most strained 1 % tears, at the tip | fracture strain over [`tip_strain`] |
+//! | rotation at which the most strained 1 % tears, at the tip | fracture strain and yield strain over [`tip_strain`] |
 //! | critical panel edge, Gamma | (22), (21) |
 //!
 //! docs/MATERIALS.md has the windows that the strain at the tip comes from.
@@ -120,7 +120,9 @@ impl LigamentEstimate {
         let slenderness = w_lig / material.thickness;
         let regime = Regime::of(slenderness);
         let of_film = |angle: f64| (regime == Regime::Film).then_some(angle.to_degrees());
-        let [least, most] = tip_strain(regime).map(|strain| material.fracture_strain / strain);
+        // The fracture strain is plastic.
+        let tears = material.fracture_strain + yield_strain(material);
+        let [least, most] = tip_strain(regime).map(|strain| tears / strain);
         Self {
             w_lig,
             slenderness,
@@ -415,8 +417,8 @@ mod tests {
             panic!("{check:?}")
         };
         assert_eq!((ligament.buckles_at_deg, ligament.gamma), (None, None));
-        // 1.7 over 1.7 and over 0.4 for each rad.
-        assert!((ligament.tears_at_deg[0] - 57.2958).abs() < 1e-4);
+        // The fracture strain 1.7 and the yield strain 44 / 3000 over 1.7 and over 0.4 for each rad.
+        assert!((ligament.tears_at_deg[0] - 57.7901).abs() < 1e-4);
         assert_eq!(ligament.tears_at_deg[1], 180.0);
         let notes = check.verdicts.iter().map(|found| found.severity);
         assert!(notes.eq([Severity::Note; 3]), "{check:?}");
