@@ -365,7 +365,7 @@ mod tests {
         let soft = check(|material| material.plastic[0][0] = 30.0, narrow);
         for (check, severity, text) in [
             (
-                &with(|it| it.fracture_strain = 0.04),
+                &with(|it| it.fracture_strain = 0.03),
                 Severity::Error,
                 "tears",
             ),
