@@ -89,7 +89,8 @@ impl CompareCommand {
         let json = serde_json::to_string_pretty(&report)?;
         let write = |name, text: &str| run_folder::write(&self.out, name, text);
         write("comparison.json", &json)?;
-        write("comparison.txt", &report.document().to_string())?;
+        let document = report.document();
+        write("comparison.txt", &document.to_string())?;
         write("residuals.csv", &report.residuals_csv())?;
         write("openings.csv", &report.openings_csv())?;
         let svg = drawing::measured(path.sheet, &measured.best, &report);
@@ -97,7 +98,7 @@ impl CompareCommand {
         if self.json {
             println!("{json}");
         } else {
-            println!("{}\nwritten to {}", report.document(), self.out.display());
+            println!("{document}\nwritten to {}", self.out.display());
         }
         Ok(())
     }

@@ -125,19 +125,16 @@ impl VerifyCommand {
         run_folder::write(&self.out, "deployed.svg", &picture)?;
         let budget = found.budget(scene)?;
         let equilibrium = SheetErrors::new(&found, name, budget.as_ref());
-        run_folder::write(
-            &self.out,
-            "equilibrium.md",
-            &equilibrium.document().markdown(),
-        )?;
+        let mut document = equilibrium.document();
+        run_folder::write(&self.out, "equilibrium.md", &document.markdown())?;
         let Some(law) = law else {
-            return self.print(&equilibrium, &equilibrium.document());
+            return self.print(&equilibrium, &document);
         };
         let released = released_by_elements(scene, &found, &problem, &law, &windows, self.rounds);
         let released = released.map_err(task_error)?;
-        run_folder::write(&self.out, "released.md", &released.document().markdown())?;
-        let mut document = equilibrium.document();
-        document.append(released.document());
+        let page = released.document();
+        run_folder::write(&self.out, "released.md", &page.markdown())?;
+        document.append(page);
         let released = Released {
             equilibrium,
             released,
@@ -175,11 +172,12 @@ impl VerifyCommand {
         let of_design = (paths, name);
         let replay = Replay::new(&windows, of_design, &scene.material, surrogate);
         let replay = replay.map_err(task_error)?;
-        run_folder::write(&self.out, "replay.md", &replay.document().markdown())?;
+        let document = replay.document();
+        run_folder::write(&self.out, "replay.md", &document.markdown())?;
         run_folder::write(&self.out, "replay.csv", &replay.csv())?;
         let axes = ["finite elements", "surrogate"];
         compared_states::draw(&replay.groups(), axes, &self.out.join("replay"))?;
-        self.print_text(&replay.document());
+        self.print_text(&document);
         Ok(())
     }
 

@@ -63,6 +63,15 @@ impl Document {
     }
 }
 
+/// A report that is a table alone.
+impl From<Table> for Document {
+    fn from(table: Table) -> Self {
+        Self {
+            parts: vec![Part::Table(table)],
+        }
+    }
+}
+
 fn list(mark: &str, items: &[String]) -> String {
     let lines = items.iter().map(|item| format!("{mark} {item}"));
     lines.collect::<Vec<_>>().join("\n")

@@ -8,7 +8,6 @@ use design::sheet::kinematics::{deployed_corners, hinge_deformations};
 use design::sheet::opening_limits::{CONTACT, Span};
 use design::sheet::validity::overlap;
 use serde_json::json;
-use support::document::Document;
 use support::table::Table;
 
 /// Lists the sheet with the same opening angle `theta` (rad) at every hinge; panel 0 keeps its centroid.
@@ -67,7 +66,8 @@ pub fn deployment(
         let most = format!("at most {most:.4}, at {theta:.1} deg");
         table.row([name, &format!("{stretch:.4}"), &most]);
     }
-    let mut document = Document::default();
-    document.table(table);
-    Ok(Listing { numbers, document })
+    Ok(Listing {
+        numbers,
+        document: table.into(),
+    })
 }

@@ -10,7 +10,6 @@ use design::pattern::design_vector::DesignVector;
 use design::sheet::kinematics::deployed_corners;
 use design::sheet::validity::overlap;
 use serde_json::{Value, json};
-use support::document::Document;
 use support::table::Table;
 
 const HEAD: [&str; 12] = [
@@ -38,11 +37,9 @@ pub fn equilibrium(problem: &DesignProblem, design: &DesignVector) -> Result<Lis
     let (steps, rows): (Vec<Value>, Vec<_>) = path.iter().map(list).unzip();
     let mut table = Table::new(HEAD);
     rows.into_iter().for_each(|row| table.row(row));
-    let mut document = Document::default();
-    document.table(table);
     Ok(Listing {
         numbers: json!({ "steps": steps }),
-        document,
+        document: table.into(),
     })
 }
 

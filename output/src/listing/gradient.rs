@@ -9,7 +9,6 @@ use design::pattern::design_vector::DesignVector;
 use scene::Scene;
 use scene::placement::deployed_outline;
 use serde_json::json;
-use support::document::Document;
 use support::table::Table;
 
 /// Lists L of (16), its terms and its gradient in (z, ell, omega) of a design of a scene and its problem.
@@ -60,7 +59,8 @@ pub fn gradient(
     ] {
         table.row([name.to_owned(), number(value), String::new()]);
     }
-    let mut document = Document::default();
-    document.table(table);
-    Ok(Listing { numbers, document })
+    Ok(Listing {
+        numbers,
+        document: table.into(),
+    })
 }
