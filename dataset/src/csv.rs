@@ -5,7 +5,7 @@ use crate::error::DatasetError;
 use crate::rows::Row;
 use crate::schema::{D_PEAK, NUMBERS, TEXTS, columns};
 use csv::StringRecord;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
 use std::path::Path;
@@ -16,7 +16,7 @@ use support::csv_table::NamedTable;
 /// Each column of the database has the same name in the table unless `columns` gives another name. A column that is
 /// missing in the table is taken from `constants`. `job` (the ray) and `lambda` may be missing if every row is a
 /// separate ray. Of the results, W, F_a, F_s, M_theta and D are required; without a model of damage, D is the constant 0.
-#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct ColumnMap {
     /// Name in the table of each column of the database.
@@ -28,7 +28,7 @@ pub struct ColumnMap {
 }
 
 /// A number or a text.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum Constant {
     /// The value of a column of numbers.

@@ -67,8 +67,8 @@ pub enum DatasetError {
     )]
     Expanding { values: usize, bytes: usize },
     #[error(
-        "the texts of the table are over {most} bytes long at row {index} of the column `{column}`, which texts of measured \
-         data never are: the file is damaged, or made to fill the memory"
+        "the texts of the table exceed {most} bytes at row {index} of the column `{column}`: the file is damaged, or made to fill \
+         the memory"
     )]
     LongText {
         column: &'static str,

@@ -11,6 +11,7 @@ mod cutting_order;
 mod dxf;
 mod fabrication_error;
 mod finished_contours;
+mod gaps;
 mod machine;
 mod numbers;
 mod pdf_tiles;
@@ -18,7 +19,6 @@ mod sheet_drawing;
 mod svg;
 mod tiling;
 mod totals;
-mod written_check;
 
 pub use attachments::PlacedAttachment;
 pub use cut_drawing::{CutDrawing, Layer, deployed_panels};

@@ -1,7 +1,6 @@
 //! A scene that was read and checked, together with the files that it names.
 
 use crate::checks;
-use crate::hinge_model::SurrogateFile;
 use crate::keys::{SceneConfig, folder, resolved};
 use crate::level::Level;
 use crate::loaded_hinge::LoadedHinge;
@@ -124,27 +123,23 @@ impl Scene {
     /// The keys of the scene for a file in another folder: its paths are absolute.
     pub fn located(&self) -> std::io::Result<SceneConfig> {
         let mut config = self.config.clone();
-        let locate = |path: &mut PathBuf| {
-            let file = self.file(path);
-            *path = (file.canonicalize()).or_else(|_| std::path::absolute(&file))?;
-            Ok::<_, std::io::Error>(())
-        };
-        let further = config.surrogate.iter_mut();
-        let further = further.flat_map(SurrogateFile::further_files_mut);
-        let target = config.target.file_mut().map(|(file, _)| file);
-        let named = further.map(|(_, file)| file).chain(target);
-        for path in named.chain([&mut config.material, &mut config.output]) {
-            locate(path)?;
+        for (_, path) in config.inputs_mut() {
+            *path = self.absolute(path)?;
         }
-        for (_, weights) in config.weights_files_mut() {
-            locate(weights)?;
-        }
+        config.material = self.absolute(&config.material)?;
+        config.output = self.absolute(&config.output)?;
         Ok(config)
     }
 
     /// An error if a law of released hinges is not for the hinges of this scene.
     pub fn check_springback(&self, law: &Springback) -> Result<(), SpringbackMismatch> {
         springback_file::check(&self.config, &self.measured, law)
+    }
+
+    /// The absolute path of a file that the scene names.
+    fn absolute(&self, path: &Path) -> std::io::Result<PathBuf> {
+        let file = self.file(path);
+        (file.canonicalize()).or_else(|_| std::path::absolute(&file))
     }
 
     /// A path that the scene names.

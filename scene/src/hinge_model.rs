@@ -54,14 +54,3 @@ pub struct SurrogateFile {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub solved_hinges: Option<PathBuf>,
 }
-
-impl SurrogateFile {
-    /// The files that it names besides weights, each with the name of its copy in the folder of a run.
-    pub(crate) fn further_files_mut(
-        &mut self,
-    ) -> impl Iterator<Item = (&'static str, &mut PathBuf)> {
-        let springback = self.springback.iter_mut().map(|file| ("springback", file));
-        let solved = self.solved_hinges.iter_mut();
-        springback.chain(solved.map(|file| ("solved-hinges", file)))
-    }
-}

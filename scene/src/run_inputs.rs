@@ -14,7 +14,6 @@
 
 use crate::checked_scene::Scene;
 use crate::drawing::drawn_outline::numbered;
-use crate::hinge_model::SurrogateFile;
 use crate::keys::{SceneConfig, resolved};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -111,27 +110,16 @@ pub(super) fn keep(scene: &Scene) -> Result<InputHashes, FileError> {
     let mut config = scene.config.without_unread_weights();
     config.output = ".".into();
     config.material = kept.write(MATERIAL_FILE, &toml(&scene.measured, &folder)?)?;
-    if let Some((file, kind)) = config.target.file_mut() {
-        let name = format!("{INPUTS}/target.{kind}");
+    for (name, file) in config.inputs_mut() {
+        let name = format!("{INPUTS}/{name}");
         let (original, number) = numbered(&resolved(&scene.path, file));
+        if let Some(stem) = name.strip_suffix(".safetensors") {
+            kept.copy(&original.with_extension("json"), &format!("{stem}.json"))?;
+        }
         *file = kept.copy(&original, &name)?;
         if let Some(number) = number {
             *file = format!("{name}#{number}").into();
         }
-    }
-    for (name, weights) in config.weights_files_mut() {
-        let stem = format!("{INPUTS}/{name}");
-        let original = resolved(&scene.path, weights);
-        kept.copy(&original.with_extension("json"), &format!("{stem}.json"))?;
-        *weights = kept.copy(&original, &format!("{stem}.safetensors"))?;
-    }
-    for (name, file) in config
-        .surrogate
-        .iter_mut()
-        .flat_map(SurrogateFile::further_files_mut)
-    {
-        let name = format!("{INPUTS}/{name}.json");
-        *file = kept.copy(&resolved(&scene.path, file), &name)?;
     }
     kept.write(SCENE_FILE, &toml(&config, &folder)?)?;
     Ok(kept.hashes)
@@ -168,6 +156,25 @@ impl Kept<'_> {
 }
 
 impl SceneConfig {
+    /// The files that the scene names besides its material, to be changed, each with the name of its copy in the folder of a run.
+    pub(crate) fn inputs_mut(&mut self) -> Vec<(String, &mut PathBuf)> {
+        let target = self.target.file_mut().into_iter();
+        let mut inputs: Vec<_> = target.map(|(name, file)| (name.to_owned(), file)).collect();
+        if let Some(learned) = &mut self.surrogate {
+            let mut add = |name: &str, file| inputs.push((name.to_owned(), file));
+            add("weights.safetensors", &mut learned.weights);
+            let mut add_all =
+                |name: &str, files: Option<_>| files.into_iter().for_each(|file| add(name, file));
+            add_all("draft.safetensors", learned.draft.as_mut());
+            add_all("springback.json", learned.springback.as_mut());
+            add_all("solved-hinges.json", learned.solved_hinges.as_mut());
+            for (i, file) in learned.ensemble.iter_mut().enumerate() {
+                add(&format!("ensemble-{}.safetensors", i + 1), file);
+            }
+        }
+        inputs
+    }
+
     /// The same scene without paths: two scenes that differ in paths alone describe one design problem if the files agree.
     pub(super) fn without_paths(&self) -> Self {
         let mut config = self.without_unread_weights();
@@ -177,11 +184,8 @@ impl SceneConfig {
             learned.springback = None;
             learned.solved_hinges = None;
         }
-        for (_, path) in config.weights_files_mut() {
+        for (_, path) in config.inputs_mut() {
             *path = PathBuf::new();
-        }
-        if let Some((file, _)) = config.target.file_mut() {
-            *file = PathBuf::new();
         }
         config.material = PathBuf::new();
         config.output = PathBuf::new();

@@ -70,14 +70,15 @@ pub enum TargetShape {
 }
 
 impl TargetShape {
-    /// The file that the target is read from and its usual extension, if there is one.
-    pub(crate) fn file_mut(&mut self) -> Option<(&mut PathBuf, &'static str)> {
+    /// The file that the target is read from, if there is one, and the name of its copy in the folder of a run.
+    pub(crate) fn file_mut(&mut self) -> Option<(&'static str, &mut PathBuf)> {
         match self {
-            Self::Csv { file } => Some((file, "csv")),
+            Self::Csv { file } => Some(("target.csv", file)),
             Self::Svg { file, .. } => {
                 let text = file.to_string_lossy().to_lowercase();
                 let is_dxf = text.contains(".dxf");
-                Some((file, if is_dxf { "dxf" } else { "svg" }))
+                let name = if is_dxf { "target.dxf" } else { "target.svg" };
+                Some((name, file))
             }
             Self::Circle { .. }
             | Self::Rectangle { .. }

@@ -41,22 +41,6 @@ impl SceneConfig {
         }
     }
 
-    /// The weights that a learned level could read, to be changed, each with the name of its copy in the folder of a run.
-    pub(crate) fn weights_files_mut(&mut self) -> Vec<(String, &mut PathBuf)> {
-        let learned = self.surrogate.iter_mut();
-        let learned = learned.filter(|_| self.level.is_learned());
-        learned
-            .flat_map(|files| {
-                let ensemble = files.ensemble.iter_mut().enumerate();
-                let ensemble = ensemble.map(|(i, file)| (format!("ensemble-{}", i + 1), file));
-                let draft = files.draft.iter_mut().map(|file| ("draft".into(), file));
-                std::iter::once(("weights".into(), &mut files.weights))
-                    .chain(draft)
-                    .chain(ensemble)
-            })
-            .collect()
-    }
-
     /// The same scene without the sections of weights that its hinge law does not read.
     pub(crate) fn without_unread_weights(&self) -> Self {
         let mut config = self.clone();

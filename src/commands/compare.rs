@@ -104,8 +104,9 @@ impl CompareCommand {
     }
 
     fn fit(&self, file: &Path, path: &ShapePath) -> Result<MeasuredSheet> {
-        let file = PointsFile::read(file, self.y_down)?;
-        MeasuredSheet::new(path, &file.points, file.scale()).map_err(|error| file.located(error))
+        let points = PointsFile::read(file, path.sheet.panels.len(), self.y_down)?;
+        MeasuredSheet::new(path, &points.points, points.scale())
+            .with_context(|| file.display().to_string())
     }
 
     /// Writes `template.csv`, to be filled, and `numbering.svg`.

@@ -195,7 +195,7 @@ impl DesignCommand {
                 "{failed} of {} runs failed{failures}",
                 runs.len()
             ),
-            _ => bail!(Unfinished::new(left, "runs")),
+            _ => bail!(Unfinished { left, what: "runs" }),
         }
         Ok(())
     }
@@ -256,10 +256,10 @@ impl DesignCommand {
         let Climbed { scene, designed } = climbed;
         if designed.ended == Ended::Stopped {
             let made = designed.history.len() - 1;
-            bail!(Unfinished::new(
-                scene.config.optimiser.steps - made,
-                "design steps"
-            ));
+            bail!(Unfinished {
+                left: scene.config.optimiser.steps - made,
+                what: "design steps"
+            });
         }
         let report = write_run(&scene, &designed, self.force)?;
         Ok((report, designed.ended))
@@ -357,10 +357,10 @@ pub(crate) fn write_run(scene: &Scene, designed: &Designed, force: bool) -> Resu
 fn check(scene: &Scene, report: &Report, ended: &Ended) -> Result<()> {
     match ended {
         Ended::Completed | Ended::Settled => {}
-        Ended::Stopped => bail!(Unfinished::new(
-            scene.config.optimiser.steps - report.steps,
-            "design steps"
-        )),
+        Ended::Stopped => bail!(Unfinished {
+            left: scene.config.optimiser.steps - report.steps,
+            what: "design steps"
+        }),
         Ended::Stuck { reason } => bail!("the search is stuck: {reason}"),
     }
     let errors: Vec<String> = report.errors().map(Warning::to_string).collect();

@@ -1,11 +1,11 @@
 //! The CSV file of measured points; errors name file, line and column.
 
-use anyhow::{Context, Error, Result, anyhow, bail, ensure};
+use anyhow::{Context, Result, anyhow, bail, ensure};
 use clap::ValueEnum;
 use design::geometry::similarity::Scale;
 use scene::analysis::measured_points::{Mark, MeasuredPoint};
-use scene::analysis::measured_sheet::{MeasurementError, PointFault};
-use std::path::{Path, PathBuf};
+use std::collections::HashMap;
+use std::path::Path;
 use support::csv_table::{NamedTable, name_and_unit};
 use support::nearest::nearest;
 
@@ -36,11 +36,8 @@ enum Unit {
 /// The points of a file.
 #[derive(Debug)]
 pub(super) struct PointsFile {
-    path: PathBuf,
     /// Measured points in mm, or in pixels.
     pub points: Vec<MeasuredPoint>,
-    /// The line of every point.
-    lines: Vec<u64>,
     unit: Unit,
 }
 
@@ -56,22 +53,34 @@ impl Unit {
 }
 
 impl PointsFile {
-    /// Reads a file whose lengths are in mm, or in the unit of its column `unit`.
-    pub fn read(path: &Path, y_down: bool) -> Result<Self> {
+    /// Reads a file of points of a sheet with so many panels; lengths are in mm, or in the unit of the column `unit`.
+    pub fn read(path: &Path, panels: usize, y_down: bool) -> Result<Self> {
         let NamedTable { head, rows } =
             NamedTable::read(path).map_err(|error| anyhow!("cannot read {error}"))?;
         let located = |line: u64| format!("{}:{line}", path.display());
         let columns = Columns::new(&head.1).with_context(|| located(head.0))?;
         let mut file = Self {
-            path: path.to_owned(),
             points: Vec::new(),
-            lines: Vec::new(),
             unit: Unit::Mm,
         };
+        let mut lines = HashMap::new();
         for (line, row) in rows {
             let Some((mut point, own)) = columns.point(&row).with_context(|| located(line))? else {
                 continue;
             };
+            let mark = point.mark;
+            ensure!(
+                mark.panel < panels,
+                "{}: {mark}: the sheet has the panels 0 to {}",
+                located(line),
+                panels - 1
+            );
+            if let Some(first) = lines.insert(mark, line) {
+                bail!(
+                    "{}: {mark} is measured twice, first in line {first}",
+                    located(line)
+                );
+            }
             let own = own.unwrap_or(file.unit);
             let pixels = |unit: Unit| unit == Unit::Px;
             if !file.points.is_empty() && pixels(own) != pixels(file.unit) {
@@ -86,7 +95,6 @@ impl PointsFile {
                 point.position[1] *= -1.0;
             }
             file.points.push(point);
-            file.lines.push(line);
         }
         Ok(file)
     }
@@ -96,26 +104,6 @@ impl PointsFile {
         match self.unit {
             Unit::Px => Scale::Free,
             _ => Scale::Given,
-        }
-    }
-
-    /// The error with the name of the file, and the line of the point that it concerns.
-    pub fn located(&self, error: MeasurementError) -> Error {
-        let path = self.path.display();
-        match error {
-            MeasurementError::Point { index, mark, fault } => {
-                let line = self.lines[index];
-                match fault {
-                    PointFault::Repeated { first } => {
-                        anyhow!(
-                            "{path}:{line}: {mark} is measured twice, first in line {}",
-                            self.lines[first]
-                        )
-                    }
-                    fault => anyhow!("{path}:{line}: {mark}: {fault}"),
-                }
-            }
-            error => anyhow!("{path}: {error}"),
         }
     }
 }
@@ -186,9 +174,10 @@ impl Columns {
         };
         let length = |axis: usize| -> Result<f64> {
             let value = text(self.position[axis]);
-            value.parse().ok().with_context(|| {
+            let number = value.parse().ok().filter(|x: &f64| x.is_finite());
+            number.with_context(|| {
                 let (name, value) = (["x", "y"][axis], value.escape_debug());
-                format!("column `{name}`: `{value}` is not a number")
+                format!("column `{name}`: `{value}` is not a finite number")
             })
         };
         let corner = self.corner.filter(|&column| !text(column).is_empty());
@@ -200,6 +189,10 @@ impl Columns {
             panel: whole(self.panel, "panel")?,
             corner: corner.map(|column| whole(column, "corner")).transpose()?,
         };
+        ensure!(
+            mark.corner.is_none_or(|corner| corner < 4),
+            "{mark}: a panel has the corners 0 to 3"
+        );
         let position = [length(0)?, length(1)?];
         Ok(Some((
             MeasuredPoint { mark, position },

@@ -90,7 +90,11 @@ impl SolveCommand {
             || solver.attempt(&solve, &self.out, limit, stop),
         )
         .map_err(|error| match error.is_stop() {
-            true => Unfinished::new(1, "ray").into(),
+            true => Unfinished {
+                left: 1,
+                what: "ray",
+            }
+            .into(),
             false => Error::from(error),
         })?;
         if let Some(grid) = solver.fields(&solve, &self.out)? {

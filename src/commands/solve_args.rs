@@ -70,9 +70,11 @@ impl SolveArgs {
 /// The error of a task for the command line: a task that was stopped is unfinished.
 pub fn task_error(error: VerificationError) -> anyhow::Error {
     match error {
-        VerificationError::Solve(SolveListError::Stopped { left }) => {
-            Unfinished::new(left, "solves").into()
+        VerificationError::Solve(SolveListError::Stopped { left }) => Unfinished {
+            left,
+            what: "solves",
         }
+        .into(),
         error => error.into(),
     }
 }

@@ -4,31 +4,28 @@ mod campaign;
 mod kept_fits;
 mod seeds;
 
+use kept_fits::continued_fit;
 pub use kept_fits::kept_fit;
 
 use crate::commands::dataset::correction;
 use crate::ui::charts;
-use crate::ui::exit::Unfinished;
 use crate::ui::input_file;
-use crate::ui::progress::Progress;
-use crate::ui::{interrupt, output_file, picture, run_folder};
+use crate::ui::{output_file, picture, run_folder};
 use anyhow::{Context, Result, bail};
 use clap::Args;
 use dataset::Database;
 use std::fmt::Write;
 use std::fs::File;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::Ordering;
-use std::time::{Duration, Instant};
 use support::table::{Cell, Table};
 use surrogate::{ErrorBin, Surrogate, TestErrors};
-use train::{Epoch, Start, Trained, Training, TrainingConfig, TrainingData};
+use train::{Epoch, Trained, TrainingConfig};
 
 /// Train the surrogate hinge energy on a database
 ///
 /// Writes the weights (of the best epoch and of the last), their card, the learning curve and a parity
 /// plot, and prints the errors on hinge geometries that were not used for
-/// training. A stopped training continues with --resume; of several seeds, with the same command. Examples:
+/// training. After a stop the same command continues. Examples:
 /// kirigami train runs/demo/hinges.parquet --config configs/training/demo.toml;
 /// kirigami train configs/campaigns/polypropylene-3mm.toml
 ///
@@ -55,15 +52,12 @@ pub struct TrainCommand {
     /// docs/MATERIALS.md lists the errors over the number of rays
     #[arg(long, value_name = "WEIGHTS")]
     from: Option<PathBuf>,
-    /// Continue a training that was stopped, with the same --config and --from; others are an error. One that was killed in its first half
-    /// minute left nothing, and starts from the beginning
-    #[arg(long, conflicts_with = "seeds")]
-    resume: bool,
     /// Number of trainings, with successive seeds. The one with the smallest validation error of W and the forces is kept
     /// as the weights. Seeds that are trained already are not trained again
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..=64))]
     seeds: u64,
-    /// Replace existing weights; with several seeds, the weights of another training
+    /// Replace existing weights; with several seeds, the weights of another training. Also discard the state of another training that
+    /// was stopped
     #[arg(long)]
     replace: bool,
 }
@@ -73,9 +67,6 @@ const WEIGHTS: &str = "runs/weights/surrogate.safetensors";
 
 /// The data on which test errors are measured.
 pub const UNSEEN: &str = "samples of unseen geometries";
-
-/// Maximum training time that is lost if the process is killed.
-const SAVE_EVERY: Duration = Duration::from_secs(30);
 
 impl TrainCommand {
     pub(crate) fn run(&self) -> Result<()> {
@@ -102,14 +93,8 @@ impl TrainCommand {
         self.refuse_existing()?;
         let _held = hold(&self.out)?;
         let state = self.state();
-        let pretrained = base.as_ref();
-        let start = if self.is_resumed() {
-            let state = &state;
-            Start::State { state, pretrained }
-        } else {
-            pretrained.map_or(Start::Fresh, Start::Weights)
-        };
-        let trained = fit((&database).into(), &config, start, &state)?;
+        let data = (&database).into();
+        let trained = continued_fit(data, &config, base.as_ref(), &state, self.replace)?;
         self.write(&trained)?;
         std::fs::remove_file(&state).ok();
         Ok(())
@@ -153,25 +138,11 @@ impl TrainCommand {
         Ok(())
     }
 
-    /// Whether the training continues from the state of a stopped one. Without weights, a missing state means that the
-    /// training was killed before it had saved one.
-    fn is_resumed(&self) -> bool {
-        self.resume && self.state().exists()
-    }
-
     fn refuse_existing(&self) -> Result<()> {
-        if self.replace || self.is_resumed() {
-            return Ok(());
-        }
         for path in [&self.out, &card_path(&self.out)] {
-            output_file::refuse_existing(path)?;
-        }
-        if self.state().exists() {
-            bail!(
-                "{} was left by a stopped training: continue with --resume, or start again with \
-                 --replace",
-                self.state().display()
-            );
+            if !self.replace {
+                output_file::refuse_existing(path)?;
+            }
         }
         Ok(())
     }
@@ -197,7 +168,7 @@ impl TrainCommand {
         Ok(())
     }
 
-    /// The path of the file written by [`Training::save`].
+    /// The path of the file written by [`Training::save`](train::Training::save).
     fn state(&self) -> PathBuf {
         self.out.with_extension("state")
     }
@@ -235,41 +206,6 @@ impl TrainCommand {
         picture::save(&chart, &stem, 1200)?;
         Ok(())
     }
-}
-
-/// One training; its state is saved in the file `state` from time to time, when it is stopped and at its end.
-pub fn fit(
-    data: TrainingData,
-    config: &TrainingConfig,
-    start: Start,
-    state: &Path,
-) -> Result<Trained> {
-    let stop = interrupt::stop_flag()?;
-    let mut training = Training::new(data, config, start)?;
-    let bar = Progress::new(config.epochs, "epochs");
-    let mut saved = Instant::now();
-    while !training.is_finished() {
-        let epoch = training.epoch()?;
-        let message = format!(
-            "loss {:.2e}, validation {:.2e}",
-            epoch.training_loss, epoch.validation_loss
-        );
-        bar.show(epoch.epoch, None, &message);
-        let stopping = stop.load(Ordering::Relaxed);
-        if stopping || saved.elapsed() > SAVE_EVERY || training.is_finished() {
-            training.save(state)?;
-            saved = Instant::now();
-        }
-        if stopping && !training.is_finished() {
-            bail!(Unfinished {
-                left: epoch.epochs - epoch.epoch,
-                what: "epochs",
-                again: "add --resume",
-            });
-        }
-    }
-    bar.finish();
-    Ok(training.finish()?)
 }
 
 /// Locks the files of weights against a second training until the returned file is dropped.

@@ -84,8 +84,7 @@ impl Engine {
         files.get(name).cloned()
     }
 
-    /// Answers a request after those before it. Of changes that follow one another only the last is answered; of searches one is
-    /// under way, or waits.
+    /// Queues a request. Consecutive changes are merged into the last one; at most one search is running or queued.
     pub fn ask(&self, request: Request) {
         let mut waiting = self.inbox.lock();
         match &request {

@@ -18,22 +18,12 @@ pub enum Exit {
 
 /// A run that was stopped before its work was finished.
 #[derive(Debug, thiserror::Error)]
-#[error("stopped with {left} {what} left; {again} to continue")]
+#[error("stopped with {left} {what} left; run the same command again to continue")]
 pub struct Unfinished {
     /// Number of items left.
     pub left: usize,
     /// The items, in the plural.
     pub what: &'static str,
-    /// What the user does to continue.
-    pub again: &'static str,
-}
-
-impl Unfinished {
-    /// Of a run that the same command continues.
-    pub fn new(left: usize, what: &'static str) -> Self {
-        let again = "run the same command again";
-        Self { left, what, again }
-    }
 }
 
 impl Exit {

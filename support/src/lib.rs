@@ -42,6 +42,5 @@ pub mod toml_file;
 pub mod vectors;
 pub mod verbose;
 pub mod vtk;
-mod whole_arrays;
 pub mod whole_file;
 pub mod worker_pool;

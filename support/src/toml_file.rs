@@ -4,9 +4,14 @@
 use crate::file_error::FileError;
 use crate::nearest::nearest;
 use crate::text_file;
-use crate::whole_arrays::{DECIMAL_POINT, Whole};
+use serde::Serialize;
 use serde::de::DeserializeOwned;
 use std::path::{Path, PathBuf};
+use toml::de::{DeTable, DeValue};
+use toml::{Spanned, Value};
+
+/// A hint at decimal commas.
+const DECIMAL_POINT: &str = "the decimal sign is a point (40.5, not 40,5)";
 
 /// Why a configuration file cannot be read; the message names the file, the line and the key.
 #[derive(Debug, thiserror::Error)]
@@ -34,20 +39,17 @@ pub enum ConfigError {
 }
 
 /// Reads a TOML file into `T`, which should deny unknown fields.
-pub fn read<T: DeserializeOwned>(path: &Path) -> Result<T, ConfigError> {
+pub fn read<T: DeserializeOwned + Serialize>(path: &Path) -> Result<T, ConfigError> {
     let text = text_file::read(path).map_err(FileError::at(path))?;
     parse(&text, path)
 }
 
 /// Parses TOML text; errors name `path`.
-pub fn parse<T: DeserializeOwned>(text: &str, path: &Path) -> Result<T, ConfigError> {
-    let document = toml::Deserializer::parse(text);
-    let read = document.and_then(|document| T::deserialize(Whole(document)));
-    read.map_err(|error| {
+pub fn parse<T: DeserializeOwned + Serialize>(text: &str, path: &Path) -> Result<T, ConfigError> {
+    let located = |message: &str, start: usize| {
         let path = path.to_owned();
-        let start = error.span().map_or(0, |span| span.start);
         let line = 1 + text[..start].matches('\n').count();
-        match unknown_field(error.message()) {
+        match unknown_field(message) {
             Some((key, known)) => ConfigError::UnknownKey {
                 path,
                 line,
@@ -57,13 +59,49 @@ pub fn parse<T: DeserializeOwned>(text: &str, path: &Path) -> Result<T, ConfigEr
             None => ConfigError::Syntax {
                 path,
                 line,
-                message: plain(
-                    error.message(),
-                    text.lines().nth(line - 1).unwrap_or_default(),
-                ),
+                message: plain(message, text.lines().nth(line - 1).unwrap_or_default()),
             },
         }
-    })
+    };
+    let refused = |error: toml::de::Error| {
+        let start = error.span().map_or(0, |span| span.start);
+        located(error.message(), start)
+    };
+    let config: T = toml::from_str(text).map_err(refused)?;
+    let given = DeTable::parse(text).map_err(refused)?;
+    // What was read from TOML can be written as TOML.
+    let read = Value::try_from(&config).ok();
+    match read.and_then(|read| longer_table(given.get_ref(), &read)) {
+        None => Ok(config),
+        Some((start, [expected, found])) => Err(located(
+            &format!(
+                "an array of {expected} has {found} elements: remove those too many; {DECIMAL_POINT}"
+            ),
+            start,
+        )),
+    }
+}
+
+/// The place of the first array in a file that has more elements than were read, and both numbers. A type with N elements reads the first
+/// N of them: decimal commas, `force = [40,5, 0,0]`, would be read as `[40, 5]`.
+fn longer_array(given: &Spanned<DeValue>, read: &Value) -> Option<(usize, [usize; 2])> {
+    match (given.get_ref(), read) {
+        (DeValue::Table(given), read) => longer_table(given, read),
+        (DeValue::Array(all), Value::Array(read)) if all.len() > read.len() => {
+            Some((given.span().start, [read.len(), all.len()]))
+        }
+        (DeValue::Array(given), Value::Array(read)) => {
+            let mut pairs = given.iter().zip(read);
+            pairs.find_map(|(given, read)| longer_array(given, read))
+        }
+        _ => None,
+    }
+}
+
+fn longer_table(given: &DeTable, read: &Value) -> Option<(usize, [usize; 2])> {
+    given
+        .iter()
+        .find_map(|(key, given)| longer_array(given, read.get(key.get_ref().as_ref())?))
 }
 
 /// The message of the parser about a line, without the terms of Rust, with the key and a hint at decimal commas.
@@ -117,9 +155,9 @@ fn unknown_field(message: &str) -> Option<(String, Vec<String>)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use serde::Deserialize;
+    use serde::{Deserialize, Serialize};
 
-    #[derive(Debug, Deserialize)]
+    #[derive(Debug, Serialize, Deserialize)]
     #[serde(deny_unknown_fields)]
     struct Film {
         #[allow(dead_code, reason = "a key that a file may contain")]
@@ -150,13 +188,13 @@ mod tests {
 
     #[test]
     fn an_array_with_decimal_commas_is_refused_wherever_it_stands() {
-        #[derive(Debug, PartialEq, Deserialize)]
+        #[derive(Debug, PartialEq, Serialize, Deserialize)]
         #[serde(rename_all = "kebab-case")]
         enum Shape {
             Circle { centre: [f64; 2] },
             Line([f64; 1]),
         }
-        #[derive(Debug, Deserialize)]
+        #[derive(Debug, Serialize, Deserialize)]
         struct Scene {
             size: [f64; 2],
             range: Option<[f64; 2]>,

@@ -126,11 +126,10 @@ fn a_training_that_was_killed_before_it_saved_a_state_starts_again() {
     killed.kill().unwrap();
     killed.wait().unwrap();
     assert!(!work.path("runs/own.state").exists());
-    let resume = format!("{train} --resume");
-    work.output(&resume);
+    work.output(&train);
     // A training that is complete is not made again.
     let trained = std::fs::read(work.path(WEIGHTS)).unwrap();
-    let error = work.error(&resume);
+    let error = work.error(&train);
     assert!(error.contains("own.safetensors exists"), "{error}");
     assert_eq!(std::fs::read(work.path(WEIGHTS)).unwrap(), trained);
 }

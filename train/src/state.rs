@@ -32,8 +32,8 @@ pub enum StateError {
     )]
     Malformed { path: PathBuf, reason: String },
     #[error(
-        "{path} is the state of another training: the {what} is different; resume with the original \
-         one, or start again",
+        "{path} is the state of another training: the {what} is different; continue with the \
+         original one, or discard it with --replace",
         path = .path.display()
     )]
     Other { path: PathBuf, what: &'static str },

@@ -14,7 +14,7 @@ use design::geometry::polygon::{bounds, distance};
 use design::hinge_law::{CorrectedLaw, Correction, HingeLaw, MissingForces, Order};
 use design::objective::design_problem::{Deployment, DesignError, DesignProblem, Model};
 use design::pattern::design_vector::DesignVector;
-use design::sheet::kinematics::deployed_corners;
+use design::sheet::kinematics::{corner_distances, deployed_corners};
 use hinge::HingeSample;
 use mesher::Tier;
 use scene::Scene;
@@ -136,17 +136,6 @@ pub fn balanced(
     Ok((found, iteration.problem))
 }
 
-/// The hinges of a sheet by finite elements.
-#[derive(Default)]
-struct SolvedHinges {
-    /// The last state of every hinge along its path; `None` if it was not solved.
-    ends: Vec<Option<HingeSample>>,
-    /// The hinges that were not.
-    unsolved: Vec<UnsolvedHinge>,
-    /// CPU time of their windows (s).
-    cpu_seconds: f64,
-}
-
 /// The quasi-Newton iteration between two rounds.
 struct Iteration<'a> {
     scene: &'a Scene,
@@ -201,11 +190,11 @@ impl Iteration<'_> {
         found: &mut Balanced,
     ) -> Result<(), VerificationError> {
         let deployed = found.by_elements();
-        let SolvedHinges {
-            ends,
-            unsolved,
-            cpu_seconds,
-        } = self.solve(windows, deployed)?;
+        let solved = windows.solve(&paths_of(deployed), &self.scene.material)?;
+        let ends = solved.samples.iter();
+        let ends: Vec<Option<HingeSample>> = ends
+            .map(|samples| samples.as_ref()?.last().copied())
+            .collect();
         let force_error = force_error(&self.problem.model, deployed, &ends);
         self.add_missing_forces(deployed, &ends);
         let last = found
@@ -220,13 +209,13 @@ impl Iteration<'_> {
         for (known, end) in found.hinges.iter_mut().zip(ends) {
             *known = end.or(*known);
         }
-        found.cpu_seconds += cpu_seconds;
+        found.cpu_seconds += solved.cpu_seconds;
         found.deployments.push(next);
         found.rounds.push(Round {
             tier: windows.tier,
             force_error,
             movement,
-            unsolved,
+            unsolved: solved.unsolved,
         });
         Ok(())
     }
@@ -285,33 +274,6 @@ impl Iteration<'_> {
         next.at_full_load()?;
         let movement = movements(deployed, &next).into_iter().fold(0.0, f64::max);
         Ok((next, movement))
-    }
-
-    /// Solves every hinge along its path in the sheet.
-    fn solve(
-        &self,
-        windows: &ElementWindows,
-        deployed: &Deployment,
-    ) -> Result<SolvedHinges, VerificationError> {
-        let windows = windows.solve(&paths_of(deployed), &self.scene.material)?;
-        let mut solved = SolvedHinges::default();
-        for (hinge, window) in windows.iter().enumerate() {
-            solved.cpu_seconds += window.record.cpu_seconds;
-            solved.ends.push(match window.complete() {
-                Ok(samples) => samples.last().copied(),
-                Err(failed) => {
-                    let reason = failed.to_string();
-                    solved.unsolved.push(UnsolvedHinge { hinge, reason });
-                    None
-                }
-            });
-        }
-        if let Some(first) = solved.unsolved.first()
-            && solved.unsolved.len() == windows.len()
-        {
-            return Err(VerificationError::NoHinge(first.to_string()));
-        }
-        Ok(solved)
     }
 
     /// Adds what the law lacks of the forces of finite elements at the last states of the solved hinges.
@@ -401,11 +363,8 @@ fn force_error(model: &Model, deployment: &Deployment, ends: &[Option<HingeSampl
 
 /// Distance of each panel corner between the last states of two deployments of one sheet (mm).
 pub fn movements(from: &Deployment, to: &Deployment) -> Vec<f64> {
-    let corners =
-        |of: &Deployment| deployed_corners(&of.sheet, &of.final_step().configuration).concat();
-    std::iter::zip(corners(from), corners(to))
-        .map(|(p, q)| distance(p, q))
-        .collect()
+    let [from_state, to_state] = [from, to].map(|of| &of.final_step().configuration);
+    corner_distances(&from.sheet, from_state, to_state)
 }
 
 /// Diagonal of the deployed sheet's bounding box (mm).

@@ -8,7 +8,7 @@
 use crate::balanced_sheet::{BALANCED, Balanced, size};
 use crate::recorded_path::paths_of;
 use crate::releases::solved;
-use crate::replay::{ElementWindows, UnsolvedHinge};
+use crate::replay::{ElementWindows, SolvedPaths, UnsolvedHinge};
 use crate::verification_error::VerificationError;
 use design::equilibrium::unloading::ReleasedSheet;
 use design::objective::design_problem::{Deployment, DesignProblem};
@@ -62,11 +62,15 @@ pub fn released_by_elements(
     let mut movements = Vec::new();
     let (mut own_forces, mut unsolved) = (0.0, Vec::new());
     for _ in 0..rounds {
-        let ends = element_forces(scene, deployed, &released, windows)?;
-        own_forces = share(deployed, found, &ends.forces);
+        let ends = solved_back(scene, deployed, &released, windows)?;
         unsolved = ends.unsolved;
+        let ends = ends.samples.iter();
+        let ends: Vec<_> = ends
+            .map(|samples| Some(samples.as_ref()?.last()?.forces().to_array()))
+            .collect();
+        own_forces = share(deployed, found, &ends);
         let states = &released.last().deformations;
-        let hinges = (released.hinges.iter().zip(states).zip(&ends.forces))
+        let hinges = (released.hinges.iter().zip(states).zip(&ends))
             .map(|((hinge, state), forces)| {
                 // A hinge that was not solved stays as it is.
                 let Some(forces) = forces else {
@@ -103,21 +107,13 @@ pub fn released_by_elements(
     })
 }
 
-/// The hinges of an unloaded sheet, by finite elements.
-struct ElementForces {
-    /// (F_a, F_s, M_theta) of every hinge; `None` if it was not solved.
-    forces: Vec<Option<[f64; 3]>>,
-    /// The hinges that were not.
-    unsolved: Vec<UnsolvedHinge>,
-}
-
-/// The forces of every hinge by finite elements, along its path in the deployed sheet and back.
-fn element_forces(
+/// The states of every hinge by finite elements, along its path in the deployed sheet and back.
+fn solved_back(
     scene: &Scene,
     deployed: &Deployment,
     released: &ReleasedSheet,
     windows: &ElementWindows,
-) -> Result<ElementForces, VerificationError> {
+) -> Result<SolvedPaths, VerificationError> {
     /// States on the way back, each with the part of the path that a load step has.
     const BACK: usize = 5;
     let mut paths = paths_of(deployed);
@@ -129,26 +125,7 @@ fn element_forces(
             HingeDeformation::from(from_fn(|i| from[i] + share * (to[i] - from[i])))
         }));
     }
-    let solved = windows.solve(&paths, &scene.material)?;
-    let mut unsolved = Vec::new();
-    let forces = solved
-        .iter()
-        .enumerate()
-        .map(|(hinge, window)| match window.complete() {
-            Ok(samples) => samples.last().map(|last| last.forces().to_array()),
-            Err(failed) => {
-                let reason = failed.to_string();
-                unsolved.push(UnsolvedHinge { hinge, reason });
-                None
-            }
-        });
-    let forces: Vec<_> = forces.collect();
-    match &unsolved[..] {
-        [first, ..] if unsolved.len() == solved.len() => {
-            Err(VerificationError::NoHingeReplayed(first.to_string()))
-        }
-        _ => Ok(ElementForces { forces, unsolved }),
-    }
+    windows.solve(&paths, &scene.material)
 }
 
 /// Root mean square of forces over the root mean square of the forces under load.

@@ -3,7 +3,7 @@
 use crate::recorded_path::RecordedPath;
 use crate::verification_error::VerificationError;
 use dataset::ComparedState;
-use fe_driver::{SolveService, Solved, WindowSolve};
+use fe_driver::{SolveService, WindowSolve};
 use hinge::{HingeDeformation, HingeSample, SheetMaterial};
 use mesher::Tier;
 use serde::Serialize;
@@ -56,20 +56,50 @@ pub struct ElementWindows<'a> {
     pub service: &'a SolveService<'a>,
 }
 
+/// Hinges of a sheet, solved along their paths.
+#[derive(Default)]
+pub(crate) struct SolvedPaths {
+    /// The states of every hinge by finite elements; `None` if it was not solved.
+    pub samples: Vec<Option<Vec<HingeSample>>>,
+    /// The hinges that were not.
+    pub unsolved: Vec<UnsolvedHinge>,
+    /// CPU time of the windows (s).
+    pub cpu_seconds: f64,
+}
+
 impl ElementWindows<'_> {
-    /// The windows of hinges solved along their paths, in the same order.
+    /// Solves hinges along their paths; an error if none is solved.
     pub(crate) fn solve(
         &self,
         paths: &[RecordedPath],
         material: &SheetMaterial,
-    ) -> Result<Vec<Solved>, VerificationError> {
+    ) -> Result<SolvedPaths, VerificationError> {
         let versions = self.service.versions();
         let solve = |path: &RecordedPath| {
             let problem = path.problem(material, self.tier)?;
             Ok::<_, VerificationError>(WindowSolve::new(problem, &versions))
         };
         let solves: Vec<WindowSolve> = paths.iter().map(solve).collect::<Result<_, _>>()?;
-        Ok(self.service.solve(&solves)?)
+        let mut solved = SolvedPaths::default();
+        for (path, window) in paths.iter().zip(self.service.solve(&solves)?) {
+            solved.cpu_seconds += window.record.cpu_seconds;
+            match window.complete() {
+                Ok(samples) => solved.samples.push(Some(samples.clone())),
+                Err(failed) => {
+                    solved.samples.push(None);
+                    solved.unsolved.push(UnsolvedHinge {
+                        hinge: path.hinge,
+                        reason: failed.to_string(),
+                    });
+                }
+            }
+        }
+        match &solved.unsolved[..] {
+            [first, ..] if solved.unsolved.len() == paths.len() => {
+                Err(VerificationError::NoHinge(first.to_string()))
+            }
+            _ => Ok(solved),
+        }
     }
 }
 
@@ -83,26 +113,15 @@ impl Replay {
         surrogate: &Surrogate,
     ) -> Result<Self, VerificationError> {
         let solved = windows.solve(&paths, material)?;
-        let (mut hinges, mut unsolved) = (Vec::new(), Vec::new());
-        for (path, window) in paths.into_iter().zip(&solved) {
-            match window.complete() {
-                Ok(samples) => hinges.push(ReplayedHinge::new(path, samples, surrogate)),
-                Err(failed) => unsolved.push(UnsolvedHinge {
-                    hinge: path.hinge,
-                    reason: failed.to_string(),
-                }),
-            }
-        }
-        if let [failed, ..] = &unsolved[..]
-            && hinges.is_empty()
-        {
-            return Err(VerificationError::NoHingeReplayed(failed.to_string()));
-        }
+        let hinges = paths.into_iter().zip(solved.samples);
+        let hinges = hinges
+            .filter_map(|(path, samples)| Some(ReplayedHinge::new(path, &samples?, surrogate)))
+            .collect();
         Ok(Self {
             name: name.to_owned(),
             tier: windows.tier,
             hinges,
-            unsolved,
+            unsolved: solved.unsolved,
         })
     }
 

@@ -38,12 +38,8 @@ pub enum VerificationError {
     Unload(#[from] UnloadError),
     #[error("an unloaded hinge has no positive stiffness by the law of released hinges")]
     NotElastic,
-    #[error(
-        "the equilibrium needs the forces of the hinges, and none is solved: {0}. Try another mesh with --tier"
-    )]
+    #[error("finite elements solved no hinge: {0}. Try another mesh with --tier")]
     NoHinge(String),
-    #[error("no hinge was solved: {0}")]
-    NoHingeReplayed(String),
     #[error(
         "the weights were trained on the tier `{trained_on}`, which is no mesh tier: pass the \
          tier to compare with as --tier"

@@ -2,7 +2,7 @@
 
 use crate::display::{Colour, Shape, Style, Text};
 use design::geometry::polygon::{area, mean};
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 /// The tool or the purpose of a shape, in the order of cutting: what is cut later holds what is cut before.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -61,7 +61,7 @@ impl Layer {
 }
 
 /// A colour by which machines tell cuts from marks.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub(super) enum Pen {
     Black,

@@ -19,9 +19,11 @@
 use crate::cut_file::attachments::PlacedAttachment;
 use crate::cut_file::cut_drawing::{CutDrawing, Layer};
 use crate::cut_file::fabrication_error::FabricationError;
-use crate::cut_file::written_check::{self, ROUNDING, carries};
+use crate::cut_file::gaps::{self, Cut};
 use crate::display::Shape;
-use design::geometry::polygon::{distance, distance_to_segment, edges};
+use design::geometry::polygon::{
+    distance, distance_between_segments, distance_to_segment, edges, side,
+};
 use design::objective::design_problem::Deployment;
 use design::pattern::cut_pattern::CutPattern;
 use design::sheet::cut_sheet::AttachmentPoint;
@@ -29,6 +31,9 @@ use design::sheet::cut_sheet::Sheet;
 use design::sheet::topology::hinge_sites;
 use scene::{CuttingConfig, Scene};
 use std::collections::BTreeMap;
+
+/// Rounding of lengths (mm).
+const ROUNDING: f64 = 1e-6;
 
 /// One straight cut through the sheet.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -73,8 +78,8 @@ impl CutLines {
         Self::new(pattern, sheet, scene.config.cutting, &attachments)
     }
 
-    /// The cuts of `sheet`, which must come from `pattern`, held and pulled at `attachments`. They are checked to be the cuts of the
-    /// simulated sheet, to meet nowhere and to leave the sheet in one piece.
+    /// The cuts of `sheet`, which must come from `pattern`, held and pulled at `attachments`. They are checked to leave every ligament as
+    /// wide as in the model, to cut every edge of a panel, and to meet nowhere, so that the sheet stays in one piece.
     pub fn new(
         pattern: &CutPattern,
         sheet: &Sheet,
@@ -110,7 +115,7 @@ impl CutLines {
                 .collect::<Result<_, _>>()?,
         };
         cuts.reach_what_they_cut(sheet)?;
-        written_check::check(&cuts.drawing(), sheet)?;
+        gaps::check(cuts.finished(), &cuts.outline, cuts.kerf)?;
         Ok(cuts)
     }
 
@@ -138,6 +143,21 @@ impl CutLines {
             }
         }
         Ok(())
+    }
+
+    /// The finished holes and slits.
+    fn finished(&self) -> Vec<Cut> {
+        let holes = self.holes.iter().enumerate().map(|(hinge, hole)| Cut {
+            ends: [hole.centre; 2],
+            radius: hole.radius,
+            hinges: vec![hinge],
+        });
+        let slits = self.slits.iter().map(|slit| Cut {
+            ends: slit.ends,
+            radius: 0.5 * self.kerf,
+            hinges: slit.hinges.into_iter().flatten().collect(),
+        });
+        holes.chain(slits).collect()
     }
 
     /// The paths of the tool, in the order of the pattern.
@@ -218,6 +238,14 @@ impl CutLines {
         let to_outline = edges(&self.outline).map(|(p, q)| distance_to_segment(tip, p, q));
         to_slits.chain(to_outline).fold(f64::INFINITY, f64::min)
     }
+}
+
+/// Whether an edge lies along a line, at least in part.
+fn carries(line: &[[f64; 2]; 2], edge: [[f64; 2]; 2]) -> bool {
+    let [a, b] = *line;
+    edge.iter()
+        .all(|end| (side((a, b), *end) / distance(a, b)).abs() < ROUNDING)
+        && distance_between_segments(*line, edge) < ROUNDING
 }
 
 /// Every slit once: the main cut of one hinge (open on the outline) or of two.

@@ -75,17 +75,6 @@ pub enum FabricationError {
          panels larger (objective.panel_shape, objective.min_panel_width)"
     )]
     EdgeNotCut { panel: usize },
-    #[error(
-        "the {what} {index} is written as {written:.6} and simulated as {simulated:.6} (mm, mm^2): this is an error of \
-         kirigami"
-    )]
-    Differs {
-        what: &'static str,
-        /// The hinge or the panel.
-        index: usize,
-        written: f64,
-        simulated: f64,
-    },
     #[error("the drawing takes {pages} pages, more than {limit}: choose a larger paper")]
     TooManyPages { pages: usize, limit: usize },
 }

@@ -15,7 +15,7 @@ use support::toml_file;
 const SHIPPED: &str = include_str!("../../../configs/machines.toml");
 
 /// A table of machines and services, `configs/machines.toml`.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Machines {
     /// Machines, by what their files hold.
@@ -27,7 +27,7 @@ pub struct Machines {
 }
 
 /// What the file for a machine holds.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Machine {
     /// The name on the command line, which is also the name of the folder of its files.
@@ -53,7 +53,7 @@ pub struct Machine {
 }
 
 /// How a slit is drawn.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 enum Cuts {
     /// A line.
@@ -63,7 +63,7 @@ enum Cuts {
 }
 
 /// What a service can cut; lengths in mm, those ending in `_t` in thicknesses.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Service {
     /// Its name.

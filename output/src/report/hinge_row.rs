@@ -7,7 +7,7 @@ use design::sheet::cut_sheet::{Hinge, Sheet};
 use hinge::HingeDesign;
 use scene::analysis::flanks::flank_gap;
 use scene::analysis::localisation::gamma;
-use scene::analysis::path_separation::PathSeparation;
+use scene::analysis::path_separation::path_separation;
 use scene::{Posture, Scene};
 use serde::Serialize;
 use surrogate::Surrogate;
@@ -36,8 +36,7 @@ pub struct HingeRow {
     pub damage_peak: Option<f64>,
     /// Whether every state of the path is inside the training domain of the hinge law.
     pub inside: bool,
-    /// Maximum distance of the path from the ray to its end, in ligament widths; see
-    /// [`PathSeparation::whole`].
+    /// Maximum distance of the path from the ray to its end, in ligament widths; see [`path_separation()`].
     pub path_separation: f64,
     /// Minimum along the path of the distance of the flanks of the cut where they come nearest (mm): see
     /// [`flank_gap`](scene::analysis::flanks::flank_gap).
@@ -76,7 +75,7 @@ impl HingeRow {
             damage: deployment.damage_max(DamageMeasure::Mean, h),
             damage_peak: deployment.damage_max(DamageMeasure::Peak, h),
             inside: deployment.path.iter().all(|step| step.inside[h]),
-            path_separation: PathSeparation::new(hinge.w_lig, curvature, &states).whole,
+            path_separation: path_separation(hinge.w_lig, curvature, &states),
             flank_gap: (states
                 .iter()
                 .map(|state| flank_gap(&designs[h], state, regime)))

@@ -16,7 +16,7 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use scene::analysis::measured_openings::{MeasuredPanel, openings, scatter, slip};
 use scene::analysis::measured_points::{Mark, MeasuredPoint};
-use scene::analysis::measured_sheet::{MeasuredSheet, MeasurementError, PointFault};
+use scene::analysis::measured_sheet::{MeasuredSheet, MeasurementError};
 use scene::analysis::shape_path::ShapePath;
 use std::f64::consts::TAU;
 use std::sync::Arc;

@@ -25,29 +25,6 @@ fn points_that_cannot_be_compared_are_refused() {
         |points: &[MeasuredPoint]| MeasuredSheet::new(&path, points, Scale::Given).unwrap_err();
     assert_eq!(refused(&[]), MeasurementError::TooFew(0));
     assert_eq!(refused(&points[..3]), MeasurementError::TooFew(3));
-    let changed = |change: &dyn Fn(&mut MeasuredPoint)| {
-        let mut points = points.clone();
-        change(&mut points[5]);
-        match refused(&points) {
-            MeasurementError::Point {
-                index: 5, fault, ..
-            } => fault,
-            other => panic!("{other}"),
-        }
-    };
-    let first = points[2].mark;
-    use PointFault::{NoSuchCorner, NoSuchPanel, NotFinite, Repeated};
-    type Change<'a> = &'a dyn Fn(&mut MeasuredPoint);
-    let faults: [(Change, PointFault); 5] = [
-        (&|it| it.position[0] = f64::NAN, NotFinite),
-        (&|it| it.position[1] = f64::INFINITY, NotFinite),
-        (&|it| it.mark.panel = 50, NoSuchPanel { last: 49 }),
-        (&|it| it.mark.corner = Some(4), NoSuchCorner),
-        (&|it| it.mark = first, Repeated { first: 2 }),
-    ];
-    for (change, fault) in faults {
-        assert_eq!(changed(change), fault);
-    }
     let mut same = points.clone();
     (same.iter_mut()).for_each(|point| point.position = [1.0, 2.0]);
     assert_eq!(refused(&same), MeasurementError::Coincide);

@@ -22,7 +22,7 @@
 use crate::analysis::actuation_curve::ActuationCurve;
 use crate::analysis::force_errors::{Deviations, ForceErrors};
 use crate::analysis::out_of_plane::out_of_plane;
-use crate::analysis::path_separation::PathSeparation;
+use crate::analysis::path_separation::path_separation;
 use crate::tolerances::standard_deviation;
 use crate::{Posture, Scene};
 use design::equilibrium::force_response::ForceResponse;
@@ -466,7 +466,7 @@ impl Deployed<'_> {
         for (h, (size, design)) in sizes.iter_mut().zip(&self.designs).enumerate() {
             let states: Vec<_> = path.iter().map(|step| step.deformations[h]).collect();
             let regime = Regime::of(design.w_lig / thickness);
-            let separation = PathSeparation::new(design.w_lig, curvature, &states).whole;
+            let separation = path_separation(design.w_lig, curvature, &states);
             *size *= match regime {
                 Regime::Film => DETOUR_OF_FILM * separation,
                 Regime::Plate if curvature > 0.0 => {

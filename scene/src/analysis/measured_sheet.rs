@@ -1,10 +1,10 @@
 //! Points measured on a deployed sheet, compared with its equilibrium path; section 4.4.
 
-use crate::analysis::measured_points::{Mark, MeasuredPoint};
+use crate::analysis::measured_points::MeasuredPoint;
 use crate::analysis::path_fit::{Fit, MIN_POINTS, Problem};
 use crate::analysis::shape_path::ShapePath;
 use design::geometry::similarity::Scale;
-use std::collections::HashMap;
+use std::collections::HashSet;
 
 /// A measured sheet and its path.
 #[derive(Clone, Debug)]
@@ -22,12 +22,6 @@ pub struct MeasuredSheet {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[allow(missing_docs, reason = "the message of a variant is its documentation")]
 pub enum MeasurementError {
-    #[error("{mark} (point {index}): {fault}")]
-    Point {
-        index: usize,
-        mark: Mark,
-        fault: PointFault,
-    },
     #[error(
         "{0} measured points: at least {MIN_POINTS} are needed for pose, scale and load factor"
     )]
@@ -36,27 +30,13 @@ pub enum MeasurementError {
     Coincide,
     #[error(
         "without two points on one panel, a larger scale and a wider opening look alike: measure corners, or \
-         measure in mm, cm or m and fix the scale (--scale given)"
+         measure in mm, cm or m"
     )]
     ScaleUnknown,
 }
 
-/// Why a point is not one of the sheet.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[allow(missing_docs, reason = "the message of a variant is its documentation")]
-pub enum PointFault {
-    #[error("the sheet has the panels 0 to {last}")]
-    NoSuchPanel { last: usize },
-    #[error("a panel has the corners 0 to 3")]
-    NoSuchCorner,
-    #[error("its position is not finite")]
-    NotFinite,
-    #[error("the mark is measured twice, first by point {first}")]
-    Repeated { first: usize },
-}
-
 impl MeasuredSheet {
-    /// Compares the points with the path; see the head of this file.
+    /// Compares the points, finite ones of different marks of the sheet, with the path; see the head of this file.
     pub fn new(
         path: &ShapePath,
         points: &[MeasuredPoint],
@@ -81,31 +61,14 @@ impl MeasuredSheet {
     }
 }
 
-/// The points must be different marks of the sheet, at finite positions, and determine the unknowns.
+/// The points must determine the unknowns.
 fn check(path: &ShapePath, points: &[MeasuredPoint], scale: Scale) -> Result<(), MeasurementError> {
-    let panels = path.sheet.panels.len();
-    let mut seen = HashMap::new();
-    let mut on_panel = vec![0; panels];
-    for (index, &MeasuredPoint { mark, position }) in points.iter().enumerate() {
-        let earlier = seen.insert(mark, index);
-        let fault = if mark.panel >= panels {
-            PointFault::NoSuchPanel { last: panels - 1 }
-        } else if mark.corner.is_some_and(|corner| corner > 3) {
-            PointFault::NoSuchCorner
-        } else if !position.iter().all(|x| x.is_finite()) {
-            PointFault::NotFinite
-        } else if let Some(first) = earlier {
-            PointFault::Repeated { first }
-        } else {
-            on_panel[mark.panel] += 1;
-            continue;
-        };
-        return Err(MeasurementError::Point { index, mark, fault });
-    }
     if points.len() < MIN_POINTS {
         return Err(MeasurementError::TooFew(points.len()));
     }
-    if scale == Scale::Free && path.end() > 0.0 && on_panel.iter().all(|count| *count < 2) {
+    let mut panels = HashSet::new();
+    let alone = points.iter().all(|point| panels.insert(point.mark.panel));
+    if scale == Scale::Free && path.end() > 0.0 && alone {
         return Err(MeasurementError::ScaleUnknown);
     }
     Ok(())

@@ -161,7 +161,7 @@ impl LearnCommand {
                 println!("accurate enough after {took}");
                 Ok(())
             }
-            LearningEnd::Unfinished { left, what } => bail!(Unfinished::new(left, what)),
+            LearningEnd::Unfinished { left, what } => bail!(Unfinished { left, what }),
             LearningEnd::AllRays => bail!(
                 "all {} rays of {} are solved, and the errors are above --accuracy or --forces: increase `count` there, \
                  or choose a finer tier",

@@ -1,12 +1,17 @@
-//! Networks stored in a folder, so that each is trained once.
+//! Trainings that continue after a stop, and networks stored in a folder, so that each is trained once.
 
-use crate::commands::train::fit;
 use crate::ui::exit::Unfinished;
-use crate::ui::output_file;
-use ::train::{Start, TrainError, Trained, TrainingConfig, TrainingData};
-use anyhow::Result;
+use crate::ui::progress::Progress;
+use crate::ui::{interrupt, output_file};
+use ::train::{Start, TrainError, Trained, Training, TrainingConfig, TrainingData};
+use anyhow::{Result, bail};
 use std::path::Path;
+use std::sync::atomic::Ordering;
+use std::time::{Duration, Instant};
 use surrogate::{Card, Surrogate};
+
+/// Maximum training time that is lost if the process is killed.
+const SAVE_EVERY: Duration = Duration::from_secs(30);
 
 /// The network of a configuration, its data and its initial weights (random if there is no `pretrained`): the file `name` of
 /// the folder, if it was trained so, otherwise a new one.
@@ -35,12 +40,7 @@ pub fn kept_fit<'a>(
         return Ok(kept);
     }
     let state = path.with_extension("state");
-    let trained = continued_fit(data, config, pretrained, &state, true);
-    let trained = trained.map_err(|error| match error.downcast::<Unfinished>() {
-        // Here the same command continues without --resume.
-        Ok(Unfinished { left, what, .. }) => Unfinished::new(left, what).into(),
-        Err(error) => error,
-    })?;
+    let trained = continued_fit(data, config, pretrained, &state, true)?;
     trained.surrogate.save(&path)?;
     std::fs::remove_file(&state).ok();
     Ok(trained.surrogate)
@@ -79,4 +79,33 @@ pub(super) fn continued_fit(
         Err(error) if discard && error.is::<TrainError>() => fit(first),
         fitted => fitted,
     }
+}
+
+/// One training; its state is saved in the file `state` from time to time, when it is stopped and at its end.
+fn fit(data: TrainingData, config: &TrainingConfig, start: Start, state: &Path) -> Result<Trained> {
+    let stop = interrupt::stop_flag()?;
+    let mut training = Training::new(data, config, start)?;
+    let bar = Progress::new(config.epochs, "epochs");
+    let mut saved = Instant::now();
+    while !training.is_finished() {
+        let epoch = training.epoch()?;
+        let message = format!(
+            "loss {:.2e}, validation {:.2e}",
+            epoch.training_loss, epoch.validation_loss
+        );
+        bar.show(epoch.epoch, None, &message);
+        let stopping = stop.load(Ordering::Relaxed);
+        if stopping || saved.elapsed() > SAVE_EVERY || training.is_finished() {
+            training.save(state)?;
+            saved = Instant::now();
+        }
+        if stopping && !training.is_finished() {
+            bail!(Unfinished {
+                left: epoch.epochs - epoch.epoch,
+                what: "epochs",
+            });
+        }
+    }
+    bar.finish();
+    Ok(training.finish()?)
 }

@@ -94,7 +94,10 @@ impl TrainCommand {
                 "{failed} of {} trainings failed",
                 configs.len()
             ),
-            _ => bail!(Unfinished::new(left, "trainings")),
+            _ => bail!(Unfinished {
+                left,
+                what: "trainings"
+            }),
         }
         Ok(())
     }

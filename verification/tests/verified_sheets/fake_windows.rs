@@ -305,7 +305,7 @@ fn rounds_without_a_solved_hinge_end_the_iteration_and_keep_what_is_known() {
     let found = balance(&scene, &diverges, &folder, 3).unwrap();
     assert_eq!(found.rounds.len(), 2);
     assert!(
-        matches!(&found.ended, BalanceEnd::Failed(reason) if reason.contains("none is solved"))
+        matches!(&found.ended, BalanceEnd::Failed(reason) if reason.contains("solved no hinge"))
     );
     let nothing = tempfile::tempdir().unwrap();
     let error = balance(&scene, &diverges, &nothing, 3).err().unwrap();
