@@ -121,6 +121,19 @@ fn a_database_and_its_weights_are_regenerated_to_the_digits() {
     // What is trained is not trained again.
     once.output(&format!("train {CAMPAIGN}"));
     assert!(weights(&once) == made);
+    // Networks may begin from weights of another material.
+    let base = network(&once, "demo");
+    base.save(&once.path("runs/base.safetensors")).unwrap();
+    let (key, named) = (
+        "spot_rays",
+        "pretrained = [\"../../runs/base.safetensors\"]\nspot_rays",
+    );
+    once.edit(CAMPAIGN, &[(key, named)]);
+    once.output(&format!("train {CAMPAIGN} --replace"));
+    for name in NETWORKS {
+        let tuned = network(&once, name);
+        assert_eq!(tuned.card().fine_tuned_from.as_ref(), Some(&base.hash()));
+    }
 }
 
 /// Hinges that are a tenth too stiff on the mesh `tiny`, and right on any other.

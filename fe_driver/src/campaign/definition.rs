@@ -13,14 +13,14 @@ use crate::solve::window_solve::{WindowProblem, WindowSolve};
 use hinge::{HingeConstants, InvalidDesign, MaterialError, Regime, SheetMaterial, TrainingDomain};
 use mesher::Tier;
 use schemars::JsonSchema;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 use support::file_error::FileError;
 use support::toml_file::{self, ConfigError};
 
 /// A campaign with its material, from a TOML file of `configs/campaigns/`.
-#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Campaign {
     /// Name of the campaign; it is stored in the results folder.
@@ -42,6 +42,10 @@ pub struct Campaign {
     /// TOML files of the trainings that `kirigami train` makes of the campaign, relative to this file.
     #[serde(default)]
     pub training: Vec<PathBuf>,
+    /// Weights of another material, relative to this file, from which trainings of networks of the same sizes begin. The others begin from
+    /// random weights.
+    #[serde(default)]
+    pub pretrained: Vec<PathBuf>,
     /// Time limit of one solve.
     #[serde(skip)]
     pub time_limit: Duration,
@@ -199,8 +203,9 @@ impl Campaign {
         if let Some(reason) = campaign.other_regime() {
             return Err(invalid(reason));
         }
-        for training in &mut campaign.training {
-            *training = folder.join(&*training);
+        let named = campaign.training.iter_mut();
+        for file in named.chain(&mut campaign.pretrained) {
+            *file = folder.join(&*file);
         }
         if let Some(rays) = &campaign.extra_rays {
             campaign.further = read_extra_rays(&folder.join(rays), &campaign.design)?;
@@ -355,7 +360,8 @@ pub(crate) mod tests {
                 jobs.iter()
                     .all(|(_, job)| job.problem.hinge.design.validate().is_ok())
             );
-            assert!(campaign.training.iter().all(|file| file.is_file()));
+            let named = campaign.training.iter().chain(&campaign.pretrained);
+            assert!(named.into_iter().all(|file| file.is_file()));
         }
         let demo = Campaign::load(&shipped("demo.toml")).unwrap();
         assert_eq!((demo.rays(), demo.size()), (40, 43));

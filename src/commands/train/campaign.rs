@@ -3,6 +3,7 @@
 use crate::commands::campaign::{DATABASE, SPOT_CHECK};
 use crate::commands::surrogate::{print_errors, record};
 use crate::commands::train::{TrainCommand, WEIGHTS};
+use ::train::TrainingConfig;
 use anyhow::{Result, ensure};
 use dataset::Database;
 use fe_driver::Campaign;
@@ -25,24 +26,30 @@ impl TrainCommand {
         ensure!(
             self.config.is_none()
                 && self.from.is_none()
-                && !self.resume
                 && self.seeds == 1
                 && self.out == Path::new(WEIGHTS),
-            "a campaign says what is trained, with {SEEDS} seeds, into its folder: --config, --out, --from, --resume and \
-             --seeds are for a database"
+            "a campaign says what is trained, with {SEEDS} seeds, into its folder: --config, --out, --from and --seeds \
+             are for a database"
         );
+        let pretrained = campaign.pretrained.iter();
+        let pretrained: Vec<Surrogate> = pretrained
+            .map(|file| Surrogate::load(file))
+            .collect::<Result<_, _>>()?;
         let folder = Path::new("runs").join(file.file_stem().unwrap_or_default());
         for training in &campaign.training {
+            let sizes: TrainingConfig = support::toml_file::read(training)?;
+            let begun = (pretrained.iter())
+                .position(|weights| sizes.clone().with_sizes_of(weights) == sizes);
             let stem = training.file_stem().unwrap_or_default();
             let of_network = Self {
                 database: folder.join(DATABASE),
-                config: Some(training.clone()),
+                // The settings of fine-tuning are the default of trainings that begin from weights.
+                config: begun.is_none().then(|| training.clone()),
                 out: folder
                     .join("weights")
                     .join(stem)
                     .with_added_extension("safetensors"),
-                from: None,
-                resume: false,
+                from: begun.map(|place| campaign.pretrained[place].clone()),
                 seeds: SEEDS,
                 replace: self.replace,
             };
