@@ -72,7 +72,7 @@ pub(crate) const WEIGHTS: [&str; 6] = [
     "data/aluminium-2mm/medium.safetensors",
     "data/s235-2mm/medium.safetensors",
     "data/pet-0.5mm/medium.safetensors",
-    "data/polypropylene-0.8mm/weights.safetensors",
+    "data/polypropylene-0.8mm/medium.safetensors",
 ];
 
 impl NewProject {
