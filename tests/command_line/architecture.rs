@@ -352,6 +352,7 @@ fn long_options(command: &[&str]) -> usize {
         .arg("--help")
         .output()
         .unwrap();
+    assert!(help.status.success(), "{command:?}");
     let help = String::from_utf8(help.stdout).unwrap();
     let of_all = ["--help", "--version", "--quiet", "--verbose"];
     let option = |line: &str| {
