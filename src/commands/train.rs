@@ -8,9 +8,7 @@ use kept_fits::continued_fit;
 pub use kept_fits::kept_fit;
 
 use crate::commands::dataset::correction;
-use crate::ui::charts;
-use crate::ui::input_file;
-use crate::ui::{output_file, picture, run_folder};
+use crate::ui::{charts, input_file, output_file, picture, run_folder};
 use anyhow::{Context, Result, bail};
 use clap::Args;
 use dataset::Database;

@@ -145,6 +145,8 @@ fn mistakes_in_a_measurement_name_their_line_and_column() {
     assert!(
         message("P0,2", "P0,4").contains("bad.csv:4: P0 corner 4: a panel has the corners 0 to 3")
     );
+    let row = good.lines().find(|row| row.starts_with("P0,2")).unwrap();
+    assert!(message(row, "P0,2,inf,0,cm").contains("bad.csv:4: column `x`: `inf` is not a finite"));
     assert!(message("cm", "inch").contains("column `unit`: `inch` is none of mm, cm, m, px"));
     assert!(message("cm", "px").contains("pixels and lengths are mixed"));
     std::fs::remove_file(work.path("runs/linear-7x7/state.json")).unwrap();

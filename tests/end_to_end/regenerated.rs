@@ -134,6 +134,17 @@ fn a_database_and_its_weights_are_regenerated_to_the_digits() {
         let tuned = network(&once, name);
         assert_eq!(tuned.card().fine_tuned_from.as_ref(), Some(&base.hash()));
     }
+    let other =
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("surrogate/tests/cases/chi_tiny.safetensors");
+    once.edit(
+        CAMPAIGN,
+        &[("../../runs/base.safetensors", other.to_str().unwrap())],
+    );
+    let refused = once.error(&format!("train {CAMPAIGN}"));
+    assert!(
+        refused.contains("no training has a network of the sizes of"),
+        "{refused}"
+    );
 }
 
 /// Hinges that are a tenth too stiff on the mesh `tiny`, and right on any other.

@@ -42,8 +42,8 @@ pub struct Campaign {
     /// TOML files of the trainings that `kirigami train` makes of the campaign, relative to this file.
     #[serde(default)]
     pub training: Vec<PathBuf>,
-    /// Weights of another material, relative to this file, from which trainings of networks of the same sizes begin. The others begin from
-    /// random weights.
+    /// Weights of another material, relative to this file, from which trainings of networks of the same sizes begin, by
+    /// `configs/training/fine-tuning.toml`; the others begin at random.
     #[serde(default)]
     pub pretrained: Vec<PathBuf>,
     /// Time limit of one solve.

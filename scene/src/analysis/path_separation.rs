@@ -71,5 +71,9 @@ mod tests {
         let fraction = 3.0 / 7.0;
         let gap = distance([0.0, 0.0, 0.3], [fraction * 0.4, 0.0, fraction * 0.3]);
         assert!((found - gap).abs() < 1e-15);
+        // 0.3 along, then 0.4 across: at 3/7 of the length.
+        let found = separation(&[[3.0, 0.0, 0.0], [3.0, 4.0, 0.0]]);
+        let gap = f64::hypot(0.3 - fraction * 0.3, fraction * 0.4);
+        assert!((found - gap).abs() < 1e-15);
     }
 }

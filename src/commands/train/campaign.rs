@@ -4,10 +4,11 @@ use crate::commands::campaign::{DATABASE, SPOT_CHECK};
 use crate::commands::surrogate::{print_errors, record};
 use crate::commands::train::{TrainCommand, WEIGHTS};
 use ::train::TrainingConfig;
-use anyhow::{Result, ensure};
+use anyhow::{Context, Result, ensure};
 use dataset::Database;
 use fe_driver::Campaign;
 use std::path::{Path, PathBuf};
+use support::toml_file;
 use surrogate::Surrogate;
 
 /// Number of trainings of a network.
@@ -31,25 +32,19 @@ impl TrainCommand {
             "a campaign says what is trained, with {SEEDS} seeds, into its folder: --config, --out, --from and --seeds \
              are for a database"
         );
-        let pretrained = campaign.pretrained.iter();
-        let pretrained: Vec<Surrogate> = pretrained
-            .map(|file| Surrogate::load(file))
-            .collect::<Result<_, _>>()?;
+        let from = weights_before(&campaign, file)?;
         let folder = Path::new("runs").join(file.file_stem().unwrap_or_default());
-        for training in &campaign.training {
-            let sizes: TrainingConfig = support::toml_file::read(training)?;
-            let begun = (pretrained.iter())
-                .position(|weights| sizes.clone().with_sizes_of(weights) == sizes);
+        for (training, from) in std::iter::zip(&campaign.training, from) {
             let stem = training.file_stem().unwrap_or_default();
             let of_network = Self {
                 database: folder.join(DATABASE),
                 // The settings of fine-tuning are the default of trainings that begin from weights.
-                config: begun.is_none().then(|| training.clone()),
+                config: from.is_none().then(|| training.clone()),
                 out: folder
                     .join("weights")
                     .join(stem)
                     .with_added_extension("safetensors"),
-                from: begun.map(|place| campaign.pretrained[place].clone()),
+                from,
                 seeds: SEEDS,
                 replace: self.replace,
             };
@@ -90,4 +85,23 @@ impl TrainCommand {
         }
         Ok(())
     }
+}
+
+/// The weights from which each training of a campaign begins, if there are any; an error for weights that no training begins from.
+fn weights_before(campaign: &Campaign, file: &Path) -> Result<Vec<Option<PathBuf>>> {
+    let configs = campaign.training.iter();
+    let configs: Vec<TrainingConfig> = configs
+        .map(|training| toml_file::read(training))
+        .collect::<Result<_, _>>()?;
+    let mut before = vec![None; configs.len()];
+    for named in &campaign.pretrained {
+        let weights = Surrogate::load(named)?;
+        let has_sizes = |config: &TrainingConfig| config.clone().with_sizes_of(&weights) == *config;
+        let place = configs.iter().position(has_sizes).with_context(|| {
+            let (named, file) = (named.display(), file.display());
+            format!("{file}: no training has a network of the sizes of {named}")
+        })?;
+        before[place] = Some(named.clone());
+    }
+    Ok(before)
 }
