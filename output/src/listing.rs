@@ -10,13 +10,11 @@ mod deployment;
 mod equilibrium;
 mod gradient;
 mod pattern;
-mod springback;
 
 pub use deployment::deployment;
 pub use equilibrium::equilibrium;
 pub use gradient::gradient;
 pub use pattern::pattern;
-pub use springback::springback;
 
 use serde::Serialize;
 use serde_json::Value;

@@ -17,7 +17,7 @@ use design::sheet::cutting_process::CuttingProcess;
 use hinge::SheetMaterial;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 
 /// The keys of a scene file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -117,9 +117,18 @@ pub(super) fn folder(scene: &Path) -> &Path {
     scene.parent().unwrap_or(Path::new(""))
 }
 
-/// A path written relative to the scene file, without `.` inside.
+/// A path written relative to the scene file, without `.` inside, and without `..` after a folder that is not a link.
 pub(super) fn resolved(scene: &Path, path: &Path) -> PathBuf {
-    folder(scene).join(path).components().collect()
+    let mut short = PathBuf::new();
+    for part in folder(scene).join(path).components() {
+        let named = short.file_name().is_some() && !short.is_symlink();
+        if part == Component::ParentDir && named {
+            short.pop();
+        } else {
+            short.push(part);
+        }
+    }
+    short
 }
 
 fn default_load_steps() -> usize {

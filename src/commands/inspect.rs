@@ -3,21 +3,18 @@
 pub mod scene_args;
 
 use crate::commands::inspect::scene_args::Inspected;
-use crate::ui::{exit, output_file, with_unit};
+use crate::ui::{exit, with_unit};
 use anyhow::{Context, Result};
 use clap::error::ErrorKind;
 use clap::{Args, ValueEnum};
-use design::pattern::design_vector::DesignVector;
 use output::listing::{self, Listing};
-use scene::{Level, Scene};
+use scene::Level;
 use serde::Serialize;
-use std::path::PathBuf;
 
 /// Print the numbers of one stage of a design
 ///
 /// Examples: kirigami inspect equilibrium configs/scenes/linear-7x7.toml --json;
-/// kirigami inspect deploy configs/scenes/linear-7x7.toml --opening-deg 60;
-/// kirigami inspect springback runs/a4-plate --picture runs/a4-plate/released.svg
+/// kirigami inspect deploy configs/scenes/linear-7x7.toml --opening-deg 60
 #[derive(Args)]
 pub struct InspectCommand {
     /// The stage
@@ -34,9 +31,6 @@ pub struct InspectCommand {
     /// deploy: opening angle of the hinges (deg) [default: the angle of the design, if the scene has pin hinges]
     #[arg(long, value_name = "DEG", allow_negative_numbers = true)]
     opening_deg: Option<f64>,
-    /// springback: draw the sheet without loads to this file (SVG)
-    #[arg(long, value_name = "FILE")]
-    picture: Option<PathBuf>,
 }
 
 #[derive(Clone, Copy, PartialEq, ValueEnum)]
@@ -49,9 +43,6 @@ enum Stage {
     Equilibrium,
     /// The objective, term by term, and its gradient
     Gradient,
-    /// Residual opening when the loads are taken off: every hinge springs back elastically towards its residual deformation by the law of
-    /// `kirigami surrogate release`, and the sheet finds its equilibrium without loads, under its weight if it has one
-    Springback,
 }
 
 /// A listing with the design that it is of.
@@ -64,7 +55,10 @@ struct Of {
 
 impl InspectCommand {
     pub(crate) fn run(&self) -> Result<()> {
-        self.refuse_options_of_other_stages();
+        if self.opening_deg.is_some() && self.stage != Stage::Deploy {
+            let message = "--opening-deg is an option of deploy alone\n";
+            exit::print_answer(&clap::Error::raw(ErrorKind::ArgumentConflict, message));
+        }
         let (scene, design, name) = self.inspected.read()?;
         let scene = match self.level {
             Some(level) => scene.at_level(level)?,
@@ -82,20 +76,6 @@ impl InspectCommand {
             }
             Stage::Equilibrium => self.print(name, listing::equilibrium(&problem()?, &design)?),
             Stage::Gradient => self.print(name, listing::gradient(&scene, &problem()?, &design)?),
-            Stage::Springback => self.print(name, self.springback(&scene, &design)?),
-        }
-    }
-
-    /// Ends the program if an option is not of the stage.
-    fn refuse_options_of_other_stages(&self) {
-        for (option, is_given, stage) in [
-            ("--opening-deg", self.opening_deg.is_some(), Stage::Deploy),
-            ("--picture", self.picture.is_some(), Stage::Springback),
-        ] {
-            if is_given && self.stage != stage {
-                let message = format!("{option} is not an option of this stage\n");
-                exit::print_answer(&clap::Error::raw(ErrorKind::ArgumentConflict, message));
-            }
         }
     }
 
@@ -107,17 +87,5 @@ impl InspectCommand {
             print!("{design}\n\n{listing}");
         }
         Ok(())
-    }
-
-    fn springback(&self, scene: &Scene, design: &DesignVector) -> Result<Listing> {
-        let law = scene
-            .springback
-            .as_ref()
-            .context("the scene names no law of released hinges: set surrogate.springback")?;
-        let (listing, picture) = listing::springback(scene, &scene.problem()?, design, law)?;
-        if let Some(path) = &self.picture {
-            output_file::write(path, picture)?;
-        }
-        Ok(listing)
     }
 }

@@ -9,7 +9,7 @@ use std::fmt;
 /// A number outside the range of its key. The message names both and, if a factor of 1000 would correct the number, the
 /// probable one.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("{key} = {value}{unit} violates {}{}", self.rule(), self.hint())]
+#[error("{key} = {}{unit} violates {}{}", shown(self.value), self.rule(), self.hint())]
 pub struct OutOfRange {
     /// The path of the key, as in `loads[0].force`.
     pub key: String,
@@ -47,6 +47,14 @@ pub fn within(key: &str, value: f64, [min, max]: [f64; 2], unit: &str) -> Result
         unit: format!("{gap}{unit}"),
         range,
     })
+}
+
+/// A number, with an exponent if it has more digits than a person reads.
+fn shown(value: f64) -> String {
+    match value.abs() {
+        size if size < 1e16 => value.to_string(),
+        _ => format!("{value:e}"),
+    }
 }
 
 /// The unit that a description states in its first parentheses; empty if there is none.

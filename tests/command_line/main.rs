@@ -14,6 +14,7 @@ mod levels;
 mod listings;
 mod materials;
 mod measuring;
+mod messages;
 mod moved_run;
 mod new_project;
 mod notes;

@@ -49,11 +49,6 @@ fn a_measured_sheet_is_compared_with_its_path() {
         work.error(&format!("compare {SCENE} --template --out template"))
             .contains("exists")
     );
-    // A template in which nothing was measured has no points.
-    assert!(
-        work.error(&format!("compare {SCENE} template/template.csv"))
-            .contains("0 measured points")
-    );
 
     // The sixth of ten load steps.
     measure(&work, "points.csv", &steps[5]);
@@ -113,45 +108,6 @@ fn semicolons_and_decimal_commas_are_read() {
     let [usual, german] = ["points.csv", "german.csv"].map(|file| compared(&work, file));
     assert_eq!(usual["openings"].as_array().unwrap().len(), 84);
     assert_eq!(usual["openings"], german["openings"]);
-}
-
-#[test]
-fn mistakes_in_a_measurement_name_their_line_and_column() {
-    let (work, steps) = designed();
-    measure(&work, "points.csv", &steps[9]);
-    let good = std::fs::read_to_string(work.path("points.csv")).unwrap();
-    let message = |old: &str, new: &str| {
-        assert!(good.contains(old));
-        std::fs::write(work.path("bad.csv"), good.replacen(old, new, 1)).unwrap();
-        work.error(&format!("compare {SCENE} bad.csv"))
-    };
-    assert!(
-        message("panel", "pannel")
-            .contains("bad.csv:1: unknown column `pannel`; did you mean `panel`?")
-    );
-    assert!(message("unit", "colour").contains("unknown column `colour`; the columns are"));
-    assert!(message(",y,", ",flat_y_mm,").contains("the column `y` is missing"));
-    assert!(message("panel", "panel;corner").contains("unknown column `panel;corner`"));
-    assert!(message("P0,2", "0.5,2").contains("bad.csv:4: column `panel`: `0.5` is not"));
-    assert!(message("P0,2", "P0,-1").contains("bad.csv:4: column `corner`: `-1` is not"));
-    assert!(
-        message("P0,2", "P0,1")
-            .contains("bad.csv:4: P0 corner 1 is measured twice, first in line 3")
-    );
-    assert!(
-        message("P0,2", "P49,2")
-            .contains("bad.csv:4: P49 corner 2: the sheet has the panels 0 to 48")
-    );
-    assert!(
-        message("P0,2", "P0,4").contains("bad.csv:4: P0 corner 4: a panel has the corners 0 to 3")
-    );
-    let row = good.lines().find(|row| row.starts_with("P0,2")).unwrap();
-    assert!(message(row, "P0,2,inf,0,cm").contains("bad.csv:4: column `x`: `inf` is not a finite"));
-    assert!(message("cm", "inch").contains("column `unit`: `inch` is none of mm, cm, m, px"));
-    assert!(message("cm", "px").contains("pixels and lengths are mixed"));
-    std::fs::remove_file(work.path("runs/linear-7x7/state.json")).unwrap();
-    let without = work.error(&format!("compare {SCENE} points.csv"));
-    assert!(without.contains("kirigami design"), "{without}");
 }
 
 fn parsed(path: &Path, check: impl FnOnce(&roxmltree::Document)) {

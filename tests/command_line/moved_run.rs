@@ -2,19 +2,19 @@
 
 use crate::common::Workplace;
 use serde_json::Value;
-use std::path::Path;
 
 const SCENE: &str = "configs/scenes/demo.toml";
 
 /// The folder `moved` of the run of a learned scene, without the files that the scene names.
 fn moved_run() -> Workplace {
     let work = Workplace::new();
-    let shipped = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/pet-0.5mm");
     std::fs::create_dir_all(work.path("runs/demo")).unwrap();
     for kind in ["safetensors", "json"] {
-        let original = shipped.join("medium").with_extension(kind);
-        let name = format!("runs/demo/surrogate.{kind}");
-        std::fs::copy(original, work.path(&name)).unwrap();
+        let [shipped, named] = [
+            format!("data/pet-0.5mm/medium.{kind}"),
+            format!("runs/demo/surrogate.{kind}"),
+        ];
+        std::fs::copy(work.path(&shipped), work.path(&named)).unwrap();
     }
     // After two steps the report has errors.
     work.output(&format!("design {SCENE} --steps 2 --force --quiet"));

@@ -4,13 +4,6 @@ use crate::common::Workplace;
 use std::path::Path;
 use toml_edit::{Array, value};
 
-/// A folder with the film's weights, for a sheet of another thickness.
-fn weights() -> String {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let weights = root.join("data/pet-0.5mm/medium.safetensors");
-    weights.display().to_string()
-}
-
 /// The keys of a scene as a table.
 fn keys(work: &Workplace, scene: &str) -> toml_edit::DocumentMut {
     let text = std::fs::read_to_string(work.path(scene)).unwrap();
@@ -20,10 +13,7 @@ fn keys(work: &Workplace, scene: &str) -> toml_edit::DocumentMut {
 #[test]
 fn a_project_with_weights_is_designed_at_once() {
     let work = Workplace::new();
-    let said = work.output(&format!(
-        "init sheet --thickness 0.1 --size 210x297 --weights {}",
-        weights()
-    ));
+    let said = work.output("init sheet --thickness 0.1 --size 210x297");
     assert!(said.contains("kirigami design sheet/scene.toml"), "{said}");
     // The shipped sheet of A4 is the project of this size.
     let [project, shipped] =
@@ -55,13 +45,6 @@ fn a_project_with_weights_is_designed_at_once() {
 fn a_project_without_weights_begins_with_its_campaign() {
     let work = Workplace::new();
     let steel = "--material configs/materials/s235-1.5mm.toml";
-    let message = work.error(&format!("init steel {steel} --weights no.safetensors"));
-    assert!(message.contains("there is no no.safetensors"), "{message}");
-    let message = work.error("init film --thickness 0.5 --size 210x297");
-    assert!(
-        message.contains("at most 0.10 mm for this size), or a plate from 2 mm on"),
-        "{message}"
-    );
     let said = work.output(&format!("init steel {steel} --size 3300x4600"));
     assert!(
         said.contains("kirigami campaign run steel/campaign.toml"),
@@ -115,31 +98,22 @@ fn a_project_without_weights_begins_with_its_campaign() {
 #[test]
 fn a_drawing_becomes_the_target() {
     let work = Workplace::new();
-    let said = work.output(&format!(
-        "init leaf --thickness 0.1 --size 420x594 --target configs/targets/leaf.svg --weights {}",
-        weights()
-    ));
+    let said =
+        work.output("init leaf --thickness 0.1 --size 420x594 --target configs/targets/leaf.svg");
     assert!(said.contains("kirigami verify leaf/scene.toml"), "{said}");
     let scene = keys(&work, "leaf/scene.toml");
     let svg = &scene["target"]["svg"];
     assert!(Path::new(svg["file"].as_str().unwrap()).is_absolute());
     work.output("design leaf/scene.toml --steps 1 --force");
-    let message = work.error("init other --target none.svg");
-    assert!(message.contains("there is no none.svg"), "{message}");
-    assert!(!work.path("other").exists());
 }
 
 /// `init FOLDER` alone gives a project that can be designed: a plate of A4. A film of 0.5 mm is larger.
 #[test]
 fn a_project_with_all_defaults_is_designed() {
     let work = Workplace::new();
-    let plate = weights().replace("pet-0.5mm", "polypropylene-3mm");
-    let said = work.output(&format!("init plate --weights {plate}"));
+    let said = work.output("init plate");
     assert!(said.contains("Nothing holds its panels there"), "{said}");
-    work.output(&format!(
-        "init film --thickness 0.5 --weights {}",
-        weights()
-    ));
+    work.output("init film --thickness 0.5");
     for (project, thickness, sides) in [
         ("plate", 3.0, "[210.0, 297.0]"),
         ("film", 0.5, "[1050.0, 1485.0]"),
@@ -157,9 +131,9 @@ fn a_project_with_all_defaults_is_designed() {
 fn plates_of_other_materials_stay_in_their_plane() {
     let work = Workplace::new();
     for material in ["petg-3mm", "aluminium-2mm"] {
-        let weights = weights().replace("pet-0.5mm", material);
-        let material = format!("--material configs/materials/{material}.toml");
-        work.output(&format!("init plate {material} --weights {weights}"));
+        work.output(&format!(
+            "init plate --material configs/materials/{material}.toml"
+        ));
         let widest = keys(&work, "plate/scene.toml")["ligament"]["range"][1].clone();
         assert!(widest.as_float().unwrap() < 2.2, "{widest}");
         let said = work.output("design plate/scene.toml");
@@ -185,42 +159,15 @@ fn weights_of_a_film_do_not_serve_a_plate() {
         "plate/material.toml",
         &[("thickness = 3.0", "thickness = 0.5")],
     );
-    let message = work.error(&format!("design plate/scene.toml --weights {}", weights()));
+    let message = work.error("design plate/scene.toml --weights data/pet-0.5mm/medium.safetensors");
     assert!(message.contains("no law holds for both"), "{message}");
-    // Weights that are named decide what the sheet is, and it is too small for a film.
-    let message = work.error(&format!(
-        "init film {film} --thickness 3 --size 210x297 --weights {}",
-        weights()
-    ));
-    assert!(message.contains("with film ligaments"), "{message}");
-    let message = work.error(&format!(
-        "init other --material configs/materials/petg-3mm.toml --weights {}",
-        weights()
-    ));
-    assert!(message.contains("for another material"), "{message}");
-}
-
-/// A scene that is refused is written, and the reason is the message.
-#[test]
-fn a_project_that_needs_a_change_says_so() {
-    let work = Workplace::new();
-    let message = work.error(&format!(
-        "init thin --material configs/materials/polypropylene-3mm.toml --thickness 1 --weights {}",
-        weights().replace("pet-0.5mm", "polypropylene-3mm")
-    ));
-    assert!(message.contains("needs a change"), "{message}");
-    assert!(message.contains("violates 0.5 <= w_lig"), "{message}");
-    assert!(work.path("thin/scene.toml").is_file());
 }
 
 /// The sheet of a stock is smaller than the stock by its margins and by what is cut beyond its edge.
 #[test]
 fn a_project_fits_the_stock_that_it_is_cut_from() {
     let work = Workplace::new();
-    let plate = weights().replace("pet-0.5mm", "polypropylene-3mm");
-    work.output(&format!(
-        "init plate --stock a4 --margin 5 --weights {plate}"
-    ));
+    work.output("init plate --stock a4 --margin 5");
     let scene = keys(&work, "plate/scene.toml");
     assert_eq!(
         scene["sheet"]["size"].to_string().trim(),
@@ -229,12 +176,4 @@ fn a_project_fits_the_stock_that_it_is_cut_from() {
     assert_eq!(scene["cutting"]["stock"].as_str(), Some("a4"));
     let said = work.output("design plate/scene.toml --steps 1 --force");
     assert!(!said.contains("the stock has"), "{said}");
-    let message = work.error("init none --stock a4 --margin 105");
-    assert!(
-        message.contains("leaves nothing of a stock of 210 x 297 mm"),
-        "{message}"
-    );
-    let output = work.program("init none --size a4").output().unwrap();
-    let message = String::from_utf8(output.stderr).unwrap();
-    assert!(message.contains("use --stock a4"), "{message}");
 }

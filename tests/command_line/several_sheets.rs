@@ -39,10 +39,6 @@ fn all_scenes_are_designed_and_the_table_compares_them() {
     );
     let message = work.error(&format!("{design} --quiet"));
     assert!(message.contains("1 of 2 runs failed"), "{message}");
-    assert!(
-        message.contains("sheets/pin-7x7: ") && message.contains("another run"),
-        "{message}"
-    );
     assert_eq!(column(&work, "state"), ["failed", "completed"]);
 }
 
@@ -50,7 +46,6 @@ fn all_scenes_are_designed_and_the_table_compares_them() {
 fn every_seed_has_its_run() {
     let work = Workplace::new();
     let design = "design configs/scenes/pin-7x7.toml --steps 1 --out sheets --seeds 2";
-    assert!(work.error(design).contains("optimiser.start_noise"));
     let noise = [("steps = 150", "start_noise = 0.1\nsteps = 150")];
     work.edit("configs/scenes/pin-7x7.toml", &noise);
     work.output(design);
@@ -58,8 +53,6 @@ fn every_seed_has_its_run() {
     let losses = column(&work, "loss (mm^2)");
     assert_ne!(losses[0], losses[1]);
     assert!(work.path("sheets/pin-7x7/seed-1/report.json").exists());
-    let twice = "design configs/scenes/pin-7x7.toml configs/scenes/pin-7x7.toml";
-    assert!(work.error(twice).contains("two runs would use the folder"));
 }
 
 #[test]

@@ -6,11 +6,6 @@ use serde_json::Value;
 /// Side of the space for the sheet (mm).
 const SIDE: f64 = 180.0;
 
-fn weights() -> String {
-    let repository = env!("CARGO_MANIFEST_DIR");
-    format!("{repository}/data/polypropylene-3mm/medium.safetensors")
-}
-
 #[test]
 fn a_drawing_becomes_a_sheet_with_a_cut_file() {
     let work = Workplace::new();
@@ -21,8 +16,7 @@ fn a_drawing_becomes_a_sheet_with_a_cut_file() {
         ("shield", 0.85),
     ] {
         let said = work.output(&format!(
-            "init {drawing} --target configs/targets/{drawing}.svg --thickness 2 --size {SIDE}x{SIDE} --weights {}",
-            weights()
+            "init {drawing} --target configs/targets/{drawing}.svg --thickness 2 --size {SIDE}x{SIDE}"
         ));
         for figure in [
             "on pins: within",
@@ -54,10 +48,7 @@ fn a_drawing_becomes_a_sheet_with_a_cut_file() {
 #[test]
 fn a_scene_is_fitted_to_its_target() {
     let work = Workplace::new();
-    work.output(&format!(
-        "init plain --thickness 2 --size {SIDE}x{SIDE} --weights {}",
-        weights()
-    ));
+    work.output(&format!("init plain --thickness 2 --size {SIDE}x{SIDE}"));
     work.output("design plain/scene.toml --fit --steps 2");
     let run = work.path("plain/design");
     let chosen = std::fs::read_to_string(run.join("scene.toml")).unwrap();
@@ -91,8 +82,7 @@ fn the_same_drawing_becomes_the_same_scene() {
     let work = Workplace::new();
     let scene = |folder: &str| {
         work.output(&format!(
-            "init {folder} --target configs/targets/leaf.svg --thickness 3 --size 210x297 --weights {}",
-            weights()
+            "init {folder} --target configs/targets/leaf.svg --thickness 3 --size 210x297"
         ));
         std::fs::read_to_string(work.path(&format!("{folder}/scene.toml"))).unwrap()
     };

@@ -1,6 +1,7 @@
 //! A working folder with small configurations, in which the program of the package under test is run.
 #![allow(dead_code)] // every test program uses only a part
 
+use std::os::unix::fs::symlink;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use tempfile::TempDir;
@@ -13,11 +14,12 @@ pub struct Workplace {
 }
 
 impl Workplace {
-    /// A folder with the shipped configurations.
+    /// A folder with a copy of the shipped configurations, and a link to the shipped data.
     pub fn new() -> Self {
         let folder = tempfile::tempdir().unwrap();
-        let configs = Path::new(env!("CARGO_MANIFEST_DIR")).join("configs");
-        copy(&configs, &folder.path().join("configs"));
+        let shipped = Path::new(env!("CARGO_MANIFEST_DIR"));
+        copy(&shipped.join("configs"), &folder.path().join("configs"));
+        symlink(shipped.join("data"), folder.path().join("data")).unwrap();
         Self { folder }
     }
 

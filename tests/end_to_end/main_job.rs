@@ -6,7 +6,6 @@ use crate::common::Workplace;
 use dataset::Database;
 use serde_json::Value;
 use std::collections::BTreeSet;
-use std::path::Path;
 use std::time::{Duration, Instant};
 use testkit::failing_ccx;
 
@@ -64,11 +63,7 @@ fn small_demo() -> Workplace {
     work
 }
 
-fn shipped_weights() -> String {
-    let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("data");
-    let weights = data.join("pet-0.5mm/medium.safetensors");
-    weights.display().to_string()
-}
+const SHIPPED_WEIGHTS: &str = "data/pet-0.5mm/medium.safetensors";
 
 fn json(text: &str) -> Value {
     serde_json::from_str(text).unwrap()
@@ -185,7 +180,7 @@ fn balance_page(work: &Workplace) -> String {
 fn the_design_is_balanced_by_finite_elements(work: &Workplace) {
     let scene = std::fs::read_to_string(work.path("configs/scenes/demo.toml")).unwrap();
     let scene = scene
-        .replace("../../runs/demo/surrogate.safetensors", &shipped_weights())
+        .replace("../../runs/demo/surrogate.safetensors", SHIPPED_WEIGHTS)
         .replace("../materials", "configs/materials");
     std::fs::write(work.path("shipped.toml"), scene).unwrap();
     let balanced = json(&work.output(&balance(2)));
@@ -220,7 +215,7 @@ fn weights_are_tested_on_the_spot_check(work: &Workplace) {
         " of 12 states inside the training domain",
     ];
     assert_contains(&work.output(test), &tested);
-    let shipped = test.replace("runs/demo/surrogate.safetensors", &shipped_weights());
+    let shipped = test.replace("runs/demo/surrogate.safetensors", SHIPPED_WEIGHTS);
     let page = work.output(&shipped);
     assert_contains(&page, &tested);
     assert_contains(&page, &["W within 5 %"]);

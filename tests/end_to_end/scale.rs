@@ -37,8 +37,7 @@ fn the_cost_of_many_rays() {
     let campaign = Campaign::load(&work.path(CAMPAIGN)).unwrap();
     let folder = work.path("runs/pet-0.5mm");
 
-    let shipped = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/pet-0.5mm/hinges.parquet");
-    let database = Database::read(&shipped).unwrap();
+    let database = Database::read(&work.path("data/pet-0.5mm/hinges.parquet")).unwrap();
     let rays: Vec<_> = database.rows().chunk_by(|a, b| a.job == b.job).collect();
     let (gmsh, ccx) = ("4.8.4".to_owned(), "2.20".to_owned());
     let tools = ToolVersions { gmsh, ccx };

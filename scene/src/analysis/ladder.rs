@@ -24,8 +24,8 @@ pub struct Climbed {
 #[allow(missing_docs, reason = "the message of a variant is its documentation")]
 pub enum ClimbError {
     #[error(
-        "the accuracy of a level is measured by a finer one, and the scene names networks for {found}: name a smaller network \
-         (surrogate.draft) or further ones (surrogate.ensemble), or design at one level (--level)"
+        "an accuracy is measured by two learned levels, and the scene has {found}: name a smaller network (surrogate.draft) or \
+         further ones (surrogate.ensemble), or design at one level (--level)"
     )]
     OneLevel { found: String },
     #[error(

@@ -43,11 +43,13 @@ impl CheckCommand {
             ..measured
         };
         let intended = intended(&material, scene.as_ref());
-        let [min, max] = intended.w_lig;
-        ensure!(
-            min > 0.0 && min <= max && max.is_finite(),
-            "the ligament widths {min} to {max} violate 0 < minimum <= maximum (mm)"
-        );
+        if let (Some(scene), [min, max]) = (&self.scene, intended.w_lig) {
+            ensure!(
+                0.0 < min && min < max && max.is_finite(),
+                "{}: ligament.range = [{min}, {max}] mm violates 0 < minimum < maximum",
+                scene.display()
+            );
+        }
         let check = MaterialCheck::new(&material, &intended);
         if self.json {
             println!("{}", serde_json::to_string_pretty(&check)?);

@@ -19,7 +19,7 @@ use verification::{first_guess, releases, verification_tier};
 ///
 /// The states are drawn uniformly inside the training domain of the weights, one a hinge, with holes of 0.16 ligament widths. Each hinge is deformed along the straight
 /// ray to its state and unloaded until it is without forces; that takes two to three windows. Writes released.csv, the
-/// deformation that stays and the stiffness about it, and springback.json, the law that `kirigami inspect springback` reads, with its
+/// deformation that stays and the stiffness about it, and springback.json, the law that a scene names (surrogate.springback), with its
 /// errors at hinges that the fit has not seen. Example:
 /// kirigami surrogate release data/polypropylene-3mm/medium.safetensors --material configs/materials/polypropylene-3mm.toml --count 80
 #[derive(Args)]
