@@ -6,11 +6,9 @@
 //! ```
 //!
 //! with a separate q for each damage measure. The terms are the monomials of degree two or less in w_lig,
-//! alpha - pi/2, eta_a, eta_s and theta, each divided by its range, that satisfy the mirror symmetry. The monomials of
-//! degree two times w_lig are terms too, if this reduces the error of W on rays that are left out by a tenth: a buckle of a
-//! wide ligament has more elements. Outside the range of the rays on both meshes, q is constant in that coordinate. c is fitted
-//! to the energy and its forces, which are linear in it, by least squares of the relative errors; the corrected forces remain the
-//! gradient of the corrected energy.
+//! alpha - pi/2, eta_a, eta_s and theta, each divided by its range, that satisfy the mirror symmetry. Outside
+//! the range of the rays on both meshes, q is constant in that coordinate. c is fitted to the energy and its forces, which are
+//! linear in it, by least squares of the relative errors; the corrected forces remain the gradient of the corrected energy.
 //! W with its forces, D or D_peak remains uncorrected if the sum of its squared errors over all rays, each corrected by the
 //! others, is no smaller than without the correction; of W and its forces, the sum of the four relative errors.
 //! (Fernandez-Godino et al., "Review of multi-fidelity models", 2016, section 2.)
@@ -24,12 +22,11 @@ use faer::Side;
 use faer::linalg::solvers::{Llt, Solve};
 use faer::prelude::*;
 use hinge::HingeSample;
-use std::array::from_fn;
 use std::f64::consts::FRAC_PI_2;
 use support::vectors::dot;
 
-/// The quadratic terms, as products of two of (w_lig, alpha, eta_a, eta_s, theta, 1), in order of their degree.
-const QUADRATIC: [[usize; 2]; 13] = [
+/// The terms, as products of two of (w_lig, alpha, eta_a, eta_s, theta, 1).
+const TERMS: [[usize; 2]; 13] = [
     [5, 5],
     [0, 5],
     [2, 5],
@@ -44,11 +41,6 @@ const QUADRATIC: [[usize; 2]; 13] = [
     [1, 3],
     [3, 3],
 ];
-/// Number of all terms: the quadratic ones, and the last of them once more, times the width.
-const TERMS: usize = QUADRATIC.len() + 9;
-/// The error of W with all terms, over its error with the quadratic ones, below which all are used: on 55 rays of the film it is
-/// 0.74; on 40 to 96 rays of plates, where the meshes differ by 0.1 to 0.4 %, 0.95 to 1.12; on 24 rays 1.4.
-const WORTH_ALL_TERMS: f64 = 0.9;
 /// Fraction of the root mean square that limits the scale of the relative error of small values from below.
 const LEAST_SCALE: f64 = 0.3;
 /// Weight of the equation of a force, relative to the weight of the equation of W. Where a ligament buckles a second time, forces
@@ -59,8 +51,8 @@ const FORCE_WEIGHT: f64 = 0.1;
 /// rays do not determine.
 const RIDGE: f64 = 1.0;
 
-/// Coefficients of all terms; 0 of those that are not used.
-type Coefficients = [f64; TERMS];
+/// Coefficients of the [`TERMS`].
+type Coefficients = [f64; TERMS.len()];
 
 /// The fitted correction from one mesh to another.
 #[derive(Clone, Debug)]
@@ -73,13 +65,13 @@ struct Bridge {
 }
 
 impl Bridge {
-    /// Fits the correction from the mesh of the rays to the mesh of their references, with so many of the terms.
-    fn fit(rays: &[ComparedRay], terms: usize) -> Self {
+    /// Fits the correction from the mesh of the rays to the mesh of their references.
+    fn fit(rays: &[ComparedRay]) -> Self {
         let pairs = || {
             let pairs = rays.iter().flat_map(ComparedRay::pairs);
             pairs.filter(|(row, _)| row.is_as_asked())
         };
-        let blank = [0.0; TERMS];
+        let blank = [0.0; TERMS.len()];
         let unfitted = Self {
             ranges: ranges(pairs().map(|(row, _)| row)),
             energy: blank,
@@ -89,10 +81,11 @@ impl Bridge {
         // A pair with an unknown value is omitted.
         let damage = |value: fn(&HingeSample) -> Option<f64>| {
             let changes = pairs().filter_map(|(row, reference)| {
-                let (by, _) = unfitted.terms(row);
-                Some(Change::of(by, value(&row.sample)?, value(reference)?))
+                let (terms, _) = unfitted.terms(row);
+                let value_of_row = value(&row.sample)?;
+                Some(Change::of(terms, value_of_row, value(reference)?))
             });
-            least_squares(terms, [(changes.collect(), 1.0)])
+            least_squares([(changes.collect(), 1.0)])
         };
         let changes = pairs().map(|(row, reference)| unfitted.energy_changes(row, reference));
         let changes: Vec<[Change; 4]> = changes.collect();
@@ -101,7 +94,7 @@ impl Bridge {
             (changes.iter().map(|of| of[i]).collect(), weight)
         };
         Self {
-            energy: least_squares(terms, [0, 1, 2, 3].map(of_quantity)),
+            energy: least_squares([0, 1, 2, 3].map(of_quantity)),
             damage: damage(|sample| Some(sample.d)),
             damage_peak: damage(|sample| sample.d_peak),
             ..unfitted
@@ -115,7 +108,7 @@ impl Bridge {
         let force = |i: usize, value: f64, reference: f64| {
             let by = |k: usize| terms[k] * value + x.w * slopes[k][i];
             Change {
-                by: from_fn(by),
+                by: std::array::from_fn(by),
                 missing: reference - value,
                 reference,
             }
@@ -130,7 +123,7 @@ impl Bridge {
 
     /// The correction of the energy, the damage and D_peak, as far as they are to be `corrected`.
     fn only(self, corrected: [bool; 3]) -> Self {
-        let kept = |of: Coefficients, i: usize| if corrected[i] { of } else { [0.0; TERMS] };
+        let kept = |of: Coefficients, i: usize| if corrected[i] { of } else { [0.0; TERMS.len()] };
         Self {
             energy: kept(self.energy, 0),
             damage: kept(self.damage, 1),
@@ -165,7 +158,7 @@ impl Bridge {
     }
 
     /// The terms at a row, and their gradients with respect to (a, s, theta).
-    fn terms(&self, row: &Row) -> (Coefficients, [[f64; 3]; TERMS]) {
+    fn terms(&self, row: &Row) -> (Coefficients, [[f64; 3]; TERMS.len()]) {
         let at = coordinates(row);
         let units = [1.0, 1.0, row.design.w_lig, row.design.w_lig, 1.0];
         let (mut x, mut by) = ([1.0; 6], [[0.0; 3]; 6]);
@@ -177,20 +170,10 @@ impl Bridge {
                 by[i][i - 2] = 1.0 / (half * units[i]);
             }
         }
-        // The width, on which the forces do no work, is the third factor of the last terms.
-        let factors = |k: usize| match QUADRATIC.get(k) {
-            Some([i, j]) => ([*i, *j], 1.0),
-            None => (QUADRATIC[k + QUADRATIC.len() - TERMS], x[0]),
-        };
-        let term = |k: usize| {
-            let ([i, j], width) = factors(k);
-            x[i] * x[j] * width
-        };
-        let slope = |k: usize, d: usize| {
-            let ([i, j], width) = factors(k);
-            (by[i][d] * x[j] + x[i] * by[j][d]) * width
-        };
-        (from_fn(term), from_fn(|k| from_fn(|d| slope(k, d))))
+        (
+            TERMS.map(|[i, j]| x[i] * x[j]),
+            TERMS.map(|[i, j]| std::array::from_fn(|d| by[i][d] * x[j] + x[i] * by[j][d])),
+        )
     }
 }
 
@@ -212,7 +195,7 @@ impl Database {
         } else {
             Fidelity::Solved(from)
         };
-        let bridge = Bridge::fit(&rays, checked.terms).only(corrected);
+        let bridge = Bridge::fit(&rays).only(corrected);
         let rows = self.on_tier(&self.manifest().tier).map(|row| Row {
             sample: bridge.corrected(row),
             tier: tier.to_string(),
@@ -230,54 +213,21 @@ const CORRECTED: [usize; 3] = [0, 4, 5];
 pub struct LeftOut {
     /// The states of each ray, corrected by the other rays.
     pub states: Vec<Vec<ComparedState>>,
-    /// Number of the terms that are fitted.
-    terms: usize,
-    /// The squared relative errors of each quantity, without and with the correction.
-    errors: [[f64; COMPARED.len()]; 2],
+    /// Sums of the squared relative errors of W with its forces, of D and of D_peak, without and with the correction.
+    errors: [[f64; 3]; 2],
 }
 
 impl LeftOut {
-    fn new(rays: &[ComparedRay], terms: usize) -> Self {
-        let bridges: Vec<Bridge> = (0..rays.len())
-            .map(|i| Bridge::fit(&[&rays[..i], &rays[i + 1..]].concat(), terms))
-            .collect();
-        let states = |corrected: [bool; 3]| -> Vec<Vec<ComparedState>> {
-            let of_ray = |(ray, bridge): (&ComparedRay, &Bridge)| {
-                let bridge = bridge.clone().only(corrected);
-                let state = |(row, reference): (&Row, &HingeSample)| {
-                    ComparedState::new(&bridge.corrected(row), reference)
-                };
-                ray.pairs().map(state).collect()
-            };
-            std::iter::zip(rays, &bridges).map(of_ray).collect()
-        };
-        let corrected = states([true; 3]);
-        let checked = Self {
-            terms,
-            errors: [errors(&states([false; 3])), errors(&corrected)],
-            states: corrected,
-        };
-        Self {
-            states: states(checked.corrected()),
-            ..checked
-        }
-    }
-
     /// Whether W, with the forces, D and D_peak are corrected.
     fn corrected(&self) -> [bool; 3] {
-        let [before, after] = (self.errors).map(|of| [of[..4].iter().sum(), of[4], of[5]]);
-        from_fn(|i| after[i] < before[i])
-    }
-
-    /// The root mean square error of W with the correction.
-    fn of_energy(&self) -> f64 {
-        self.errors[1][0].sqrt()
+        let [before, after] = self.errors;
+        std::array::from_fn(|i| after[i] < before[i])
     }
 
     /// The quantities that remain uncorrected, because the correction does not reduce their errors.
     pub fn uncorrected(&self) -> Vec<&'static str> {
         let corrected = self.corrected();
-        let left = (0..3).filter(|&i| !corrected[i] && self.errors[0][CORRECTED[i]] > 0.0);
+        let left = (0..3).filter(|&i| !corrected[i] && self.errors[0][i] > 0.0);
         left.map(|i| COMPARED[CORRECTED[i]]).collect()
     }
 }
@@ -286,27 +236,46 @@ impl LeftOut {
 /// the correction for rays that were not solved on both meshes. The choice of the quantities that are corrected is made on
 /// all rays.
 pub fn left_out(rays: &[ComparedRay]) -> Result<LeftOut, DatasetError> {
-    let (found, needed) = (rays.len(), QUADRATIC.len() + 1);
+    let (found, needed) = (rays.len(), TERMS.len() + 1);
     if found < needed {
         // Too few to fit every term when one ray is left out.
         return Err(DatasetError::TooFewRays { found, needed });
     }
-    let quadratic = LeftOut::new(rays, QUADRATIC.len());
-    let all = (found > TERMS).then(|| LeftOut::new(rays, TERMS));
-    let better = all.filter(|all| all.of_energy() < WORTH_ALL_TERMS * quadratic.of_energy());
-    Ok(better.unwrap_or(quadratic))
+    let bridges: Vec<Bridge> = (0..rays.len())
+        .map(|i| Bridge::fit(&[&rays[..i], &rays[i + 1..]].concat()))
+        .collect();
+    let states = |corrected: [bool; 3]| -> Vec<Vec<ComparedState>> {
+        let of_ray = |(ray, bridge): (&ComparedRay, &Bridge)| {
+            let bridge = bridge.clone().only(corrected);
+            let state = |(row, reference): (&Row, &HingeSample)| {
+                ComparedState::new(&bridge.corrected(row), reference)
+            };
+            ray.pairs().map(state).collect()
+        };
+        std::iter::zip(rays, &bridges).map(of_ray).collect()
+    };
+    let corrected = states([true; 3]);
+    let checked = LeftOut {
+        errors: [errors(&states([false; 3])), errors(&corrected)],
+        states: corrected,
+    };
+    Ok(LeftOut {
+        states: states(checked.corrected()),
+        ..checked
+    })
 }
 
-/// The squared relative error of each quantity; 0 of one that is 0.
-fn errors(states: &[Vec<ComparedState>]) -> [f64; COMPARED.len()] {
-    from_fn(|i| {
+/// The sums of the squared relative errors of W with its forces, of D and of D_peak; a quantity that is 0 has none.
+fn errors(states: &[Vec<ComparedState>]) -> [f64; 3] {
+    let squares = |i: usize| {
         let known = states.iter().flatten().filter(|state| state.is_known(i));
         let (off, all) = known.fold((0.0, 0.0), |(off, all), state| {
             let difference = state.value[i] - state.reference[i];
             (off + difference.powi(2), all + state.reference[i].powi(2))
         });
         if all > 0.0 { off / all } else { 0.0 }
-    })
+    };
+    [(0..4).map(squares).sum(), squares(4), squares(5)]
 }
 
 /// w_lig (mm), alpha - pi/2 (rad), eta_a, eta_s, theta (rad).
@@ -333,7 +302,7 @@ fn ranges<'a>(rows: impl Iterator<Item = &'a Row>) -> [[f64; 2]; 5] {
             maximum[i] = maximum[i].max(value);
         }
     }
-    from_fn(|i| {
+    std::array::from_fn(|i| {
         let [middle, half] = match i {
             0 => [
                 0.5 * (minimum[i] + maximum[i]),
@@ -365,13 +334,10 @@ impl Change {
     }
 }
 
-/// The c of so many terms with which c . by = missing, by least squares, each equation scaled by its reference and with the weight of its quantity.
-fn least_squares<const N: usize>(
-    terms: usize,
-    quantities: [(Vec<Change>, f64); N],
-) -> Coefficients {
-    let mut normal = RIDGE * Mat::<f64>::identity(terms, terms);
-    let mut right = Mat::<f64>::zeros(terms, 1);
+/// The c with which c . by = missing, by least squares, each equation scaled by its reference and with the weight of its quantity.
+fn least_squares<const N: usize>(quantities: [(Vec<Change>, f64); N]) -> Coefficients {
+    let mut normal = RIDGE * Mat::<f64>::identity(TERMS.len(), TERMS.len());
+    let mut right = Mat::<f64>::zeros(TERMS.len(), 1);
     for (changes, weight) in quantities {
         let squares: f64 = changes.iter().map(|change| change.reference.powi(2)).sum();
         if squares == 0.0 {
@@ -381,9 +347,9 @@ fn least_squares<const N: usize>(
         for change in changes {
             let scale = change.reference.hypot(minimum) / weight;
             let row = change.by.map(|by| by / scale);
-            for i in 0..terms {
+            for i in 0..TERMS.len() {
                 right[(i, 0)] += row[i] * change.missing / scale;
-                for j in 0..terms {
+                for j in 0..TERMS.len() {
                     normal[(i, j)] += row[i] * row[j];
                 }
             }
@@ -392,7 +358,7 @@ fn least_squares<const N: usize>(
     let factor =
         Llt::new(normal.as_ref(), Side::Lower).expect("the ridge term makes it positive definite");
     let solution = factor.solve(&right);
-    from_fn(|i| if i < terms { solution[(i, 0)] } else { 0.0 })
+    std::array::from_fn(|i| solution[(i, 0)])
 }
 
 #[cfg(test)]
@@ -423,17 +389,11 @@ mod tests {
 
     /// The [`rows`] with the errors of a coarse mesh, by a known q.
     fn coarse() -> Vec<Row> {
-        coarse_times(|_| 1.0)
-    }
-
-    /// The same with a factor that depends on w_lig.
-    fn coarse_times(factor: impl Fn(f64) -> f64) -> Vec<Row> {
         let rows = rows(RAYS).into_iter().map(|row| {
             let x = row.sample;
             let [eta_a, _] = row.eta();
-            let factor = factor(row.design.w_lig);
-            let q = factor * (0.03 + 0.02 * x.theta * x.theta - 0.5 * eta_a);
-            let slopes = [-0.5 / row.design.w_lig, 0.0, 0.04 * x.theta].map(|slope| factor * slope);
+            let q = 0.03 + 0.02 * x.theta * x.theta - 0.5 * eta_a;
+            let slopes = [-0.5 / row.design.w_lig, 0.0, 0.04 * x.theta];
             let sample = HingeSample {
                 w: x.w * (1.0 + q),
                 w_work: x.w * (1.0 + q),
@@ -452,11 +412,6 @@ mod tests {
     /// The coarse rays, most of them without the error of their mesh too.
     fn twice() -> Database {
         on_both(coarse(), rows(TWICE))
-    }
-
-    /// With all terms, of which each has its derivative.
-    fn fitted(twice: &Database) -> Bridge {
-        Bridge::fit(&twice.on_both_meshes(), TERMS)
     }
 
     #[test]
@@ -491,16 +446,6 @@ mod tests {
     }
 
     #[test]
-    fn terms_of_the_width_are_used_where_they_reduce_the_error_of_w() {
-        let terms = |coarse: Vec<Row>| {
-            let twice = on_both(coarse, rows(TWICE));
-            left_out(&twice.on_both_meshes()).unwrap().terms
-        };
-        assert_eq!(terms(coarse()), QUADRATIC.len());
-        assert_eq!(terms(coarse_times(|w_lig| w_lig / 15.0)), TERMS);
-    }
-
-    #[test]
     fn a_database_of_one_mesh_is_as_it_was() {
         let once = database(coarse());
         let (same, checked) = once.clone().corrected().unwrap();
@@ -512,7 +457,7 @@ mod tests {
     #[test]
     fn corrected_forces_are_the_gradient_of_the_corrected_energy() {
         let twice = twice();
-        let bridge = fitted(&twice);
+        let bridge = Bridge::fit(&twice.on_both_meshes());
         let row = of_rays(&twice)[7].clone();
         let moved = |[a, s, theta]: [f64; 3]| {
             let x = row.sample;
@@ -537,7 +482,7 @@ mod tests {
             .into_iter()
             .enumerate()
         {
-            let step: [f64; 3] = from_fn(|j| if i == j { 1e-6 } else { 0.0 });
+            let step: [f64; 3] = std::array::from_fn(|j| if i == j { 1e-6 } else { 0.0 });
             let slope = (moved(step) - moved(step.map(|x| -x))) / 2e-6;
             assert!(
                 (found - slope).abs() < 1e-6 * slope.abs().max(1.0),
@@ -549,7 +494,7 @@ mod tests {
     #[test]
     fn mirror_images_have_the_same_correction() {
         let twice = twice();
-        let bridge = fitted(&twice);
+        let bridge = Bridge::fit(&twice.on_both_meshes());
         let row = &of_rays(&twice)[13];
         let image = &crate::mirror::with_mirrored(std::slice::from_ref(row))[1];
         let (there, here) = (bridge.corrected(image).mirrored(), bridge.corrected(row));
@@ -613,7 +558,7 @@ mod tests {
     #[test]
     fn the_correction_is_constant_beyond_the_range_of_the_rays() {
         let twice = twice();
-        let bridge = fitted(&twice);
+        let bridge = Bridge::fit(&twice.on_both_meshes());
         let at = |theta: f64| {
             let mut row = of_rays(&twice)[9].clone();
             row.sample.theta = theta;
@@ -630,7 +575,7 @@ mod tests {
 
     #[test]
     fn too_few_rays_are_an_error() {
-        let few = on_both(coarse(), rows(QUADRATIC.len())).corrected();
+        let few = on_both(coarse(), rows(TERMS.len())).corrected();
         let few = few.unwrap_err().to_string();
         assert!(
             few.contains("13 rays") && few.contains("at least 14"),

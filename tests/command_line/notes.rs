@@ -1,6 +1,6 @@
 //! `--verbose`: programs, files and solver statuses on standard error, and nothing of it without the option.
 
-use crate::common::Workplace;
+use crate::common::{Workplace, assert_contains};
 
 /// Standard output and standard error of a run, which must succeed.
 fn printed(work: &Workplace, arguments: &str) -> [String; 2] {
@@ -8,12 +8,6 @@ fn printed(work: &Workplace, arguments: &str) -> [String; 2] {
     let texts = [output.stdout, output.stderr].map(|text| String::from_utf8(text).unwrap());
     assert!(output.status.success(), "{arguments}: {}", texts[1]);
     texts
-}
-
-fn assert_contains(text: &str, expected: &[&str]) {
-    for expected in expected {
-        assert!(text.contains(expected), "no `{expected}` in:\n{text}");
-    }
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! A working folder with small configurations, in which the program of the package under test is run.
 #![allow(dead_code)] // every test program uses only a part
 
+use dataset::{Database, Row};
 use std::os::unix::fs::symlink;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
@@ -85,6 +86,20 @@ pub fn failure(command: &mut Command) -> String {
     assert_eq!(output.status.code(), Some(1), "{message}");
     assert!(message.starts_with("error: "), "{message}");
     message
+}
+
+/// Asserts that a text has every one of the parts.
+#[track_caller]
+pub fn assert_contains(text: &str, expected: &[&str]) {
+    for expected in expected {
+        assert!(text.contains(expected), "no `{expected}` in:\n{text}");
+    }
+}
+
+/// The rows of a database without the CPU times of their solves, which no two runs share.
+pub fn timeless(database: &Database) -> Vec<Row> {
+    let rows = database.rows().iter().cloned();
+    rows.map(|row| Row { cpu_s: 0.0, ..row }).collect()
 }
 
 fn run(command: &mut Command) -> (Output, String) {

@@ -1,7 +1,7 @@
 //! A campaign that is killed repeatedly, or whose folder is lost, gives the same database.
 
-use crate::common::{Workplace, failure};
-use dataset::{Database, Row};
+use crate::common::{Workplace, failure, timeless};
+use dataset::Database;
 use nix::sys::signal::{Signal, kill};
 use nix::unistd::Pid;
 use std::os::unix::fs::PermissionsExt;
@@ -146,12 +146,6 @@ fn version(program: &str, flag: &str) -> String {
     let output = Command::new(program).arg(flag).output().unwrap();
     let text = [output.stdout, output.stderr].concat();
     String::from_utf8(text).unwrap().trim().to_owned()
-}
-
-/// The rows without the costs of their solves.
-fn timeless(database: &Database) -> Vec<Row> {
-    let rows = database.rows().iter().cloned();
-    rows.map(|row| Row { cpu_s: 0.0, ..row }).collect()
 }
 
 #[test]

@@ -2,7 +2,7 @@
 //!
 //! One story in steps, because each needs the files of those before it. A step that fails is named before its message.
 
-use crate::common::Workplace;
+use crate::common::{Workplace, assert_contains};
 use dataset::Database;
 use serde_json::Value;
 use std::collections::BTreeSet;
@@ -67,13 +67,6 @@ const SHIPPED_WEIGHTS: &str = "data/pet-0.5mm/medium.safetensors";
 
 fn json(text: &str) -> Value {
     serde_json::from_str(text).unwrap()
-}
-
-#[track_caller]
-fn assert_contains(text: &str, expected: &[&str]) {
-    for expected in expected {
-        assert!(text.contains(expected), "no `{expected}` in:\n{text}");
-    }
 }
 
 /// The events that the campaign has logged.

@@ -1,10 +1,10 @@
 //! A campaign file says everything: the commands of docs/CAMPAIGN.md make its database, its spot check and its weights, the
 //! same ones every time.
 
-use crate::common::Workplace;
+use crate::common::{Workplace, timeless};
 use crate::fake_solver::{FakeSolver, Fault};
 use crate::own_data::differences;
-use dataset::{Database, Row};
+use dataset::Database;
 use fe_driver::{
     Campaign, RunOptions, Shard, Solution, Solve, SolveError, Solver, ToolVersions, WindowSolve,
     run,
@@ -78,12 +78,6 @@ fn weights(work: &Workplace) -> [Vec<u8>; 4] {
 fn network(work: &Workplace, name: &str) -> Surrogate {
     let file = format!("runs/demo/weights/{name}.safetensors");
     Surrogate::load(&work.path(&file)).unwrap()
-}
-
-/// The rows without the CPU times of their solves, which no two runs share.
-fn timeless(database: &Database) -> Vec<Row> {
-    let rows = database.rows().iter().cloned();
-    rows.map(|row| Row { cpu_s: 0.0, ..row }).collect()
 }
 
 #[test]

@@ -22,6 +22,7 @@ use output::cut_file::{CutLines, FabricationError, SheetDrawing, Slit};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use scene::CuttingConfig;
+use testkit::derivatives::assert_close;
 
 const W_LIG: f64 = 18.0;
 const FILLET_RATIO: f64 = 0.16;
@@ -31,12 +32,6 @@ fn material() -> SheetMaterial {
     let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
     let film = root.join("../configs/materials/pet-0.5mm.toml");
     SheetMaterial::load(&film).unwrap()
-}
-
-#[track_caller]
-fn assert_close(found: f64, expected: f64, tolerance: f64) {
-    let close = (found - expected).abs() < tolerance;
-    assert!(close, "{found} instead of {expected}");
 }
 
 fn least(values: impl Iterator<Item = f64>) -> f64 {

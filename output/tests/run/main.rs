@@ -18,6 +18,7 @@ use scene::{Scene, SceneConfig};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use tempfile::TempDir;
+use testkit::derivatives::assert_close;
 
 /// A 3 x 3 sheet of a film, clamped left and pulled right, with linear hinges.
 const SCENE: &str = r#"
@@ -180,12 +181,6 @@ fn one(report: &Report, concern: Concern) -> &Warning {
 #[track_caller]
 fn assert_says(text: &str, part: &str) {
     assert!(text.contains(part), "{part} is not in {text}");
-}
-
-#[track_caller]
-fn assert_close(found: f64, expected: f64, tolerance: f64) {
-    let close = (found - expected).abs() < tolerance;
-    assert!(close, "{found} instead of {expected}");
 }
 
 /// Runs a scene, which is stopped after a step.
