@@ -1,5 +1,5 @@
 //! All numbers of a design, for comparison with other programs: pattern, ideal deployment, equilibria,
-//! gradient, springback. JSON has all of them, the text is a short table.
+//! gradient. JSON has all of them, the text is a short table.
 //!
 //! Orders: vertices j (M+1) + i; panels q M + p; corners SW SE NE NW; hinges by vertex, x before x';
 //! r row by row; tau on the edges bottom right top left; motions (u_x, u_y, phi); hinge
