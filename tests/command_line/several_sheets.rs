@@ -39,6 +39,10 @@ fn all_scenes_are_designed_and_the_table_compares_them() {
     );
     let message = work.error(&format!("{design} --quiet"));
     assert!(message.contains("1 of 2 runs failed"), "{message}");
+    assert!(
+        message.contains("sheets/pin-7x7: ") && message.contains("another run"),
+        "{message}"
+    );
     assert_eq!(column(&work, "state"), ["failed", "completed"]);
 }
 

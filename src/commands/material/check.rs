@@ -43,7 +43,8 @@ impl CheckCommand {
             ..measured
         };
         let intended = intended(&material, scene.as_ref());
-        if let (Some(scene), [min, max]) = (&self.scene, intended.w_lig) {
+        if let Some(scene) = &self.scene {
+            let [min, max] = intended.w_lig;
             ensure!(
                 0.0 < min && min < max && max.is_finite(),
                 "{}: ligament.range = [{min}, {max}] mm violates 0 < minimum < maximum",
