@@ -96,7 +96,7 @@ impl Surrogate {
     /// Hinges prepared for evaluation.
     ///
     /// w_lig: ligament width (mm), a number or an array of the shape of the hinges; alpha: cut angle (rad), likewise; hole: radius of the
-    /// hole over w_lig, by default the hole of the weights.
+    /// hole over w_lig, by default the hole of reference on the card of the weights.
     #[pyo3(signature = (w_lig, alpha, hole=None))]
     fn hinges(
         &self,
@@ -145,12 +145,6 @@ impl Surrogate {
         hole: Option<&Bound<PyAny>>,
     ) -> PyResult<Hinges> {
         let constants = self.networks[0].card().hinge;
-        let [least, most] = self.networks[0].holes();
-        if hole.is_none() && least < most {
-            return Err(PyValueError::new_err(format!(
-                "`hole` is missing: these weights are for holes with a radius of {least:.3} to {most:.3} w_lig"
-            )));
-        }
         let given = [
             ("w_lig", Some(w_lig)),
             ("alpha", Some(alpha)),

@@ -36,7 +36,7 @@ def test_derivatives_in_the_design(film):
     at = film(states, WIDTH, ANGLE, order="design")
     hole = film.card["hinge"]["fillet_ratio"]
     design = np.array([WIDTH, ANGLE, hole])
-    for c, direction in enumerate(np.eye(3)[:2]):
+    for c, direction in enumerate(np.eye(3)):
         energy = slope(lambda g: film(states, *g).energy, design, direction, 3e-4)
         forces = slope(lambda g: film(states, *g).forces, design, direction, 3e-4)
         np.testing.assert_allclose(at.by_design[:, c], energy, rtol=1e-7, atol=1e-8)

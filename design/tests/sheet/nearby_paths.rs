@@ -70,10 +70,13 @@ fn the_effort_falls_with_the_change_of_the_design() {
             ]
         })
     };
-    let [followed, far] = effort(0.05);
-    let [_, near] = effort(1e-4);
+    let [_, far] = effort(0.05);
+    let [followed, near] = effort(1e-4);
     assert!(near[0] < far[0], "corrections {near:?} {far:?}");
-    assert!(far[1] < followed[1], "factorisations {far:?} {followed:?}");
+    assert!(
+        near[1] < followed[1],
+        "factorisations {near:?} {followed:?}"
+    );
 }
 
 #[test]
