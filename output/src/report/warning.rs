@@ -74,7 +74,8 @@ pub enum Concern {
     PointOutside,
     /// The load has a maximum on the path: a dead load of the final size does not open the sheet.
     LoadPeak,
-    /// The weights state errors above 10 % in a force at their spot check, or a spot check that mostly lies outside their domain.
+    /// The weights state errors above 10 % in a force at their spot check, else at unseen rays, or a spot check that mostly lies
+    /// outside their domain.
     WeakWeights,
 }
 
