@@ -1,6 +1,6 @@
 """What calls from Python cost: python python/benchmarks/cost.py [--program target/release/kirigami]
 
-Prints the figures of the table in docs/PYTHON.md. The kernel's own time for the same 100 000 hinges is measured by `cargo bench -p kirigami-surrogate shipped`.
+Prints the figures of the table in docs/PYTHON.md. The kernel's own time for the same 100 000 hinges is measured by `cargo bench -p surrogate shipped`.
 """
 
 import argparse
