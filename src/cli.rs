@@ -13,7 +13,8 @@ use support::verbose;
 /// Design kirigami sheets whose hinges are measured by finite elements
 ///
 /// Material: material. Hinge data: mesh, solve, campaign, dataset. Hinge model: train, surrogate.
-/// Sheets: studio, design, cut, inspect, levels, verify, compare, export. Start with: doctor, demo, init.
+/// Sheets: studio, design, cut, inspect, levels, verify, compare, export. Start with: doctor, demo,
+/// init.
 #[derive(Parser)]
 #[command(name = "kirigami", version, propagate_version = true)]
 #[command(
@@ -23,8 +24,9 @@ pub struct Cli {
     /// Show no progress
     #[arg(long, short, global = true)]
     quiet: bool,
-    /// Print programs as they are run, files as they are read and written, and the status of every load step to standard
-    /// error, instead of progress bars. Example: kirigami --verbose solve --tier tiny
+    /// Print programs as they are run, files as they are read and written, and the status of every
+    /// load step to standard error, instead of progress bars. Example: kirigami --verbose solve
+    /// --tier tiny
     #[arg(long, short, global = true, conflicts_with = "quiet")]
     verbose: bool,
     #[command(subcommand)]

@@ -23,10 +23,9 @@ pub(crate) fn expected(fit: &FittedScene) -> String {
     let pulled = match (fit.pulled, fit.config.loads.len()) {
         (None, _) => "no equilibrium under pulls was found".to_owned(),
         (Some(near), 1) => format!("pulled at one panel, before the search: {}", within(near)),
-        (Some(near), count) => format!(
-            "pulled at {count} panels, before the search: {}",
-            within(near)
-        ),
+        (Some(near), count) => {
+            format!("pulled at {count} panels, before the search: {}", within(near))
+        }
     };
     format!(
         "The sheet of {columns} x {rows} panels, opened by {:.0} deg, becomes the target\n  on pins: {}{}\n  {pulled}{}",
@@ -38,11 +37,7 @@ pub(crate) fn expected(fit: &FittedScene) -> String {
 }
 
 /// Whether something must hold a plate flat.
-fn in_its_plane(
-    Stability {
-        margin, leaves_at, ..
-    }: Stability,
-) -> String {
+fn in_its_plane(Stability { margin, leaves_at, .. }: Stability) -> String {
     match leaves_at {
         Some(opening) => format!(
             "\n  its panels leave the plane where hinges open by {:.0} deg: hold it flat, such as between two boards",
@@ -57,11 +52,7 @@ fn in_its_plane(
 }
 
 fn within(near: Nearness) -> String {
-    let Nearness {
-        error,
-        relative,
-        overlap,
-    } = near;
+    let Nearness { error, relative, overlap } = near;
     format!(
         "within {error:.1} mm, {:.1} % of the sheet; {:.1} % of the area in common",
         100.0 * relative,
@@ -98,10 +89,7 @@ fn farthest(missed: &[Missed]) -> String {
     let places: Vec<String> = (places.iter().take(NAMED))
         .map(|(name, distance)| format!("{name} ({distance:.0} mm)"))
         .collect();
-    format!(
-        "\n  on pins, parts of the target that it does not reach: {}",
-        places.join(", ")
-    )
+    format!("\n  on pins, parts of the target that it does not reach: {}", places.join(", "))
 }
 
 /// The name of a place, given as parts of the width and the height of the target.

@@ -32,32 +32,34 @@ pub struct NewProject {
     /// Folder to create
     #[arg(value_name = "FOLDER")]
     pub(crate) folder: PathBuf,
-    /// Sheet material (TOML) [default: configs/materials/polypropylene-3mm.toml, below 2 mm of thickness pet-0.5mm.toml]
+    /// Sheet material (TOML) [default: configs/materials/polypropylene-3mm.toml, below 2 mm of
+    /// thickness pet-0.5mm.toml]
     #[arg(long, value_name = "FILE")]
     pub(crate) material: Option<PathBuf>,
     /// Thickness of the sheet (mm) [default: the thickness in the material file]
     #[arg(long, value_name = "MM")]
     pub(crate) thickness: Option<f64>,
-    /// Width and height of the sheet (mm) [default: 210x297 for plates up to 3 mm and films up to 0.1 mm, larger in
-    /// proportion to the thickness]
+    /// Width and height of the sheet (mm) [default: 210x297 for plates up to 3 mm and films up to
+    /// 0.1 mm, larger in proportion to the thickness]
     #[arg(long, value_name = "WIDTHxHEIGHT", value_parser = size)]
     pub(crate) size: Option<[f64; 2]>,
-    /// The stock that the sheet is cut from: a5 to a0, letter, tabloid, or width and height (mm). The sheet is smaller by twice the
-    /// margin, the over-run and half a kerf, so that its cuts fit
+    /// The stock that the sheet is cut from: a5 to a0, letter, tabloid, or width and height (mm).
+    /// The sheet is smaller by twice the margin, the over-run and half a kerf, so that its cuts fit
     #[arg(long, value_name = "STOCK", value_parser = stock, conflicts_with = "size")]
     pub(crate) stock: Option<Stock>,
     /// Border of the stock that the machine cannot cut (mm) [default: 0]
     #[arg(long, value_name = "MM", value_parser = length, requires = "stock")]
     pub(crate) margin: Option<f64>,
-    /// Outline that the sheet opens onto (SVG or DXF; FILE#2 is the second largest of several), in any position and of any size: outline,
-    /// cuts and pulls of the sheet are fitted to it [default: the opened sheet's rectangle]
+    /// Outline that the sheet opens onto (SVG or DXF; FILE#2 is the second largest of several), in
+    /// any position and of any size: outline, cuts and pulls of the sheet are fitted to it
+    /// [default: the opened sheet's rectangle]
     #[arg(long, value_name = "FILE")]
     pub(crate) target: Option<PathBuf>,
     /// Weights for this material [default: those for it among the shipped ones]
     #[arg(long, value_name = "FILE")]
     pub(crate) weights: Option<PathBuf>,
-    /// Whether the ligaments of a plate may be wider than stays flat by itself: its sheet is fitted to a drawing afterwards, or a service
-    /// wants wide ones.
+    /// Whether the ligaments of a plate may be wider than stays flat by itself: its sheet is fitted
+    /// to a drawing afterwards, or a service wants wide ones.
     #[arg(skip)]
     pub(crate) any_width: bool,
 }
@@ -94,10 +96,8 @@ impl NewProject {
         let fitting = self.weights_of(&measured)?;
         let named = self.weights.as_ref().and(fitting.first());
         let named = named.map(|weights| weights.regime);
-        let cut_from = self.stock.map(|stock| CutFrom {
-            stock,
-            margin: self.margin.unwrap_or(0.0),
-        });
+        let cut_from =
+            self.stock.map(|stock| CutFrom { stock, margin: self.margin.unwrap_or(0.0) });
         let mut first = FirstScene::new(self.size, cut_from, sheet.thickness, named)?;
         let regime = first.regime;
         let weights = fitting.iter().find(|weights| weights.regime == regime);
@@ -109,12 +109,9 @@ impl NewProject {
         }
         let weights = weights.map_or("weights.safetensors".into(), |weights| weights.file.clone());
         let scene = first.text(&weights, self.target.as_deref())?;
-        let name = self
-            .folder
-            .file_name()
-            .unwrap_or_default()
-            .to_string_lossy();
-        // The hinges of a plate are solved in its thickness: in the thickness of a film they would be too narrow.
+        let name = self.folder.file_name().unwrap_or_default().to_string_lossy();
+        // The hinges of a plate are solved in its thickness: in the thickness of a film they would
+        // be too narrow.
         let solved = match regime {
             Regime::Plate if !trained => sheet.thickness,
             _ => measured.thickness,
@@ -218,8 +215,8 @@ struct Weights {
 /// File of the training in a new folder.
 const TRAINING: &str = "training.toml";
 
-/// The shipped campaign of a regime, scaled to a sheet of `thickness` (mm); its material is `material.toml` in
-/// the same folder.
+/// The shipped campaign of a regime, scaled to a sheet of `thickness` (mm); its material is
+/// `material.toml` in the same folder.
 pub(crate) fn campaign(name: &str, thickness: f64, regime: Regime) -> Result<String> {
     let template = Template::of(regime);
     let factor = thickness / template.campaign_thickness;
@@ -247,11 +244,8 @@ pub(crate) fn campaign(name: &str, thickness: f64, regime: Regime) -> Result<Str
 /// What the sheet is, and the commands of the project in their order.
 fn readme(folder: &Path, template: &Template, regime: Regime, trained: bool) -> String {
     let path = |name: &str| shell_word(&folder.join(name));
-    let (campaign, scene, material) = (
-        path("campaign.toml"),
-        path("scene.toml"),
-        path("material.toml"),
-    );
+    let (campaign, scene, material) =
+        (path("campaign.toml"), path("scene.toml"), path("material.toml"));
     let (jobs, database) = (path("campaign"), path("hinges.parquet"));
     let (weights, training) = (path("weights.safetensors"), path(TRAINING));
     let (learned, learned_weights) = (path("learned"), path("learned/weights.safetensors"));
@@ -270,10 +264,7 @@ fn readme(folder: &Path, template: &Template, regime: Regime, trained: bool) -> 
     );
     let parts = if trained {
         vec![
-            (
-                "The material has weights. Design the sheet, and check it:",
-                design,
-            ),
+            ("The material has weights. Design the sheet, and check it:", design),
             (
                 "After a change to the material, fine-tune weights on about an hour of its solves:",
                 learn + &with,
@@ -299,7 +290,8 @@ fn readme(folder: &Path, template: &Template, regime: Regime, trained: bool) -> 
     text
 }
 
-/// The text of a material file for another folder, in a thickness (mm): the path of its measured curve becomes absolute.
+/// The text of a material file for another folder, in a thickness (mm): the path of its measured
+/// curve becomes absolute.
 pub(crate) fn material_text(path: &Path, thickness: f64) -> Result<String> {
     let text = text_file::read(path).with_context(|| format!("cannot read {}", path.display()))?;
     let mut material: DocumentMut = text.parse()?;
@@ -320,10 +312,7 @@ mod tests {
     fn the_commands_of_a_folder_with_a_space_can_be_copied() {
         let template = Template::of(Regime::Film);
         let text = readme(Path::new("my sheet"), template, Regime::Film, true);
-        assert!(
-            text.contains("kirigami design 'my sheet/scene.toml'\n"),
-            "{text}"
-        );
+        assert!(text.contains("kirigami design 'my sheet/scene.toml'\n"), "{text}");
     }
 
     #[test]

@@ -1,8 +1,9 @@
 //! `kirigami studio`: a scene in the browser, designed while one looks.
 //!
-//! [`engine`] holds a scene, answers every [`Request`](request::Request) by [`Event`](event::Event)s, and knows nothing of browsers.
-//! [`server`] carries both between the engine and the pages; `browser` carries them inside a page, without a server. Everything that a page shows is a scene on disk ([`project`]) that
-//! `kirigami design` repeats.
+//! [`engine`] holds a scene, answers every [`Request`](request::Request) by
+//! [`Event`](event::Event)s, and knows nothing of browsers. [`server`] carries both between the
+//! engine and the pages; `browser` carries them inside a page, without a server. Everything that a
+//! page shows is a scene on disk ([`project`]) that `kirigami design` repeats.
 
 #[cfg(target_family = "wasm")]
 mod browser;

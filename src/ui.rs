@@ -1,4 +1,5 @@
-//! The user interface of the commands: progress, files, pictures, charts, sizes, counts, exit codes.
+//! The user interface of the commands: progress, files, pictures, charts, sizes, counts, exit
+//! codes.
 
 pub mod animation;
 pub mod charts;

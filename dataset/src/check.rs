@@ -6,8 +6,9 @@ use crate::split::{Part, geometry, state};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 
-/// Maximum difference between the energy of a ray and the work of its forces, relative to the energy, as the root mean
-/// square over the rays. Increments of a campaign leave 1 %; a wrong unit or sign of a force leaves more than half.
+/// Maximum difference between the energy of a ray and the work of its forces, relative to the
+/// energy, as the root mean square over the rays. Increments of a campaign leave 1 %; a wrong unit
+/// or sign of a force leaves more than half.
 const WORK: f64 = 0.2;
 
 const LEAK: &str = "a geometry of the test or validation part occurs in the training part";
@@ -25,11 +26,7 @@ pub struct Defect {
 
 impl fmt::Display for Defect {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        write!(
-            f,
-            "{} ({} times, for example job {})",
-            self.what, self.count, self.job
-        )
+        write!(f, "{} ({} times, for example job {})", self.what, self.count, self.job)
     }
 }
 
@@ -39,14 +36,8 @@ impl Database {
         let rays = self.rays();
         let rows = self.rows();
         let row_findings = [
-            (
-                "the energy is negative",
-                rows.iter().filter(|row| row.sample.w < 0.0).collect(),
-            ),
-            (
-                "the same state of the same hinge occurs in two rays",
-                repeated(rows),
-            ),
+            ("the energy is negative", rows.iter().filter(|row| row.sample.w < 0.0).collect()),
+            ("the same state of the same hinge occurs in two rays", repeated(rows)),
             (LEAK, self.leaked()),
         ];
         let ray_findings = [
@@ -59,7 +50,8 @@ impl Database {
         findings
     }
 
-    /// A geometry of the test or validation part that occurs in the training part: the errors of weights would be false.
+    /// A geometry of the test or validation part that occurs in the training part: the errors of
+    /// weights would be false.
     pub fn leak(&self) -> Option<Defect> {
         finding((LEAK, self.leaked()))
     }
@@ -79,11 +71,7 @@ impl Database {
 
 fn finding((what, rows): (&'static str, Vec<&Row>)) -> Option<Defect> {
     let first = rows.first()?;
-    Some(Defect {
-        what,
-        count: rows.len(),
-        job: first.job.clone(),
-    })
+    Some(Defect { what, count: rows.len(), job: first.job.clone() })
 }
 
 /// The first row of each ray that satisfies a condition.
@@ -105,16 +93,14 @@ pub(crate) fn repeated(rows: &[Row]) -> Vec<&Row> {
 /// Whether the plastic strain recedes by more than its noise.
 fn healing(ray: &[Row]) -> bool {
     let maximum = ray.iter().map(|row| row.sample.d).fold(0.0, f64::max);
-    ray.windows(2)
-        .any(|pair| pair[1].sample.d < pair[0].sample.d - 1e-3 * maximum)
+    ray.windows(2).any(|pair| pair[1].sample.d < pair[0].sample.d - 1e-3 * maximum)
 }
 
-/// The energies of the rays against the work of their forces (trapezoidal rule from the undeformed state).
+/// The energies of the rays against the work of their forces (trapezoidal rule from the undeformed
+/// state).
 fn forces_without_work(rays: &[&[Row]]) -> Option<Defect> {
     let relative = |ray: &[Row]| -> Option<f64> {
-        let last = ray
-            .last()
-            .filter(|last| ray.len() > 4 && last.sample.w > 0.0)?;
+        let last = ray.last().filter(|last| ray.len() > 4 && last.sample.w > 0.0)?;
         let (mut work, mut before) = (0.0, [[0.0; 3]; 2]);
         for row in ray {
             let sample = &row.sample;
@@ -127,10 +113,8 @@ fn forces_without_work(rays: &[&[Row]]) -> Option<Defect> {
         }
         Some((work / last.sample.w - 1.0).abs())
     };
-    let errors: Vec<(f64, &Row)> = rays
-        .iter()
-        .filter_map(|ray| Some((relative(ray)?, &ray[0])))
-        .collect();
+    let errors: Vec<(f64, &Row)> =
+        rays.iter().filter_map(|ray| Some((relative(ray)?, &ray[0]))).collect();
     let mut sorted: Vec<f64> = errors.iter().map(|(error, _)| *error).collect();
     sorted.sort_by(f64::total_cmp);
     // The median: single rays may snap between two rows.
@@ -152,12 +136,7 @@ mod tests {
         let mut rows = rows(12);
         change(&mut rows);
         let database = Database::collect(rows, &SplitPlan::default());
-        database
-            .unwrap()
-            .check()
-            .into_iter()
-            .map(|it| it.what)
-            .collect()
+        database.unwrap().check().into_iter().map(|it| it.what).collect()
     }
 
     #[test]
@@ -185,32 +164,18 @@ mod tests {
     fn false_tables_are_found() {
         let says = |change: &dyn Fn(&mut Vec<Row>), part: &str| {
             let found = found(change);
-            assert!(
-                found.iter().any(|what| what.contains(part)),
-                "{part}: {found:?}"
-            );
+            assert!(found.iter().any(|what| what.contains(part)), "{part}: {found:?}");
         };
         // The gates reject such a row at collection; a table may have been written by other means.
         let mut database = Database::collect(rows(12), &SplitPlan::default()).unwrap();
         database.rows[7].sample.w = -1.0;
-        assert!(
-            database
-                .check()
-                .iter()
-                .any(|it| it.what.contains("negative"))
-        );
-        says(
-            &|rows| rows.iter_mut().for_each(|row| row.sample.m_theta *= 57.3),
-            "gradient",
-        );
+        assert!(database.check().iter().any(|it| it.what.contains("negative")));
+        says(&|rows| rows.iter_mut().for_each(|row| row.sample.m_theta *= 57.3), "gradient");
         says(&|rows| rows[5].sample.d = 1.0, "decreases");
         says(
             &|rows| {
                 let copy = rows[3].clone();
-                rows.push(Row {
-                    job: "job-900".into(),
-                    ..copy
-                });
+                rows.push(Row { job: "job-900".into(), ..copy });
             },
             "two rays",
         );
@@ -224,20 +189,13 @@ mod tests {
         let split = &mut database.manifest.split;
         let job = split.test.first().unwrap().clone();
         // The same geometry under another name in the training part.
-        let mut copies: Vec<Row> = database
-            .rows
-            .iter()
-            .filter(|row| row.job == job)
-            .cloned()
-            .collect();
+        let mut copies: Vec<Row> =
+            database.rows.iter().filter(|row| row.job == job).cloned().collect();
         copies.iter_mut().for_each(|row| row.job = "job-900".into());
         split.training.insert("job-900".into());
         database.rows.extend(copies);
         let found = database.check();
-        assert!(
-            found.iter().any(|it| it.what.contains("training part")),
-            "{found:?}"
-        );
+        assert!(found.iter().any(|it| it.what.contains("training part")), "{found:?}");
         assert!(found.contains(&database.leak().unwrap()));
     }
 }

@@ -1,8 +1,10 @@
-//! Comparison of rays that were solved twice: the error of a mesh relative to a finer one, or of one solver to another.
+//! Comparison of rays that were solved twice: the error of a mesh relative to a finer one, or of
+//! one solver to another.
 //!
-//! Two jobs are the same ray if their designs, their ends and their material laws are the same; an unknown law, as in
-//! rows of another solver, is taken for the law of the other job. They are compared at the states of the first job, up to
-//! the smaller lambda of the two; the second job is interpolated linearly in lambda.
+//! Two jobs are the same ray if their designs, their ends and their material laws are the same; an
+//! unknown law, as in rows of another solver, is taken for the law of the other job. They are
+//! compared at the states of the first job, up to the smaller lambda of the two; the second job is
+//! interpolated linearly in lambda.
 
 use crate::database::Database;
 use crate::rays::{RayKey, ray_key};
@@ -16,7 +18,8 @@ pub const COMPARED: [&str; 6] = ["W", "F_a", "F_s", "M_theta", "D", "D_peak"];
 /// One ray that both databases contain.
 #[derive(Clone, Debug)]
 pub struct ComparedRay<'a> {
-    /// The rows of the compared database, in order of lambda, up to the last lambda of the reference; not empty.
+    /// The rows of the compared database, in order of lambda, up to the last lambda of the
+    /// reference; not empty.
     pub rows: Vec<&'a Row>,
     /// The sample of the reference database at each of these rows.
     pub references: Vec<HingeSample>,
@@ -33,9 +36,7 @@ impl<'a> ComparedRay<'a> {
     /// The state of each row with its reference.
     pub fn states(&self) -> Vec<ComparedState> {
         let states = self.pairs();
-        states
-            .map(|(row, reference)| ComparedState::new(&row.sample, reference))
-            .collect()
+        states.map(|(row, reference)| ComparedState::new(&row.sample, reference)).collect()
     }
 
     /// The compared row with the largest lambda.
@@ -60,10 +61,7 @@ impl ComparedState {
             let peak = x.d_peak.unwrap_or(f64::NAN);
             [x.w, x.f_a, x.f_s, x.m_theta, x.d, peak]
         };
-        Self {
-            value: compared(value),
-            reference: compared(reference),
-        }
+        Self { value: compared(value), reference: compared(reference) }
     }
 
     /// Whether the quantity `i` of [`COMPARED`] is known in both databases.
@@ -83,7 +81,8 @@ impl Database {
     }
 }
 
-/// The rays that both databases contain, in the order of their designs; of a database with a finer mesh, those on the other one.
+/// The rays that both databases contain, in the order of their designs; of a database with a finer
+/// mesh, those on the other one.
 pub fn compare<'a>(candidate: &'a Database, reference: &'a Database) -> Vec<ComparedRay<'a>> {
     let rays = |database: &'a Database| database.on_tier(&database.manifest().tier);
     compare_rows(rays(candidate), rays(reference))
@@ -96,9 +95,7 @@ fn compare_rows<'a>(
     let references = rays(reference);
     let pairs = rays(candidate);
     let pairs = pairs.into_iter().filter_map(|((ray, law), rows)| {
-        let mut alike = references
-            .range((ray, "")..)
-            .take_while(|((other, _), _)| *other == ray);
+        let mut alike = references.range((ray, "")..).take_while(|((other, _), _)| *other == ray);
         let (_, reference) =
             alike.find(|((_, other), _)| *other == law || other.is_empty() || law.is_empty())?;
         Some((rows, reference))
@@ -124,8 +121,9 @@ pub fn reference_rms<'a>(states: impl IntoIterator<Item = &'a ComparedState>) ->
     rms(states, |state, i| state.reference[i])
 }
 
-/// Root mean square of the differences of each quantity, divided by the root mean square of the references or by
-/// `minimum`, whichever is larger. The minimum keeps the relative error of a nearly zero damage finite.
+/// Root mean square of the differences of each quantity, divided by the root mean square of the
+/// references or by `minimum`, whichever is larger. The minimum keeps the relative error of a
+/// nearly zero damage finite.
 pub fn relative_rms(states: &[ComparedState], minimum: [f64; 6]) -> [f64; 6] {
     let off = rms(states, |state, i| state.value[i] - state.reference[i]);
     let scale = reference_rms(states);
@@ -148,7 +146,8 @@ fn rms<'a>(
     std::array::from_fn(|i| (squares[i] / f64::max(counts[i], 1.0)).sqrt())
 }
 
-/// Rows by ray and hash of the material law, in order of lambda. The last row of a job identifies its ray, which may bend.
+/// Rows by ray and hash of the material law, in order of lambda. The last row of a job identifies
+/// its ray, which may bend.
 fn rays<'a>(rows: impl IntoIterator<Item = &'a Row>) -> BTreeMap<(RayKey, &'a str), Vec<&'a Row>> {
     let mut jobs: BTreeMap<&str, Vec<&Row>> = BTreeMap::new();
     for row in rows {
@@ -181,21 +180,8 @@ mod tests {
             let (w, w_work) = (1.03 * x.w, 1.03 * x.w_work);
             let (f_a, f_s, m_theta) = (1.03 * x.f_a, 1.03 * x.f_s, 1.03 * x.m_theta);
             let (d, d_peak) = (1.03 * x.d, x.d_peak.map(|peak| 1.03 * peak));
-            let sample = HingeSample {
-                w,
-                w_work,
-                f_a,
-                f_s,
-                m_theta,
-                d,
-                d_peak,
-                ..x
-            };
-            Row {
-                sample,
-                job: format!("stiff-{}", row.job),
-                ..row
-            }
+            let sample = HingeSample { w, w_work, f_a, f_s, m_theta, d, d_peak, ..x };
+            Row { sample, job: format!("stiff-{}", row.job), ..row }
         });
         let (candidate, reference) = (database(stiff.collect()), database(rows(6)));
         let rays = compare(&candidate, &reference);

@@ -11,17 +11,20 @@ use std::f64::consts::PI;
 use std::path::Path;
 use support::csv_table::NamedTable;
 
-/// The mapping from the columns of a foreign table to the columns of a database, read from a TOML file.
+/// The mapping from the columns of a foreign table to the columns of a database, read from a TOML
+/// file.
 ///
-/// Each column of the database has the same name in the table unless `columns` gives another name. A column that is
-/// missing in the table is taken from `constants`. `job` (the ray) and `lambda` may be missing if every row is a
-/// separate ray. Of the results, W, F_a, F_s, M_theta and D are required; without a model of damage, D is the constant 0.
+/// Each column of the database has the same name in the table unless `columns` gives another name.
+/// A column that is missing in the table is taken from `constants`. `job` (the ray) and `lambda`
+/// may be missing if every row is a separate ray. Of the results, W, F_a, F_s, M_theta and D are
+/// required; without a model of damage, D is the constant 0.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct ColumnMap {
     /// Name in the table of each column of the database.
     pub columns: BTreeMap<String, String>,
-    /// Factor by which a column of numbers is multiplied: 0.017453292519943295 for angles in degrees.
+    /// Factor by which a column of numbers is multiplied: 0.017453292519943295 for angles in
+    /// degrees.
     pub factors: BTreeMap<String, f64>,
     /// Value of each column that is missing in the table.
     pub constants: BTreeMap<String, Constant>,
@@ -73,12 +76,8 @@ impl Database {
 /// Reads the rows of a CSV file, to be collected into a database.
 pub fn rows_from_csv(path: &Path, map: &ColumnMap) -> Result<Vec<Row>, DatasetError> {
     map.check()?;
-    rows_of(NamedTable::read(path).map_err(DatasetError::Read)?, map).map_err(|source| {
-        DatasetError::In {
-            path: path.to_owned(),
-            source: Box::new(source),
-        }
-    })
+    rows_of(NamedTable::read(path).map_err(DatasetError::Read)?, map)
+        .map_err(|source| DatasetError::In { path: path.to_owned(), source: Box::new(source) })
 }
 
 fn rows_of(table: NamedTable, map: &ColumnMap) -> Result<Vec<Row>, DatasetError> {
@@ -98,10 +97,7 @@ fn rows_of(table: NamedTable, map: &ColumnMap) -> Result<Vec<Row>, DatasetError>
         is_required.then_some(DatasetError::NoColumn { column })
     };
     for text in &TEXTS {
-        match (
-            table.texts(text.name)?,
-            required(text.name == "material", text.name),
-        ) {
+        match (table.texts(text.name)?, required(text.name == "material", text.name)) {
             (None, Some(missing)) => return Err(missing),
             (values, _) => set_all(&mut rows, values, text.set),
         }
@@ -111,10 +107,7 @@ fn rows_of(table: NamedTable, map: &ColumnMap) -> Result<Vec<Row>, DatasetError>
     });
     for number in &NUMBERS {
         let is_required = REQUIRED.contains(&number.name);
-        match (
-            table.numbers(number.name)?,
-            required(is_required, number.name),
-        ) {
+        match (table.numbers(number.name)?, required(is_required, number.name)) {
             (None, Some(missing)) => return Err(missing),
             (values, _) => set_all(&mut rows, values, number.set),
         }
@@ -134,11 +127,7 @@ fn refuse_degrees(rows: &[Row]) -> Result<(), DatasetError> {
     for (index, row) in rows.iter().enumerate() {
         for (column, value) in [("alpha", row.design.alpha), ("theta", row.sample.theta)] {
             if value.abs() > PI {
-                return Err(DatasetError::Degrees {
-                    column,
-                    index,
-                    value,
-                });
+                return Err(DatasetError::Degrees { column, index, value });
             }
         }
     }
@@ -165,9 +154,7 @@ impl ForeignTable<'_> {
                 };
                 Ok(Some(self.records.iter().map(cell).collect()))
             }
-            (None, Some(column)) => Err(DatasetError::NoColumn {
-                column: column.clone(),
-            }),
+            (None, Some(column)) => Err(DatasetError::NoColumn { column: column.clone() }),
             (None, None) => Ok(None),
         }
     }
@@ -184,7 +171,8 @@ impl ForeignTable<'_> {
         Ok(Some(values))
     }
 
-    /// The texts of a column or its constant. An empty cell is an empty text; for example, most rows have no failure.
+    /// The texts of a column or its constant. An empty cell is an empty text; for example, most
+    /// rows have no failure.
     fn texts(&self, name: &str) -> Result<Option<Vec<String>>, DatasetError> {
         let texts = self.cells(name)?.map(|cells| {
             let texts = cells.into_iter().map(Option::unwrap_or_default);
@@ -216,10 +204,7 @@ impl ColumnMap {
         let number =
             |name: &str| name == D_PEAK.name || NUMBERS.iter().any(|column| column.name == name);
         let text = |name: &str| TEXTS.iter().any(|column| column.name == name);
-        let named = self
-            .columns
-            .keys()
-            .find(|name| !number(name) && !text(name));
+        let named = self.columns.keys().find(|name| !number(name) && !text(name));
         let scaled = self.factors.keys().find(|name| !number(name));
         let constant = self.constants.iter().find(|(name, value)| match value {
             Constant::Number(_) => !number(name),

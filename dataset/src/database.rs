@@ -19,7 +19,8 @@ pub struct Database {
 impl Database {
     /// Drops and counts the rows that the gates reject, and splits the others by geometry.
     ///
-    /// Rows of different materials or hinge constants are an error, and rows of two tiers without a common ray.
+    /// Rows of different materials or hinge constants are an error, and rows of two tiers without a
+    /// common ray.
     pub fn collect(rows: Vec<Row>, plan: &SplitPlan) -> Result<Self, DatasetError> {
         let mut digest = Digest::new();
         let mut rows = digest.accepted(rows);
@@ -29,14 +30,11 @@ impl Database {
         }
         let parquet = parquet::encode(&rows)?;
         let manifest = digest.manifest(parquet::hash(&parquet), plan)?;
-        Ok(Self {
-            rows,
-            parquet,
-            manifest,
-        })
+        Ok(Self { rows, parquet, manifest })
     }
 
-    /// A database of other rows of the rays, with the same split. Its hash is the hash of this file, from which it follows.
+    /// A database of other rows of the rays, with the same split. Its hash is the hash of this
+    /// file, from which it follows.
     pub(crate) fn with_rows(&self, rows: Vec<Row>) -> Result<Self, DatasetError> {
         let ours = &self.manifest;
         let mut other = Self::collect(rows, &ours.split_plan)?;
@@ -44,9 +42,7 @@ impl Database {
             *other.manifest.rejected.entry(*reason).or_default() += count;
         }
         other.manifest.hash.clone_from(&ours.hash);
-        let split = ours
-            .split
-            .of(other.rows.iter().map(|row| &row.job).collect());
+        let split = ours.split.of(other.rows.iter().map(|row| &row.job).collect());
         other.manifest.split_hash = split.hash();
         other.manifest.split = split;
         Ok(other)
@@ -65,7 +61,8 @@ impl Database {
         self.rows.chunk_by(same).collect()
     }
 
-    /// The first row of every ray that was solved on another tier than the tier of its campaign, after a failure.
+    /// The first row of every ray that was solved on another tier than the tier of its campaign,
+    /// after a failure.
     pub fn rays_on_other_tiers(&self) -> Vec<&Row> {
         let first = self.rays().into_iter().filter_map(<[Row]>::first);
         first.filter(|row| !row.is_as_asked()).collect()

@@ -1,7 +1,8 @@
 //! Reading and writing a database: `X.parquet` and its manifest `X.json`.
 //!
-//! Renaming the manifest, which holds the hash of its Parquet file, commits the database. The Parquet file is written before as
-//! `X.parquet.next` and renamed afterwards; after a kill between the two the next reader renames it.
+//! Renaming the manifest, which holds the hash of its Parquet file, commits the database. The
+//! Parquet file is written before as `X.parquet.next` and renamed afterwards; after a kill between
+//! the two the next reader renames it.
 
 use crate::database::Database;
 use crate::error::DatasetError;
@@ -15,7 +16,8 @@ use support::sealed_json::{self, SealError};
 use support::whole_file::{self, Unnamed};
 
 impl Database {
-    /// Reads `X.parquet` and its manifest `X.json`; an error if the hash of the file is not that in the manifest.
+    /// Reads `X.parquet` and its manifest `X.json`; an error if the hash of the file is not that in
+    /// the manifest.
     pub fn read(path: &Path) -> Result<Self, DatasetError> {
         let (manifest, parquet) = match finish(path)? {
             Some(finished) => finished,
@@ -26,15 +28,8 @@ impl Database {
             source: Box::new(source),
         })?;
         match manifest.disagrees(&rows) {
-            None => Ok(Self {
-                rows,
-                parquet,
-                manifest,
-            }),
-            Some(what) => Err(DatasetError::OtherRows {
-                path: path.to_owned(),
-                what,
-            }),
+            None => Ok(Self { rows, parquet, manifest }),
+            Some(what) => Err(DatasetError::OtherRows { path: path.to_owned(), what }),
         }
     }
 
@@ -68,8 +63,8 @@ pub(crate) fn publish(
     whole_file::rename(&next, path).map_err(unwritable(path))
 }
 
-/// The database whose Parquet file has not got its name yet, which it gets now if the folder can be written; `None` if there
-/// is none.
+/// The database whose Parquet file has not got its name yet, which it gets now if the folder can be
+/// written; `None` if there is none.
 fn finish(path: &Path) -> Result<Option<(Manifest, Vec<u8>)>, DatasetError> {
     let next = next_path(path);
     if !next.exists() {
@@ -94,11 +89,7 @@ fn read_files(path: &Path) -> Result<(Manifest, Vec<u8>), DatasetError> {
     let manifest = read_manifest(&manifest_path(path))?;
     let found = parquet::hash(&parquet);
     if found != manifest.hash {
-        return Err(DatasetError::Hash {
-            path: path.to_owned(),
-            expected: manifest.hash,
-            found,
-        });
+        return Err(DatasetError::Hash { path: path.to_owned(), expected: manifest.hash, found });
     }
     Ok((manifest, parquet))
 }
@@ -126,14 +117,10 @@ fn read_manifest(path: &Path) -> Result<Manifest, DatasetError> {
     struct Version {
         format_version: u64,
     }
-    let malformed = |source| DatasetError::Manifest {
-        path: path.to_owned(),
-        source,
-    };
+    let malformed = |source| DatasetError::Manifest { path: path.to_owned(), source };
     let bytes = read_bytes(path)?;
-    let version: Version = serde_json::from_slice(&bytes)
-        .map_err(SealError::from)
-        .map_err(malformed)?;
+    let version: Version =
+        serde_json::from_slice(&bytes).map_err(SealError::from).map_err(malformed)?;
     if version.format_version != u64::from(FORMAT_VERSION) {
         return Err(DatasetError::UnknownVersion {
             path: path.to_owned(),
@@ -155,9 +142,7 @@ fn other_kind(bytes: &[u8]) -> Option<&'static str> {
 }
 
 pub(crate) fn read_bytes(path: &Path) -> Result<Vec<u8>, DatasetError> {
-    regular_file::read(path)
-        .map_err(FileError::at(path))
-        .map_err(DatasetError::Read)
+    regular_file::read(path).map_err(FileError::at(path)).map_err(DatasetError::Read)
 }
 
 /// Maps the error of writing `path`, for use in `map_err`.

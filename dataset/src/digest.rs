@@ -1,5 +1,5 @@
-//! What the manifest and the summary need of the rows of a database, gathered ray by ray: the rows themselves need not be
-//! in memory at the same time.
+//! What the manifest and the summary need of the rows of a database, gathered ray by ray: the rows
+//! themselves need not be in memory at the same time.
 
 use crate::error::DatasetError;
 use crate::gates::{Gates, Rejection};
@@ -30,12 +30,8 @@ pub(crate) struct Digest {
 }
 
 /// The columns of text whose values the manifest lists.
-const TEXTS: [fn(&Row) -> &String; 4] = [
-    |row| &row.material,
-    |row| &row.material_hash,
-    |row| &row.gmsh,
-    |row| &row.ccx,
-];
+const TEXTS: [fn(&Row) -> &String; 4] =
+    [|row| &row.material, |row| &row.material_hash, |row| &row.gmsh, |row| &row.ccx];
 
 impl Digest {
     pub fn new() -> Self {
@@ -60,7 +56,8 @@ impl Digest {
         rows
     }
 
-    /// Adds accepted rows of one job, in the order of lambda. The jobs must come in the order of their ids.
+    /// Adds accepted rows of one job, in the order of lambda. The jobs must come in the order of
+    /// their ids.
     pub fn add(&mut self, ray: &[Row]) -> Result<(), DatasetError> {
         for row in ray {
             self.refuse_duplicate(row)?;
@@ -89,9 +86,7 @@ impl Digest {
 
     /// The manifest of the rows, whose Parquet file has the given hash.
     pub fn manifest(self, hash: String, plan: &SplitPlan) -> Result<Manifest, DatasetError> {
-        let no_rows = |rejected| DatasetError::NoRows {
-            why: reasons(rejected),
-        };
+        let no_rows = |rejected| DatasetError::NoRows { why: reasons(rejected) };
         let bent_rays = self.meshes.bent_rays.unwrap_or_default();
         let Some((rays, finer)) = self.meshes.sorted()? else {
             return Err(no_rows(&self.rejected));
@@ -108,9 +103,7 @@ impl Digest {
         Ok(Manifest {
             format_version: FORMAT_VERSION,
             hash,
-            units: schema::units()
-                .map(|(name, unit)| (name.to_owned(), unit.to_owned()))
-                .collect(),
+            units: schema::units().map(|(name, unit)| (name.to_owned(), unit.to_owned())).collect(),
             rows: self.rows,
             rays: rays.rays,
             partial_rays: rays.partial_rays,
@@ -145,8 +138,7 @@ fn reasons(rejected: &BTreeMap<Rejection, usize>) -> String {
         return "run the campaign before collecting it".into();
     }
     let reasons = rejected.iter();
-    let reasons: Vec<String> = reasons
-        .map(|(reason, count)| format!("{count} were rejected since {reason}"))
-        .collect();
+    let reasons: Vec<String> =
+        reasons.map(|(reason, count)| format!("{count} were rejected since {reason}")).collect();
     reasons.join("; ")
 }

@@ -13,12 +13,7 @@ pub enum DatasetError {
         "job {job}: {column} = {found}, but other rows have {expected}; \
          collect them in separate databases"
     )]
-    Mixed {
-        job: String,
-        column: &'static str,
-        expected: String,
-        found: String,
-    },
+    Mixed { job: String, column: &'static str, expected: String, found: String },
     #[error("job {job}: lambda = {lambda} occurs twice; was the job collected twice?")]
     Duplicate { job: String, lambda: f64 },
     #[error(
@@ -41,20 +36,12 @@ pub enum DatasetError {
     )]
     NoColumn { column: String },
     #[error("column `{column}`, row {index}: `{text}` is not a number")]
-    NotANumber {
-        column: &'static str,
-        index: usize,
-        text: String,
-    },
+    NotANumber { column: &'static str, index: usize, text: String },
     #[error(
         "column `{column}`, row {index}: {value} is no angle of a hinge in rad; for degrees, set \
          `factors.{column} = 0.017453292519943295` in the column map"
     )]
-    Degrees {
-        column: &'static str,
-        index: usize,
-        value: f64,
-    },
+    Degrees { column: &'static str, index: usize, value: f64 },
     #[error(
         "the column map contains `{key}`, which is not a column of a database, or a column of another type"
     )]
@@ -70,11 +57,7 @@ pub enum DatasetError {
         "the texts of the table exceed {most} bytes at row {index} of the column `{column}`: the file is damaged, or made to fill \
          the memory"
     )]
-    LongText {
-        column: &'static str,
-        index: usize,
-        most: usize,
-    },
+    LongText { column: &'static str, index: usize, most: usize },
     #[error("the file is malformed: the Parquet reader fails with `{0}`")]
     Malformed(String),
     #[error("cannot read {0}")]
@@ -89,40 +72,26 @@ pub enum DatasetError {
     #[error("{path} {what}: a database is a Parquet file (.parquet) with its manifest", path = .path.display())]
     NoDatabase { path: PathBuf, what: &'static str },
     #[error("{path} is not a manifest of a database: {source}", path = .path.display())]
-    Manifest {
-        path: PathBuf,
-        source: support::sealed_json::SealError,
-    },
+    Manifest { path: PathBuf, source: support::sealed_json::SealError },
     #[error(
         "{path} has the format version {found}, but this program reads version {expected} alone: collect the campaign \
          again, or use the program that wrote it",
         path = .path.display()
     )]
-    UnknownVersion {
-        path: PathBuf,
-        found: u64,
-        expected: u32,
-    },
+    UnknownVersion { path: PathBuf, found: u64, expected: u32 },
     #[error(
         "{path} does not match its manifest (its BLAKE3 hash is {found}, not {expected}); \
          copy both files from the same place, or collect the campaign again",
         path = .path.display()
     )]
-    Hash {
-        path: PathBuf,
-        expected: String,
-        found: String,
-    },
+    Hash { path: PathBuf, expected: String, found: String },
     #[error(
         "{path} and its manifest do not belong together: {what}; copy the two files again, or collect the campaign again",
         path = .path.display()
     )]
     OtherRows { path: PathBuf, what: &'static str },
     #[error("{path}: {source}", path = .path.display())]
-    In {
-        path: PathBuf,
-        source: Box<DatasetError>,
-    },
+    In { path: PathBuf, source: Box<DatasetError> },
     #[error("the table is not a valid database: {0}")]
     Table(#[from] polars::error::PolarsError),
     #[error("the table cannot be read or written as CSV: {0}")]

@@ -23,10 +23,7 @@ impl Fidelity {
     /// Parses a tier as written in a database.
     pub fn from_tier(tier: &str) -> Self {
         match tier.rsplit_once(CORRECTED_TO) {
-            Some((from, to)) => Self::Corrected {
-                from: from.into(),
-                to: to.into(),
-            },
+            Some((from, to)) => Self::Corrected { from: from.into(), to: to.into() },
             None => Self::Solved(tier.into()),
         }
     }
@@ -54,10 +51,7 @@ mod tests {
 
     #[test]
     fn a_tier_is_written_and_read() {
-        let corrected = Fidelity::Corrected {
-            from: "default".into(),
-            to: "reference".into(),
-        };
+        let corrected = Fidelity::Corrected { from: "default".into(), to: "reference".into() };
         assert_eq!(corrected.to_string(), "default corrected to reference");
         assert_eq!(Fidelity::from_tier(&corrected.to_string()), corrected);
         assert_eq!(corrected.mesh(), "reference");

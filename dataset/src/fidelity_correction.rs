@@ -1,17 +1,18 @@
-//! Correction of the mesh error of a database: a multiplicative bridge between two fidelities, fitted to the few rays
-//! that were also solved on a finer mesh,
+//! Correction of the mesh error of a database: a multiplicative bridge between two fidelities,
+//! fitted to the few rays that were also solved on a finer mesh,
 //!
 //! ```text
 //! W' = (1 + q) W,     F' = dW'/d(a, s, theta) = (1 + q) F + W dq/d(a, s, theta),     q = c . terms
 //! ```
 //!
-//! with a separate q for each damage measure. The terms are the monomials of degree two or less in w_lig,
-//! alpha - pi/2, eta_a, eta_s and theta, each divided by its range, that satisfy the mirror symmetry. Outside
-//! the range of the rays on both meshes, q is constant in that coordinate. c is fitted to the energy and its forces, which are
-//! linear in it, by least squares of the relative errors; the corrected forces remain the gradient of the corrected energy.
-//! W with its forces, D or D_peak remains uncorrected if the sum of its squared errors over all rays, each corrected by the
-//! others, is no smaller than without the correction; of W and its forces, the sum of the four relative errors.
-//! (Fernandez-Godino et al., "Review of multi-fidelity models", 2016, section 2.)
+//! with a separate q for each damage measure. The terms are the monomials of degree two or less in
+//! w_lig, alpha - pi/2, eta_a, eta_s and theta, each divided by its range, that satisfy the mirror
+//! symmetry. Outside the range of the rays on both meshes, q is constant in that coordinate. c is
+//! fitted to the energy and its forces, which are linear in it, by least squares of the relative
+//! errors; the corrected forces remain the gradient of the corrected energy. W with its forces, D
+//! or D_peak remains uncorrected if the sum of its squared errors over all rays, each corrected by
+//! the others, is no smaller than without the correction; of W and its forces, the sum of the four
+//! relative errors. (Fernandez-Godino et al., "Review of multi-fidelity models", 2016, section 2.)
 
 use crate::compare::{COMPARED, ComparedRay, ComparedState};
 use crate::database::Database;
@@ -41,14 +42,16 @@ const TERMS: [[usize; 2]; 13] = [
     [1, 3],
     [3, 3],
 ];
-/// Fraction of the root mean square that limits the scale of the relative error of small values from below.
+/// Fraction of the root mean square that limits the scale of the relative error of small values
+/// from below.
 const LEAST_SCALE: f64 = 0.3;
-/// Weight of the equation of a force, relative to the weight of the equation of W. Where a ligament buckles a second time, forces
-/// differ between the meshes as no polynomial does: on 34 rays of the film, corrected by the others, W is off by 2.6 % at the
-/// weight 1, by 1.2 % at 0.1 and at 0, F_s by 5.6, 5.5 and 6.4 %.
+/// Weight of the equation of a force, relative to the weight of the equation of W. Where a ligament
+/// buckles a second time, forces differ between the meshes as no polynomial does: on 34 rays of the
+/// film, corrected by the others, W is off by 2.6 % at the weight 1, by 1.2 % at 0.1 and at 0, F_s
+/// by 5.6, 5.5 and 6.4 %.
 const FORCE_WEIGHT: f64 = 0.1;
-/// Weight of the ridge regularisation, which equals the weight of one state. It determines only the coefficients that the
-/// rays do not determine.
+/// Weight of the ridge regularisation, which equals the weight of one state. It determines only the
+/// coefficients that the rays do not determine.
 const RIDGE: f64 = 1.0;
 
 /// Coefficients of the [`TERMS`].
@@ -107,11 +110,7 @@ impl Bridge {
         let x = &row.sample;
         let force = |i: usize, value: f64, reference: f64| {
             let by = |k: usize| terms[k] * value + x.w * slopes[k][i];
-            Change {
-                by: std::array::from_fn(by),
-                missing: reference - value,
-                reference,
-            }
+            Change { by: std::array::from_fn(by), missing: reference - value, reference }
         };
         [
             Change::of(terms, x.w, reference.w),
@@ -132,9 +131,9 @@ impl Bridge {
         }
     }
 
-    /// The sample of a row, corrected to the finer mesh. Quantities that no surrogate is trained on are unchanged,
-    /// including the work of the reaction forces and the energy residual. A row that was solved on a finer tier than
-    /// the requested one is also unchanged.
+    /// The sample of a row, corrected to the finer mesh. Quantities that no surrogate is trained on
+    /// are unchanged, including the work of the reaction forces and the energy residual. A row that
+    /// was solved on a finer tier than the requested one is also unchanged.
     fn corrected(&self, row: &Row) -> HingeSample {
         if !row.is_as_asked() {
             return row.sample;
@@ -150,9 +149,7 @@ impl Bridge {
             f_s: energy * x.f_s + x.w * slope(1),
             m_theta: energy * x.m_theta + x.w * slope(2),
             d: factor(&self.damage).max(0.0) * x.d,
-            d_peak: x
-                .d_peak
-                .map(|peak| factor(&self.damage_peak).max(0.0) * peak),
+            d_peak: x.d_peak.map(|peak| factor(&self.damage_peak).max(0.0) * peak),
             ..*x
         }
     }
@@ -178,9 +175,10 @@ impl Bridge {
 }
 
 impl Database {
-    /// The rays, corrected to the finer mesh by those that were solved on it too, but for quantities that [`left_out`] leaves
-    /// uncorrected; without a correction of W the tier remains. The rows of the finer mesh are left out. Returns the
-    /// validation too; `None`, and the database as it is, if no ray was solved on a finer mesh.
+    /// The rays, corrected to the finer mesh by those that were solved on it too, but for
+    /// quantities that [`left_out`] leaves uncorrected; without a correction of W the tier remains.
+    /// The rows of the finer mesh are left out. Returns the validation too; `None`, and the
+    /// database as it is, if no ray was solved on a finer mesh.
     pub fn corrected(self) -> Result<(Self, Option<LeftOut>), DatasetError> {
         let Some(finer) = &self.manifest().finer else {
             return Ok((self, None));
@@ -213,7 +211,8 @@ const CORRECTED: [usize; 3] = [0, 4, 5];
 pub struct LeftOut {
     /// The states of each ray, corrected by the other rays.
     pub states: Vec<Vec<ComparedState>>,
-    /// Sums of the squared relative errors of W with its forces, of D and of D_peak, without and with the correction.
+    /// Sums of the squared relative errors of W with its forces, of D and of D_peak, without and
+    /// with the correction.
     errors: [[f64; 3]; 2],
 }
 
@@ -232,18 +231,17 @@ impl LeftOut {
     }
 }
 
-/// Leave-one-out validation: each ray, corrected by a bridge fitted to the other rays only. It measures the error of
-/// the correction for rays that were not solved on both meshes. The choice of the quantities that are corrected is made on
-/// all rays.
+/// Leave-one-out validation: each ray, corrected by a bridge fitted to the other rays only. It
+/// measures the error of the correction for rays that were not solved on both meshes. The choice of
+/// the quantities that are corrected is made on all rays.
 pub fn left_out(rays: &[ComparedRay]) -> Result<LeftOut, DatasetError> {
     let (found, needed) = (rays.len(), TERMS.len() + 1);
     if found < needed {
         // Too few to fit every term when one ray is left out.
         return Err(DatasetError::TooFewRays { found, needed });
     }
-    let bridges: Vec<Bridge> = (0..rays.len())
-        .map(|i| Bridge::fit(&[&rays[..i], &rays[i + 1..]].concat()))
-        .collect();
+    let bridges: Vec<Bridge> =
+        (0..rays.len()).map(|i| Bridge::fit(&[&rays[..i], &rays[i + 1..]].concat())).collect();
     let states = |corrected: [bool; 3]| -> Vec<Vec<ComparedState>> {
         let of_ray = |(ray, bridge): (&ComparedRay, &Bridge)| {
             let bridge = bridge.clone().only(corrected);
@@ -255,17 +253,13 @@ pub fn left_out(rays: &[ComparedRay]) -> Result<LeftOut, DatasetError> {
         std::iter::zip(rays, &bridges).map(of_ray).collect()
     };
     let corrected = states([true; 3]);
-    let checked = LeftOut {
-        errors: [errors(&states([false; 3])), errors(&corrected)],
-        states: corrected,
-    };
-    Ok(LeftOut {
-        states: states(checked.corrected()),
-        ..checked
-    })
+    let checked =
+        LeftOut { errors: [errors(&states([false; 3])), errors(&corrected)], states: corrected };
+    Ok(LeftOut { states: states(checked.corrected()), ..checked })
 }
 
-/// The sums of the squared relative errors of W with its forces, of D and of D_peak; a quantity that is 0 has none.
+/// The sums of the squared relative errors of W with its forces, of D and of D_peak; a quantity
+/// that is 0 has none.
 fn errors(states: &[Vec<ComparedState>]) -> [f64; 3] {
     let squares = |i: usize| {
         let known = states.iter().flatten().filter(|state| state.is_known(i));
@@ -282,17 +276,11 @@ fn errors(states: &[Vec<ComparedState>]) -> [f64; 3] {
 fn coordinates(row: &Row) -> [f64; 5] {
     let [eta_a, eta_s] = row.eta();
     let design = &row.design;
-    [
-        design.w_lig,
-        design.alpha - FRAC_PI_2,
-        eta_a,
-        eta_s,
-        row.sample.theta,
-    ]
+    [design.w_lig, design.alpha - FRAC_PI_2, eta_a, eta_s, row.sample.theta]
 }
 
-/// Middle and half of the range of each coordinate. The middle is 0 except for the width, so that the mirror
-/// image has the opposite alpha and eta_s. A constant coordinate is not scaled.
+/// Middle and half of the range of each coordinate. The middle is 0 except for the width, so that
+/// the mirror image has the opposite alpha and eta_s. A constant coordinate is not scaled.
 fn ranges<'a>(rows: impl Iterator<Item = &'a Row>) -> [[f64; 2]; 5] {
     let mut minimum = [f64::INFINITY; 5];
     let mut maximum = [f64::NEG_INFINITY; 5];
@@ -304,10 +292,7 @@ fn ranges<'a>(rows: impl Iterator<Item = &'a Row>) -> [[f64; 2]; 5] {
     }
     std::array::from_fn(|i| {
         let [middle, half] = match i {
-            0 => [
-                0.5 * (minimum[i] + maximum[i]),
-                0.5 * (maximum[i] - minimum[i]),
-            ],
+            0 => [0.5 * (minimum[i] + maximum[i]), 0.5 * (maximum[i] - minimum[i])],
             _ => [0.0, maximum[i].abs().max(minimum[i].abs())],
         };
         [middle, if half > 0.0 { half } else { 1.0 }]
@@ -326,15 +311,12 @@ struct Change {
 impl Change {
     /// Of a value that is multiplied by 1 + c . terms.
     fn of(terms: Coefficients, value: f64, reference: f64) -> Self {
-        Self {
-            by: terms.map(|term| term * value),
-            missing: reference - value,
-            reference,
-        }
+        Self { by: terms.map(|term| term * value), missing: reference - value, reference }
     }
 }
 
-/// The c with which c . by = missing, by least squares, each equation scaled by its reference and with the weight of its quantity.
+/// The c with which c . by = missing, by least squares, each equation scaled by its reference and
+/// with the weight of its quantity.
 fn least_squares<const N: usize>(quantities: [(Vec<Change>, f64); N]) -> Coefficients {
     let mut normal = RIDGE * Mat::<f64>::identity(TERMS.len(), TERMS.len());
     let mut right = Mat::<f64>::zeros(TERMS.len(), 1);
@@ -437,8 +419,8 @@ mod tests {
         assert_eq!(manifest.tier, "default corrected to reference");
         assert_eq!(manifest.split, split);
         let after = errors(&corrected);
-        // 1/(1 + q) is not a polynomial of degree two. The remaining error is largest in forces that are small
-        // compared with W dq/da.
+        // 1/(1 + q) is not a polynomial of degree two. The remaining error is largest in forces
+        // that are small compared with W dq/da.
         for (before, after) in std::iter::zip(before, after) {
             assert!(after < before / 3.0, "{before} {after}");
         }
@@ -463,31 +445,14 @@ mod tests {
             let x = row.sample;
             // The solved energy, to first order about the row.
             let w = x.w + x.f_a * a + x.f_s * s + x.m_theta * theta;
-            let sample = HingeSample {
-                a: x.a + a,
-                s: x.s + s,
-                theta: x.theta + theta,
-                w,
-                ..x
-            };
-            bridge
-                .corrected(&Row {
-                    sample,
-                    ..row.clone()
-                })
-                .w
+            let sample = HingeSample { a: x.a + a, s: x.s + s, theta: x.theta + theta, w, ..x };
+            bridge.corrected(&Row { sample, ..row.clone() }).w
         };
         let found = bridge.corrected(&row);
-        for (i, found) in [found.f_a, found.f_s, found.m_theta]
-            .into_iter()
-            .enumerate()
-        {
+        for (i, found) in [found.f_a, found.f_s, found.m_theta].into_iter().enumerate() {
             let step: [f64; 3] = std::array::from_fn(|j| if i == j { 1e-6 } else { 0.0 });
             let slope = (moved(step) - moved(step.map(|x| -x))) / 2e-6;
-            assert!(
-                (found - slope).abs() < 1e-6 * slope.abs().max(1.0),
-                "{found} {slope}"
-            );
+            assert!((found - slope).abs() < 1e-6 * slope.abs().max(1.0), "{found} {slope}");
         }
     }
 
@@ -512,15 +477,9 @@ mod tests {
         let twice = on_both(coarse(), spoilt);
         let rays = twice.on_both_meshes();
         let checked = left_out(&rays).unwrap().states;
-        let i = rays
-            .iter()
-            .position(|ray| ray.end().job == "job-003")
-            .unwrap();
+        let i = rays.iter().position(|ray| ray.end().job == "job-003").unwrap();
         let [corrected, solved] = [&checked[i], &rays[i].states()].map(|states| states[9].value[0]);
-        assert!(
-            (corrected / solved - 1.0).abs() < 0.1,
-            "{corrected} {solved}"
-        );
+        assert!((corrected / solved - 1.0).abs() < 0.1, "{corrected} {solved}");
     }
 
     #[test]
@@ -563,10 +522,7 @@ mod tests {
             let mut row = of_rays(&twice)[9].clone();
             row.sample.theta = theta;
             let corrected = bridge.corrected(&row);
-            [
-                corrected.w / row.sample.w,
-                corrected.m_theta / row.sample.m_theta,
-            ]
+            [corrected.w / row.sample.w, corrected.m_theta / row.sample.m_theta]
         };
         let [energy, moment] = at(3.0);
         assert_eq!(energy, at(2.0)[0]);
@@ -577,10 +533,7 @@ mod tests {
     fn too_few_rays_are_an_error() {
         let few = on_both(coarse(), rows(TERMS.len())).corrected();
         let few = few.unwrap_err().to_string();
-        assert!(
-            few.contains("13 rays") && few.contains("at least 14"),
-            "{few}"
-        );
+        assert!(few.contains("13 rays") && few.contains("at least 14"), "{few}");
         assert!(on_both(coarse(), rows(14)).corrected().is_ok());
     }
 

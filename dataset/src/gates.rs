@@ -9,17 +9,16 @@ use std::fmt;
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Gates {
-    /// Maximum accepted [`hinge::HingeSample::energy_residual`]: relative difference of the solver's energy and
-    /// the work of its reaction forces.
+    /// Maximum accepted [`hinge::HingeSample::energy_residual`]: relative difference of the
+    /// solver's energy and the work of its reaction forces.
     pub energy_residual_max: f64,
 }
 
 impl Default for Gates {
-    /// Converged rays stay below 1e-3; ten times this value is not explained by the error of the quadrature.
+    /// Converged rays stay below 1e-3; ten times this value is not explained by the error of the
+    /// quadrature.
     fn default() -> Self {
-        Self {
-            energy_residual_max: 0.01,
-        }
+        Self { energy_residual_max: 0.01 }
     }
 }
 
@@ -86,10 +85,7 @@ mod tests {
             (|row| row.design.alpha = 4.0, Rejection::InvalidDesign),
             (|row| row.sample.w = -1e-9, Rejection::Negative),
             (|row| row.sample.d = -1e-9, Rejection::Negative),
-            (
-                |row| row.sample.energy_residual = 0.021,
-                Rejection::EnergyResidual,
-            ),
+            (|row| row.sample.energy_residual = 0.021, Rejection::EnergyResidual),
         ];
         for (change, expected) in cases {
             assert_eq!(with(change), Some(expected));

@@ -1,9 +1,10 @@
 //! The hinge database: every converged increment of every window solve, as one table.
 //!
 //! A database is `X.parquet` with its manifest `X.json`: hash, counts, units, training domain,
-//! rejected rows and the split. It is collected once with [`Database::collect`], which rejects invalid rows instead
-//! of repairing them. Rows of different materials or hinge constants are an error. Some rays may be there on a finer mesh too:
-//! [`Database::corrected`] corrects the others by them.
+//! rejected rows and the split. It is collected once with [`Database::collect`], which rejects
+//! invalid rows instead of repairing them. Rows of different materials or hinge constants are an
+//! error. Some rays may be there on a finer mesh too: [`Database::corrected`] corrects the others
+//! by them.
 //!
 //! Reading a database:
 //!

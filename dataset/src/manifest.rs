@@ -30,7 +30,8 @@ pub struct Manifest {
     pub geometries: usize,
     /// CPU time of these rays (s).
     pub cpu_s: f64,
-    /// Whether the rays bend like the free turn of a ligament, as [`hinge::Regime::free_opening`] has it for plates, and are not straight.
+    /// Whether the rays bend like the free turn of a ligament, as [`hinge::Regime::free_opening`]
+    /// has it for plates, and are not straight.
     #[serde(default)]
     pub bent_rays: bool,
     /// The finer mesh on which some of the rays were solved too.
@@ -44,11 +45,13 @@ pub struct Manifest {
     pub material: String,
     /// Hash of the material law; the set is empty, or contains an empty hash, if it is unknown.
     pub material_hashes: BTreeSet<String>,
-    /// Hash of the campaign's settings; the set is empty, or contains an empty hash, if they are unknown.
+    /// Hash of the campaign's settings; the set is empty, or contains an empty hash, if they are
+    /// unknown.
     pub settings_hashes: BTreeSet<String>,
     /// Tier of the window mesh, as parsed by [`Fidelity::from_tier`](crate::Fidelity::from_tier).
     pub tier: String,
-    /// The constants of all hinges; if they have holes of several radii (`domain.holes`), `fillet_ratio` is the paper's.
+    /// The constants of all hinges; if they have holes of several radii (`domain.holes`),
+    /// `fillet_ratio` is the paper's.
     pub hinge: HingeConstants,
     /// Versions of gmsh that meshed the rows.
     pub gmsh: BTreeSet<String>,
@@ -80,11 +83,7 @@ impl Manifest {
     /// What of the manifest is not true of the rows; `None` if all that is checked holds.
     pub(crate) fn disagrees(&self, rows: &[Row]) -> Option<&'static str> {
         let jobs: BTreeSet<&str> = rows.iter().map(|row| row.job.as_str()).collect();
-        let Split {
-            training,
-            validation,
-            test,
-        } = &self.split;
+        let Split { training, validation, test } = &self.split;
         let parts = [training, validation, test];
         let mut dealt = parts.into_iter().flatten();
         let finer = self.finer.as_ref().map_or(0, |finer| finer.rays);

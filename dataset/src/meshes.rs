@@ -1,7 +1,8 @@
-//! The meshes of a database: the mesh of its rays, and the finer mesh on which some of them were solved too.
+//! The meshes of a database: the mesh of its rays, and the finer mesh on which some of them were
+//! solved too.
 //!
-//! All rows have one material, one kerf and one window radius, since a surrogate has no feature for them. The finer mesh is the
-//! one with fewer rays, or, of as many, with the longer solves.
+//! All rows have one material, one kerf and one window radius, since a surrogate has no feature for
+//! them. The finer mesh is the one with fewer rays, or, of as many, with the longer solves.
 
 use crate::error::DatasetError;
 use crate::rays::{RayKey, ray_key};
@@ -81,8 +82,9 @@ impl MeshRows {
     }
 }
 
-/// Whether a ray bends like the free turn of a plate; `None` if it turns too little to tell. Both ends of its rows lie on one line in
-/// (lambda, eta_a / lambda), whose slope is the curvature times theta^2.
+/// Whether a ray bends like the free turn of a plate; `None` if it turns too little to tell. Both
+/// ends of its rows lie on one line in (lambda, eta_a / lambda), whose slope is the curvature times
+/// theta^2.
 fn bends(ray: &[Row]) -> Option<bool> {
     const LEAST_TURN: f64 = 0.1; // rad
     let (first, last) = (&ray.first()?.sample, &ray.last()?.sample);
@@ -110,10 +112,7 @@ impl Meshes {
         let Some(first) = ray.first() else {
             return Ok(());
         };
-        let known = self
-            .meshes
-            .iter()
-            .position(|mesh| mesh.tier() == first.tier);
+        let known = self.meshes.iter().position(|mesh| mesh.tier() == first.tier);
         let place = known.unwrap_or_else(|| {
             self.meshes.push(MeshRows::new(first));
             self.meshes.len() - 1
@@ -126,11 +125,7 @@ impl Meshes {
             && bent != *self.bent_rays.get_or_insert(bent)
         {
             let shape = |bent| {
-                if bent {
-                    "of bent rays"
-                } else {
-                    "of straight rays"
-                }
+                if bent { "of bent rays" } else { "of straight rays" }
             };
             return Err(DatasetError::Mixed {
                 job: first.job.clone(),
@@ -159,9 +154,7 @@ impl Meshes {
         };
         let third = meshes.next();
         match third.as_ref().or(finer.as_ref().filter(is_other)) {
-            Some(other) => Err(mixed("tier", &rays.first, &other.first, |row| {
-                row.tier.clone()
-            })),
+            Some(other) => Err(mixed("tier", &rays.first, &other.first, |row| row.tier.clone())),
             None => Ok(Some((rays, finer))),
         }
     }
@@ -179,16 +172,13 @@ const SHARED: [Quantity; 4] = [
 ];
 
 /// The quantities that all rows of one mesh have in common.
-const SHARED_ON_A_MESH: [Quantity; 2] = [
-    ("settings_hash", |row| row.settings_hash.clone()),
-    ("tier", |row| row.tier.clone()),
-];
+const SHARED_ON_A_MESH: [Quantity; 2] =
+    [("settings_hash", |row| row.settings_hash.clone()), ("tier", |row| row.tier.clone())];
 
-/// Rejects a row that differs from `first` in one of the quantities, which are not features of the surrogate.
+/// Rejects a row that differs from `first` in one of the quantities, which are not features of the
+/// surrogate.
 fn refuse_other(first: &Row, row: &Row, quantities: &[Quantity]) -> Result<(), DatasetError> {
-    let mut different = quantities
-        .iter()
-        .filter(|(_, text)| text(first) != text(row));
+    let mut different = quantities.iter().filter(|(_, text)| text(first) != text(row));
     match different.next() {
         Some((column, text)) => Err(mixed(column, first, row, *text)),
         None => Ok(()),
@@ -196,10 +186,5 @@ fn refuse_other(first: &Row, row: &Row, quantities: &[Quantity]) -> Result<(), D
 }
 
 fn mixed(column: &'static str, first: &Row, row: &Row, text: fn(&Row) -> String) -> DatasetError {
-    DatasetError::Mixed {
-        job: row.job.clone(),
-        column,
-        expected: text(first),
-        found: text(row),
-    }
+    DatasetError::Mixed { job: row.job.clone(), column, expected: text(first), found: text(row) }
 }

@@ -8,7 +8,8 @@ use crate::rows::Row;
 
 /// The rows followed by their mirror images.
 ///
-/// Mirror only after the split: an image contains no information beyond the information in its original.
+/// Mirror only after the split: an image contains no information beyond the information in its
+/// original.
 pub fn with_mirrored(rows: &[Row]) -> Vec<Row> {
     let images = rows.iter().map(|row| Row {
         design: row.design.mirrored(),

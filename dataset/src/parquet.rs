@@ -1,5 +1,5 @@
-//! Encoding and decoding of Parquet files, and their hash. A file is written in groups of rows, so that its table need
-//! not be in memory.
+//! Encoding and decoding of Parquet files, and their hash. A file is written in groups of rows, so
+//! that its table need not be in memory.
 
 use crate::error::DatasetError;
 use crate::rows::Row;
@@ -57,7 +57,8 @@ pub(crate) fn encode(rows: &[Row]) -> Result<Vec<u8>, DatasetError> {
     Ok(bytes)
 }
 
-/// The rows of a Parquet file. The reader panics at some malformed files, which are errors like all others.
+/// The rows of a Parquet file. The reader panics at some malformed files, which are errors like all
+/// others.
 pub(crate) fn decode(bytes: &[u8]) -> Result<Vec<Row>, DatasetError> {
     let read = || {
         let mut reader = ParquetReader::new(Cursor::new(bytes));
@@ -69,7 +70,8 @@ pub(crate) fn decode(bytes: &[u8]) -> Result<Vec<Row>, DatasetError> {
     schema::from_frame(&frame, EXPANSION.saturating_mul(bytes.len()))
 }
 
-/// Maximum number of values in a byte of a file. Measured values do not repeat: the shipped databases have 0.3.
+/// Maximum number of values in a byte of a file. Measured values do not repeat: the shipped
+/// databases have 0.3.
 const VALUES_A_BYTE: usize = 8;
 /// Maximum size of a table over the size of its file. Measured values compress to about half.
 const EXPANSION: usize = 100;
@@ -177,13 +179,7 @@ mod tests {
         large.iter_mut().for_each(|row| row.failure = long.clone());
         let bytes = encode(&large).unwrap();
         let error = decode(&bytes).unwrap_err();
-        let of_failure = matches!(
-            error,
-            DatasetError::LongText {
-                column: "failure",
-                ..
-            }
-        );
+        let of_failure = matches!(error, DatasetError::LongText { column: "failure", .. });
         assert!(of_failure, "{error}");
         // The most regular rows that a solver could give are read.
         let regular = rows(300);
@@ -192,9 +188,7 @@ mod tests {
 
     /// A generator of numbers that look random.
     fn next(state: &mut u64) -> usize {
-        *state = state
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1);
+        *state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
         (*state >> 33) as usize
     }
 
@@ -215,10 +209,7 @@ mod tests {
                 Ok(_) => {}
             }
         }
-        assert!(
-            panics > 0,
-            "the reader panics no longer: it need not be caught"
-        );
+        assert!(panics > 0, "the reader panics no longer: it need not be caught");
         assert!(errors > 100, "{errors}");
     }
 }

@@ -1,5 +1,6 @@
-//! Writing a database whose rays arrive one after the other. The rows of one group of the Parquet file are in memory at a
-//! time; of all other rows 24 bytes, and of every ray its id, from which domain and split are computed at the end.
+//! Writing a database whose rays arrive one after the other. The rows of one group of the Parquet
+//! file are in memory at a time; of all other rows 24 bytes, and of every ray its id, from which
+//! domain and split are computed at the end.
 
 use crate::database_files::{publish, refuse_existing, unwritable};
 use crate::digest::{Digest, by_job_and_lambda};
@@ -21,8 +22,9 @@ pub struct Collected {
 }
 
 impl Collected {
-    /// Writes `X.parquet` and its manifest `X.json` of rays, each the rows of one job. The jobs must come in the order of
-    /// their ids. The files are those that [`Database::collect`](crate::Database::collect) and
+    /// Writes `X.parquet` and its manifest `X.json` of rays, each the rows of one job. The jobs
+    /// must come in the order of their ids. The files are those that
+    /// [`Database::collect`](crate::Database::collect) and
     /// [`Database::write`](crate::Database::write) give, and appear only when they are complete.
     ///
     /// An existing file is an error unless `replace` is true.
@@ -74,9 +76,7 @@ mod tests {
         let mut rows = rows(40);
         rows[57].sample.w = -1.0;
         let database = Database::collect(rows.clone(), &plan).unwrap();
-        database
-            .write(&together.with_extension("parquet"), false)
-            .unwrap();
+        database.write(&together.with_extension("parquet"), false).unwrap();
 
         let path = apart.with_extension("parquet");
         let write = |rows: &[Row], replace| {
@@ -93,10 +93,7 @@ mod tests {
         }
         assert_eq!(collected.to_string(), database.to_string());
 
-        assert!(matches!(
-            write(&rows, false),
-            Err(DatasetError::Exists { .. })
-        ));
+        assert!(matches!(write(&rows, false), Err(DatasetError::Exists { .. })));
         // A ray that is given twice, or no ray that can be used, leaves the old files.
         let twice = [&rows[..20], &rows[10..]].concat();
         let error = write(&twice, true).unwrap_err();

@@ -9,15 +9,7 @@ pub(crate) type RayKey = [i64; 8];
 pub(crate) fn ray_key(row: &Row) -> RayKey {
     let (design, x) = (&row.design, &row.sample);
     let [a, s, theta] = [x.a, x.s, x.theta].map(|component| component / x.lambda);
-    let ray = [
-        design.w_lig,
-        design.alpha,
-        design.fillet_ratio,
-        design.kerf,
-        design.r_win,
-        a,
-        s,
-        theta,
-    ];
+    let ray =
+        [design.w_lig, design.alpha, design.fillet_ratio, design.kerf, design.r_win, a, s, theta];
     ray.map(|number| (1e6 * number).round() as i64)
 }

@@ -17,7 +17,8 @@ pub struct Row {
     pub material: String,
     /// [`hinge::SheetMaterial::law_hash`] of the material; empty if unknown.
     pub material_hash: String,
-    /// Hash of the settings that all jobs of a campaign share, except the material; empty if unknown.
+    /// Hash of the settings that all jobs of a campaign share, except the material; empty if
+    /// unknown.
     pub settings_hash: String,
     /// Requested tier of the window mesh.
     pub tier: String,

@@ -171,9 +171,9 @@ pub(crate) fn to_frame(rows: &[Row]) -> Result<DataFrame, DatasetError> {
     Ok(DataFrame::new(rows.len(), columns)?)
 }
 
-/// The rows of a table. Every column must exist with its type, without gaps except where a value may be unknown, and
-/// every number must be finite. A text that many rows share is in the table once and in every row: over `most_text` bytes
-/// in all rows are refused.
+/// The rows of a table. Every column must exist with its type, without gaps except where a value
+/// may be unknown, and every number must be finite. A text that many rows share is in the table
+/// once and in every row: over `most_text` bytes in all rows are refused.
 pub(crate) fn from_frame(frame: &DataFrame, most_text: usize) -> Result<Vec<Row>, DatasetError> {
     let mut left = most_text;
     for column in TEXTS.iter().map(|column| column.name) {
@@ -201,10 +201,9 @@ pub(crate) fn from_frame(frame: &DataFrame, most_text: usize) -> Result<Vec<Row>
         row.sample.d_peak = peak;
     }
     match rows.iter().find(|row| !is_finite(row)) {
-        Some(row) => Err(DatasetError::NotFinite {
-            job: row.job.clone(),
-            lambda: row.sample.lambda,
-        }),
+        Some(row) => {
+            Err(DatasetError::NotFinite { job: row.job.clone(), lambda: row.sample.lambda })
+        }
         None => Ok(rows),
     }
 }

@@ -1,7 +1,7 @@
 //! Split into training, validation and test, by hinge geometry.
 //!
-//! All rays of one (w_lig, alpha) and of its mirror image belong to the same part. The test part therefore contains
-//! only geometries that are not in the training part.
+//! All rays of one (w_lig, alpha) and of its mirror image belong to the same part. The test part
+//! therefore contains only geometries that are not in the training part.
 
 use crate::error::DatasetError;
 use crate::rows::Row;
@@ -26,11 +26,7 @@ pub struct SplitPlan {
 
 impl Default for SplitPlan {
     fn default() -> Self {
-        Self {
-            seed: 0,
-            validation: 0.1,
-            test: 0.1,
-        }
+        Self { seed: 0, validation: 0.1, test: 0.1 }
     }
 }
 
@@ -60,13 +56,8 @@ pub struct Split {
 impl Split {
     /// Assigns geometries at random; every part has at least one of them.
     pub(crate) fn deal(geometries: &Geometries, plan: &SplitPlan) -> Result<Self, DatasetError> {
-        let SplitPlan {
-            validation, test, ..
-        } = *plan;
-        if ![validation, test]
-            .iter()
-            .all(|share| (0.0..0.5).contains(share) && *share > 0.0)
-        {
+        let SplitPlan { validation, test, .. } = *plan;
+        if ![validation, test].iter().all(|share| (0.0..0.5).contains(share) && *share > 0.0) {
             return Err(DatasetError::Shares { validation, test });
         }
         let mut geometries: Vec<&Vec<String>> = geometries.0.values().collect();
@@ -89,10 +80,7 @@ impl Split {
     /// BLAKE3 of the three lists of jobs.
     pub(crate) fn hash(&self) -> String {
         let mut hasher = blake3::Hasher::new();
-        for (part, jobs) in [&self.training, &self.validation, &self.test]
-            .iter()
-            .enumerate()
-        {
+        for (part, jobs) in [&self.training, &self.validation, &self.test].iter().enumerate() {
             for job in *jobs {
                 hasher.update(format!("{part} {job}\n").as_bytes());
             }
@@ -149,7 +137,8 @@ impl Geometries {
     }
 }
 
-/// (w_lig, alpha) up to mirroring, in units of 1e-9, so that the rounding error of pi - alpha has no effect.
+/// (w_lig, alpha) up to mirroring, in units of 1e-9, so that the rounding error of pi - alpha has
+/// no effect.
 pub(crate) fn geometry(row: &Row) -> [i64; 2] {
     let alpha = row.design.alpha.min(PI - row.design.alpha);
     [row.design.w_lig, alpha].map(|value| (1e9 * value).round() as i64)
@@ -157,16 +146,9 @@ pub(crate) fn geometry(row: &Row) -> [i64; 2] {
 
 /// The geometry and (a, s, theta) up to mirroring, in units of 1e-9.
 pub(crate) fn state(row: &Row) -> ([i64; 2], [i64; 3]) {
-    let s = if row.design.alpha > FRAC_PI_2 {
-        -row.sample.s
-    } else {
-        row.sample.s
-    };
+    let s = if row.design.alpha > FRAC_PI_2 { -row.sample.s } else { row.sample.s };
     let deformation = [row.sample.a, s, row.sample.theta];
-    (
-        geometry(row),
-        deformation.map(|value| (1e9 * value).round() as i64),
-    )
+    (geometry(row), deformation.map(|value| (1e9 * value).round() as i64))
 }
 
 #[cfg(test)]
@@ -182,11 +164,7 @@ mod tests {
     }
 
     fn deal(rows: &[Row], seed: u64) -> Split {
-        let plan = SplitPlan {
-            seed,
-            validation: 0.2,
-            test: 0.3,
-        };
+        let plan = SplitPlan { seed, validation: 0.2, test: 0.3 };
         Split::deal(&geometries(rows), &plan).unwrap()
     }
 
@@ -196,12 +174,8 @@ mod tests {
         let counts =
             [Part::Training, Part::Validation, Part::Test].map(|part| split.jobs(part).len());
         assert_eq!(counts, [10, 4, 6]);
-        let all: BTreeSet<_> = split
-            .training
-            .iter()
-            .chain(&split.validation)
-            .chain(&split.test)
-            .collect();
+        let all: BTreeSet<_> =
+            split.training.iter().chain(&split.validation).chain(&split.test).collect();
         assert_eq!(all.len(), 20);
     }
 
@@ -222,9 +196,7 @@ mod tests {
         let split = deal(&all, 3);
         for part in [Part::Training, Part::Validation, Part::Test] {
             for job in split.jobs(part) {
-                let twin = job
-                    .strip_suffix("-image")
-                    .map_or(format!("{job}-image"), Into::into);
+                let twin = job.strip_suffix("-image").map_or(format!("{job}-image"), Into::into);
                 assert!(split.jobs(part).contains(&twin), "{job}");
             }
         }
@@ -238,11 +210,7 @@ mod tests {
         let three = Split::deal(&geometries(&rows(3)), &plan).unwrap();
         assert_eq!(three.training.len(), 1);
         for (validation, test) in [(0.0, 0.1), (0.1, 0.5), (0.1, f64::NAN)] {
-            let plan = SplitPlan {
-                validation,
-                test,
-                ..plan
-            };
+            let plan = SplitPlan { validation, test, ..plan };
             let error = Split::deal(&geometries(&rows(9)), &plan).unwrap_err();
             assert!(matches!(error, DatasetError::Shares { .. }));
         }

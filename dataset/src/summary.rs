@@ -14,7 +14,8 @@ use support::table::Table;
 pub(crate) struct Contents {
     /// The minimum and the maximum of every column of numbers.
     ranges: [[f64; 2]; schema::NUMERIC],
-    /// The rays that were solved on another tier than the tier of their campaign, each with the tier on which it was solved.
+    /// The rays that were solved on another tier than the tier of their campaign, each with the
+    /// tier on which it was solved.
     other_tiers: BTreeMap<String, String>,
 }
 
@@ -47,15 +48,12 @@ impl fmt::Display for Database {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let mut contents = Contents::default();
         contents.add(self.rows());
-        Summary {
-            manifest: self.manifest(),
-            contents: &contents,
-        }
-        .fmt(f)
+        Summary { manifest: self.manifest(), contents: &contents }.fmt(f)
     }
 }
 
-/// Prints counts, the finer mesh, rejected rows, the rays on another mesh, the split, and what each column holds.
+/// Prints counts, the finer mesh, rejected rows, the rays on another mesh, the split, and what each
+/// column holds.
 pub(crate) struct Summary<'a> {
     pub manifest: &'a Manifest,
     pub contents: &'a Contents,
@@ -86,20 +84,14 @@ impl Summary<'_> {
             manifest.cpu_s,
         )?;
         if let Some(FinerMesh { tier, rays, cpu_s }) = &manifest.finer {
-            writeln!(
-                f,
-                "{rays} of the rays also on tier {tier}; {cpu_s:.0} CPU s"
-            )?;
+            writeln!(f, "{rays} of the rays also on tier {tier}; {cpu_s:.0} CPU s")?;
         }
         match self.contents.other_tiers.len() {
             0 => Ok(()),
             count => {
                 let were = if count == 1 { "ray was" } else { "rays were" };
                 let tiers = counted(self.contents.other_tiers.values());
-                writeln!(
-                    f,
-                    "{count} {were} solved on another mesh after a failure: {tiers}"
-                )
+                writeln!(f, "{count} {were} solved on another mesh after a failure: {tiers}")
             }
         }
     }
@@ -147,11 +139,7 @@ impl Summary<'_> {
 
 /// A limit of a range; `-` if no row has a value.
 fn limit(value: f64) -> String {
-    if value.is_finite() {
-        format!("{value:.6}")
-    } else {
-        "-".into()
-    }
+    if value.is_finite() { format!("{value:.6}") } else { "-".into() }
 }
 
 /// Every text with the number of times that it occurs.
@@ -160,24 +148,15 @@ fn counted<'a>(texts: impl Iterator<Item = &'a String>) -> String {
     for text in texts {
         *counts.entry(text).or_default() += 1;
     }
-    let counts = counts
-        .iter()
-        .map(|(text, count)| format!("{text} ({count})"));
+    let counts = counts.iter().map(|(text, count)| format!("{text} ({count})"));
     Vec::from_iter(counts).join(", ")
 }
 
 /// Hashes as readable text.
 fn known(hashes: &BTreeSet<String>) -> String {
-    let known: Vec<&str> = hashes
-        .iter()
-        .map(String::as_str)
-        .filter(|hash| !hash.is_empty())
-        .collect();
-    if known.is_empty() {
-        "not known".into()
-    } else {
-        known.join(" + ")
-    }
+    let known: Vec<&str> =
+        hashes.iter().map(String::as_str).filter(|hash| !hash.is_empty()).collect();
+    if known.is_empty() { "not known".into() } else { known.join(" + ") }
 }
 
 #[cfg(test)]
@@ -224,11 +203,7 @@ mod tests {
             retried(&[("job-007", "fine")]).unwrap(),
             "1 ray was solved on another mesh after a failure: fine (1)"
         );
-        let three = [
-            ("job-002", "fine"),
-            ("job-005", "plate"),
-            ("job-007", "fine"),
-        ];
+        let three = [("job-002", "fine"), ("job-005", "plate"), ("job-007", "fine")];
         assert_eq!(
             retried(&three).unwrap(),
             "3 rays were solved on another mesh after a failure: fine (2), plate (1)"
@@ -242,10 +217,7 @@ mod tests {
             let name = format!(" {} ", column.name);
             let mut lines = text.lines().filter(|line| line.starts_with(&name));
             let line = lines.next().unwrap();
-            assert!(
-                line.ends_with(column.meaning) && !column.meaning.is_empty(),
-                "{line}"
-            );
+            assert!(line.ends_with(column.meaning) && !column.meaning.is_empty(), "{line}");
             assert!(column.unit.is_empty() || line.contains(&format!("   {} ", column.unit)));
             assert_eq!(lines.next(), None, "{name}");
         }

@@ -1,4 +1,5 @@
-//! Equilibria of the sheet under loads, the equilibrium path and the adjoint; equations (10) and (20).
+//! Equilibria of the sheet under loads, the equilibrium path and the adjoint; equations (10) and
+//! (20).
 
 pub mod adjoint;
 pub mod continuation;

@@ -1,7 +1,8 @@
-//! Sheets of rigid panels joined by hinges: from a cut pattern to its deployment, and back to the pattern that
-//! deploys onto a target.
+//! Sheets of rigid panels joined by hinges: from a cut pattern to its deployment, and back to the
+//! pattern that deploys onto a target.
 //!
-//! With theta = (z, ell, omega) the coordinates of cut pattern and ligament widths, (1), the crate solves
+//! With theta = (z, ell, omega) the coordinates of cut pattern and ligament widths, (1), the crate
+//! solves
 //!
 //! ```text
 //! min over theta of  L(theta) = chamfer(outline(q_N), target) + sum_j w_j J_j(q_1 ... q_N)        (16)-(19)
@@ -9,8 +10,8 @@
 //!                    Pi = sum_h W(eps_h(q); g_h) - zeta f . q
 //! ```
 //!
-//! by gradient descent through the equilibria: Newton's method follows the equilibrium path, the adjoint (20) gives
-//! dL/dtheta, and Adam or L-BFGS proposes the next design (Algorithm 1).
+//! by gradient descent through the equilibria: Newton's method follows the equilibrium path, the
+//! adjoint (20) gives dL/dtheta, and Adam or L-BFGS proposes the next design (Algorithm 1).
 //!
 //! | room | contents |
 //! |---|---|
@@ -24,8 +25,8 @@
 //!
 //! A room uses itself and the rooms above it. Lengths are in mm, forces in N, angles in rad.
 //!
-//! The main types are [`DesignProblem`], [`DesignVector`], [`Deployment`] and [`Evaluation`]. The crate `scene` reads a design
-//! problem from a file. Without one:
+//! The main types are [`DesignProblem`], [`DesignVector`], [`Deployment`] and [`Evaluation`]. The
+//! crate `scene` reads a design problem from a file. Without one:
 //!
 //! ```
 //! use design::equilibrium::settings::SolverSettings;

@@ -1,35 +1,40 @@
-//! Solves by finite elements: the service that makes them, and campaigns of thousands of window solves.
+//! Solves by finite elements: the service that makes them, and campaigns of thousands of window
+//! solves.
 //!
-//! **Solve.** A [`Solve`] is a problem with everything that determines its result, driven along a path of increments from
-//! lambda = 0 to 1. What is kept of the converged increments is a [`SolvedPath`]. A further kind of problem is one more
-//! implementation of the two traits.
+//! **Solve.** A [`Solve`] is a problem with everything that determines its result, driven along a
+//! path of increments from lambda = 0 to 1. What is kept of the converged increments is a
+//! [`SolvedPath`]. A further kind of problem is one more implementation of the two traits.
 //!
-//! **Window.** A [`WindowSolve`] drives one hinge design along one path, from the undeformed state to a deformation (a, s, theta). Every
-//! converged increment is a sample (W, grad W, D) of section 2.4. A *ray* is a straight path. Where no kind is named, a type that works
-//! for any kind of solve is the type for windows.
+//! **Window.** A [`WindowSolve`] drives one hinge design along one path, from the undeformed state
+//! to a deformation (a, s, theta). Every converged increment is a sample (W, grad W, D) of section
+//! 2.4. A *ray* is a straight path. Where no kind is named, a type that works for any kind of solve
+//! is the type for windows.
 //!
-//! **Identity.** The id of a solve is a hash of the problem: for a window, of hinge, path, material, tier and mesh,
-//! increments, versions of the programs and of this crate.
+//! **Identity.** The id of a solve is a hash of the problem: for a window, of hinge, path,
+//! material, tier and mesh, increments, versions of the programs and of this crate.
 //!
-//! **Solver.** A [`Solver`] makes one attempt at a solve of its kind. [`CalculiX`] is one, the deterministic `FakeSolver`
-//! of the tests another; a further program is one more implementation.
+//! **Solver.** A [`Solver`] makes one attempt at a solve of its kind. [`CalculiX`] is one, the
+//! deterministic `FakeSolver` of the tests another; a further program is one more implementation.
 //!
 //! **Attempts.** A solve whose problem its solver refuses is attempted otherwise, depending on the
-//! [`FailureKind`] and as its kind of problem says ([`Solve::next_attempt`]): a window with shorter increments, then on a finer
-//! mesh ([`AttemptKind`]). The samples of the attempt that reaches furthest are kept. What the machine does to an attempt
-//! ([`Cause`]) decides nothing of a result: the same attempt is made again, and after a few times the solve stays open.
+//! [`FailureKind`] and as its kind of problem says ([`Solve::next_attempt`]): a window with shorter
+//! increments, then on a finer mesh ([`AttemptKind`]). The samples of the attempt that reaches
+//! furthest are kept. What the machine does to an attempt ([`Cause`]) decides nothing of a result:
+//! the same attempt is made again, and after a few times the solve stays open.
 //!
-//! **Store.** Every solve has one folder in a [`SolveStore`], named by its id, whose files appear whole or not at all. A
-//! solve without its result is not done. What is done is not solved again. Folders of several kinds of problem can be in
-//! one store.
+//! **Store.** Every solve has one folder in a [`SolveStore`], named by its id, whose files appear
+//! whole or not at all. A solve without its result is not done. What is done is not solved again.
+//! Folders of several kinds of problem can be in one store.
 //!
-//! **List.** [`SolveService::solve`] works through a list of solves of one kind on parallel workers and promises: every
-//! result, in order, or an error (a missing program, a full disk, a stop, a solve that the machine ends again and again), after
-//! which the same list continues where it ended. A solve that fails ends no list: it is a [`Solved`] that names its failure and its
+//! **List.** [`SolveService::solve`] works through a list of solves of one kind on parallel workers
+//! and promises: every result, in order, or an error (a missing program, a full disk, a stop, a
+//! solve that the machine ends again and again), after which the same list continues where it
+//! ended. A solve that fails ends no list: it is a [`Solved`] that names its failure and its
 //! folder.
 //!
-//! **Campaign.** A [`Campaign`] is a list of window solves with a ledger: [`plan`] counts what is left, [`run`] solves it,
-//! [`finished_windows`] returns the results, and [`restore`] recreates the store from collected samples.
+//! **Campaign.** A [`Campaign`] is a list of window solves with a ledger: [`plan`] counts what is
+//! left, [`run`] solves it, [`finished_windows`] returns the results, and [`restore`] recreates the
+//! store from collected samples.
 //!
 //! One ray, with gmsh and CalculiX on the PATH:
 //!

@@ -8,7 +8,8 @@ use std::path::Path;
 use support::file_error::FileError;
 use support::{regular_file, sealed_json, whole_file};
 
-/// Separates damage from other errors of reading a file: `Ok(Err(reason))` if the contents are damaged.
+/// Separates damage from other errors of reading a file: `Ok(Err(reason))` if the contents are
+/// damaged.
 pub(crate) fn or_damage<T>(read: Result<T, FileError>) -> Result<Result<T, String>, FileError> {
     match read {
         Ok(contents) => Ok(Ok(contents)),
@@ -34,9 +35,7 @@ pub(crate) fn read_json<T: DeserializeOwned>(path: &Path) -> Result<Option<T>, F
 
 /// The entries of a folder, in no order.
 pub(crate) fn entries(folder: &Path) -> Result<Vec<DirEntry>, FileError> {
-    std::fs::read_dir(folder)
-        .and_then(Iterator::collect)
-        .map_err(FileError::at(folder))
+    std::fs::read_dir(folder).and_then(Iterator::collect).map_err(FileError::at(folder))
 }
 
 /// Writes a JSON file atomically.

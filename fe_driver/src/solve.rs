@@ -1,4 +1,5 @@
-//! The service of solves of any kind: problem, solver, attempts, store, lists. The window solve is one kind.
+//! The service of solves of any kind: problem, solver, attempts, store, lists. The window solve is
+//! one kind.
 
 pub(crate) mod attempts;
 pub(crate) mod deformation_path;

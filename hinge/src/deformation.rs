@@ -19,11 +19,7 @@ pub struct HingeDeformation {
 impl HingeDeformation {
     /// The deformation from the dimensionless measures of (13) and the ligament width (mm).
     pub fn from_eta(eta_a: f64, eta_s: f64, theta: f64, w_lig: f64) -> Self {
-        Self {
-            a: eta_a * w_lig,
-            s: eta_s * w_lig,
-            theta,
-        }
+        Self { a: eta_a * w_lig, s: eta_s * w_lig, theta }
     }
 
     /// (eta_a, eta_s) = (a, s) / w_lig; (13).
@@ -33,29 +29,18 @@ impl HingeDeformation {
 
     /// The point at the fraction `lambda` of the straight ray from the undeformed state.
     pub fn at(&self, lambda: f64) -> Self {
-        Self {
-            a: lambda * self.a,
-            s: lambda * self.s,
-            theta: lambda * self.theta,
-        }
+        Self { a: lambda * self.a, s: lambda * self.s, theta: lambda * self.theta }
     }
 
     /// The similar deformation in a sheet of `factor` times the thickness.
     pub fn scaled(&self, factor: f64) -> Self {
-        Self {
-            a: factor * self.a,
-            s: factor * self.s,
-            theta: self.theta,
-        }
+        Self { a: factor * self.a, s: factor * self.s, theta: self.theta }
     }
 
     /// The same deformation after reflection of x:
     /// W(a, s, theta; alpha) = W(a, -s, theta; pi - alpha).
     pub fn mirrored(&self) -> Self {
-        Self {
-            s: -self.s,
-            ..*self
-        }
+        Self { s: -self.s, ..*self }
     }
 
     /// As the array [a, s, theta].
@@ -70,7 +55,8 @@ impl From<[f64; 3]> for HingeDeformation {
     }
 }
 
-/// Gradient of the stored energy with respect to (a, s, theta): (F_a, F_s, M_theta) in (N, N, N mm).
+/// Gradient of the stored energy with respect to (a, s, theta): (F_a, F_s, M_theta) in (N, N, N
+/// mm).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct HingeForces {
     /// Force conjugate to a (N); positive in tension.
@@ -89,9 +75,6 @@ impl HingeForces {
 
     /// Forces of the mirrored hinge; see [`HingeDeformation::mirrored`].
     pub fn mirrored(&self) -> Self {
-        Self {
-            f_s: -self.f_s,
-            ..*self
-        }
+        Self { f_s: -self.f_s, ..*self }
     }
 }

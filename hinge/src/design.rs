@@ -20,27 +20,27 @@ pub struct HingeDesign {
     pub r_win: f64,
 }
 
-/// The components of (7) that are the same for all hinges of a sheet: they describe the cutting tool and the window.
+/// The components of (7) that are the same for all hinges of a sheet: they describe the cutting
+/// tool and the window.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct HingeConstants {
-    /// Radius of the hole drilled about O, as a multiple of w_lig, above 0 and below 1; the paper cuts 0.16.
+    /// Radius of the hole drilled about O, as a multiple of w_lig, above 0 and below 1; the paper
+    /// cuts 0.16.
     pub fillet_ratio: f64,
-    /// Width the cutting tool removes along the main cut (mm), above 0 and below 2 fillet_ratio w_lig. It may differ from
-    /// the kerf of the weights: from 0.002 to 0.15 w_lig it changes W by less than 0.5 % and the force by less than 2.5 %.
+    /// Width the cutting tool removes along the main cut (mm), above 0 and below 2 fillet_ratio
+    /// w_lig. It may differ from the kerf of the weights: from 0.002 to 0.15 w_lig it changes W by
+    /// less than 0.5 % and the force by less than 2.5 %.
     pub kerf: f64,
-    /// Radius of the half-disc of sheet assigned to the hinge (mm), above 2.5 w_lig. For learned hinges it is the radius of the
-    /// weights, times the thickness of the sheet over the thickness in the training.
+    /// Radius of the half-disc of sheet assigned to the hinge (mm), above 2.5 w_lig. For learned
+    /// hinges it is the radius of the weights, times the thickness of the sheet over the thickness
+    /// in the training.
     pub r_win: f64,
 }
 
 impl HingeConstants {
     /// The constants of the paper's hinge specimens; section 4.1.
-    pub const PAPER: Self = Self {
-        fillet_ratio: 0.16,
-        kerf: 0.2,
-        r_win: 100.0,
-    };
+    pub const PAPER: Self = Self { fillet_ratio: 0.16, kerf: 0.2, r_win: 100.0 };
 
     /// The hinge of width `w_lig` (mm) and cut angle `alpha` (rad).
     pub fn hinge(&self, w_lig: f64, alpha: f64) -> HingeDesign {
@@ -78,12 +78,12 @@ pub enum InvalidDesign {
     Window { r_win: f64, limit: f64 },
 }
 
-/// Minimum and maximum ligament width accepted (mm). The limits are far outside the range that is cut by hand
-/// or machine; they detect values in metres or in micrometres.
+/// Minimum and maximum ligament width accepted (mm). The limits are far outside the range that is
+/// cut by hand or machine; they detect values in metres or in micrometres.
 const MIN_W_LIG: f64 = 0.5;
 const MAX_W_LIG: f64 = 500.0;
-/// Minimum window radius over w_lig: the window must contain the tip region that is meshed around O, and part of
-/// the panels around it.
+/// Minimum window radius over w_lig: the window must contain the tip region that is meshed around
+/// O, and part of the panels around it.
 const MIN_WINDOW: f64 = 2.5;
 
 /// Widest ligament (mm) that a width in metres is taken for.
@@ -115,11 +115,7 @@ impl HingeDesign {
 
     /// The components that are the same for all hinges of the sheet.
     pub fn constants(&self) -> HingeConstants {
-        HingeConstants {
-            fillet_ratio: self.fillet_ratio,
-            kerf: self.kerf,
-            r_win: self.r_win,
-        }
+        HingeConstants { fillet_ratio: self.fillet_ratio, kerf: self.kerf, r_win: self.r_win }
     }
 
     /// The similar design in a sheet of `factor` times the thickness.
@@ -134,10 +130,7 @@ impl HingeDesign {
 
     /// The design after reflection of x.
     pub fn mirrored(&self) -> Self {
-        Self {
-            alpha: PI - self.alpha,
-            ..*self
-        }
+        Self { alpha: PI - self.alpha, ..*self }
     }
 
     /// Rejects a design that cannot be cut; the error names the violated inequality.
@@ -187,10 +180,7 @@ mod tests {
     #[test]
     fn the_papers_hinge_is_accepted_and_mirroring_twice_is_the_identity() {
         paper().validate().unwrap();
-        let oblique = HingeDesign {
-            alpha: 1.0,
-            ..paper()
-        };
+        let oblique = HingeDesign { alpha: 1.0, ..paper() };
         assert_eq!(oblique.mirrored().alpha, PI - 1.0);
         assert!((oblique.mirrored().mirrored().alpha - 1.0).abs() < 1e-15);
         assert_eq!(oblique.constants().hinge(18.0, 1.0), oblique);

@@ -1,23 +1,27 @@
-//! The training domain: the set of hinge states that a database covers, which is smaller than their bounding box.
+//! The training domain: the set of hinge states that a database covers, which is smaller than their
+//! bounding box.
 //!
-//! In the scaled coordinates y = ((eta_a, eta_s, theta) - centre) / half-range, the states at ligament widths near
-//! w_lig satisfy m . y <= s(m; w_lig) for each of the 26 directions m with components -1, 0 and 1; s is the support
-//! function of these states. The domain is the set where the gauge satisfies
+//! In the scaled coordinates y = ((eta_a, eta_s, theta) - centre) / half-range, the states at
+//! ligament widths near w_lig satisfy m . y <= s(m; w_lig) for each of the 26 directions m with
+//! components -1, 0 and 1; s is the support function of these states. The domain is the set where
+//! the gauge satisfies
 //!
 //! ```text
 //! gamma = (sum over m of max(0, m . y / s(m; w_lig))^p)^(1/p) <= 1,      p = 24
 //! ```
 //!
-//! and w_lig, alpha and rho_f lie in their intervals. gamma is smooth except at the centre, where it vanishes. It rounds the
-//! corners of the polytope inwards and grows in proportion to the distance from the centre.
+//! and w_lig, alpha and rho_f lie in their intervals. gamma is smooth except at the centre, where
+//! it vanishes. It rounds the corners of the polytope inwards and grows in proportion to the
+//! distance from the centre.
 //!
-//! In plates, eta_a is measured from the mean path of the states, c_1 theta + c_2 theta^2 by least squares: their ligaments turn
-//! freely along a curve, and a polytope around a curve holds states far beyond any ray. If hinges have holes of several radii,
-//! eta_a and eta_s belong to the hinge with the paper's hole and the same net ligament ([`NetLigament`]).
+//! In plates, eta_a is measured from the mean path of the states, c_1 theta + c_2 theta^2 by least
+//! squares: their ligaments turn freely along a curve, and a polytope around a curve holds states
+//! far beyond any ray. If hinges have holes of several radii, eta_a and eta_s belong to the hinge
+//! with the paper's hole and the same net ligament ([`NetLigament`]).
 //!
-//! s is stored at widths in geometric progression and is blended between them with zero slope at both
-//! ends, so that gamma is twice differentiable in w_lig.
-//! (Klosowski et al., "Efficient collision detection using bounding volume hierarchies of k-DOPs", 1998.)
+//! s is stored at widths in geometric progression and is blended between them with zero slope at
+//! both ends, so that gamma is twice differentiable in w_lig. (Klosowski et al., "Efficient
+//! collision detection using bounding volume hierarchies of k-DOPs", 1998.)
 
 mod covered_states;
 mod directions;
@@ -32,8 +36,8 @@ use serde::{Deserialize, Serialize};
 use std::array::from_fn;
 use support::vectors::dot;
 
-/// The states that a surrogate was trained on; section 2.4. The domain is computed from the data and stored with
-/// the weights.
+/// The states that a surrogate was trained on; section 2.4. The domain is computed from the data
+/// and stored with the weights.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "stored_domain::Stored")]
 pub struct TrainingDomain {
@@ -84,7 +88,8 @@ impl TrainingDomain {
         }))
     }
 
-    /// The gauge gamma with its derivatives in (a, s, theta, w_lig, rho_f). At the centre they do not exist.
+    /// The gauge gamma with its derivatives in (a, s, theta, w_lig, rho_f). At the centre they do
+    /// not exist.
     pub fn gauge_jet(&self, design: &HingeDesign, deformation: &HingeDeformation) -> Jet {
         let y = self.coordinates_jet(design, deformation);
         let y: [Jet; 3] =
@@ -100,9 +105,8 @@ impl TrainingDomain {
         // Ratios are divided by the largest, so that the powers neither overflow nor underflow.
         let largest = ratios.iter().map(|ratio| ratio.value).fold(0.0, f64::max);
         let sum = ratios.iter().filter(|ratio| ratio.value > 0.0);
-        let sum = sum.fold(Jet::constant(0.0), |sum, ratio| {
-            sum + (*ratio * (1.0 / largest)).powf(EXPONENT)
-        });
+        let sum = sum
+            .fold(Jet::constant(0.0), |sum, ratio| sum + (*ratio * (1.0 / largest)).powf(EXPONENT));
         sum.powf(1.0 / EXPONENT) * largest
     }
 
@@ -115,21 +119,17 @@ impl TrainingDomain {
     pub fn bounds(&self) -> [[f64; 2]; 3] {
         from_fn(|i| {
             let side = |sign: f64| {
-                let axis = DIRECTION
-                    .iter()
-                    .position(|m| m[i] == sign && dot(m, m) == 1.0);
+                let axis = DIRECTION.iter().position(|m| m[i] == sign && dot(m, m) == 1.0);
                 let axis = axis.expect("the axes are among the directions");
-                self.supports
-                    .iter()
-                    .map(|row| row[axis])
-                    .fold(0.0, f64::max)
+                self.supports.iter().map(|row| row[axis]).fold(0.0, f64::max)
             };
             let (centre, half) = (self.centre[i], self.half_range[i]);
             [centre - half * side(-1.0), centre + half * side(1.0)]
         })
     }
 
-    /// The coordinates in which the domain is a rounded polytope: (eta_a, eta_s, theta), eta_a from the mean path.
+    /// The coordinates in which the domain is a rounded polytope: (eta_a, eta_s, theta), eta_a from
+    /// the mean path.
     pub fn coordinates(&self, design: &HingeDesign, deformation: &HingeDeformation) -> [f64; 3] {
         let ligament = self.ligament(design);
         let seen = ligament.deformation(deformation);
@@ -155,11 +155,7 @@ impl TrainingDomain {
         let ligament = NetLigamentJet::new(design, self.hole());
         let [a, s, theta] = ligament.deformation(from_fn(|i| Jet::variable(i, state[i])));
         let per_width = ligament.width.recip();
-        [
-            a * per_width - self.mean_path_jet(theta),
-            s * per_width,
-            theta,
-        ]
+        [a * per_width - self.mean_path_jet(theta), s * per_width, theta]
     }
 
     /// The deformation with the given coordinates, as functions of (a, s, theta, w_lig, rho_f).
@@ -182,14 +178,11 @@ impl TrainingDomain {
 
     fn mean_path_jet(&self, theta: Jet) -> Jet {
         let [first, second] = self.mean_path;
-        theta.map([
-            self.mean_path(theta.value),
-            first + 2.0 * second * theta.value,
-            2.0 * second,
-        ])
+        theta.map([self.mean_path(theta.value), first + 2.0 * second * theta.value, 2.0 * second])
     }
 
-    /// The hole, over w_lig, of the hinges in whose measures the domain is; `None`: in the measures of the hinges themselves.
+    /// The hole, over w_lig, of the hinges in whose measures the domain is; `None`: in the measures
+    /// of the hinges themselves.
     fn hole(&self) -> Option<f64> {
         self.holes.map(|_| HingeConstants::PAPER.fillet_ratio)
     }
@@ -208,15 +201,11 @@ impl TrainingDomain {
         let [minimum, maximum] = self.w_lig;
         let steps = (widths - 1) as f64;
         let share = (w_lig / minimum).ln() / (maximum / minimum).ln();
-        if share.is_finite() {
-            (share * steps).clamp(0.0, steps)
-        } else {
-            0.0
-        }
+        if share.is_finite() { (share * steps).clamp(0.0, steps) } else { 0.0 }
     }
 
-    /// The row of supports at or below a width, and the blending weight 6 x^5 - 15 x^4 + 10 x^3 of the next row,
-    /// with its derivatives in w_lig.
+    /// The row of supports at or below a width, and the blending weight 6 x^5 - 15 x^4 + 10 x^3 of
+    /// the next row, with its derivatives in w_lig.
     fn place(&self, w_lig: f64) -> (usize, [f64; 3]) {
         let widths = self.supports.len();
         let along = self.along(w_lig, widths);
@@ -230,14 +219,7 @@ impl TrainingDomain {
         let first = 30.0 * (x * (1.0 - x)).powi(2);
         let second = 60.0 * x * (1.0 - x) * (1.0 - 2.0 * x);
         let blend = x * x * x * (x * (6.0 * x - 15.0) + 10.0);
-        (
-            row,
-            [
-                blend,
-                first * slope,
-                second * slope * slope - first * slope / w_lig,
-            ],
-        )
+        (row, [blend, first * slope, second * slope * slope - first * slope / w_lig])
     }
 
     /// Difference of the support at the next stored width and at this one.
@@ -262,14 +244,11 @@ mod tests {
     }
 
     fn with_hole(w_lig: f64, fillet_ratio: f64) -> HingeDesign {
-        HingeDesign {
-            fillet_ratio,
-            ..design(w_lig)
-        }
+        HingeDesign { fillet_ratio, ..design(w_lig) }
     }
 
-    /// Ends of rays in a cone, and their mirror images: tension and shear increase with the rotation and decrease
-    /// with the width.
+    /// Ends of rays in a cone, and their mirror images: tension and shear increase with the
+    /// rotation and decrease with the width.
     fn cone() -> Vec<(HingeDesign, HingeDeformation)> {
         let part = |i: usize, prime: f64| (i as f64 * prime).fract() * 2.0 - 1.0;
         let state = |i: usize| {
@@ -281,9 +260,7 @@ mod tests {
             (HingeConstants::PAPER.hinge(w_lig, 1.3), state)
         };
         let states = (0..20_000).map(state);
-        states
-            .flat_map(|(g, x)| [(g, x), (g.mirrored(), x.mirrored())])
-            .collect()
+        states.flat_map(|(g, x)| [(g, x), (g.mirrored(), x.mirrored())]).collect()
     }
 
     /// The same states about a ligament that turns freely along a curve, narrower in eta_a.
@@ -315,18 +292,17 @@ mod tests {
             let state = HingeDeformation::from_eta(eta_a, 0.0, theta, w_lig);
             domain.contains(&design(w_lig), &state)
         };
-        // A corner of the box that no ray reaches, and a width at which the range is smaller than at others.
+        // A corner of the box that no ray reaches, and a width at which the range is smaller than
+        // at others.
         assert!(at(0.2, 0.9, 5.5) && !at(0.2, 0.2, 5.5));
         assert!(at(0.06, 0.9, 18.0) && !at(0.2, 0.9, 18.0));
         assert!(at(0.0, 0.0, 10.0), "the flat state");
         let [eta_a, ..] = domain.bounds();
-        assert!(
-            (eta_a[1] - 0.3).abs() < 0.03 && (eta_a[0] + 0.3).abs() < 0.03,
-            "{eta_a:?}"
-        );
+        assert!((eta_a[1] - 0.3).abs() < 0.03 && (eta_a[0] + 0.3).abs() < 0.03, "{eta_a:?}");
     }
 
-    /// Between the ends of the curve a polytope would hold the chord, which is beyond the states on either side.
+    /// Between the ends of the curve a polytope would hold the chord, which is beyond the states on
+    /// either side.
     #[test]
     fn a_domain_follows_a_curved_path() {
         let domain = domain(&bent());
@@ -367,11 +343,9 @@ mod tests {
     }
 
     fn derivatives_agree(domain: &TrainingDomain) {
-        for x in [
-            [0.9, -0.4, 0.5, 8.0, 0.2],
-            [-2.0, 3.0, 1.5, 14.0, 0.16],
-            [0.1, 0.2, -0.1, 5.2, 0.05],
-        ] {
+        for x in
+            [[0.9, -0.4, 0.5, 8.0, 0.2], [-2.0, 3.0, 1.5, 14.0, 0.16], [0.1, 0.2, -0.1, 5.2, 0.05]]
+        {
             let jet =
                 |x: [f64; 5]| domain.gauge_jet(&with_hole(x[3], x[4]), &[x[0], x[1], x[2]].into());
             let found = jet(x);
@@ -382,10 +356,7 @@ mod tests {
                 let at = |step: f64| jet(from_fn(|j| if i == j { x[j] + step } else { x[j] }));
                 let (plus, minus) = (at(h), at(-h));
                 let slope = (plus.value - minus.value) / (2.0 * h);
-                assert!(
-                    (found.gradient[i] - slope).abs() < 1e-7 * slope.abs().max(1.0),
-                    "{i}"
-                );
+                assert!((found.gradient[i] - slope).abs() < 1e-7 * slope.abs().max(1.0), "{i}");
                 for j in 0..5 {
                     let slope = (plus.gradient[j] - minus.gradient[j]) / (2.0 * h);
                     let error = (found.hessian[i][j] - slope).abs();
@@ -399,11 +370,7 @@ mod tests {
     fn the_gauge_is_twice_differentiable_across_the_stored_widths() {
         let domain = domain(&cone());
         assert_eq!(domain.supports.len(), MOST_WIDTHS);
-        let state = HingeDeformation {
-            a: 1.0,
-            s: 0.3,
-            theta: 0.7,
-        };
+        let state = HingeDeformation { a: 1.0, s: 0.3, theta: 0.7 };
         for width in [10.0 / 2f64.sqrt(), 10.0, 20.0] {
             let at = |step: f64| domain.gauge_jet(&design(width + step), &state);
             let (plus, minus) = (at(1e-6), at(-1e-6));
@@ -417,22 +384,12 @@ mod tests {
         let state = [[-0.5, 0.2], [-0.4, 0.4], [0.0, 1.2]];
         let boxed = TrainingDomain::from_box(state, [5.0, 25.0], [0.8, 2.3]);
         let deep = |eta_a, eta_s, theta| {
-            boxed.depth(
-                &design(9.0),
-                &HingeDeformation::from_eta(eta_a, eta_s, theta, 9.0),
-            )
+            boxed.depth(&design(9.0), &HingeDeformation::from_eta(eta_a, eta_s, theta, 9.0))
         };
         assert!(deep(-0.15, 0.38, 0.6) > 0.0 && deep(-0.15, 0.42, 0.6) < 0.0);
         assert!(deep(0.0, 0.0, 0.0) > 0.0 && deep(-0.15, 0.0, 0.6) == 1.0);
         assert!(!boxed.contains(&design(4.0), &HingeDeformation::default()));
-        let one = domain(&[(
-            design(9.0),
-            HingeDeformation {
-                a: 1.0,
-                s: 0.0,
-                theta: 0.5,
-            },
-        )]);
+        let one = domain(&[(design(9.0), HingeDeformation { a: 1.0, s: 0.0, theta: 0.5 })]);
         assert!(one.contains(&design(9.0), &HingeDeformation::default()));
         assert!(TrainingDomain::covering([]).is_none());
     }
@@ -441,14 +398,9 @@ mod tests {
     fn a_domain_round_trips_exactly_and_a_spoilt_one_is_refused() {
         let domain = domain(&cone());
         let text = serde_json::to_string(&domain).unwrap();
-        assert_eq!(
-            serde_json::from_str::<TrainingDomain>(&text).unwrap(),
-            domain
-        );
+        assert_eq!(serde_json::from_str::<TrainingDomain>(&text).unwrap(), domain);
         let spoilt = text.replacen("\"supports\":[[", "\"supports\":[[-", 1);
-        let message = serde_json::from_str::<TrainingDomain>(&spoilt)
-            .unwrap_err()
-            .to_string();
+        let message = serde_json::from_str::<TrainingDomain>(&spoilt).unwrap_err().to_string();
         assert!(message.contains("supports > 0"), "{message}");
     }
 }

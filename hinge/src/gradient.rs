@@ -50,10 +50,7 @@ impl HingeGradient {
 
 impl From<[f64; 6]> for HingeGradient {
     fn from([a, s, theta, w_lig, alpha, hole]: [f64; 6]) -> Self {
-        Self {
-            state: [a, s, theta],
-            design: DesignGradient { w_lig, alpha, hole },
-        }
+        Self { state: [a, s, theta], design: DesignGradient { w_lig, alpha, hole } }
     }
 }
 

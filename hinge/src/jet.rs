@@ -1,4 +1,5 @@
-//! Forward-mode automatic differentiation to second order in (a, s, theta, w_lig, rho_f), for inexpensive functions.
+//! Forward-mode automatic differentiation to second order in (a, s, theta, w_lig, rho_f), for
+//! inexpensive functions.
 
 use std::array::from_fn;
 use std::ops::{Add, Mul, Sub};
@@ -17,11 +18,7 @@ pub struct Jet {
 impl Jet {
     /// A number that does not depend on the variables.
     pub const fn constant(value: f64) -> Self {
-        Self {
-            value,
-            gradient: [0.0; 5],
-            hessian: [[0.0; 5]; 5],
-        }
+        Self { value, gradient: [0.0; 5], hessian: [[0.0; 5]; 5] }
     }
 
     /// Index of the variable w_lig.
@@ -31,10 +28,7 @@ impl Jet {
 
     /// One of the five variables: index 0 is a, 1 is s, 2 is theta, 3 is w_lig, 4 is rho_f.
     pub fn variable(index: usize, value: f64) -> Self {
-        Self {
-            gradient: from_fn(|i| f64::from(u8::from(i == index))),
-            ..Self::constant(value)
-        }
+        Self { gradient: from_fn(|i| f64::from(u8::from(i == index))), ..Self::constant(value) }
     }
 
     /// Applies a function f, given f, f' and f'' at this value.
@@ -49,11 +43,7 @@ impl Jet {
 
     pub(crate) fn powf(self, n: f64) -> Self {
         let x = self.value;
-        let derivatives = [
-            x.powf(n),
-            n * x.powf(n - 1.0),
-            n * (n - 1.0) * x.powf(n - 2.0),
-        ];
+        let derivatives = [x.powf(n), n * x.powf(n - 1.0), n * (n - 1.0) * x.powf(n - 2.0)];
         self.map(derivatives)
     }
 
@@ -95,10 +85,7 @@ impl Mul<f64> for Jet {
 impl Mul for Jet {
     type Output = Self;
 
-    #[expect(
-        clippy::suspicious_arithmetic_impl,
-        reason = "the product rule adds terms"
-    )]
+    #[expect(clippy::suspicious_arithmetic_impl, reason = "the product rule adds terms")]
     fn mul(self, other: Self) -> Self {
         let (x, y) = (self.value, other.value);
         let (dx, dy) = (self.gradient, other.gradient);
@@ -133,10 +120,7 @@ mod tests {
             let at = |step: f64| number(from_fn(|j| if i == j { x[j] + step } else { x[j] }));
             let (plus, minus) = (at(h), at(-h));
             let slope = (plus.value - minus.value) / (2.0 * h);
-            assert!(
-                (found.gradient[i] - slope).abs() < 1e-8 * slope.abs(),
-                "{i}"
-            );
+            assert!((found.gradient[i] - slope).abs() < 1e-8 * slope.abs(), "{i}");
             for j in 0..5 {
                 let slope = (plus.gradient[j] - minus.gradient[j]) / (2.0 * h);
                 assert!((found.hessian[i][j] - slope).abs() < 1e-7, "{i} {j}");

@@ -15,12 +15,12 @@
 //! Units: mm, N, MPa, N mm, rad. Angles in degrees have names that end in `_deg`.
 //!
 //! **Hinge frame.** x runs along the secondary cut. y is its counter-clockwise normal and points
-//! away from the material, which lies at y <= 0. The main cut runs from its tip O at the angle alpha,
-//! measured from +x into the material. Panel A lies on the -x side of the main cut, panel B on the
-//! +x side. theta > 0 opens the main cut.
+//! away from the material, which lies at y <= 0. The main cut runs from its tip O at the angle
+//! alpha, measured from +x into the material. Panel A lies on the -x side of the main cut, panel B
+//! on the +x side. theta > 0 opens the main cut.
 //!
-//! **Reference point.** O is the tip of the main cut, at the perpendicular distance w_lig from
-//! the secondary cut. The origin of the frame is the foot of that perpendicular. Both the window and
+//! **Reference point.** O is the tip of the main cut, at the perpendicular distance w_lig from the
+//! secondary cut. The origin of the frame is the foot of that perpendicular. Both the window and
 //! the sheet measure (a, s, theta) at O, in the mean frame of the two panels.
 //!
 //! ```

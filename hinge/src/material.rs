@@ -11,8 +11,8 @@ use tensile::{TensileError, read_tensile};
 /// Standard acceleration of gravity, rounded (m/s^2 = N/kg).
 pub const STANDARD_GRAVITY: f64 = 9.81;
 
-/// A uniform sheet: thickness, isotropic elasticity, tabulated J2 hardening, fracture strain. Its TOML files are in
-/// `configs/materials/`.
+/// A uniform sheet: thickness, isotropic elasticity, tabulated J2 hardening, fracture strain. Its
+/// TOML files are in `configs/materials/`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SheetMaterial {
@@ -33,29 +33,32 @@ pub struct SheetMaterial {
     /// Equivalent plastic strain at fracture, eps_f of (12).
     #[schemars(range(min = 1e-3, max = 10.0))]
     pub fracture_strain: f64,
-    /// Rows [true stress (MPa), true plastic strain]; the stress is above 0 and below `young`, the strain starts at
-    /// zero and increases.
+    /// Rows [true stress (MPa), true plastic strain]; the stress is above 0 and below `young`, the
+    /// strain starts at zero and increases.
     #[serde(default)]
     pub plastic: Vec<[f64; 2]>,
     /// Path of a measured curve instead of `plastic`, relative to the material's file.
     #[serde(default, skip_serializing)]
     pub tensile_csv: Option<PathBuf>,
-    /// Relative standard deviation of the stress at equal strain, of the sheet that is cut from this law, for the error budget of
-    /// a design; `kirigami material fit` writes the deviation of its specimens. No window solve uses it.
+    /// Relative standard deviation of the stress at equal strain, of the sheet that is cut from
+    /// this law, for the error budget of a design; `kirigami material fit` writes the deviation of
+    /// its specimens. No window solve uses it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0.0, max = 1.0))]
     pub stress_deviation: Option<f64>,
-    /// Creep under a load that stays, by order of magnitude; without it the report says that it is not known.
+    /// Creep under a load that stays, by order of magnitude; without it the report says that it is
+    /// not known.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub creep: Option<Creep>,
 }
 
-/// Creep of the material, by order of magnitude, which the report of a design states; no solve uses it.
+/// Creep of the material, by order of magnitude, which the report of a design states; no solve uses
+/// it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Creep {
-    /// Deformation after `years` under a constant small load, over that at once (ISO 9967: the creep ratio); the stiffness falls to its
-    /// reciprocal.
+    /// Deformation after `years` under a constant small load, over that at once (ISO 9967: the
+    /// creep ratio); the stiffness falls to its reciprocal.
     #[schemars(range(min = 1.0, max = 100.0))]
     pub ratio: f64,
     /// Time under load, in years.
@@ -63,8 +66,8 @@ pub struct Creep {
     pub years: f64,
 }
 
-/// Maximum of Young's modulus over density (MPa m^3/kg): laminates of carbon fibre have up to 190, beryllium 155, metals 20
-/// to 30, plastics 0.2 to 7.
+/// Maximum of Young's modulus over density (MPa m^3/kg): laminates of carbon fibre have up to 190,
+/// beryllium 155, metals 20 to 30, plastics 0.2 to 7.
 const STIFFEST: f64 = 200.0;
 
 /// Why a material could not be read.
@@ -78,10 +81,7 @@ pub enum MaterialError {
     #[error("{path}: give exactly one of `plastic` and `tensile_csv`", path = .0.display())]
     Hardening(PathBuf),
     #[error("{path}: {source}", path = .path.display())]
-    Invalid {
-        path: PathBuf,
-        source: InvalidMaterial,
-    },
+    Invalid { path: PathBuf, source: InvalidMaterial },
 }
 
 /// A material with impossible values, or with values in other units.
@@ -113,21 +113,14 @@ impl SheetMaterial {
         }
         match material.validate() {
             Ok(()) => Ok(material),
-            Err(source) => Err(MaterialError::Invalid {
-                path: path.to_owned(),
-                source,
-            }),
+            Err(source) => Err(MaterialError::Invalid { path: path.to_owned(), source }),
         }
     }
 
     /// The material as solves record it: without deviation and creep, which they do not depend on.
     #[must_use]
     pub fn as_solved(&self) -> Self {
-        Self {
-            stress_deviation: None,
-            creep: None,
-            ..self.clone()
-        }
+        Self { stress_deviation: None, creep: None, ..self.clone() }
     }
 
     /// The material with `factor` times the stress at every strain.
@@ -152,30 +145,22 @@ impl SheetMaterial {
         STANDARD_GRAVITY * self.mass_by_area()
     }
 
-    /// Identifies the material law independently of its name: BLAKE3 hash of all material parameters that a window
-    /// solve uses, 16 hexadecimal digits. Name and density are not included.
+    /// Identifies the material law independently of its name: BLAKE3 hash of all material
+    /// parameters that a window solve uses, 16 hexadecimal digits. Name and density are not
+    /// included.
     pub fn law_hash(&self) -> String {
         let mut hasher = blake3::Hasher::new();
-        let numbers = [
-            self.thickness,
-            self.young,
-            self.poisson,
-            self.fracture_strain,
-        ];
+        let numbers = [self.thickness, self.young, self.poisson, self.fracture_strain];
         for number in numbers.iter().chain(self.plastic.iter().flatten()) {
             hasher.update(&number.to_le_bytes());
         }
         hasher.finalize().to_hex()[..16].to_owned()
     }
 
-    /// Rejects impossible values and the usual unit errors (GPa for MPa, m for mm, g/cm^3 for kg/m^3).
+    /// Rejects impossible values and the usual unit errors (GPa for MPa, m for mm, g/cm^3 for
+    /// kg/m^3).
     pub fn validate(&self) -> Result<(), InvalidMaterial> {
-        let refuse = |reason: String| {
-            Err(InvalidMaterial {
-                material: self.name.clone(),
-                reason,
-            })
-        };
+        let refuse = |reason: String| Err(InvalidMaterial { material: self.name.clone(), reason });
         if let Err(error) = key_limits::check::<Self>(self) {
             return refuse(error.to_string());
         }
@@ -190,9 +175,7 @@ impl SheetMaterial {
         match self.plastic.first() {
             None => return refuse("the table `plastic` is empty".into()),
             Some(&[_, strain]) if strain != 0.0 => {
-                return refuse(format!(
-                    "`plastic` must start at zero strain, not at {strain}"
-                ));
+                return refuse(format!("`plastic` must start at zero strain, not at {strain}"));
             }
             Some(_) => {}
         }
@@ -234,11 +217,7 @@ mod tests {
 
     #[test]
     fn the_law_hash_depends_on_the_parameters_alone() {
-        let renamed = SheetMaterial {
-            name: "other".into(),
-            density_kg_m3: 1000.0,
-            ..film()
-        };
+        let renamed = SheetMaterial { name: "other".into(), density_kg_m3: 1000.0, ..film() };
         assert_eq!(renamed.law_hash(), film().law_hash());
         let mut harder = film();
         harder.plastic[2][0] += 1e-9;
@@ -256,10 +235,9 @@ mod tests {
         known.validate().unwrap();
         assert_eq!(known.law_hash(), film().law_hash());
         assert_eq!(known.as_solved(), film());
-        for (material, expected) in [
-            (creeping(0.33, 2.0), "creep.ratio = 0.33"),
-            (creeping(3.0, 0.0), "creep.years = 0"),
-        ] {
+        for (material, expected) in
+            [(creeping(0.33, 2.0), "creep.ratio = 0.33"), (creeping(3.0, 0.0), "creep.years = 0")]
+        {
             let message = material.validate().unwrap_err().to_string();
             assert!(message.contains(expected), "{message}");
         }
@@ -275,10 +253,7 @@ mod tests {
         type Change = fn(&mut SheetMaterial);
         let cases: [(Change, &str); 10] = [
             (|m| m.young = 3.0, "did you mean 3000 MPa"),
-            (
-                |m| m.young = 660e3,
-                "young = 660000 MPa violates 10 <= young <= 500000 MPa",
-            ),
+            (|m| m.young = 660e3, "young = 660000 MPa violates 10 <= young <= 500000 MPa"),
             (|m| m.young = 300e3, "is 216 MPa for each kg/m^3"),
             (|m| m.thickness = 0.0005, "did you mean 0.5 mm"),
             (|m| m.density_kg_m3 = 1.39, "did you mean 1390 kg/m^3"),

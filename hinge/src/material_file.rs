@@ -29,11 +29,7 @@ impl SheetMaterial {
             poisson: facts.poisson,
             density_kg_m3: facts.density_kg_m3,
             fracture_strain: fit.fracture_strain,
-            plastic: fit
-                .table
-                .iter()
-                .map(|row| [row.stress, row.strain])
-                .collect(),
+            plastic: fit.table.iter().map(|row| [row.stress, row.strain]).collect(),
             stress_deviation: fit.stress_deviation(),
             ..Self::default()
         };
@@ -51,10 +47,7 @@ pub fn material_file(fit: &MaterialFit, facts: &SheetFacts) -> String {
 
 fn write(t: &mut String, fit: &MaterialFit, facts: &SheetFacts) -> std::fmt::Result {
     let name = printable(&facts.name);
-    writeln!(
-        t,
-        "# {name}: the law of tensile tests, by `kirigami material fit`."
-    )?;
+    writeln!(t, "# {name}: the law of tensile tests, by `kirigami material fit`.")?;
     for specimen in &fit.specimens {
         provenance(t, specimen)?;
     }
@@ -62,26 +55,13 @@ fn write(t: &mut String, fit: &MaterialFit, facts: &SheetFacts) -> std::fmt::Res
     let quoted = name.replace('\\', "\\\\").replace('"', "\\\"");
     writeln!(t, "name = \"{quoted}\"\n")?;
     let source = if fit.young_given { "given" } else { "measured" };
-    let assumed = if facts.poisson_assumed {
-        "  # assumed"
-    } else {
-        ""
-    };
+    let assumed = if facts.poisson_assumed { "  # assumed" } else { "" };
     writeln!(t, "thickness = {:?}  # mm", facts.thickness)?;
-    writeln!(
-        t,
-        "young = {:?}  # MPa; {source}{}",
-        fit.young.mean,
-        scatter(&fit.young, 0)
-    )?;
+    writeln!(t, "young = {:?}  # MPa; {source}{}", fit.young.mean, scatter(&fit.young, 0))?;
     writeln!(t, "poisson = {:?}{assumed}", facts.poisson)?;
     writeln!(t, "density_kg_m3 = {:?}  # kg/m^3", facts.density_kg_m3)?;
     let source = fit.fracture_source.words();
-    writeln!(
-        t,
-        "fracture_strain = {:?}  # true plastic strain; {source}",
-        fit.fracture_strain
-    )?;
+    writeln!(t, "fracture_strain = {:?}  # true plastic strain; {source}", fit.fracture_strain)?;
     writeln!(
         t,
         "\n# Rows [true stress (MPa), true plastic strain]; constant stress after the last row. They deviate by at most\n\
@@ -108,11 +88,7 @@ fn write(t: &mut String, fit: &MaterialFit, facts: &SheetFacts) -> std::fmt::Res
 
 /// The file of a specimen, what was read from it and what was dropped.
 fn provenance(t: &mut String, specimen: &Specimen) -> std::fmt::Result {
-    let name = specimen
-        .path
-        .file_name()
-        .unwrap_or_default()
-        .to_string_lossy();
+    let name = specimen.path.file_name().unwrap_or_default().to_string_lossy();
     let [toe, unloading, broken] =
         [Cause::Toe, Cause::Unloading, Cause::Broken].map(|cause| specimen.dropped_for(cause));
     let [from, to] = specimen.linear.strain.map(|strain| 100.0 * strain);
@@ -122,13 +98,7 @@ fn provenance(t: &mut String, specimen: &Specimen) -> std::fmt::Result {
          #   Toe {:.3} %, linear from {from:.3} to {to:.3} % with {:.0} MPa.",
         printable(&name),
         specimen.hash,
-        printable(
-            &specimen
-                .read_as
-                .each_ref()
-                .map(ReadColumn::to_string)
-                .join(", ")
-        ),
+        printable(&specimen.read_as.each_ref().map(ReadColumn::to_string).join(", ")),
         specimen.rows,
         100.0 * specimen.toe,
         specimen.linear.young
@@ -137,24 +107,14 @@ fn provenance(t: &mut String, specimen: &Specimen) -> std::fmt::Result {
 
 /// Yield and draw with their scatter.
 fn landmarks(t: &mut String, fit: &MaterialFit) -> std::fmt::Result {
-    write!(
-        t,
-        "# Rp0.2 {:.2} MPa{}",
-        fit.offset_yield.mean,
-        scatter(&fit.offset_yield, 2)
-    )?;
+    write!(t, "# Rp0.2 {:.2} MPa{}", fit.offset_yield.mean, scatter(&fit.offset_yield, 2))?;
     for (name, value, unit, digits) in [
         ("upper yield", &fit.upper_yield, " MPa", 2),
         ("draw plateau", &fit.plateau, " MPa", 2),
         ("natural draw ratio", &fit.draw_ratio, "", 3),
     ] {
         if let Some(value) = value {
-            write!(
-                t,
-                ", {name} {:.digits$}{unit}{}",
-                value.mean,
-                scatter(value, digits)
-            )?;
+            write!(t, ", {name} {:.digits$}{unit}{}", value.mean, scatter(value, digits))?;
         }
     }
     writeln!(t, "; +- is the standard deviation.")
@@ -162,9 +122,7 @@ fn landmarks(t: &mut String, fit: &MaterialFit) -> std::fmt::Result {
 
 /// " +- 1.2", or nothing for one specimen.
 fn scatter(of: &Statistic, digits: usize) -> String {
-    of.deviation.map_or(String::new(), |deviation| {
-        format!(" +- {deviation:.digits$}")
-    })
+    of.deviation.map_or(String::new(), |deviation| format!(" +- {deviation:.digits$}"))
 }
 
 /// A text without the characters that would end a comment.

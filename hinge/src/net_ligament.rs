@@ -1,16 +1,17 @@
 //! A hinge with any hole as the hinge with a hole of reference and the same net ligament.
 //!
-//! A ligament ends at the edge of the hole: (1 - rho_f) w_lig of it carry the load. The hinge with the hole of reference rho_0
-//! and the same net ligament has its tip O' on the normal of the secondary cut through O,
+//! A ligament ends at the edge of the hole: (1 - rho_f) w_lig of it carry the load. The hinge with
+//! the hole of reference rho_0 and the same net ligament has its tip O' on the normal of the
+//! secondary cut through O,
 //!
 //! ```text
 //! w' = (1 - rho_f) / (1 - rho_0) w_lig,      a' = a - 2 sin(theta / 2) (w_lig - w'),      s' = s,
 //! ```
 //!
-//! as panel B, which is rigid there, moves the point O' by that. Hinges of one sheet with different holes have similar states in
-//! these measures: rays, training domains and networks are of this hinge, and the networks see rho_f besides. For the paper's
-//! film W at rho_f = 0.025 and 0.4 then differs from that at 0.16 by 5 and 8 % instead of 24 and 31 %. At rho_f = rho_0 nothing
-//! changes.
+//! as panel B, which is rigid there, moves the point O' by that. Hinges of one sheet with different
+//! holes have similar states in these measures: rays, training domains and networks are of this
+//! hinge, and the networks see rho_f besides. For the paper's film W at rho_f = 0.025 and 0.4 then
+//! differs from that at 0.16 by 5 and 8 % instead of 24 and 31 %. At rho_f = rho_0 nothing changes.
 
 use crate::{HingeDeformation, HingeDesign, HingeSample, Jet};
 
@@ -36,12 +37,10 @@ impl NetLigament {
         }
     }
 
-    /// The hinge with the hole of reference; its `fillet_ratio` remains the actual one, as a feature.
+    /// The hinge with the hole of reference; its `fillet_ratio` remains the actual one, as a
+    /// feature.
     pub fn design(&self, design: &HingeDesign) -> HingeDesign {
-        HingeDesign {
-            w_lig: self.ratio * design.w_lig,
-            ..*design
-        }
+        HingeDesign { w_lig: self.ratio * design.w_lig, ..*design }
     }
 
     /// The deformation of that hinge.
@@ -60,7 +59,8 @@ impl NetLigament {
         }
     }
 
-    /// Deformation and moment of a sample of that hinge. The other quantities remain the quantities of the actual hinge.
+    /// Deformation and moment of a sample of that hinge. The other quantities remain the quantities
+    /// of the actual hinge.
     pub fn sample(&self, sample: &HingeSample) -> HingeSample {
         HingeSample {
             a: self.deformation(&sample.deformation()).a,
@@ -78,11 +78,8 @@ impl NetLigament {
     /// The derivatives of a', w' and da' / d theta in w_lig and in rho_f.
     pub fn by_width_and_hole(&self, theta: f64) -> [[f64; 3]; 2] {
         let half_angle = (0.5 * theta).cos();
-        [
-            [1.0 - self.ratio, self.ratio],
-            [self.shift_by_hole, -self.shift_by_hole],
-        ]
-        .map(|[shift, width]| [-chord(theta) * shift, width, -half_angle * shift])
+        [[1.0 - self.ratio, self.ratio], [self.shift_by_hole, -self.shift_by_hole]]
+            .map(|[shift, width]| [-chord(theta) * shift, width, -half_angle * shift])
     }
 }
 
@@ -108,10 +105,7 @@ impl NetLigamentJet {
             let solid = Jet::constant(1.0) - Jet::variable(Jet::HOLE, design.fillet_ratio);
             w_lig * solid * (1.0 - reference).recip()
         });
-        Self {
-            width,
-            shift: w_lig - width,
-        }
+        Self { width, shift: w_lig - width }
     }
 
     /// (a', s', theta) from (a, s, theta).
@@ -136,10 +130,7 @@ mod tests {
     use crate::HingeConstants;
 
     fn drilled() -> HingeDesign {
-        HingeDesign {
-            fillet_ratio: 0.35,
-            ..HingeConstants::PAPER.hinge(12.0, 1.2)
-        }
+        HingeDesign { fillet_ratio: 0.35, ..HingeConstants::PAPER.hinge(12.0, 1.2) }
     }
 
     #[test]
@@ -156,11 +147,7 @@ mod tests {
         let design = drilled();
         let ligament = NetLigament::new(&design, 0.16);
         let shift = design.w_lig - ligament.design(&design).w_lig;
-        let turned = HingeDeformation {
-            a: 2.0 * 0.4f64.sin() * shift,
-            s: 0.0,
-            theta: 0.8,
-        };
+        let turned = HingeDeformation { a: 2.0 * 0.4f64.sin() * shift, s: 0.0, theta: 0.8 };
         assert!(ligament.deformation(&turned).a.abs() < 1e-12);
         assert!((ligament.actual(&ligament.deformation(&turned)).a - turned.a).abs() < 1e-12);
     }
@@ -170,10 +157,7 @@ mod tests {
         let design = HingeConstants::PAPER.hinge(7.3, 1.2);
         let ligament = NetLigament::new(&design, HingeConstants::PAPER.fillet_ratio);
         let state = HingeDeformation::from([0.3, -0.2, 0.7]);
-        assert_eq!(
-            (ligament.design(&design), ligament.deformation(&state)),
-            (design, state)
-        );
+        assert_eq!((ligament.design(&design), ligament.deformation(&state)), (design, state));
     }
 
     #[test]

@@ -1,4 +1,5 @@
-//! A hinge that was deformed and unloaded: its residual deformation, and how stiff the hinge is about that.
+//! A hinge that was deformed and unloaded: its residual deformation, and how stiff the hinge is
+//! about that.
 
 use crate::{HingeDeformation, HingeDesign, HingeForces};
 use serde::{Deserialize, Serialize};
@@ -21,11 +22,7 @@ impl ReleasedHinge {
     /// K (x - r): the forces (F_a, F_s, M_theta) at a deformation.
     pub fn forces(&self, at: &HingeDeformation) -> [f64; 3] {
         let (at, rest) = (at.to_array(), self.rest.to_array());
-        from_fn(|i| {
-            (0..3)
-                .map(|j| self.stiffness[i][j] * (at[j] - rest[j]))
-                .sum()
-        })
+        from_fn(|i| (0..3).map(|j| self.stiffness[i][j] * (at[j] - rest[j])).sum())
     }
 
     /// The energy at a deformation (N mm).
@@ -201,7 +198,8 @@ mod tests {
         }
     }
 
-    /// Energy grows with the cube of the thickness, and equals the energy of the mirrored deformation in the mirrored hinge.
+    /// Energy grows with the cube of the thickness, and equals the energy of the mirrored
+    /// deformation in the mirrored hinge.
     #[test]
     fn similar_and_mirrored_hinges_have_their_energies() {
         let (hinge, at) = (hinge(), HingeDeformation::from([0.2, -0.3, 0.8]));
@@ -216,9 +214,6 @@ mod tests {
         let design = crate::HingeConstants::PAPER.hinge(18.0, 1.4);
         let (reached, forces) = ([0.1, 0.2, 0.5].into(), HingeForces::default());
         let row = ReleasedSample::new(&design, &reached, &forces, Some(0.2), &hinge());
-        assert_eq!(
-            (row.design(), row.reached(), row.released()),
-            (design, reached, hinge())
-        );
+        assert_eq!((row.design(), row.reached(), row.released()), (design, reached, hinge()));
     }
 }

@@ -30,21 +30,22 @@ pub struct HingeSample {
     pub plastic_integral: f64,
     /// `plastic_integral` divided by eps_f and by the ligament's half-disc volume (pi/2) w_lig^2 t.
     pub d: f64,
-    /// Mean plastic strain of the most strained 1 % of the ligament's half-disc volume, divided by eps_f.
-    /// The ligament tears at 1. `None` in samples for which it was not evaluated.
+    /// Mean plastic strain of the most strained 1 % of the ligament's half-disc volume, divided by
+    /// eps_f. The ligament tears at 1. `None` in samples for which it was not evaluated.
     pub d_peak: Option<f64>,
     /// Maximum out-of-plane displacement (mm).
     pub uz_max: f64,
     /// |w - w_work| divided by the maximum w of the ray.
     ///
-    /// It is not divided by the w of the row: in the first increment, in which the ligament buckles, the
-    /// trapezoidal work has an error of a quarter of w, but this energy is negligible.
+    /// It is not divided by the w of the row: in the first increment, in which the ligament
+    /// buckles, the trapezoidal work has an error of a quarter of w, but this energy is negligible.
     pub energy_residual: f64,
 }
 
 impl HingeSample {
-    /// The state of a ray at `lambda`, interpolated linearly between its samples, which must be in order of
-    /// lambda, and between the undeformed state and the first sample. `None` beyond the last sample.
+    /// The state of a ray at `lambda`, interpolated linearly between its samples, which must be in
+    /// order of lambda, and between the undeformed state and the first sample. `None` beyond the
+    /// last sample.
     pub fn at(ray: &[Self], lambda: f64) -> Option<Self> {
         let after = ray.partition_point(|x| x.lambda < lambda);
         let next = ray.get(after)?;
@@ -77,29 +78,17 @@ impl HingeSample {
 
     /// The hinge deformation (a, s, theta).
     pub fn deformation(&self) -> HingeDeformation {
-        HingeDeformation {
-            a: self.a,
-            s: self.s,
-            theta: self.theta,
-        }
+        HingeDeformation { a: self.a, s: self.s, theta: self.theta }
     }
 
     /// The generalised forces (F_a, F_s, M_theta).
     pub fn forces(&self) -> HingeForces {
-        HingeForces {
-            f_a: self.f_a,
-            f_s: self.f_s,
-            m_theta: self.m_theta,
-        }
+        HingeForces { f_a: self.f_a, f_s: self.f_s, m_theta: self.m_theta }
     }
 
     /// The sample of the mirrored design; see [`HingeDeformation::mirrored`].
     pub fn mirrored(&self) -> Self {
-        Self {
-            s: -self.s,
-            f_s: -self.f_s,
-            ..*self
-        }
+        Self { s: -self.s, f_s: -self.f_s, ..*self }
     }
 }
 

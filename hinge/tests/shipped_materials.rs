@@ -1,5 +1,5 @@
-//! Every material in `configs/materials` is read and valid. The materials of the paper's Table 2 have its Young's modulus, density and
-//! thickness; the others are plates.
+//! Every material in `configs/materials` is read and valid. The materials of the paper's Table 2
+//! have its Young's modulus, density and thickness; the others are plates.
 
 use hinge::SheetMaterial;
 use std::path::Path;
@@ -20,10 +20,7 @@ fn every_shipped_material_is_valid_and_those_of_table_2_agree_with_it() {
     for entry in folder.read_dir().unwrap() {
         let path = entry.unwrap().path();
         let material = SheetMaterial::load(&path).unwrap();
-        assert_eq!(
-            Some(material.name.as_str()),
-            path.file_stem().unwrap().to_str()
-        );
+        assert_eq!(Some(material.name.as_str()), path.file_stem().unwrap().to_str());
         match TABLE_2.iter().find(|row| row.0 == material.name) {
             Some(row) => {
                 let found = (material.young, material.density_kg_m3, material.thickness);

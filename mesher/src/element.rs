@@ -1,11 +1,11 @@
 //! The two element types of a window, and the volumes of their Gauss points.
 //!
 //! * C3D20R, the 20-node brick with 2x2x2 Gauss points: x fastest, z slowest.
-//! * C3D15, the 15-node wedge with 3x3 Gauss points: three in the triangle, at its mid-lines, on each of three
-//!   levels.
+//! * C3D15, the 15-node wedge with 3x3 Gauss points: three in the triangle, at its mid-lines, on
+//!   each of three levels.
 //!
-//! Node order of both: bottom corners counter-clockwise as seen from +z, top corners, mid-sides of the
-//! bottom, of the top, and of the verticals.
+//! Node order of both: bottom corners counter-clockwise as seen from +z, top corners, mid-sides of
+//! the bottom, of the top, and of the verticals.
 
 use serde::{Deserialize, Serialize};
 
@@ -141,8 +141,8 @@ const BRICK_NODES: [[f64; 3]; 20] = [
     [-1., 1., 0.],
 ];
 
-/// Gradient of the serendipity shape function of the node at `node`:
-/// corners (1/8) prod(1 + x_i n_i) (sum x_i n_i - 2); mid-sides (1/4) (1 - x_m^2) prod(1 + x_i n_i).
+/// Gradient of the serendipity shape function of the node at `node`: corners (1/8) prod(1 + x_i
+/// n_i) (sum x_i n_i - 2); mid-sides (1/4) (1 - x_m^2) prod(1 + x_i n_i).
 fn brick_gradient(node: &[f64; 3], at: [f64; 3]) -> [f64; 3] {
     let factor = |i: usize| {
         if node[i] == 0.0 {
@@ -170,11 +170,7 @@ fn brick_gradient(node: &[f64; 3], at: [f64; 3]) -> [f64; 3] {
 fn wedge_gradient(node: usize, [xi, eta, zeta]: [f64; 3]) -> [f64; 3] {
     let l = [1.0 - xi - eta, xi, eta];
     let (i, j) = (node % 3, (node + 1) % 3);
-    let s = if matches!(node, 0..3 | 6..9) {
-        -1.0
-    } else {
-        1.0
-    };
+    let s = if matches!(node, 0..3 | 6..9) { -1.0 } else { 1.0 };
     let bubble = 1.0 - zeta * zeta;
     // Derivatives in L_0, L_1, L_2 and in zeta.
     let mut by_l = [0.0; 3];
@@ -255,7 +251,8 @@ mod tests {
         }
     }
 
-    /// The gradient of sum N_i f(x_i) equals the gradient of f, for every f that the element represents exactly.
+    /// The gradient of sum N_i f(x_i) equals the gradient of f, for every f that the element
+    /// represents exactly.
     #[test]
     fn gradients_are_exact_for_quadratic_functions() {
         let at = [0.3, 0.2, -0.4];

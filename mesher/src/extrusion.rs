@@ -44,12 +44,7 @@ impl Extrusion {
                 ElementKind::of_element(element).gauss_volumes(&positions)
             })
             .collect();
-        Self {
-            nodes,
-            elements,
-            gauss_volumes,
-            levels,
-        }
+        Self { nodes, elements, gauss_volumes, levels }
     }
 }
 
@@ -68,9 +63,7 @@ impl Levels {
         let mut is_corner = vec![false; plane.nodes.len()];
         for face in &plane.faces {
             let corners = face.len() / 2;
-            face[..corners]
-                .iter()
-                .for_each(|node| is_corner[*node] = true);
+            face[..corners].iter().for_each(|node| is_corner[*node] = true);
         }
         let mut nodes = Vec::new();
         let ids = (0..=2 * layers)
@@ -80,9 +73,7 @@ impl Levels {
                     nodes.len() - 1
                 };
                 let carries = |node: &usize| level % 2 == 0 || is_corner[*node];
-                (0..plane.nodes.len())
-                    .map(|node| carries(&node).then(|| number(node)))
-                    .collect()
+                (0..plane.nodes.len()).map(|node| carries(&node).then(|| number(node))).collect()
             })
             .collect();
         Self { nodes, ids }

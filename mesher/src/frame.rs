@@ -14,10 +14,7 @@ pub struct Frame {
 impl Default for Frame {
     /// The frame in which positions are given.
     fn default() -> Self {
-        Self {
-            origin: [0.0; 2],
-            e_x: [1.0, 0.0],
-        }
+        Self { origin: [0.0; 2], e_x: [1.0, 0.0] }
     }
 }
 
@@ -42,10 +39,7 @@ mod tests {
 
     #[test]
     fn local_coordinates_are_those_of_the_point() {
-        let frame = Frame {
-            origin: [3.0, -2.0],
-            e_x: [0.6, 0.8],
-        };
+        let frame = Frame { origin: [3.0, -2.0], e_x: [0.6, 0.8] };
         assert_eq!(frame.point([0.0, 0.0]), frame.origin);
         let [x, y] = frame.local(frame.point([1.5, -0.5]));
         assert!((x - 1.5).abs() + (y + 0.5).abs() < 1e-15);

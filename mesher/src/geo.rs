@@ -87,7 +87,8 @@ impl Script {
         id
     }
 
-    /// The plane surface inside four divided curves, meshed with quadrilaterals in rows and columns.
+    /// The plane surface inside four divided curves, meshed with quadrilaterals in rows and
+    /// columns.
     fn patch(&mut self, curves: [i32; 4]) {
         let id = self.surface(&curves);
         self.add(format_args!("Transfinite Surface {{{id}}};"));
@@ -107,9 +108,7 @@ impl Script {
     /// Names the faces of surfaces.
     fn faces(&mut self, tag: usize, surfaces: RangeInclusive<i32>) {
         let (first, last) = surfaces.into_inner();
-        self.add(format_args!(
-            "Physical Surface({tag}) = {{{first}:{last}}};"
-        ));
+        self.add(format_args!("Physical Surface({tag}) = {{{first}:{last}}};"));
     }
 
     /// gmsh ignores a last statement without a newline, so every statement ends with one.
@@ -120,11 +119,7 @@ impl Script {
 
 /// Curve numbers as a comma-separated list.
 fn joined(curves: &[i32]) -> String {
-    curves
-        .iter()
-        .map(i32::to_string)
-        .collect::<Vec<_>>()
-        .join(", ")
+    curves.iter().map(i32::to_string).collect::<Vec<_>>().join(", ")
 }
 
 #[cfg(test)]

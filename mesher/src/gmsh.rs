@@ -24,7 +24,8 @@ fn version(printed: &str) -> Option<&str> {
     printed.lines().map(str::trim).find(is_version)
 }
 
-/// Maximum time limit: gmsh meshes a window in milliseconds and a sheet in seconds, so a longer run hangs.
+/// Maximum time limit: gmsh meshes a window in milliseconds and a sheet in seconds, so a longer run
+/// hangs.
 const LIMIT: Duration = Duration::from_secs(60);
 
 /// The gmsh program.
@@ -83,17 +84,8 @@ mod tests {
     #[test]
     fn only_a_line_that_is_a_version_is_one() {
         assert_eq!(version("4.8.4"), Some("4.8.4"));
-        assert_eq!(
-            version("Warning: 2 fonts\n4.13.1-git-a1b2\n"),
-            Some("4.13.1-git-a1b2")
-        );
-        for other in [
-            "",
-            "4",
-            "  File \"gmsh\", line 4, in <module>",
-            "Python 3.11.2",
-            "4.x.1",
-        ] {
+        assert_eq!(version("Warning: 2 fonts\n4.13.1-git-a1b2\n"), Some("4.13.1-git-a1b2"));
+        for other in ["", "4", "  File \"gmsh\", line 4, in <module>", "Python 3.11.2", "4.x.1"] {
             assert_eq!(version(other), None, "{other}");
         }
     }

@@ -1,11 +1,12 @@
-//! The hinge window and the sheet of windows and panels: geometry, mesh tiers, the gmsh process and the checks that a mesh
-//! must pass.
+//! The hinge window and the sheet of windows and panels: geometry, mesh tiers, the gmsh process and
+//! the checks that a mesh must pass.
 //!
-//! The window is the half-disc of sheet assigned to one hinge (section 2.4). gmsh generates its plane
-//! mesh from a script, either from transfinite patches that move smoothly with (w_lig, alpha), or from free
-//! triangles as in the paper. This crate extrudes the plane mesh to layers of solid elements, adds the
-//! imperfection that initiates buckling, and rejects a mesh that is unsuitable for the solver. In a whole sheet
-//! ([`SheetShape`]) every hinge has the mesh of its window, and every panel is meshed between its windows and its edges.
+//! The window is the half-disc of sheet assigned to one hinge (section 2.4). gmsh generates its
+//! plane mesh from a script, either from transfinite patches that move smoothly with (w_lig,
+//! alpha), or from free triangles as in the paper. This crate extrudes the plane mesh to layers of
+//! solid elements, adds the imperfection that initiates buckling, and rejects a mesh that is
+//! unsuitable for the solver. In a whole sheet ([`SheetShape`]) every hinge has the mesh of its
+//! window, and every panel is meshed between its windows and its edges.
 //!
 //! ```no_run
 //! use hinge::HingeConstants;

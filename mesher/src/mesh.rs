@@ -1,9 +1,9 @@
 //! The window as solid elements: the plane mesh extruded to layers, with an imperfection in z.
 //!
-//! A perfectly flat midplane would not buckle. Therefore z is offset by
-//! t exp(-(x/w)^2 - (y/w)^2) (1 - (r/r_win)^4); the offset is stress-free and zero on the arcs. The amplitude of one
-//! thickness is the value that the paper measured on a cut hinge (section 4.1). The recipe sets the amplitude and the
-//! widths of the bump.
+//! A perfectly flat midplane would not buckle. Therefore z is offset by t exp(-(x/w)^2 - (y/w)^2)
+//! (1 - (r/r_win)^4); the offset is stress-free and zero on the arcs. The amplitude of one
+//! thickness is the value that the paper measured on a cut hinge (section 4.1). The recipe sets the
+//! amplitude and the widths of the bump.
 
 use crate::extrusion::Extrusion;
 use crate::msh::{Boundary, PlaneMesh};
@@ -44,9 +44,8 @@ impl WindowMesh {
         plane: PlaneMesh,
     ) -> Self {
         let bump = |[x, y]: [f64; 2]| recipe.imperfection.height(&design, thickness, x, y);
-        let solid = Extrusion::new(&plane, thickness, recipe.layers, |node| {
-            bump(plane.nodes[node])
-        });
+        let solid =
+            Extrusion::new(&plane, thickness, recipe.layers, |node| bump(plane.nodes[node]));
         Self {
             design,
             thickness,

@@ -33,11 +33,7 @@ pub enum MeshError {
         "the mesh for w_lig = {w_lig} mm, alpha = {alpha_deg} deg is rejected: {defect}; \
          try a finer mesh tier"
     )]
-    Defect {
-        w_lig: f64,
-        alpha_deg: f64,
-        defect: MeshDefect,
-    },
+    Defect { w_lig: f64, alpha_deg: f64, defect: MeshDefect },
     #[error(transparent)]
     Sheet(#[from] InvalidSheet),
     #[error("the mesh of the sheet is rejected: {0}; try a finer mesh tier")]

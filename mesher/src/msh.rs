@@ -1,5 +1,6 @@
-//! Reader of gmsh's .msh files (version 2.2, text): second-order faces with the physical tags of their surfaces, and named
-//! boundary curves. Any input gives either a mesh or an error that names the line.
+//! Reader of gmsh's .msh files (version 2.2, text): second-order faces with the physical tags of
+//! their surfaces, and named boundary curves. Any input gives either a mesh or an error that names
+//! the line.
 
 use crate::element::ElementKind;
 use std::collections::HashMap;
@@ -33,7 +34,8 @@ impl Boundary {
 pub struct PlaneMesh {
     /// Node positions (mm); the positions of a window are in the hinge frame.
     pub nodes: Vec<[f64; 2]>,
-    /// Corner nodes counter-clockwise, then the same number of mid-side nodes: of edge 01, 12, and so on.
+    /// Corner nodes counter-clockwise, then the same number of mid-side nodes: of edge 01, 12, and
+    /// so on.
     pub faces: Vec<Vec<usize>>,
     /// The physical tag of the surface of each face.
     pub surfaces: Vec<u32>,
@@ -87,7 +89,8 @@ fn face_number(element: ElementKind) -> u32 {
     }
 }
 
-/// Reads the bytes of a .msh file with faces for `elements`; nodes that belong to no face are dropped.
+/// Reads the bytes of a .msh file with faces for `elements`; nodes that belong to no face are
+/// dropped.
 pub fn read_msh(bytes: &[u8], elements: &[ElementKind]) -> Result<PlaneMesh, MshError> {
     let text = std::str::from_utf8(bytes).map_err(|e| MshError::NotText(e.valid_up_to()))?;
     let lines: Vec<_> = text.lines().enumerate().collect();
@@ -118,9 +121,7 @@ pub fn read_msh(bytes: &[u8], elements: &[ElementKind]) -> Result<PlaneMesh, Msh
         for _ in 1..tags {
             fields.next::<u64>()?;
         }
-        let element = elements
-            .iter()
-            .find(|element| kind == face_number(**element));
+        let element = elements.iter().find(|element| kind == face_number(**element));
         if let Some(element) = element {
             let mut face = vec![0; 2 * element.corners()];
             for node in &mut face {
@@ -187,10 +188,7 @@ struct Fields<'t> {
 
 impl<'t> Fields<'t> {
     fn new(number: usize, line: &'t str) -> Self {
-        Self {
-            line: number + 1,
-            fields: line.split_whitespace(),
-        }
+        Self { line: number + 1, fields: line.split_whitespace() }
     }
 
     fn next<T: std::str::FromStr>(&mut self) -> Result<T, MshError> {
@@ -246,10 +244,7 @@ mod tests {
         ];
         for (old, new, expected) in cases {
             let error = read(SQUARE.replace(old, new).as_bytes()).unwrap_err();
-            assert!(
-                matches!(error, MshError::Line { line, .. } if line == expected),
-                "{error}"
-            );
+            assert!(matches!(error, MshError::Line { line, .. } if line == expected), "{error}");
         }
     }
 

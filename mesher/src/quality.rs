@@ -14,8 +14,8 @@ pub(crate) const MAX_AREA_ERROR: f64 = 0.01;
 /// Quality measures of a mesh that passed the checks.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MeshQuality {
-    /// Minimum over all elements of the ratio of the smallest to the largest Jacobian determinant at the Gauss points
-    /// of an element; in (0, 1].
+    /// Minimum over all elements of the ratio of the smallest to the largest Jacobian determinant
+    /// at the Gauss points of an element; in (0, 1].
     pub jacobian_ratio: f64,
     /// Maximum ratio of the longest to the shortest in-plane edge of an element.
     pub aspect: f64,
@@ -56,17 +56,12 @@ impl WindowMesh {
         if area_error > MAX_AREA_ERROR {
             return Err(MeshDefect::Area { area, exact });
         }
-        Ok(MeshQuality {
-            jacobian_ratio,
-            aspect: largest_aspect,
-            area,
-            area_error,
-        })
+        Ok(MeshQuality { jacobian_ratio, aspect: largest_aspect, area, area_error })
     }
 }
 
-/// The minimum ratio of Jacobians and the maximum aspect ratio of solid elements, layers of the faces of a plane mesh, or
-/// their first defect.
+/// The minimum ratio of Jacobians and the maximum aspect ratio of solid elements, layers of the
+/// faces of a plane mesh, or their first defect.
 pub(crate) fn check_elements(
     plane: &PlaneMesh,
     gauss_volumes: &[Vec<f64>],
@@ -74,9 +69,7 @@ pub(crate) fn check_elements(
     let mut jacobian_ratio = 1.0_f64;
     for (element, volumes) in gauss_volumes.iter().enumerate() {
         let kind = ElementKind::of_face(&plane.faces[element % plane.faces.len()]);
-        let jacobians = (0..)
-            .zip(volumes)
-            .map(|(point, v)| v / kind.gauss_weight(point));
+        let jacobians = (0..).zip(volumes).map(|(point, v)| v / kind.gauss_weight(point));
         let minimum = jacobians.clone().fold(f64::INFINITY, f64::min);
         let maximum = jacobians.fold(0.0, f64::max);
         if minimum <= 0.0 || minimum.is_nan() {

@@ -12,7 +12,8 @@ use crate::window::{Side, Window};
 const ON_RIM: f64 = 1e-6;
 /// Largest distance of a node on a straight edge from it (mm).
 const ON_EDGE: f64 = 1e-6;
-/// Distance from the foot of a ligament, over w_lig, up to which a flank belongs to the ligament and its hole.
+/// Distance from the foot of a ligament, over w_lig, up to which a flank belongs to the ligament
+/// and its hole.
 const AT_LIGAMENT: f64 = 2.0;
 
 /// What a face or an element of a sheet belongs to.
@@ -33,7 +34,8 @@ pub struct SheetMesh {
     pub parts: Vec<Part>,
     /// Node positions, bumps included (mm).
     pub nodes: Vec<[f64; 3]>,
-    /// Elements in the node order of their [`ElementKind`](crate::ElementKind), layer by layer in the order of the faces.
+    /// Elements in the node order of their [`ElementKind`](crate::ElementKind), layer by layer in
+    /// the order of the faces.
     pub elements: Vec<Vec<usize>>,
     /// The nodes in the middle of the thickness above the plane nodes, in their order.
     pub middle: Vec<usize>,
@@ -119,8 +121,9 @@ impl SheetMesh {
         nodes
     }
 
-    /// The side faces of elements that are the flank of a window's main cut on one of its panels, without those at ligaments and
-    /// holes: (element, edge of its lower face). None on a panel that is not a part of the sheet.
+    /// The side faces of elements that are the flank of a window's main cut on one of its panels,
+    /// without those at ligaments and holes: (element, edge of its lower face). None on a panel
+    /// that is not a part of the sheet.
     pub fn flank(&self, shape: &SheetShape, window: usize, side: Side) -> Vec<(usize, usize)> {
         let Some([from, to]) = shape.flank(window, side) else {
             return Vec::new();
@@ -166,19 +169,18 @@ impl PlacedWindow {
     /// Height (mm) of the bump at a point of the window.
     fn height(&self, thickness: f64, point: [f64; 2]) -> f64 {
         let [x, y] = self.frame.local(point);
-        let bump = Imperfection {
-            amplitude: self.bump,
-            widths: Imperfection::WIDTHS,
-        };
+        let bump = Imperfection { amplitude: self.bump, widths: Imperfection::WIDTHS };
         bump.height(&self.design, thickness, x, y)
     }
 }
 
 impl SheetShape {
-    /// The finished edge of a panel along the main cut of a window; `None` if the panel is not a part of the sheet.
+    /// The finished edge of a panel along the main cut of a window; `None` if the panel is not a
+    /// part of the sheet.
     fn flank(&self, window: usize, side: Side) -> Option<[[f64; 2]; 2]> {
         let [a, b] = self.windows[window].panels;
-        // Edges are counted by the corner at which they begin, counter-clockwise: the flank ends at the corner of A.
+        // Edges are counted by the corner at which they begin, counter-clockwise: the flank ends at
+        // the corner of A.
         let (panel, edge) = match side {
             Side::A => a.map(|(panel, corner)| (panel, (corner + 3) % 4)),
             Side::B => b,
@@ -191,16 +193,12 @@ impl SheetShape {
     fn area(&self) -> f64 {
         let windows = self.windows.iter().map(|window| {
             let of_window = Window(&window.design).area();
-            // What the finished panels have in the half-disc is not theirs: the two sectors from the crossing of their
-            // edges to the arcs.
+            // What the finished panels have in the half-disc is not theirs: the two sectors from
+            // the crossing of their edges to the arcs.
             let in_panels =
                 std::iter::zip(Side::BOTH, window.panels).filter_map(|(side, place)| {
                     let (panel, corner) = place?;
-                    Some(Self::sector(
-                        window,
-                        side,
-                        self.panels[panel].corners[corner],
-                    ))
+                    Some(Self::sector(window, side, self.panels[panel].corners[corner]))
                 });
             of_window - in_panels.sum::<f64>()
         });

@@ -1,13 +1,15 @@
 //! A cut sheet of panels and the windows that join them, or a part of one.
 //!
-//! A panel is bounded by finished edges, half a kerf inside of the lines of its cuts, and ends at the arcs of its windows.
+//! A panel is bounded by finished edges, half a kerf inside of the lines of its cuts, and ends at
+//! the arcs of its windows.
 
 use crate::frame::Frame;
 use crate::tier::Structured;
 use hinge::HingeDesign;
 use serde::{Deserialize, Serialize};
 
-/// Ligament width over thickness up to which a ligament of a sheet bends in the plane first, and tips over later.
+/// Ligament width over thickness up to which a ligament of a sheet bends in the plane first, and
+/// tips over later.
 const IN_PLANE: f64 = 2.0;
 
 /// All that determines the mesh of a sheet.
@@ -41,17 +43,21 @@ pub struct PanelShape {
 pub struct PlacedWindow {
     /// The hinge design.
     pub design: HingeDesign,
-    /// The hinge frame: its origin is the foot of the ligament on the finished edge of the secondary cut.
+    /// The hinge frame: its origin is the foot of the ligament on the finished edge of the
+    /// secondary cut.
     pub frame: Frame,
-    /// Panels A and B, each with the number of its corner; `None` for a panel that is not a part of the sheet.
+    /// Panels A and B, each with the number of its corner; `None` for a panel that is not a part of
+    /// the sheet.
     pub panels: [Option<(usize, usize)>; 2],
-    /// Height of the bump that initiates buckling, over the thickness; its sign is the side to which it points.
+    /// Height of the bump that initiates buckling, over the thickness; its sign is the side to
+    /// which it points.
     pub bump: f64,
 }
 
 impl SheetShape {
-    /// Whether a ligament of a width (mm) bends in the plane of a sheet of a thickness (mm). Ligaments of one to two thicknesses are
-    /// of no law's regime: a bump as high as the sheet is thick would make them softer than they are (docs/results/plates).
+    /// Whether a ligament of a width (mm) bends in the plane of a sheet of a thickness (mm).
+    /// Ligaments of one to two thicknesses are of no law's regime: a bump as high as the sheet is
+    /// thick would make them softer than they are (docs/results/plates).
     pub fn bends_in_plane(w_lig: f64, thickness: f64) -> bool {
         w_lig <= IN_PLANE * thickness
     }
@@ -74,26 +80,13 @@ pub enum InvalidSheet {
         "panel {panel} is too small for its windows: its {edge} edge is {short} mm too short; use a smaller r_win or \
          larger panels"
     )]
-    SmallPanel {
-        panel: usize,
-        edge: &'static str,
-        short: f64,
-    },
+    SmallPanel { panel: usize, edge: &'static str, short: f64 },
     #[error(
         "the window of hinge {window} does not end on the edges of panel {panel}: it is {off} mm away from them"
     )]
-    BesideEdge {
-        window: usize,
-        panel: usize,
-        off: f64,
-    },
+    BesideEdge { window: usize, panel: usize, off: f64 },
     #[error(
         "the point ({x:.3}, {y:.3}) mm at which panel {panel} is held or pulled {what}: move it"
     )]
-    Mark {
-        panel: usize,
-        x: f64,
-        y: f64,
-        what: &'static str,
-    },
+    Mark { panel: usize, x: f64, y: f64, what: &'static str },
 }

@@ -8,8 +8,8 @@ use std::fmt::Write;
 const WIDTH: f64 = 1000.0;
 const MARGIN: f64 = 10.0;
 
-/// The plane mesh as SVG: elements grey, arc A blue, arc B red, hole green. Edges are drawn as quadratic curves, like
-/// the edges of the elements.
+/// The plane mesh as SVG: elements grey, arc A blue, arc B red, hole green. Edges are drawn as
+/// quadratic curves, like the edges of the elements.
 pub fn plane_mesh_svg(mesh: &WindowMesh) -> String {
     let scale = (WIDTH - 2.0 * MARGIN) / (2.0 * mesh.design.r_win);
     let height = WIDTH / 2.0 + MARGIN;
@@ -36,21 +36,12 @@ pub fn plane_mesh_svg(mesh: &WindowMesh) -> String {
         )
         .expect("writing to a string cannot fail");
     };
-    path(
-        &mut mesh.plane.faces.iter().flat_map(|face| sides(face)),
-        "#888",
-        0.8,
-    );
-    for (boundary, colour) in [
-        (Boundary::ArcA, "#1f5fbf"),
-        (Boundary::ArcB, "#c0392b"),
-        (Boundary::Hole, "#2e8b57"),
-    ] {
+    path(&mut mesh.plane.faces.iter().flat_map(|face| sides(face)), "#888", 0.8);
+    for (boundary, colour) in
+        [(Boundary::ArcA, "#1f5fbf"), (Boundary::ArcB, "#c0392b"), (Boundary::Hole, "#2e8b57")]
+    {
         let edges = &mesh.plane.edges;
-        let mut own = edges
-            .iter()
-            .filter(|(of, _)| *of == boundary)
-            .map(|(_, edge)| *edge);
+        let mut own = edges.iter().filter(|(of, _)| *of == boundary).map(|(_, edge)| *edge);
         path(&mut own, colour, 2.5);
     }
     svg.push_str("</svg>\n");

@@ -17,19 +17,21 @@ use std::time::Duration;
 /// | `reference` | 912 | 126 | - | - | - | - |
 /// | `paper` | 1777 wedges | 171 | 2.4 % | 4.0 % | 3.9 % | 10.2 % |
 ///
-/// CPU seconds are of one thread of a busy machine. The errors are the maximum, over hinges of 5, 18 and 25 mm width
-/// with cut angles of 60 and 90 degrees in the paper's film, rotated to 60 degrees, of the root mean square error over
-/// the ray, relative to `reference`. The error of the tier `default`
-/// over the whole box of the default campaign is in docs/CHOOSE.md. `small`, `fine` and `reference` are `default`
-/// with elements of 3/2, 3/4 and 1/2 of its element size.
+/// CPU seconds are of one thread of a busy machine. The errors are the maximum, over hinges of 5,
+/// 18 and 25 mm width with cut angles of 60 and 90 degrees in the paper's film, rotated to 60
+/// degrees, of the root mean square error over the ray, relative to `reference`. The error of the
+/// tier `default` over the whole box of the default campaign is in docs/CHOOSE.md. `small`, `fine`
+/// and `reference` are `default` with elements of 3/2, 3/4 and 1/2 of its element size.
 ///
-/// All tiers but `paper` are layers of bricks on one structured topology. A hinge in tension and shear
-/// folds along two lines through O, one of them at 40 deg to the other; therefore the columns are fine out to
-/// 0.8 w_lig on the free edge. A hinge in compression bends its panels; therefore the rings around O are as fine
-/// as the columns. The number of rings determines the error of the energy before yield.
+/// All tiers but `paper` are layers of bricks on one structured topology. A hinge in tension and
+/// shear folds along two lines through O, one of them at 40 deg to the other; therefore the columns
+/// are fine out to 0.8 w_lig on the free edge. A hinge in compression bends its panels; therefore
+/// the rings around O are as fine as the columns. The number of rings determines the error of the
+/// energy before yield.
 ///
-/// The plate tiers are for the other [`Regime`]. A ligament that bends in the plane is strained across its width: these
-/// meshes have few columns, and twice the rings between the hole and the free edge.
+/// The plate tiers are for the other [`Regime`]. A ligament that bends in the plane is strained
+/// across its width: these meshes have few columns, and twice the rings between the hole and the
+/// free edge.
 ///
 /// | tier | bricks | CPU seconds |
 /// |---|---|---|
@@ -67,7 +69,8 @@ pub enum Tier {
     Default,
     /// 400 bricks in two layers; 39 CPU seconds a ray.
     Fine,
-    /// 912 bricks in two layers; 126 CPU seconds a ray. The errors of the other tiers are relative to it.
+    /// 912 bricks in two layers; 126 CPU seconds a ray. The errors of the other tiers are relative
+    /// to it.
     Reference,
     /// 1777 wedges in one layer, as in the paper; 171 CPU seconds a ray.
     Paper,
@@ -75,7 +78,8 @@ pub enum Tier {
     PlateTiny,
     /// Plates: 160 bricks in two layers; 8 CPU seconds a ray.
     Plate,
-    /// Plates: 768 bricks in three layers; 70 CPU seconds a ray. The errors of the other plate tiers are relative to it.
+    /// Plates: 768 bricks in three layers; 70 CPU seconds a ray. The errors of the other plate
+    /// tiers are relative to it.
     PlateReference,
 }
 
@@ -134,7 +138,8 @@ pub struct Imperfection {
     pub widths: [f64; 2],
 }
 
-/// Regime, plane mesh, layers, CPU seconds of one ray, and resident memory of the solver (MB), measured.
+/// Regime, plane mesh, layers, CPU seconds of one ray, and resident memory of the solver (MB),
+/// measured.
 type Spec = (Regime, PlaneRecipe, usize, f64, f64);
 
 /// All tiers, in the order of [`Tier`].
@@ -152,10 +157,8 @@ const TIERS: [(Tier, Spec); 9] = [
 ];
 
 /// The mesh of the paper.
-const WEDGES: PlaneRecipe = PlaneRecipe::Unstructured(Unstructured {
-    tip_size: 0.1,
-    rim_size: 0.2,
-});
+const WEDGES: PlaneRecipe =
+    PlaneRecipe::Unstructured(Unstructured { tip_size: 0.1, rim_size: 0.2 });
 
 /// A mesh by the numbers of [`Structured`], in their order.
 const fn structured(
@@ -181,7 +184,8 @@ impl Tier {
         TIERS[self as usize].1
     }
 
-    /// The cheaper tier on which a sheet is balanced before windows of this one are solved; `None` if that saves little.
+    /// The cheaper tier on which a sheet is balanced before windows of this one are solved; `None`
+    /// if that saves little.
     pub fn draft(self) -> Option<Self> {
         match self {
             Self::Reference => Some(Self::Default),
@@ -198,11 +202,7 @@ impl Tier {
     /// The mesh of this tier.
     pub fn recipe(self) -> MeshRecipe {
         let (regime, plane, layers, ..) = self.spec();
-        MeshRecipe {
-            plane,
-            layers,
-            imperfection: Imperfection::of(regime),
-        }
+        MeshRecipe { plane, layers, imperfection: Imperfection::of(regime) }
     }
 
     /// The next finer tier of the regime with the same element, if there is one.
@@ -223,7 +223,8 @@ impl Tier {
         memory_mb
     }
 
-    /// Time limit of one solve: sixty times the usual time and at least twenty minutes, for stiff materials and slow machines.
+    /// Time limit of one solve: sixty times the usual time and at least twenty minutes, for stiff
+    /// materials and slow machines.
     pub fn time_limit(self) -> Duration {
         Duration::from_secs_f64((60.0 * self.usual_cpu_seconds()).max(1200.0))
     }
@@ -259,12 +260,10 @@ impl Imperfection {
     /// Half-widths of the bump of a ligament as cut, equal to the ligament width.
     pub(crate) const WIDTHS: [f64; 2] = [1.0, 1.0];
 
-    /// The bump of a ligament as cut, [`Regime::bump`]. Half-widths are equal to the ligament width.
+    /// The bump of a ligament as cut, [`Regime::bump`]. Half-widths are equal to the ligament
+    /// width.
     pub fn of(regime: Regime) -> Self {
-        Self {
-            amplitude: regime.bump(),
-            widths: Self::WIDTHS,
-        }
+        Self { amplitude: regime.bump(), widths: Self::WIDTHS }
     }
 
     /// Height (mm) of the bump at (x, y).
@@ -290,12 +289,6 @@ mod tests {
         assert_eq!(Tier::Paper.finer(), None);
         assert_eq!(Tier::Plate.finer(), Some(Tier::PlateReference));
         assert_eq!(Tier::PlateReference.finer(), None);
-        assert!(
-            "huge"
-                .parse::<Tier>()
-                .unwrap_err()
-                .to_string()
-                .contains("`huge`")
-        );
+        assert!("huge".parse::<Tier>().unwrap_err().to_string().contains("`huge`"));
     }
 }

@@ -1,7 +1,7 @@
 //! The mesh of a window as a VTK grid.
 //!
-//! VTK orders the nodes of its quadratic hexahedron and wedge as CalculiX orders the nodes of C3D20R and C3D15: lower
-//! corners, upper corners, middles of the lower, upper and vertical edges.
+//! VTK orders the nodes of its quadratic hexahedron and wedge as CalculiX orders the nodes of
+//! C3D20R and C3D15: lower corners, upper corners, middles of the lower, upper and vertical edges.
 
 use crate::element::ElementKind;
 use crate::mesh::WindowMesh;

@@ -23,7 +23,8 @@ impl Side {
     /// Both, A first.
     pub const BOTH: [Self; 2] = [Self::A, Self::B];
 
-    /// Sign of x on the side of the panel, and of the kerf face's offset along [`Window::normal`], which points to B.
+    /// Sign of x on the side of the panel, and of the kerf face's offset along [`Window::normal`],
+    /// which points to B.
     pub(crate) fn sign(self) -> f64 {
         match self {
             Side::A => -1.0,
@@ -65,7 +66,8 @@ impl Window<'_> {
         [0, 1].map(|i| o[i] + along * u[i] + across * n[i])
     }
 
-    /// Half of the angle at O that the mouth of the main cut subtends on a circle of radius `rho` (mm) about O (rad).
+    /// Half of the angle at O that the mouth of the main cut subtends on a circle of radius `rho`
+    /// (mm) about O (rad).
     pub fn mouth_half_angle(&self, rho: f64) -> f64 {
         (0.5 * self.0.kerf / rho).asin()
     }
@@ -83,10 +85,7 @@ impl Window<'_> {
     pub fn area(&self) -> f64 {
         let (rho, r) = (self.0.fillet_radius(), self.0.r_win);
         let (hole_a, hole_b) = (self.kerf_at_hole(Side::A), self.kerf_at_hole(Side::B));
-        let (arc_a, arc_b) = (
-            self.kerf_at_radius(Side::A, r),
-            self.kerf_at_radius(Side::B, r),
-        );
+        let (arc_a, arc_b) = (self.kerf_at_radius(Side::A, r), self.kerf_at_radius(Side::B, r));
         let hole_angle = 2.0 * (PI - self.mouth_half_angle(rho));
         sector(r, self.arc_angle(Side::A))
             + segment(arc_a, hole_a)

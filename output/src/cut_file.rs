@@ -1,7 +1,8 @@
 //! Cut files of a designed sheet for cutting machines and for cutting by hand, at 1:1 in mm.
 //!
-//! [`CutLines`] is the finished geometry, checked against the simulated sheet. [`SheetDrawing`] is what is cut, in cutting
-//! order, with numbers and instructions; [`dxf()`], [`svg()`] and [`tiles_pdf`] are its files.
+//! [`CutLines`] is the finished geometry, checked against the simulated sheet. [`SheetDrawing`] is
+//! what is cut, in cutting order, with numbers and instructions; [`dxf()`], [`svg()`] and
+//! [`tiles_pdf`] are its files.
 
 mod attachments;
 mod cut_drawing;

@@ -1,5 +1,5 @@
-//! The states in which a deployment is shown: the flat sheet, then every load step. A sheet on pins has no load
-//! steps; it is shown at equal steps of its opening.
+//! The states in which a deployment is shown: the flat sheet, then every load step. A sheet on pins
+//! has no load steps; it is shown at equal steps of its opening.
 
 use design::equilibrium::load_step::LoadStep;
 use design::objective::design_problem::{Deployment, DesignProblem, Model};
@@ -37,8 +37,8 @@ pub(crate) fn states_before(problem: &DesignProblem, deployment: &Deployment) ->
     }
 }
 
-/// The indices of at most `most` of `count` states, at least two: the first, the last, and states at equal distances
-/// between them.
+/// The indices of at most `most` of `count` states, at least two: the first, the last, and states
+/// at equal distances between them.
 pub(crate) fn kept(count: usize, most: usize) -> Vec<usize> {
     let stride = (count - 1).div_ceil(most.saturating_sub(1).max(1)).max(1);
     // Counted from the last state, so that the flat sheet is the only one at another distance.

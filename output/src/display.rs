@@ -1,7 +1,8 @@
-//! The display list: every drawing of a sheet is a list of shapes (mm), which SVG, PDF and DXF write.
+//! The display list: every drawing of a sheet is a list of shapes (mm), which SVG, PDF and DXF
+//! write.
 //!
-//! A picture is a [`Canvas`]: shapes with a [`Style`]. A cut file has shapes on layers instead, which its writers give a
-//! style ([`crate::cut_file::CutDrawing`]).
+//! A picture is a [`Canvas`]: shapes with a [`Style`]. A cut file has shapes on layers instead,
+//! which its writers give a style ([`crate::cut_file::CutDrawing`]).
 
 mod canvas;
 pub(crate) mod pdf;

@@ -1,8 +1,9 @@
 //! What a designed sheet is written as.
 //!
-//! Every drawing is a list of shapes, the [`display`] list, which SVG, PDF and DXF write: the lines that a machine cuts
-//! ([`cut_file`]), checked in the file as written, and the pictures ([`drawing`]). [`report`] holds results, findings and
-//! warnings of a run; [`run_files`] lists the files of its folder.
+//! Every drawing is a list of shapes, the [`display`] list, which SVG, PDF and DXF write: the lines
+//! that a machine cuts ([`cut_file`]), checked in the file as written, and the pictures
+//! ([`drawing`]). [`report`] holds results, findings and warnings of a run; [`run_files`] lists the
+//! files of its folder.
 //!
 //! The cut file of a sheet:
 //!

@@ -1,4 +1,5 @@
-//! The report of a measured sheet: agreement with the path in the measures of section 4.4, openings.
+//! The report of a measured sheet: agreement with the path in the measures of section 4.4,
+//! openings.
 //!
 //! `Serialize` writes all numbers, `Display` a page; `residuals_csv` and `openings_csv` the tables.
 
@@ -25,7 +26,8 @@ pub struct MeasurementReport {
     pub sheet_size: f64,
     /// Number of measured points.
     pub points: usize,
-    /// Position of the design's origin in the frame of the measurement (mm), rotation (deg) and scale.
+    /// Position of the design's origin in the frame of the measurement (mm), rotation (deg) and
+    /// scale.
     pub motion: Motion,
     /// Agreement at the end of the path: full load, or the full stroke.
     pub full: Agreement,
@@ -33,7 +35,8 @@ pub struct MeasurementReport {
     pub best: Agreement,
     /// Standard error of the load factor of `best`; `None` if the points do not determine it.
     pub load_factor_error: Option<f64>,
-    /// Whether the best state is the end of the path, so that the sheet may be opened further than at full load.
+    /// Whether the best state is the end of the path, so that the sheet may be opened further than
+    /// at full load.
     pub at_the_end: bool,
     /// Standard deviation of one measured coordinate about rigid panels (mm).
     pub scatter: Option<f64>,
@@ -63,7 +66,8 @@ pub struct Motion {
 pub struct Closed {
     /// Agreement of the closed sheet with the flat design.
     pub floor: Agreement,
-    /// Panels whose deployed centre is farther from its prediction than the rms of the closed centres.
+    /// Panels whose deployed centre is farther from its prediction than the rms of the closed
+    /// centres.
     pub centres_above: Vec<usize>,
     /// Motion of the supported panels between the two measurements that the model does not predict.
     pub slips: Vec<Slip>,
@@ -79,8 +83,8 @@ pub struct Slip {
 }
 
 impl MeasurementReport {
-    /// The report of a measured sheet; `closed` is the measurement of the same sheet before it was deployed, and
-    /// `supported` are the panels whose slip between the two is of interest.
+    /// The report of a measured sheet; `closed` is the measurement of the same sheet before it was
+    /// deployed, and `supported` are the panels whose slip between the two is of interest.
     pub fn new(
         title: &str,
         sheet: &Sheet,
@@ -122,10 +126,7 @@ impl Closed {
         supported: &[usize],
     ) -> Self {
         let floor = Agreement::new(sheet, closed);
-        let level = floor
-            .centres
-            .as_ref()
-            .map_or(f64::INFINITY, |centres| centres.rms);
+        let level = floor.centres.as_ref().map_or(f64::INFINITY, |centres| centres.rms);
         let above = panels.iter().filter(|panel| panel.distance() > level);
         let slips = supported.iter().filter_map(|&panel| {
             let slip = slip(sheet, closed, deployed, panel)?;

@@ -57,11 +57,14 @@ pub struct Report {
     pub before: Scores,
     /// Scores of the best design.
     pub after: Scores,
-    /// Standard deviations of the scene's ensemble on the path of the best design, if there is an ensemble.
+    /// Standard deviations of the scene's ensemble on the path of the best design, if there is an
+    /// ensemble.
     pub estimate: Option<Estimate>,
-    /// By how much each cause of errors moves the best design; `None` without a learned hinge law or without an equilibrium.
+    /// By how much each cause of errors moves the best design; `None` without a learned hinge law
+    /// or without an equilibrium.
     pub budget: Option<Budget>,
-    /// What the sheet is made of, how far it opens under which load, and what the hinge law rests on.
+    /// What the sheet is made of, how far it opens under which load, and what the hinge law rests
+    /// on.
     pub facts: FactSheet,
     /// Whether a cut file was written.
     pub cut_file: bool,
@@ -163,8 +166,8 @@ impl Report {
         }
     }
 
-    /// The report of a run of `scene`, whose best design has the given cut lines. The cut files are written if there
-    /// are no errors, or if `force`; `checks` are of that design.
+    /// The report of a run of `scene`, whose best design has the given cut lines. The cut files are
+    /// written if there are no errors, or if `force`; `checks` are of that design.
     pub fn new(
         scene: &Scene,
         designed: &Designed,
@@ -188,12 +191,7 @@ impl Report {
             deployment,
             cuts,
             hinges: &hinges,
-            run: Some(RunContext {
-                designed,
-                facts: &facts,
-                after: &after,
-                checks: &checks,
-            }),
+            run: Some(RunContext { designed, facts: &facts, after: &after, checks: &checks }),
         });
         let mut report = Self {
             cut_file: false,
@@ -201,11 +199,7 @@ impl Report {
             ended: designed.ended.clone(),
             rungs: designed.rungs.clone(),
             steps: designed.history.len() - 1,
-            setbacks: designed
-                .history
-                .iter()
-                .filter(|record| record.setback.is_some())
-                .count(),
+            setbacks: designed.history.iter().filter(|record| record.setback.is_some()).count(),
             terms: designed.problem.objective.labels(),
             before: match designed.rungs.first() {
                 Some(first) => first.start.clone(),

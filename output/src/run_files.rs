@@ -1,4 +1,5 @@
-//! The files of a run folder: `design` writes them from this table, `--restart` deletes by it, docs/RUN-PAGE.md lists it.
+//! The files of a run folder: `design` writes them from this table, `--restart` deletes by it,
+//! docs/RUN-PAGE.md lists it.
 
 use crate::cut_file::{
     CutDrawing, CutLines, FabricationError, SheetDrawing, attachment_list, cut_list, cut_summary,
@@ -32,8 +33,8 @@ pub enum Writer {
     Search,
     /// The commands that check a design.
     Checks,
-    /// [`write_results`](crate::run_results::write_results), the text or bytes of this function; no file if that is
-    /// `None`.
+    /// [`write_results`](crate::run_results::write_results), the text or bytes of this function; no
+    /// file if that is `None`.
     Results(fn(&Results) -> io::Result<Option<Vec<u8>>>),
     /// The program, which draws the pictures of the results in pixels.
     Pictures,
@@ -49,8 +50,9 @@ pub struct Results<'a> {
     pub(crate) sheet: Option<SheetDrawing>,
 }
 
-/// The files in the order in which they are written: the report first, so that there is never a cut file without its
-/// report. The copies of the inputs, `scene.toml` and `inputs/`, are not among them: a run may be started from them.
+/// The files in the order in which they are written: the report first, so that there is never a cut
+/// file without its report. The copies of the inputs, `scene.toml` and `inputs/`, are not among
+/// them: a run may be started from them.
 pub const RUN_FILES: [RunFile; 18] = [
     RunFile {
         name: STATE_FILE,
@@ -73,20 +75,12 @@ pub const RUN_FILES: [RunFile; 18] = [
         "the run on one page: open it in a browser, click a hinge, move the slider",
         |run| Ok(Some(run_page(run.scene, run.designed, run.report)?.into())),
     ),
-    result("cut.dxf", CUTS, |run| {
-        Ok(run.annotated().map(|drawing| dxf(&drawing).into()))
-    }),
-    result("cut.svg", CUTS, |run| {
-        Ok(run.annotated().map(|drawing| svg(&drawing).into()))
-    }),
+    result("cut.dxf", CUTS, |run| Ok(run.annotated().map(|drawing| dxf(&drawing).into()))),
+    result("cut.svg", CUTS, |run| Ok(run.annotated().map(|drawing| svg(&drawing).into()))),
     result(
         "cut-list.csv",
         "hole diameter, ligament width and caliper width of every hinge",
-        |run| {
-            Ok(run
-                .cut()
-                .map(|(cuts, _)| cut_list(&run.best().sheet, cuts).into()))
-        },
+        |run| Ok(run.cut().map(|(cuts, _)| cut_list(&run.best().sheet, cuts).into())),
     ),
     result(
         "attachments.csv",
@@ -96,23 +90,15 @@ pub const RUN_FILES: [RunFile; 18] = [
     result(
         "cut-summary.csv",
         "number of cuts, holes by diameter, length of cuts and idle travel",
-        |run| {
-            Ok(run
-                .cut()
-                .map(|(cuts, sheet)| cut_summary(cuts, &sheet.totals).into()))
-        },
+        |run| Ok(run.cut().map(|(cuts, sheet)| cut_summary(cuts, &sheet.totals).into())),
     ),
-    result(
-        "deployed.dxf",
-        "the panels in the state that is compared with the target",
-        |run| {
-            Ok(run.cut().map(|_| {
-                let Deployment { sheet, .. } = run.best();
-                let configuration = placed(run.scene, sheet, &run.best().compared().configuration);
-                dxf(&deployed_panels(&deployed_corners(sheet, &configuration))).into()
-            }))
-        },
-    ),
+    result("deployed.dxf", "the panels in the state that is compared with the target", |run| {
+        Ok(run.cut().map(|_| {
+            let Deployment { sheet, .. } = run.best();
+            let configuration = placed(run.scene, sheet, &run.best().compared().configuration);
+            dxf(&deployed_panels(&deployed_corners(sheet, &configuration))).into()
+        }))
+    }),
     result("flat.svg", FLAT, |run| {
         let title = &run.scene.config.title;
         let picture = |cuts| drawing::flat(title, &run.best().sheet, cuts).into();
@@ -123,9 +109,7 @@ pub const RUN_FILES: [RunFile; 18] = [
         Ok(Some(run.picture(&run.designed.start.deployment)))
     }),
     picture("deployed-start.png", BEFORE),
-    result("deployed.svg", AFTER, |run| {
-        Ok(Some(run.picture(run.best())))
-    }),
+    result("deployed.svg", AFTER, |run| Ok(Some(run.picture(run.best())))),
     picture("deployed.png", AFTER),
     picture(ANIMATION, "animation of the deployment"),
 ];
@@ -143,19 +127,11 @@ const fn result(
     contents: &'static str,
     write: fn(&Results) -> io::Result<Option<Vec<u8>>>,
 ) -> RunFile {
-    RunFile {
-        name,
-        contents,
-        writer: Writer::Results(write),
-    }
+    RunFile { name, contents, writer: Writer::Results(write) }
 }
 
 const fn picture(name: &'static str, contents: &'static str) -> RunFile {
-    RunFile {
-        name,
-        contents,
-        writer: Writer::Pictures,
-    }
+    RunFile { name, contents, writer: Writer::Pictures }
 }
 
 impl Results<'_> {

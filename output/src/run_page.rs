@@ -1,9 +1,9 @@
-//! `run.html`: a run on one page that needs no other file and no network. `kirigami studio` shows a scene on the same page, with
-//! controls.
+//! `run.html`: a run on one page that needs no other file and no network. `kirigami studio` shows a
+//! scene on the same page, with controls.
 //!
-//! The page consists of a template, a style, scripts and the data of the run as JSON, in which long lists of numbers
-//! are base64 of little-endian 32-bit floats. The data are inserted as text that contains no `<`, so that no title
-//! can end the element that holds them.
+//! The page consists of a template, a style, scripts and the data of the run as JSON, in which long
+//! lists of numbers are base64 of little-endian 32-bit floats. The data are inserted as text that
+//! contains no `<`, so that no title can end the element that holds them.
 
 mod hinge_states;
 mod packed;
@@ -53,12 +53,8 @@ pub(super) fn run_page(
     report: &Report,
 ) -> Result<String, serde_json::Error> {
     let data = serde_json::to_string(&PageData::new(scene, designed, report))?;
-    let page = Page {
-        title: &report.title,
-        scripts: OF_RUN.to_owned(),
-        data: &data,
-        ..Page::default()
-    };
+    let page =
+        Page { title: &report.title, scripts: OF_RUN.to_owned(), data: &data, ..Page::default() };
     Ok(page.to_html())
 }
 

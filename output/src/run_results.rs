@@ -16,10 +16,11 @@ use support::whole_file;
 #[error("cannot write {0}")]
 pub struct ResultsError(#[from] FileError);
 
-/// Writes the results of [`RUN_FILES`]: the picture of the flat sheet for a design with cut lines, the cut files for a
-/// design without errors, or if `force`.
+/// Writes the results of [`RUN_FILES`]: the picture of the flat sheet for a design with cut lines,
+/// the cut files for a design without errors, or if `force`.
 ///
-/// If no cut file is written, the report states why, and the cut files of an earlier design are removed.
+/// If no cut file is written, the report states why, and the cut files of an earlier design are
+/// removed.
 pub fn write_results(
     scene: &Scene,
     designed: &Designed,
@@ -51,8 +52,9 @@ pub fn write_results(
     Ok(report)
 }
 
-/// Removes the files of an earlier run of the scene, so that the next one begins at the start design. The copies of its
-/// inputs stay. An error, and nothing is removed, if the start has no objective value.
+/// Removes the files of an earlier run of the scene, so that the next one begins at the start
+/// design. The copies of its inputs stay. An error, and nothing is removed, if the start has no
+/// objective value.
 pub fn remove_run(scene: &Scene) -> Result<(), InverseDesignError> {
     let start = scene.problem()?.evaluate(&scene.start());
     start.map_err(InverseDesignError::Start)?;
@@ -68,11 +70,7 @@ fn remove_with_pixels(path: &Path) -> io::Result<()> {
     remove(path)?;
     let pixels = path.with_extension("png");
     let name = pixels.file_name().and_then(|name| name.to_str());
-    if RUN_FILES.iter().any(|file| Some(file.name) == name) {
-        remove(&pixels)
-    } else {
-        Ok(())
-    }
+    if RUN_FILES.iter().any(|file| Some(file.name) == name) { remove(&pixels) } else { Ok(()) }
 }
 
 fn remove(path: &Path) -> io::Result<()> {

@@ -1,6 +1,8 @@
-//! The deployment of a sheet as VTK grids: panels as quadrilaterals and hinges as points, one pair of grids a state.
+//! The deployment of a sheet as VTK grids: panels as quadrilaterals and hinges as points, one pair
+//! of grids a state.
 //!
-//! Points are the points of the flat sheet; the point data `displacement (mm)` moves them to the deployed sheet.
+//! Points are the points of the flat sheet; the point data `displacement (mm)` moves them to the
+//! deployed sheet.
 
 use design::equilibrium::load_step::LoadStep;
 use design::hinge_law::DamageMeasure;
@@ -16,7 +18,8 @@ pub struct VtkState {
     pub time: f64,
     /// Four points and one cell for each panel; cell data: number and rotation.
     pub panels: UnstructuredGrid,
-    /// One point and one cell for each hinge, at its reference point; point data: number, (8), energy, damage.
+    /// One point and one cell for each hinge, at its reference point; point data: number, (8),
+    /// energy, damage.
     pub hinges: UnstructuredGrid,
 }
 
@@ -43,11 +46,7 @@ pub fn vtk_states(deployment: &Deployment) -> Vec<VtkState> {
 
 /// The time of a load step in an animation.
 fn time(step: &LoadStep) -> f64 {
-    if step.weight < 1.0 {
-        step.weight - 1.0
-    } else {
-        step.load_factor
-    }
+    if step.weight < 1.0 { step.weight - 1.0 } else { step.load_factor }
 }
 
 fn panels(sheet: &Sheet, configuration: &[[f64; 3]]) -> UnstructuredGrid {
@@ -56,9 +55,7 @@ fn panels(sheet: &Sheet, configuration: &[[f64; 3]]) -> UnstructuredGrid {
     let displacements = std::iter::zip(points.clone(), moved.into_iter().flatten());
     UnstructuredGrid {
         kind: CellKind::Quad,
-        cells: (0..sheet.panels.len())
-            .map(|k| (4 * k..4 * k + 4).collect())
-            .collect(),
+        cells: (0..sheet.panels.len()).map(|k| (4 * k..4 * k + 4).collect()).collect(),
         point_data: vec![displacement(displacements)],
         cell_data: vec![
             Field::scalar("panel", (0..sheet.panels.len()).map(|k| k as f64)),
@@ -82,30 +79,19 @@ fn hinge_points(
     let moved = sheet.hinges.iter().map(|hinge| {
         let [a, b] = [hinge.panel_a(), hinge.panel_b()]
             .map(|k| deployed(&sheet.panels[k], configuration[k], hinge.attachment));
-        (
-            hinge.attachment,
-            [0, 1].map(|axis| 0.5 * (a[axis] + b[axis])),
-        )
+        (hinge.attachment, [0, 1].map(|axis| 0.5 * (a[axis] + b[axis])))
     });
     let of = |name, value: &dyn Fn(usize) -> f64| {
         let shown = |x: f64| if flat && !x.is_nan() { 0.0 } else { x };
         Field::scalar(name, (0..sheet.hinges.len()).map(|h| shown(value(h))))
     };
     let damage = |name, measure: DamageMeasure| {
-        let known = |h: usize| {
-            measure
-                .known(step.damage.get(h)?)
-                .filter(|_| step.inside[h])
-        };
+        let known = |h: usize| measure.known(step.damage.get(h)?).filter(|_| step.inside[h]);
         of(name, &|h| known(h).unwrap_or(f64::NAN))
     };
     let inside = |h: &bool| f64::from(u8::from(flat || *h));
     UnstructuredGrid {
-        points: sheet
-            .hinges
-            .iter()
-            .map(|hinge| spatial(hinge.attachment))
-            .collect(),
+        points: sheet.hinges.iter().map(|hinge| spatial(hinge.attachment)).collect(),
         kind: CellKind::Vertex,
         cells: (0..sheet.hinges.len()).map(|h| vec![h]).collect(),
         point_data: vec![

@@ -1,4 +1,5 @@
-//! NumPy arrays in and out. What cannot be read as real numbers without loss is an error that names the argument.
+//! NumPy arrays in and out. What cannot be read as real numbers without loss is an error that names
+//! the argument.
 
 use numpy::ndarray::ArrayD;
 use numpy::{IntoPyArray, PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
@@ -20,10 +21,7 @@ pub(crate) struct Numbers {
 impl Numbers {
     /// A single number.
     pub fn single(value: f64) -> Self {
-        Self {
-            values: vec![value],
-            shape: Vec::new(),
-        }
+        Self { values: vec![value], shape: Vec::new() }
     }
 
     /// One value for each of the `count` elements of a shape.
@@ -39,7 +37,8 @@ impl Numbers {
     }
 }
 
-/// The numbers of an argument: an array, nested lists or a number. Integers and short floats are converted, as they are exact.
+/// The numbers of an argument: an array, nested lists or a number. Integers and short floats are
+/// converted, as they are exact.
 pub(crate) fn numbers(argument: &Bound<PyAny>, name: &str) -> PyResult<Numbers> {
     let direct = argument.cast_exact::<PyArrayDyn<f64>>();
     let numbers = if let Some(array) = direct.ok().filter(|array| is_regular(array)) {
@@ -57,7 +56,8 @@ pub(crate) fn numbers(argument: &Bound<PyAny>, name: &str) -> PyResult<Numbers> 
     Ok(numbers)
 }
 
-/// The numbers of an argument of a given shape, in which `None` is any length; `expected` is the shape in words.
+/// The numbers of an argument of a given shape, in which `None` is any length; `expected` is the
+/// shape in words.
 pub(crate) fn shaped(
     argument: &Bound<PyAny>,
     name: &str,
@@ -74,10 +74,7 @@ pub(crate) fn shaped(
 
 /// The error of an argument of another shape.
 pub(crate) fn wrong_shape(name: &str, found: &[usize], expected: &str) -> PyErr {
-    PyValueError::new_err(format!(
-        "`{name}` has the shape {}, expected {expected}",
-        tuple(found)
-    ))
+    PyValueError::new_err(format!("`{name}` has the shape {}, expected {expected}", tuple(found)))
 }
 
 /// A shape as Python prints it.
@@ -90,9 +87,7 @@ pub(crate) fn tuple(shape: &[usize]) -> String {
 
 /// A new array.
 pub(crate) fn array<'py>(py: Python<'py>, values: Vec<f64>, shape: &[usize]) -> Doubles<'py> {
-    ArrayD::from_shape_vec(shape, values)
-        .expect("as many values as the shape has")
-        .into_pyarray(py)
+    ArrayD::from_shape_vec(shape, values).expect("as many values as the shape has").into_pyarray(py)
 }
 
 /// A new array of truth values.
@@ -101,9 +96,7 @@ pub(crate) fn bools<'py>(
     values: Vec<bool>,
     shape: &[usize],
 ) -> Bound<'py, PyArrayDyn<bool>> {
-    ArrayD::from_shape_vec(shape, values)
-        .expect("as many values as the shape has")
-        .into_pyarray(py)
+    ArrayD::from_shape_vec(shape, values).expect("as many values as the shape has").into_pyarray(py)
 }
 
 /// A new array of three numbers for each panel, or each hinge.
@@ -122,7 +115,8 @@ pub(crate) fn followed_by(shape: &[usize], by: &[usize]) -> Vec<usize> {
     [shape, by].concat()
 }
 
-/// Whether every element is at a multiple of its size from the others, as a field of a structured array need not be.
+/// Whether every element is at a multiple of its size from the others, as a field of a structured
+/// array need not be.
 fn is_regular(array: &Bound<PyArrayDyn<f64>>) -> bool {
     let size = size_of::<f64>() as isize;
     array.is_aligned() && array.strides().iter().all(|stride| stride % size == 0)
@@ -152,9 +146,7 @@ fn copied(array: &Bound<PyArrayDyn<f64>>) -> Numbers {
 fn converted<'py>(argument: &Bound<'py, PyAny>, name: &str) -> PyResult<Bound<'py, PyAny>> {
     let numpy = argument.py().import("numpy")?;
     let wrong = |what: String| {
-        PyTypeError::new_err(format!(
-            "`{name}` is {what}, expected real numbers (float64)"
-        ))
+        PyTypeError::new_err(format!("`{name}` is {what}, expected real numbers (float64)"))
     };
     if argument.hasattr("mask")? {
         return Err(wrong("a masked array".into()));
@@ -178,9 +170,5 @@ fn index(place: usize, shape: &[usize]) -> String {
         indices.insert(0, (rest % length).to_string());
         rest /= length;
     }
-    if indices.is_empty() {
-        String::new()
-    } else {
-        format!("[{}]", indices.join(", "))
-    }
+    if indices.is_empty() { String::new() } else { format!("[{}]", indices.join(", ")) }
 }

@@ -12,7 +12,8 @@ use numpy::PyArrayDyn;
 use pyo3::prelude::*;
 use std::sync::Arc;
 
-/// A deployed sheet with its path. All arrays begin with the load steps; with pins there is a single one.
+/// A deployed sheet with its path. All arrays begin with the load steps; with pins there is a
+/// single one.
 #[pyclass(frozen, module = "kirigami")]
 pub(crate) struct Deployment {
     problem: Arc<DesignProblem>,
@@ -25,10 +26,7 @@ pub(crate) struct State(pub(crate) Response);
 
 impl Deployment {
     pub(crate) fn new(problem: Arc<DesignProblem>, deployment: design::Deployment) -> Self {
-        Self {
-            problem,
-            deployment,
-        }
+        Self { problem, deployment }
     }
 
     /// An error if there is no equilibrium at full load.
@@ -59,27 +57,23 @@ impl Deployment {
         let hinges = self.hinges();
         self.by_step(py, &[hinges], |step| {
             let known = |h: usize| step.damage.get(h).and_then(&of).filter(|_| step.inside[h]);
-            (0..hinges)
-                .map(|h| [known(h).unwrap_or(f64::NAN)])
-                .collect::<Vec<_>>()
+            (0..hinges).map(|h| [known(h).unwrap_or(f64::NAN)]).collect::<Vec<_>>()
         })
     }
 }
 
 #[pymethods]
 impl Deployment {
-    /// How each load step ended: `converged`, `left-domain` (with hinges outside the training domain), `almost`, `limit-point` (the sheet
-    /// jumped to another branch) or `diverged` (no equilibrium was found: the path ends).
+    /// How each load step ended: `converged`, `left-domain` (with hinges outside the training
+    /// domain), `almost`, `limit-point` (the sheet jumped to another branch) or `diverged` (no
+    /// equilibrium was found: the path ends).
     #[getter]
     fn status<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyAny>>> {
-        self.deployment
-            .path
-            .iter()
-            .map(|step| plain(py, &step.status))
-            .collect()
+        self.deployment.path.iter().map(|step| plain(py, &step.status)).collect()
     }
 
-    /// Whether the path was followed from the flat sheet; False if it was corrected from a path near it.
+    /// Whether the path was followed from the flat sheet; False if it was corrected from a path
+    /// near it.
     #[getter]
     fn followed(&self) -> bool {
         self.deployment.followed
@@ -119,8 +113,8 @@ impl Deployment {
         })
     }
 
-    /// Corners of the panels after the loads were taken off (mm), shape (panels, 4, 2); None unless the target of the scene is for that
-    /// state (`objective.target_state`).
+    /// Corners of the panels after the loads were taken off (mm), shape (panels, 4, 2); None unless
+    /// the target of the scene is for that state (`objective.target_state`).
     #[getter]
     fn corners_unloaded<'py>(&self, py: Python<'py>) -> PyResult<Option<Doubles<'py>>> {
         if self.deployment.unloaded().is_none() {
@@ -135,10 +129,7 @@ impl Deployment {
     #[getter]
     fn deformation<'py>(&self, py: Python<'py>) -> Doubles<'py> {
         self.by_step(py, &[self.hinges(), 3], |step| {
-            step.deformations
-                .iter()
-                .map(|eps| eps.to_array())
-                .collect::<Vec<_>>()
+            step.deformations.iter().map(|eps| eps.to_array()).collect::<Vec<_>>()
         })
     }
 
@@ -146,20 +137,19 @@ impl Deployment {
     #[getter]
     fn energy<'py>(&self, py: Python<'py>) -> Doubles<'py> {
         self.by_step(py, &[self.hinges()], |step| {
-            step.energies
-                .iter()
-                .map(|energy| [*energy])
-                .collect::<Vec<_>>()
+            step.energies.iter().map(|energy| [*energy]).collect::<Vec<_>>()
         })
     }
 
-    /// D of the hinges, shape (steps, hinges); nan where it is not known: outside the training domain, or without a learned law.
+    /// D of the hinges, shape (steps, hinges); nan where it is not known: outside the training
+    /// domain, or without a learned law.
     #[getter]
     fn damage<'py>(&self, py: Python<'py>) -> Doubles<'py> {
         self.damaged(py, |damage| Some(damage.d))
     }
 
-    /// D_peak of the hinges, shape (steps, hinges): a ligament tears at 1; nan where it is not known.
+    /// D_peak of the hinges, shape (steps, hinges): a ligament tears at 1; nan where it is not
+    /// known.
     #[getter]
     fn damage_peak<'py>(&self, py: Python<'py>) -> Doubles<'py> {
         self.damaged(py, |damage| damage.d_peak)
@@ -173,7 +163,8 @@ impl Deployment {
         bools(py, inside.collect(), &[path.len(), self.hinges()])
     }
 
-    /// Forces (F_x, F_y, M) by which the supports hold the panels at full load (N, N, N mm), shape (panels, 3); zero where a panel is free.
+    /// Forces (F_x, F_y, M) by which the supports hold the panels at full load (N, N, N mm), shape
+    /// (panels, 3); zero where a panel is free.
     #[getter]
     fn reactions<'py>(&self, py: Python<'py>) -> PyResult<Doubles<'py>> {
         let last = self.at_full_load()?;
@@ -182,10 +173,7 @@ impl Deployment {
         let sheet = &self.deployment.sheet;
         let law = mechanics.law.prepare(&sheet.designs());
         let hinged = mechanics.hinged(sheet, &*law, false);
-        Ok(triples(
-            py,
-            &mechanics.solver.reactions(hinged, &last.configuration),
-        ))
+        Ok(triples(py, &mechanics.solver.reactions(hinged, &last.configuration)))
     }
 
     /// The flat sheet.
@@ -200,10 +188,7 @@ impl Deployment {
 
     fn __repr__(&self) -> String {
         let steps = self.deployment.path.len();
-        format!(
-            "Deployment({steps} load steps; {})",
-            self.deployment.final_step()
-        )
+        format!("Deployment({steps} load steps; {})", self.deployment.final_step())
     }
 }
 
@@ -215,7 +200,8 @@ impl State {
         quadrilaterals(py, &self.0.corners())
     }
 
-    /// Forces (F_x, F_y, M) by which the supports hold the panels (N, N, N mm), shape (panels, 3); zero where a panel is free.
+    /// Forces (F_x, F_y, M) by which the supports hold the panels (N, N, N mm), shape (panels, 3);
+    /// zero where a panel is free.
     #[getter]
     fn reactions<'py>(&self, py: Python<'py>) -> Doubles<'py> {
         triples(py, &self.0.reactions)
@@ -237,10 +223,7 @@ impl State {
     #[getter]
     fn deformation<'py>(&self, py: Python<'py>) -> Doubles<'py> {
         let deformations = self.0.state().deformations.iter();
-        triples(
-            py,
-            &deformations.map(|eps| eps.to_array()).collect::<Vec<_>>(),
-        )
+        triples(py, &deformations.map(|eps| eps.to_array()).collect::<Vec<_>>())
     }
 
     /// How the state was found, as in `Deployment.status`.
@@ -249,7 +232,8 @@ impl State {
         plain(py, &self.0.state().status)
     }
 
-    /// Whether the path to the state was followed from the flat sheet; False if the state was corrected from one near it.
+    /// Whether the path to the state was followed from the flat sheet; False if the state was
+    /// corrected from one near it.
     #[getter]
     fn followed(&self) -> bool {
         self.0.deployment.followed

@@ -30,12 +30,7 @@ create_exception!(
     KirigamiError,
     "A design has no sheet: its cuts or its ligaments cannot exist."
 );
-create_exception!(
-    kirigami,
-    NoEquilibrium,
-    KirigamiError,
-    "No equilibrium was found at full load."
-);
+create_exception!(kirigami, NoEquilibrium, KirigamiError, "No equilibrium was found at full load.");
 create_exception!(
     kirigami,
     SingularTangent,

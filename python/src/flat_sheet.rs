@@ -17,9 +17,10 @@ use std::sync::Arc;
 ///
 /// Pattern(m, n, corners, r=None, tau=None)
 ///
-/// corners: SW, SE, NE, NW of the outline (mm), shape (4, 2), or its (width, height), shape (2,); r: void aspect ratios of the interior
-/// cuts in (0, 1), row by row, shape ((m-1)(n-1),), by default 1/2; tau: positions of the cuts on the edges bottom, right, top, left as
-/// fractions of the edge, shape (2(m-1) + 2(n-1),), by default evenly spaced.
+/// corners: SW, SE, NE, NW of the outline (mm), shape (4, 2), or its (width, height), shape (2,);
+/// r: void aspect ratios of the interior cuts in (0, 1), row by row, shape ((m-1)(n-1),), by
+/// default 1/2; tau: positions of the cuts on the edges bottom, right, top, left as fractions of
+/// the edge, shape (2(m-1) + 2(n-1),), by default evenly spaced.
 #[pyclass(frozen, module = "kirigami")]
 pub(crate) struct Pattern(CutPattern);
 
@@ -27,7 +28,8 @@ pub(crate) struct Pattern(CutPattern);
 ///
 /// Sheet(pattern, w_lig, kerf=0.2)
 ///
-/// w_lig: ligament widths (mm), a number or an array of shape (hinges,); kerf: width that the cutter removes (mm).
+/// w_lig: ligament widths (mm), a number or an array of shape (hinges,); kerf: width that the
+/// cutter removes (mm).
 #[pyclass(frozen, module = "kirigami")]
 pub(crate) struct Sheet(pub(crate) Arc<design::Sheet>);
 
@@ -50,15 +52,11 @@ impl Pattern {
         let given = numbers(corners, "corners")?;
         let outline = match (given.shape.as_slice(), given.values.as_slice()) {
             ([2], [width, height]) => Outline::rectangle(*width, *height),
-            ([4, 2], points) => Outline {
-                corners: std::array::from_fn(|k| [points[2 * k], points[2 * k + 1]]),
-            },
+            ([4, 2], points) => {
+                Outline { corners: std::array::from_fn(|k| [points[2 * k], points[2 * k + 1]]) }
+            }
             (shape, _) => {
-                return Err(crate::arrays::wrong_shape(
-                    "corners",
-                    shape,
-                    "(4, 2) or (2,)",
-                ));
+                return Err(crate::arrays::wrong_shape("corners", shape, "(4, 2) or (2,)"));
             }
         };
         let mut values = PatternCoordinates::uniform(grid).values();
@@ -72,9 +70,7 @@ impl Pattern {
         }
         let wrong = |error| errors::design(design::DesignError::Pattern(error));
         let coordinates = PatternCoordinates::from_values(grid, &values).map_err(wrong)?;
-        Ok(Self(
-            CutPattern::new(grid, outline, &coordinates).map_err(wrong)?,
-        ))
+        Ok(Self(CutPattern::new(grid, outline, &coordinates).map_err(wrong)?))
     }
 
     /// Void aspect ratios of the interior cuts, row by row.
@@ -109,14 +105,8 @@ impl Sheet {
     fn new(pattern: &Pattern, w_lig: &Bound<PyAny>, kerf: f64) -> PyResult<Self> {
         let hinges = pattern.hinges();
         let widths = numbers(w_lig, "w_lig")?.filled("w_lig", &[hinges], hinges)?;
-        let constants = HingeConstants {
-            kerf,
-            ..HingeConstants::PAPER
-        };
-        let options = SheetOptions {
-            hinge_point: HingePoint::CutTip,
-            process: constants.into(),
-        };
+        let constants = HingeConstants { kerf, ..HingeConstants::PAPER };
+        let options = SheetOptions { hinge_point: HingePoint::CutTip, process: constants.into() };
         let sheet = design::Sheet::new(&pattern.0, &widths, options);
         let wrong = |error| errors::design(design::DesignError::Sheet(error));
         Ok(Self(Arc::new(sheet.map_err(wrong)?)))
@@ -129,7 +119,8 @@ impl Sheet {
         quadrilaterals(py, &corners)
     }
 
-    /// The points of the panels whose motions are (u_x, u_y): centroids, or where a panel is held or pulled (mm), shape (panels, 2).
+    /// The points of the panels whose motions are (u_x, u_y): centroids, or where a panel is held
+    /// or pulled (mm), shape (panels, 2).
     #[getter]
     fn references<'py>(&self, py: Python<'py>) -> Doubles<'py> {
         points(py, self.0.panels.iter().map(|panel| panel.reference))
@@ -138,11 +129,7 @@ impl Sheet {
     /// The two panels A and B of every hinge, shape (hinges, 2).
     #[getter]
     fn hinge_panels(&self) -> Vec<[usize; 2]> {
-        self.0
-            .hinges
-            .iter()
-            .map(|hinge| [hinge.panel_a(), hinge.panel_b()])
-            .collect()
+        self.0.hinges.iter().map(|hinge| [hinge.panel_a(), hinge.panel_b()]).collect()
     }
 
     /// The tips O of the main cuts (mm), shape (hinges, 2).
@@ -171,8 +158,8 @@ impl Sheet {
         self.0.outline_corners()
     }
 
-    /// The kinematic deployment with every hinge open by `opening` (rad): motions (u_x, u_y, phi) of the panels (mm, mm, rad), shape
-    /// (panels, 3), and their corners, shape (panels, 4, 2).
+    /// The kinematic deployment with every hinge open by `opening` (rad): motions (u_x, u_y, phi)
+    /// of the panels (mm, mm, rad), shape (panels, 3), and their corners, shape (panels, 4, 2).
     fn deploy<'py>(&self, py: Python<'py>, opening: f64) -> PyResult<(Doubles<'py>, Doubles<'py>)> {
         if !opening.is_finite() {
             return Err(errors::design(design::DesignError::Opening(opening)));

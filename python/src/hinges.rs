@@ -1,4 +1,5 @@
-//! The learned hinge energy: weights, hinges prepared for evaluation, and what is known of their states.
+//! The learned hinge energy: weights, hinges prepared for evaluation, and what is known of their
+//! states.
 
 use crate::arrays::{
     Doubles, Numbers, array, bools, followed_by, numbers, plain, tuple, wrong_shape,
@@ -15,7 +16,8 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use surrogate::mean_and_variance;
 
-/// The learned energy of a hinge, W(a, s, theta; w_lig, alpha), with its continuation outside the training domain.
+/// The learned energy of a hinge, W(a, s, theta; w_lig, alpha), with its continuation outside the
+/// training domain.
 ///
 /// Units are mm, N, N mm and rad.
 ///
@@ -46,7 +48,8 @@ struct Prepared {
     shape: Vec<usize>,
 }
 
-/// Hinges in given states. Energy, forces and tangent are evaluated by the call; damage, depth and spread when they are read.
+/// Hinges in given states. Energy, forces and tangent are evaluated by the call; damage, depth and
+/// spread when they are read.
 #[pyclass(frozen, module = "kirigami")]
 pub(crate) struct HingeStates {
     hinges: Arc<Prepared>,
@@ -58,8 +61,8 @@ pub(crate) struct HingeStates {
 
 #[pymethods]
 impl Surrogate {
-    /// Weights (.safetensors) with the card (.json) next to them, and further networks of the same training, whose
-    /// disagreement is the spread.
+    /// Weights (.safetensors) with the card (.json) next to them, and further networks of the same
+    /// training, whose disagreement is the spread.
     #[new]
     #[pyo3(signature = (weights, ensemble=Vec::new()))]
     fn new(py: Python, weights: PathBuf, ensemble: Vec<PathBuf>) -> PyResult<Self> {
@@ -95,8 +98,9 @@ impl Surrogate {
 
     /// Hinges prepared for evaluation.
     ///
-    /// w_lig: ligament width (mm), a number or an array of the shape of the hinges; alpha: cut angle (rad), likewise; hole: radius of the
-    /// hole over w_lig, by default the hole of reference on the card of the weights.
+    /// w_lig: ligament width (mm), a number or an array of the shape of the hinges; alpha: cut
+    /// angle (rad), likewise; hole: radius of the hole over w_lig, by default the hole of reference
+    /// on the card of the weights.
     #[pyo3(signature = (w_lig, alpha, hole=None))]
     fn hinges(
         &self,
@@ -108,8 +112,9 @@ impl Surrogate {
         self.prepared(py, None, w_lig, alpha, hole)
     }
 
-    /// The states (a, s, theta), an array of shape (..., 3) in (mm, mm, rad), of hinges of the shape (...) or of a single design.
-    /// For many evaluations of the same hinges, prepare them by `hinges`.
+    /// The states (a, s, theta), an array of shape (..., 3) in (mm, mm, rad), of hinges of the
+    /// shape (...) or of a single design. For many evaluations of the same hinges, prepare them by
+    /// `hinges`.
     #[pyo3(signature = (states, w_lig, alpha, hole=None, order="tangent"))]
     fn __call__(
         &self,
@@ -128,10 +133,7 @@ impl Surrogate {
 
     fn __repr__(&self) -> String {
         let (card, others) = (self.networks[0].card(), self.networks.len() - 1);
-        format!(
-            "Surrogate({}, {} mesh, ensemble of {others} more)",
-            card.material, card.tier
-        )
+        format!("Surrogate({}, {} mesh, ensemble of {others} more)", card.material, card.tier)
     }
 }
 
@@ -145,11 +147,7 @@ impl Surrogate {
         hole: Option<&Bound<PyAny>>,
     ) -> PyResult<Hinges> {
         let constants = self.networks[0].card().hinge;
-        let given = [
-            ("w_lig", Some(w_lig)),
-            ("alpha", Some(alpha)),
-            ("hole", hole),
-        ];
+        let given = [("w_lig", Some(w_lig)), ("alpha", Some(alpha)), ("hole", hole)];
         let mut columns = Vec::new();
         for (name, argument) in given {
             columns.push(match argument {
@@ -160,10 +158,7 @@ impl Surrogate {
         let widest = columns.iter().map(|(_, numbers)| &numbers.shape);
         let shape = match shape {
             Some(shape) => shape.to_vec(),
-            None => widest
-                .max_by_key(|shape| shape.len())
-                .cloned()
-                .unwrap_or_default(),
+            None => widest.max_by_key(|shape| shape.len()).cloned().unwrap_or_default(),
         };
         let count = shape.iter().product();
         let columns: Vec<Vec<f64>> = columns
@@ -173,11 +168,7 @@ impl Surrogate {
         let designs: Vec<HingeDesign> = (0..count)
             .map(|h| {
                 let fillet_ratio = columns[2][h];
-                HingeConstants {
-                    fillet_ratio,
-                    ..constants
-                }
-                .hinge(columns[0][h], columns[1][h])
+                HingeConstants { fillet_ratio, ..constants }.hinge(columns[0][h], columns[1][h])
             })
             .collect();
         designs.iter().enumerate().try_for_each(|(h, design)| {
@@ -186,23 +177,14 @@ impl Surrogate {
         })?;
         let networks = self.networks.clone();
         let laws = unlocked(py, || prepared(&networks[0], &designs))?;
-        Ok(Hinges(Arc::new(Prepared {
-            networks,
-            laws,
-            designs,
-            shape,
-        })))
+        Ok(Hinges(Arc::new(Prepared { networks, laws, designs, shape })))
     }
 }
 
 fn read_states(states: &Bound<PyAny>) -> PyResult<Numbers> {
     let states = numbers(states, "states")?;
     if states.shape.last() != Some(&3) {
-        return Err(wrong_shape(
-            "states",
-            &states.shape,
-            "(..., 3): (a, s, theta)",
-        ));
+        return Err(wrong_shape("states", &states.shape, "(..., 3): (a, s, theta)"));
     }
     Ok(states)
 }
@@ -225,7 +207,8 @@ fn read_order(order: &str) -> PyResult<Order> {
 impl Hinges {
     /// The states (a, s, theta) (mm, mm, rad) of all hinges, an array of their shape + (3,).
     ///
-    /// order: "value" evaluates W, "forces" its gradient, "tangent" its Hessian, "design" the derivatives in (w_lig, alpha, hole) too.
+    /// order: "value" evaluates W, "forces" its gradient, "tangent" its Hessian, "design" the
+    /// derivatives in (w_lig, alpha, hole) too.
     #[pyo3(signature = (states, order="tangent"))]
     fn __call__(&self, py: Python, states: &Bound<PyAny>, order: &str) -> PyResult<HingeStates> {
         self.evaluated(py, read_states(states)?, order)
@@ -246,22 +229,13 @@ impl Hinges {
             return Err(wrong_shape("states", &states.shape, &tuple(&expected)));
         }
         let (deformations, _) = states.values.as_chunks::<3>();
-        let deformations: Vec<HingeDeformation> = deformations
-            .iter()
-            .map(|state| HingeDeformation::from(*state))
-            .collect();
+        let deformations: Vec<HingeDeformation> =
+            deformations.iter().map(|state| HingeDeformation::from(*state)).collect();
         let hinges = Arc::clone(&self.0);
         let energies = unlocked(py, || {
-            by_chunk(&hinges.laws, &deformations, |law, states| {
-                law.energies(states, order)
-            })
+            by_chunk(&hinges.laws, &deformations, |law, states| law.energies(states, order))
         })?;
-        Ok(HingeStates {
-            hinges,
-            deformations,
-            energies,
-            order,
-        })
+        Ok(HingeStates { hinges, deformations, energies, order })
     }
 }
 
@@ -298,21 +272,18 @@ impl HingeStates {
     #[getter]
     fn forces_by_design<'py>(&self, py: Python<'py>) -> PyResult<Doubles<'py>> {
         self.needs(Order::Design, "design")?;
-        Ok(self.column(
-            py,
-            |energy| flat(energy.mixed.map(DesignGradient::to_array)),
-            &[3, 3],
-        ))
+        Ok(self.column(py, |energy| flat(energy.mixed.map(DesignGradient::to_array)), &[3, 3]))
     }
 
-    /// D, the mean plastic strain of the ligament over that at fracture; nan outside the training domain, where it is not known.
+    /// D, the mean plastic strain of the ligament over that at fracture; nan outside the training
+    /// domain, where it is not known.
     #[getter]
     fn damage<'py>(&self, py: Python<'py>) -> PyResult<Doubles<'py>> {
         self.damaged(py, |damage| Some(damage.d))
     }
 
-    /// D_peak, the damage of the most strained 1 % of the ligament: it tears at 1. nan outside the training domain, and if the weights do
-    /// not predict it.
+    /// D_peak, the damage of the most strained 1 % of the ligament: it tears at 1. nan outside the
+    /// training domain, and if the weights do not predict it.
     #[getter]
     fn damage_peak<'py>(&self, py: Python<'py>) -> PyResult<Doubles<'py>> {
         self.damaged(py, |damage| damage.d_peak)
@@ -327,7 +298,8 @@ impl HingeStates {
         array(py, depths.collect(), &self.hinges.shape)
     }
 
-    /// Whether each state, the width, the angle and the hole of its hinge are inside the training domain (bool).
+    /// Whether each state, the width, the angle and the hole of its hinge are inside the training
+    /// domain (bool).
     #[getter]
     fn inside<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<bool>>> {
         let inside = || by_chunk(&self.hinges.laws, &self.deformations, Law::inside);
@@ -335,15 +307,11 @@ impl HingeStates {
         Ok(bools(py, inside, &self.hinges.shape))
     }
 
-    /// Standard deviation over the networks of the ensemble of (W, F_a, F_s, M_theta), shape (..., 4).
+    /// Standard deviation over the networks of the ensemble of (W, F_a, F_s, M_theta), shape (...,
+    /// 4).
     #[getter]
     fn spread<'py>(&self, py: Python<'py>) -> PyResult<Doubles<'py>> {
-        let Prepared {
-            networks,
-            designs,
-            shape,
-            ..
-        } = &*self.hinges;
+        let Prepared { networks, designs, shape, .. } = &*self.hinges;
         if networks.len() == 1 {
             return Err(PyValueError::new_err(
                 "one network has no spread: load its ensemble, Surrogate.load(weights, ensemble=[...])",
@@ -358,18 +326,12 @@ impl HingeStates {
                 .collect();
             let spread = |hinge: usize, quantity: usize| {
                 let values = of_networks.iter().map(|energies| {
-                    let HingeEnergy {
-                        w,
-                        forces: [f_a, f_s, m],
-                        ..
-                    } = energies[hinge];
+                    let HingeEnergy { w, forces: [f_a, f_s, m], .. } = energies[hinge];
                     [w, f_a, f_s, m][quantity]
                 });
                 mean_and_variance(values)[1].sqrt()
             };
-            (0..4 * designs.len())
-                .map(|i| spread(i / 4, i % 4))
-                .collect()
+            (0..4 * designs.len()).map(|i| spread(i / 4, i % 4)).collect()
         })?;
         Ok(array(py, spreads, &followed_by(shape, &[4])))
     }
@@ -415,9 +377,7 @@ impl HingeStates {
 /// The law of a network prepared for each chunk of some hinges.
 fn prepared(network: &Arc<surrogate::Surrogate>, designs: &[HingeDesign]) -> Vec<Law> {
     let chunks = designs.par_chunks(CHUNK);
-    chunks
-        .map(|designs| PreparedSurrogate::new(Arc::clone(network), designs))
-        .collect()
+    chunks.map(|designs| PreparedSurrogate::new(Arc::clone(network), designs)).collect()
 }
 
 /// The values of a law at the states of each chunk.

@@ -1,4 +1,5 @@
-//! The Python package `kirigami`: conversions and handles over the crates `surrogate` and `design`, no physics.
+//! The Python package `kirigami`: conversions and handles over the crates `surrogate` and `design`,
+//! no physics.
 //!
 //! | file | contents |
 //! |---|---|

@@ -28,8 +28,9 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 ///
 /// Problem(scene, folder=None)
 ///
-/// scene: the file of a scene (TOML), the folder of a run, or a dict with the keys of a scene (docs/KEYS.md), whose paths are relative
-/// to `folder`, by default the working folder. A design is a vector x of `size` numbers; `blocks` names its parts. Units are mm, N, N mm and rad.
+/// scene: the file of a scene (TOML), the folder of a run, or a dict with the keys of a scene
+/// (docs/KEYS.md), whose paths are relative to `folder`, by default the working folder. A design is
+/// a vector x of `size` numbers; `blocks` names its parts. Units are mm, N, N mm and rad.
 #[pyclass(frozen, module = "kirigami")]
 pub(crate) struct Problem {
     scene: Scene,
@@ -47,7 +48,8 @@ struct Warm {
     state: Known,
 }
 
-/// Load steps that are known, and how many solves have been corrected from one another since the last followed path.
+/// Load steps that are known, and how many solves have been corrected from one another since the
+/// last followed path.
 #[derive(Default)]
 struct Known {
     path: Option<Arc<WarmStart>>,
@@ -57,17 +59,11 @@ struct Known {
 impl Known {
     /// The path to start from; none when the next one is to be followed from the flat sheet.
     fn usable(&self, follow_every: usize) -> Option<Arc<WarmStart>> {
-        self.path
-            .clone()
-            .filter(|_| self.corrected + 1 < follow_every)
+        self.path.clone().filter(|_| self.corrected + 1 < follow_every)
     }
 
     fn keep(&mut self, deployment: &design::Deployment) {
-        self.corrected = if deployment.followed {
-            0
-        } else {
-            self.corrected + 1
-        };
+        self.corrected = if deployment.followed { 0 } else { self.corrected + 1 };
         self.path = Some(Arc::new(deployment.warm_start()));
     }
 }
@@ -123,8 +119,9 @@ impl Problem {
         array(py, self.start.to_flat(), &[self.size()])
     }
 
-    /// The parts of a design by name, as slices: `z`, the logits of the void aspect ratios; `ell`, the logits of the intervals between the
-    /// cuts on the edges; `omega`, the logits of the ligament widths in their range; `opening` (rad), if it is a design variable.
+    /// The parts of a design by name, as slices: `z`, the logits of the void aspect ratios; `ell`,
+    /// the logits of the intervals between the cuts on the edges; `omega`, the logits of the
+    /// ligament widths in their range; `opening` (rad), if it is a design variable.
     #[getter]
     fn blocks<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let blocks = PyDict::new(py);
@@ -136,9 +133,7 @@ impl Problem {
         for (name, length) in ["z", "ell", "omega", "opening"].into_iter().zip(lengths) {
             let Range { start, end: stop } = end..end + length;
             end = stop;
-            let slice = py
-                .import("builtins")?
-                .call_method1("slice", (start, stop))?;
+            let slice = py.import("builtins")?.call_method1("slice", (start, stop))?;
             blocks.set_item(name, slice)?;
         }
         Ok(blocks)
@@ -162,20 +157,18 @@ impl Problem {
         Ok(triples(py, self.mechanics()?.solver.loads()))
     }
 
-    /// Names of the inputs in which the equilibrium has a derivative: the design, the loads and, if the hinge law determines them,
-    /// the thickness and the stresses.
+    /// Names of the inputs in which the equilibrium has a derivative: the design, the loads and, if
+    /// the hinge law determines them, the thickness and the stresses.
     #[getter]
     fn differentiable(&self) -> PyResult<Vec<&'static str>> {
         let [thickness, stress] = self.mechanics()?.law.scales();
         let optional = [("thickness", thickness), ("stress", stress)];
         let others = optional.into_iter().filter(|(_, known)| *known);
-        Ok(["design", "loads"]
-            .into_iter()
-            .chain(others.map(|(name, _)| name))
-            .collect())
+        Ok(["design", "loads"].into_iter().chain(others.map(|(name, _)| name)).collect())
     }
 
-    /// The design with other ligament widths (mm), a number or an array of shape (hinges,), inside the range of the scene.
+    /// The design with other ligament widths (mm), a number or an array of shape (hinges,), inside
+    /// the range of the scene.
     fn with_widths<'py>(
         &self,
         py: Python<'py>,
@@ -202,18 +195,17 @@ impl Problem {
 
     /// The flat sheet of a design.
     fn sheet(&self, x: &Bound<PyAny>) -> PyResult<Sheet> {
-        let (_, sheet) = self
-            .problem
-            .cut(&self.design_of(x)?)
-            .map_err(errors::design)?;
+        let (_, sheet) = self.problem.cut(&self.design_of(x)?).map_err(errors::design)?;
         Ok(Sheet(Arc::new(sheet)))
     }
 
-    /// The deployed sheet with its path, which ends early where no equilibrium is found; with pins the kinematic deployment.
+    /// The deployed sheet with its path, which ends early where no equilibrium is found; with pins
+    /// the kinematic deployment.
     ///
-    /// loads: (F_x, F_y, M) on every panel, shape (panels, 3), instead of the scene's; thickness (mm) instead of the scene's; stress: all
-    /// stresses at equal strain over the stresses of the material; warm: correct the path from the last one if that is near, instead of
-    /// following it from the flat sheet.
+    /// loads: (F_x, F_y, M) on every panel, shape (panels, 3), instead of the scene's; thickness
+    /// (mm) instead of the scene's; stress: all stresses at equal strain over the stresses of the
+    /// material; warm: correct the path from the last one if that is near, instead of following it
+    /// from the flat sheet.
     #[pyo3(signature = (x, loads=None, thickness=None, stress=1.0, warm=true))]
     fn deploy(
         &self,
@@ -250,7 +242,8 @@ impl Problem {
         Ok(deployment)
     }
 
-    /// The equilibrium at full load alone: deployed corners, reactions, load factor. It costs a fraction of the path.
+    /// The equilibrium at full load alone: deployed corners, reactions, load factor. It costs a
+    /// fraction of the path.
     #[pyo3(signature = (x, loads=None, thickness=None, stress=1.0, warm=true))]
     fn solve(
         &self,
@@ -270,10 +263,12 @@ impl Problem {
         Ok(State(response))
     }
 
-    /// Many equilibria at full load in one call, over all threads: x of shape (n, size) or (size,), loads of shape (n, panels, 3) or
-    /// (panels, 3), thickness and stress of shape (n,) or numbers. All start from the last state of the problem.
+    /// Many equilibria at full load in one call, over all threads: x of shape (n, size) or (size,),
+    /// loads of shape (n, panels, 3) or (panels, 3), thickness and stress of shape (n,) or numbers.
+    /// All start from the last state of the problem.
     ///
-    /// Returns a list of n states. strict: the first equilibrium that is not found is raised; otherwise its place holds the exception.
+    /// Returns a list of n states. strict: the first equilibrium that is not found is raised;
+    /// otherwise its place holds the exception.
     #[pyo3(signature = (x, loads=None, thickness=None, stress=None, strict=true))]
     fn solve_many<'py>(
         &self,
@@ -308,12 +303,13 @@ impl Problem {
         Ok(list)
     }
 
-    /// The gradient in the inputs of a function of the equilibrium at full load, from its gradient in the outputs: the implicit
-    /// derivative, by one adjoint solve.
+    /// The gradient in the inputs of a function of the equilibrium at full load, from its gradient
+    /// in the outputs: the implicit derivative, by one adjoint solve.
     ///
-    /// configuration: the configuration of the state that `solve` found with the same inputs; corners, reactions, load_factor: the
-    /// gradient in these outputs, of their shapes. Returns a dict: `design` (size,), `loads` (panels, 3), and `thickness` (1/mm) and
-    /// `stress`, which are None where the hinge law does not determine them.
+    /// configuration: the configuration of the state that `solve` found with the same inputs;
+    /// corners, reactions, load_factor: the gradient in these outputs, of their shapes. Returns a
+    /// dict: `design` (size,), `loads` (panels, 3), and `thickness` (1/mm) and `stress`, which are
+    /// None where the hinge law does not determine them.
     #[pyo3(signature = (x, configuration, corners, reactions, load_factor, loads=None, thickness=None, stress=1.0))]
     #[expect(
         clippy::too_many_arguments,
@@ -337,12 +333,7 @@ impl Problem {
         let load_factor = finite("load_factor", load_factor)?;
         let panels = problem.grid.panel_count();
         let expected = tuple(&[panels, 4, 2]);
-        let corners = shaped(
-            corners,
-            "corners",
-            &[Some(panels), Some(4), Some(2)],
-            &expected,
-        )?;
+        let corners = shaped(corners, "corners", &[Some(panels), Some(4), Some(2)], &expected)?;
         let by = ResponseCotangent {
             corners: (corners.values.as_chunks::<8>().0.iter())
                 .map(|row| std::array::from_fn(|c| [row[2 * c], row[2 * c + 1]]))
@@ -354,12 +345,8 @@ impl Problem {
             let response = problem.response_at(&design, &configuration)?;
             problem.response_pullback(&design, &response, &by)
         })?;
-        let ResponseGradient {
-            design,
-            loads,
-            thickness: of_thickness,
-            stress: of_stress,
-        } = gradient.map_err(errors::design)?;
+        let ResponseGradient { design, loads, thickness: of_thickness, stress: of_stress } =
+            gradient.map_err(errors::design)?;
         let gradient = PyDict::new(py);
         let flat = design.to_flat();
         let size = flat.len();
@@ -399,8 +386,9 @@ impl Problem {
 
     /// The search of the scene, Algorithm 1, in memory: no file is written.
     ///
-    /// callback: called after every step with a dict (step, loss, outline_error, the terms, ...); the search ends if it returns True.
-    /// Ctrl-C ends it after the step. Returns (x, why it ended, the history, one dict a step).
+    /// callback: called after every step with a dict (step, loss, outline_error, the terms, ...);
+    /// the search ends if it returns True. Ctrl-C ends it after the step. Returns (x, why it ended,
+    /// the history, one dict a step).
     #[pyo3(signature = (start=None, steps=None, method=None, learning_rate=None, callback=None))]
     fn design<'py>(
         &self,
@@ -417,10 +405,7 @@ impl Problem {
             Some(name) => read_method(name)?,
             None => optimiser.method,
         };
-        let rate = finite(
-            "learning_rate",
-            learning_rate.unwrap_or(optimiser.learning_rate),
-        )?;
+        let rate = finite("learning_rate", learning_rate.unwrap_or(optimiser.learning_rate))?;
         let steps = steps.unwrap_or(optimiser.steps);
         let (problem, stop) = (&self.problem, AtomicBool::new(false));
         let report = |search: &SearchState| {
@@ -438,9 +423,7 @@ impl Problem {
             let evaluation = problem.evaluate(&start).map_err(errors::design)?;
             let mut search = SearchState::new(problem, start, &evaluation, method, rate);
             report(&search)?;
-            let ended = optimise(problem, &mut search, steps, &stop, &mut |search| {
-                report(search)
-            })?;
+            let ended = optimise(problem, &mut search, steps, &stop, &mut |search| report(search))?;
             Ok::<_, PyErr>((search, ended))
         })??;
         let best = array(py, search.best.to_flat(), &[self.size()]);
@@ -448,19 +431,15 @@ impl Problem {
         PyTuple::new(py, [best.into_any(), ended, history])
     }
 
-    /// The design of the run of this scene, or in a file (`state.json` of a run, or a design alone), shape (size,).
+    /// The design of the run of this scene, or in a file (`state.json` of a run, or a design
+    /// alone), shape (size,).
     #[pyo3(signature = (file=None))]
     fn stored<'py>(&self, py: Python<'py>, file: Option<PathBuf>) -> PyResult<Doubles<'py>> {
         let design = match file {
             Some(file) => stored_design(&file, &self.scene).map_err(errors::scene)?,
-            None => design_of_run(&self.scene)
-                .map_err(errors::scene)?
-                .ok_or_else(|| {
-                    errors::scene(format!(
-                        "there is no run in {}",
-                        self.scene.output().display()
-                    ))
-                })?,
+            None => design_of_run(&self.scene).map_err(errors::scene)?.ok_or_else(|| {
+                errors::scene(format!("there is no run in {}", self.scene.output().display()))
+            })?,
         };
         Ok(array(py, design.to_flat(), &[self.size()]))
     }
@@ -470,7 +449,8 @@ impl Problem {
         *self.warm() = Warm::default();
     }
 
-    /// The keys of the scene with absolute paths, of which the problem is made again when it is unpickled, without its last states.
+    /// The keys of the scene with absolute paths, of which the problem is made again when it is
+    /// unpickled, without its last states.
     fn __getnewargs__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>,)> {
         let keys = self.scene.located().map_err(errors::scene)?;
         let keys = toml::Value::try_from(&keys).map_err(errors::scene)?;
@@ -479,10 +459,7 @@ impl Problem {
 
     fn __repr__(&self) -> String {
         let grid = self.problem.grid;
-        format!(
-            "Problem({:?}, {} x {} panels)",
-            self.scene.config.title, grid.m, grid.n
-        )
+        format!("Problem({:?}, {} x {} panels)", self.scene.config.title, grid.m, grid.n)
     }
 }
 
@@ -515,12 +492,7 @@ impl Problem {
 
     fn by_panel(&self, argument: &Bound<PyAny>, name: &str) -> PyResult<Vec<[f64; 3]>> {
         let panels = self.problem.grid.panel_count();
-        let given = shaped(
-            argument,
-            name,
-            &[Some(panels), Some(3)],
-            &tuple(&[panels, 3]),
-        )?;
+        let given = shaped(argument, name, &[Some(panels), Some(3)], &tuple(&[panels, 3]))?;
         Ok(given.values.as_chunks::<3>().0.to_vec())
     }
 
@@ -543,9 +515,7 @@ impl Problem {
         if conditions == Conditions::default() {
             return Ok(Arc::clone(&self.problem));
         }
-        Ok(Arc::new(
-            self.problem.under(&conditions).map_err(errors::design)?,
-        ))
+        Ok(Arc::new(self.problem.under(&conditions).map_err(errors::design)?))
     }
 
     fn evaluated(&self, py: Python, x: &Bound<PyAny>, warm: bool) -> PyResult<Evaluation> {
@@ -571,11 +541,7 @@ impl Problem {
         };
         let given = [
             ("x", Some(numbers(x, "x")?), vec![self.size()]),
-            (
-                "loads",
-                read(loads, "loads")?,
-                vec![self.problem.grid.panel_count(), 3],
-            ),
+            ("loads", read(loads, "loads")?, vec![self.problem.grid.panel_count(), 3]),
             ("thickness", read(thickness, "thickness")?, vec![]),
             ("stress", read(stress, "stress")?, vec![]),
         ];
@@ -593,11 +559,7 @@ impl Problem {
                 return Err(wrong_shape(name, shape, &expected("n".into())));
             }
             if count.is_some_and(|count| count != many) {
-                return Err(wrong_shape(
-                    name,
-                    shape,
-                    &expected(count.unwrap_or(0).to_string()),
-                ));
+                return Err(wrong_shape(name, shape, &expected(count.unwrap_or(0).to_string())));
             }
             count = Some(many);
         }
@@ -605,11 +567,7 @@ impl Problem {
             let length: usize = one.iter().product();
             move |i: usize| -> Option<Vec<f64>> {
                 let values = &numbers.as_ref()?.values;
-                let first = if values.len() == length {
-                    0
-                } else {
-                    i * length
-                };
+                let first = if values.len() == length { 0 } else { i * length };
                 Some(values[first..first + length].to_vec())
             }
         });
@@ -629,10 +587,7 @@ impl Problem {
 /// The scene with the keys of a dict.
 fn scene_of(keys: &Bound<PyDict>, folder: &Path) -> PyResult<Scene> {
     let py = keys.py();
-    let text: String = py
-        .import("kirigami.files")?
-        .call_method1("_json", (keys,))?
-        .extract()?;
+    let text: String = py.import("kirigami.files")?.call_method1("_json", (keys,))?.extract()?;
     let path = folder.join("scene (dict)");
     let keys: toml::Value = serde_json::from_str(&text).map_err(errors::scene)?;
     let text = toml::to_string(&keys).map_err(errors::scene)?;

@@ -11,7 +11,8 @@ use std::time::Duration;
 /// How often Python is asked for signals.
 const POLL: Duration = Duration::from_millis(50);
 
-/// The result of `work`, without the GIL; an error in a fork of the process that began to compute, whose threads are missing here.
+/// The result of `work`, without the GIL; an error in a fork of the process that began to compute,
+/// whose threads are missing here.
 pub(crate) fn unlocked<T: Send>(py: Python, work: impl FnOnce() -> T + Send) -> PyResult<T> {
     static OWNER: OnceLock<u32> = OnceLock::new();
     if *OWNER.get_or_init(std::process::id) != std::process::id() {
@@ -23,7 +24,8 @@ pub(crate) fn unlocked<T: Send>(py: Python, work: impl FnOnce() -> T + Send) -> 
     Ok(py.detach(work))
 }
 
-/// The result of `work`, which ends early when `stop` becomes true: at Ctrl-C, which is then raised.
+/// The result of `work`, which ends early when `stop` becomes true: at Ctrl-C, which is then
+/// raised.
 pub(crate) fn while_polling<T: Send>(
     py: Python,
     stop: &AtomicBool,

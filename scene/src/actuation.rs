@@ -16,8 +16,8 @@ pub struct SupportConfig {
     pub panel: [usize; 2],
     /// Which motions of the point are prescribed, and whether the panel may turn about it.
     pub kind: SupportKind,
-    /// The point of the panel that is held: `"centroid"`, the middle of its edge `"bottom"`, `"right"`, `"top"` or
-    /// `"left"`, or a point [x, y] of the flat sheet (mm).
+    /// The point of the panel that is held: `"centroid"`, the middle of its edge `"bottom"`,
+    /// `"right"`, `"top"` or `"left"`, or a point [x, y] of the flat sheet (mm).
     #[serde(default)]
     pub at: At,
     /// Diameter of a hole at the point for a nail or a hook (mm).
@@ -108,8 +108,8 @@ pub struct LoadConfig {
     pub couple: f64,
 }
 
-/// A dead traction along an edge of the flat sheet. Its resultant is divided equally among the panels of
-/// the edge and acts at their centroids, so the loads do not change with the pattern.
+/// A dead traction along an edge of the flat sheet. Its resultant is divided equally among the
+/// panels of the edge and acts at their centroids, so the loads do not change with the pattern.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct EdgeLoadConfig {
@@ -134,8 +134,8 @@ pub enum SheetEdge {
     Left,
 }
 
-/// Self-equilibrated couples on the two panels of a hinge that open it. The couple on a panel whose rotation is
-/// supported would do no work and is left out.
+/// Self-equilibrated couples on the two panels of a hinge that open it. The couple on a panel whose
+/// rotation is supported would do no work and is left out.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct OpeningCoupleConfig {
@@ -150,7 +150,8 @@ pub struct OpeningCoupleConfig {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct DriveConfig {
-    /// Stroke at the end of the path: work of the full loads divided by the sum of their magnitudes (mm).
+    /// Stroke at the end of the path: work of the full loads divided by the sum of their magnitudes
+    /// (mm).
     #[schemars(range(min = -1e5, max = 1e5))]
     pub stroke: f64,
 }
@@ -230,15 +231,7 @@ pub(super) fn name(value: impl Serialize) -> String {
 impl LoadConfig {
     /// A force (N) at the centroid of a panel.
     pub fn at_centroid(panel: [usize; 2], force: [f64; 2]) -> Self {
-        Self {
-            panel,
-            at: At::default(),
-            hole: None,
-            clip: None,
-            mass_g: None,
-            force,
-            couple: 0.0,
-        }
+        Self { panel, at: At::default(), hole: None, clip: None, mass_g: None, force, couple: 0.0 }
     }
 }
 

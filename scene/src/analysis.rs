@@ -1,5 +1,5 @@
-//! Analyses of a deployed sheet beyond its shape: forces (section 3.2), Gamma (section 5.1), comparison with
-//! measured points (section 4.4), paths of the hinges (section 5.2).
+//! Analyses of a deployed sheet beyond its shape: forces (section 3.2), Gamma (section 5.1),
+//! comparison with measured points (section 4.4), paths of the hinges (section 5.2).
 
 pub mod actuation_curve;
 pub mod design_checks;

@@ -1,4 +1,5 @@
-//! Supports and loads of a scene on the panels of its sheet: what solver, drawings, run page and report read.
+//! Supports and loads of a scene on the panels of its sheet: what solver, drawings, run page and
+//! report read.
 
 use crate::actuation::{
     Attached, EdgeLoadConfig, LoadConfig, OpeningCoupleConfig, SupportConfig, name,
@@ -65,9 +66,8 @@ impl Scene {
     /// Supports and loads on the panels of the sheet.
     pub fn actuation(&self) -> Actuation {
         let (config, grid) = (&self.config, self.grid());
-        let supports: Vec<SupportedPanel> = (config.supports.iter())
-            .map(|support| support.on(grid))
-            .collect();
+        let supports: Vec<SupportedPanel> =
+            (config.supports.iter()).map(|support| support.on(grid)).collect();
         let turns = |panel: usize| {
             let mut held = supports.iter().filter(|support| support.panel == panel);
             held.all(|support| support.motion[2].is_none())
@@ -77,10 +77,7 @@ impl Scene {
         let panels = config.loads.iter().map(|load| load.on(grid, down));
         let edges = config.edge_loads.iter();
         let edges = edges.map(|load| load.on(grid, EDGES[load.edge as usize].map(|k| corners[k])));
-        let openings = config
-            .opening_couples
-            .iter()
-            .map(|load| load.on(grid, turns));
+        let openings = config.opening_couples.iter().map(|load| load.on(grid, turns));
         Actuation {
             attachments: config.attached().map(|it| it.on(grid)).collect(),
             loads: panels.chain(edges).chain(openings).collect(),
@@ -127,7 +124,8 @@ impl Actuation {
     }
 }
 
-/// A panel [column, row] by its number in the drawings, which counts from 0, and its place, which counts from 1.
+/// A panel [column, row] by its number in the drawings, which counts from 0, and its place, which
+/// counts from 1.
 pub fn panel_name(grid: Grid, [column, row]: [usize; 2]) -> String {
     let number = grid.panel(column, row);
     format!("panel P{number} (column {}, row {})", column + 1, row + 1)

@@ -15,22 +15,18 @@ use hinge::SheetMaterial;
 use std::path::{Path, PathBuf};
 use surrogate::{Springback, Surrogate};
 
-/// Version of geometry, mechanics and objective: raised when a change of the code changes the loss of a design, so that
-/// a run of an earlier version is not continued.
+/// Version of geometry, mechanics and objective: raised when a change of the code changes the loss
+/// of a design, so that a run of an earlier version is not continued.
 ///
-/// 1: O stands half a kerf further from the line of the secondary cut. 2: the path is followed in increments of its own, so
-/// that a sheet that jumps may end on another branch. 3: where it cannot be followed, it goes on from a minimum that does not
-/// depend on the load steps. 4: a hanging sheet has weight; supports and loads act at their points.
+/// 1: O stands half a kerf further from the line of the secondary cut. 2: the path is followed in
+/// increments of its own, so that a sheet that jumps may end on another branch. 3: where it cannot
+/// be followed, it goes on from a minimum that does not depend on the load steps. 4: a hanging
+/// sheet has weight; supports and loads act at their points.
 const MODEL_VERSION: u32 = 4;
 
 /// What the parts of [`Scene::model_hash`] identify, in their order.
-pub(super) const MODEL_PARTS: [&str; 5] = [
-    "version of kirigami",
-    "material",
-    "target",
-    "weights",
-    "law of released hinges",
-];
+pub(super) const MODEL_PARTS: [&str; 5] =
+    ["version of kirigami", "material", "target", "weights", "law of released hinges"];
 
 /// A scene with checked values, its material and its sampled target.
 #[derive(Clone, Debug)]
@@ -62,16 +58,13 @@ impl Scene {
         Self::with_networks(config, path, None)
     }
 
-    /// The scene with other keys, in the same place. Its weights are read again only if the keys that say how they are read changed.
+    /// The scene with other keys, in the same place. Its weights are read again only if the keys
+    /// that say how they are read changed.
     pub fn changed(&self, config: SceneConfig) -> Result<Self, SceneError> {
         let reads = |config: &SceneConfig| {
             let process = config.process;
             (
-                (
-                    config.level,
-                    config.surrogate.clone(),
-                    config.material.clone(),
-                ),
+                (config.level, config.surrogate.clone(), config.material.clone()),
                 (config.thickness, config.ligament.range, process),
             )
         };
@@ -99,15 +92,7 @@ impl Scene {
         let hinge = LoadedHinge::load(&config, &measured, path, known)?;
         let springback = springback_file::load(&config, &measured, path);
         let springback = springback.map_err(SceneError::at(path))?;
-        Ok(Self {
-            config,
-            material,
-            measured,
-            target,
-            hinge,
-            springback,
-            path: path.to_owned(),
-        })
+        Ok(Self { config, material, measured, target, hinge, springback, path: path.to_owned() })
     }
 
     /// The learned hinge law, if the scene uses one.
@@ -147,7 +132,8 @@ impl Scene {
         resolved(&self.path, path)
     }
 
-    /// Thickness of the sheet over the thickness of the material file, at which learned laws were trained.
+    /// Thickness of the sheet over the thickness of the material file, at which learned laws were
+    /// trained.
     pub fn scale(&self) -> f64 {
         self.config.scale(&self.measured)
     }
@@ -157,20 +143,18 @@ impl Scene {
         self.hinge.networks.first()
     }
 
-    /// BLAKE3 hash of the keys of the scene without title and paths: neither the title nor the place of a file changes a
-    /// design.
+    /// BLAKE3 hash of the keys of the scene without title and paths: neither the title nor the
+    /// place of a file changes a design.
     pub fn hash(&self) -> String {
-        let keys = SceneConfig {
-            title: String::new(),
-            ..self.config.without_paths()
-        };
+        let keys = SceneConfig { title: String::new(), ..self.config.without_paths() };
         let keys = serde_json::to_vec(&keys).expect("a run writes the same keys to its state");
         blake3::hash(&keys).to_hex().to_string()
     }
 
-    /// Identifies what a run depends on besides the keys of the scene: the version of the model, the material law, the
-    /// target's points, the weights and, if the target is for the released sheet, the law of released hinges. It is the same
-    /// on every machine, whereas the loss differs in its last digits.
+    /// Identifies what a run depends on besides the keys of the scene: the version of the model,
+    /// the material law, the target's points, the weights and, if the target is for the released
+    /// sheet, the law of released hinges. It is the same on every machine, whereas the loss differs
+    /// in its last digits.
     pub fn model_hash(&self) -> String {
         let read = match self.config.level {
             Level::Fine => usize::MAX,
@@ -184,11 +168,7 @@ impl Scene {
         let material = if self.weight_by_area() == [0.0; 2] {
             self.material.law_hash()
         } else {
-            format!(
-                "{}/{}",
-                self.material.law_hash(),
-                self.material.density_kg_m3
-            )
+            format!("{}/{}", self.material.law_hash(), self.material.density_kg_m3)
         };
         let model = format!("{MODEL_VERSION}-{material}-{target}-{weights}");
         match self.designed_for_release() {
@@ -203,7 +183,8 @@ impl Scene {
         self.springback.as_ref().filter(|_| released)
     }
 
-    /// The weight of a unit of area in the plane of the sheet (N/mm^2); zero unless it hangs and its weight is modelled.
+    /// The weight of a unit of area in the plane of the sheet (N/mm^2); zero unless it hangs and
+    /// its weight is modelled.
     pub fn weight_by_area(&self) -> [f64; 2] {
         let posture = self.config.posture.filter(PostureConfig::is_heavy);
         let down = posture.and_then(|posture| posture.down());
@@ -213,10 +194,7 @@ impl Scene {
 
     /// The options that turn a pattern into the sheet of this scene.
     pub fn sheet_options(&self) -> SheetOptions {
-        SheetOptions {
-            hinge_point: self.hinge.hinge_point,
-            process: self.config.process,
-        }
+        SheetOptions { hinge_point: self.hinge.hinge_point, process: self.config.process }
     }
 
     /// The run folder.

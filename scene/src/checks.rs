@@ -1,6 +1,7 @@
 //! Conditions on the values of a scene besides the ranges of its keys, which stand on their fields.
 //!
-//! The ranges are wider than the ranges of any real sheet, and narrower than an error by a factor of 1000.
+//! The ranges are wider than the ranges of any real sheet, and narrower than an error by a factor
+//! of 1000.
 
 use crate::actuation::{At, Attached, EdgeLoadConfig, SupportKind};
 use crate::invalid_scene::InvalidScene;
@@ -50,17 +51,20 @@ pub(super) fn level(scene: &SceneConfig) -> Result<(), InvalidScene> {
     }
 }
 
-/// Maximum ratio of the target's perimeter to the perimeter of the flat sheet. Panels keep their edges: a sheet of squares
-/// opens to twice its width; a sheet of slender panels opens further, but along one axis only.
+/// Maximum ratio of the target's perimeter to the perimeter of the flat sheet. Panels keep their
+/// edges: a sheet of squares opens to twice its width; a sheet of slender panels opens further, but
+/// along one axis only.
 const OPENS_TO: f64 = 3.0;
 
-/// Maximum distance between the middles of target and flat sheet (mm): supports move a sheet by 100 m at most.
+/// Maximum distance between the middles of target and flat sheet (mm): supports move a sheet by 100
+/// m at most.
 const AWAY: f64 = 1e6;
 
 /// Area of the sampled target over the square of its length below which it has no inside.
 const NO_AREA: f64 = 1e-6;
 
-/// A target of a very different size than the sheet, or far away from it, is assumed to be in the wrong unit.
+/// A target of a very different size than the sheet, or far away from it, is assumed to be in the
+/// wrong unit.
 pub(super) fn target(target: &Target, scene: &SceneConfig) -> Result<(), InvalidScene> {
     let outline = scene.sheet.outline();
     let perimeter: f64 = edges(&outline.corners).map(|(p, q)| distance(p, q)).sum();
@@ -68,12 +72,7 @@ pub(super) fn target(target: &Target, scene: &SceneConfig) -> Result<(), Invalid
     within("length of the target outline", target.length, limits, "mm")
         .map_err(|source| InvalidScene::TargetLength { source, perimeter })?;
     let away = distance(target.mean(), mean(&outline.corners));
-    within(
-        "distance of the target from the sheet",
-        away,
-        [0.0, AWAY],
-        "mm",
-    )?;
+    within("distance of the target from the sheet", away, [0.0, AWAY], "mm")?;
     let objective = &scene.objective;
     let needs_area = objective.symmetric_difference > 0.0 || scene.level == Level::Pin;
     if needs_area && target.area() <= NO_AREA * target.length * target.length {
@@ -98,12 +97,7 @@ fn sheet(scene: &SceneConfig) -> Result<(), InvalidScene> {
         let corners = outline.corners;
         return Err(InvalidScene::Corners(PatternError::Outline { corners }));
     }
-    within(
-        "the size of sheet.corners",
-        outline.size(),
-        [20.0, 2e4],
-        "mm",
-    )?;
+    within("the size of sheet.corners", outline.size(), [20.0, 2e4], "mm")?;
     let [columns, rows] = scene.sheet.panels;
     if columns.saturating_mul(rows) > 100_000 {
         return Err(InvalidScene::Panels { columns, rows });
@@ -130,14 +124,10 @@ fn ligament(scene: &SceneConfig) -> Result<(), InvalidScene> {
     if !(start > min && start < max) {
         let key = "ligament.start";
         let w_lig = start;
-        return Err(InvalidScene::Width {
-            key,
-            w_lig,
-            min,
-            max,
-        });
+        return Err(InvalidScene::Width { key, w_lig, min, max });
     }
-    // A slit is at most as long as two panels and is shortened at each end by a ligament and its hole.
+    // A slit is at most as long as two panels and is shortened at each end by a ligament and its
+    // hole.
     let panel = scene.sheet.mean_panel_area().sqrt();
     let taken = min + process.hole_radius(min);
     if taken >= panel {
@@ -159,24 +149,13 @@ fn start(scene: &SceneConfig) -> Result<(), InvalidScene> {
     let [min, max] = scene.ligament.range;
     let beyond = w_lig.iter().find(|w| !(**w > min && **w < max));
     let key = "start.w_lig";
-    beyond.map_or(Ok(()), |&w_lig| {
-        Err(InvalidScene::Width {
-            key,
-            w_lig,
-            min,
-            max,
-        })
-    })
+    beyond.map_or(Ok(()), |&w_lig| Err(InvalidScene::Width { key, w_lig, min, max }))
 }
 
 fn posture(scene: &SceneConfig) -> Result<(), InvalidScene> {
     let Some(posture) = &scene.posture else {
         let learned = scene.level.is_learned();
-        return if learned {
-            Err(InvalidScene::NoPosture)
-        } else {
-            Ok(())
-        };
+        return if learned { Err(InvalidScene::NoPosture) } else { Ok(()) };
     };
     let hangs = posture.kind == Posture::Hanging;
     if posture.down.is_some() && !hangs {
@@ -188,7 +167,8 @@ fn posture(scene: &SceneConfig) -> Result<(), InvalidScene> {
     Ok(())
 }
 
-/// The points at which panels are held or pulled: one for each panel, inside it in the start pattern, with one hole or clip.
+/// The points at which panels are held or pulled: one for each panel, inside it in the start
+/// pattern, with one hole or clip.
 fn attachments(scene: &SceneConfig) -> Result<(), InvalidScene> {
     let (mut points, mut fastened) = (BTreeMap::new(), BTreeSet::new());
     for attached in scene.attached() {
@@ -256,12 +236,7 @@ fn inside(scene: &SceneConfig, key: String, panel: [usize; 2], at: At) -> Result
         return Ok(());
     }
     let corners = corners.map(|[x, y]| format!("({x:.1}, {y:.1})")).join(" ");
-    Err(InvalidScene::PointOutside {
-        key,
-        at,
-        panel,
-        corners,
-    })
+    Err(InvalidScene::PointOutside { key, at, panel, corners })
 }
 
 fn supports(scene: &SceneConfig) -> Result<(), InvalidScene> {

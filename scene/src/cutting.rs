@@ -8,11 +8,13 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct CuttingConfig {
-    /// Length by which a slit that is open on the outline is cut beyond the finished edge (mm): 1, no key; some machines have their own.
+    /// Length by which a slit that is open on the outline is cut beyond the finished edge (mm): 1,
+    /// no key; some machines have their own.
     #[serde(skip)]
     pub over_run: f64,
-    /// The material that the sheet is cut from, in either orientation: `"a5"` to `"a0"`, `"letter"`, `"tabloid"`, or width and
-    /// height (mm). The report warns of a sheet that does not fit on it.
+    /// The material that the sheet is cut from, in either orientation: `"a5"` to `"a0"`,
+    /// `"letter"`, `"tabloid"`, or width and height (mm). The report warns of a sheet that does not
+    /// fit on it.
     pub stock: Option<Stock>,
     /// Border of the stock that the machine cannot cut (mm).
     #[schemars(range(min = 0.0, max = 1e3))]
@@ -21,10 +23,6 @@ pub struct CuttingConfig {
 
 impl Default for CuttingConfig {
     fn default() -> Self {
-        Self {
-            over_run: 1.0,
-            stock: None,
-            margin: 0.0,
-        }
+        Self { over_run: 1.0, stock: None, margin: 0.0 }
     }
 }

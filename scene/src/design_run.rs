@@ -43,7 +43,8 @@ pub struct Designed {
     /// Whether a corrected path of the search was on another branch than the followed one; see
     /// [`SearchState::branch_mismatch`].
     pub branch_mismatch: bool,
-    /// The levels at which the start of the search was found; empty if the search began at the start of the scene.
+    /// The levels at which the start of the search was found; empty if the search began at the
+    /// start of the scene.
     pub rungs: Vec<Rung>,
 }
 
@@ -117,11 +118,8 @@ pub fn stored_design(path: &Path, scene: &Scene) -> Result<DesignVector, Inverse
         Alone(DesignVector),
     }
     let text = regular_file::read(path).map_err(FileError::at(path))?;
-    let stored =
-        sealed_json::from_slice_by_hand(&text).map_err(|source| InverseDesignError::State {
-            path: path.to_owned(),
-            source,
-        })?;
+    let stored = sealed_json::from_slice_by_hand(&text)
+        .map_err(|source| InverseDesignError::State { path: path.to_owned(), source })?;
     let (Stored::Run { best: design } | Stored::Alone(design)) = stored;
     if design.same_shape(&scene.start()) {
         return Ok(design);
@@ -156,18 +154,18 @@ pub fn left_run(scene: &Scene) -> Result<Option<(Ended, DesignVector)>, InverseD
     Ok(state.map(|state| (state.left(), state.search.best)))
 }
 
-/// The keys of a scene by which a design is found. They change neither its sheet nor how it deploys.
+/// The keys of a scene by which a design is found. They change neither its sheet nor how it
+/// deploys.
 const SEARCH_KEYS: [&str; 3] = ["objective", "optimiser", "tolerances"];
 
 impl Designed {
-    /// The start of a scene before any step of its search, with its path followed from the flat sheet until `stop` becomes true.
+    /// The start of a scene before any step of its search, with its path followed from the flat
+    /// sheet until `stop` becomes true.
     pub fn at_start(scene: &Scene, stop: Arc<AtomicBool>) -> Result<Self, InverseDesignError> {
         let mut problem = scene.problem()?;
         problem.stop_by(stop);
         let design = scene.start();
-        let start = problem
-            .evaluate(&design)
-            .map_err(InverseDesignError::Start)?;
+        let start = problem.evaluate(&design).map_err(InverseDesignError::Start)?;
         let record = StepRecord {
             step: 0,
             scores: Scores::new(&problem.objective, &start),
@@ -187,8 +185,8 @@ impl Designed {
         })
     }
 
-    /// The run in the run folder of a scene as it was left, with its paths followed from the flat sheet until `stop` becomes true;
-    /// `None` if there is no run.
+    /// The run in the run folder of a scene as it was left, with its paths followed from the flat
+    /// sheet until `stop` becomes true; `None` if there is no run.
     pub fn of_run(
         scene: &Scene,
         stop: Arc<AtomicBool>,
@@ -200,9 +198,7 @@ impl Designed {
         problem.stop_by(stop);
         let start = (problem.evaluate(&scene.start())).map_err(InverseDesignError::Start)?;
         let ended = state.left();
-        let RunState {
-            rungs, mut search, ..
-        } = state;
+        let RunState { rungs, mut search, .. } = state;
         search.pause(&problem);
         let found = Self::found(problem, ended, search, start)?;
         Ok(Some(Self { rungs, ..found }))
@@ -215,9 +211,7 @@ impl Designed {
         search: SearchState,
         start: Evaluation,
     ) -> Result<Self, InverseDesignError> {
-        let best = problem
-            .evaluate(&search.best)
-            .map_err(InverseDesignError::Best)?;
+        let best = problem.evaluate(&search.best).map_err(InverseDesignError::Best)?;
         Ok(Self {
             problem,
             ended,
@@ -233,8 +227,8 @@ impl Designed {
 
 /// Runs the search of a scene in its run folder; continues from the state there if there is one.
 ///
-/// `progress` is called with the state of the search after every step; the run stops at the end of the step during which `stop`
-/// becomes true.
+/// `progress` is called with the state of the search after every step; the run stops at the end of
+/// the step during which `stop` becomes true.
 pub fn inverse_design(
     scene: &Scene,
     stop: &AtomicBool,
@@ -255,9 +249,7 @@ pub fn design_after(
     std::fs::create_dir_all(&folder).map_err(FileError::at(&folder))?;
     let path = folder.join(STATE_FILE);
     let design = scene.start();
-    let start = problem
-        .evaluate(&design)
-        .map_err(InverseDesignError::Start)?;
+    let start = problem.evaluate(&design).map_err(InverseDesignError::Start)?;
     wide_enough(scene, &start)?;
     let (optimiser, model) = (&scene.config.optimiser, scene.model_hash());
     let mut rungs = rungs;
@@ -288,20 +280,14 @@ pub fn design_after(
     // The state names the hashes of the inputs that have just been written.
     save(&search, None)?;
     let mut saved = Instant::now();
-    let ended = optimise(
-        &problem,
-        &mut search,
-        optimiser.steps,
-        stop,
-        &mut |search| {
-            progress(search);
-            if saved.elapsed() > SAVE_EVERY {
-                save(search, None)?;
-                saved = Instant::now();
-            }
-            Ok::<_, FileError>(())
-        },
-    )?;
+    let ended = optimise(&problem, &mut search, optimiser.steps, stop, &mut |search| {
+        progress(search);
+        if saved.elapsed() > SAVE_EVERY {
+            save(search, None)?;
+            saved = Instant::now();
+        }
+        Ok::<_, FileError>(())
+    })?;
     save(&search, Some(&ended))?;
     let found = Designed::found(problem, ended, search, start)?;
     Ok(Designed { rungs, ..found })
@@ -337,13 +323,13 @@ impl RunState {
             text => text.map_err(FileError::at(path))?,
         };
         let state = sealed_json::from_slice(&text);
-        state.map(Some).map_err(|source| InverseDesignError::State {
-            path: path.to_owned(),
-            source,
-        })
+        state
+            .map(Some)
+            .map_err(|source| InverseDesignError::State { path: path.to_owned(), source })
     }
 
-    /// The keys of the scene and the inputs besides that changed since the run, in words; those `allowed` may.
+    /// The keys of the scene and the inputs besides that changed since the run, in words; those
+    /// `allowed` may.
     fn changes(&self, scene: &Scene, allowed: &[&str]) -> Option<String> {
         let forbidden = |name: &&str| !allowed.contains(name);
         let keys = self.changed_keys(scene);
@@ -355,9 +341,9 @@ impl RunState {
         (!changed.is_empty()).then(|| changed.join(", "))
     }
 
-    /// The keys of the scene that changed since the run, without those that may: the number of steps, the title, the cutting
-    /// and the tolerances, which change no design, and paths, since [`Scene::model_hash`] identifies what
-    /// they name.
+    /// The keys of the scene that changed since the run, without those that may: the number of
+    /// steps, the title, the cutting and the tolerances, which change no design, and paths, since
+    /// [`Scene::model_hash`] identifies what they name.
     fn changed_keys(&self, scene: &Scene) -> BTreeSet<String> {
         let mut before = self.scene.without_paths();
         before.optimiser.steps = scene.config.optimiser.steps;
@@ -370,9 +356,7 @@ impl RunState {
         };
         let (before, now) = (keys(&before), keys(&scene.config.without_paths()));
         let both = before.keys().chain(now.keys());
-        both.filter(|key| before.get(*key) != now.get(*key))
-            .cloned()
-            .collect()
+        both.filter(|key| before.get(*key) != now.get(*key)).cloned().collect()
     }
 
     /// The inputs besides the keys of the scene that changed since the run.
@@ -380,10 +364,7 @@ impl RunState {
         let now = scene.model_hash();
         let mut before = self.model.split('-');
         let parts = MODEL_PARTS.into_iter().zip(now.split('-'));
-        parts
-            .filter(|(_, now)| before.next() != Some(*now))
-            .map(|(part, _)| part)
-            .collect()
+        parts.filter(|(_, now)| before.next() != Some(*now)).map(|(part, _)| part).collect()
     }
 
     /// The state of an earlier run of the same scene; only the number of steps may differ.

@@ -12,7 +12,8 @@ use hinge::{InvalidDesign, InvalidMaterial};
 use std::path::PathBuf;
 use support::key_limits::OutOfRange;
 
-/// A value of a scene that is outside its range or that other values exclude; the message names the key.
+/// A value of a scene that is outside its range or that other values exclude; the message names the
+/// key.
 #[derive(Debug, thiserror::Error)]
 #[allow(missing_docs, reason = "the message of a variant is its documentation")]
 pub enum InvalidScene {
@@ -41,12 +42,7 @@ pub enum InvalidScene {
     #[error("ligament.range = [{min}, {max}] mm violates minimum < maximum")]
     LigamentRange { min: f64, max: f64 },
     #[error("{key} = {w_lig} mm violates {min} < {key} < {max} mm (ligament.range)")]
-    Width {
-        key: &'static str,
-        w_lig: f64,
-        min: f64,
-        max: f64,
-    },
+    Width { key: &'static str, w_lig: f64, min: f64, max: f64 },
     #[error(
         "ligament.range: ligaments of {min} mm with their holes take {taken:.1} mm, but panels are {panel:.1} mm wide on \
          average, so no slit is left: narrow the ligaments or use fewer panels"
@@ -108,12 +104,7 @@ pub enum InvalidScene {
         "{key}.at = [{}, {}] mm is outside panel {panel:?} of the start, which has the corners {corners}",
         at[0], at[1]
     )]
-    PointOutside {
-        key: String,
-        at: [f64; 2],
-        panel: [usize; 2],
-        corners: String,
-    },
+    PointOutside { key: String, at: [f64; 2], panel: [usize; 2], corners: String },
     #[error("supports: a sheet without supports has no equilibrium: add [[supports]]")]
     NoSupports,
     #[error("supports[{i}].panel = {panel:?} is supported twice")]
@@ -133,11 +124,7 @@ pub enum InvalidScene {
         "{key} = {panel:?} violates column < {} and row < {} (panels are counted from [0, 0] at the lower left)",
         grid[0], grid[1]
     )]
-    NoPanel {
-        key: String,
-        panel: [usize; 2],
-        grid: [usize; 2],
-    },
+    NoPanel { key: String, panel: [usize; 2], grid: [usize; 2] },
     #[error("the level of the scene needs the section [{0}]")]
     NoSection(&'static str),
     #[error(
@@ -156,10 +143,7 @@ pub enum InvalidScene {
     )]
     NoWeights { file: PathBuf },
     #[error("the weights {} are for {source}", file.display())]
-    OtherHinges {
-        file: PathBuf,
-        source: WeightsMismatch,
-    },
+    OtherHinges { file: PathBuf, source: WeightsMismatch },
     #[error("surrogate.ensemble: all networks must be trained on the data of surrogate.weights")]
     OtherTraining,
     #[error(
@@ -208,11 +192,7 @@ pub enum InvalidScene {
 
 /// One radius of holes over w_lig, or the range of several.
 fn ratios([least, most]: [f64; 2]) -> String {
-    if least == most {
-        format!("{least}")
-    } else {
-        format!("{least:.3} to {most:.3}")
-    }
+    if least == most { format!("{least}") } else { format!("{least:.3} to {most:.3}") }
 }
 
 /// What weights are for, if not for the hinges of the scene.
@@ -224,12 +204,7 @@ pub enum WeightsMismatch {
          the material file of the training, with its thickness; the key `thickness` of the scene gives the sheet another. \
          If its numbers have changed, train again"
     )]
-    Law {
-        trained: String,
-        trained_law: String,
-        file: String,
-        law: String,
-    },
+    Law { trained: String, trained_law: String, file: String, law: String },
     #[error("the material `{trained}`, the scene's is `{file}`")]
     Material { trained: String, file: String },
     #[error(

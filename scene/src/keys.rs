@@ -25,16 +25,18 @@ use std::path::{Component, Path, PathBuf};
 pub struct SceneConfig {
     /// Title of the pictures.
     pub title: String,
-    /// The TOML file of the sheet material, relative to the scene file. For a learned law, the file of the training.
+    /// The TOML file of the sheet material, relative to the scene file. For a learned law, the file
+    /// of the training.
     pub material: PathBuf,
-    /// Thickness of the sheet (mm), instead of the material's: the same law in another thickness. Learned energies are
-    /// converted exactly, by similarity: ligament widths and r_win scale with the thickness.
+    /// Thickness of the sheet (mm), instead of the material's: the same law in another thickness.
+    /// Learned energies are converted exactly, by similarity: ligament widths and r_win scale with
+    /// the thickness.
     #[schemars(range(min = 0.02, max = 10.0))]
     pub thickness: Option<f64>,
     /// How much of the hinges is modelled: `pin`, `linear`, `draft`, `standard` or `fine`.
     pub level: Level,
-    /// N of the load steps zeta_i = i/N, where the path is read for pictures and path functionals. The solver chooses its
-    /// own increments between them.
+    /// N of the load steps zeta_i = i/N, where the path is read for pictures and path functionals.
+    /// The solver chooses its own increments between them.
     #[schemars(range(min = 1, max = 10_000))]
     #[serde(default = "default_load_steps")]
     pub load_steps: usize,
@@ -63,8 +65,8 @@ pub struct SceneConfig {
     pub surrogate: Option<SurrogateFile>,
     /// What keeps the panels in their plane; required with a learned energy.
     pub posture: Option<PostureConfig>,
-    /// The supported panels; they must prevent the rigid motions of the sheet, except that a `hanging` sheet may swing about
-    /// a single pin. Empty at the level `pin`.
+    /// The supported panels; they must prevent the rigid motions of the sheet, except that a
+    /// `hanging` sheet may swing about a single pin. Empty at the level `pin`.
     #[serde(default)]
     pub supports: Vec<SupportConfig>,
     /// Dead loads on panels.
@@ -117,7 +119,8 @@ pub(super) fn folder(scene: &Path) -> &Path {
     scene.parent().unwrap_or(Path::new(""))
 }
 
-/// A path written relative to the scene file, without `.` inside, and without `..` after a folder that is not a link.
+/// A path written relative to the scene file, without `.` inside, and without `..` after a folder
+/// that is not a link.
 pub(super) fn resolved(scene: &Path, path: &Path) -> PathBuf {
     let mut short = PathBuf::new();
     for part in folder(scene).join(path).components() {
@@ -164,8 +167,7 @@ impl SceneConfig {
 
     /// Thickness of the sheet over the thickness of the material file `material`.
     pub(super) fn scale(&self, material: &SheetMaterial) -> f64 {
-        self.thickness
-            .map_or(1.0, |thickness| thickness / material.thickness)
+        self.thickness.map_or(1.0, |thickness| thickness / material.thickness)
     }
 
     /// Removes supports, loads and drive.

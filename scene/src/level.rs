@@ -1,4 +1,5 @@
-//! The level of a scene: how much of its hinges is modelled. This file is the one place that says what a level is.
+//! The level of a scene: how much of its hinges is modelled. This file is the one place that says
+//! what a level is.
 //!
 //! | level | hinges | load steps | residual of an equilibrium |
 //! |---|---|---|---|
@@ -13,8 +14,8 @@ use design::equilibrium::settings::SolverSettings;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// How much of the hinges of a scene is modelled, from the cheapest level to the most expensive; each hinge law reads the
-/// section that it needs.
+/// How much of the hinges of a scene is modelled, from the cheapest level to the most expensive;
+/// each hinge law reads the section that it needs.
 #[derive(
     Clone,
     Copy,
@@ -47,20 +48,15 @@ pub enum Level {
     Final,
 }
 
-/// Load steps and residual of a draft: the shape differs by less than 1e-6 of a panel (docs/TRIED.md).
+/// Load steps and residual of a draft: the shape differs by less than 1e-6 of a panel
+/// (docs/TRIED.md).
 const DRAFT_STEPS: usize = 5;
 const DRAFT_TOLERANCE: f64 = 1e-3;
 
 impl Level {
     /// All levels, from the cheapest to the most expensive.
-    pub const ALL: [Self; 6] = [
-        Self::Pin,
-        Self::Linear,
-        Self::Draft,
-        Self::Standard,
-        Self::Fine,
-        Self::Final,
-    ];
+    pub const ALL: [Self; 6] =
+        [Self::Pin, Self::Linear, Self::Draft, Self::Standard, Self::Fine, Self::Final];
 
     /// Its name in a scene.
     pub fn name(self) -> &'static str {
@@ -100,10 +96,9 @@ impl Level {
     /// Its solver in a scene that has `settings`.
     pub(super) fn solver(self, settings: SolverSettings) -> SolverSettings {
         match self {
-            Self::Draft => SolverSettings {
-                tolerance: settings.tolerance.max(DRAFT_TOLERANCE),
-                ..settings
-            },
+            Self::Draft => {
+                SolverSettings { tolerance: settings.tolerance.max(DRAFT_TOLERANCE), ..settings }
+            }
             _ => settings,
         }
     }

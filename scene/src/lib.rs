@@ -1,9 +1,10 @@
 //! The scene: all input of a design run, read from one TOML file.
 //!
-//! A scene names its level, and only the hinge law of that level is loaded: `level = "linear"` reads no
-//! weights. Paths are relative to the scene file. The admissible values stand with their keys. [`Scene::read`] reads a scene and
-//! [`Scene::problem`] makes it a design problem; [`design_run`] searches and keeps its run folder. What is computed of a deployed
-//! sheet is in [`analysis`], the sheet for a silhouette in [`fit`], the outlines of drawings in [`drawing`].
+//! A scene names its level, and only the hinge law of that level is loaded: `level = "linear"`
+//! reads no weights. Paths are relative to the scene file. The admissible values stand with their
+//! keys. [`Scene::read`] reads a scene and [`Scene::problem`] makes it a design problem;
+//! [`design_run`] searches and keeps its run folder. What is computed of a deployed sheet is in
+//! [`analysis`], the sheet for a silhouette in [`fit`], the outlines of drawings in [`drawing`].
 
 #![warn(missing_docs)]
 

@@ -18,12 +18,14 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use surrogate::Surrogate;
 
-/// Stiffness of the contact of panel edges relative to k_theta, and the void angle (rad) at which the barrier
-/// becomes infinite; the text of (11) specifies neither. The window of a learned law has no contact of its
-/// flanks: if its domain extends below the closed sheet, the barrier becomes infinite at the end of the domain.
+/// Stiffness of the contact of panel edges relative to k_theta, and the void angle (rad) at which
+/// the barrier becomes infinite; the text of (11) specifies neither. The window of a learned law
+/// has no contact of its flanks: if its domain extends below the closed sheet, the barrier becomes
+/// infinite at the end of the domain.
 const CONTACT_STIFFNESS: f64 = 10.0;
 const CONTACT_WALL: f64 = -0.1;
-/// Angle (rad) of the secant stiffness of a learned hinge: 20 deg, as for the linear law of section 3.
+/// Angle (rad) of the secant stiffness of a learned hinge: 20 deg, as for the linear law of section
+/// 3.
 const TYPICAL_SECANT: f64 = 0.35;
 
 /// What a scene loads for its hinges: all that differs from law to law.
@@ -49,10 +51,7 @@ pub(super) enum HingeBehaviour {
         held: bool,
     },
     /// Forces follow from the energy of a law and from the contact of panel edges.
-    Elastic {
-        law: Arc<dyn HingeLaw>,
-        contact: Contact,
-    },
+    Elastic { law: Arc<dyn HingeLaw>, contact: Contact },
 }
 
 /// A law without its numbers.
@@ -63,8 +62,8 @@ impl fmt::Debug for LoadedHinge {
 }
 
 impl LoadedHinge {
-    /// Loads the law of a scene at `path`; `measured` is the material in the thickness of its file, `known` the networks if they were
-    /// loaded for it before.
+    /// Loads the law of a scene at `path`; `measured` is the material in the thickness of its file,
+    /// `known` the networks if they were loaded for it before.
     pub(super) fn load(
         config: &SceneConfig,
         measured: &SheetMaterial,
@@ -97,15 +96,13 @@ impl LoadedHinge {
     /// The opening angle of pins at the start (rad), if it is a design variable.
     pub(super) fn free_opening(&self) -> Option<f64> {
         match self.behaviour {
-            HingeBehaviour::Pinned {
-                opening,
-                held: false,
-            } => Some(opening),
+            HingeBehaviour::Pinned { opening, held: false } => Some(opening),
             _ => None,
         }
     }
 
-    /// The networks, its own first, if they predict energy and damage of the hinges in their states.
+    /// The networks, its own first, if they predict energy and damage of the hinges in their
+    /// states.
     pub(super) fn predictors(&self) -> &[Surrogate] {
         match &self.behaviour {
             HingeBehaviour::Elastic { law, .. } if law.domain().is_some() => &self.networks,
@@ -153,8 +150,8 @@ fn networks(
     Ok(networks)
 }
 
-/// Weights at the thickness of the sheet of the scene at `path`, or an error if they are not for its hinges. `measured`
-/// is the material in the thickness of its file.
+/// Weights at the thickness of the sheet of the scene at `path`, or an error if they are not for
+/// its hinges. `measured` is the material in the thickness of its file.
 fn network(
     config: &SceneConfig,
     measured: &SheetMaterial,
@@ -168,7 +165,8 @@ fn network(
     })
 }
 
-/// The learned law; the contact stiffness is relative to the secant stiffness of a hinge of the start.
+/// The learned law; the contact stiffness is relative to the secant stiffness of a hinge of the
+/// start.
 fn learned(
     config: &SceneConfig,
     networks: Vec<Surrogate>,
@@ -201,9 +199,7 @@ fn law_of(
         Arc::new(SurrogateLaw { surrogate })
     };
     match level {
-        Level::Fine => Arc::new(MeanLaw {
-            laws: networks.iter().map(law).collect(),
-        }),
+        Level::Fine => Arc::new(MeanLaw { laws: networks.iter().map(law).collect() }),
         _ => {
             let own = law(&networks[0]);
             match solved {
@@ -214,8 +210,8 @@ fn law_of(
     }
 }
 
-/// The springs of a hinge with the start width and cuts at a right angle, turned by 20 degrees: the secant of the rotation, the tangents
-/// of the translations.
+/// The springs of a hinge with the start width and cuts at a right angle, turned by 20 degrees: the
+/// secant of the rotation, the tangents of the translations.
 pub(super) fn springs_at_start(config: &SceneConfig, surrogate: &Surrogate) -> LinearConstants {
     let prepared = surrogate.prepare(&[config.process.hinge(config.ligament.start, FRAC_PI_2)]);
     let turned = HingeDeformation::from([0.0, 0.0, TYPICAL_SECANT]);
@@ -229,12 +225,14 @@ pub(super) fn springs_at_start(config: &SceneConfig, surrogate: &Surrogate) -> L
     }
 }
 
-/// The contact for hinges with the stiffness `k_theta`, which becomes infinite at the void angle `wall` (rad).
+/// The contact for hinges with the stiffness `k_theta`, which becomes infinite at the void angle
+/// `wall` (rad).
 fn contact(k_theta: f64, wall: f64) -> Result<Contact, InvalidScene> {
     Ok(Contact::new(CONTACT_STIFFNESS * k_theta, wall, 0.0)?)
 }
 
-/// The spread of networks trained on different data estimates the error of neither, and the spread of one network is zero.
+/// The spread of networks trained on different data estimates the error of neither, and the spread
+/// of one network is zero.
 fn same_training(config: &SceneConfig, networks: &[Surrogate]) -> Result<(), InvalidScene> {
     let hashes: Vec<String> = networks.iter().map(Surrogate::hash).collect();
     let twice = (1..hashes.len()).find_map(|j| {
@@ -250,10 +248,7 @@ fn same_training(config: &SceneConfig, networks: &[Surrogate]) -> Result<(), Inv
         let card = network.card();
         (card.dataset_hash.clone(), card.split_hash.clone())
     };
-    if networks
-        .windows(2)
-        .all(|pair| data(&pair[0]) == data(&pair[1]))
-    {
+    if networks.windows(2).all(|pair| data(&pair[0]) == data(&pair[1])) {
         return Ok(());
     }
     Err(InvalidScene::OtherTraining)
@@ -266,10 +261,7 @@ fn pinned(config: &SceneConfig) -> Result<LoadedHinge, InvalidScene> {
         return Err(InvalidScene::HeldPins);
     }
     Ok(LoadedHinge {
-        behaviour: HingeBehaviour::Pinned {
-            opening: pin.opening_deg.to_radians(),
-            held: pin.held,
-        },
+        behaviour: HingeBehaviour::Pinned { opening: pin.opening_deg.to_radians(), held: pin.held },
         hinge_point: HingePoint::Corner,
         networks: Vec::new(),
         solved: None,
@@ -296,11 +288,12 @@ fn linear(config: &SceneConfig) -> Result<LoadedHinge, InvalidScene> {
     })
 }
 
-/// Relative difference of r_win from the r_win of the weights that rounding in a scene file may cause.
+/// Relative difference of r_win from the r_win of the weights that rounding in a scene file may
+/// cause.
 const ROUNDED: f64 = 1e-6;
 
-/// The surrogate at the thickness of the scene's sheet. It is valid only for the material law and for hinges similar
-/// to those it was trained with; the kerf of the cutter may differ.
+/// The surrogate at the thickness of the scene's sheet. It is valid only for the material law and
+/// for hinges similar to those it was trained with; the kerf of the cutter may differ.
 fn fitted(
     config: &SceneConfig,
     material: &SheetMaterial,
@@ -344,9 +337,5 @@ fn fitted(
     if (scene / trained - 1.0).abs() > ROUNDED {
         return Err(WeightsMismatch::Window { trained, scene });
     }
-    Ok(if scale == 1.0 {
-        surrogate
-    } else {
-        surrogate.scaled(scale)
-    })
+    Ok(if scale == 1.0 { surrogate } else { surrogate.scaled(scale) })
 }

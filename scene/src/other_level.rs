@@ -13,20 +13,19 @@ use design::objective::shape::TargetState;
 const PIN_OPENING: f64 = 25.0;
 
 impl Scene {
-    /// The learned levels for which the scene names networks, from the cheapest to the most expensive.
+    /// The learned levels for which the scene names networks, from the cheapest to the most
+    /// expensive.
     pub fn learned_levels(&self) -> Vec<Level> {
         let has = |level: &Level| {
-            let config = SceneConfig {
-                level: *level,
-                ..self.config.clone()
-            };
+            let config = SceneConfig { level: *level, ..self.config.clone() };
             level.is_learned() && checks::level(&config).is_ok()
         };
         Level::ALL.into_iter().filter(has).collect()
     }
 
-    /// The scene at another level. What the level does not have is left out: at `pin` supports, loads and drive, below `draft` what the
-    /// objective reads from a learned law. A scene without springs gets the springs of its learned law.
+    /// The scene at another level. What the level does not have is left out: at `pin` supports,
+    /// loads and drive, below `draft` what the objective reads from a learned law. A scene without
+    /// springs gets the springs of its learned law.
     pub fn at_level(&self, level: Level) -> Result<Self, SceneError> {
         let mut config = self.config.clone();
         config.level = level;
@@ -37,10 +36,7 @@ impl Scene {
         }
         match level {
             Level::Pin => {
-                config.pin.get_or_insert(PinConfig {
-                    opening_deg: PIN_OPENING,
-                    held: false,
-                });
+                config.pin.get_or_insert(PinConfig { opening_deg: PIN_OPENING, held: false });
                 config.clear_actuation();
             }
             Level::Linear => {

@@ -7,8 +7,8 @@ use design::sheet::cut_sheet::Sheet;
 use design::sheet::kinematics::{Configuration, deployed};
 use design::sheet::topology::PanelCorner;
 
-/// The configuration in the position in which the objective compares it with the target: the centre of a sheet
-/// without supports lies at the centre of the target.
+/// The configuration in the position in which the objective compares it with the target: the centre
+/// of a sheet without supports lies at the centre of the target.
 pub fn placed(scene: &Scene, sheet: &Sheet, configuration: &[[f64; 3]]) -> Configuration {
     let mut placed = configuration.to_vec();
     if scene.config.supports.is_empty() {
@@ -22,7 +22,8 @@ pub fn placed(scene: &Scene, sheet: &Sheet, configuration: &[[f64; 3]]) -> Confi
     placed
 }
 
-/// The deployed outline through all of its corners, in the position in which the objective compares it (mm).
+/// The deployed outline through all of its corners, in the position in which the objective compares
+/// it (mm).
 pub fn deployed_outline(scene: &Scene, deployment: &Deployment) -> Vec<[f64; 2]> {
     let sheet = &deployment.sheet;
     let configuration = placed(scene, sheet, &deployment.compared().configuration);

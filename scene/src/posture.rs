@@ -13,7 +13,8 @@ pub const FRICTION: f64 = 0.3;
 pub struct PostureConfig {
     /// What keeps the panels in their plane.
     pub kind: Posture,
-    /// The direction [x, y] of gravity in the plane of the flat sheet, such as [0.0, -1.0]; required for `hanging`.
+    /// The direction [x, y] of gravity in the plane of the flat sheet, such as [0.0, -1.0];
+    /// required for `hanging`.
     #[schemars(inner(range(min = -1e3, max = 1e3)))]
     pub down: Option<[f64; 2]>,
 }
@@ -24,9 +25,11 @@ pub struct PostureConfig {
 pub enum Posture {
     /// Plates, a frame or a fabric keep every panel flat.
     HeldFlat,
-    /// It lies on a horizontal surface: its weight presses the panels down, and friction resists the motion.
+    /// It lies on a horizontal surface: its weight presses the panels down, and friction resists
+    /// the motion.
     Lying,
-    /// Its plane is upright: its weight acts along `down`, and nothing keeps thin panels in the plane.
+    /// Its plane is upright: its weight acts along `down`, and nothing keeps thin panels in the
+    /// plane.
     Hanging,
     /// Nothing keeps thin panels in the plane; its weight is left out.
     Free,

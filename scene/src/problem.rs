@@ -110,9 +110,8 @@ impl Scene {
         let (supports, loads) = (actuation.boundary_supports(), actuation.boundary_loads());
         let steps = level.load_steps(self.config.load_steps);
         let solver = EquilibriumSolver::new(self.grid(), &supports, &loads, steps, settings)?;
-        let solver = solver
-            .attached_at(actuation.attachments)
-            .with_weight(self.weight_by_area())?;
+        let solver =
+            solver.attached_at(actuation.attachments).with_weight(self.weight_by_area())?;
         match self.config.drive {
             Some(drive) => solver.driven(drive.stroke),
             None => Ok(solver),

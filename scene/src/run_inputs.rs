@@ -1,4 +1,5 @@
-//! The inputs of a run, copied to its folder: the design can be replayed where scene, material and weights are missing.
+//! The inputs of a run, copied to its folder: the design can be replayed where scene, material and
+//! weights are missing.
 //!
 //! | file | contents |
 //! |---|---|
@@ -49,15 +50,11 @@ pub enum RunInputsError {
          again, or run `kirigami design` with the scene again",
         path = .path.display()
     )]
-    Changed {
-        path: PathBuf,
-        expected: String,
-        found: String,
-    },
+    Changed { path: PathBuf, expected: String, found: String },
 }
 
-/// The scene file that `path` names: itself, or if it is the folder of a run, the scene of the run, after a check that
-/// none of the copied inputs has changed.
+/// The scene file that `path` names: itself, or if it is the folder of a run, the scene of the run,
+/// after a check that none of the copied inputs has changed.
 pub fn scene_file(path: &Path) -> Result<PathBuf, RunInputsError> {
     /// The part of a run's state that names its inputs.
     #[derive(Deserialize)]
@@ -84,11 +81,7 @@ pub fn scene_file(path: &Path) -> Result<PathBuf, RunInputsError> {
         let path = path.join(name);
         let found = blake3::hash(&read(&path)?).to_hex().to_string();
         if found != expected {
-            return Err(RunInputsError::Changed {
-                path,
-                expected,
-                found,
-            });
+            return Err(RunInputsError::Changed { path, expected, found });
         }
     }
     Ok(path.join(SCENE_FILE))
@@ -99,12 +92,10 @@ pub fn holds_a_run(folder: &Path) -> bool {
     folder.join(MATERIAL_FILE).is_file()
 }
 
-/// Copies the files that a scene reads to its run folder, and writes the scene that names the copies.
+/// Copies the files that a scene reads to its run folder, and writes the scene that names the
+/// copies.
 pub(super) fn keep(scene: &Scene) -> Result<InputHashes, FileError> {
-    let mut kept = Kept {
-        scene,
-        hashes: InputHashes::new(),
-    };
+    let mut kept = Kept { scene, hashes: InputHashes::new() };
     let folder = scene.output().join(INPUTS);
     whole_file::create_folder(&folder).map_err(FileError::at(&folder))?;
     let mut config = scene.config.without_unread_weights();
@@ -141,7 +132,8 @@ struct Kept<'a> {
 }
 
 impl Kept<'_> {
-    /// Writes a file unless it has these contents already; returns its path relative to the run folder.
+    /// Writes a file unless it has these contents already; returns its path relative to the run
+    /// folder.
     fn write(&mut self, name: &str, contents: &[u8]) -> Result<PathBuf, FileError> {
         write_to(&self.scene.output(), name, contents)?;
         let hash = blake3::hash(contents).to_hex().to_string();
@@ -156,7 +148,8 @@ impl Kept<'_> {
 }
 
 impl SceneConfig {
-    /// The files that the scene names besides its material, to be changed, each with the name of its copy in the folder of a run.
+    /// The files that the scene names besides its material, to be changed, each with the name of
+    /// its copy in the folder of a run.
     pub(crate) fn inputs_mut(&mut self) -> Vec<(String, &mut PathBuf)> {
         let target = self.target.file_mut().into_iter();
         let mut inputs: Vec<_> = target.map(|(name, file)| (name.to_owned(), file)).collect();
@@ -175,7 +168,8 @@ impl SceneConfig {
         inputs
     }
 
-    /// The same scene without paths: two scenes that differ in paths alone describe one design problem if the files agree.
+    /// The same scene without paths: two scenes that differ in paths alone describe one design
+    /// problem if the files agree.
     pub(super) fn without_paths(&self) -> Self {
         let mut config = self.without_unread_weights();
         if let Some(learned) = &mut config.surrogate {

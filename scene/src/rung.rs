@@ -7,11 +7,14 @@ use serde::{Deserialize, Serialize};
 /// The difference of two levels of one sheet, in the state that is compared with the target.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LevelDifference {
-    /// Distance of the panel corners (mm): root mean square and maximum. Of pins, after the rigid motion that makes it smallest.
+    /// Distance of the panel corners (mm): root mean square and maximum. Of pins, after the rigid
+    /// motion that makes it smallest.
     pub corners: [f64; 2],
-    /// Difference of the load, relative to the finer level; `None` if a level has no load, or dead loads open the sheet.
+    /// Difference of the load, relative to the finer level; `None` if a level has no load, or dead
+    /// loads open the sheet.
     pub load: Option<f64>,
-    /// Difference of the largest D_peak of the hinges along the path; `None` if a level does not predict it.
+    /// Difference of the largest D_peak of the hinges along the path; `None` if a level does not
+    /// predict it.
     pub damage: Option<f64>,
 }
 

@@ -17,18 +17,12 @@ pub enum SceneError {
     #[error(transparent)]
     Weights(#[from] WeightsError),
     #[error("{path}: {source}", path = .path.display())]
-    Invalid {
-        path: PathBuf,
-        source: Box<InvalidScene>,
-    },
+    Invalid { path: PathBuf, source: Box<InvalidScene> },
 }
 
 impl SceneError {
     /// Maps what is wrong with the scene at `path`, for use in `map_err`.
     pub(super) fn at<E: Into<InvalidScene>>(path: &Path) -> impl Fn(E) -> Self {
-        |source| Self::Invalid {
-            path: path.to_owned(),
-            source: Box::new(source.into()),
-        }
+        |source| Self::Invalid { path: path.to_owned(), source: Box::new(source.into()) }
     }
 }

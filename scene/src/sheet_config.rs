@@ -54,10 +54,7 @@ impl SheetConfig {
     /// The outline; a rectangle of size zero if the section gives none.
     pub fn outline(&self) -> Outline {
         let [width, height] = self.size.unwrap_or_default();
-        self.corners
-            .map_or(Outline::rectangle(width, height), |corners| Outline {
-                corners,
-            })
+        self.corners.map_or(Outline::rectangle(width, height), |corners| Outline { corners })
     }
 
     /// Area of the sheet divided by the number of panels (mm^2).

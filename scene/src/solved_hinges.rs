@@ -1,4 +1,5 @@
-//! The hinges of one sheet by finite elements, to which the level `final` corrects the learned energy.
+//! The hinges of one sheet by finite elements, to which the level `final` corrects the learned
+//! energy.
 
 use crate::keys::{SceneConfig, resolved};
 use design::hinge_law::{CorrectedLaw, Correction, HingeLaw, MissingForces, Order};
@@ -46,11 +47,7 @@ pub enum SolvedHingesError {
     #[error(
         "surrogate.solved_hinges: {} has {found} hinges and the sheet {expected}: it is of another sheet", file.display()
     )]
-    OtherSheet {
-        file: PathBuf,
-        found: usize,
-        expected: usize,
-    },
+    OtherSheet { file: PathBuf, found: usize, expected: usize },
 }
 
 impl SolvedHinges {
@@ -65,11 +62,7 @@ impl SolvedHinges {
         };
         let (found, expected) = (solved.hinges.len(), config.sheet.grid().hinge_count());
         if found != expected {
-            return Err(SolvedHingesError::OtherSheet {
-                file,
-                found,
-                expected,
-            });
+            return Err(SolvedHingesError::OtherSheet { file, found, expected });
         }
         Ok(solved)
     }

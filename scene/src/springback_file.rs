@@ -37,14 +37,11 @@ pub enum SpringbackFileError {
     #[error("surrogate.springback: {0}")]
     Read(#[from] SpringbackError),
     #[error("surrogate.springback: {}: {source}; or remove the key", file.display())]
-    Other {
-        file: PathBuf,
-        source: SpringbackMismatch,
-    },
+    Other { file: PathBuf, source: SpringbackMismatch },
 }
 
-/// The law that the scene at `path` names; `None` if it names none, or has another hinge law. `measured` is the material in the
-/// thickness of its file.
+/// The law that the scene at `path` names; `None` if it names none, or has another hinge law.
+/// `measured` is the material in the thickness of its file.
 pub(super) fn load(
     config: &SceneConfig,
     measured: &SheetMaterial,
@@ -54,10 +51,8 @@ pub(super) fn load(
         return Ok(None);
     };
     let law = Springback::load(&resolved(path, file))?;
-    check(config, measured, &law).map_err(|source| SpringbackFileError::Other {
-        file: file.clone(),
-        source,
-    })?;
+    check(config, measured, &law)
+        .map_err(|source| SpringbackFileError::Other { file: file.clone(), source })?;
     Ok(Some(law))
 }
 
@@ -96,10 +91,7 @@ pub(super) fn check(
             return Err(SpringbackMismatch::Hole { law, sheet });
         }
     }
-    let (known, window) = (
-        config.scale(measured) * law.hinge.r_win,
-        config.process.r_win,
-    );
+    let (known, window) = (config.scale(measured) * law.hinge.r_win, config.process.r_win);
     if differ(window, known) {
         let (law, sheet) = (known, window);
         return Err(SpringbackMismatch::Window { law, sheet });

@@ -41,26 +41,29 @@ pub enum TargetShape {
         /// Vertices in order around the outline (mm), at least three.
         vertices: Vec<[f64; 2]>,
     },
-    /// A smooth closed curve through points, in order around the outline: between two of them the cubic whose tangent at each is half
-    /// the vector from the point before it to that after it (Catmull and Rom 1974).
+    /// A smooth closed curve through points, in order around the outline: between two of them the
+    /// cubic whose tangent at each is half the vector from the point before it to that after it
+    /// (Catmull and Rom 1974).
     Curve {
         /// The points (mm), at least three.
         points: Vec<[f64; 2]>,
     },
-    /// A polygon in a file with one point a line, in order around the outline: x and y (mm, or the unit behind their names), with commas,
-    /// semicolons, tabs or blanks between them; `#` starts a comment.
+    /// A polygon in a file with one point a line, in order around the outline: x and y (mm, or the
+    /// unit behind their names), with commas, semicolons, tabs or blanks between them; `#` starts a
+    /// comment.
     Csv {
         /// Path of the file, relative to the folder of the scene.
         file: PathBuf,
     },
     /// The outline in a drawing (SVG, SVGZ or DXF): one closed contour that does not cross itself.
     Svg {
-        /// Path of the file, relative to the folder of the scene; of several contours behind `#` the number, the largest first:
-        /// `parts.dxf#2`.
+        /// Path of the file, relative to the folder of the scene; of several contours behind `#`
+        /// the number, the largest first: `parts.dxf#2`.
         file: PathBuf,
         /// Centre of the bounding box of the outline (mm).
         centre: [f64; 2],
-        /// Height of the bounding box (mm); the width follows from the drawing. A DXF file with a unit has its own.
+        /// Height of the bounding box (mm); the width follows from the drawing. A DXF file with a
+        /// unit has its own.
         #[schemars(range(min = 1e-3))]
         height: Option<f64>,
         /// Rotation about the centre, counter-clockwise (deg).
@@ -70,7 +73,8 @@ pub enum TargetShape {
 }
 
 impl TargetShape {
-    /// The file that the target is read from, if there is one, and the name of its copy in the folder of a run.
+    /// The file that the target is read from, if there is one, and the name of its copy in the
+    /// folder of a run.
     pub(crate) fn file_mut(&mut self) -> Option<(&'static str, &mut PathBuf)> {
         match self {
             Self::Csv { file } => Some(("target.csv", file)),
@@ -114,9 +118,11 @@ pub struct Target {
     pub points: Vec<[f64; 2]>,
     /// Length of the outline itself (mm).
     pub length: f64,
-    /// A point at which the outline crosses or touches itself, so that its inside is not defined (mm).
+    /// A point at which the outline crosses or touches itself, so that its inside is not defined
+    /// (mm).
     pub crossing: Option<[f64; 2]>,
-    /// Length of the straight line that closes a path which its drawing leaves open (mm); 0 for a closed one.
+    /// Length of the straight line that closes a path which its drawing leaves open (mm); 0 for a
+    /// closed one.
     pub gap: f64,
 }
 
@@ -132,18 +138,9 @@ impl Target {
                         [centre[0] + radius * cos, centre[1] + radius * sin]
                     })
                     .collect();
-                Ok(Self {
-                    points,
-                    length: TAU * radius,
-                    crossing: None,
-                    gap: 0.0,
-                })
+                Ok(Self { points, length: TAU * radius, crossing: None, gap: 0.0 })
             }
-            TargetShape::Rectangle {
-                centre,
-                size,
-                rotation_deg,
-            } => {
+            TargetShape::Rectangle { centre, size, rotation_deg } => {
                 let (sin, cos) = rotation_deg.to_radians().sin_cos();
                 let corners = [(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5)].map(|(a, b)| {
                     let [x, y] = [a * size[0], b * size[1]];
@@ -156,28 +153,17 @@ impl Target {
             TargetShape::Csv { file } => {
                 along_polygon(&outline_points::read(&folder.join(file))?, count)
             }
-            TargetShape::Svg {
-                file,
-                centre,
-                height,
-                rotation_deg,
-            } => {
+            TargetShape::Svg { file, centre, height, rotation_deg } => {
                 let (path, number) = drawn_outline::numbered(&folder.join(file));
                 let bytes = regular_file::read(&path).map_err(FileError::at(&path))?;
-                let refused = |source| TargetError::Drawing {
-                    path: path.clone(),
-                    source,
-                };
+                let refused = |source| TargetError::Drawing { path: path.clone(), source };
                 let drawn = drawn_outline::of_file(&bytes, number).map_err(&refused)?;
                 let [low, high] = polygon::bounds(drawn.vertices.iter().copied());
                 let own = high[1] - low[1];
                 let height = height.or(drawn.has_unit.then_some(own));
                 let height = height.ok_or_else(|| refused(DrawingError::NoUnit))?;
                 let placed = placed(&drawn.vertices, *centre, height, *rotation_deg)?;
-                Ok(Self {
-                    gap: drawn.gap * height / own,
-                    ..along_polygon(&placed, count)?
-                })
+                Ok(Self { gap: drawn.gap * height / own, ..along_polygon(&placed, count)? })
             }
         }
     }
@@ -232,14 +218,10 @@ fn along_polygon(vertices: &[[f64; 2]], count: usize) -> Result<Target, TargetEr
         }
         start += edge;
     }
-    // A file may repeat a vertex, such as the first at its end: an edge without length crosses nothing.
+    // A file may repeat a vertex, such as the first at its end: an edge without length crosses
+    // nothing.
     let distinct: Vec<[f64; 2]> = (edges().filter(|(p, q)| p != q).map(|(p, _)| p)).collect();
-    Ok(Target {
-        points,
-        length,
-        crossing: polygon::self_crossing(&distinct),
-        gap: 0.0,
-    })
+    Ok(Target { points, length, crossing: polygon::self_crossing(&distinct), gap: 0.0 })
 }
 
 /// Number of chords of a curve between two of its points.
@@ -265,7 +247,8 @@ fn curve(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
     chords.map(|(i, t)| at(i, t)).collect()
 }
 
-/// The vertices, scaled and translated so that their bounding box has the given height and centre (mm), and turned about it.
+/// The vertices, scaled and translated so that their bounding box has the given height and centre
+/// (mm), and turned about it.
 fn placed(
     vertices: &[[f64; 2]],
     centre: [f64; 2],
@@ -348,7 +331,8 @@ mod tests {
             let off = |[x, y]: &[f64; 2]| (x.hypot(*y) / 50.0 - 1.0).abs();
             vertices.iter().map(off).fold(0.0, f64::max)
         };
-        // The tangents are wrong by a factor sin(x)/x, x = TAU/n: half way the radius by the order of x^2 at least.
+        // The tangents are wrong by a factor sin(x)/x, x = TAU/n: half way the radius by the order
+        // of x^2 at least.
         assert!(error(8) < 0.02 && error(16) < error(8) / 8.0);
         let points = circle(12);
         let target = sample(TargetShape::Curve { points }, 600).unwrap();
@@ -426,7 +410,8 @@ mod tests {
         // The first vertex repeated at the end.
         let closed = [&square[..], &square[..1]].concat();
         assert_eq!(crossing(&closed), None);
-        // The edges from (40, 0) to (0, 40) and from (30, 40) to (0, 0) cross where x + y = 40 and y = 4/3 x.
+        // The edges from (40, 0) to (0, 40) and from (30, 40) to (0, 0) cross where x + y = 40 and
+        // y = 4/3 x.
         let bow = [[0.0, 0.0], [40.0, 0.0], [0.0, 40.0], [30.0, 40.0]];
         let [x, y] = crossing(&bow).unwrap();
         assert!((x - 120.0 / 7.0).abs() < 1e-9 && (y - 160.0 / 7.0).abs() < 1e-9);

@@ -6,8 +6,9 @@ use crate::level::Level;
 use std::path::{Path, PathBuf};
 
 impl SceneConfig {
-    /// Replaces the weights that the hinge law reads; the path is relative to the working folder. Draft and ensemble, which
-    /// belong to the replaced weights, are dropped. A law without weights is an error.
+    /// Replaces the weights that the hinge law reads; the path is relative to the working folder.
+    /// Draft and ensemble, which belong to the replaced weights, are dropped. A law without weights
+    /// is an error.
     pub fn name_weights(&mut self, weights: &Path) -> std::io::Result<()> {
         let weights = std::path::absolute(weights)?;
         if !self.level.is_learned() {
@@ -27,17 +28,15 @@ impl SceneConfig {
         Ok(())
     }
 
-    /// The weights that the hinge law of the level reads: its own first, then the weights of the ensemble.
+    /// The weights that the hinge law of the level reads: its own first, then the weights of the
+    /// ensemble.
     pub fn weights_files(&self) -> Vec<PathBuf> {
         let Some(learned) = (self.surrogate.as_ref()).filter(|_| self.level.is_learned()) else {
             return Vec::new();
         };
         match self.level {
             Level::Draft => learned.draft.iter().cloned().collect(),
-            _ => std::iter::once(&learned.weights)
-                .chain(&learned.ensemble)
-                .cloned()
-                .collect(),
+            _ => std::iter::once(&learned.weights).chain(&learned.ensemble).cloned().collect(),
         }
     }
 

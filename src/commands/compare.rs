@@ -1,4 +1,5 @@
-//! `kirigami compare`: points measured on a deployed sheet, compared with its predicted equilibrium path.
+//! `kirigami compare`: points measured on a deployed sheet, compared with its predicted equilibrium
+//! path.
 
 use crate::commands::inspect::scene_args::Inspected;
 use crate::commands::points_file::PointsFile;
@@ -18,12 +19,13 @@ use std::path::{Path, PathBuf};
 
 /// Compare points measured on a deployed sheet with the prediction
 ///
-/// MEASURED is a CSV file with the columns panel, corner, x, y and, unless they are in mm, unit (mm, cm, m, or px of a picture, whose
-/// scale is fitted); without a corner the point is the panel's centre.
-/// Corners count 0 to 3 counter-clockwise from the lower left one in the flat sheet. Rows may be missing; position and
-/// rotation of the measurement are free. Writes report, tables and a picture; see docs/MEASURING.md. Examples:
-/// kirigami compare configs/scenes/pet-3x3.toml --template;
-/// kirigami compare configs/scenes/pet-3x3.toml points.csv --y-down
+/// MEASURED is a CSV file with the columns panel, corner, x, y and, unless they are in mm, unit
+/// (mm, cm, m, or px of a picture, whose scale is fitted); without a corner the point is the
+/// panel's centre. Corners count 0 to 3 counter-clockwise from the lower left one in the flat
+/// sheet. Rows may be missing; position and rotation of the measurement are free. Writes report,
+/// tables and a picture; see docs/MEASURING.md. Examples: kirigami compare
+/// configs/scenes/pet-3x3.toml --template; kirigami compare configs/scenes/pet-3x3.toml points.csv
+/// --y-down
 #[derive(Args)]
 pub struct CompareCommand {
     #[command(flatten)]
@@ -31,8 +33,8 @@ pub struct CompareCommand {
     /// Measured points (CSV)
     #[arg(value_name = "MEASURED", required_unless_present = "template")]
     measured: Option<PathBuf>,
-    /// Points of the same sheet before it was deployed (CSV): the floor of the measurement, and, if both files are in
-    /// one frame, the slip of the supports
+    /// Points of the same sheet before it was deployed (CSV): the floor of the measurement, and, if
+    /// both files are in one frame, the slip of the supports
     #[arg(long, value_name = "FILE")]
     closed: Option<PathBuf>,
     /// y counts downwards, as in the pixels of a picture
@@ -79,9 +81,8 @@ impl CompareCommand {
         };
         let grid = path.sheet.grid;
         let supports = scene.config.supports.iter();
-        let supported: BTreeSet<usize> = supports
-            .map(|support| grid.panel(support.panel[0], support.panel[1]))
-            .collect();
+        let supported: BTreeSet<usize> =
+            supports.map(|support| grid.panel(support.panel[0], support.panel[1])).collect();
         let supported: Vec<usize> = supported.into_iter().collect();
         let title = &scene.config.title;
         let closed = closed.as_ref();

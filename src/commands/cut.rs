@@ -20,22 +20,25 @@ use support::severity::Severity;
 
 /// Write the cut files of a designed sheet, or tiles for hand cutting
 ///
-/// Writes DXF, SVG and cut list of the design in the run folder of a scene, with the cutting settings of the scene.
-/// With --paper also a PDF at 1:1 on pages that overlap. docs/CUTTING.md describes the files. With --for the file holds what one kind of machine or service accepts. Examples:
-/// kirigami cut configs/scenes/demo.toml --paper a4;
-/// kirigami cut configs/scenes/a4-plate.toml --for laser-service
+/// Writes DXF, SVG and cut list of the design in the run folder of a scene, with the cutting
+/// settings of the scene. With --paper also a PDF at 1:1 on pages that overlap. docs/CUTTING.md
+/// describes the files. With --for the file holds what one kind of machine or service accepts.
+/// Examples: kirigami cut configs/scenes/demo.toml --paper a4; kirigami cut
+/// configs/scenes/a4-plate.toml --for laser-service
 #[derive(Args)]
 pub struct CutCommand {
     #[command(flatten)]
     designed: Inspected,
-    /// Folder of the files [default: `cut` in the run folder of the scene; with --for `cut/MACHINE`]
+    /// Folder of the files [default: `cut` in the run folder of the scene; with --for
+    /// `cut/MACHINE`]
     #[arg(long, value_name = "FOLDER")]
     out: Option<PathBuf>,
     /// Write tiles for this paper: a5 to a0, letter or tabloid
     #[arg(long, value_name = "PAPER", value_parser = paper)]
     paper: Option<Paper>,
-    /// Write one DXF and one SVG for this machine: laser-service, ponoko, lightburn, knife or plain; for a service
-    /// list which refuse the sheet, and why. With --design start before the search
+    /// Write one DXF and one SVG for this machine: laser-service, ponoko, lightburn, knife or
+    /// plain; for a service list which refuse the sheet, and why. With --design start before the
+    /// search
     #[arg(long = "for", value_name = "MACHINE", conflicts_with = "paper")]
     machine: Option<String>,
     /// Write the files even if the design has errors
@@ -84,9 +87,7 @@ impl CutCommand {
     pub(crate) fn run(&self) -> Result<()> {
         let (machines, out) = (Machines::shipped(), self.out.as_deref());
         let machine = self.machine.as_deref();
-        let machine = machine
-            .map(|name| self::machine(&machines, name))
-            .transpose()?;
+        let machine = machine.map(|name| self::machine(&machines, name)).transpose()?;
         let checked = Checked::new(&self.designed, self.force)?;
         match machine {
             None => self.print(&checked.cut(self.paper, out)?),
@@ -98,11 +99,7 @@ impl CutCommand {
     }
 
     fn print(&self, files: &SheetFiles) {
-        let SheetFiles {
-            totals,
-            tiling,
-            written,
-        } = files;
+        let SheetFiles { totals, tiling, written } = files;
         if self.json {
             let value = json!({
                 "totals": totals, "tiles": tiling.as_ref().map(Tiling::pages), "folder": written.folder,
@@ -122,12 +119,7 @@ impl CutCommand {
     }
 
     fn print_file(&self, machine: &Machine, file: &MachineFile) {
-        let MachineFile {
-            named,
-            features,
-            verdicts,
-            written,
-        } = file;
+        let MachineFile { named, features, verdicts, written } = file;
         if self.json {
             let value = json!({
                 "machine": machine.name, "features": features, "services": verdicts, "folder": written.folder,
@@ -161,13 +153,7 @@ impl Checked {
             "no cut file: {}; --force writes one",
             errors.join("; ")
         );
-        Ok(Self {
-            scene,
-            named,
-            deployment,
-            cuts,
-            errors,
-        })
+        Ok(Self { scene, named, deployment, cuts, errors })
     }
 
     /// Writes the cut files, and tiles.
@@ -197,11 +183,7 @@ impl Checked {
             let pdf = tiles_pdf(&whole.numbered, tiling, title, &whole.notes);
             written.file(&tiles_name(*paper), &pdf)?;
         }
-        Ok(SheetFiles {
-            totals: whole.totals,
-            tiling: tiles.map(|(_, tiling)| tiling),
-            written,
-        })
+        Ok(SheetFiles { totals: whole.totals, tiling: tiles.map(|(_, tiling)| tiling), written })
     }
 
     /// Writes the file of a machine.
@@ -247,10 +229,7 @@ pub(crate) struct Written {
 impl Written {
     /// No file yet, in a folder that exists.
     fn to(folder: &Path) -> Result<Self> {
-        Ok(Self {
-            folder: folder.canonicalize()?,
-            names: Vec::new(),
-        })
+        Ok(Self { folder: folder.canonicalize()?, names: Vec::new() })
     }
 
     fn file(&mut self, name: &str, contents: &(impl AsRef<[u8]> + ?Sized)) -> Result<()> {
@@ -324,9 +303,7 @@ fn remove_earlier(folder: &Path) -> Result<()> {
 /// Whether a file with this name is written with --paper.
 fn is_tiles(name: &str) -> bool {
     let paper = (name.strip_prefix("tiles-")).and_then(|rest| rest.strip_suffix(".pdf"));
-    paper
-        .and_then(|paper| self::paper(paper).ok())
-        .is_some_and(|paper| name == tiles_name(paper))
+    paper.and_then(|paper| self::paper(paper).ok()).is_some_and(|paper| name == tiles_name(paper))
 }
 
 fn tiles_name(paper: Paper) -> String {

@@ -38,8 +38,9 @@ struct SummaryCommand {
     json: bool,
 }
 
-/// Look for what makes a database unfit for training: negative energies, forces that are not the gradient of the
-/// energy, damage that decreases, states that occur twice, test geometries that were trained on
+/// Look for what makes a database unfit for training: negative energies, forces that are not the
+/// gradient of the energy, damage that decreases, states that occur twice, test geometries that
+/// were trained on
 #[derive(Args)]
 struct CheckCommand {
     /// Database (Parquet with its manifest)
@@ -112,11 +113,7 @@ impl CheckCommand {
                 row.job, row.solved_tier, row.tier
             );
         }
-        ensure!(
-            findings.is_empty(),
-            "{} is not fit for training",
-            self.database.display()
-        );
+        ensure!(findings.is_empty(), "{} is not fit for training", self.database.display());
         println!("{}: nothing found", self.database.display());
         Ok(())
     }
@@ -129,8 +126,7 @@ impl ImportCommand {
             None => ColumnMap::default(),
         };
         let rows = rows_from_csv(&self.table, &map)?;
-        self.out
-            .write(&Database::collect(rows, &SplitPlan::default())?)
+        self.out.write(&Database::collect(rows, &SplitPlan::default())?)
     }
 }
 

@@ -25,10 +25,7 @@ impl DemoCommand {
             Path::new(CAMPAIGN).exists(),
             "there is no {CAMPAIGN} here: run the demo in the root folder of the repository"
         );
-        let (jobs, database) = (
-            format!("{FOLDER}/campaign"),
-            format!("{FOLDER}/hinges.parquet"),
-        );
+        let (jobs, database) = (format!("{FOLDER}/campaign"), format!("{FOLDER}/hinges.parquet"));
         let weights = format!("{FOLDER}/surrogate.safetensors");
         let mut times = Vec::new();
         for (what, command) in [
@@ -82,9 +79,8 @@ fn product_table() -> Table {
         ("page of the run", "design/run.html"),
     ] {
         let path = PathBuf::from(FOLDER).join(name);
-        let size = std::fs::metadata(&path).map_or("missing".into(), |file| {
-            format!("{:.1}", file.len() as f64 / 1024.0)
-        });
+        let size = std::fs::metadata(&path)
+            .map_or("missing".into(), |file| format!("{:.1}", file.len() as f64 / 1024.0));
         table.row([what.to_owned(), path.display().to_string(), size]);
     }
     table

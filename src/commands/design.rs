@@ -28,42 +28,47 @@ use support::worker_pool::{NoThread, Reports, work_through};
 
 /// Design a sheet: cut pattern and ligament widths for a target shape
 ///
-/// Reads a scene and writes cut files (DXF and SVG, 1:1 in mm), pictures, a report and a page
-/// that shows the run in a browser (run.html) to the scene's output folder. A stopped run continues when it is started again.
-/// Several scenes or seeds are designed side by side on all processors, each in a folder of its own, and compared in a table.
-/// Examples: kirigami design configs/scenes/linear-7x7.toml;
-/// kirigami design configs/scenes/*7x7.toml --out runs/sheets
+/// Reads a scene and writes cut files (DXF and SVG, 1:1 in mm), pictures, a report and a page that
+/// shows the run in a browser (run.html) to the scene's output folder. A stopped run continues when
+/// it is started again. Several scenes or seeds are designed side by side on all processors, each
+/// in a folder of its own, and compared in a table. Examples: kirigami design
+/// configs/scenes/linear-7x7.toml; kirigami design configs/scenes/*7x7.toml --out runs/sheets
 #[derive(Args)]
 pub struct DesignCommand {
-    /// Scene (TOML); see configs/scenes. Or the folder of a run, which holds its scene, material and weights
+    /// Scene (TOML); see configs/scenes. Or the folder of a run, which holds its scene, material
+    /// and weights
     #[arg(value_name = "SCENE", required = true)]
     scenes: Vec<PathBuf>,
     /// Weights of the hinge energy, instead of the scene's
     #[arg(long, value_name = "FILE")]
     weights: Option<PathBuf>,
-    /// The level, instead of the scene's: how much of the hinges is modelled; see `kirigami levels`. At `final` the hinges are
-    /// solved by finite elements after the search, and it goes on with them: hours, which are stated first
+    /// The level, instead of the scene's: how much of the hinges is modelled; see `kirigami
+    /// levels`. At `final` the hinges are solved by finite elements after the search, and it goes
+    /// on with them: hours, which are stated first
     #[arg(long, value_name = "LEVEL", value_parser = with_unit::level())]
     level: Option<Level>,
-    /// How accurately the corners of the panels are to be known: a length such as 0.5mm, or a part of the longer side of the sheet
-    /// such as 0.2%. The search runs at the cheapest level, `draft`, and goes up until the difference to the next finer level is
-    /// smaller; that level evaluates the design
+    /// How accurately the corners of the panels are to be known: a length such as 0.5mm, or a part
+    /// of the longer side of the sheet such as 0.2%. The search runs at the cheapest level,
+    /// `draft`, and goes up until the difference to the next finer level is smaller; that level
+    /// evaluates the design
     #[arg(long, value_name = "ACCURACY", value_parser = with_unit::accuracy, conflicts_with_all = ["level", "steps"])]
     within: Option<Accuracy>,
-    /// Run folder, instead of the scene's. Of several runs: the folder of the table, designs.md and designs.csv, and of the
-    /// runs, each in a folder with the name of its scene [default of the table: runs/designs]
+    /// Run folder, instead of the scene's. Of several runs: the folder of the table, designs.md and
+    /// designs.csv, and of the runs, each in a folder with the name of its scene [default of the
+    /// table: runs/designs]
     #[arg(long, value_name = "FOLDER")]
     out: Option<PathBuf>,
-    /// Design every scene with this many successive seeds, beginning with its own, each in the folder seed-N of its run
-    /// folder. The scene needs a random start: optimiser.start_noise
+    /// Design every scene with this many successive seeds, beginning with its own, each in the
+    /// folder seed-N of its run folder. The scene needs a random start: optimiser.start_noise
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..=10_000))]
     seeds: u64,
     /// Number of search steps, instead of the scene's
     #[arg(long, value_name = "N")]
     steps: Option<usize>,
-    /// First fit outline, cuts and pulls of the sheet, a rectangle that stands for its stock, and the place of the target to each other,
-    /// as `init --target` does. What the scene states of these, of posture, weights of the objective and optimiser is replaced; the run's
-    /// scene.toml has what was chosen
+    /// First fit outline, cuts and pulls of the sheet, a rectangle that stands for its stock, and
+    /// the place of the target to each other, as `init --target` does. What the scene states of
+    /// these, of posture, weights of the objective and optimiser is replaced; the run's scene.toml
+    /// has what was chosen
     #[arg(long)]
     fit: bool,
     /// Begin at the start design even if the run folder contains a run of this scene
@@ -102,10 +107,7 @@ impl DesignCommand {
                 check(&scene, &report, &ended)
             }
             _ => {
-                ensure!(
-                    !self.json,
-                    "--json prints the report of one run: name one scene"
-                );
+                ensure!(!self.json, "--json prints the report of one run: name one scene");
                 self.run_many(self.runs(out.as_deref())?)
             }
         }
@@ -118,11 +120,7 @@ impl DesignCommand {
             for seed in 0..self.seeds {
                 let scene = self.scene(file, |config| {
                     if let Some(out) = out {
-                        let name = if file.is_dir() {
-                            file.file_name()
-                        } else {
-                            file.file_stem()
-                        };
+                        let name = if file.is_dir() { file.file_name() } else { file.file_stem() };
                         config.output = out.join(name.unwrap_or_default());
                     }
                     config.optimiser.seed += seed;
@@ -137,11 +135,7 @@ impl DesignCommand {
                     file.display()
                 );
                 let (file, failure) = (file.clone(), None);
-                runs.push(Run {
-                    file,
-                    scene,
-                    failure,
-                });
+                runs.push(Run { file, scene, failure });
             }
         }
         refuse_shared_folders(&runs)?;
@@ -190,11 +184,7 @@ impl DesignCommand {
         };
         let failures: String = runs.iter().filter_map(failure).collect();
         match left {
-            0 => ensure!(
-                failed == 0,
-                "{failed} of {} runs failed{failures}",
-                runs.len()
-            ),
+            0 => ensure!(failed == 0, "{failed} of {} runs failed{failures}", runs.len()),
             _ => bail!(Unfinished { left, what: "runs" }),
         }
         Ok(())
@@ -256,10 +246,7 @@ impl DesignCommand {
         let Climbed { scene, designed } = climbed;
         if designed.ended == Ended::Stopped {
             let made = designed.history.len() - 1;
-            bail!(Unfinished {
-                left: scene.config.optimiser.steps - made,
-                what: "design steps"
-            });
+            bail!(Unfinished { left: scene.config.optimiser.steps - made, what: "design steps" });
         }
         let report = write_run(&scene, &designed, self.force)?;
         Ok((report, designed.ended))
@@ -309,7 +296,8 @@ fn with_level_bars<T>(scene: &Scene, searches: impl FnOnce(OnStep) -> T) -> T {
     found
 }
 
-/// Removes the runs of levels in the folder of a run, such as `draft` and `final-1`; other runs there, such as `seed-1`, are not its.
+/// Removes the runs of levels in the folder of a run, such as `draft` and `final-1`; other runs
+/// there, such as `seed-1`, are not its.
 fn remove_level_runs(folder: &Path) -> Result<()> {
     let is_of_level = |path: &PathBuf| {
         let name = path.file_name().unwrap_or_default().to_string_lossy();
@@ -331,9 +319,8 @@ fn refuse_files_of_others(folder: &Path) -> Result<()> {
         return Ok(());
     }
     let names = RUN_FILES.iter().map(|file| file.name).chain([SCENE_FILE]);
-    let found: Vec<&str> = names
-        .filter(|name| folder.join(name).symlink_metadata().is_ok())
-        .collect();
+    let found: Vec<&str> =
+        names.filter(|name| folder.join(name).symlink_metadata().is_ok()).collect();
     ensure!(
         found.is_empty(),
         "the run would replace {} in {}, which no run has written: choose another folder, with --out or the key `output`, or \
@@ -372,8 +359,8 @@ fn check(scene: &Scene, report: &Report, ended: &Ended) -> Result<()> {
     Ok(())
 }
 
-/// A step in one line: the loss and its non-zero terms, outline error, for a learned law the fraction inside its training
-/// domain.
+/// A step in one line: the loss and its non-zero terms, outline error, for a learned law the
+/// fraction inside its training domain.
 fn progress_line(step: &StepRecord, learned: bool) -> String {
     let scores = &step.scores;
     let terms: Vec<String> = (scores.terms.iter())
@@ -395,9 +382,7 @@ fn progress_line(step: &StepRecord, learned: bool) -> String {
 
 /// Writes the PNG of every picture in the run folder that has an SVG.
 fn rasterise(folder: &Path) -> Result<()> {
-    let pictures = RUN_FILES
-        .iter()
-        .filter(|file| matches!(file.writer, Writer::Pictures));
+    let pictures = RUN_FILES.iter().filter(|file| matches!(file.writer, Writer::Pictures));
     for file in pictures {
         let vector = folder.join(file.name).with_extension("svg");
         if vector.exists() {

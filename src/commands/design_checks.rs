@@ -11,8 +11,8 @@ use scene::design_run::Designed;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-/// Adds a check of the design of a scene's run, and writes the results of the run again. Cut files that are there stay, with the errors of
-/// the design in them.
+/// Adds a check of the design of a scene's run, and writes the results of the run again. Cut files
+/// that are there stay, with the errors of the design in them.
 pub(crate) fn record(
     scene: &Scene,
     design: &DesignVector,
@@ -32,9 +32,7 @@ pub(crate) fn record(
             announce(&format!("report and page of {shown} state it"));
         }
         Ok(None) => {}
-        Err(error) => announce(&format!(
-            "report and page of {shown} do not state it: {error}"
-        )),
+        Err(error) => announce(&format!("report and page of {shown} do not state it: {error}")),
     }
     Ok(())
 }

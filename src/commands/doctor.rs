@@ -8,8 +8,8 @@ use support::program::Tool;
 
 /// Check that gmsh and CalculiX are found, and print how to install them
 ///
-/// Needed by the commands that solve windows: `mesh`, `solve`, `campaign`, `verify`, `surrogate release` and
-/// `demo`. Training and design run without them.
+/// Needed by the commands that solve windows: `mesh`, `solve`, `campaign`, `verify`, `surrogate
+/// release` and `demo`. Training and design run without them.
 #[derive(Args)]
 pub struct DoctorCommand {}
 

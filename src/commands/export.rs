@@ -10,9 +10,9 @@ use support::vtk;
 
 /// Write the deployment of a designed sheet for ParaView and meshio
 ///
-/// sheet.pvd opens in ParaView: panels and hinges at every load step, moved by the point data `displacement (mm)`
-/// (filter Warp By Vector). Lengths in mm, forces in N, angles in rad unless the name says deg.
-/// Example: kirigami export configs/scenes/pet-3x3.toml
+/// sheet.pvd opens in ParaView: panels and hinges at every load step, moved by the point data
+/// `displacement (mm)` (filter Warp By Vector). Lengths in mm, forces in N, angles in rad unless
+/// the name says deg. Example: kirigami export configs/scenes/pet-3x3.toml
 #[derive(Args)]
 pub struct ExportCommand {
     #[command(flatten)]
@@ -32,9 +32,8 @@ impl ExportCommand {
             .with_context(|| format!("cannot create the folder {}", folder.display()))?;
         let mut grids = Vec::new();
         for (i, state) in vtk_states(&deployment).iter().enumerate() {
-            for (part, (kind, grid)) in [("panels", &state.panels), ("hinges", &state.hinges)]
-                .into_iter()
-                .enumerate()
+            for (part, (kind, grid)) in
+                [("panels", &state.panels), ("hinges", &state.hinges)].into_iter().enumerate()
             {
                 let name = format!("{kind}-{i:03}.vtu");
                 run_folder::write(&folder, &name, &grid.to_vtu())?;

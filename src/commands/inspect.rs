@@ -28,7 +28,8 @@ pub struct InspectCommand {
     /// Print every number as JSON
     #[arg(long)]
     json: bool,
-    /// deploy: opening angle of the hinges (deg) [default: the angle of the design, if the scene has pin hinges]
+    /// deploy: opening angle of the hinges (deg) [default: the angle of the design, if the scene
+    /// has pin hinges]
     #[arg(long, value_name = "DEG", allow_negative_numbers = true)]
     opening_deg: Option<f64>,
 }

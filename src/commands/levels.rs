@@ -14,12 +14,13 @@ use support::table::{Cell, Table};
 
 /// Compare the levels of a scene: seconds of a search, and the difference to the finest level
 ///
-/// Deploys the design of the scene's run, or its start design, at every level for which the scene names networks and at those below,
-/// and times ten steps of the search at each. The difference to the finest level is the estimate of a level's error. What no level
-/// lowers, such as the errors of the mesh and of the material, is listed below the table. `kirigami design --within` chooses the level
-/// by itself; docs/CHOOSE.md explains the levels; `kirigami verify` compares the finest one with finite elements. Of the design of a
-/// run, report and page of the run are written again, with the table.
-/// Example: kirigami levels configs/scenes/a4-plate.toml --picture runs/levels.svg
+/// Deploys the design of the scene's run, or its start design, at every level for which the scene
+/// names networks and at those below, and times ten steps of the search at each. The difference to
+/// the finest level is the estimate of a level's error. What no level lowers, such as the errors of
+/// the mesh and of the material, is listed below the table. `kirigami design --within` chooses the
+/// level by itself; docs/CHOOSE.md explains the levels; `kirigami verify` compares the finest one
+/// with finite elements. Of the design of a run, report and page of the run are written again, with
+/// the table. Example: kirigami levels configs/scenes/a4-plate.toml --picture runs/levels.svg
 #[derive(Args)]
 pub struct LevelsCommand {
     #[command(flatten)]
@@ -51,10 +52,7 @@ impl LevelsCommand {
             output_file::write(path, charts::levels(&found)?)?;
         }
         if self.json {
-            let of = Of {
-                design: name,
-                levels: &found,
-            };
+            let of = Of { design: name, levels: &found };
             println!("{}", serde_json::to_string_pretty(&of)?);
         } else {
             println!("{name}\n\n{}", document(&found));
@@ -76,10 +74,7 @@ fn document(found: &Levels) -> Document {
         "load\n%",
         "D_peak\n",
     ]);
-    found
-        .levels
-        .iter()
-        .for_each(|level| table.row(cells(level)));
+    found.levels.iter().for_each(|level| table.row(cells(level)));
     let finest = found.levels.last().map_or("", |level| level.level.name());
     let mut page = Document::default();
     page.table(table);
@@ -91,9 +86,10 @@ fn document(found: &Levels) -> Document {
         Some(format!("{}: {failure}", level.level))
     }));
     page.list(found.others.iter().map(|other| {
-        let corners = other.effect.as_ref().map_or("not known".into(), |effect| {
-            format!("{:.3} mm", effect.corners[1])
-        });
+        let corners = other
+            .effect
+            .as_ref()
+            .map_or("not known".into(), |effect| format!("{:.3} mm", effect.corners[1]));
         format!("no level lowers: {}, {corners}", other.cause.name())
     }));
     page
@@ -107,10 +103,7 @@ fn cells(level: &LevelCost) -> [Cell; 7] {
         Cell::fixed(level.search, 1),
         Cell::fixed(difference.map(|found| found.corners[0]), 3),
         Cell::fixed(difference.map(|found| found.corners[1]), 3),
-        Cell::fixed(
-            difference.and_then(|found| found.load).map(|x| 100.0 * x),
-            2,
-        ),
+        Cell::fixed(difference.and_then(|found| found.load).map(|x| 100.0 * x), 2),
         Cell::fixed(difference.and_then(|found| found.damage), 4),
     ]
 }

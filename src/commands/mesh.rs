@@ -10,14 +10,16 @@ use std::time::Duration;
 
 /// Mesh one hinge window and draw it
 ///
-/// Writes gmsh's script and mesh, mesh.vtu for ParaView and meshio, and a picture of the plane mesh; prints the size and quality of the
-/// mesh. Example: kirigami mesh --w-lig 18 --alpha-deg 60 --tier default
+/// Writes gmsh's script and mesh, mesh.vtu for ParaView and meshio, and a picture of the plane
+/// mesh; prints the size and quality of the mesh. Example: kirigami mesh --w-lig 18 --alpha-deg 60
+/// --tier default
 #[derive(Args)]
 #[command(allow_negative_numbers = true)]
 pub struct MeshCommand {
     #[command(flatten)]
     window: WindowArgs,
-    /// Mesh tier: tiny, small, default, fine, reference or paper; for plates plate-tiny, plate or plate-reference
+    /// Mesh tier: tiny, small, default, fine, reference or paper; for plates plate-tiny, plate or
+    /// plate-reference
     #[arg(long, value_name = "TIER", default_value_t = Tier::Default)]
     tier: Tier,
     /// Sheet thickness (mm)
@@ -33,11 +35,8 @@ impl MeshCommand {
         let design = self.window.design()?;
         let _held = run_folder::hold(&self.out)?;
         let gmsh = Gmsh::find()?;
-        let shape = WindowShape {
-            design: &design,
-            thickness: self.thickness,
-            recipe: &self.tier.recipe(),
-        };
+        let shape =
+            WindowShape { design: &design, thickness: self.thickness, recipe: &self.tier.recipe() };
         let mesh = shape.mesh(&self.out, &gmsh, Duration::MAX, interrupt::stop_flag()?)?;
         let quality = mesh.quality()?;
         let pictures = picture::save(&plane_mesh_svg(&mesh), &self.out.join("mesh"), 1600)?;

@@ -1,4 +1,5 @@
-//! The subcommands of the pipeline from a material to weights; absent from a build for design alone.
+//! The subcommands of the pipeline from a material to weights; absent from a build for design
+//! alone.
 
 use crate::commands::{campaign, dataset, doctor, mesh, solve, surrogate, train, verify};
 

@@ -10,15 +10,7 @@ use support::csv_table::{NamedTable, name_and_unit};
 use support::nearest::nearest;
 
 /// The columns of a file; the last two come from the template, and are not read.
-const COLUMNS: [&str; 7] = [
-    "panel",
-    "corner",
-    "x",
-    "y",
-    "unit",
-    "flat_x_mm",
-    "flat_y_mm",
-];
+const COLUMNS: [&str; 7] = ["panel", "corner", "x", "y", "unit", "flat_x_mm", "flat_y_mm"];
 
 /// Unit of measured lengths.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -53,16 +45,14 @@ impl Unit {
 }
 
 impl PointsFile {
-    /// Reads a file of points of a sheet with so many panels; lengths are in mm, or in the unit of the column `unit`.
+    /// Reads a file of points of a sheet with so many panels; lengths are in mm, or in the unit of
+    /// the column `unit`.
     pub fn read(path: &Path, panels: usize, y_down: bool) -> Result<Self> {
         let NamedTable { head, rows } =
             NamedTable::read(path).map_err(|error| anyhow!("cannot read {error}"))?;
         let located = |line: u64| format!("{}:{line}", path.display());
         let columns = Columns::new(&head.1).with_context(|| located(head.0))?;
-        let mut file = Self {
-            points: Vec::new(),
-            unit: Unit::Mm,
-        };
+        let mut file = Self { points: Vec::new(), unit: Unit::Mm };
         let mut lines = HashMap::new();
         for (line, row) in rows {
             let Some((mut point, own)) = columns.point(&row).with_context(|| located(line))? else {
@@ -76,18 +66,12 @@ impl PointsFile {
                 panels - 1
             );
             if let Some(first) = lines.insert(mark, line) {
-                bail!(
-                    "{}: {mark} is measured twice, first in line {first}",
-                    located(line)
-                );
+                bail!("{}: {mark} is measured twice, first in line {first}", located(line));
             }
             let own = own.unwrap_or(file.unit);
             let pixels = |unit: Unit| unit == Unit::Px;
             if !file.points.is_empty() && pixels(own) != pixels(file.unit) {
-                bail!(
-                    "{}: column `unit`: pixels and lengths are mixed",
-                    located(line)
-                );
+                bail!("{}: column `unit`: pixels and lengths are mixed", located(line));
             }
             file.unit = own;
             point.position = point.position.map(|x| x * own.length());
@@ -181,10 +165,7 @@ impl Columns {
             })
         };
         let corner = self.corner.filter(|&column| !text(column).is_empty());
-        let own = self
-            .unit
-            .map(|column| unit("unit", text(column)))
-            .transpose()?;
+        let own = self.unit.map(|column| unit("unit", text(column))).transpose()?;
         let mark = Mark {
             panel: whole(self.panel, "panel")?,
             corner: corner.map(|column| whole(column, "corner")).transpose()?,
@@ -194,9 +175,6 @@ impl Columns {
             "{mark}: a panel has the corners 0 to 3"
         );
         let position = [length(0)?, length(1)?];
-        Ok(Some((
-            MeasuredPoint { mark, position },
-            own.or(self.unit_of_x),
-        )))
+        Ok(Some((MeasuredPoint { mark, position }, own.or(self.unit_of_x))))
     }
 }

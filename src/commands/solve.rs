@@ -19,9 +19,9 @@ use support::table::{Cell, Table};
 /// Solve one hinge window by finite elements and print its ray
 ///
 /// Panel A is fixed. Panel B is driven from the undeformed state straight to the given deformation,
-/// or along a recorded path. Every converged increment is one row. Writes window.vtu for ParaView and meshio: displacements,
-/// plastic strain and stress of the last increment. Example, the paper's hinge folded
-/// to 45 degrees: kirigami solve --theta-deg 45 --tier tiny
+/// or along a recorded path. Every converged increment is one row. Writes window.vtu for ParaView
+/// and meshio: displacements, plastic strain and stress of the last increment. Example, the paper's
+/// hinge folded to 45 degrees: kirigami solve --theta-deg 45 --tier tiny
 #[derive(Args)]
 #[command(allow_negative_numbers = true)]
 pub struct SolveCommand {
@@ -41,13 +41,10 @@ pub struct SolveCommand {
     #[arg(long, value_name = "FILE", conflicts_with_all = ["theta_deg", "eta_a", "eta_s"])]
     path: Option<PathBuf>,
     /// Sheet material (TOML)
-    #[arg(
-        long,
-        value_name = "FILE",
-        default_value = "configs/materials/pet-0.5mm.toml"
-    )]
+    #[arg(long, value_name = "FILE", default_value = "configs/materials/pet-0.5mm.toml")]
     material: PathBuf,
-    /// Mesh tier: tiny, small, default, fine, reference or paper; for plates plate-tiny, plate or plate-reference
+    /// Mesh tier: tiny, small, default, fine, reference or paper; for plates plate-tiny, plate or
+    /// plate-reference
     #[arg(long, value_name = "TIER", default_value_t = Tier::Default)]
     tier: Tier,
     /// Time limit of the solver (s); time in which the machine is suspended does not count
@@ -77,26 +74,16 @@ impl SolveCommand {
         let material = SheetMaterial::load(&self.material)?;
         let _held = run_folder::hold(&self.out)?;
         let stop = interrupt::stop_flag()?;
-        let solver = FeSolver {
-            print_all: true,
-            ..FeSolver::find()?
-        };
+        let solver = FeSolver { print_all: true, ..FeSolver::find()? };
         let problem = WindowProblem::new(HingePath { design, path }, &material, self.tier);
         let solve = WindowSolve::new(problem, &solver.versions());
         let limit = Duration::from_secs(self.time_limit_s);
-        let solution = watched(
-            1,
-            || reached(&self.out),
-            || solver.attempt(&solve, &self.out, limit, stop),
-        )
-        .map_err(|error| match error.is_stop() {
-            true => Unfinished {
-                left: 1,
-                what: "ray",
-            }
-            .into(),
-            false => Error::from(error),
-        })?;
+        let solution =
+            watched(1, || reached(&self.out), || solver.attempt(&solve, &self.out, limit, stop))
+                .map_err(|error| match error.is_stop() {
+                    true => Unfinished { left: 1, what: "ray" }.into(),
+                    false => Error::from(error),
+                })?;
         if let Some(grid) = solver.fields(&solve, &self.out)? {
             run_folder::write(&self.out, "window.vtu", &grid.to_vtu())?;
         }

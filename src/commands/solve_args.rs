@@ -34,7 +34,8 @@ impl SolveArgs {
         self.jobs.map_or_else(processors, NonZeroUsize::get)
     }
 
-    /// Solves windows with CalculiX, shows their progress, and keeps them in the folder `solves` of `folder`.
+    /// Solves windows with CalculiX, shows their progress, and keeps them in the folder `solves` of
+    /// `folder`.
     pub fn service(&self, folder: &Path) -> Result<SolveService<'static>> {
         let bar = RefCell::new(None);
         let progress = move |done: usize, all: usize| {
@@ -70,11 +71,9 @@ impl SolveArgs {
 /// The error of a task for the command line: a task that was stopped is unfinished.
 pub fn task_error(error: VerificationError) -> anyhow::Error {
     match error {
-        VerificationError::Solve(SolveListError::Stopped { left }) => Unfinished {
-            left,
-            what: "solves",
+        VerificationError::Solve(SolveListError::Stopped { left }) => {
+            Unfinished { left, what: "solves" }.into()
         }
-        .into(),
         error => error.into(),
     }
 }

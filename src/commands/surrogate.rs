@@ -31,9 +31,7 @@ fn trained_material(
     let sheet = SheetMaterial::load(material)?;
     let card = surrogate.card();
     ensure!(
-        card.material_hash
-            .as_ref()
-            .is_none_or(|hash| *hash == sheet.law_hash()),
+        card.material_hash.as_ref().is_none_or(|hash| *hash == sheet.law_hash()),
         "{} were trained on {}, but {} is another material law: pass the right file with --material",
         weights.display(),
         card.material,

@@ -1,4 +1,5 @@
-//! `kirigami verify`: the hinges of a designed sheet solved by finite elements, compared with the surrogate.
+//! `kirigami verify`: the hinges of a designed sheet solved by finite elements, compared with the
+//! surrogate.
 
 mod whole_sheet;
 
@@ -26,12 +27,13 @@ use verification::{
 
 /// Solve the hinges of a design by finite elements, along their paths in the sheet
 ///
-/// Compares energy, forces and damage of the surrogate with CalculiX on the same paths, hinge by hinge: the
-/// error of the whole chain on one design. Writes replay.md, replay.csv and a chart. With --equilibrium the sheet is
-/// balanced with the forces of the finite elements: the error of its deployed shape. Writes equilibrium.md.
-/// With --sheet the whole sheet is solved: whether its panels stay in their plane, and what that changes. Writes sheet.md.
-/// Without --design the design of the scene's run is verified, or the start design if the scene has no run.
-/// Example: kirigami verify configs/scenes/demo.toml --equilibrium
+/// Compares energy, forces and damage of the surrogate with CalculiX on the same paths, hinge by
+/// hinge: the error of the whole chain on one design. Writes replay.md, replay.csv and a chart.
+/// With --equilibrium the sheet is balanced with the forces of the finite elements: the error of
+/// its deployed shape. Writes equilibrium.md. With --sheet the whole sheet is solved: whether its
+/// panels stay in their plane, and what that changes. Writes sheet.md. Without --design the design
+/// of the scene's run is verified, or the start design if the scene has no run. Example: kirigami
+/// verify configs/scenes/demo.toml --equilibrium
 #[derive(Args)]
 pub struct VerifyCommand {
     #[command(flatten)]
@@ -39,35 +41,38 @@ pub struct VerifyCommand {
     /// Number of hinges to solve, spread evenly over the sheet [default: all]
     #[arg(long, value_name = "N", value_parser = count::<NonZeroUsize>)]
     sample: Option<NonZeroUsize>,
-    /// Mesh tier of the windows [default: the tier of the weights' database, or the finer tier that the database was corrected to; of a
-    /// whole sheet small, or plate for a plate]; a window of the tier reference takes two minutes on one core
+    /// Mesh tier of the windows [default: the tier of the weights' database, or the finer tier that
+    /// the database was corrected to; of a whole sheet small, or plate for a plate]; a window of
+    /// the tier reference takes two minutes on one core
     #[arg(long, value_name = "TIER")]
     tier: Option<Tier>,
     /// Deploy the sheet with finite elements for its hinges, which are solved several times
     #[arg(long, group = "of_sheet", conflicts_with = "sample")]
     equilibrium: bool,
-    /// Maximum number of times that all hinges are solved on the mesh of --tier; before `reference` and `plate-reference` the
-    /// sheet is balanced on the cheaper `default` and `plate`
+    /// Maximum number of times that all hinges are solved on the mesh of --tier; before `reference`
+    /// and `plate-reference` the sheet is balanced on the cheaper `default` and `plate`
     #[arg(long, value_name = "N", default_value_t = 6, requires = "equilibrium", value_parser = count::<usize>)]
     rounds: usize,
-    /// Then take the loads off, with the law of released hinges (JSON, `kirigami surrogate release`) and finite elements. Writes released.md
+    /// Then take the loads off, with the law of released hinges (JSON, `kirigami surrogate
+    /// release`) and finite elements. Writes released.md
     #[arg(long, value_name = "LAW", requires = "equilibrium")]
     released: Option<PathBuf>,
-    /// Solve the whole sheet, every window and every panel: minutes to an hour. Compares corners, load, openings and energies,
-    /// and says whether the panels stay in their plane. Writes sheet.md, sheet.vtu and pictures from above and from the side. Of the
-    /// design of a run, report and page of the run are written again, with what was found
+    /// Solve the whole sheet, every window and every panel: minutes to an hour. Compares corners,
+    /// load, openings and energies, and says whether the panels stay in their plane. Writes
+    /// sheet.md, sheet.vtu and pictures from above and from the side. Of the design of a run,
+    /// report and page of the run are written again, with what was found
     #[arg(long, group = "of_sheet", conflicts_with = "sample")]
     sheet: bool,
-    /// What keeps the panels of the whole sheet in their plane: held-flat, lying (on a table), hanging, free [default: the
-    /// posture of the scene]
+    /// What keeps the panels of the whole sheet in their plane: held-flat, lying (on a table),
+    /// hanging, free [default: the posture of the scene]
     #[arg(long, value_name = "SUPPORT", requires = "sheet", value_parser = whole_sheet::support)]
     support: Option<Posture>,
-    /// Solve the panel COLUMN,ROW and those around it instead of the whole sheet, for sheets that are too large; the other panels
-    /// move as the hinge law predicts
+    /// Solve the panel COLUMN,ROW and those around it instead of the whole sheet, for sheets that
+    /// are too large; the other panels move as the hinge law predicts
     #[arg(long, value_name = "COLUMN,ROW", requires = "sheet", value_parser = whole_sheet::panel)]
     patch: Option<[usize; 2]>,
-    /// The flanks of cuts touch in the whole sheet, in place of passing through each other; several times the time. Where they meet, the
-    /// solve may end early
+    /// The flanks of cuts touch in the whole sheet, in place of passing through each other; several
+    /// times the time. Where they meet, the solve may end early
     #[arg(long, requires = "sheet")]
     contact: bool,
     /// Print JSON instead of text
@@ -135,10 +140,7 @@ impl VerifyCommand {
         let page = released.document();
         run_folder::write(&self.out, "released.md", &page.markdown())?;
         document.append(page);
-        let released = Released {
-            equilibrium,
-            released,
-        };
+        let released = Released { equilibrium, released };
         self.print(&released, &document)
     }
 

@@ -12,8 +12,8 @@ pub(super) struct CutFrom {
 }
 
 impl CutFrom {
-    /// Width and height of the largest sheet whose cuts fit on the stock as it lies (mm), in whole millimetres: inside of the
-    /// margin, the over-run of its slits and half of the kerf (mm).
+    /// Width and height of the largest sheet whose cuts fit on the stock as it lies (mm), in whole
+    /// millimetres: inside of the margin, the over-run of its slits and half of the kerf (mm).
     pub(super) fn largest_sheet(self, over_run: f64, kerf: f64) -> Result<[f64; 2]> {
         let border = self.margin + over_run + 0.5 * kerf;
         let [width, height] = self.stock.size();

@@ -30,12 +30,7 @@ pub(super) fn scale(item: &mut Item, factor: f64) {
 
 /// Replaces the comment at the head of a file.
 pub(super) fn heading(document: &mut DocumentMut, comment: &str) {
-    if let Some(mut first) = document
-        .as_table_mut()
-        .iter_mut()
-        .next()
-        .map(|(key, _)| key)
-    {
+    if let Some(mut first) = document.as_table_mut().iter_mut().next().map(|(key, _)| key) {
         first.leaf_decor_mut().set_prefix(comment);
     }
 }

@@ -1,13 +1,16 @@
-//! The first scene of a project: a sheet whose middle panel at the bottom is moved away from that at the top.
+//! The first scene of a project: a sheet whose middle panel at the bottom is moved away from that
+//! at the top.
 //!
-//! A shipped A4 scene, of a film or of a plate, with lengths in proportion to the thickness and as many panels as fit. The
-//! target is the rectangle that the uniform sheet of rigid panels a x b fills when every hinge opens by theta; (6):
+//! A shipped A4 scene, of a film or of a plate, with lengths in proportion to the thickness and as
+//! many panels as fit. The target is the rectangle that the uniform sheet of rigid panels a x b
+//! fills when every hinge opens by theta; (6):
 //!
 //! ```text
 //! pitch = (a cos(theta/2) + b sin(theta/2),  b cos(theta/2) + a sin(theta/2))
 //! ```
 //!
-//! It is rotated about the held panel by the rotation that the panel would have in the symmetric deployment.
+//! It is rotated about the held panel by the rotation that the panel would have in the symmetric
+//! deployment.
 
 use crate::new_project::cut_from::CutFrom;
 use crate::new_project::edited::{heading, scale, set};
@@ -20,7 +23,8 @@ use scene::{CuttingConfig, Paper, place_drawing, rounded};
 use std::path::Path;
 use toml_edit::{Array, DocumentMut, Item, Table, value};
 
-/// Minimum side of a panel over the radius of a window: windows of neighbouring hinges do not overlap.
+/// Minimum side of a panel over the radius of a window: windows of neighbouring hinges do not
+/// overlap.
 pub(crate) const PANEL: f64 = 3.5;
 /// The largest opening of a hinge that is planned for a first sheet (rad): 25 degrees.
 pub(crate) const OPENING: f64 = 0.436;
@@ -33,11 +37,12 @@ const SPRINGBACK: &str = "springback.json";
 const DRAFT: &str = "small.safetensors";
 /// Kerf of the shipped plate, which is as wide as the kerf of the shipped film or wider (mm).
 const WIDEST_KERF: f64 = 0.2;
-/// Widest ligament of a plate that nothing holds flat, over its thickness: with 0.93, plates of PETG and aluminium leave their plane
-/// (docs/results/flatness).
+/// Widest ligament of a plate that nothing holds flat, over its thickness: with 0.93, plates of
+/// PETG and aluminium leave their plane (docs/results/flatness).
 const WIDEST_OF_PLATE: f64 = 0.7;
-/// Weight of the damage times the damage term of ligaments that turn freely by the planned opening, as in the shipped plate. The scale
-/// of the term is of the database, so that one weight would be too large for one material and too small for another.
+/// Weight of the damage times the damage term of ligaments that turn freely by the planned opening,
+/// as in the shipped plate. The scale of the term is of the database, so that one weight would be
+/// too large for one material and too small for another.
 const DAMAGE_OF_PLATE: f64 = 0.0155;
 /// Fewest panels along a side: below three, no panel has a neighbour on both sides.
 const FEWEST: usize = 3;
@@ -57,10 +62,11 @@ pub(super) struct FirstScene {
 }
 
 impl FirstScene {
-    /// The scene of a sheet of the given thickness and size (mm), or of the largest one that is cut from a stock. Without either it
-    /// has the size of A4, or is as much larger as it is thicker than the shipped sheet. A sheet is a film if it is large enough for
-    /// its thickness, and else a plate; an error if it is too thin for that. `trained` is the regime of the weights that are named,
-    /// if there are any.
+    /// The scene of a sheet of the given thickness and size (mm), or of the largest one that is cut
+    /// from a stock. Without either it has the size of A4, or is as much larger as it is thicker
+    /// than the shipped sheet. A sheet is a film if it is large enough for its thickness, and else
+    /// a plate; an error if it is too thin for that. `trained` is the regime of the weights that
+    /// are named, if there are any.
     pub(super) fn new(
         size: Option<[f64; 2]>,
         cut_from: Option<CutFrom>,
@@ -109,7 +115,8 @@ impl FirstScene {
         })
     }
 
-    /// The scene file, in a folder with `material.toml`; with the outline of a drawing as its target if there is one.
+    /// The scene file, in a folder with `material.toml`; with the outline of a drawing as its
+    /// target if there is one.
     pub(super) fn text(&self, weights: &Path, drawing: Option<&Path>) -> Result<String> {
         let template = Template::of(self.regime);
         let factor = self.thickness / template.thickness;
@@ -141,7 +148,8 @@ impl FirstScene {
         set(&mut surrogate["weights"], weights.display().to_string());
         if let Some(surrogate) = surrogate.as_table_mut() {
             surrogate.remove("ensemble");
-            // The law of released hinges and the smaller network stand next to the weights of their material.
+            // The law of released hinges and the smaller network stand next to the weights of their
+            // material.
             for (key, name) in [("springback", SPRINGBACK), ("draft", DRAFT)] {
                 match weights.with_file_name(name) {
                     file if file.is_file() => {
@@ -158,14 +166,9 @@ impl FirstScene {
             set(&mut attached["panel"], whole(panel));
             set(&mut attached["clip"], rounded(part * edge));
         }
-        let OpenedSheet {
-            centre,
-            size,
-            rotation_deg,
-            moved,
-            beyond_clip,
-        } = self.target(held);
-        // A film is pulled along its edge; a plate hangs in the line of its clips, so that the upper one carries no moment.
+        let OpenedSheet { centre, size, rotation_deg, moved, beyond_clip } = self.target(held);
+        // A film is pulled along its edge; a plate hangs in the line of its clips, so that the
+        // upper one carries no moment.
         let pull = match self.regime {
             Regime::Film => [0.0, -1.0],
             Regime::Plate => {
@@ -200,19 +203,15 @@ impl FirstScene {
         Ok(scene.to_string())
     }
 
-    /// The rectangle of the sheet opened by its opening with the panel `held` fixed, and the motion of the
-    /// middle of the lower edge of its column.
+    /// The rectangle of the sheet opened by its opening with the panel `held` fixed, and the motion
+    /// of the middle of the lower edge of its column.
     fn target(&self, held: [usize; 2]) -> OpenedSheet {
         let panel: [f64; 2] = std::array::from_fn(|i| self.size[i] / self.panels[i] as f64);
         let (sin, cos) = (0.5 * self.opening).sin_cos();
         let [a, b] = panel;
         let pitch = [a * cos + b * sin, b * cos + a * sin];
         // Even panels rotate by -theta/2, odd ones by theta/2; the held panel stays.
-        let sign = if (held[0] + held[1]).is_multiple_of(2) {
-            1.0
-        } else {
-            -1.0
-        };
+        let sign = if (held[0] + held[1]).is_multiple_of(2) { 1.0 } else { -1.0 };
         let rotation = sign * 0.5 * self.opening;
         let fixed: [f64; 2] = std::array::from_fn(|i| (held[i] as f64 + 0.5) * panel[i]);
         // From the held panel to the middle of the sheet, before the rotation.
@@ -221,19 +220,14 @@ impl FirstScene {
         });
         let (sin, cos) = rotation.sin_cos();
         let steps = self.panels[1] - 1;
-        // An odd number of panels away, the pulled panel turns by the opening, and the middle of its lower edge with it.
-        let turned = if steps % 2 == 1 {
-            sign * self.opening
-        } else {
-            0.0
-        };
+        // An odd number of panels away, the pulled panel turns by the opening, and the middle of
+        // its lower edge with it.
+        let turned = if steps % 2 == 1 { sign * self.opening } else { 0.0 };
         let (turned_sin, turned_cos) = turned.sin_cos();
         let (down, half) = (steps as f64 * pitch[1], 0.5 * panel[1]);
-        // From the middle of the held panel to the pulled point, in the opened and in the flat sheet.
-        let opened = [
-            sin * down + turned_sin * half,
-            -cos * down - turned_cos * half,
-        ];
+        // From the middle of the held panel to the pulled point, in the opened and in the flat
+        // sheet.
+        let opened = [sin * down + turned_sin * half, -cos * down - turned_cos * half];
         let flat = [0.0, -(steps as f64) * panel[1] - half];
         OpenedSheet {
             centre: [
@@ -266,8 +260,8 @@ fn placed(drawing: &Path, centre: [f64; 2], area: f64) -> Result<Item> {
     Ok(Item::Table(target))
 }
 
-/// The panels along each side: of the usual size if [`FEWEST`] of them fit, else as few; `None` if these have no room for
-/// their windows.
+/// The panels along each side: of the usual size if [`FEWEST`] of them fit, else as few; `None` if
+/// these have no room for their windows.
 fn panels(size: [f64; 2], thickness: f64, regime: Regime) -> Option<[usize; 2]> {
     let template = Template::of(regime);
     let r_win = template.r_win * thickness / template.thickness;
@@ -332,10 +326,7 @@ mod tests {
             let weights = Surrogate::load(&weights).unwrap();
             let w_lig = 0.5 * weights.domain().w_lig.iter().sum::<f64>();
             let opening = safe_opening(&weights, Regime::Plate, w_lig, OPENING);
-            assert!(
-                (opening.to_degrees() - degrees).abs() < 0.1,
-                "{material}: {opening}"
-            );
+            assert!((opening.to_degrees() - degrees).abs() < 0.1, "{material}: {opening}");
         }
     }
 
@@ -351,10 +342,7 @@ mod tests {
             text["loads"][0]["force"].to_string()
         });
         assert!(strokes[0].contains("[0.0, -1.0]"), "{strokes:?}");
-        assert!(
-            strokes[1].contains("[0.216") && strokes[1].contains("-0.976"),
-            "{strokes:?}"
-        );
+        assert!(strokes[1].contains("[0.216") && strokes[1].contains("-0.976"), "{strokes:?}");
     }
 
     #[test]
@@ -379,13 +367,9 @@ mod tests {
     #[test]
     fn without_a_size_the_sheet_is_large_enough_for_its_thickness() {
         let a4 = Paper::A4.size();
-        for (thickness, size) in [
-            (0.05, a4),
-            (0.1, a4),
-            (0.5, [1050.0, 1485.0]),
-            (2.0, a4),
-            (6.0, [420.0, 594.0]),
-        ] {
+        for (thickness, size) in
+            [(0.05, a4), (0.1, a4), (0.5, [1050.0, 1485.0]), (2.0, a4), (6.0, [420.0, 594.0])]
+        {
             let scene = FirstScene::new(None, None, thickness, None).unwrap();
             assert_eq!(scene.size, size);
             assert!(scene.panels.iter().all(|&count| count >= FEWEST));

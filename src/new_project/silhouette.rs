@@ -1,4 +1,5 @@
-//! The scene of a sheet that opens onto a drawing: what the fit has chosen, written into the first scene.
+//! The scene of a sheet that opens onto a drawing: what the fit has chosen, written into the first
+//! scene.
 
 use crate::fitting::fit_to_target;
 use crate::new_project::edited::{heading, set};
@@ -20,12 +21,7 @@ pub(super) fn fitted_text(scene: &Scene, text: &str) -> Result<(String, String)>
     write_sheet(&mut document, &fit.config);
     write_pulls(&mut document, &fit.config);
     write_target(&mut document, &fit.config.target);
-    let SceneConfig {
-        objective,
-        optimiser,
-        posture,
-        ..
-    } = &fit.config;
+    let SceneConfig { objective, optimiser, posture, .. } = &fit.config;
     let mut held = Table::new();
     held["kind"] = value(match posture.map(|posture| posture.kind) {
         Some(Posture::Lying) => "lying",
@@ -38,10 +34,7 @@ pub(super) fn fitted_text(scene: &Scene, text: &str) -> Result<(String, String)>
     weights["symmetric_difference"] = value(objective.symmetric_difference);
     weights["damage_measure"] = value("peak");
     set(&mut document["optimiser"]["steps"], optimiser.steps as i64);
-    set(
-        &mut document["optimiser"]["learning_rate"],
-        optimiser.learning_rate,
-    );
+    set(&mut document["optimiser"]["learning_rate"], optimiser.learning_rate);
     Ok((document.to_string(), expected))
 }
 
@@ -88,13 +81,7 @@ fn write_pulls(document: &mut DocumentMut, config: &SceneConfig) {
 }
 
 fn write_target(document: &mut DocumentMut, target: &TargetShape) {
-    if let TargetShape::Svg {
-        file,
-        centre,
-        height,
-        rotation_deg,
-    } = target
-    {
+    if let TargetShape::Svg { file, centre, height, rotation_deg } = target {
         let name = file.file_stem().unwrap_or_default().to_string_lossy();
         set(&mut document["title"], &*name);
         let svg = &mut document["target"]["svg"];

@@ -5,12 +5,8 @@ use scene::{Paper, Stock};
 /// Two positive lengths (mm) from a text such as `210x297` or `1200 x 600mm`.
 fn width_by_height(text: &str) -> Option<[f64; 2]> {
     let (width, height) = text.trim_end_matches("mm").split_once(['x', 'X'])?;
-    let side = |text: &str| {
-        text.trim()
-            .parse()
-            .ok()
-            .filter(|side: &f64| *side > 0.0 && side.is_finite())
-    };
+    let side =
+        |text: &str| text.trim().parse().ok().filter(|side: &f64| *side > 0.0 && side.is_finite());
     Some([side(width)?, side(height)?])
 }
 

@@ -1,7 +1,8 @@
 //! The studio inside a page of a browser, without a server: a worker calls these functions.
 //!
-//! The file [`REQUEST`] holds a request as JSON. Events are lines of the standard output: the kind, a tab, and the data as JSON. A worker
-//! hears nothing while it computes: a search pauses once there is a file [`PAUSE`].
+//! The file [`REQUEST`] holds a request as JSON. Events are lines of the standard output: the kind,
+//! a tab, and the data as JSON. A worker hears nothing while it computes: a search pauses once
+//! there is a file [`PAUSE`].
 
 use crate::studio::event::{Event, Kind};
 use crate::studio::everyday::{Everyday, Listener, refusal};
@@ -114,10 +115,6 @@ impl Studio {
             Arc::clone(&files),
             listener,
         );
-        Ok(Self {
-            session,
-            files,
-            stop_search,
-        })
+        Ok(Self { session, files, stop_search })
     }
 }

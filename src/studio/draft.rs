@@ -1,4 +1,5 @@
-//! Drafts: the sheet at full load, next to the last one, as it is shown while something is dragged and in every step of a search.
+//! Drafts: the sheet at full load, next to the last one, as it is shown while something is dragged
+//! and in every step of a search.
 
 use crate::studio::everyday::milliseconds;
 use design::equilibrium::warm_start::WarmStart;
@@ -37,10 +38,7 @@ impl<'a> Draft<'a> {
         deployment: &Deployment,
         begin: Instant,
     ) -> Self {
-        Self {
-            sheet: SheetData::new(scene, problem, deployment),
-            ms: milliseconds(begin),
-        }
+        Self { sheet: SheetData::new(scene, problem, deployment), ms: milliseconds(begin) }
     }
 }
 

@@ -1,7 +1,7 @@
 //! A thread that holds a scene and answers requests one after the other.
 //!
-//! While something is dragged every change is answered by a draft; when no request comes for a moment, by the everyday level: the
-//! path followed from the flat sheet, and the report.
+//! While something is dragged every change is answered by a draft; when no request comes for a
+//! moment, by the everyday level: the path followed from the flat sheet, and the report.
 
 use crate::studio::event::{Event, Kind};
 use crate::studio::everyday::{Everyday, Listener};
@@ -45,7 +45,8 @@ struct Waiting {
 }
 
 impl Engine {
-    /// Starts with a scene, or without one until a new sheet is asked for; new sheets are in folders below `projects`.
+    /// Starts with a scene, or without one until a new sheet is asked for; new sheets are in
+    /// folders below `projects`.
     pub fn start(
         opened: Option<(Project, Scene)>,
         projects: PathBuf,
@@ -70,12 +71,7 @@ impl Engine {
             }
         });
         let thread = thread.context("cannot start the thread of the studio")?;
-        Ok(Self {
-            inbox,
-            stop_search,
-            thread: Mutex::new(Some(thread)),
-            files,
-        })
+        Ok(Self { inbox, stop_search, thread: Mutex::new(Some(thread)), files })
     }
 
     /// The file that the event of the files of a run names so.
@@ -84,7 +80,8 @@ impl Engine {
         files.get(name).cloned()
     }
 
-    /// Queues a request. Consecutive changes are merged into the last one; at most one search is running or queued.
+    /// Queues a request. Consecutive changes are merged into the last one; at most one search is
+    /// running or queued.
     pub fn ask(&self, request: Request) {
         let mut waiting = self.inbox.lock();
         match &request {
@@ -106,7 +103,8 @@ impl Engine {
         self.inbox.news.notify_one();
     }
 
-    /// Answers no further request, pauses a search, and waits until its state and the scene are on disk.
+    /// Answers no further request, pauses a search, and waits until its state and the scene are on
+    /// disk.
     pub fn end(&self) {
         self.inbox.lock().closed = true;
         self.stop_search.store(true, Ordering::Relaxed);

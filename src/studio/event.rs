@@ -1,4 +1,5 @@
-//! What the engine says to the pages, and the latest of every kind for pages that join late or read slowly.
+//! What the engine says to the pages, and the latest of every kind for pages that join late or read
+//! slowly.
 //!
 //! An event holds all that a page needs to know of its kind, so that only the latest matters.
 
@@ -81,7 +82,8 @@ impl Post {
         self.news.notify_all();
     }
 
-    /// The events since that with the number `seen`, as soon as there are any; none if there are none for as long as `patience`.
+    /// The events since that with the number `seen`, as soon as there are any; none if there are
+    /// none for as long as `patience`.
     pub fn since(&self, seen: u64, patience: Duration) -> Vec<(u64, Arc<Event>)> {
         let latest = self.lock();
         let waited =
@@ -123,13 +125,7 @@ mod tests {
     #[test]
     fn what_is_said_of_a_sheet_follows_it_and_is_forgotten_with_it() {
         let post = Post::default();
-        for kind in [
-            Kind::Shop,
-            Kind::Sheet,
-            Kind::Scene,
-            Kind::Page,
-            Kind::Scene,
-        ] {
+        for kind in [Kind::Shop, Kind::Sheet, Kind::Scene, Kind::Page, Kind::Scene] {
             post.deliver(Event::new(kind, &<&str>::from(kind)));
         }
         let said = ["\"shop\"", "\"sheet\"", "\"page\"", "\"scene\""];

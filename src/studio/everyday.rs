@@ -1,4 +1,5 @@
-//! The everyday level on a thread of its own: the path followed from the flat sheet, and the report. Drafts go on meanwhile.
+//! The everyday level on a thread of its own: the path followed from the flat sheet, and the
+//! report. Drafts go on meanwhile.
 
 use crate::studio::event::{Event, Kind};
 use crate::ui::exit::message;
@@ -89,13 +90,10 @@ struct Wanted {
 }
 
 impl Everyday {
-    /// Starts the thread, which ends with the program. A page in a browser has none: there [`Self::compute`] computes at once.
+    /// Starts the thread, which ends with the program. A page in a browser has none: there
+    /// [`Self::compute`] computes at once.
     pub fn start(listener: Listener) -> std::io::Result<Arc<Self>> {
-        let everyday = Arc::new(Self {
-            wanted: Mutex::default(),
-            news: Condvar::new(),
-            listener,
-        });
+        let everyday = Arc::new(Self { wanted: Mutex::default(), news: Condvar::new(), listener });
         if cfg!(target_family = "wasm") {
             return Ok(everyday);
         }
@@ -121,7 +119,8 @@ impl Everyday {
         }
     }
 
-    /// Shows nothing of what is under way. Returns the path of the last computation that was shown, once.
+    /// Shows nothing of what is under way. Returns the path of the last computation that was shown,
+    /// once.
     pub fn stop(&self) -> Option<WarmStart> {
         let mut wanted = self.lock();
         wanted.sheet = None;

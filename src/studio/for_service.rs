@@ -1,4 +1,5 @@
-//! A new sheet as a service cuts it: with holes, slits and material next to them that are large enough for the service.
+//! A new sheet as a service cuts it: with holes, slits and material next to them that are large
+//! enough for the service.
 
 use anyhow::{Context, Result, ensure};
 use design::sheet::cutting_process::Hole;

@@ -1,6 +1,7 @@
 //! HTTP over a stream: one request, and one answer, after which the connection is closed.
 //!
-//! A request has a few seconds to arrive, and a page as many to read: a connection that stays silent keeps no thread.
+//! A request has a few seconds to arrive, and a page as many to read: a connection that stays
+//! silent keeps no thread.
 
 use std::io::{self, Read, Write};
 use std::net::TcpStream;
@@ -72,10 +73,7 @@ impl<'a> Request<'a> {
                 continue;
             };
             let header = |name: &str| {
-                let mut named = head
-                    .headers
-                    .iter()
-                    .filter(|it| it.name.eq_ignore_ascii_case(name));
+                let mut named = head.headers.iter().filter(|it| it.name.eq_ignore_ascii_case(name));
                 named
                     .next()
                     .map_or("", |it| str::from_utf8(it.value).unwrap_or_default())
@@ -95,12 +93,7 @@ impl<'a> Request<'a> {
 
     /// The body; an answer if it is too long or does not arrive.
     pub fn body(self) -> Result<Vec<u8>, Answer> {
-        let Self {
-            length,
-            mut body,
-            rest,
-            ..
-        } = self;
+        let Self { length, mut body, rest, .. } = self;
         if length > MOST_BYTES {
             let most = MOST_BYTES >> 20;
             return Err(Answer::refusal(
@@ -119,11 +112,7 @@ impl Answer {
     /// A text.
     pub fn refusal(status: u16, message: &str) -> Self {
         let kind = "text/plain; charset=utf-8";
-        Self {
-            status,
-            kind,
-            body: message.into(),
-        }
+        Self { status, kind, body: message.into() }
     }
 
     pub fn send(self, mut page: &TcpStream) -> io::Result<()> {

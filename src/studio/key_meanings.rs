@@ -1,4 +1,5 @@
-//! What the keys of a scene mean and which numbers they may have, for the fields of a page: from the types that read the scene.
+//! What the keys of a scene mean and which numbers they may have, for the fields of a page: from
+//! the types that read the scene.
 
 use scene::SceneConfig;
 use schemars::schema_for;
@@ -6,7 +7,8 @@ use serde_json::Value;
 use std::collections::BTreeMap;
 use support::key_limits::Range;
 
-/// The meaning and the range of every key, by its path without the numbers of lists, as in `loads.force`.
+/// The meaning and the range of every key, by its path without the numbers of lists, as in
+/// `loads.force`.
 pub(super) fn meanings() -> BTreeMap<String, String> {
     let schema = schema_for!(SceneConfig);
     let mut found = BTreeMap::new();
@@ -67,10 +69,7 @@ mod tests {
             ("optimiser.steps", ["teps", "Range: "]),
         ] {
             let said = all.get(key).map_or("", |said| said);
-            assert!(
-                words.iter().all(|word| said.contains(word)),
-                "{key}: {said}"
-            );
+            assert!(words.iter().all(|word| said.contains(word)), "{key}: {said}");
             assert!(said.matches("Range:").count() < 2, "{key}: {said}");
         }
     }

@@ -15,10 +15,9 @@ pub(super) enum Connection {
 pub(super) fn page(connection: Connection) -> String {
     let (connections, transport) = match connection {
         Connection::Http => ("; connect-src 'self'", include_str!("page/http.js")),
-        Connection::Worker => (
-            "; connect-src 'self' blob:; worker-src 'self'",
-            include_str!("page/in_page.js"),
-        ),
+        Connection::Worker => {
+            ("; connect-src 'self' blob:; worker-src 'self'", include_str!("page/in_page.js"))
+        }
     };
     let page = Page {
         title: "kirigami studio",

@@ -1,8 +1,11 @@
-//! Another number of panels: what is held and pulled stays about where it was, and the sheet opens as far as before.
+//! Another number of panels: what is held and pulled stays about where it was, and the sheet opens
+//! as far as before.
 //!
-//! Even and odd panels turn in opposite senses. If a held panel became an odd one instead of an even one, the sheet would open as the
-//! mirror image of the one before: the pulls and the target would point elsewhere, and the stroke would tear it. So what is held or pulled
-//! moves to the nearest panel that turns in the same sense. The stroke changes as the stroke of the sheet of rigid panels does.
+//! Even and odd panels turn in opposite senses. If a held panel became an odd one instead of an
+//! even one, the sheet would open as the mirror image of the one before: the pulls and the target
+//! would point elsewhere, and the stroke would tear it. So what is held or pulled moves to the
+//! nearest panel that turns in the same sense. The stroke changes as the stroke of the sheet of
+//! rigid panels does.
 
 use crate::new_project::first_scene::OPENING;
 use anyhow::Result;
@@ -31,14 +34,11 @@ pub(super) fn with_panels(scene: &Scene, panels: [usize; 2]) -> Result<Scene> {
     {
         drive.stroke = rounded(now / before * drive.stroke);
     }
-    Ok(changed.changed(SceneConfig {
-        drive: Some(drive),
-        ..changed.config.clone()
-    })?)
+    Ok(changed.changed(SceneConfig { drive: Some(drive), ..changed.config.clone() })?)
 }
 
-/// The panel, among those that turn in the same sense, that is nearest to where a panel was; at the edge of the sheet if it was
-/// attached there.
+/// The panel, among those that turn in the same sense, that is nearest to where a panel was; at the
+/// edge of the sheet if it was attached there.
 fn moved(panel: [usize; 2], at: At, before: [usize; 2], after: [usize; 2]) -> [usize; 2] {
     let edge = match at {
         At::Named(NamedPoint::Left) if panel[0] == 0 => Some((0, 0)),
@@ -71,8 +71,8 @@ fn moved(panel: [usize; 2], at: At, before: [usize; 2], after: [usize; 2]) -> [u
     nearest.unwrap_or(panel)
 }
 
-/// The stroke at which the hinges of the sheet of rigid panels open by [`OPENING`], seen from the first panel that is held; `None`
-/// without loads.
+/// The stroke at which the hinges of the sheet of rigid panels open by [`OPENING`], seen from the
+/// first panel that is held; `None` without loads.
 fn ideal_stroke(scene: &Scene) -> Result<Option<f64>> {
     let problem = scene.problem()?;
     let (_, sheet) = problem.cut(&scene.start())?;
@@ -88,7 +88,8 @@ mod tests {
     use super::*;
     use std::path::Path;
 
-    /// The load at the end of the path (N), of the scene with its columns and rows changed one after the other.
+    /// The load at the end of the path (N), of the scene with its columns and rows changed one
+    /// after the other.
     #[test]
     fn a_sheet_with_other_panels_is_pulled_as_before() {
         let root = Path::new(env!("CARGO_MANIFEST_DIR"));

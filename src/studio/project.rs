@@ -30,7 +30,8 @@ pub(crate) struct Project {
 }
 
 impl Project {
-    /// Opens a scene or a run; a copy, in a new folder below `projects`, unless the studio wrote the scene.
+    /// Opens a scene or a run; a copy, in a new folder below `projects`, unless the studio wrote
+    /// the scene.
     pub fn open(path: &Path, projects: &Path) -> Result<(Self, Scene)> {
         let file = match path.join(SCENE) {
             own if is_own(&own) => own,
@@ -47,11 +48,7 @@ impl Project {
         } else {
             original
         };
-        let named = if path.is_dir() {
-            path
-        } else {
-            &path.with_extension("")
-        };
+        let named = if path.is_dir() { path } else { &path.with_extension("") };
         let name = named.file_name().unwrap_or_default().to_string_lossy();
         let project = Self::named(&name, projects)?;
         output_file::create_folder(&project.folder)?;
@@ -114,10 +111,7 @@ impl Project {
 
     /// Writes the scene.
     pub fn save(&self, scene: &Scene) -> Result<()> {
-        let text = scene
-            .config
-            .to_toml()
-            .context("cannot write the scene as TOML")?;
+        let text = scene.config.to_toml().context("cannot write the scene as TOML")?;
         output_file::write(&self.scene_file(), &(HEAD.to_owned() + &text))
     }
 
@@ -140,9 +134,7 @@ impl Project {
     pub fn run_of(&self, sheet: &Scene) -> Option<(Scene, Ended)> {
         let names = run_names().take_while(|name| self.folder.join(name).exists());
         let output = names.last()?;
-        let run = Scene::read(&self.folder.join(&output).join(SCENE_FILE))
-            .ok()?
-            .config;
+        let run = Scene::read(&self.folder.join(&output).join(SCENE_FILE)).ok()?.config;
         let config = SceneConfig {
             start: run.start,
             optimiser: run.optimiser,
@@ -153,10 +145,7 @@ impl Project {
         let run = sheet.changed(config).ok()?;
         // A run that cannot be read, or has other keys, does not belong to the sheet.
         let (ended, best) = left_run(&run).ok()??;
-        let of_sheet = SceneConfig {
-            output,
-            ..sheet.config.clone()
-        };
+        let of_sheet = SceneConfig { output, ..sheet.config.clone() };
         (run.starting_at(&best) == of_sheet).then_some((run, ended))
     }
 }
@@ -191,23 +180,17 @@ fn is_own(file: &Path) -> bool {
 /// A folder for a sheet of this name that does not exist.
 fn free_folder(projects: &Path, name: &str) -> Result<PathBuf> {
     let slug = slug(name);
-    ensure!(
-        !slug.is_empty(),
-        "the name `{name}` has no letter and no digit: name the sheet"
-    );
+    ensure!(!slug.is_empty(), "the name `{name}` has no letter and no digit: name the sheet");
     let numbered = (2..).map(|i| projects.join(format!("{slug}-{i}")));
-    let mut free = std::iter::once(projects.join(&slug))
-        .chain(numbered)
-        .filter(|folder| !folder.exists());
+    let mut free =
+        std::iter::once(projects.join(&slug)).chain(numbered).filter(|folder| !folder.exists());
     Ok(free.next().expect("there are more numbers than folders"))
 }
 
 /// The letters and digits of a name, as a part of the name of a file.
 fn slug(name: &str) -> String {
     let words = name.to_lowercase();
-    let words = words
-        .split(|c: char| !c.is_alphanumeric())
-        .filter(|word| !word.is_empty());
+    let words = words.split(|c: char| !c.is_alphanumeric()).filter(|word| !word.is_empty());
     let words = words.collect::<Vec<_>>().join("-");
     words.chars().take(60).collect()
 }

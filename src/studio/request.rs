@@ -24,7 +24,8 @@ pub(crate) enum Request {
         /// The level.
         level: Level,
     },
-    /// Measure what every level costs for the sheet that is shown, and how far it is from the finest.
+    /// Measure what every level costs for the sheet that is shown, and how far it is from the
+    /// finest.
     Levels,
     /// Open a copy of a shipped scene.
     Open {

@@ -17,16 +17,11 @@ pub(super) struct ListedFile {
 pub(super) fn files_of_run(folder: &Path) -> Result<Vec<ListedFile>> {
     let cut = files_below(&folder.join("cut"))?.into_iter();
     let cut = cut.map(|path| (path, "written for cutting"));
-    let of_run = RUN_FILES
-        .iter()
-        .map(|file| (folder.join(file.name), file.contents));
+    let of_run = RUN_FILES.iter().map(|file| (folder.join(file.name), file.contents));
     let all = cut.chain(of_run.filter(|(path, _)| path.is_file()));
     let listed = all.filter_map(|(path, contents)| {
         let name = path.strip_prefix(folder).ok()?;
-        Some(ListedFile {
-            name: name.to_string_lossy().into_owned(),
-            contents,
-        })
+        Some(ListedFile { name: name.to_string_lossy().into_owned(), contents })
     });
     Ok(listed.collect())
 }

@@ -7,11 +7,13 @@
 //! | `POST /request` | 204: it is answered by events; or 400 with the reason; the body is a request of the engine as JSON |
 //! | `GET /files/NAME` | a file of the run |
 //!
-//! Others: 403 without the token, 404 for what is not there, 413 for a body that is too long, 421 for another host.
+//! Others: 403 without the token, 404 for what is not there, 413 for a body that is too long, 421
+//! for another host.
 //!
-//! Programs on this machine and pages of other servers reach a port of 127.0.0.1, too. So every request needs the token of the
-//! address that is printed, and the header `Host` must name this machine, at any port, as ports are forwarded: a page of another
-//! name that resolves to 127.0.0.1 has that name there.
+//! Programs on this machine and pages of other servers reach a port of 127.0.0.1, too. So every
+//! request needs the token of the address that is printed, and the header `Host` must name this
+//! machine, at any port, as ports are forwarded: a page of another name that resolves to 127.0.0.1
+//! has that name there.
 
 use crate::studio::engine::Engine;
 use crate::studio::event::Post;
@@ -48,12 +50,7 @@ impl Studio {
         let listener =
             listener.with_context(|| format!("cannot listen on port {port} of 127.0.0.1"))?;
         let port = listener.local_addr()?.port();
-        Ok(Self {
-            listener,
-            port,
-            token: format!("token={token}"),
-            post,
-        })
+        Ok(Self { listener, port, token: format!("token={token}"), post })
     }
 
     /// The address of the page.
@@ -61,7 +58,8 @@ impl Studio {
         format!("http://127.0.0.1:{}/?{}", self.port, self.token)
     }
 
-    /// Answers until `stop` becomes true, every request on a thread of its own: one that is slow to arrive delays no other.
+    /// Answers until `stop` becomes true, every request on a thread of its own: one that is slow to
+    /// arrive delays no other.
     pub fn serve(self: &Arc<Self>, engine: &Arc<Engine>, stop: &AtomicBool) -> Result<()> {
         let (studio, engine) = (Arc::clone(self), Arc::clone(engine));
         let thread = std::thread::Builder::new().name("server".into());
@@ -83,7 +81,8 @@ impl Studio {
             };
             let (studio, engine) = (Arc::clone(self), Arc::clone(engine));
             let thread = std::thread::Builder::new().name("request".into());
-            // A page whose request has no thread says that the studio does not answer; one that is gone needs no answer.
+            // A page whose request has no thread says that the studio does not answer; one that is
+            // gone needs no answer.
             let _ = thread.spawn(move || studio.answer(&stream, &engine));
         }
     }
@@ -92,10 +91,7 @@ impl Studio {
         let Some(request) = Request::read(stream)? else {
             return Ok(());
         };
-        let (path, query) = request
-            .target
-            .split_once('?')
-            .unwrap_or((&request.target, ""));
+        let (path, query) = request.target.split_once('?').unwrap_or((&request.target, ""));
         let path = percent_decode_str(path).decode_utf8_lossy();
         let answer = match (&*request.method, &*path) {
             _ if !is_ours(&request.host) => self.other_host(&request.host),
@@ -173,11 +169,7 @@ fn file(engine: &Engine, name: &str) -> Answer {
         _ => "application/octet-stream",
     };
     match regular_file::read(&path) {
-        Ok(body) => Answer {
-            status: 200,
-            kind,
-            body,
-        },
+        Ok(body) => Answer { status: 200, kind, body },
         Err(error) => Answer::refusal(404, &error.to_string()),
     }
 }

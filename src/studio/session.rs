@@ -62,7 +62,8 @@ struct Opened {
     on_disk: SceneConfig,
     before: Vec<SceneConfig>,
     after: Vec<SceneConfig>,
-    /// The page that made the last change, and the number of its changes; `None` if no page did, as after an undo.
+    /// The page that made the last change, and the number of its changes; `None` if no page did, as
+    /// after an undo.
     by: Option<(String, u64)>,
     /// The last equilibrium, from which a draft starts.
     known: Option<WarmStart>,
@@ -87,15 +88,7 @@ impl Session {
         files: Fetched,
         listener: Listener,
     ) -> Self {
-        Self {
-            projects,
-            everyday,
-            stop_search,
-            listener,
-            files,
-            sheet: None,
-            at_rest: true,
-        }
+        Self { projects, everyday, stop_search, listener, files, sheet: None, at_rest: true }
     }
 
     pub fn is_at_rest(&self) -> bool {
@@ -223,9 +216,7 @@ impl Session {
         // The page shows one scene.
         let file = self.sheet.as_ref().map(|sheet| sheet.project.scene_file());
         let named = file.map(|file| format!("{}: ", file.display()));
-        let why = named
-            .and_then(|named| why.strip_prefix(&named))
-            .unwrap_or(why);
+        let why = named.and_then(|named| why.strip_prefix(&named)).unwrap_or(why);
         (self.listener)(refusal(why));
         self.tell(Kind::Working, &());
     }
@@ -356,14 +347,7 @@ impl Session {
         let report = write_run(&scene, &designed, false)?;
         let page = PageData::new(&scene, &designed, &report);
         let run = Some(run_name(&scene));
-        self.tell(
-            Kind::Page,
-            &Shown {
-                page,
-                run,
-                ms: None,
-            },
-        );
+        self.tell(Kind::Page, &Shown { page, run, ms: None });
         let adopted = SceneConfig {
             output: self.opened()?.project.next_run(),
             ..scene.starting_at(&designed.design)
@@ -382,7 +366,8 @@ impl Session {
         Ok(())
     }
 
-    /// Writes cut files, from the run of the sheet that is shown: one without a step if there is none. Says what was written.
+    /// Writes cut files, from the run of the sheet that is shown: one without a step if there is
+    /// none. Says what was written.
     fn write(&mut self, files: &Files) -> Result<()> {
         self.commit()?;
         self.tell(Kind::Working, &"files");
@@ -419,11 +404,7 @@ impl Session {
             true => "nothing was written".to_owned(),
             false => format!("written: {}", said.join("; ")),
         };
-        ensure!(
-            refused.is_empty(),
-            "not written: {}; {written}",
-            refused.join("; ")
-        );
+        ensure!(refused.is_empty(), "not written: {}; {written}", refused.join("; "));
         match said.is_empty() {
             true => self.say(&format!(
                 "{written}: the files of {} are here; choose tiles or a machine for others",
@@ -434,17 +415,15 @@ impl Session {
         Ok(())
     }
 
-    /// Lists the files of the run that is shown for the pages; while no run is shown, the files of the last run stay.
+    /// Lists the files of the run that is shown for the pages; while no run is shown, the files of
+    /// the last run stay.
     fn list_files(&self) -> Result<()> {
         let Some(run) = self.opened()?.run() else {
             return Ok(());
         };
         let folder = run.scene.output();
         let listed = files_of_run(&folder)?;
-        self.tell(
-            Kind::Files,
-            &json!({ "files": listed, "verdicts": run.verdicts }),
-        );
+        self.tell(Kind::Files, &json!({ "files": listed, "verdicts": run.verdicts }));
         let names = listed.into_iter().map(|file| file.name);
         let fetched = names.map(|name| (name.clone(), folder.join(name)));
         *self.files.lock().unwrap_or_else(PoisonError::into_inner) = fetched.collect();
@@ -459,7 +438,8 @@ impl Session {
         self.sheet.as_mut().context(NO_SHEET)
     }
 
-    /// Shows a scene; its equilibrium is not near the last one if the sheet or its supports are others.
+    /// Shows a scene; its equilibrium is not near the last one if the sheet or its supports are
+    /// others.
     fn show(&mut self, scene: Scene) -> Result<&mut Opened> {
         self.stop_everyday();
         let sheet = self.opened_mut()?;
@@ -510,16 +490,8 @@ impl Session {
 fn fitted_to(scene: &Scene, file: PathBuf, path: &Path) -> Result<(Scene, Value)> {
     let target = &scene.target;
     let (centre, height) = place_drawing(path, target.mean(), target.area())?;
-    let target = TargetShape::Svg {
-        file,
-        centre,
-        height: Some(height),
-        rotation_deg: 0.0,
-    };
-    let config = SceneConfig {
-        target,
-        ..scene.config.clone()
-    };
+    let target = TargetShape::Svg { file, centre, height: Some(height), rotation_deg: 0.0 };
+    let config = SceneConfig { target, ..scene.config.clone() };
     let drawn = scene.changed(config)?;
     let fit = fitted(&drawn)?;
     let says = expected(&fit);
@@ -533,10 +505,7 @@ const NO_SHEET: &str = "there is no sheet yet: begin one";
 impl Opened {
     /// The scene with a run folder of its own.
     fn scene_of_run(&self) -> Result<Scene> {
-        let config = SceneConfig {
-            output: self.project.next_run(),
-            ..self.scene.config.clone()
-        };
+        let config = SceneConfig { output: self.project.next_run(), ..self.scene.config.clone() };
         Ok(self.scene.changed(config)?)
     }
 
@@ -554,11 +523,6 @@ impl Opened {
 
 impl Run {
     fn new(scene: Scene, adopted: SceneConfig, ended: Ended) -> Self {
-        Self {
-            scene,
-            adopted,
-            ended,
-            verdicts: BTreeMap::new(),
-        }
+        Self { scene, adopted, ended, verdicts: BTreeMap::new() }
     }
 }

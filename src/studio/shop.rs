@@ -16,7 +16,8 @@ use surrogate::Card;
 
 const MATERIALS: &str = "configs/materials";
 
-/// Finished sheets that a page offers to open, what they are, and what they become. Their pictures are next to them.
+/// Finished sheets that a page offers to open, what they are, and what they become. Their pictures
+/// are next to them.
 const EXAMPLES: [[&str; 3]; 3] = [
     [
         "configs/examples/heart.toml",
@@ -69,11 +70,7 @@ impl Shop {
     pub fn open() -> Result<Self> {
         let Machines { machine, service } = Machines::shipped();
         let mut materials = Vec::new();
-        for weights in WEIGHTS
-            .iter()
-            .map(Path::new)
-            .filter(|weights| weights.is_file())
-        {
+        for weights in WEIGHTS.iter().map(Path::new).filter(|weights| weights.is_file()) {
             materials.extend(offered(&Card::of(weights)?)?);
         }
         Ok(Self {

@@ -1,5 +1,6 @@
-//! The studio as a page of files, which any web server serves: the page, the worker, and the shipped files that designs need. The module
-//! of the worker is this program, compiled for WebAssembly (`make page`).
+//! The studio as a page of files, which any web server serves: the page, the worker, and the
+//! shipped files that designs need. The module of the worker is this program, compiled for
+//! WebAssembly (`make page`).
 
 use crate::new_project::WEIGHTS;
 use crate::studio::page::{Connection, page};
@@ -10,12 +11,8 @@ use std::path::{Path, PathBuf};
 use support::regular_file;
 
 /// Folders of the materials and examples of the studio, and of the files that they name.
-const CONFIGS: [&str; 4] = [
-    "configs/materials",
-    "configs/examples",
-    "configs/targets",
-    "configs/tensile",
-];
+const CONFIGS: [&str; 4] =
+    ["configs/materials", "configs/examples", "configs/targets", "configs/tensile"];
 
 /// Writes the page into a new folder; the shipped files are in the working folder.
 pub(crate) fn write(folder: &Path) -> Result<()> {
@@ -46,10 +43,7 @@ pub(crate) fn write(folder: &Path) -> Result<()> {
 fn files_in(folder: &Path) -> Result<Vec<PathBuf>> {
     let entries = std::fs::read_dir(folder);
     let entries = entries.with_context(|| {
-        format!(
-            "cannot read {}: run in the folder of kirigami",
-            folder.display()
-        )
+        format!("cannot read {}: run in the folder of kirigami", folder.display())
     })?;
     let paths = entries.map(|entry| Ok(entry?.path()));
     let paths: Result<Vec<_>> = paths.collect();
@@ -62,10 +56,9 @@ fn is_for_designs(file: &Path) -> bool {
     (is("safetensors") || is("json")) && !file.with_extension("parquet").is_file()
 }
 
-/// Whether a file comes when it is asked for: all data but the cards from which the page lists its materials.
+/// Whether a file comes when it is asked for: all data but the cards from which the page lists its
+/// materials.
 fn comes_later(file: &Path) -> bool {
-    let mut cards = WEIGHTS
-        .iter()
-        .map(|weights| Path::new(weights).with_extension("json"));
+    let mut cards = WEIGHTS.iter().map(|weights| Path::new(weights).with_extension("json"));
     file.starts_with("data") && !cards.any(|card| file == card)
 }

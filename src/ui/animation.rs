@@ -1,7 +1,8 @@
 //! Animated pictures: an APNG, which browsers play and other programs show as its first frame.
 //!
-//! All frames have one palette, so that the file is small: at most 256 colours, those with the most pixels first, each
-//! at a least distance from those before it. A pixel of another colour, at an edge, has the nearest of them.
+//! All frames have one palette, so that the file is small: at most 256 colours, those with the most
+//! pixels first, each at a least distance from those before it. A pixel of another colour, at an
+//! edge, has the nearest of them.
 
 use crate::ui::picture::rasterise;
 use anyhow::{Context, Result};
@@ -19,14 +20,12 @@ const APART: u32 = 120;
 
 type Colour = [u8; 3];
 
-/// Writes SVG pictures of the same size as the frames of an animation that repeats, `width` pixels wide.
+/// Writes SVG pictures of the same size as the frames of an animation that repeats, `width` pixels
+/// wide.
 pub fn save(frames: &[String], path: &Path, width: u32) -> Result<()> {
     let pixels = frames.iter().map(|svg| {
         let frame = rasterise(svg, width)?;
-        let colours = frame
-            .pixels()
-            .iter()
-            .map(|it| [it.red(), it.green(), it.blue()]);
+        let colours = frame.pixels().iter().map(|it| [it.red(), it.green(), it.blue()]);
         Ok((frame.height(), colours.collect()))
     });
     let pixels: Vec<(u32, Vec<Colour>)> = pixels.collect::<Result<_>>()?;
@@ -87,19 +86,14 @@ fn palette(frames: &[Vec<Colour>]) -> (Vec<Colour>, HashMap<Colour, u8>) {
         let nearest = places.min_by_key(|(_, other)| distance(colour, other));
         nearest.map_or(0, |(place, _)| place as u8)
     };
-    let place = colours
-        .iter()
-        .map(|colour| (*colour, nearest(colour)))
-        .collect();
+    let place = colours.iter().map(|colour| (*colour, nearest(colour))).collect();
     (palette, place)
 }
 
 /// Square of the distance of two colours.
 fn distance(one: &Colour, other: &Colour) -> u32 {
     let components = std::iter::zip(one, other);
-    components
-        .map(|(a, b)| u32::from(a.abs_diff(*b)).pow(2))
-        .sum()
+    components.map(|(a, b)| u32::from(a.abs_diff(*b)).pow(2)).sum()
 }
 
 #[cfg(test)]
@@ -140,7 +134,8 @@ mod tests {
         let (palette, place) = palette(&[frame]);
         assert_eq!(palette, [[90; 3], [253, 231, 37]]);
         assert_eq!((place[&[90, 95, 92]], place[&[253, 231, 37]]), (0, 1));
-        // Of more than 256 distant colours the most frequent are kept, and each of them is its own nearest.
+        // Of more than 256 distant colours the most frequent are kept, and each of them is its own
+        // nearest.
         let grid = |i: usize| [i % 7, i / 7 % 7, i / 49].map(|c| 40 * c as u8);
         let many: Vec<Colour> = (0..343).flat_map(|i| vec![grid(i); 400 - i]).collect();
         let (palette, place) = super::palette(&[many]);

@@ -1,4 +1,5 @@
-//! Charts of tensile tests, trainings and replays as SVG: common helpers; one file per kind of chart.
+//! Charts of tensile tests, trainings and replays as SVG: common helpers; one file per kind of
+//! chart.
 
 pub mod axes;
 mod learning_curve;
@@ -61,9 +62,8 @@ pub fn drawn(size: (u32, u32), draw: impl FnOnce(&Area) -> ChartResult) -> Resul
 
 /// The range of the values with a margin of 5 % at both ends.
 pub fn padded(values: impl Iterator<Item = f64>) -> Range<f64> {
-    let (min, max) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, g), v| {
-        (l.min(v), g.max(v))
-    });
+    let (min, max) =
+        values.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, g), v| (l.min(v), g.max(v)));
     if min > max {
         return 0.0..1.0;
     }

@@ -5,14 +5,16 @@ use std::process::{ExitCode, Termination};
 use support::caught_panic;
 use support::worker_pool::NoThread;
 
-/// The exit codes of every command; besides, 2 stands for a wrong command line and 130 for a second Ctrl-C.
+/// The exit codes of every command; besides, 2 stands for a wrong command line and 130 for a second
+/// Ctrl-C.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Exit {
     /// 0: done.
     Done,
     /// 1: an error; its message is on standard error.
     Failed,
-    /// 75 (EX_TEMPFAIL of sysexits.h): stopped before its work was done; the same command continues.
+    /// 75 (EX_TEMPFAIL of sysexits.h): stopped before its work was done; the same command
+    /// continues.
     Unfinished,
 }
 
@@ -33,18 +35,14 @@ impl Exit {
             Ok(()) => Self::Done,
             Err(error) => {
                 eprintln!("error: {}", message(&error));
-                if error.is::<Unfinished>() {
-                    Self::Unfinished
-                } else {
-                    Self::Failed
-                }
+                if error.is::<Unfinished>() { Self::Unfinished } else { Self::Failed }
             }
         }
     }
 }
 
-/// Prints help, the version or the mistake of a command line, and ends the program: with 0, 2 for a mistake, or 1 if it cannot
-/// be written.
+/// Prints help, the version or the mistake of a command line, and ends the program: with 0, 2 for a
+/// mistake, or 1 if it cannot be written.
 pub fn print_answer(answer: &clap::Error) -> ! {
     let printed = answer.print().and_then(|()| std::io::stdout().flush());
     let code = match printed {
@@ -57,11 +55,11 @@ pub fn print_answer(answer: &clap::Error) -> ! {
     std::process::exit(code)
 }
 
-/// Ends the program with an error, not a panic, when its output cannot be written (a full disk, a closed terminal), and
-/// when the operating system starts no further thread.
+/// Ends the program with an error, not a panic, when its output cannot be written (a full disk, a
+/// closed terminal), and when the operating system starts no further thread.
 ///
-/// `println!` and the thread pools of libraries panic then. The panics are recognised by their messages, so that not
-/// every printed line needs an error path.
+/// `println!` and the thread pools of libraries panic then. The panics are recognised by their
+/// messages, so that not every printed line needs an error path.
 pub fn report_failures_of_the_system() {
     let usual = std::panic::take_hook();
     std::panic::set_hook(Box::new(move |panic| {
@@ -104,11 +102,9 @@ impl Termination for Exit {
 
 /// The error and its causes, each printed once.
 pub(crate) fn message(error: &anyhow::Error) -> String {
-    error
-        .chain()
-        .fold(String::new(), |text, cause| match cause.to_string() {
-            cause if text.contains(&cause) => text,
-            cause if text.is_empty() => cause,
-            cause => format!("{text}: {cause}"),
-        })
+    error.chain().fold(String::new(), |text, cause| match cause.to_string() {
+        cause if text.contains(&cause) => text,
+        cause if text.is_empty() => cause,
+        cause => format!("{text}: {cause}"),
+    })
 }

@@ -3,8 +3,8 @@
 use anyhow::{Context, Result, ensure};
 use std::path::Path;
 
-/// An error if there is no file at `path`, which `option` names. A relative path, such as a default path, begins at the
-/// current folder.
+/// An error if there is no file at `path`, which `option` names. A relative path, such as a default
+/// path, begins at the current folder.
 pub(crate) fn require(path: &Path, option: &str) -> Result<()> {
     let here = std::env::current_dir().context("cannot find the current folder")?;
     ensure!(

@@ -8,8 +8,8 @@ static LISTENING: AtomicBool = AtomicBool::new(false);
 static STOP: AtomicBool = AtomicBool::new(false);
 
 #[cfg(unix)]
-/// Ends the program without a message when the reader of its output is gone, as in `kirigami solve | head`,
-/// where a Rust program would panic by default.
+/// Ends the program without a message when the reader of its output is gone, as in `kirigami solve |
+/// head`, where a Rust program would panic by default.
 pub fn end_quietly_when_nobody_reads() {
     use nix::sys::signal::{SigHandler, Signal, signal};
     // SAFETY: SIG_DFL installs no handler, so no code of this program runs in signal context.

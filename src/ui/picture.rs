@@ -26,7 +26,8 @@ static FONTS: LazyLock<Arc<Database>> = LazyLock::new(|| {
     Arc::new(fonts)
 });
 
-/// The pixels of a picture. Uses only the bundled DejaVu Sans, so that it is the same on every machine.
+/// The pixels of a picture. Uses only the bundled DejaVu Sans, so that it is the same on every
+/// machine.
 pub(super) fn rasterise(svg: &str, width: u32) -> Result<tiny_skia::Pixmap> {
     let options = usvg::Options {
         font_family: "DejaVu Sans".into(),

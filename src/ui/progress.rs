@@ -1,4 +1,5 @@
-//! Progress with the time left: a bar on a terminal, otherwise one line per minute, and with notes one line per step.
+//! Progress with the time left: a bar on a terminal, otherwise one line per minute, and with notes
+//! one line per step.
 
 use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::cell::{Cell, OnceCell};
@@ -9,7 +10,8 @@ use support::verbose;
 /// Interval between progress lines when the output is no terminal.
 const LINE_EVERY: Duration = Duration::from_secs(60);
 
-/// Part of the units that were left at the start, from which their mean duration says how long the others take.
+/// Part of the units that were left at the start, from which their mean duration says how long the
+/// others take.
 const ENOUGH: f64 = 0.05;
 
 static SILENT: AtomicBool = AtomicBool::new(false);
@@ -48,7 +50,8 @@ impl Progress {
         } else {
             ProgressDrawTarget::stderr()
         };
-        // A message wider than the terminal is continued on the next line: a number that was cut would be another one.
+        // A message wider than the terminal is continued on the next line: a number that was cut
+        // would be another one.
         let bar = ProgressBar::with_draw_target(Some(total as u64), target)
             .with_style(style.progress_chars("=> "))
             .with_prefix(what);
@@ -61,13 +64,10 @@ impl Progress {
         }
     }
 
-    /// A task whose units take times that differ by orders of magnitude, such as the increments of an equilibrium path: no time left
-    /// is shown.
+    /// A task whose units take times that differ by orders of magnitude, such as the increments of
+    /// an equilibrium path: no time left is shown.
     fn uneven(total: usize, what: &'static str) -> Self {
-        Self {
-            is_even: false,
-            ..Self::new(total, what)
-        }
+        Self { is_even: false, ..Self::new(total, what) }
     }
 
     /// Sets the length of a task that is known only after its start.
@@ -75,7 +75,8 @@ impl Progress {
         self.bar.set_length(total as u64);
     }
 
-    /// Shows that `done` units are finished; `seconds_left` replaces the estimate by the units of this run.
+    /// Shows that `done` units are finished; `seconds_left` replaces the estimate by the units of
+    /// this run.
     pub fn show(&self, done: usize, seconds_left: Option<f64>, message: &str) {
         if SILENT.load(Ordering::Relaxed) {
             return;
@@ -97,7 +98,8 @@ impl Progress {
         self.bar.set_message(message);
     }
 
-    /// The time left by the mean duration of the units of this run; `None` if it cannot be estimated.
+    /// The time left by the mean duration of the units of this run; `None` if it cannot be
+    /// estimated.
     fn seconds_left(&self, done: usize) -> Option<f64> {
         let (since, before) = *self.begun.get_or_init(|| (Instant::now(), done));
         let total = self.bar.length().unwrap_or_default() as usize;
@@ -112,7 +114,8 @@ impl Progress {
     }
 }
 
-/// Runs a task and shows how far it has come: `reached` is asked in between, from 0 to `paths` solved paths.
+/// Runs a task and shows how far it has come: `reached` is asked in between, from 0 to `paths`
+/// solved paths.
 pub fn watched<T>(paths: usize, reached: impl Fn() -> f64 + Sync, task: impl FnOnce() -> T) -> T {
     /// Number of parts of a path on the progress bar.
     const PARTS: usize = 1000;

@@ -19,7 +19,8 @@ pub fn hold(folder: &Path) -> Result<File> {
     })
 }
 
-/// Locks a file, created if missing, until the returned file is dropped; `taken` says what to do if it is locked.
+/// Locks a file, created if missing, until the returned file is dropped; `taken` says what to do if
+/// it is locked.
 pub fn lock(path: &Path, taken: impl FnOnce() -> String) -> Result<File> {
     match lock_file::try_hold(path) {
         Err(error) if error.kind() == ErrorKind::WouldBlock => bail!(taken()),

@@ -36,9 +36,7 @@ pub(crate) fn level() -> impl TypedValueParser<Value = Level> {
 
 /// A percentage such as `1%`, as a percentage.
 pub(crate) fn percent(text: &str) -> Result<f64, String> {
-    let number = text
-        .strip_suffix('%')
-        .map(|number| number.trim().parse::<f64>());
+    let number = text.strip_suffix('%').map(|number| number.trim().parse::<f64>());
     match number {
         Some(Ok(value)) if value > 0.0 && value <= 100.0 => Ok(value),
         _ => Err("expected a percentage above 0 and at most 100, for example 1%".into()),

@@ -6,22 +6,21 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 /// Number of calls of [`catch`] at work.
 static AT_WORK: AtomicUsize = AtomicUsize::new(0);
 
-/// The result of `work`, or the message of its panic. What `work` changes outside is not to be used after a panic.
+/// The result of `work`, or the message of its panic. What `work` changes outside is not to be used
+/// after a panic.
 pub fn catch<T>(work: impl FnOnce() -> T) -> Result<T, String> {
     AT_WORK.fetch_add(1, Ordering::SeqCst);
     let result = catch_unwind(AssertUnwindSafe(work));
     AT_WORK.fetch_sub(1, Ordering::SeqCst);
     result.map_err(|payload| {
-        let message = payload
-            .downcast_ref::<&str>()
-            .map(|text| (*text).to_owned());
+        let message = payload.downcast_ref::<&str>().map(|text| (*text).to_owned());
         let message = message.or_else(|| payload.downcast_ref::<String>().cloned());
         message.unwrap_or_else(|| "unknown reason".to_owned())
     })
 }
 
-/// Whether a panic is reported by a caller of [`catch`], so that a panic hook need not print it. The threads of a pool that
-/// works for this caller count as well.
+/// Whether a panic is reported by a caller of [`catch`], so that a panic hook need not print it.
+/// The threads of a pool that works for this caller count as well.
 pub fn is_caught() -> bool {
     AT_WORK.load(Ordering::SeqCst) > 0
 }

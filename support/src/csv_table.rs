@@ -48,13 +48,10 @@ pub fn name_and_unit(cell: &str) -> (String, String) {
     (name.trim().to_lowercase(), unit.trim().to_owned())
 }
 
-/// The names of the columns of a file in lower case, and its rows, each with the number of its line.
+/// The names of the columns of a file in lower case, and its rows, each with the number of its
+/// line.
 pub fn read<T: DeserializeOwned>(path: &Path) -> Result<(StringRecord, Vec<(u64, T)>), FileError> {
-    let NamedTable {
-        head: (_, head),
-        rows,
-        ..
-    } = NamedTable::read(path)?;
+    let NamedTable { head: (_, head), rows, .. } = NamedTable::read(path)?;
     let head: StringRecord = head.iter().map(|cell| name_and_unit(cell).0).collect();
     let typed = |(line, row): (u64, StringRecord)| {
         let row = row.deserialize(Some(&head)).map_err(|error| {

@@ -3,7 +3,8 @@
 use crate::table::Table;
 use std::fmt::{self, Display};
 
-/// A report. `Display` is for a screen, with aligned columns; [`markdown`](Self::markdown) is for a page.
+/// A report. `Display` is for a screen, with aligned columns; [`markdown`](Self::markdown) is for a
+/// page.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Document {
     parts: Vec<Part>,
@@ -66,9 +67,7 @@ impl Document {
 /// A report that is a table alone.
 impl From<Table> for Document {
     fn from(table: Table) -> Self {
-        Self {
-            parts: vec![Part::Table(table)],
-        }
+        Self { parts: vec![Part::Table(table)] }
     }
 }
 

@@ -17,9 +17,6 @@ impl FileError {
     /// Maps the error of an operation on `path`, for use in `map_err`.
     pub fn at<E: Into<io::Error>>(path: &Path) -> impl FnOnce(E) -> Self {
         let path = path.to_owned();
-        move |source| Self {
-            path,
-            source: source.into(),
-        }
+        move |source| Self { path, source: source.into() }
     }
 }

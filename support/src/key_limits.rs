@@ -1,13 +1,14 @@
-//! The limits of the keys of configuration files. The range of a number stands once, as `schemars(range(..))` of its field,
-//! and its unit in the first parentheses of the field's documentation, as in "Thickness of the sheet (mm)".
+//! The limits of the keys of configuration files. The range of a number stands once, as
+//! `schemars(range(..))` of its field, and its unit in the first parentheses of the field's
+//! documentation, as in "Thickness of the sheet (mm)".
 
 use schemars::{JsonSchema, schema_for};
 use serde::Serialize;
 use serde_json::Value;
 use std::fmt;
 
-/// A number outside the range of its key. The message names both and, if a factor of 1000 would correct the number, the
-/// probable one.
+/// A number outside the range of its key. The message names both and, if a factor of 1000 would
+/// correct the number, the probable one.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{key} = {}{unit} violates {}{}", shown(self.value), self.rule(), self.hint())]
 pub struct OutOfRange {
@@ -24,12 +25,13 @@ pub struct OutOfRange {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Range(f64, f64);
 
-/// Checks all numbers of a configuration against the ranges of the type `T`, which has the same keys; numbers must be
-/// finite.
+/// Checks all numbers of a configuration against the ranges of the type `T`, which has the same
+/// keys; numbers must be finite.
 pub fn check<T: JsonSchema>(config: &impl Serialize) -> Result<(), OutOfRange> {
     let schema = schema_for!(T);
     let checker = Checker(schema.as_value());
-    // A configuration that is no TOML, such as one with an integer above 2^63, was not read from a file.
+    // A configuration that is no TOML, such as one with an integer above 2^63, was not read from a
+    // file.
     let value = toml::Value::try_from(config);
     value.map_or(Ok(()), |value| checker.check(checker.0, &value, "", ""))
 }
@@ -41,12 +43,7 @@ pub fn within(key: &str, value: f64, [min, max]: [f64; 2], unit: &str) -> Result
         return Ok(());
     }
     let gap = if unit.is_empty() { "" } else { " " };
-    Err(OutOfRange {
-        key: key.to_owned(),
-        value,
-        unit: format!("{gap}{unit}"),
-        range,
-    })
+    Err(OutOfRange { key: key.to_owned(), value, unit: format!("{gap}{unit}"), range })
 }
 
 /// A number, with an exponent if it has more digits than a person reads.
@@ -59,18 +56,15 @@ fn shown(value: f64) -> String {
 
 /// The unit that a description states in its first parentheses; empty if there is none.
 pub fn unit(description: &str) -> &str {
-    let inside = description
-        .split_once('(')
-        .and_then(|(_, rest)| rest.split_once(')'));
+    let inside = description.split_once('(').and_then(|(_, rest)| rest.split_once(')'));
     let unit = inside.map_or("", |(inside, _)| inside);
     let is_unit = unit.split_whitespace().all(|word| UNITS.contains(&word));
     if is_unit { unit } else { "" }
 }
 
 /// The factors of the units of keys.
-const UNITS: [&str; 12] = [
-    "mm", "mm^2", "N", "N/mm", "mm/rad", "MPa", "deg", "rad", "s", "kg/m^3", "1/mm", "h",
-];
+const UNITS: [&str; 12] =
+    ["mm", "mm^2", "N", "N/mm", "mm/rad", "MPa", "deg", "rad", "s", "kg/m^3", "1/mm", "h"];
 
 /// A schema with the definitions of its parts.
 struct Checker<'a>(&'a Value);
@@ -175,9 +169,7 @@ impl OutOfRange {
         let slips = [1e3, 1e-3].map(|factor| without_rounding(factor * self.value));
         let meant = slips.into_iter().find(|meant| self.range.contains(*meant));
         let meant = meant.filter(|_| !self.unit.is_empty());
-        meant.map_or(String::new(), |meant| {
-            format!("; did you mean {meant}{}?", self.unit)
-        })
+        meant.map_or(String::new(), |meant| format!("; did you mean {meant}{}?", self.unit))
     }
 }
 
@@ -239,15 +231,9 @@ mod tests {
         let radius = "shape.circle.radius = 0 mm violates 0.1 <= shape.circle.radius mm";
         for (found, expected) in [
             (message(|sheet| sheet.size = Some([100.0, 2.8])), size),
-            (
-                message(|sheet| sheet.steps = 0),
-                "steps = 0 violates 1 <= steps <= 100",
-            ),
+            (message(|sheet| sheet.steps = 0), "steps = 0 violates 1 <= steps <= 100"),
             (message(|sheet| sheet.loads[0].force[1] = f64::NAN), force),
-            (
-                message(|sheet| sheet.shape = Shape::Circle { radius: 0.0 }),
-                radius,
-            ),
+            (message(|sheet| sheet.shape = Shape::Circle { radius: 0.0 }), radius),
         ] {
             assert_eq!(found.unwrap(), expected);
         }

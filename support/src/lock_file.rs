@@ -1,13 +1,13 @@
-//! Lock files: they keep two commands from doing the same work. On a file system without locks they do nothing, since no
-//! result depends on them.
+//! Lock files: they keep two commands from doing the same work. On a file system without locks they
+//! do nothing, since no result depends on them.
 
 use crate::regular_file;
 use std::fs::{File, OpenOptions};
 use std::io;
 use std::path::Path;
 
-/// Locks a file, created if missing, until the returned file is dropped. If another process has locked it, the error is
-/// of the kind [`io::ErrorKind::WouldBlock`].
+/// Locks a file, created if missing, until the returned file is dropped. If another process has
+/// locked it, the error is of the kind [`io::ErrorKind::WouldBlock`].
 pub fn try_hold(path: &Path) -> io::Result<File> {
     hold_by(path, |file| file.try_lock().map_err(io::Error::from))
 }

@@ -1,10 +1,10 @@
 //! External programs: found, checked for their version, run under a time limit, never orphaned.
 //!
-//! A program runs in its own process group. Its output goes to a log file, because a pipe that is not
-//! read would block it. It is terminated by SIGTERM, then SIGKILL, sent to the whole group: at its time
-//! limit and when the caller sets the stop flag. When the caller dies, the program itself is killed. All that it
-//! started is killed when it has ended, and what a killed caller left is killed before the next program runs in the
-//! same folder.
+//! A program runs in its own process group. Its output goes to a log file, because a pipe that is
+//! not read would block it. It is terminated by SIGTERM, then SIGKILL, sent to the whole group: at
+//! its time limit and when the caller sets the stop flag. When the caller dies, the program itself
+//! is killed. All that it started is killed when it has ended, and what a killed caller left is
+//! killed before the next program runs in the same folder.
 
 mod output_files;
 mod process_group;
@@ -67,10 +67,11 @@ pub struct Run {
 
 /// Time limit of the version query.
 const VERSION_LIMIT: Duration = Duration::from_secs(30);
-/// Maximum time between two polls that counts. In a longer time this program was itself suspended, and with it the program
-/// that it watches.
+/// Maximum time between two polls that counts. In a longer time this program was itself suspended,
+/// and with it the program that it watches.
 const LONGEST_POLL: Duration = Duration::from_secs(1);
-/// Maximum delay between the death of a program by a signal and the stop request that the same signal causes.
+/// Maximum delay between the death of a program by a signal and the stop request that the same
+/// signal causes.
 const SAME_SIGNAL: Duration = Duration::from_millis(500);
 
 impl Tool {
@@ -79,10 +80,8 @@ impl Tool {
         match std::env::var_os(kind.variable) {
             Some(program) => Self::at(kind, Path::new(&program)),
             None => {
-                let program = search_path(kind.name).ok_or(ToolError::NotFound {
-                    kind,
-                    program: None,
-                })?;
+                let program =
+                    search_path(kind.name).ok_or(ToolError::NotFound { kind, program: None })?;
                 Self::at(kind, &program)
             }
         }
@@ -95,10 +94,7 @@ impl Tool {
             program: std::path::absolute(program)
                 .ok()
                 .filter(|program| program.is_file())
-                .ok_or_else(|| ToolError::NotFound {
-                    kind,
-                    program: Some(program.to_owned()),
-                })?,
+                .ok_or_else(|| ToolError::NotFound { kind, program: Some(program.to_owned()) })?,
             version: String::new(),
         };
         tool.version = tool.ask_version()?;
@@ -109,25 +105,18 @@ impl Tool {
         let folder = Scratch::new().map_err(|source| self.cannot_start(source))?;
         let log = folder.path().join("version.log");
         let arguments = [self.kind.version_flag];
-        let run = self.run(
-            &arguments,
-            folder.path(),
-            &log,
-            VERSION_LIMIT,
-            &AtomicBool::new(false),
-        )?;
+        let run =
+            self.run(&arguments, folder.path(), &log, VERSION_LIMIT, &AtomicBool::new(false))?;
         let printed = tail(&log);
         let answered =
             (run.status.code()).is_some_and(|status| self.kind.version_statuses.contains(&status));
         let version = (self.kind.version_in)(&printed).filter(|_| answered);
-        version
-            .map(str::to_owned)
-            .ok_or_else(|| ToolError::NoVersion {
-                kind: self.kind,
-                program: self.program.clone(),
-                status: run.status,
-                printed,
-            })
+        version.map(str::to_owned).ok_or_else(|| ToolError::NoVersion {
+            kind: self.kind,
+            program: self.program.clone(),
+            status: run.status,
+            printed,
+        })
     }
 
     /// Runs the program in `folder`, with its output in `log`, until it exits by itself.
@@ -184,11 +173,7 @@ impl Tool {
             if running > limit {
                 group.end();
                 let cpu_seconds = group.cpu_seconds();
-                return Err(ToolError::TimedOut {
-                    name,
-                    limit,
-                    cpu_seconds,
-                });
+                return Err(ToolError::TimedOut { name, limit, cpu_seconds });
             }
             std::thread::sleep(POLL.min(Duration::from_millis(1) + running / 10));
         }
@@ -199,8 +184,8 @@ impl Tool {
             return Err(ToolError::TooMuchOutput { name, cpu_seconds });
         }
         if let Some(signal) = status.signal().or_else(|| signal_of_child(status)) {
-            // A service manager or a scheduler signals all processes of a job at once: the request to stop may
-            // arrive a moment after the program died of the same signal.
+            // A service manager or a scheduler signals all processes of a job at once: the request
+            // to stop may arrive a moment after the program died of the same signal.
             let patience = Instant::now() + SAME_SIGNAL;
             while Instant::now() < patience {
                 if stop.load(Ordering::Relaxed) {
@@ -208,18 +193,9 @@ impl Tool {
                 }
                 std::thread::sleep(POLL);
             }
-            return Err(ToolError::Killed {
-                name,
-                signal,
-                cpu_seconds,
-            });
+            return Err(ToolError::Killed { name, signal, cpu_seconds });
         }
-        Ok(Run {
-            status,
-            cpu_seconds,
-            wall_seconds: running.as_secs_f64(),
-            peak_memory_mib,
-        })
+        Ok(Run { status, cpu_seconds, wall_seconds: running.as_secs_f64(), peak_memory_mib })
     }
 
     /// Returns an error that quotes the end of the log if the exit status is not zero.
@@ -227,18 +203,11 @@ impl Tool {
         if run.status.success() {
             return Ok(());
         }
-        Err(ToolError::Failed {
-            name: self.kind.name,
-            status: run.status,
-            tail: tail(log),
-        })
+        Err(ToolError::Failed { name: self.kind.name, status: run.status, tail: tail(log) })
     }
 
     fn cannot_start(&self, source: std::io::Error) -> ToolError {
-        ToolError::Start {
-            program: self.program.clone(),
-            source,
-        }
+        ToolError::Start { program: self.program.clone(), source }
     }
 }
 
@@ -251,12 +220,9 @@ fn signal_of_child(status: ExitStatus) -> Option<i32> {
 /// The first executable file with this name on PATH.
 fn search_path(name: &str) -> Option<PathBuf> {
     use std::os::unix::fs::PermissionsExt;
-    std::env::split_paths(&std::env::var_os("PATH")?)
-        .map(|folder| folder.join(name))
-        .find(|path| {
-            path.metadata()
-                .is_ok_and(|m| m.is_file() && m.permissions().mode() & 0o111 != 0)
-        })
+    std::env::split_paths(&std::env::var_os("PATH")?).map(|folder| folder.join(name)).find(|path| {
+        path.metadata().is_ok_and(|m| m.is_file() && m.permissions().mode() & 0o111 != 0)
+    })
 }
 
 #[cfg(test)]
@@ -276,11 +242,7 @@ mod tests {
     };
 
     fn shell() -> Tool {
-        Tool {
-            kind: &SHELL,
-            program: "/bin/sh".into(),
-            version: "1".into(),
-        }
+        Tool { kind: &SHELL, program: "/bin/sh".into(), version: "1".into() }
     }
 
     fn run(script: &str, limit: Duration, stop: bool) -> (Result<Run, ToolError>, String) {
@@ -367,7 +329,8 @@ mod tests {
     fn signals_and_stops_are_distinguished() {
         let (killed, _) = run("kill -9 $$", LONG, false);
         assert!(matches!(killed, Err(ToolError::Killed { signal: 9, .. })));
-        // A shell that does not replace itself by the program says by its exit code how that ended; 201 is no signal.
+        // A shell that does not replace itself by the program says by its exit code how that ended;
+        // 201 is no signal.
         let (wrapped, _) = run("sh -c 'kill -15 $$'; exit $?", LONG, false);
         assert!(matches!(wrapped, Err(ToolError::Killed { signal: 15, .. })));
         let (refused, _) = run("exit 201", LONG, false);

@@ -1,6 +1,7 @@
-//! Files that are no pipes, devices or links. Input files are not read from a pipe or a device: that could wait forever or
-//! never end. Neither is a file that is larger than any input, which could fill the memory. Files of this program in
-//! folders that others can write are no links either.
+//! Files that are no pipes, devices or links. Input files are not read from a pipe or a device:
+//! that could wait forever or never end. Neither is a file that is larger than any input, which
+//! could fill the memory. Files of this program in folders that others can write are no links
+//! either.
 
 use crate::verbose;
 use std::fs::{File, FileType, OpenOptions};
@@ -30,8 +31,9 @@ pub fn read(path: &Path) -> io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// Opens a file in a folder that others can write. It is an error of the kind [`ErrorKind::InvalidData`] if a link, a pipe or a
-/// device is in its place: nothing is awaited, and nothing that a link names is read, created or changed.
+/// Opens a file in a folder that others can write. It is an error of the kind
+/// [`ErrorKind::InvalidData`] if a link, a pipe or a device is in its place: nothing is awaited,
+/// and nothing that a link names is read, created or changed.
 pub fn open(options: &mut OpenOptions, path: &Path) -> io::Result<File> {
     let refused = || {
         let what = "a link, a pipe or a device is in its place: remove it";
@@ -41,11 +43,7 @@ pub fn open(options: &mut OpenOptions, path: &Path) -> io::Result<File> {
         Err(error) if is_link_or_pipe(&error) => return Err(refused()),
         opened => opened?,
     };
-    if file.metadata()?.is_file() {
-        Ok(file)
-    } else {
-        Err(refused())
-    }
+    if file.metadata()?.is_file() { Ok(file) } else { Err(refused()) }
 }
 
 #[cfg(unix)]

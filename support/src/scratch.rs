@@ -1,4 +1,5 @@
-//! A temporary folder that no process leaves behind for long: what a killed process could not remove, the next one does.
+//! A temporary folder that no process leaves behind for long: what a killed process could not
+//! remove, the next one does.
 
 use crate::regular_file;
 use std::fs::{File, OpenOptions};
@@ -27,17 +28,15 @@ impl Scratch {
     fn new_in(root: &Path) -> io::Result<Self> {
         remove_abandoned(root);
         let folder = tempfile::Builder::new().prefix(PREFIX).tempdir_in(root)?;
-        // The file gets its name once it is locked: a folder whose file can be locked has lost its owner. On a file
-        // system without locks it gets none, and the folder of a killed process stays.
+        // The file gets its name once it is locked: a folder whose file can be locked has lost its
+        // owner. On a file system without locks it gets none, and the folder of a killed process
+        // stays.
         let unlocked = folder.path().join("new.lock");
         let lock = File::create_new(&unlocked)?;
         if lock.try_lock().is_ok() {
             std::fs::rename(unlocked, folder.path().join(OWNER))?;
         }
-        Ok(Self {
-            folder,
-            _lock: lock,
-        })
+        Ok(Self { folder, _lock: lock })
     }
 
     /// The path of the folder.
@@ -46,17 +45,15 @@ impl Scratch {
     }
 }
 
-/// Removes scratch folders without an owner. What cannot be read or removed belongs to another user, and stays.
+/// Removes scratch folders without an owner. What cannot be read or removed belongs to another
+/// user, and stays.
 fn remove_abandoned(root: &Path) {
     let folders = std::fs::read_dir(root).into_iter().flatten().flatten();
     let scratch = folders.filter(|entry| {
         let folder = entry.file_type().is_ok_and(|kind| kind.is_dir());
         folder && entry.file_name().to_string_lossy().starts_with(PREFIX)
     });
-    for folder in scratch
-        .map(|entry| entry.path())
-        .filter(|folder| is_abandoned(folder))
-    {
+    for folder in scratch.map(|entry| entry.path()).filter(|folder| is_abandoned(folder)) {
         let _ = std::fs::remove_dir_all(folder);
     }
 }

@@ -1,4 +1,5 @@
-//! JSON files with damage detection: the key `checksum` contains the BLAKE3 hash of the other contents.
+//! JSON files with damage detection: the key `checksum` contains the BLAKE3 hash of the other
+//! contents.
 
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -59,9 +60,7 @@ pub fn from_slice_by_hand<T: DeserializeOwned>(text: &[u8]) -> Result<T, SealErr
 /// The value in JSON text, after checking its checksum; `None` if it has none.
 fn read<T: DeserializeOwned>(text: &[u8]) -> Result<Option<T>, SealError> {
     let mut value: Value = serde_json::from_slice(text)?;
-    let stated = value
-        .as_object_mut()
-        .and_then(|keys| keys.shift_remove(CHECKSUM));
+    let stated = value.as_object_mut().and_then(|keys| keys.shift_remove(CHECKSUM));
     let Some(expected) = stated else {
         return Ok(None);
     };

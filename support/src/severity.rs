@@ -11,7 +11,8 @@ pub enum Severity {
     Note,
     /// The sheet may not behave as computed: check before cutting.
     Warning,
-    /// The sheet will not behave as computed, or cannot be cut: no cut file is written unless forced.
+    /// The sheet will not behave as computed, or cannot be cut: no cut file is written unless
+    /// forced.
     Error,
 }
 

@@ -1,7 +1,7 @@
 //! A shard: every n-th of a list of jobs.
 //!
-//! The shards of one list may run at the same time, on one machine or on several machines that share the folder.
-//! Together they do the same jobs as one run of the whole list.
+//! The shards of one list may run at the same time, on one machine or on several machines that
+//! share the folder. Together they do the same jobs as one run of the whole list.
 
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -43,9 +43,7 @@ impl FromStr for Shard {
         let parse = || {
             let (index, count) = text.split_once('/')?;
             let (index, count) = (index.parse().ok()?, count.parse().ok()?);
-            (1..=count)
-                .contains(&index)
-                .then_some(Self { index, count })
+            (1..=count).contains(&index).then_some(Self { index, count })
         };
         parse().ok_or_else(|| InvalidShard(text.to_owned()))
     }

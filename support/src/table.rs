@@ -15,15 +15,16 @@ pub struct Cell {
 }
 
 impl Cell {
-    /// What all of them show alike. A text is not more than a text: none is computed as a formula by a spreadsheet.
+    /// What all of them show alike. A text is not more than a text: none is computed as a formula
+    /// by a spreadsheet.
     pub fn text(text: impl Display) -> Self {
         let shown = text.to_string();
         let stored = no_formula(shown.clone());
         Self { shown, stored }
     }
 
-    /// A number with a fixed number of decimals, which a file holds unrounded; of a large one three digits are shown. `-` if it is
-    /// not known, `None` or NaN.
+    /// A number with a fixed number of decimals, which a file holds unrounded; of a large one three
+    /// digits are shown. `-` if it is not known, `None` or NaN.
     pub fn fixed(value: impl Into<Option<f64>>, decimals: usize) -> Self {
         let value = value.into().filter(|value| !value.is_nan());
         let shown = |value: f64| match value.abs() < WIDEST {
@@ -49,10 +50,7 @@ impl Cell {
 
     /// Shown as `absent` and stored as an empty cell if not known.
     pub fn known(cell: Option<Self>, absent: &str) -> Self {
-        cell.unwrap_or_else(|| Self {
-            shown: absent.to_owned(),
-            stored: String::new(),
-        })
+        cell.unwrap_or_else(|| Self { shown: absent.to_owned(), stored: String::new() })
     }
 }
 
@@ -80,13 +78,10 @@ pub struct Table {
 }
 
 impl Table {
-    /// An empty table with the names of its columns. Without any name, a screen shows the rows alone.
+    /// An empty table with the names of its columns. Without any name, a screen shows the rows
+    /// alone.
     pub fn new<S: Into<String>>(head: impl IntoIterator<Item = S>) -> Self {
-        Self {
-            head: head.into_iter().map(S::into).collect(),
-            rows: Vec::new(),
-            left: vec![0],
-        }
+        Self { head: head.into_iter().map(S::into).collect(), rows: Vec::new(), left: vec![0] }
     }
 
     /// The table with columns that a screen aligns left; it is the first one otherwise.
@@ -145,10 +140,7 @@ impl Display for Table {
             names.map(move |name| name.lines().nth(line).unwrap_or("").to_owned())
         };
         let mut lines: Vec<Vec<String>> = (0..head).map(|line| of_head(line).collect()).collect();
-        lines.extend(
-            self.rows()
-                .map(|row| row.into_iter().map(one_line).collect()),
-        );
+        lines.extend(self.rows().map(|row| row.into_iter().map(one_line).collect()));
         let width = |column: usize| {
             let cells = lines.iter().filter_map(|line| line.get(column));
             cells.map(|cell| cell.chars().count()).max().unwrap_or(0)
@@ -168,10 +160,7 @@ impl Display for Table {
         let mut lines: Vec<String> = lines.iter().map(line).collect();
         if head > 0 {
             let gaps = GAP.len() * (widths.len() - 1);
-            lines.insert(
-                head,
-                "\u{2500}".repeat(widths.iter().sum::<usize>() + gaps + 2),
-            );
+            lines.insert(head, "\u{2500}".repeat(widths.iter().sum::<usize>() + gaps + 2));
         }
         f.write_str(&lines.join("\n"))
     }
@@ -182,16 +171,15 @@ struct Column<'a, R> {
     cell: Box<dyn Fn(&R) -> Cell + 'a>,
 }
 
-/// The columns of a table of rows `R`: a column is said once, as its name and how a cell follows from a row.
+/// The columns of a table of rows `R`: a column is said once, as its name and how a cell follows
+/// from a row.
 pub struct Columns<'a, R> {
     columns: Vec<Column<'a, R>>,
 }
 
 impl<R> Default for Columns<'_, R> {
     fn default() -> Self {
-        Self {
-            columns: Vec::new(),
-        }
+        Self { columns: Vec::new() }
     }
 }
 
@@ -208,10 +196,8 @@ impl<'a, R> Columns<'a, R> {
         name: impl Into<String>,
         cell: impl Fn(&R) -> C + 'a,
     ) -> Self {
-        self.columns.push(Column {
-            name: name.into(),
-            cell: Box::new(move |row| cell(row).into()),
-        });
+        self.columns
+            .push(Column { name: name.into(), cell: Box::new(move |row| cell(row).into()) });
         self
     }
 
@@ -238,7 +224,8 @@ fn escaped(text: &str) -> String {
     one_line(text).replace('|', "\\|")
 }
 
-/// The text, after an apostrophe if a spreadsheet would compute it. A number or a single dash is none that it computes.
+/// The text, after an apostrophe if a spreadsheet would compute it. A number or a single dash is
+/// none that it computes.
 fn no_formula(text: String) -> String {
     let computed = text.starts_with(['=', '+', '-', '@', '\t', '\r']);
     if computed && text.len() > 1 && text.parse::<f64>().is_err() {
@@ -297,9 +284,7 @@ mod tests {
         let columns = Columns::new()
             .column("choice", |row: &(&str, f64)| Cell::text(row.0))
             .column("W, N mm", |row| Cell::fixed(row.1, 1))
-            .column("error", |row| {
-                Cell::percent((row.1 < 1.0).then_some(row.1), 0)
-            });
+            .column("error", |row| Cell::percent((row.1 < 1.0).then_some(row.1), 0));
         let table = columns.table(&[("a, b", 0.25), ("c", 2.0)]);
         let page =
             "| choice | W, N mm | error |\n|---|---|---|\n| a, b | 0.2 | 25 % |\n| c | 2.0 | - |\n";
@@ -321,11 +306,7 @@ mod tests {
             "    10    7.25   elements",
         ];
         assert_eq!(table.to_string(), lines.join("\n"));
-        assert!(
-            table
-                .markdown()
-                .starts_with("| hinge | w_lig, mm | found by |\n")
-        );
+        assert!(table.markdown().starts_with("| hinge | w_lig, mm | found by |\n"));
         assert!(table.csv().starts_with("hinge,\"w_lig, mm\",found by\n"));
         let mut nameless = Table::new(["", ""]);
         nameless.row(["area", "1.00 mm^2"]);

@@ -1,5 +1,5 @@
-//! Texts that people hand in, in the encodings and with the line ends of their programs: UTF-8, UTF-16 with and without a byte
-//! order mark, and else Windows-1252, which contains Latin-1.
+//! Texts that people hand in, in the encodings and with the line ends of their programs: UTF-8,
+//! UTF-16 with and without a byte order mark, and else Windows-1252, which contains Latin-1.
 
 use crate::regular_file;
 use encoding_rs::{Encoding, UTF_16BE, UTF_16LE, WINDOWS_1252};
@@ -8,14 +8,8 @@ use std::path::Path;
 
 /// First bytes of files that are no texts, with what they are and the way out.
 const OTHERS: [(&[u8], &str); 7] = [
-    (
-        b"PK\x03\x04",
-        "a workbook (xlsx) or another ZIP archive: save its sheet as CSV",
-    ),
-    (
-        b"\xD0\xCF\x11\xE0",
-        "a workbook (xls): save its sheet as CSV",
-    ),
+    (b"PK\x03\x04", "a workbook (xlsx) or another ZIP archive: save its sheet as CSV"),
+    (b"\xD0\xCF\x11\xE0", "a workbook (xls): save its sheet as CSV"),
     (b"\x1F\x8B", "compressed by gzip: unpack it with `gunzip`"),
     (b"PAR1", "a Parquet table: write it as CSV"),
     (b"AC10", "a DWG drawing: save it as DXF"),
@@ -23,12 +17,14 @@ const OTHERS: [(&[u8], &str); 7] = [
     (b"%PDF", "a PDF document: export its contents as text"),
 ];
 
-/// The text of a file, with `\n` at the ends of its lines; an error if it is not a regular file, or no text.
+/// The text of a file, with `\n` at the ends of its lines; an error if it is not a regular file, or
+/// no text.
 pub fn read(path: &Path) -> io::Result<String> {
     decoded(&regular_file::read(path)?)
 }
 
-/// The text in the bytes of a file, with `\n` at the ends of its lines; the error says what else they are.
+/// The text in the bytes of a file, with `\n` at the ends of its lines; the error says what else
+/// they are.
 pub fn decoded(bytes: &[u8]) -> io::Result<String> {
     let refused = |what: &str| Err(io::Error::new(ErrorKind::InvalidData, what));
     if let Some((_, what)) = OTHERS.iter().find(|(start, _)| bytes.starts_with(start)) {
@@ -56,8 +52,8 @@ fn encoding(bytes: &[u8]) -> &'static Encoding {
     }
 }
 
-/// A character that looks like another one or like nothing, with its number, as in `” (U+201D)`: a quotation mark of a web page, a
-/// no-break space.
+/// A character that looks like another one or like nothing, with its number, as in `” (U+201D)`: a
+/// quotation mark of a web page, a no-break space.
 pub fn unlike_its_looks(text: &str) -> Option<String> {
     let looks = |c: &char| {
         let shown = c.escape_debug().count() == 1;

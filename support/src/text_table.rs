@@ -1,6 +1,7 @@
-//! Tables in texts that people hand in: what separates the cells, which sign is the decimal sign, and whether another one separates
-//! groups of three digits are recognised, as those with which most cells are numbers and fewest others are left. Lines that start with `#` are comments, and so
-//! is what follows `#` in a number.
+//! Tables in texts that people hand in: what separates the cells, which sign is the decimal sign,
+//! and whether another one separates groups of three digits are recognised, as those with which
+//! most cells are numbers and fewest others are left. Lines that start with `#` are comments, and
+//! so is what follows `#` in a number.
 
 use crate::file_error::FileError;
 use crate::text_file;
@@ -9,7 +10,8 @@ use std::path::Path;
 
 /// What separates cells, in the order of preference; a blank stands for any number of them.
 const SEPARATORS: [u8; 4] = *b";\t, ";
-/// Signs between groups of three digits besides `,` and `.`: blanks of every width, and the apostrophes of Switzerland.
+/// Signs between groups of three digits besides `,` and `.`: blanks of every width, and the
+/// apostrophes of Switzerland.
 const GROUPING: [char; 6] = [' ', '\u{a0}', '\u{2009}', '\u{202f}', '\'', '’'];
 
 /// The cells of a text; they are converted to numbers where they are used.
@@ -61,9 +63,7 @@ impl TextTable {
                 others += if count > 0 { row.filled() - count } else { 0 };
             }
             // A head alone has no number.
-            let columns = rows
-                .iter()
-                .any(|row| !row.is_comment() && row.cells.len() > 1);
+            let columns = rows.iter().any(|row| !row.is_comment() && row.cells.len() > 1);
             (numbers, Reverse(others), columns)
         };
         // `max_by_key` returns the last maximum; the first is preferred.
@@ -96,7 +96,8 @@ impl TextRow {
 }
 
 impl NumberStyle {
-    /// Plain numbers, preferred with any separator of cells, and grouped ones; each with a point, preferred, and a comma.
+    /// Plain numbers, preferred with any separator of cells, and grouped ones; each with a point,
+    /// preferred, and a comma.
     pub const ALL: [[Self; 2]; 2] = [
         [Self::new(false, false), Self::new(true, false)],
         [Self::new(false, true), Self::new(true, true)],
@@ -121,14 +122,12 @@ impl NumberStyle {
             false => whole.to_owned(),
         };
         let number = fraction.map_or(whole.clone(), |fraction| format!("{whole}.{fraction}"));
-        number
-            .parse()
-            .ok()
-            .filter(|number: &f64| number.is_finite())
+        number.parse().ok().filter(|number: &f64| number.is_finite())
     }
 }
 
-/// The digits of a whole number without the signs between their groups; `None` if a group is not one of three digits.
+/// The digits of a whole number without the signs between their groups; `None` if a group is not
+/// one of three digits.
 fn joined(whole: &str, other: char) -> Option<String> {
     let sign = |c: char| c == other || GROUPING.contains(&c);
     let Some((first, rest)) = whole.split_once(sign) else {
@@ -137,9 +136,7 @@ fn joined(whole: &str, other: char) -> Option<String> {
     let digits = |text: &str| text.bytes().all(|byte| byte.is_ascii_digit());
     let leading = first.trim_start_matches(['-', '+']);
     let starts = digits(leading) && (1..=3).contains(&leading.len()) && !leading.starts_with('0');
-    let groups = rest
-        .split(sign)
-        .all(|group| group.len() == 3 && digits(group));
+    let groups = rest.split(sign).all(|group| group.len() == 3 && digits(group));
     (starts && groups).then(|| whole.replace(sign, ""))
 }
 
@@ -151,10 +148,7 @@ fn split(text: &str, separator: u8) -> Vec<TextRow> {
         return words
             .map(|(line, words)| TextRow {
                 line,
-                cells: words
-                    .filter(|word| !word.is_empty())
-                    .map(str::to_owned)
-                    .collect(),
+                cells: words.filter(|word| !word.is_empty()).map(str::to_owned).collect(),
             })
             .filter(|row| !row.cells.is_empty())
             .collect();
@@ -182,8 +176,7 @@ mod tests {
         let table = TextTable::parse(text);
         let number = |cell: &String| table.style.number(cell).unwrap();
         let rows = table.rows.iter().filter(|row| !row.is_comment());
-        rows.map(|row| row.cells.iter().map(number).collect())
-            .collect()
+        rows.map(|row| row.cells.iter().map(number).collect()).collect()
     }
 
     #[test]
@@ -215,10 +208,7 @@ mod tests {
             assert_eq!(numbers(text), expected, "{text}");
         }
         // Without a number that only groups explain, a comma is the decimal sign.
-        assert_eq!(
-            numbers("1,125;2,250\n3,500;4,750\n"),
-            [[1.125, 2.25], [3.5, 4.75]]
-        );
+        assert_eq!(numbers("1,125;2,250\n3,500;4,750\n"), [[1.125, 2.25], [3.5, 4.75]]);
     }
 
     #[test]

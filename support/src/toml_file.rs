@@ -1,5 +1,5 @@
-//! Reading TOML configuration files. An unknown key is an error that names the most similar known key; an array with more
-//! elements than its type has is an error.
+//! Reading TOML configuration files. An unknown key is an error that names the most similar known
+//! key; an array with more elements than its type has is an error.
 
 use crate::file_error::FileError;
 use crate::nearest::nearest;
@@ -24,18 +24,9 @@ pub enum ConfigError {
         path = .path.display(),
         nearest = nearest.as_ref().map(|n| format!("; did you mean `{n}`?")).unwrap_or_default()
     )]
-    UnknownKey {
-        path: PathBuf,
-        line: usize,
-        key: String,
-        nearest: Option<String>,
-    },
+    UnknownKey { path: PathBuf, line: usize, key: String, nearest: Option<String> },
     #[error("{path}:{line}: {message}", path = .path.display())]
-    Syntax {
-        path: PathBuf,
-        line: usize,
-        message: String,
-    },
+    Syntax { path: PathBuf, line: usize, message: String },
 }
 
 /// Reads a TOML file into `T`, which should deny unknown fields.
@@ -82,8 +73,9 @@ pub fn parse<T: DeserializeOwned + Serialize>(text: &str, path: &Path) -> Result
     }
 }
 
-/// The place of the first array in a file that has more elements than were read, and both numbers. A type with N elements reads the first
-/// N of them: decimal commas, `force = [40,5, 0,0]`, would be read as `[40, 5]`.
+/// The place of the first array in a file that has more elements than were read, and both numbers.
+/// A type with N elements reads the first N of them: decimal commas, `force = [40,5, 0,0]`, would
+/// be read as `[40, 5]`.
 fn longer_array(given: &Spanned<DeValue>, read: &Value) -> Option<(usize, [usize; 2])> {
     match (given.get_ref(), read) {
         (DeValue::Table(given), read) => longer_table(given, read),
@@ -99,12 +91,11 @@ fn longer_array(given: &Spanned<DeValue>, read: &Value) -> Option<(usize, [usize
 }
 
 fn longer_table(given: &DeTable, read: &Value) -> Option<(usize, [usize; 2])> {
-    given
-        .iter()
-        .find_map(|(key, given)| longer_array(given, read.get(key.get_ref().as_ref())?))
+    given.iter().find_map(|(key, given)| longer_array(given, read.get(key.get_ref().as_ref())?))
 }
 
-/// The message of the parser about a line, without the terms of Rust, with the key and a hint at decimal commas.
+/// The message of the parser about a line, without the terms of Rust, with the key and a hint at
+/// decimal commas.
 fn plain(message: &str, line: &str) -> String {
     let mut words: Vec<&str> = message.split(' ').collect();
     for word in &mut words {
@@ -141,14 +132,11 @@ fn plain(message: &str, line: &str) -> String {
     plain
 }
 
-/// The unknown key and the known keys from serde's message "unknown field `x`, expected one of `a`, `b`".
+/// The unknown key and the known keys from serde's message "unknown field `x`, expected one of `a`,
+/// `b`".
 fn unknown_field(message: &str) -> Option<(String, Vec<String>)> {
-    let mut quoted = message
-        .strip_prefix("unknown field ")?
-        .split('`')
-        .skip(1)
-        .step_by(2)
-        .map(str::to_owned);
+    let mut quoted =
+        message.strip_prefix("unknown field ")?.split('`').skip(1).step_by(2).map(str::to_owned);
     Some((quoted.next()?, quoted.collect()))
 }
 
@@ -232,10 +220,9 @@ mod tests {
     /// As text that is copied from a page has them.
     #[test]
     fn characters_that_look_like_others_are_shown() {
-        for (from, to, shown) in [
-            ("\"film\"", "“film”", "`“` (U+201C)"),
-            ("poisson = ", "poisson\u{a0}= ", "(U+00A0)"),
-        ] {
+        for (from, to, shown) in
+            [("\"film\"", "“film”", "`“` (U+201C)"), ("poisson = ", "poisson\u{a0}= ", "(U+00A0)")]
+        {
             let message = message(&FILM.replace(from, to));
             assert!(message.contains(shown), "{message}");
         }

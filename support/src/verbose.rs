@@ -1,5 +1,5 @@
-//! Notes on standard error of what a command does: programs that it runs, files that it reads and writes, states of its
-//! solvers. They are off until [`show`] is called.
+//! Notes on standard error of what a command does: programs that it runs, files that it reads and
+//! writes, states of its solvers. They are off until [`show`] is called.
 
 use std::io::Write;
 use std::sync::atomic::{AtomicBool, Ordering};

@@ -1,7 +1,8 @@
-//! Unstructured grids as VTK XML files (.vtu), and collections of such files over time (.pvd), for ParaView and meshio.
+//! Unstructured grids as VTK XML files (.vtu), and collections of such files over time (.pvd), for
+//! ParaView and meshio.
 //!
-//! Numbers are stored inline in binary: base64 of a 64-bit length followed by the values, little endian. They are
-//! therefore exact, and may be NaN where a value is not known.
+//! Numbers are stored inline in binary: base64 of a 64-bit length followed by the values, little
+//! endian. They are therefore exact, and may be NaN where a value is not known.
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
@@ -16,7 +17,8 @@ pub enum CellKind {
     Polygon = 7,
     /// Four corners, counter-clockwise.
     Quad = 9,
-    /// 20 nodes: lower corners, upper corners, middles of the lower, the upper and the vertical edges.
+    /// 20 nodes: lower corners, upper corners, middles of the lower, the upper and the vertical
+    /// edges.
     QuadraticHexahedron = 25,
     /// 15 nodes, in the same order.
     QuadraticWedge = 26,
@@ -52,11 +54,7 @@ impl Field {
     /// One number for each point or cell.
     pub fn scalar(name: &'static str, values: impl IntoIterator<Item = f64>) -> Self {
         let values = values.into_iter().collect();
-        Self {
-            name,
-            components: 1,
-            values,
-        }
+        Self { name, components: 1, values }
     }
 
     /// N numbers for each point or cell.
@@ -65,11 +63,7 @@ impl Field {
         values: impl IntoIterator<Item = [f64; N]>,
     ) -> Self {
         let values = values.into_iter().flatten().collect();
-        Self {
-            name,
-            components: N,
-            values,
-        }
+        Self { name, components: N, values }
     }
 }
 
@@ -91,42 +85,16 @@ impl UnstructuredGrid {
             self.cells.len()
         );
         text += "<Points>\n";
-        array(
-            &mut text,
-            "Float64",
-            "Points",
-            3,
-            points.iter().flat_map(|x| x.to_le_bytes()),
-        );
+        array(&mut text, "Float64", "Points", 3, points.iter().flat_map(|x| x.to_le_bytes()));
         text += "</Points>\n<Cells>\n";
-        array(
-            &mut text,
-            "Int64",
-            "connectivity",
-            1,
-            connectivity.flat_map(i64::to_le_bytes),
-        );
-        array(
-            &mut text,
-            "Int64",
-            "offsets",
-            1,
-            ends.flat_map(i64::to_le_bytes),
-        );
+        array(&mut text, "Int64", "connectivity", 1, connectivity.flat_map(i64::to_le_bytes));
+        array(&mut text, "Int64", "offsets", 1, ends.flat_map(i64::to_le_bytes));
         array(&mut text, "UInt8", "types", 1, kinds);
         text += "</Cells>\n";
-        for (part, fields) in [
-            ("PointData", &self.point_data),
-            ("CellData", &self.cell_data),
-        ] {
+        for (part, fields) in [("PointData", &self.point_data), ("CellData", &self.cell_data)] {
             // Writing to a string cannot fail.
             let _ = writeln!(text, "<{part}>");
-            for Field {
-                name,
-                components,
-                values,
-            } in fields
-            {
+            for Field { name, components, values } in fields {
                 let bytes = values.iter().flat_map(|x| x.to_le_bytes());
                 array(&mut text, "Float64", name, *components, bytes);
             }
@@ -159,10 +127,7 @@ pub fn collection(grids: &[(f64, usize, String)]) -> String {
         "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n<Collection>\n"
             .to_owned();
     for (time, part, file) in grids {
-        let _ = writeln!(
-            text,
-            "<DataSet timestep=\"{time}\" part=\"{part}\" file=\"{file}\"/>"
-        );
+        let _ = writeln!(text, "<DataSet timestep=\"{time}\" part=\"{part}\" file=\"{file}\"/>");
     }
     text + "</Collection>\n</VTKFile>\n"
 }

@@ -15,10 +15,11 @@ pub fn write(path: &Path, bytes: &[u8]) -> io::Result<()> {
     file.name(path)
 }
 
-/// A file on its way to its name. It is written to a temporary file with a unique name in the folder of its path, and
-/// renamed at the end: the path holds either the old bytes or the new ones, never a part of them, even after a loss of
-/// power. The temporary file is removed when this value is dropped before; the temporary file of a killed process is
-/// removed by the next process that writes to this path.
+/// A file on its way to its name. It is written to a temporary file with a unique name in the
+/// folder of its path, and renamed at the end: the path holds either the old bytes or the new ones,
+/// never a part of them, even after a loss of power. The temporary file is removed when this value
+/// is dropped before; the temporary file of a killed process is removed by the next process that
+/// writes to this path.
 #[derive(Debug)]
 pub struct Unnamed(NamedTempFile);
 
@@ -28,7 +29,8 @@ impl Unnamed {
         let name = path.file_name().unwrap_or_default();
         let mut file = tempfile::Builder::new();
         file.prefix(name).rand_bytes(RANDOM).suffix(SUFFIX);
-        // The default permissions of a new file, before the umask is applied; a temporary file would be private.
+        // The default permissions of a new file, before the umask is applied; a temporary file
+        // would be private.
         #[cfg(unix)]
         file.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
         let file = file.tempfile_in(folder(path))?;
@@ -43,7 +45,8 @@ impl Unnamed {
         self.0.as_file_mut()
     }
 
-    /// Renames the file to `path`. File and folder are synced to the disk before this function returns.
+    /// Renames the file to `path`. File and folder are synced to the disk before this function
+    /// returns.
     pub fn name(self, path: &Path) -> io::Result<()> {
         self.0.as_file().sync_all()?;
         let bytes = self.0.as_file().metadata()?.len();
@@ -54,7 +57,8 @@ impl Unnamed {
     }
 }
 
-/// Gives a whole file another name in the same folder, which is synced to the disk before this function returns.
+/// Gives a whole file another name in the same folder, which is synced to the disk before this
+/// function returns.
 pub fn rename(from: &Path, to: &Path) -> io::Result<()> {
     std::fs::rename(from, to)?;
     File::open(folder(to))?.sync_all()
@@ -65,8 +69,9 @@ const SUFFIX: &str = ".partial";
 /// Time after which the writer of a temporary file has locked it, if it is at work.
 const LOCKED_AFTER: Duration = Duration::from_secs(5);
 
-/// Removes the temporary files of `path` that killed processes left: no process has locked them, and they are older than
-/// `newest`, which is on the same disk and was created just now. What cannot be read stays.
+/// Removes the temporary files of `path` that killed processes left: no process has locked them,
+/// and they are older than `newest`, which is on the same disk and was created just now. What
+/// cannot be read stays.
 fn remove_abandoned(path: &Path, newest: &File) {
     let (Some(name), Ok(now)) = (
         path.file_name().map(OsStr::as_encoded_bytes),
@@ -85,10 +90,7 @@ fn remove_abandoned(path: &Path, newest: &File) {
         let age = now.duration_since(metadata.modified()?).unwrap_or_default();
         Ok(metadata.is_file() && age > LOCKED_AFTER && File::open(path)?.try_lock().is_ok())
     };
-    let entries = std::fs::read_dir(folder(path))
-        .into_iter()
-        .flatten()
-        .flatten();
+    let entries = std::fs::read_dir(folder(path)).into_iter().flatten().flatten();
     for entry in entries.filter(|entry| is_temporary(&entry.file_name())) {
         if is_abandoned(&entry.path()).unwrap_or(false) {
             let _ = std::fs::remove_file(entry.path());
@@ -107,8 +109,8 @@ fn folder(path: &Path) -> &Path {
     }
 }
 
-/// Creates a folder and its missing parents, and syncs their entries to the disk: a synced file is not lost with its
-/// folder.
+/// Creates a folder and its missing parents, and syncs their entries to the disk: a synced file is
+/// not lost with its folder.
 pub fn create_folder(path: &Path) -> io::Result<()> {
     if path == Path::new("") || path.is_dir() {
         return Ok(());

@@ -37,11 +37,12 @@ impl<M> Reports<'_, M> {
     }
 }
 
-/// Calls `work` for the items 0 to `count` - 1, in this order, on at most `workers` threads, and `note` for every message
-/// on this thread. Fewer threads do the same work if the operating system does not start all of them.
+/// Calls `work` for the items 0 to `count` - 1, in this order, on at most `workers` threads, and
+/// `note` for every message on this thread. Fewer threads do the same work if the operating system
+/// does not start all of them.
 ///
-/// Once `stop` is true, or `note` has returned an error, no item is started and [`Reports::halt`] is set. Returns the
-/// first error of `note`, after all threads have ended.
+/// Once `stop` is true, or `note` has returned an error, no item is started and [`Reports::halt`]
+/// is set. Returns the first error of `note`, after all threads have ended.
 pub fn work_through<M: Send, E: From<NoThread>>(
     count: usize,
     workers: usize,
@@ -53,16 +54,12 @@ pub fn work_through<M: Send, E: From<NoThread>>(
     let (sender, receiver) = mpsc::channel();
     if cfg!(target_family = "wasm") {
         // Without threads: each item, then its messages.
-        let reports = Reports {
-            sender,
-            halt: &halt,
-        };
+        let reports = Reports { sender, halt: &halt };
         let mut outcome = Ok(());
         for item in 0..count {
             work(item, &reports);
-            outcome = receiver
-                .try_iter()
-                .fold(outcome, |outcome, message| outcome.and(note(message)));
+            outcome =
+                receiver.try_iter().fold(outcome, |outcome, message| outcome.and(note(message)));
             if outcome.is_err() || stop.load(Ordering::Relaxed) {
                 break;
             }

@@ -33,16 +33,19 @@ pub struct Card {
     /// The scale of D_peak, if there is a head for it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub peak_scale: Option<f64>,
-    /// beta of the damage heads. A larger value gives a sharper transition from no damage to damage at yield.
+    /// beta of the damage heads. A larger value gives a sharper transition from no damage to damage
+    /// at yield.
     pub damage_sharpness: f64,
     /// The states that the training rows cover.
     pub domain: TrainingDomain,
-    /// The components of the hinge design that are not features; the weights are valid only for these values. If the domain
-    /// has holes of several radii, `fillet_ratio` is the ratio of the hinge whose features the networks see ([`hinge::NetLigament`]).
+    /// The components of the hinge design that are not features; the weights are valid only for
+    /// these values. If the domain has holes of several radii, `fillet_ratio` is the ratio of the
+    /// hinge whose features the networks see ([`hinge::NetLigament`]).
     pub hinge: HingeConstants,
     /// Name of the sheet material.
     pub material: String,
-    /// [`hinge::SheetMaterial::law_hash`] of the material, if known; a material may change without a change of name.
+    /// [`hinge::SheetMaterial::law_hash`] of the material, if known; a material may change without
+    /// a change of name.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub material_hash: Option<String>,
     /// Hash of the settings of the campaign in which the rows were solved, if known.
@@ -50,7 +53,8 @@ pub struct Card {
     pub settings_hash: Option<String>,
     /// Tier of the window mesh on which the rows were solved.
     pub tier: String,
-    /// Whether the rays of the database bend like the free turn of a ligament; see [`Surrogate::ray_curvature`].
+    /// Whether the rays of the database bend like the free turn of a ligament; see
+    /// [`Surrogate::ray_curvature`].
     ///
     /// [`Surrogate::ray_curvature`]: crate::Surrogate::ray_curvature
     #[serde(default)]
@@ -79,7 +83,8 @@ pub struct Card {
     pub test_errors: TestErrors,
     /// Errors on the test split by bins of single quantities.
     pub error_bins: Vec<ErrorBin>,
-    /// Errors at random states of the campaign's region, which no training has seen, if they were measured.
+    /// Errors at random states of the campaign's region, which no training has seen, if they were
+    /// measured.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub spot_check: Option<SpotCheck>,
 }
@@ -95,13 +100,14 @@ pub struct SpotCheck {
     /// Tier of the window mesh of the states, if known.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub tier: Option<String>,
-    /// Root mean square errors of (F_a, F_s, M_theta / w_lig) at the states inside, each over the Euclidean norm of the three at
-    /// its state, if known.
+    /// Root mean square errors of (F_a, F_s, M_theta / w_lig) at the states inside, each over the
+    /// Euclidean norm of the three at its state, if known.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub forces: Option<[f64; 3]>,
 }
 
-/// The ensemble whose median predictions weights were also trained on, at states that no solver has computed.
+/// The ensemble whose median predictions weights were also trained on, at states that no solver has
+/// computed.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct DistillationRecord {
@@ -148,8 +154,9 @@ pub struct TestErrors {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ErrorBin {
-    /// `eta_a`, `eta_s`, `theta_deg` (the coordinates of the domain, [`TrainingDomain::coordinates`]), `w_lig`, `alpha_deg`, `fillet_ratio`, or `edge`, which is [`TrainingDomain::depth`]: 0 at the
-    /// edge of the training domain and 1 at its centre.
+    /// `eta_a`, `eta_s`, `theta_deg` (the coordinates of the domain,
+    /// [`TrainingDomain::coordinates`]), `w_lig`, `alpha_deg`, `fillet_ratio`, or `edge`, which is
+    /// [`TrainingDomain::depth`]: 0 at the edge of the training domain and 1 at its centre.
     pub quantity: String,
     /// Lower and upper limit; the upper limit belongs to the next bin.
     pub range: [f64; 2],
@@ -172,10 +179,7 @@ pub struct FitError {
 impl FitError {
     /// Without a known target that is not zero.
     pub fn unknown() -> Self {
-        Self {
-            relative_rmse: f64::NAN,
-            median: f64::NAN,
-        }
+        Self { relative_rmse: f64::NAN, median: f64::NAN }
     }
 }
 
@@ -187,15 +191,7 @@ impl TestErrors {
     /// The errors of W, F_a, F_s, M_theta, D, D_peak on a number of rows.
     pub fn new(rows: usize, by_quantity: [FitError; 6]) -> Self {
         let [energy, f_a, f_s, m_theta, damage, damage_peak] = by_quantity;
-        Self {
-            rows,
-            energy,
-            f_a,
-            f_s,
-            m_theta,
-            damage,
-            damage_peak,
-        }
+        Self { rows, energy, f_a, f_s, m_theta, damage, damage_peak }
     }
 
     /// Relative root mean square errors (%): W, F_a, F_s, M_theta, D, D_peak.
@@ -205,14 +201,7 @@ impl TestErrors {
 
     /// The errors of W, F_a, F_s, M_theta, D, D_peak.
     pub fn by_quantity(&self) -> [FitError; 6] {
-        [
-            self.energy,
-            self.f_a,
-            self.f_s,
-            self.m_theta,
-            self.damage,
-            self.damage_peak,
-        ]
+        [self.energy, self.f_a, self.f_s, self.m_theta, self.damage, self.damage_peak]
     }
 
     /// Root mean square of the errors of the three forces (%).
@@ -223,7 +212,8 @@ impl TestErrors {
 }
 
 impl Card {
-    /// The card of the same networks with all lengths multiplied by `factor`; see [`Surrogate::scaled`].
+    /// The card of the same networks with all lengths multiplied by `factor`; see
+    /// [`Surrogate::scaled`].
     ///
     /// [`Surrogate::scaled`]: crate::Surrogate::scaled
     pub(crate) fn scaled(mut self, factor: f64) -> Self {
@@ -242,12 +232,11 @@ impl Card {
 
     /// The scale of D, followed by the scale of D_peak if there is a head for it.
     pub(crate) fn damage_scales(&self) -> Vec<f64> {
-        std::iter::once(self.damage_scale)
-            .chain(self.peak_scale)
-            .collect()
+        std::iter::once(self.damage_scale).chain(self.peak_scale).collect()
     }
 
-    /// Rejects other units or features, scales that are not positive, and means that are not finite.
+    /// Rejects other units or features, scales that are not positive, and means that are not
+    /// finite.
     pub(crate) fn validate(&self) -> Result<(), InvalidWeights> {
         let names = feature_names(self.domain.holes.is_some());
         for (key, found, expected) in [
@@ -255,11 +244,7 @@ impl Card {
             ("features", self.features.join(", "), names.join(", ")),
         ] {
             if found != expected {
-                return Err(InvalidWeights::OtherConvention {
-                    key,
-                    expected,
-                    found,
-                });
+                return Err(InvalidWeights::OtherConvention { key, expected, found });
             }
         }
         let damages = self.damage_scales().into_iter();
@@ -303,11 +288,8 @@ mod tests {
 
     #[test]
     fn an_error_that_is_not_known_is_null_on_the_card() {
-        let errors = TestErrors {
-            rows: 3,
-            damage_peak: FitError::unknown(),
-            ..TestErrors::default()
-        };
+        let errors =
+            TestErrors { rows: 3, damage_peak: FitError::unknown(), ..TestErrors::default() };
         let text = serde_json::to_string(&errors).unwrap();
         assert!(text.contains(r#""damage_peak":{"relative_rmse":null,"median":null}"#));
         let read: TestErrors = serde_json::from_str(&text).unwrap();

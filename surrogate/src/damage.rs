@@ -19,8 +19,8 @@ pub struct HingeDamage {
     pub d: f64,
     /// The gradient of D.
     pub gradient: HingeGradient,
-    /// D_peak, the plastic strain of the most strained part of the ligament, divided by the fracture strain. The
-    /// ligament tears at 1. `None` if the weights do not predict it.
+    /// D_peak, the plastic strain of the most strained part of the ligament, divided by the
+    /// fracture strain. The ligament tears at 1. `None` if the weights do not predict it.
     pub d_peak: Option<f64>,
     /// The gradient of D_peak; zero without it.
     pub peak_gradient: HingeGradient,
@@ -28,7 +28,8 @@ pub struct HingeDamage {
 
 /// One damage measure of each hinge, and its gradient.
 ///
-/// `head` has one output; `sharpness` is beta; `seen` are the hinges that the networks see, with their maps. Without `with_gradient` the gradients are zero.
+/// `head` has one output; `sharpness` is beta; `seen` are the hinges that the networks see, with
+/// their maps. Without `with_gradient` the gradients are zero.
 pub(crate) fn evaluate(
     head: &Network,
     scale: f64,
@@ -46,11 +47,7 @@ pub(crate) fn evaluate(
             let outputs: Vec<f64> = outputs.map(|&y| sharpness * y).collect();
             let value = |y: f64| scale / sharpness * softplus(y);
             if !with_gradient {
-                damages.extend(
-                    outputs
-                        .iter()
-                        .map(|&y| (value(y), HingeGradient::default())),
-                );
+                damages.extend(outputs.iter().map(|&y| (value(y), HingeGradient::default())));
                 continue;
             }
             let slopes: Vec<f64> = outputs.iter().map(|&y| logistic(y)).collect();
@@ -59,10 +56,7 @@ pub(crate) fn evaluate(
                 |(hinge, ((ligament, g, eps), y))| {
                     let gradient = passes.gradient(hinge).map(|slope| scale * slope);
                     let seen = pull_back(gradient, g, eps);
-                    (
-                        value(y),
-                        reference_ligament::gradient(ligament, seen, eps.theta),
-                    )
+                    (value(y), reference_ligament::gradient(ligament, seen, eps.theta))
                 },
             ));
         }

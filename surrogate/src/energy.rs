@@ -8,8 +8,8 @@
 //! d2W/dxi2              = 2 W_s (J'J + sum over layers and units of lambda sigma'' grad(a) grad(a)')
 //! ```
 //!
-//! where lambda is the adjoint of a unit, seeded by r. chi(xi(0, g)) depends on the features of the design, so
-//! that dW/dg = 2 W_s (J - J0)' r, and d2W/dxi dg is reduced by 2 W_s J' J0.
+//! where lambda is the adjoint of a unit, seeded by r. chi(xi(0, g)) depends on the features of the
+//! design, so that dW/dg = 2 W_s (J - J0)' r, and d2W/dxi dg is reduced by 2 W_s J' J0.
 
 use crate::features::{FEATURES, features, pull_back};
 use crate::hinge_energy::{DEFORMATION_FEATURES, DESIGN, HingeEnergy, Order};
@@ -37,10 +37,8 @@ pub struct Prepared {
 impl Prepared {
     /// `reference`: the hole of the hinges that the networks see, a multiple of w_lig.
     pub(crate) fn new(chi: &Network, designs: &[HingeDesign], reference: f64) -> Self {
-        let ligaments: Vec<_> = designs
-            .iter()
-            .map(|design| NetLigament::new(design, reference))
-            .collect();
+        let ligaments: Vec<_> =
+            designs.iter().map(|design| NetLigament::new(design, reference)).collect();
         let undeformed: Vec<_> = std::iter::zip(&ligaments, designs)
             .map(|(ligament, design)| {
                 features(&ligament.design(design), &HingeDeformation::default())
@@ -66,12 +64,7 @@ impl Prepared {
                 }
             }
         });
-        Self {
-            designs: designs.to_vec(),
-            ligaments,
-            origin,
-            origin_tangents,
-        }
+        Self { designs: designs.to_vec(), ligaments, origin, origin_tangents }
     }
 
     /// The designs, in the order given.
@@ -160,10 +153,8 @@ impl Kernel {
         let rows = first..first + n;
         self.n = n;
         self.tangents = order.tangents(chi.features());
-        let xi: Vec<_> = seen
-            .iter()
-            .map(|(design, deformation)| features(design, deformation))
-            .collect();
+        let xi: Vec<_> =
+            seen.iter().map(|(design, deformation)| features(design, deformation)).collect();
         self.passes.forward(chi, &xi, 0..self.tangents);
 
         self.r.clear();
@@ -171,10 +162,7 @@ impl Kernel {
         for (output, block) in self.passes.outputs().enumerate() {
             let origin = &prepared.origin.col_as_slice(output)[rows.clone()];
             let first = self.r.len();
-            let r = block
-                .iter()
-                .zip(origin)
-                .map(|(value, origin)| value - origin);
+            let r = block.iter().zip(origin).map(|(value, origin)| value - origin);
             self.r.extend(r);
             let r = &self.r[first..];
             add_product(&mut self.square, r, r);
@@ -217,10 +205,8 @@ impl Kernel {
         energy_scale: f64,
         order: Order,
     ) -> HingeEnergy {
-        let mut energy = HingeEnergy {
-            w: energy_scale * self.square[hinge],
-            ..HingeEnergy::default()
-        };
+        let mut energy =
+            HingeEnergy { w: energy_scale * self.square[hinge], ..HingeEnergy::default() };
         if order < Order::Forces {
             return energy;
         }

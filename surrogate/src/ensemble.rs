@@ -1,7 +1,7 @@
 //! Agreement of several networks of the same training.
 
-/// Mean and variance of one quantity over the networks of an ensemble, without bias: the sum of squares is divided by
-/// n - 1. The variance of a single value is 0.
+/// Mean and variance of one quantity over the networks of an ensemble, without bias: the sum of
+/// squares is divided by n - 1. The variance of a single value is 0.
 pub fn mean_and_variance(values: impl IntoIterator<Item = f64, IntoIter: Clone>) -> [f64; 2] {
     let values = values.into_iter();
     let n = values.clone().count() as f64;

@@ -4,7 +4,8 @@
 //! xi = [eta_a, eta_s, theta, log w_lig, alpha, rho_f],   eta = (a, s) / w_lig          (13)
 //! ```
 //!
-//! In weights that were trained at one radius of the hole, rho_f is no feature: the networks have five inputs.
+//! In weights that were trained at one radius of the hole, rho_f is no feature: the networks have
+//! five inputs.
 
 use hinge::{HingeDeformation, HingeDesign, HingeGradient};
 use serde::{Deserialize, Serialize};
@@ -19,14 +20,8 @@ const OF_ONE_HOLE: usize = 5;
 pub(crate) const LOG_WIDTH: usize = 3;
 
 /// The features in their order; the card of a surrogate contains them too.
-pub const FEATURE_NAMES: [&str; FEATURES] = [
-    "a / w_lig",
-    "s / w_lig",
-    "theta",
-    "log w_lig",
-    "alpha",
-    "hole radius / w_lig",
-];
+pub const FEATURE_NAMES: [&str; FEATURES] =
+    ["a / w_lig", "s / w_lig", "theta", "log w_lig", "alpha", "hole radius / w_lig"];
 
 /// The features of weights that were trained on holes of one radius, or of several.
 pub fn feature_names(several_holes: bool) -> &'static [&'static str] {
@@ -36,14 +31,7 @@ pub fn feature_names(several_holes: bool) -> &'static [&'static str] {
 /// The features xi, with w_lig in mm and angles in rad.
 pub fn features(design: &HingeDesign, deformation: &HingeDeformation) -> [f64; FEATURES] {
     let [eta_a, eta_s] = deformation.eta(design.w_lig);
-    [
-        eta_a,
-        eta_s,
-        deformation.theta,
-        design.w_lig.ln(),
-        design.alpha,
-        design.fillet_ratio,
-    ]
+    [eta_a, eta_s, deformation.theta, design.w_lig.ln(), design.alpha, design.fillet_ratio]
 }
 
 /// Mean and standard deviation of each feature over the training set; the input of the networks is

@@ -3,7 +3,8 @@
 use crate::features::FEATURES;
 use hinge::DesignGradient;
 
-/// Number of features of the deformation; the others, log w_lig, alpha and rho_f, depend on the design only.
+/// Number of features of the deformation; the others, log w_lig, alpha and rho_f, depend on the
+/// design only.
 pub(crate) const DEFORMATION_FEATURES: usize = 3;
 /// Number of quantities of the design.
 pub(crate) const DESIGN: usize = FEATURES - DEFORMATION_FEATURES;

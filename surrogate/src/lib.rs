@@ -6,9 +6,10 @@
 //! xi(eps, g) = [a / w_lig, s / w_lig, theta, log w_lig, alpha]                  (13)
 //! ```
 //!
-//! Weights that were trained on holes of several radii see their radius, too ([`hinge::NetLigament`]).
-//! The squared distance makes W >= 0, W(0) = 0 and grad W(0) = 0 for any weights. A surrogate is
-//! loaded from `X.safetensors` and its card `X.json`, and is evaluated in float64 for batches of hinges.
+//! Weights that were trained on holes of several radii see their radius, too
+//! ([`hinge::NetLigament`]). The squared distance makes W >= 0, W(0) = 0 and grad W(0) = 0 for any
+//! weights. A surrogate is loaded from `X.safetensors` and its card `X.json`, and is evaluated in
+//! float64 for batches of hinges.
 //!
 //! Evaluating a thousand hinges:
 //!

@@ -8,9 +8,10 @@
 //! rows n..2n, ...    da/dxi_k   one row block for each tangent k    T_l = (sigma'(a_{l-1}) T_{l-1}) W_l'
 //! ```
 //!
-//! One matrix product per layer computes the values and all tangents. For a function f of the outputs
-//! with gradient `seed`, the reverse pass gives lambda = df/dh of every hidden unit, the gradient
-//! of f in all features, and the contribution of the network's curvature to the Hessian of f,
+//! One matrix product per layer computes the values and all tangents. For a function f of the
+//! outputs with gradient `seed`, the reverse pass gives lambda = df/dh of every hidden unit, the
+//! gradient of f in all features, and the contribution of the network's curvature to the Hessian of
+//! f,
 //!
 //! ```text
 //! sum over layers and units of  lambda sigma''(a) (da/dxi_i) (da/dxi_j)
@@ -25,12 +26,12 @@ use pulp::{Simd, WithSimd};
 use std::cell::RefCell;
 use std::ops::Range;
 
-/// Approximate maximum number of rows of a block. It is large enough that the packing of the weights for each
-/// product costs little, and small enough that the block stays in cache.
+/// Approximate maximum number of rows of a block. It is large enough that the packing of the
+/// weights for each product costs little, and small enough that the block stays in cache.
 const ROWS: usize = 320;
 
-/// Number of hinges per chunk, for `hinges` hinges with `tangents` tangents. All chunks have the same size, which is
-/// a multiple of the vector length.
+/// Number of hinges per chunk, for `hinges` hinges with `tangents` tangents. All chunks have the
+/// same size, which is a multiple of the vector length.
 pub(crate) fn chunk_size(hinges: usize, tangents: usize) -> usize {
     let chunks = hinges.div_ceil(ROWS / (1 + tangents)).max(1);
     hinges.div_ceil(chunks).next_multiple_of(8).max(8)
@@ -62,8 +63,8 @@ pub(crate) struct Passes {
 }
 
 thread_local! {
-    /// Several megabytes of buffers. They are reused, because a solver with repeated evaluations would otherwise spend
-    /// a large part of its time in page faults.
+    /// Several megabytes of buffers. They are reused, because a solver with repeated evaluations
+    /// would otherwise spend a large part of its time in page faults.
     static PASSES: RefCell<Passes> = RefCell::default();
 }
 
@@ -73,7 +74,8 @@ impl Passes {
         PASSES.with_borrow_mut(work)
     }
 
-    /// Computes the outputs and their derivatives in the features `tangents`, for a chunk of hinges.
+    /// Computes the outputs and their derivatives in the features `tangents`, for a chunk of
+    /// hinges.
     pub fn forward(
         &mut self,
         network: &Network,
@@ -143,9 +145,9 @@ impl Passes {
         }
     }
 
-    /// Computes the gradient in the features of a function of the outputs, given its gradient `seed` in the
-    /// outputs (one column per output). Adds the contribution of the network's curvature to its Hessian to
-    /// `curvature`, packed as in [`accumulate_products`].
+    /// Computes the gradient in the features of a function of the outputs, given its gradient
+    /// `seed` in the outputs (one column per output). Adds the contribution of the network's
+    /// curvature to its Hessian to `curvature`, packed as in [`accumulate_products`].
     pub fn reverse(&mut self, network: &Network, seed: &[f64], curvature: &mut [f64]) {
         let (n, rows) = (self.n, self.rows());
         self.weight.resize(n, 0.0);
@@ -165,7 +167,8 @@ impl Passes {
         multiply(&self.adjoint, &network.affine[0], n, &mut self.gradient);
     }
 
-    /// Adds J'J to `packed`, where J is the derivative of the outputs in the features of the tangents.
+    /// Adds J'J to `packed`, where J is the derivative of the outputs in the features of the
+    /// tangents.
     pub fn add_gauss_newton(&mut self, packed: &mut [f64]) {
         let rows = self.rows();
         self.weight.clear();
@@ -193,7 +196,8 @@ impl Passes {
     }
 }
 
-/// Multiplies `adjoint` by the weight of a layer, which gives df/dh of the units of the preceding layer.
+/// Multiplies `adjoint` by the weight of a layer, which gives df/dh of the units of the preceding
+/// layer.
 fn multiply(adjoint: &[f64], affine: &Affine, n: usize, product: &mut Vec<f64>) {
     let (outputs, inputs) = affine.weight.shape();
     product.resize(n * inputs, 0.0);
@@ -207,8 +211,8 @@ fn multiply(adjoint: &[f64], affine: &Affine, n: usize, product: &mut Vec<f64>) 
     );
 }
 
-/// Adds the bias to the pre-activations in `block`, replaces them by tanh(a), and writes [tanh(a), sigma'(a) T] to
-/// `activation`.
+/// Adds the bias to the pre-activations in `block`, replaces them by tanh(a), and writes [tanh(a),
+/// sigma'(a) T] to `activation`.
 struct Activate<'a> {
     n: usize,
     rows: usize,
@@ -290,8 +294,8 @@ impl WithSimd for GaussNewton<'_> {
 
 /// Adds weight T_i T_j to `packed` for every pair i <= j of the row blocks of `tangents`.
 ///
-/// `packed` contains one run of n values for each pair, in the order (0, 0), (0, 1), ..., (1, 1), ...;
-/// see [`packed_index`].
+/// `packed` contains one run of n values for each pair, in the order (0, 0), (0, 1), ..., (1, 1),
+/// ...; see [`packed_index`].
 #[inline(always)]
 fn accumulate_products(weight: &[f64], tangents: &[f64], packed: &mut [f64]) {
     let n = weight.len();

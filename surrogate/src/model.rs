@@ -48,8 +48,8 @@ impl Layers {
 impl Surrogate {
     /// Constructs a surrogate from its networks and its card.
     ///
-    /// The input of the networks is the standardised features. Each head has one output. There must be a head of
-    /// D_peak if, and only if, the card has a scale for it.
+    /// The input of the networks is the standardised features. Each head has one output. There must
+    /// be a head of D_peak if, and only if, the card has a scale for it.
     pub fn from_parts(layers: Layers, card: Card) -> Result<Self, InvalidWeights> {
         card.validate()?;
         let Layers { chi, chi_d, chi_p } = layers;
@@ -61,20 +61,14 @@ impl Surrogate {
             (None, None) => None,
             (layers, Some(_)) => Some(network("chi_p", layers.unwrap_or_default(), Some(1))?),
             (Some(_), None) => {
-                return Err(InvalidWeights::Missing {
-                    tensor: "d_scale of chi_p".into(),
-                });
+                return Err(InvalidWeights::Missing { tensor: "d_scale of chi_p".into() });
             }
         };
-        Ok(Self {
-            chi,
-            chi_d,
-            chi_p,
-            card,
-        })
+        Ok(Self { chi, chi_d, chi_p, card })
     }
 
-    /// The same surrogate with test errors on its card; they can only be measured with the surrogate.
+    /// The same surrogate with test errors on its card; they can only be measured with the
+    /// surrogate.
     pub fn with_test_errors(mut self, test_errors: TestErrors, bins: Vec<ErrorBin>) -> Self {
         self.card.test_errors = test_errors;
         self.card.error_bins = bins;
@@ -87,34 +81,30 @@ impl Surrogate {
         self
     }
 
-    /// The surrogate of the same material at `factor` times the thickness, exact for geometrically similar hinges.
+    /// The surrogate of the same material at `factor` times the thickness, exact for geometrically
+    /// similar hinges.
     ///
-    /// The window is rate-independent and has no length of its own, so that with all lengths multiplied by `factor`,
-    /// W is multiplied by its cube, and D and D_peak do not change. A hinge of width w_lig therefore has `factor`^3
-    /// times the energy of the hinge w_lig / `factor` of this surrogate, at the same (eta_a, eta_s, theta).
+    /// The window is rate-independent and has no length of its own, so that with all lengths
+    /// multiplied by `factor`, W is multiplied by its cube, and D and D_peak do not change. A hinge
+    /// of width w_lig therefore has `factor`^3 times the energy of the hinge w_lig / `factor` of
+    /// this surrogate, at the same (eta_a, eta_s, theta).
     ///
     /// # Panics
     /// If `factor` is not positive and finite.
     pub fn scaled(self, factor: f64) -> Self {
-        assert!(
-            factor > 0.0 && factor.is_finite(),
-            "the ratio of two thicknesses is positive"
-        );
+        assert!(factor > 0.0 && factor.is_finite(), "the ratio of two thicknesses is positive");
         let layers = self.layers();
         Self::from_parts(layers, self.card.scaled(factor))
             .expect("layers and scales were valid before")
     }
 
-    /// The surrogate of a material with `factor` times the stress at every strain: energies and forces are multiplied by it. Its card
-    /// names that `material`, or none.
+    /// The surrogate of a material with `factor` times the stress at every strain: energies and
+    /// forces are multiplied by it. Its card names that `material`, or none.
     ///
     /// # Panics
     /// If `factor` is not positive and finite.
     pub fn stressed(mut self, factor: f64, material: Option<&SheetMaterial>) -> Self {
-        assert!(
-            factor > 0.0 && factor.is_finite(),
-            "the ratio of two stresses is positive"
-        );
+        assert!(factor > 0.0 && factor.is_finite(), "the ratio of two stresses is positive");
         self.card.energy_scale *= factor;
         self.card.material_hash = material.map(SheetMaterial::law_hash);
         self
@@ -135,7 +125,8 @@ impl Surrogate {
         }
     }
 
-    /// BLAKE3 hash (hexadecimal) of everything that predictions depend on: networks, scales, domain, hinge constants.
+    /// BLAKE3 hash (hexadecimal) of everything that predictions depend on: networks, scales,
+    /// domain, hinge constants.
     pub fn hash(&self) -> String {
         let mut hasher = blake3::Hasher::new();
         let networks = [Some(&self.chi), Some(&self.chi_d), self.chi_p.as_ref()];
@@ -167,15 +158,12 @@ impl Surrogate {
         &self.card.domain
     }
 
-    /// How the rays bend along which the training data were solved: at the rotation lambda theta, eta_a is this times
-    /// theta |theta| lambda (1 - lambda) below the straight line to its end. 0: rays are straight.
+    /// How the rays bend along which the training data were solved: at the rotation lambda theta,
+    /// eta_a is this times theta |theta| lambda (1 - lambda) below the straight line to its end. 0:
+    /// rays are straight.
     pub fn ray_curvature(&self) -> f64 {
         let [_, of_free_turn] = Regime::Plate.free_opening();
-        if self.card.bent_rays {
-            of_free_turn
-        } else {
-            0.0
-        }
+        if self.card.bent_rays { of_free_turn } else { 0.0 }
     }
 
     /// Minimum and maximum radius of the holes of the training, over w_lig.
@@ -183,7 +171,8 @@ impl Surrogate {
         (self.card.domain.holes).unwrap_or([self.card.hinge.fillet_ratio; 2])
     }
 
-    /// Whether a state lies inside the training domain, and the hole of its hinge among the holes of the training.
+    /// Whether a state lies inside the training domain, and the hole of its hinge among the holes
+    /// of the training.
     pub fn contains(&self, design: &HingeDesign, deformation: &HingeDeformation) -> bool {
         let [least, most] = self.holes();
         (least..=most).contains(&design.fillet_ratio)
@@ -200,7 +189,8 @@ impl Surrogate {
         self.card.damage_scale
     }
 
-    /// Computes the quantities that depend on the designs alone: chi(xi(0, g)) and its derivative in g.
+    /// Computes the quantities that depend on the designs alone: chi(xi(0, g)) and its derivative
+    /// in g.
     pub fn prepare(&self, designs: &[HingeDesign]) -> Prepared {
         Prepared::new(&self.chi, designs, self.card.hinge.fillet_ratio)
     }
@@ -215,13 +205,7 @@ impl Surrogate {
         deformations: &[HingeDeformation],
         order: Order,
     ) -> Vec<HingeEnergy> {
-        energy::evaluate(
-            &self.chi,
-            self.energy_scale(),
-            prepared,
-            deformations,
-            order,
-        )
+        energy::evaluate(&self.chi, self.energy_scale(), prepared, deformations, order)
     }
 
     /// D and D_peak of (14) and their gradients, for each hinge.
@@ -236,7 +220,8 @@ impl Surrogate {
         self.damages(designs, deformations, true)
     }
 
-    /// D and D_peak of (14) for each hinge, without gradients (they are zero): only the forward pass is evaluated.
+    /// D and D_peak of (14) for each hinge, without gradients (they are zero): only the forward
+    /// pass is evaluated.
     ///
     /// # Panics
     /// If the numbers of designs and of deformations differ.
@@ -248,8 +233,8 @@ impl Surrogate {
         self.damages(designs, deformations, false)
     }
 
-    /// The hinge deformation with W and the forces (14), D and D_peak, for each hinge. The other quantities of the samples are
-    /// zero.
+    /// The hinge deformation with W and the forces (14), D and D_peak, for each hinge. The other
+    /// quantities of the samples are zero.
     ///
     /// # Panics
     /// If the numbers of designs and of deformations differ.
@@ -286,11 +271,7 @@ impl Surrogate {
         deformations: &[HingeDeformation],
         with_gradient: bool,
     ) -> Vec<HingeDamage> {
-        assert_eq!(
-            designs.len(),
-            deformations.len(),
-            "one deformation for each hinge"
-        );
+        assert_eq!(designs.len(), deformations.len(), "one deformation for each hinge");
         let seen: Vec<_> = std::iter::zip(designs, deformations)
             .map(|(design, deformation)| {
                 let ligament = NetLigament::new(design, self.card.hinge.fillet_ratio);
@@ -303,11 +284,7 @@ impl Surrogate {
         let evaluate = |head, scale| damage::evaluate(head, scale, sharpness, &seen, with_gradient);
         let averages = evaluate(&self.chi_d, self.card.damage_scale).into_iter();
         let mut damages: Vec<HingeDamage> = averages
-            .map(|(d, gradient)| HingeDamage {
-                d,
-                gradient,
-                ..HingeDamage::default()
-            })
+            .map(|(d, gradient)| HingeDamage { d, gradient, ..HingeDamage::default() })
             .collect();
         if let (Some(chi_p), Some(scale)) = (&self.chi_p, self.card.peak_scale) {
             for (damage, (peak, gradient)) in damages.iter_mut().zip(evaluate(chi_p, scale)) {

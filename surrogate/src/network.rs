@@ -28,28 +28,17 @@ pub enum InvalidWeights {
     #[error("tensor `{tensor}` is missing; train or export the weights again")]
     Missing { tensor: String },
     #[error("tensor `{tensor}` has the shape {found:?}, expected {expected}")]
-    Shape {
-        tensor: String,
-        expected: String,
-        found: Vec<usize>,
-    },
+    Shape { tensor: String, expected: String, found: Vec<usize> },
     #[error("tensor `{tensor}` contains {value} at index {index}; every weight must be finite")]
-    NotFinite {
-        tensor: String,
-        index: usize,
-        value: f64,
-    },
+    NotFinite { tensor: String, index: usize, value: f64 },
     #[error("`{name}` = {value} violates 0 < {name} < infinity")]
     NotPositive { name: String, value: f64 },
     #[error("the {key} of the card are {found}, expected {expected}")]
-    OtherConvention {
-        key: &'static str,
-        expected: String,
-        found: String,
-    },
+    OtherConvention { key: &'static str, expected: String, found: String },
 }
 
-/// y = W_L tanh(... tanh(W_0 x + b_0) ...) + b_L, whose input x is the features (13), not standardised.
+/// y = W_L tanh(... tanh(W_0 x + b_0) ...) + b_L, whose input x is the features (13), not
+/// standardised.
 #[derive(Clone, Debug)]
 pub struct Network {
     /// Layers as in the weight file: the input of the first layer is standardised.
@@ -67,7 +56,8 @@ pub(crate) struct Affine {
 }
 
 impl Network {
-    /// Validates every tensor. `name` is the name of the network in errors, `outputs` the required number of outputs.
+    /// Validates every tensor. `name` is the name of the network in errors, `outputs` the required
+    /// number of outputs.
     pub(crate) fn new(
         name: &str,
         layers: Vec<Layer>,
@@ -75,9 +65,7 @@ impl Network {
         standardisation: &Standardisation,
     ) -> Result<Self, InvalidWeights> {
         if layers.is_empty() {
-            return Err(InvalidWeights::Missing {
-                tensor: format!("{name}.0.weight"),
-            });
+            return Err(InvalidWeights::Missing { tensor: format!("{name}.0.weight") });
         }
         let mut inputs = standardisation.mean.len();
         for (index, Layer { weight, bias }) in layers.iter().enumerate() {
@@ -136,7 +124,8 @@ impl Affine {
 }
 
 impl Tensor {
-    /// Checks that the shape is `expected` (`None`: any positive length) and that every value is finite.
+    /// Checks that the shape is `expected` (`None`: any positive length) and that every value is
+    /// finite.
     fn check(&self, name: &str, expected: &[Option<usize>]) -> Result<(), InvalidWeights> {
         let matches = self.shape.len() == expected.len()
             && self

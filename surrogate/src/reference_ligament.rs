@@ -1,5 +1,6 @@
-//! Energy and damage of a hinge from the energy and damage of the hinge that the networks see: the hinge with the hole of reference
-//! and the same net ligament ([`NetLigament`]), with the derivatives of this map.
+//! Energy and damage of a hinge from the energy and damage of the hinge that the networks see: the
+//! hinge with the hole of reference and the same net ligament ([`NetLigament`]), with the
+//! derivatives of this map.
 
 use crate::hinge_energy::{HingeEnergy, Order};
 use hinge::{DesignGradient, HingeDeformation, HingeDesign, HingeGradient, NetLigament};
@@ -14,7 +15,8 @@ pub(crate) fn seen(
     (ligament.design(design), ligament.deformation(deformation))
 }
 
-/// The energy of the actual hinge, rotated by `theta`, from the energy of the hinge that the networks see.
+/// The energy of the actual hinge, rotated by `theta`, from the energy of the hinge that the
+/// networks see.
 pub(crate) fn energy(
     ligament: &NetLigament,
     at: HingeEnergy,
@@ -60,7 +62,8 @@ pub(crate) fn gradient(ligament: &NetLigament, at: HingeGradient, theta: f64) ->
     }
 }
 
-/// The gradient in the design of the actual hinge from a' and the design of the hinge that the networks see.
+/// The gradient in the design of the actual hinge from a' and the design of the hinge that the
+/// networks see.
 fn by_design(
     by_a: f64,
     at: DesignGradient,

@@ -1,15 +1,17 @@
-//! The learned law of hinges that were unloaded: the residual deformation, and how stiff the hinge is about it, as functions of the
-//! hinge and of the state that it reached.
+//! The learned law of hinges that were unloaded: the residual deformation, and how stiff the hinge
+//! is about it, as functions of the hinge and of the state that it reached.
 //!
 //! ```text
 //! r = x - K^-1 f + e,      K = U diag(exp d) U^T,      U = unit lower triangle in the order (a, theta, s)
 //! ```
 //!
-//! x is the reached state and f its forces: a hinge of stiffness K springs back by K^-1 f, and e is what that leaves where the stiffness
-//! changes on the way. All are in units of (w_lig, 1, w_lig). K is positive definite for any coefficients. Each of e_a, e_theta, d and
-//! u_{theta a} is a polynomial of second degree in (ln w_lig, alpha - 90 deg, eta_a, eta_s, theta) whose terms are even in (alpha - 90 deg,
-//! eta_s), each of e_s, u_{s a} and u_{s theta} one whose terms are odd: the law of the mirrored hinge is the mirrored law.
-//! A sheet of another thickness has similar hinges: [`ReleasedHinge::scaled`].
+//! x is the reached state and f its forces: a hinge of stiffness K springs back by K^-1 f, and e is
+//! what that leaves where the stiffness changes on the way. All are in units of (w_lig, 1, w_lig).
+//! K is positive definite for any coefficients. Each of e_a, e_theta, d and u_{theta a} is a
+//! polynomial of second degree in (ln w_lig, alpha - 90 deg, eta_a, eta_s, theta) whose terms are
+//! even in (alpha - 90 deg, eta_s), each of e_s, u_{s a} and u_{s theta} one whose terms are odd:
+//! the law of the mirrored hinge is the mirrored law. A sheet of another thickness has similar
+//! hinges: [`ReleasedHinge::scaled`].
 
 use faer::linalg::solvers::{Llt, Solve};
 use faer::{Mat, Side};
@@ -27,8 +29,8 @@ use support::statistics::root_mean_square;
 use support::vectors::dot;
 use support::{regular_file, whole_file};
 
-/// The even and the odd terms: products of two of the factors (1, ln w_lig, eta_a, theta, alpha - 90 deg, eta_s), of which the last two
-/// change sign in the mirrored hinge.
+/// The even and the odd terms: products of two of the factors (1, ln w_lig, eta_a, theta, alpha -
+/// 90 deg, eta_s), of which the last two change sign in the mirrored hinge.
 const EVEN: [[usize; 2]; TERMS[0]] = [
     [0, 0],
     [0, 1],
@@ -44,21 +46,14 @@ const EVEN: [[usize; 2]; TERMS[0]] = [
     [4, 5],
     [5, 5],
 ];
-const ODD: [[usize; 2]; TERMS[1]] = [
-    [0, 4],
-    [0, 5],
-    [4, 1],
-    [4, 2],
-    [4, 3],
-    [5, 1],
-    [5, 2],
-    [5, 3],
-];
+const ODD: [[usize; 2]; TERMS[1]] =
+    [[0, 4], [0, 5], [4, 1], [4, 2], [4, 3], [5, 1], [5, 2], [5, 3]];
 /// Their numbers.
 const TERMS: [usize; 2] = [13, 8];
 /// The input that each factor after the first is in proportion to; see [`inputs`].
 const INPUT_OF: [usize; 5] = [0, 2, 4, 1, 3];
-/// Ridge of the fit, relative to the number of hinges: terms that hardly vary get small coefficients.
+/// Ridge of the fit, relative to the number of hinges: terms that hardly vary get small
+/// coefficients.
 const RIDGE: f64 = 1e-4;
 /// Smallest deviation that a quantity is divided by: one that does not vary has no effect.
 const NARROWEST: f64 = 1e-3;
@@ -81,7 +76,8 @@ pub struct Springback {
     pub tier: String,
     /// Number of hinges that the law was fitted to.
     pub hinges: usize,
-    /// Errors at hinges that the fit has not seen, with the forces of their windows; `None` without any.
+    /// Errors at hinges that the fit has not seen, with the forces of their windows; `None` without
+    /// any.
     pub errors: Option<SpringbackErrors>,
     /// Mean and standard deviation of ln w_lig, eta_a and theta.
     means: [[f64; 2]; 3],
@@ -149,10 +145,8 @@ impl Springback {
         if let Some(other) = rows.iter().position(other) {
             return Err(SpringbackError::Constants(other + 1));
         }
-        let inputs: Vec<[f64; 5]> = rows
-            .iter()
-            .map(|row| inputs(&row.design(), &row.reached()))
-            .collect();
+        let inputs: Vec<[f64; 5]> =
+            rows.iter().map(|row| inputs(&row.design(), &row.reached())).collect();
         let column = |i: usize| inputs.iter().map(move |x| x[i]);
         let count = rows.len() as f64;
         let mean = |i: usize| {
@@ -187,17 +181,14 @@ impl Springback {
             })
             .collect::<Result<_, _>>()?;
         let factors_of = inputs.iter().map(|x| law.factors(x));
-        let (even, odd): (Vec<_>, Vec<_>) = factors_of
-            .map(|x| (products(&x, &EVEN), products(&x, &ODD)))
-            .unzip();
+        let (even, odd): (Vec<_>, Vec<_>) =
+            factors_of.map(|x| (products(&x, &EVEN), products(&x, &ODD))).unzip();
         let (of_even, of_odd): (Vec<_>, Vec<_>) = factors.into_iter().unzip();
         law.stiffness_even = ridge(&even, &of_even);
         law.stiffness_odd = ridge(&odd, &of_odd);
         // So far e is zero: what is left is what it has to be.
         let left = rows.iter().map(|row| {
-            let without = law
-                .released(&row.design(), &row.reached(), &row.forces())
-                .rest;
+            let without = law.released(&row.design(), &row.reached(), &row.forces()).rest;
             let [a, s, theta] =
                 from_fn(|i| row.released().rest.to_array()[i] - without.to_array()[i]);
             ([a / row.w_lig, theta], [s / row.w_lig])
@@ -209,7 +200,8 @@ impl Springback {
         Ok(law)
     }
 
-    /// A hinge of the thickness of the windows after it was unloaded from a state with these forces (F_a, F_s, M_theta) (N, N, N mm).
+    /// A hinge of the thickness of the windows after it was unloaded from a state with these forces
+    /// (F_a, F_s, M_theta) (N, N, N mm).
     pub fn released(
         &self,
         design: &HingeDesign,
@@ -219,7 +211,8 @@ impl Springback {
         self.local(design, reached, forces).released(reached)
     }
 
-    /// The gradient, in what the hinge of [`released`](Self::released) follows from, of a function with the gradient `by` in it.
+    /// The gradient, in what the hinge of [`released`](Self::released) follows from, of a function
+    /// with the gradient `by` in it.
     pub fn released_pullback(
         &self,
         design: &HingeDesign,
@@ -229,14 +222,7 @@ impl Springback {
     ) -> ReleasedGradient {
         let local = self.local(design, reached, forces);
         let stiffness = local.released(reached).stiffness;
-        let Local {
-            factors,
-            lengths,
-            unit,
-            pivots,
-            sprung,
-            left,
-        } = local;
+        let Local { factors, lengths, unit, pivots, sprung, left } = local;
         // K enters r by K^-1 f: dr = -K^-1 dK K^-1 f.
         let by_sprung: [f64; 3] = from_fn(|p| -by.rest[PLACES[p]] * lengths[PLACES[p]]);
         let by_forces = back(&unit, &pivots, by_sprung);
@@ -284,11 +270,7 @@ impl Springback {
         let (w, [eta_a, eta_s]) = (design.w_lig, reached.eta(design.w_lig));
         let of_inputs = (by_width - by_eta_a * eta_a - by_eta_s * eta_s) / w;
         ReleasedGradient {
-            reached: [
-                by.rest[0] + by_eta_a / w,
-                by.rest[1] + by_eta_s / w,
-                by.rest[2] + by_theta,
-            ],
+            reached: [by.rest[0] + by_eta_a / w, by.rest[1] + by_eta_s / w, by.rest[2] + by_theta],
             forces: from_fn(|i| by_forces[PLACES[i]] * lengths[i]),
             w_lig: of_inputs + by_length(0) + by_length(1),
             alpha: by_angle,
@@ -332,11 +314,7 @@ impl Springback {
             let (k, k_fe) = (law.stiffness, solved.stiffness);
             let stiffness = norm(&|i, j| k[i][j] - k_fe[i][j]) / norm(&|i, j| k_fe[i][j]);
             let rest_error: [f64; 3] = from_fn(|i| found[i] - rest[i]);
-            (
-                rest_error,
-                from_fn::<f64, 3, _>(|i| reached[i] - rest[i]),
-                stiffness,
-            )
+            (rest_error, from_fn::<f64, 3, _>(|i| reached[i] - rest[i]), stiffness)
         });
         let errors: Vec<_> = errors.collect();
         SpringbackErrors {
@@ -355,14 +333,10 @@ impl Springback {
 
     /// Reads a law from its file.
     pub fn load(path: &Path) -> Result<Self, SpringbackError> {
-        let bytes = regular_file::read(path)
-            .map_err(FileError::at(path))
-            .map_err(SpringbackError::Read)?;
-        let law: Self =
-            sealed_json::from_slice(&bytes).map_err(|source| SpringbackError::File {
-                path: path.to_owned(),
-                source,
-            })?;
+        let bytes =
+            regular_file::read(path).map_err(FileError::at(path)).map_err(SpringbackError::Read)?;
+        let law: Self = sealed_json::from_slice(&bytes)
+            .map_err(|source| SpringbackError::File { path: path.to_owned(), source })?;
         Ok(law)
     }
 
@@ -370,9 +344,7 @@ impl Springback {
     pub fn save(&self, path: &Path) -> Result<(), SpringbackError> {
         let bytes = sealed_json::to_vec(self).map_err(io::Error::other);
         let written = bytes.and_then(|bytes| whole_file::write(path, &bytes));
-        written
-            .map_err(FileError::at(path))
-            .map_err(SpringbackError::Write)
+        written.map_err(FileError::at(path)).map_err(SpringbackError::Write)
     }
 
     /// The factors of the terms.
@@ -392,8 +364,8 @@ impl Springback {
     }
 }
 
-/// K, what a hinge springs back, and what that leaves, in units of (w_lig, 1, w_lig). K and what springs back are in the order (a,
-/// theta, s).
+/// K, what a hinge springs back, and what that leaves, in units of (w_lig, 1, w_lig). K and what
+/// springs back are in the order (a, theta, s).
 struct Local {
     factors: [f64; 6],
     /// The units of (a, s, theta) (mm, mm, rad).
@@ -451,19 +423,14 @@ pub struct ReleasedGradient {
 /// (ln w_lig, alpha - 90 deg, eta_a, eta_s, theta)
 fn inputs(design: &HingeDesign, reached: &HingeDeformation) -> [f64; 5] {
     let [eta_a, eta_s] = reached.eta(design.w_lig);
-    [
-        design.w_lig.ln(),
-        design.alpha - FRAC_PI_2,
-        eta_a,
-        eta_s,
-        reached.theta,
-    ]
+    [design.w_lig.ln(), design.alpha - FRAC_PI_2, eta_a, eta_s, reached.theta]
 }
 
 /// Where (a, s, theta) are in the order (a, theta, s), and the reverse.
 const PLACES: [usize; 3] = [0, 2, 1];
 
-/// (d_a, d_theta, d_s, u_{theta a}) and (u_{s a}, u_{s theta}) of a stiffness; `None` if it is not positive definite.
+/// (d_a, d_theta, d_s, u_{theta a}) and (u_{s a}, u_{s theta}) of a stiffness; `None` if it is not
+/// positive definite.
 fn factors(w: f64, k: &[[f64; 3]; 3]) -> Option<([f64; 4], [f64; 2])> {
     let (aa, ta, tt) = (k[0][0] * w * w, k[2][0] * w, k[2][2]);
     let (sa, st, ss) = (k[1][0] * w * w, k[1][2] * w, k[1][1] * w * w);
@@ -596,7 +563,8 @@ mod tests {
         }
     }
 
-    /// The gradient of a linear function of r and K in all eight numbers that they follow from, by central differences.
+    /// The gradient of a linear function of r and K in all eight numbers that they follow from, by
+    /// central differences.
     #[test]
     fn the_pullback_is_the_gradient() {
         let (rows, law) = law();

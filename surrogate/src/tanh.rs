@@ -4,9 +4,9 @@
 //! tanh x = m / (m + 2),   m = exp(2x) - 1 = 2^n (exp(r) - 1) + (2^n - 1),   2x = n ln 2 + r
 //! ```
 //!
-//! exp(r) - 1 is computed by its Taylor series on |r| <= ln(2) / 2, where the first omitted term is below
-//! 1.3e-17 of the sum. Fused multiply-add is not used: without hardware support it would be
-//! a library call.
+//! exp(r) - 1 is computed by its Taylor series on |r| <= ln(2) / 2, where the first omitted term is
+//! below 1.3e-17 of the sum. Fused multiply-add is not used: without hardware support it would be a
+//! library call.
 
 use pulp::{Simd, WithSimd};
 
@@ -27,7 +27,8 @@ const INVERSE_FACTORIALS: [f64; 12] = {
 const LN_2_HIGH: f64 = f64::from_bits(0x3fe6_2e42_fee0_0000);
 const LN_2_LOW: f64 = 1.908_214_929_270_587_7e-10;
 
-/// Rounding constant: adding it to a number below 2^51 leaves the nearest integer in the low bits of the sum.
+/// Rounding constant: adding it to a number below 2^51 leaves the nearest integer in the low bits
+/// of the sum.
 const ROUND: f64 = 6_755_399_441_055_744.0;
 
 /// Beyond this argument tanh is 1 to machine precision; the limit keeps exp(2x) finite.

@@ -53,18 +53,11 @@ pub enum WeightsError {
     )]
     Database { path: PathBuf },
     #[error("{path} is not a safetensors file: {source}", path = .path.display())]
-    Malformed {
-        path: PathBuf,
-        source: SafeTensorError,
-    },
+    Malformed { path: PathBuf, source: SafeTensorError },
     #[error("{path}: tensor `{tensor}` is not part of a known network", path = .path.display())]
     Extra { path: PathBuf, tensor: String },
     #[error("{path}: tensor `{tensor}` is {found:?}, expected F64 or F32", path = .path.display())]
-    Type {
-        path: PathBuf,
-        tensor: String,
-        found: Dtype,
-    },
+    Type { path: PathBuf, tensor: String, found: Dtype },
     #[error(
         "{path}: `{tensor}` differs from the value in the card; the two files are from different \
          trainings, so copy both from the same place",
@@ -76,16 +69,9 @@ pub enum WeightsError {
          of another training; copy the two files together",
         path = .path.display()
     )]
-    Hash {
-        path: PathBuf,
-        expected: String,
-        found: String,
-    },
+    Hash { path: PathBuf, expected: String, found: String },
     #[error("{path}: {source}", path = .path.display())]
-    Invalid {
-        path: PathBuf,
-        source: InvalidWeights,
-    },
+    Invalid { path: PathBuf, source: InvalidWeights },
 }
 
 impl Surrogate {
@@ -102,24 +88,16 @@ impl Surrogate {
 
 fn load(weights: &Path) -> Result<Surrogate, WeightsError> {
     refuse_database(weights)?;
-    let bytes = regular_file::read(weights)
-        .map_err(FileError::at(weights))
-        .map_err(WeightsError::Read)?;
+    let bytes =
+        regular_file::read(weights).map_err(FileError::at(weights)).map_err(WeightsError::Read)?;
     let mut tensors = read_tensors(weights, &bytes)?;
     let mut card = Card::of(weights)?;
     let expected = card.weights_hash.take().unwrap_or_default();
     let found = blake3::hash(&bytes).to_hex().to_string();
     if found != expected {
-        return Err(WeightsError::Hash {
-            path: weights.to_owned(),
-            expected,
-            found,
-        });
+        return Err(WeightsError::Hash { path: weights.to_owned(), expected, found });
     }
-    let invalid = |source| WeightsError::Invalid {
-        path: weights.to_owned(),
-        source,
-    };
+    let invalid = |source| WeightsError::Invalid { path: weights.to_owned(), source };
     let chi = take_layers(&mut tensors, "chi").map_err(invalid)?;
     let chi_d = take_layers(&mut tensors, "chi_d").map_err(invalid)?;
     let chi_p = card.peak_scale.map(|_| take_layers(&mut tensors, "chi_p"));
@@ -134,17 +112,11 @@ fn load(weights: &Path) -> Result<Surrogate, WeightsError> {
             }));
         }
         if found.values != expected.values {
-            return Err(WeightsError::OtherCard {
-                path: weights.to_owned(),
-                tensor,
-            });
+            return Err(WeightsError::OtherCard { path: weights.to_owned(), tensor });
         }
     }
     if let Some((tensor, _)) = tensors.pop_first() {
-        return Err(WeightsError::Extra {
-            path: weights.to_owned(),
-            tensor,
-        });
+        return Err(WeightsError::Extra { path: weights.to_owned(), tensor });
     }
     Surrogate::from_parts(Layers { chi, chi_d, chi_p }, card).map_err(invalid)
 }
@@ -159,19 +131,14 @@ impl Card {
         refuse_database(weights)?;
         let path = card_path(weights);
         let text = regular_file::read(&path).map_err(|source| match source.kind() {
-            io::ErrorKind::NotFound => WeightsError::MissingCard {
-                weights: weights.to_owned(),
-                card: path.clone(),
-            },
+            io::ErrorKind::NotFound => {
+                WeightsError::MissingCard { weights: weights.to_owned(), card: path.clone() }
+            }
             _ => WeightsError::Read(FileError::at(&path)(source)),
         })?;
-        let malformed = |source| WeightsError::Card {
-            path: path.clone(),
-            source,
-        };
-        let version: Version = serde_json::from_slice(&text)
-            .map_err(SealError::from)
-            .map_err(malformed)?;
+        let malformed = |source| WeightsError::Card { path: path.clone(), source };
+        let version: Version =
+            serde_json::from_slice(&text).map_err(SealError::from).map_err(malformed)?;
         if version.format_version != u64::from(FORMAT_VERSION) {
             return Err(WeightsError::UnknownVersion {
                 path: path.clone(),
@@ -194,10 +161,7 @@ fn save(surrogate: &Surrogate, weights: &Path) -> Result<(), WeightsError> {
     let mut tensors: Vec<(String, Tensor)> = Vec::new();
     let Layers { chi, chi_d, chi_p } = surrogate.layers();
     let networks = [("chi", chi), ("chi_d", chi_d)];
-    for (name, layers) in networks
-        .into_iter()
-        .chain(chi_p.map(|layers| ("chi_p", layers)))
-    {
+    for (name, layers) in networks.into_iter().chain(chi_p.map(|layers| ("chi_p", layers))) {
         for (index, Layer { weight, bias }) in layers.into_iter().enumerate() {
             tensors.push((format!("{name}.{index}.weight"), weight));
             tensors.push((format!("{name}.{index}.bias"), bias));
@@ -211,27 +175,19 @@ fn save(surrogate: &Surrogate, weights: &Path) -> Result<(), WeightsError> {
         .iter()
         .zip(&bytes)
         .map(|((name, tensor), bytes)| {
-            Ok((
-                name,
-                TensorView::new(Dtype::F64, tensor.shape.clone(), bytes)?,
-            ))
+            Ok((name, TensorView::new(Dtype::F64, tensor.shape.clone(), bytes)?))
         })
         .collect();
     let file = views
         .and_then(|views| safetensors::serialize(views, None))
-        .map_err(|source| WeightsError::Malformed {
-            path: weights.to_owned(),
-            source,
-        })?;
+        .map_err(|source| WeightsError::Malformed { path: weights.to_owned(), source })?;
     let path = card_path(weights);
     let stamped = Card {
         weights_hash: Some(blake3::hash(&file).to_hex().to_string()),
         ..surrogate.card().clone()
     };
-    let mut card = sealed_json::to_vec(&stamped).map_err(|source| WeightsError::Card {
-        path: path.clone(),
-        source: source.into(),
-    })?;
+    let mut card = sealed_json::to_vec(&stamped)
+        .map_err(|source| WeightsError::Card { path: path.clone(), source: source.into() })?;
     card.push(b'\n');
     write(weights, &file)?;
     write(&path, &card)
@@ -242,10 +198,8 @@ fn card_path(weights: &Path) -> PathBuf {
 }
 
 fn read_tensors(path: &Path, bytes: &[u8]) -> Result<BTreeMap<String, Tensor>, WeightsError> {
-    let file = SafeTensors::deserialize(bytes).map_err(|source| WeightsError::Malformed {
-        path: path.to_owned(),
-        source,
-    })?;
+    let file = SafeTensors::deserialize(bytes)
+        .map_err(|source| WeightsError::Malformed { path: path.to_owned(), source })?;
     file.iter()
         .map(|(name, view)| match to_tensor(&view) {
             Some(tensor) => Ok((name.to_owned(), tensor)),
@@ -263,10 +217,7 @@ fn to_tensor(view: &TensorView) -> Option<Tensor> {
     let values = match view.dtype() {
         Dtype::F64 => {
             let (numbers, _) = view.data().as_chunks();
-            numbers
-                .iter()
-                .map(|&bytes| f64::from_le_bytes(bytes))
-                .collect()
+            numbers.iter().map(|&bytes| f64::from_le_bytes(bytes)).collect()
         }
         Dtype::F32 => {
             let (numbers, _) = view.data().as_chunks();
@@ -275,10 +226,7 @@ fn to_tensor(view: &TensorView) -> Option<Tensor> {
         }
         _ => return None,
     };
-    Some(Tensor {
-        shape: view.shape().to_vec(),
-        values,
-    })
+    Some(Tensor { shape: view.shape().to_vec(), values })
 }
 
 fn to_bytes(tensor: &Tensor) -> Vec<u8> {
@@ -289,10 +237,7 @@ fn to_bytes(tensor: &Tensor) -> Vec<u8> {
 /// The tensors whose values the card also contains.
 fn scaling(card: &Card) -> [(&'static str, Tensor); 4] {
     let Standardisation { mean, std } = &card.standardisation;
-    let vector = |values: &[f64]| Tensor {
-        shape: vec![values.len()],
-        values: values.to_vec(),
-    };
+    let vector = |values: &[f64]| Tensor { shape: vec![values.len()], values: values.to_vec() };
     [
         ("feat_mean", vector(mean)),
         ("feat_std", vector(std)),
@@ -307,10 +252,7 @@ fn take_layers(
     network: &str,
 ) -> Result<Vec<Layer>, InvalidWeights> {
     let layer_of = |name: &String| -> Option<usize> {
-        let (layer, _) = name
-            .strip_prefix(network)?
-            .strip_prefix('.')?
-            .split_once('.')?;
+        let (layer, _) = name.strip_prefix(network)?.strip_prefix('.')?.split_once('.')?;
         layer.parse().ok()
     };
     let last = tensors.keys().filter_map(layer_of).max().unwrap_or(0);
@@ -325,9 +267,7 @@ fn take_layers(
 }
 
 fn take(tensors: &mut BTreeMap<String, Tensor>, name: &str) -> Result<Tensor, InvalidWeights> {
-    tensors.remove(name).ok_or_else(|| InvalidWeights::Missing {
-        tensor: name.into(),
-    })
+    tensors.remove(name).ok_or_else(|| InvalidWeights::Missing { tensor: name.into() })
 }
 
 fn write(path: &Path, bytes: &[u8]) -> Result<(), WeightsError> {

@@ -1,4 +1,5 @@
-//! The kernel, compared with an independent implementation at 50 states and with finite differences.
+//! The kernel, compared with an independent implementation at 50 states and with finite
+//! differences.
 
 mod common;
 
@@ -125,11 +126,7 @@ fn with_holes() -> Surrogate {
         shape[1] += 1;
         layers
     };
-    let layers = Layers {
-        chi: widened(chi),
-        chi_d: widened(chi_d),
-        chi_p: chi_p.map(widened),
-    };
+    let layers = Layers { chi: widened(chi), chi_d: widened(chi_d), chi_p: chi_p.map(widened) };
     Surrogate::from_parts(layers, card).unwrap()
 }
 
@@ -160,7 +157,8 @@ fn differences(
     pairs.map(slope).collect()
 }
 
-/// The derivatives of W and of the forces in one of (a, s, theta, w_lig, alpha, rho_f), from a HingeEnergy.
+/// The derivatives of W and of the forces in one of (a, s, theta, w_lig, alpha, rho_f), from a
+/// HingeEnergy.
 fn derivative(energy: &HingeEnergy, direction: usize) -> [f64; 4] {
     let first = match direction {
         0..3 => energy.forces[direction],
@@ -186,10 +184,7 @@ fn every_derivative_agrees_with_finite_differences() {
 #[test]
 fn a_hole_of_another_radius_is_outside() {
     let flat = HingeDeformation::default();
-    let at = |fillet_ratio: f64| HingeDesign {
-        fillet_ratio,
-        ..design(12.0, 1.5)
-    };
+    let at = |fillet_ratio: f64| HingeDesign { fillet_ratio, ..design(12.0, 1.5) };
     let (one, several) = (with_peak(), with_holes());
     assert!(one.contains(&at(0.16), &flat) && !one.contains(&at(0.2), &flat));
     assert!(several.contains(&at(0.2), &flat) && !several.contains(&at(0.5), &flat));
@@ -253,16 +248,8 @@ fn a_head_for_d_peak_does_not_change_d() {
     let [one, two] = [one, two].map(|it| it.damage(&designs, &deformations));
     for (one, two) in one.iter().zip(&two) {
         assert_close("D", &[two.d], &[one.d], 1e-14);
-        assert_close(
-            "dD",
-            &two.gradient.to_array(),
-            &one.gradient.to_array(),
-            1e-14,
-        );
-        assert_eq!(
-            (one.d_peak, one.peak_gradient),
-            (None, HingeGradient::default())
-        );
+        assert_close("dD", &two.gradient.to_array(), &one.gradient.to_array(), 1e-14);
+        assert_eq!((one.d_peak, one.peak_gradient), (None, HingeGradient::default()));
     }
 }
 
@@ -283,12 +270,7 @@ fn sharpness_is_equivalent_to_a_scaled_head_and_damage_scale() {
     let [sharp, plain] = [sharp, plain].map(|it| it.damage(&designs, &deformations));
     for (sharp, plain) in sharp.iter().zip(&plain) {
         assert_close("D", &[sharp.d], &[plain.d], 1e-15);
-        assert_close(
-            "dD",
-            &sharp.gradient.to_array(),
-            &plain.gradient.to_array(),
-            1e-14,
-        );
+        assert_close("dD", &sharp.gradient.to_array(), &plain.gradient.to_array(), 1e-14);
     }
 }
 

@@ -139,13 +139,7 @@ fn float32_weights_are_read() {
     assert!(0.0 < apart && apart < 1e-5 * wide, "{wide} {narrow}");
     file.tensors.get_mut("chi.0.bias").unwrap().0 = Dtype::I64;
     let error = file.load().unwrap_err();
-    let refused = matches!(
-        error,
-        WeightsError::Type {
-            found: Dtype::I64,
-            ..
-        }
-    );
+    let refused = matches!(error, WeightsError::Type { found: Dtype::I64, .. });
     assert!(refused, "{error}");
 }
 
@@ -238,13 +232,7 @@ fn any_broken_safetensors_is_an_error() {
 
 #[test]
 fn missing_and_unknown_tensors_are_named() {
-    for name in [
-        "chi.0.bias",
-        "chi.1.weight",
-        "chi_d.2.weight",
-        "feat_std",
-        "d_scale",
-    ] {
+    for name in ["chi.0.bias", "chi.1.weight", "chi_d.2.weight", "feat_std", "d_scale"] {
         let mut file = File::new();
         file.tensors.remove(name);
         let tensor = name.into();
@@ -280,10 +268,9 @@ fn wrong_shapes_name_the_tensor_and_both_shapes() {
 #[test]
 fn weights_that_are_not_finite_name_tensor_and_index() {
     for value in [f64::NAN, f64::INFINITY] {
-        for (name, tensor, index) in [
-            ("chi_tiny", "chi.1.weight", 13),
-            ("chi_domain", "chi_p.2.bias", 0),
-        ] {
+        for (name, tensor, index) in
+            [("chi_tiny", "chi.1.weight", 13), ("chi_domain", "chi_p.2.bias", 0)]
+        {
             let mut file = File::of(name);
             file.change(tensor, |values| values[index] = value);
             let message = file.invalid().to_string();
@@ -295,16 +282,12 @@ fn weights_that_are_not_finite_name_tensor_and_index() {
 
 #[test]
 fn scales_that_are_not_positive_are_errors() {
-    for (name, key, from, bad) in [
-        ("w_scale", "energy_scale", "85.0", 0.0),
-        ("d_scale", "damage_scale", "0.012", -0.012),
-    ] {
+    for (name, key, from, bad) in
+        [("w_scale", "energy_scale", "85.0", 0.0), ("d_scale", "damage_scale", "0.012", -0.012)]
+    {
         let mut file = File::new();
         file.set(name, &[1], &[bad]);
-        file.replace(
-            &format!("\"{key}\": {from}"),
-            &format!("\"{key}\": {bad:?}"),
-        );
+        file.replace(&format!("\"{key}\": {from}"), &format!("\"{key}\": {bad:?}"));
         assert!(matches!(file.invalid(), InvalidWeights::NotPositive { .. }));
     }
     let mut file = File::new();
@@ -336,17 +319,12 @@ fn the_damage_of_huge_weights_stays_finite() {
         let damage = surrogate.damage(&[design(18.0, 1.2)], &[state])[0];
         let peak = damage.d_peak.unwrap();
         assert!(peak >= 0.0 && peak.is_finite());
-        assert!(
-            damage
-                .peak_gradient
-                .to_array()
-                .iter()
-                .all(|slope| slope.is_finite())
-        );
+        assert!(damage.peak_gradient.to_array().iter().all(|slope| slope.is_finite()));
     }
 }
 
-/// Saved files state each other's hashes: no damage of either is read as other numbers, and no card of another training.
+/// Saved files state each other's hashes: no damage of either is read as other numbers, and no card
+/// of another training.
 #[test]
 fn damaged_and_exchanged_files_are_refused() {
     let folder = tempfile::tempdir().unwrap();

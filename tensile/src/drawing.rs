@@ -1,18 +1,21 @@
 //! The local hardening curve where the measured curve is not local.
 //!
-//! **Drawing.** Between the upper yield (stretch lambda_u) and the natural draw ratio lambda_n a neck runs along the
-//! specimen under the constant nominal stress s of the plateau. Each element passes from lambda_u to lambda_n, so
-//! the work per volume on the local curve equals the work of the machine,
+//! **Drawing.** Between the upper yield (stretch lambda_u) and the natural draw ratio lambda_n a
+//! neck runs along the specimen under the constant nominal stress s of the plateau. Each element
+//! passes from lambda_u to lambda_n, so the work per volume on the local curve equals the work of
+//! the machine,
 //!
 //!   int sigma d(eps) = s (lambda_n - lambda_u),
 //!
-//! which is Maxwell's rule of equal areas. The two ends are measured: the true stress sigma_u at the upper yield,
-//! and sigma_n = lambda_n s. Between them sigma = sigma_u + (sigma_n - sigma_u) x^m is assumed, where x is the fraction
-//! of the plastic strain; the work determines m. If the work is less than sigma_u would need even without hardening,
-//! the upper yield is cut to the mean stress of the draw: the Luders band of a mild steel.
+//! which is Maxwell's rule of equal areas. The two ends are measured: the true stress sigma_u at
+//! the upper yield, and sigma_n = lambda_n s. Between them sigma = sigma_u + (sigma_n - sigma_u)
+//! x^m is assumed, where x is the fraction of the plastic strain; the work determines m. If the
+//! work is less than sigma_u would need even without hardening, the upper yield is cut to the mean
+//! stress of the draw: the Luders band of a mild steel.
 //!
-//! **Diffuse neck.** From the maximum force at (sigma_m, eps_m) on, the tangent of Considere's condition
-//! d(sigma)/d(eps) = sigma is continued: sigma = sigma_m (1 + eps - eps_m). It is an upper bound for a law that saturates.
+//! **Diffuse neck.** From the maximum force at (sigma_m, eps_m) on, the tangent of Considere's
+//! condition d(sigma)/d(eps) = sigma is continued: sigma = sigma_m (1 + eps - eps_m). It is an
+//! upper bound for a law that saturates.
 
 /// The local curve of the material in the running neck.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -26,8 +29,8 @@ pub(super) struct Drawing {
 }
 
 impl Drawing {
-    /// From the end of the measured curve to the natural draw ratio `ratio` under the nominal stress `plateau` (MPa).
-    /// `None` if the ratio is not beyond the upper yield.
+    /// From the end of the measured curve to the natural draw ratio `ratio` under the nominal
+    /// stress `plateau` (MPa). `None` if the ratio is not beyond the upper yield.
     pub fn new(from: [f64; 2], plateau: f64, ratio: f64, young: f64) -> Option<Self> {
         let [sigma, plastic] = from;
         let stress = ratio * plateau;
@@ -39,7 +42,8 @@ impl Drawing {
         (to[1] > plastic && mean > 0.0).then_some(Self { from, to, mean })
     }
 
-    /// The true stress (MPa) at the upper yield: that measured, or less if the plateau is too low for it.
+    /// The true stress (MPa) at the upper yield: that measured, or less if the plateau is too low
+    /// for it.
     pub fn yields_at(&self) -> f64 {
         self.from[0].min(self.mean).min(self.to[0])
     }
@@ -49,23 +53,18 @@ impl Drawing {
         let [sigma, plastic] = [self.yields_at(), self.from[1]];
         let rise = self.to[0] - sigma;
         // A cut yield stress is constant up to the natural draw ratio.
-        let exponent = if self.mean > sigma {
-            rise / (self.mean - sigma) - 1.0
-        } else {
-            f64::INFINITY
-        };
+        let exponent =
+            if self.mean > sigma { rise / (self.mean - sigma) - 1.0 } else { f64::INFINITY };
         let point = |index: usize| {
             let x = index as f64 / count as f64;
-            [
-                sigma + rise * x.powf(exponent),
-                plastic + x * (self.to[1] - plastic),
-            ]
+            [sigma + rise * x.powf(exponent), plastic + x * (self.to[1] - plastic)]
         };
         (1..=count).map(point).collect()
     }
 }
 
-/// The true stress (MPa) at the plastic strain `plastic` beyond the maximum force at `from`; Considere.
+/// The true stress (MPa) at the plastic strain `plastic` beyond the maximum force at `from`;
+/// Considere.
 pub(super) fn beyond_maximum_force(from: [f64; 2], plastic: f64, young: f64) -> f64 {
     // eps - eps_m contains the elastic part (sigma - sigma_m) / E.
     let [sigma, start] = from;

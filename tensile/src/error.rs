@@ -10,11 +10,7 @@ pub enum TensileError {
     #[error("cannot read {0}")]
     Read(#[from] FileError),
     #[error("{path}:{line}: {what}", path = .path.display())]
-    Row {
-        path: PathBuf,
-        line: u64,
-        what: String,
-    },
+    Row { path: PathBuf, line: u64, what: String },
     #[error("{path} {what}", path = .path.display())]
     File { path: PathBuf, what: String },
     #[error("{0}")]

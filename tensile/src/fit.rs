@@ -1,5 +1,5 @@
-//! The law of a material from its specimens: mean modulus, mean hardening curve, fracture strain, and the table of the
-//! finite elements.
+//! The law of a material from its specimens: mean modulus, mean hardening curve, fracture strain,
+//! and the table of the finite elements.
 
 use crate::drawing::{Drawing, beyond_maximum_force};
 use crate::error::TensileError;
@@ -16,9 +16,11 @@ use std::path::PathBuf;
 pub struct FitOptions {
     /// For the evaluation of each specimen.
     pub specimen: SpecimenOptions,
-    /// Plastic strain at fracture, ln(A0 / A) from the section A of the broken specimen, if it was measured.
+    /// Plastic strain at fracture, ln(A0 / A) from the section A of the broken specimen, if it was
+    /// measured.
     pub fracture_strain: Option<f64>,
-    /// Maximum number of rows of the table, 2 to 200: CalculiX interpolates between at most 200 rows.
+    /// Maximum number of rows of the table, 2 to 200: CalculiX interpolates between at most 200
+    /// rows.
     pub rows: usize,
 }
 
@@ -62,11 +64,13 @@ pub enum FractureSource {
     Given,
     /// Plastic strain at the end of records whose specimens deform uniformly to their break.
     Break,
-    /// The same, but a record ends without a break: a lower bound, because the specimen strains further.
+    /// The same, but a record ends without a break: a lower bound, because the specimen strains
+    /// further.
     RecordEnd,
     /// Plastic strain at the maximum force: a lower bound, because the neck strains further.
     MaximumForce,
-    /// Plastic strain at the natural draw ratio: a lower bound, because the drawn material strains further.
+    /// Plastic strain at the natural draw ratio: a lower bound, because the drawn material strains
+    /// further.
     DrawRatio,
 }
 
@@ -102,7 +106,8 @@ pub struct MaterialFit {
     pub plateau: Option<Statistic>,
     /// Stretch of the drawn material.
     pub draw_ratio: Option<Statistic>,
-    /// True stress at which the law yields, if the upper yield was cut to the mean stress of the draw.
+    /// True stress at which the law yields, if the upper yield was cut to the mean stress of the
+    /// draw.
     pub cut_yield: Option<f64>,
     /// The hardening curve before it is thinned.
     #[serde(skip)]
@@ -137,19 +142,18 @@ impl Statistic {
 }
 
 impl MaterialFit {
-    /// Relative standard deviation of the stress over the specimens: the largest of modulus, yield and plateau, to two digits.
+    /// Relative standard deviation of the stress over the specimens: the largest of modulus, yield
+    /// and plateau, to two digits.
     pub fn stress_deviation(&self) -> Option<f64> {
         let stresses = [self.young, self.offset_yield].into_iter();
         let drawn = [self.upper_yield, self.plateau].into_iter().flatten();
         let relative = |of: Statistic| Some(of.deviation? / of.mean);
-        let largest = stresses
-            .chain(drawn)
-            .filter_map(relative)
-            .reduce(f64::max)?;
+        let largest = stresses.chain(drawn).filter_map(relative).reduce(f64::max)?;
         Some(rounded(largest, 4))
     }
 
-    /// Reads and evaluates the record of each specimen with its own options, and fits one law to all.
+    /// Reads and evaluates the record of each specimen with its own options, and fits one law to
+    /// all.
     pub fn new(
         records: &[(PathBuf, RecordOptions)],
         options: &FitOptions,
@@ -163,9 +167,8 @@ impl MaterialFit {
         same_kind(&specimens)?;
         let over = |value: fn(&Specimen) -> f64| Statistic::new(specimens.iter().map(value));
         let drawn = |value: fn(&Draw) -> f64| {
-            let draws: Option<Vec<f64>> = (specimens.iter())
-                .map(|specimen| specimen.draw.as_ref().map(value))
-                .collect();
+            let draws: Option<Vec<f64>> =
+                (specimens.iter()).map(|specimen| specimen.draw.as_ref().map(value)).collect();
             draws.map(|values| Statistic::new(values.into_iter()))
         };
         let young = over(|specimen| specimen.young);
@@ -184,10 +187,7 @@ impl MaterialFit {
         let rows: Vec<[f64; 2]> = curve.iter().map(|row| [row.stress, row.strain]).collect();
         let (kept, table_deviation) = thinned(&rows, options.rows);
         Ok(Self {
-            young: Statistic {
-                mean: rounded(young.mean, 1),
-                ..young
-            },
+            young: Statistic { mean: rounded(young.mean, 1), ..young },
             young_given: options.specimen.young.is_some(),
             offset_yield: over(|specimen| specimen.offset_yield),
             upper_yield: drawn(|draw| draw.upper_yield),
@@ -205,8 +205,8 @@ impl MaterialFit {
     }
 }
 
-/// The mean hardening curve, and the true stress to which the upper yield is cut, if it is. `draw` has the plateau and the
-/// natural draw ratio.
+/// The mean hardening curve, and the true stress to which the upper yield is cut, if it is. `draw`
+/// has the plateau and the natural draw ratio.
 fn hardening(
     specimens: &[Specimen],
     young: f64,
@@ -227,15 +227,10 @@ fn hardening(
         ))
     })?;
     let yields = drawing.yields_at();
-    uniform
-        .iter_mut()
-        .for_each(|row| row[0] = row[0].min(yields));
+    uniform.iter_mut().for_each(|row| row[0] = row[0].min(yields));
     let mut curve = marked(&uniform, Origin::Measured);
     curve.extend(marked(&drawing.points(NECK_POINTS), Origin::Drawn));
-    curve.extend(marked(
-        &drawn_curve(specimens, drawing.to),
-        Origin::Measured,
-    ));
+    curve.extend(marked(&drawn_curve(specimens, drawing.to), Origin::Measured));
     Ok((curve, (yields < top[0]).then_some(yields)))
 }
 
@@ -243,10 +238,8 @@ fn hardening(
 fn same_kind(specimens: &[Specimen]) -> Result<(), TensileError> {
     let draws = |specimen: &&Specimen| specimen.draw.is_some();
     let names = |these: Vec<&Specimen>| {
-        let names: Vec<String> = these
-            .iter()
-            .map(|specimen| specimen.path.display().to_string())
-            .collect();
+        let names: Vec<String> =
+            these.iter().map(|specimen| specimen.path.display().to_string()).collect();
         names.join(", ")
     };
     let (drawn, others): (Vec<_>, Vec<_>) = specimens.iter().partition(draws);
@@ -278,8 +271,7 @@ fn drawn_curve(specimens: &[Specimen], start: [f64; 2]) -> Vec<[f64; 2]> {
     let mean = mean_curve(&curves, end);
     let offset = start[0] - mean[0][0];
     let rows = mean[1..].iter();
-    rows.map(|row| [row[0] + offset, row[1] + start[1]])
-        .collect()
+    rows.map(|row| [row[0] + offset, row[1] + start[1]]).collect()
 }
 
 struct Fracture {
@@ -296,11 +288,7 @@ fn fracture(
     let end = curve[curve.len() - 1].strain;
     if let Some(strain) = options.fracture_strain {
         return if strain >= end {
-            Ok(Fracture {
-                strain,
-                scatter: None,
-                source: FractureSource::Given,
-            })
+            Ok(Fracture { strain, scatter: None, source: FractureSource::Given })
         } else {
             Err(TensileError::Specimens(format!(
                 "--fracture-strain {strain} is less than the plastic strain {end:.4} that the specimens reach on \
@@ -317,11 +305,7 @@ fn fracture(
     };
     let reached = |specimen: &Specimen| {
         let drawn = !specimen.after.is_empty();
-        last(if drawn {
-            &specimen.after
-        } else {
-            &specimen.before
-        })[1]
+        last(if drawn { &specimen.after } else { &specimen.before })[1]
     };
     Ok(Fracture {
         strain: end,
@@ -352,11 +336,7 @@ fn rounded(value: f64, digits: i32) -> f64 {
 }
 
 fn marked(rows: &[[f64; 2]], origin: Origin) -> Vec<HardeningRow> {
-    let row = |&[stress, strain]: &[f64; 2]| HardeningRow {
-        stress,
-        strain,
-        origin,
-    };
+    let row = |&[stress, strain]: &[f64; 2]| HardeningRow { stress, strain, origin };
     rows.iter().map(row).collect()
 }
 

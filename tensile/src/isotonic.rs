@@ -1,8 +1,10 @@
-//! Isotonic regression: the closest increasing sequence in the sense of least squares (pool adjacent violators).
+//! Isotonic regression: the closest increasing sequence in the sense of least squares (pool
+//! adjacent violators).
 
 use std::ops::Range;
 
-/// The index ranges over which a sequence is averaged to make it non-decreasing, or increasing if `strict`.
+/// The index ranges over which a sequence is averaged to make it non-decreasing, or increasing if
+/// `strict`.
 pub(super) fn pools(values: impl Iterator<Item = f64>, strict: bool) -> Vec<Range<usize>> {
     let mut pools: Vec<(Range<usize>, f64)> = Vec::new();
     for (index, value) in values.enumerate() {

@@ -1,8 +1,9 @@
-//! Landmarks of a nominal curve: 0.2 % offset yield, upper yield, draw plateau, natural draw ratio, onset of necking.
+//! Landmarks of a nominal curve: 0.2 % offset yield, upper yield, draw plateau, natural draw ratio,
+//! onset of necking.
 //!
-//! Between the upper yield and the natural draw ratio a neck runs along the specimen: its material is at two
-//! stretches, and the nominal strain is their average. The curve is local again where the neck has covered the
-//! specimen and the stress rises from the plateau.
+//! Between the upper yield and the natural draw ratio a neck runs along the specimen: its material
+//! is at two stretches, and the nominal strain is their average. The curve is local again where the
+//! neck has covered the specimen and the stress rises from the plateau.
 
 use crate::regression::interpolated;
 use serde::Serialize;
@@ -51,23 +52,19 @@ pub(super) enum RatioFault {
     BeyondEnd { given: f64, stretch: f64 },
 }
 
-/// The nominal stress (MPa) at which the curve crosses the line of slope `young` through the strain 0.2 %, after the
-/// row `from`; `None` if it does not.
+/// The nominal stress (MPa) at which the curve crosses the line of slope `young` through the strain
+/// 0.2 %, after the row `from`; `None` if it does not.
 pub(super) fn offset_yield(curve: &[[f64; 2]], young: f64, from: usize) -> Option<f64> {
     let above = |row: &[f64; 2]| row[1] - young * (row[0] - OFFSET);
     let after = &curve[from.min(curve.len())..];
     let crossing = after.windows(2).find(|pair| above(&pair[1]) <= 0.0)?;
     let [before, after] = [above(&crossing[0]), above(&crossing[1])];
-    let share = if before > 0.0 {
-        before / (before - after)
-    } else {
-        0.0
-    };
+    let share = if before > 0.0 { before / (before - after) } else { 0.0 };
     Some(crossing[0][1] + share * (crossing[1][1] - crossing[0][1]))
 }
 
-/// The draw of a curve after the row `from`; `None` if it does not neck or breaks in the neck. `given` is the natural
-/// draw ratio if it was measured.
+/// The draw of a curve after the row `from`; `None` if it does not neck or breaks in the neck.
+/// `given` is the natural draw ratio if it was measured.
 pub(super) fn draw(
     curve: &[[f64; 2]],
     mut from: usize,
@@ -83,9 +80,7 @@ pub(super) fn draw(
         let low = lowest(curve, top, region);
         let high = highest(curve, low, region);
         let fallen = stress(low) + 0.25 * (stress(top) - stress(low));
-        let start = (top..region)
-            .find(|&row| stress(row) <= fallen)
-            .unwrap_or(low);
+        let start = (top..region).find(|&row| stress(row) <= fallen).unwrap_or(low);
         let strain = |row: usize| curve[row][0];
         let found = |plateau, draw_ratio, ratio_given| Draw {
             upper_yield: stress(top),
@@ -109,7 +104,8 @@ pub(super) fn draw(
             from = high;
             continue;
         }
-        // A diffuse neck falls faster and faster until the break; a plateau covers most of what follows the peak.
+        // A diffuse neck falls faster and faster until the break; a plateau covers most of what
+        // follows the peak.
         let [tail, after] = [start, top].map(|row| strain(end - 1) - strain(row));
         if tail < 0.5 * after || after < 3.0 * strain(top) {
             return Ok(None);
@@ -117,16 +113,14 @@ pub(super) fn draw(
         let plateau = curve[start..].iter().map(|row| row[1]).sum::<f64>() / (end - start) as f64;
         return match given {
             Some(ratio) => Ok(Some(found(plateau, ratio, true))),
-            None => Err(RatioFault::Missing {
-                plateau,
-                strain: strain(end - 1),
-            }),
+            None => Err(RatioFault::Missing { plateau, strain: strain(end - 1) }),
         };
     }
     Ok(None)
 }
 
-/// The last row after `from` at which the strain is uniform, and whether the specimen necks after it.
+/// The last row after `from` at which the strain is uniform, and whether the specimen necks after
+/// it.
 pub(super) fn uniform_end(curve: &[[f64; 2]], from: usize, noise: f64) -> (usize, bool) {
     let last = curve.len() - 1;
     let top = highest(curve, from, curve.len());
@@ -156,24 +150,21 @@ fn change(stress: f64, noise: f64) -> f64 {
 
 fn lowest(curve: &[[f64; 2]], from: usize, to: usize) -> usize {
     let rows = from..to;
-    rows.min_by(|a, b| curve[*a][1].total_cmp(&curve[*b][1]))
-        .unwrap_or(from)
+    rows.min_by(|a, b| curve[*a][1].total_cmp(&curve[*b][1])).unwrap_or(from)
 }
 
 fn highest(curve: &[[f64; 2]], from: usize, to: usize) -> usize {
     let rows = from..to;
-    rows.max_by(|a, b| curve[*a][1].total_cmp(&curve[*b][1]))
-        .unwrap_or(from)
+    rows.max_by(|a, b| curve[*a][1].total_cmp(&curve[*b][1])).unwrap_or(from)
 }
 
-/// Stress and strain at the end of a plateau: of all constants that continue as a parabola, the closest to the curve
-/// in the sense of least squares.
+/// Stress and strain at the end of a plateau: of all constants that continue as a parabola, the
+/// closest to the curve in the sense of least squares.
 fn plateau_end(curve: &[[f64; 2]]) -> [f64; 2] {
     let [from, to] = [curve[0][0], curve[curve.len() - 1][0]];
     let strain = |point: usize| from + (to - from) * point as f64 / POINTS as f64;
-    let stresses: Vec<f64> = (0..=POINTS)
-        .map(|point| interpolated(curve, 1, strain(point)))
-        .collect();
+    let stresses: Vec<f64> =
+        (0..=POINTS).map(|point| interpolated(curve, 1, strain(point))).collect();
     let mut best = [f64::INFINITY, stresses[0], from];
     let mut sum = 0.0;
     for end in 0..POINTS {
@@ -191,19 +182,13 @@ fn plateau_end(curve: &[[f64; 2]]) -> [f64; 2] {
         }
         let determinant = xx * xxxx - xxx * xxx;
         let (b, c) = if determinant > 1e-9 * xx * xxxx {
-            (
-                (xy * xxxx - xxy * xxx) / determinant,
-                (xx * xxy - xxx * xy) / determinant,
-            )
+            ((xy * xxxx - xxy * xxx) / determinant, (xx * xxy - xxx * xy) / determinant)
         } else {
             (xy / xx, 0.0)
         };
         let flat: f64 = stresses[..=end].iter().map(|s| (s - level).powi(2)).sum();
         let rising = (end + 1..=POINTS).map(rise);
-        let error = flat
-            + rising
-                .map(|(x, y)| (y - b * x - c * x * x).powi(2))
-                .sum::<f64>();
+        let error = flat + rising.map(|(x, y)| (y - b * x - c * x * x).powi(2)).sum::<f64>();
         if error < best[0] {
             best = [error, level, strain(end)];
         }
@@ -247,10 +232,7 @@ mod tests {
     #[test]
     fn a_ratio_beyond_the_end_of_a_drawn_specimen_is_refused() {
         let long = curve(3.5, 3500, drawn);
-        let fault = RatioFault::BeyondEnd {
-            given: 33.0,
-            stretch: 4.5,
-        };
+        let fault = RatioFault::BeyondEnd { given: 33.0, stretch: 4.5 };
         assert_eq!(draw(&long, 10, 0.0, Some(33.0)), Err(fault));
         let given = draw(&long, 10, 0.0, Some(3.3)).unwrap().unwrap();
         assert_eq!(given.draw_ratio, 3.3);
@@ -264,9 +246,7 @@ mod tests {
             x if x < 0.02 => 240.0,
             x => 240.0 + 1000.0 * (x - 0.02),
         };
-        let found = draw(&curve(0.1, 10_000, steel), 100, 0.0, None)
-            .unwrap()
-            .unwrap();
+        let found = draw(&curve(0.1, 10_000, steel), 100, 0.0, None).unwrap().unwrap();
         assert!((found.draw_ratio - 1.02).abs() < 5e-4, "{found:?}");
         let serrated =
             |x: f64| 100.0 + 500.0 * x - if (0.05..0.052).contains(&x) { 5.0 } else { 0.0 };

@@ -1,4 +1,5 @@
-//! Tensile tests: from the files of a testing machine to the hardening table of a material; section 4.1.
+//! Tensile tests: from the files of a testing machine to the hardening table of a material; section
+//! 4.1.
 //!
 //! | step | file |
 //! |---|---|
@@ -10,8 +11,8 @@
 //! | local curve in the neck | `drawing` |
 //! | mean over the specimens, table, fracture strain | `mean_curve`, `thinning`, `fit` |
 //!
-//! A material file may name a clean curve as `tensile_csv`. It is read without corrections: a curve that needs one is
-//! rejected, with the advice to use `kirigami material fit`, which reports them.
+//! A material file may name a clean curve as `tensile_csv`. It is read without corrections: a curve
+//! that needs one is rejected, with the advice to use `kirigami material fit`, which reports them.
 
 #![warn(missing_docs)]
 
@@ -48,37 +49,26 @@ use std::path::Path;
 
 /// Maximum number of rows of a converted table; a testing machine records thousands.
 const MOST_ROWS: usize = 40;
-/// Maximum factor between the initial slope and Young's modulus; wrong units give factors of 100 and more.
+/// Maximum factor between the initial slope and Young's modulus; wrong units give factors of 100
+/// and more.
 const SLOPE_FACTOR: f64 = 2.0;
 /// Maximum toe: a quarter of the offset strain at which the yield stress is defined.
 const MAX_TOE: f64 = 5e-4;
 
-/// Reads the hardening table of a material of Young's modulus `young` (MPa): rows [true stress (MPa), true plastic
-/// strain].
+/// Reads the hardening table of a material of Young's modulus `young` (MPa): rows [true stress
+/// (MPa), true plastic strain].
 pub fn read_tensile(path: &Path, young: f64) -> Result<Vec<[f64; 2]>, TensileError> {
-    let refuse = |what| TensileError::File {
-        path: path.to_owned(),
-        what,
-    };
+    let refuse = |what| TensileError::File { path: path.to_owned(), what };
     let records = Record::read_all(path, &RecordOptions::default())?;
     let [record] = &records[..] else {
-        let what = format!(
-            "has {} specimens: `kirigami material fit` evaluates them",
-            records.len()
-        );
+        let what =
+            format!("has {} specimens: `kirigami material fit` evaluates them", records.len());
         return Err(refuse(what));
     };
     if record.deformation == PlasticStrain {
-        return Ok(record
-            .rows
-            .iter()
-            .map(|row| [row.stress, row.strain])
-            .collect());
+        return Ok(record.rows.iter().map(|row| [row.stress, row.strain]).collect());
     }
-    let young_known = SpecimenOptions {
-        young: Some(young),
-        ..SpecimenOptions::default()
-    };
+    let young_known = SpecimenOptions { young: Some(young), ..SpecimenOptions::default() };
     let specimen = Specimen::new(record, &young_known)?;
     let fit = "`kirigami material fit` corrects and reports it, and writes the table `plastic`";
     let slope = specimen.linear.young;
@@ -121,13 +111,11 @@ mod tests {
 
     const YOUNG: f64 = 70e3;
 
-    /// The law sigma = 200 + 1000 eps_p with a modulus of 70 GPa as a testing machine records it, in units of
-    /// `stress_unit` MPa and `strain_unit`.
+    /// The law sigma = 200 + 1000 eps_p with a modulus of 70 GPa as a testing machine records it,
+    /// in units of `stress_unit` MPa and `strain_unit`.
     fn recorded(stress_unit: f64, strain_unit: f64) -> Vec<String> {
-        let mut rows = vec![
-            "0,0".to_owned(),
-            format!("{},{}", 0.001 / strain_unit, 70.0 / stress_unit),
-        ];
+        let mut rows =
+            vec!["0,0".to_owned(), format!("{},{}", 0.001 / strain_unit, 70.0 / stress_unit)];
         for i in 0..=2000 {
             let plastic = 1e-4 * f64::from(i);
             let stress = 200.0 + 1000.0 * plastic;
@@ -142,10 +130,7 @@ mod tests {
     }
 
     fn with_header(rows: &[String]) -> String {
-        format!(
-            "engineering_strain,engineering_stress_mpa\n{}\n",
-            rows.join("\n")
-        )
+        format!("engineering_strain,engineering_stress_mpa\n{}\n", rows.join("\n"))
     }
 
     #[test]
@@ -169,7 +154,8 @@ mod tests {
     /// A toe of 0.3 % moved the yield stress of the law above from 200 to 17 MPa without a message.
     #[test]
     fn a_toe_is_refused_with_the_command_that_corrects_it() {
-        // Slack of 0.25 %, a parabola over 0.1 % whose tangent has the slope E, then the elastic line.
+        // Slack of 0.25 %, a parabola over 0.1 % whose tangent has the slope E, then the elastic
+        // line.
         let stress = |strain: f64| match strain - 0.0025 {
             x if x < 0.0 => 0.0,
             x if x < 0.001 => 0.5 * YOUNG * x * x / 0.001,
@@ -199,9 +185,7 @@ mod tests {
             x if x < 0.1 => (48.0 + 20.0 * (x - 0.016)).min(48.2) - 170.0 * (x - 0.026f64).max(0.0),
             x => 35.62 + 6.0 * (x - 2.0f64).max(0.0),
         };
-        let rows = (0..4000)
-            .map(|i| 1e-3 * f64::from(i))
-            .map(|e| format!("{e},{}", stress(e)));
+        let rows = (0..4000).map(|i| 1e-3 * f64::from(i)).map(|e| format!("{e},{}", stress(e)));
         let text = with_header(&rows.collect::<Vec<_>>()).replace("strain,", "strain (1),");
         let message = read(&text, 3000.0).unwrap_err().to_string();
         assert!(message.contains("draw plateau of 35.6 MPa"), "{message}");
@@ -234,19 +218,13 @@ mod tests {
     fn an_invalid_curve_is_rejected_with_the_reason() {
         for (text, expected) in [
             ("wear,tear\n1,2\n", "has the columns 1 `wear`, 2 `tear`"),
-            (
-                "true_stress_mpa,engineering_strain\n1,2\n",
-                "no pair of stress",
-            ),
+            ("true_stress_mpa,engineering_strain\n1,2\n", "no pair of stress"),
             (
                 "engineering_stress_mpa,engineering_strain,true_stress_mpa,plastic_strain\n1,2,3,4\n",
                 "both engineering and true values",
             ),
             ("true_stress_mpa,plastic_strain\n44,0\n50,60\n", "per cent"),
-            (
-                "engineering_stress_mpa,engineering_strain\n0,0\n30,-2\n",
-                "violates",
-            ),
+            ("engineering_stress_mpa,engineering_strain\n0,0\n30,-2\n", "violates"),
         ] {
             let message = read(text, 3000.0).unwrap_err().to_string();
             assert!(message.contains(expected), "{message}");

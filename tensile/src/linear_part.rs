@@ -1,9 +1,11 @@
-//! The linear part of a curve: Young's modulus, and the strain at which its line reaches zero stress.
+//! The linear part of a curve: Young's modulus, and the strain at which its line reaches zero
+//! stress.
 //!
-//! The seed is the steepest window over a tenth of the maximum stress. It is extended in both directions while the
-//! rows stay on its line, and the line is fitted again. Of a metal the line is then fitted to the rows between a tenth and half of the
-//! yield stress: its first rows may be steeper, because the specimen straightens. ISO 527-1 and ASTM D638 extend the line to zero stress: the strain
-//! there is the slack and toe of the curve, and is subtracted from all strains.
+//! The seed is the steepest window over a tenth of the maximum stress. It is extended in both
+//! directions while the rows stay on its line, and the line is fitted again. Of a metal the line is
+//! then fitted to the rows between a tenth and half of the yield stress: its first rows may be
+//! steeper, because the specimen straightens. ISO 527-1 and ASTM D638 extend the line to zero
+//! stress: the strain there is the slack and toe of the curve, and is subtracted from all strains.
 
 use crate::regression::Regression;
 use serde::Serialize;
@@ -40,19 +42,22 @@ struct Line {
 
 /// Fraction of the maximum stress that the seed covers.
 const SEED: f64 = 0.1;
-/// Distance of a row from the line, over the elastic strain at the maximum stress, at which the linear part ends.
+/// Distance of a row from the line, over the elastic strain at the maximum stress, at which the
+/// linear part ends.
 const STRAIGHT: f64 = 0.005;
 /// Minimum number of rows of the seed.
 const MIN_SEED: usize = 3;
-/// Largest yield stress over modulus of a metal, and the stresses, over the yield stress, between which its line is fitted.
+/// Largest yield stress over modulus of a metal, and the stresses, over the yield stress, between
+/// which its line is fitted.
 const METAL: f64 = 0.008;
 const BETWEEN: [f64; 2] = [0.1, 0.5];
-/// Number of extensions. More of them would follow the bend of a law without a linear part, such as Ramberg and Osgood's.
+/// Number of extensions. More of them would follow the bend of a law without a linear part, such as
+/// Ramberg and Osgood's.
 const EXTENSIONS: usize = 3;
 
 impl LinearPart {
-    /// The linear part of a curve [strain, stress (MPa)] with increasing strain and the given `noise` of strain and
-    /// stress; `None` for a curve without a rising part.
+    /// The linear part of a curve [strain, stress (MPa)] with increasing strain and the given
+    /// `noise` of strain and stress; `None` for a curve without a rising part.
     pub(super) fn find(curve: &[[f64; 2]], noise: [f64; 2]) -> Option<Self> {
         let top = (0..curve.len()).max_by(|a, b| curve[*a][1].total_cmp(&curve[*b][1]))?;
         let maximum = curve[top][1];
@@ -77,8 +82,9 @@ impl LinearPart {
         Some(line.part(curve))
     }
 
-    /// The line of a metal with the yield stress `yields` (MPa) through its `rows` [strain, stress (MPa)] as measured, in their order,
-    /// in place of this one; `None` for another material, or for fewer than three rows. The line does not begin before the record.
+    /// The line of a metal with the yield stress `yields` (MPa) through its `rows` [strain, stress
+    /// (MPa)] as measured, in their order, in place of this one; `None` for another material, or
+    /// for fewer than three rows. The line does not begin before the record.
     pub(super) fn of_metal(&self, rows: &[[f64; 2]], yields: f64) -> Option<Self> {
         if yields > METAL * self.young {
             return None;
@@ -92,10 +98,7 @@ impl LinearPart {
         let strains = || used.iter().map(|row| row[0] - toe);
         (used.len() >= MIN_SEED).then(|| Self {
             toe,
-            strain: [
-                strains().fold(self.strain[0] - toe, f64::min),
-                strains().fold(0.0, f64::max),
-            ],
+            strain: [strains().fold(self.strain[0] - toe, f64::min), strains().fold(0.0, f64::max)],
             ..line
         })
     }
@@ -110,12 +113,8 @@ impl LinearPart {
 impl Line {
     /// The regression of the stress on the strain.
     fn fitted(curve: &[[f64; 2]], first: usize, last: usize) -> Option<Self> {
-        let Regression {
-            mean: [strain, stress],
-            squares,
-            slope,
-            error,
-        } = Regression::new(&curve[first..=last]);
+        let Regression { mean: [strain, stress], squares, slope, error } =
+            Regression::new(&curve[first..=last]);
         slope.is_finite().then(|| Self {
             first,
             last,

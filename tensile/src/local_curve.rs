@@ -18,8 +18,9 @@ fn local(row: &[f64; 2], young: f64) -> [f64; 2] {
     [stress, strain - stress / young]
 }
 
-/// The local curve from the end of the elastic part on: its stress at the plastic strain `onset` becomes the stress at zero plastic
-/// strain. A film may reach its upper yield before: its curve is then one row.
+/// The local curve from the end of the elastic part on: its stress at the plastic strain `onset`
+/// becomes the stress at zero plastic strain. A film may reach its upper yield before: its curve is
+/// then one row.
 pub(super) fn first_part(
     curve: &[[f64; 2]],
     young: f64,
@@ -55,7 +56,8 @@ pub(super) fn second_part(curve: &[[f64; 2]], draw: &Draw, young: f64) -> Vec<[f
     monotone(&part)
 }
 
-/// The curve [stress, plastic strain] with increasing strain and non-decreasing stress. The first row is unchanged.
+/// The curve [stress, plastic strain] with increasing strain and non-decreasing stress. The first
+/// row is unchanged.
 fn monotone(curve: &[[f64; 2]]) -> Vec<[f64; 2]> {
     let [first, start] = curve[0];
     let pools = pools(curve[1..].iter().map(|row| row[1].max(start)), true);
@@ -70,9 +72,5 @@ fn monotone(curve: &[[f64; 2]]) -> Vec<[f64; 2]> {
         }
     }
     let stresses = non_decreasing(&stresses);
-    stresses
-        .into_iter()
-        .zip(strains)
-        .map(|(stress, strain)| [stress, strain])
-        .collect()
+    stresses.into_iter().zip(strains).map(|(stress, strain)| [stress, strain]).collect()
 }

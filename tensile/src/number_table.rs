@@ -1,8 +1,8 @@
-//! The tables of a file of a testing machine, one a specimen: side by side, with the names of the columns repeated in one line, or below
-//! each other, with the line of names repeated.
+//! The tables of a file of a testing machine, one a specimen: side by side, with the names of the
+//! columns repeated in one line, or below each other, with the line of names repeated.
 //!
-//! Lines before the first row of numbers are a preamble. Of these, the last one, or the last one above a row of units,
-//! names the columns. Lines that start with `#` are comments.
+//! Lines before the first row of numbers are a preamble. Of these, the last one, or the last one
+//! above a row of units, names the columns. Lines that start with `#` are comments.
 
 use crate::error::TensileError;
 use crate::quantity::{Quantity, are_units, bare};
@@ -15,7 +15,8 @@ use support::{regular_file, text_file};
 /// The cells of one specimen; they are converted to numbers where they are used.
 #[derive(Clone, Debug)]
 pub(super) struct NumberTable {
-    /// Name of each column of the file with its unit, empty if the file names none or the column is of another specimen.
+    /// Name of each column of the file with its unit, empty if the file names none or the column is
+    /// of another specimen.
     pub labels: Vec<String>,
     /// The lines above the names.
     pub preamble: Vec<TextRow>,
@@ -31,10 +32,8 @@ impl NumberTable {
         let bytes = regular_file::read(path).map_err(FileError::at(path))?;
         let hash = blake3::hash(&bytes).to_hex()[..16].to_owned();
         let text = text_file::decoded(&bytes).map_err(FileError::at(path))?;
-        let tables = Self::parse(&text).map_err(|what| TensileError::File {
-            path: path.to_owned(),
-            what,
-        })?;
+        let tables = Self::parse(&text)
+            .map_err(|what| TensileError::File { path: path.to_owned(), what })?;
         Ok((tables, hash))
     }
 
@@ -73,17 +72,12 @@ impl NumberTable {
         Ok(tables)
     }
 
-    /// The tables of specimens that stand side by side, with the same names in the same order; `None` if there is one.
+    /// The tables of specimens that stand side by side, with the same names in the same order;
+    /// `None` if there is one.
     pub fn side_by_side(&self) -> Option<Vec<Self>> {
         // Specimens may be numbered.
         let letters = |c: char| !c.is_ascii_digit();
-        let name = |label: &String| {
-            label
-                .to_lowercase()
-                .chars()
-                .filter(|c| letters(*c))
-                .collect()
-        };
+        let name = |label: &String| label.to_lowercase().chars().filter(|c| letters(*c)).collect();
         let names: Vec<String> = self.labels.iter().map(name).collect();
         let width = (2..names.len()).find(|&width| {
             let mut parts = names.chunks(width);
@@ -102,9 +96,7 @@ impl NumberTable {
             let filled = |cell: usize, row: &TextRow| {
                 row.cells.get(cell).is_some_and(|cell| !cell.is_empty())
             };
-            table
-                .rows
-                .retain(|row| columns.clone().any(|cell| filled(cell, row)));
+            table.rows.retain(|row| columns.clone().any(|cell| filled(cell, row)));
             table
         };
         Some((0..names.len()).step_by(width).map(of).collect())
@@ -123,8 +115,8 @@ impl NumberTable {
         Some(cell)
     }
 
-    /// A row in which the decimal sign of a column separates thousands: 999 is followed by 1.003, and all numbers with
-    /// the sign have three digits after it.
+    /// A row in which the decimal sign of a column separates thousands: 999 is followed by 1.003,
+    /// and all numbers with the sign have three digits after it.
     pub fn thousands(&self, column: usize) -> Option<&TextRow> {
         let sign = if self.style.comma { ',' } else { '.' };
         let (mut found, mut whole) = (None, 0.0_f64);
@@ -143,15 +135,11 @@ impl NumberTable {
     }
 }
 
-/// Index and number of cells of the first row of numbers. It has as many cells and numbers as most rows, so that a
-/// preamble with two numbers in a line is not taken for the table.
+/// Index and number of cells of the first row of numbers. It has as many cells and numbers as most
+/// rows, so that a preamble with two numbers in a line is not taken for the table.
 fn first_row(rows: &[TextRow], style: NumberStyle) -> Option<(usize, usize)> {
     let shape = |row: &TextRow| {
-        if row.is_comment() {
-            (0, 0)
-        } else {
-            (row.cells.len(), row.numbers(style))
-        }
+        if row.is_comment() { (0, 0) } else { (row.cells.len(), row.numbers(style)) }
     };
     let mut counts: BTreeMap<(usize, usize), usize> = BTreeMap::new();
     for shape in rows.iter().map(shape).filter(|(_, numbers)| *numbers > 0) {
@@ -165,9 +153,7 @@ fn first_row(rows: &[TextRow], style: NumberStyle) -> Option<(usize, usize)> {
 /// The cells of a line above the table, which may be a comment.
 fn words(row: &TextRow) -> Vec<String> {
     let cells = row.cells.iter();
-    cells
-        .map(|cell| cell.trim_start_matches('#').trim().to_owned())
-        .collect()
+    cells.map(|cell| cell.trim_start_matches('#').trim().to_owned()).collect()
 }
 
 fn has_units(row: &TextRow) -> bool {
@@ -177,15 +163,9 @@ fn has_units(row: &TextRow) -> bool {
 /// Name and unit of each column from the lines above the first row of numbers.
 fn labels(above: &[TextRow], width: usize, style: NumberStyle) -> Result<Vec<String>, String> {
     let mut lines = above.iter().rev().peekable();
-    let units = lines
-        .next_if(|row| has_units(row))
-        .map_or(Vec::new(), words);
+    let units = lines.next_if(|row| has_units(row)).map_or(Vec::new(), words);
     let mut names = lines.next().map_or(Vec::new(), words);
-    let known = |names: &[String]| {
-        names
-            .iter()
-            .all(|name| Quantity::from_label(name).is_some())
-    };
+    let known = |names: &[String]| names.iter().all(|name| Quantity::from_label(name).is_some());
     if width == 2 * names.len() && known(&names) {
         return Err(format!(
             "names {} columns, but the rows have {width} cells: if the comma is the decimal sign, save the \
@@ -199,11 +179,7 @@ fn labels(above: &[TextRow], width: usize, style: NumberStyle) -> Result<Vec<Str
     }
     if named || units.len() == width {
         let units = units.iter().map(|unit| bare(unit));
-        for (name, unit) in names
-            .iter_mut()
-            .zip(units)
-            .filter(|(_, unit)| !unit.is_empty())
-        {
+        for (name, unit) in names.iter_mut().zip(units).filter(|(_, unit)| !unit.is_empty()) {
             *name = format!("{name} ({unit})").trim().to_owned();
         }
     }
@@ -246,9 +222,7 @@ mod tests {
         let below = "Bar 1\nLoad,Way\nN,mm\n1,2\n3,4\nBar 2\nWidth,9\nLoad,Way\nN,mm\n5,6\n";
         let beside = "Bar 1,,Bar 2\nLoad 1 (N),Way 1 (mm),Load 2 (N),Way 2 (mm)\n1,2,5,6\n3,4,,\n";
         let tables = NumberTable::parse(below).unwrap();
-        let side = NumberTable::parse(beside).unwrap()[0]
-            .side_by_side()
-            .unwrap();
+        let side = NumberTable::parse(beside).unwrap()[0].side_by_side().unwrap();
         for tables in [&tables, &side] {
             let rows: Vec<usize> = tables.iter().map(|table| table.rows.len()).collect();
             assert_eq!(rows, [2, 1]);

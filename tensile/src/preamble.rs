@@ -1,4 +1,5 @@
-//! The dimensions of a specimen that a testing machine writes above its table: `Width;10,0;mm`, `Largeur (mm): 10`.
+//! The dimensions of a specimen that a testing machine writes above its table: `Width;10,0;mm`,
+//! `Largeur (mm): 10`.
 
 use crate::quantity::{Quantity, folded, unit_of};
 use serde::Serialize;
@@ -18,10 +19,7 @@ pub struct StatedDimension {
 /// What the names of a dimension contain in English, German, French, Spanish, Italian and Turkish.
 const NAMES: [(&str, &str); 3] = [
     ("width", "width|breite|largeur|ancho|larghezza|genislik"),
-    (
-        "thickness",
-        "thickness|dicke|epaisseur|espesor|spessore|kalinlik",
-    ),
+    ("thickness", "thickness|dicke|epaisseur|espesor|spessore|kalinlik"),
     (
         "gauge-length",
         "gauge length|gage length|l0|messlange|longueur initiale|longitud inicial|longitud calibrada|lunghezza iniziale",
@@ -50,12 +48,11 @@ pub(super) fn dimensions(lines: &[TextRow], style: NumberStyle) -> Vec<StatedDim
     lines.iter().filter_map(stated).collect()
 }
 
-/// The name in a line, and what stands behind it: in other cells, or behind a colon or an equals sign.
+/// The name in a line, and what stands behind it: in other cells, or behind a colon or an equals
+/// sign.
 fn named_values(row: &TextRow) -> Option<(String, Vec<String>)> {
     let name = row.cells[0].trim_start_matches('#').trim();
-    if let Some((name, value)) = name
-        .split_once([':', '='])
-        .filter(|(_, value)| !value.is_empty())
+    if let Some((name, value)) = name.split_once([':', '=']).filter(|(_, value)| !value.is_empty())
     {
         let words = value.split_whitespace().map(str::to_owned);
         return Some((name.to_owned(), words.collect()));
@@ -86,19 +83,11 @@ mod tests {
             ("Spessore = 3", "thickness", 3.0),
         ] {
             let found = above_a_table(text);
-            let [one] = found[..] else {
-                panic!("{text}: {found:?}")
-            };
+            let [one] = found[..] else { panic!("{text}: {found:?}") };
             assert_eq!((one.name, one.line), (name, 1), "{text}");
             assert!((one.value - value).abs() < 1e-12, "{text}: {one:?}");
         }
-        for text in [
-            "Bandwidth,50,Hz",
-            "Width,10,11,12",
-            "Width",
-            "Load,12,N",
-            "Width,0",
-        ] {
+        for text in ["Bandwidth,50,Hz", "Width,10,11,12", "Width", "Load,12,N", "Width,0"] {
             assert_eq!(above_a_table(text), [], "{text}");
         }
     }

@@ -37,7 +37,8 @@ const NAMES: [(Quantity, &str); 7] = [
     (PlasticStrain, "plastic-strain"),
 ];
 
-/// The spellings of a unit with the number of N, MPa, mm or 1 in it. A spelling is as `plain` leaves it.
+/// The spellings of a unit with the number of N, MPa, mm or 1 in it. A spelling is as `plain`
+/// leaves it.
 type Unit = (&'static str, f64);
 
 const LBF: f64 = 4.448_221_615_260_5;
@@ -96,8 +97,8 @@ impl Quantity {
         matches!(self, Force | Stress | TrueStress)
     }
 
-    /// The question whether a column of this quantity was read rightly, with the options that decide it. `how` are the
-    /// words for the `unit` that would explain its values.
+    /// The question whether a column of this quantity was read rightly, with the options that
+    /// decide it. `how` are the words for the `unit` that would explain its values.
     pub(super) fn doubt(self, how: &str, unit: &str) -> String {
         match self {
             Force => {
@@ -121,8 +122,8 @@ impl Quantity {
         }
     }
 
-    /// The number of N, MPa, mm or 1 in a unit of this quantity; `None` for other units. Capital letters matter where
-    /// two units differ by them alone, as mN and MN do.
+    /// The number of N, MPa, mm or 1 in a unit of this quantity; `None` for other units. Capital
+    /// letters matter where two units differ by them alone, as mN and MN do.
     pub fn factor(self, unit: &str) -> Option<f64> {
         let unit = plain(unit);
         let spelt = |same: fn(&str, &str) -> bool| {
@@ -136,11 +137,7 @@ impl Quantity {
 
     /// The units of this quantity, separated by commas; the first is the unit of the project.
     pub fn units(self) -> String {
-        let known: Vec<&str> = self
-            .known()
-            .iter()
-            .map(|(spellings, _)| *spellings)
-            .collect();
+        let known: Vec<&str> = self.known().iter().map(|(spellings, _)| *spellings).collect();
         known.join(" ").replace(' ', ", ")
     }
 
@@ -150,14 +147,13 @@ impl Quantity {
         spellings.split(' ').next().unwrap_or_default()
     }
 
-    /// The quantity that a column's name describes, in its usual spellings in English, German, French, Spanish, Italian and
-    /// Turkish.
+    /// The quantity that a column's name describes, in its usual spellings in English, German,
+    /// French, Spanish, Italian and Turkish.
     pub(super) fn from_label(label: &str) -> Option<Self> {
         let name = folded(label);
         let name = name.split(['(', '[']).next().unwrap_or_default();
-        let words: Vec<&str> = (name.split(|c: char| !c.is_alphabetic()))
-            .filter(|word| !word.is_empty())
-            .collect();
+        let words: Vec<&str> =
+            (name.split(|c: char| !c.is_alphabetic())).filter(|word| !word.is_empty()).collect();
         let has = |known: &str| known.split(' ').any(|known| words.contains(&known));
         let ends = |tail: &str| words.iter().any(|word| word.ends_with(tail));
         if has(TIMES) {
@@ -192,7 +188,8 @@ impl Quantity {
     }
 }
 
-/// Words in the names of columns, as [`folded`] leaves them: of times and rates, of true values, and of each quantity.
+/// Words in the names of columns, as [`folded`] leaves them: of times and rates, of true values,
+/// and of each quantity.
 const TIMES: &str = "rate time zeit temps tiempo tempo zaman sure speed vitesse velocidad velocita";
 const TRUE: &str = "true wahre logarithmic log hencky vraie verdadera verdadero reale vera";
 const STRESS_NAMES: &str = "stress sigma contrainte tension esfuerzo tensione sforzo gerilme";
@@ -217,7 +214,8 @@ pub(super) fn folded(text: &str) -> String {
     text.to_lowercase().chars().map(plain).collect()
 }
 
-/// A unit without its spaces, superscripts and Greek letters: `kgf / mm²` is `kgf/mm2`, `µε` is `ue`.
+/// A unit without its spaces, superscripts and Greek letters: `kgf / mm²` is `kgf/mm2`, `µε` is
+/// `ue`.
 fn plain(unit: &str) -> String {
     let letter = |c| match c {
         '²' => '2',
@@ -231,16 +229,13 @@ fn plain(unit: &str) -> String {
 
 /// Whether a text is a unit of a quantity that is read.
 fn is_unit(text: &str) -> bool {
-    [Force, Stress, Extension, Strain]
-        .iter()
-        .any(|quantity| quantity.factor(text).is_some())
+    [Force, Stress, Extension, Strain].iter().any(|quantity| quantity.factor(text).is_some())
 }
 
 /// Whether the cells are the row of units below the names of the columns: most of them are units.
 pub(super) fn are_units(cells: &[String]) -> bool {
-    let filled: Vec<&str> = (cells.iter().map(|cell| bare(cell)))
-        .filter(|cell| !cell.is_empty())
-        .collect();
+    let filled: Vec<&str> =
+        (cells.iter().map(|cell| bare(cell))).filter(|cell| !cell.is_empty()).collect();
     let known = |cell: &&&str| is_unit(cell) || OTHERS.contains(&cell.to_lowercase().as_str());
     2 * filled.iter().filter(known).count() > filled.len()
 }
@@ -250,8 +245,8 @@ pub(super) fn bare(unit: &str) -> &str {
     unit.trim_matches(['(', ')', '[', ']']).trim()
 }
 
-/// The unit in a column's name: the last word, in brackets, or after `/`, `in` or a comma. If none of these is known, the
-/// text that stands where a unit is written.
+/// The unit in a column's name: the last word, in brackets, or after `/`, `in` or a comma. If none
+/// of these is known, the text that stands where a unit is written.
 pub(super) fn unit_of(label: &str) -> Option<&str> {
     let inside = (label.split(['(', '[']).skip(1)).filter_map(|rest| rest.split([')', ']']).next());
     let after = ["/", " in ", ","]
@@ -336,31 +331,17 @@ mod tests {
             assert_eq!(Quantity::from_label(label), Some(quantity), "{label}");
             assert_eq!(unit_of(label), unit, "{label}");
         }
-        for label in [
-            "Time (s)",
-            "Strain rate (1/s)",
-            "Temps (s)",
-            "Width (mm)",
-            "",
-            "Cycle",
-        ] {
+        for label in ["Time (s)", "Strain rate (1/s)", "Temps (s)", "Width (mm)", "", "Cycle"] {
             assert_eq!(Quantity::from_label(label), None, "{label}");
         }
     }
 
-    /// Two rows of one table never claim a spelling; the first spelling of each table is the unit of the project.
+    /// Two rows of one table never claim a spelling; the first spelling of each table is the unit
+    /// of the project.
     #[test]
     fn every_spelling_has_one_factor() {
-        for (quantity, own) in [
-            (Force, "N"),
-            (Stress, "MPa"),
-            (Extension, "mm"),
-            (Strain, "1"),
-        ] {
-            assert_eq!(
-                (quantity.own_unit(), quantity.factor(own)),
-                (own, Some(1.0))
-            );
+        for (quantity, own) in [(Force, "N"), (Stress, "MPa"), (Extension, "mm"), (Strain, "1")] {
+            assert_eq!((quantity.own_unit(), quantity.factor(own)), (own, Some(1.0)));
             for (spellings, factor) in quantity.known() {
                 for spelling in spellings.split(' ') {
                     assert_eq!(quantity.factor(spelling), Some(*factor), "{spelling}");

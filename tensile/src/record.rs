@@ -15,7 +15,8 @@ use support::text_table::TextRow;
 /// What a file does not say about its columns and its specimen.
 #[derive(Clone, Debug, Default)]
 pub struct RecordOptions {
-    /// Quantities with the number or the name of their column; empty if the names of the columns are recognised.
+    /// Quantities with the number or the name of their column; empty if the names of the columns
+    /// are recognised.
     pub columns: Vec<(Quantity, String)>,
     /// Quantities with their unit, instead of that in the names of the columns.
     pub units: Vec<(Quantity, String)>,
@@ -97,9 +98,7 @@ impl Record {
             false => path.to_owned(),
         };
         let numbered = tables.iter().zip(1..);
-        numbered
-            .map(|(table, number)| Self::new(&named(number), table, options, &hash))
-            .collect()
+        numbered.map(|(table, number)| Self::new(&named(number), table, options, &hash)).collect()
     }
 
     fn new(
@@ -108,24 +107,15 @@ impl Record {
         options: &RecordOptions,
         hash: &str,
     ) -> Result<Self, TensileError> {
-        let refuse = |what| TensileError::File {
-            path: path.to_owned(),
-            what,
-        };
+        let refuse = |what| TensileError::File { path: path.to_owned(), what };
         let columns = columns(&table.labels, options).map_err(refuse)?;
         let [load, deformation] = pair(&columns, &table.labels).map_err(refuse)?;
         let load = &ReadColumn::new(load, &table.labels, options).map_err(refuse)?;
         let deformation = &ReadColumn::new(deformation, &table.labels, options).map_err(refuse)?;
-        let Sizes {
-            area,
-            length,
-            stated,
-        } = Sizes::new([load.quantity, deformation.quantity], table, options).map_err(refuse)?;
-        let at = |row: &TextRow, what| TensileError::Row {
-            path: path.to_owned(),
-            line: row.line,
-            what,
-        };
+        let Sizes { area, length, stated } =
+            Sizes::new([load.quantity, deformation.quantity], table, options).map_err(refuse)?;
+        let at =
+            |row: &TextRow, what| TensileError::Row { path: path.to_owned(), line: row.line, what };
         for column in [load, deformation] {
             if let Some(row) = table.thousands(column.number - 1) {
                 let what = format!("column {} {THOUSANDS}", column.title());
@@ -158,8 +148,7 @@ impl Record {
                 strain: number(deformation)? * deformation.factor / length,
                 stress: number(load)? * load.factor / area,
             };
-            read.check(load.quantity, deformation.quantity)
-                .map_err(refuse)?;
+            read.check(load.quantity, deformation.quantity).map_err(refuse)?;
             rows.push(read);
         }
         let most = rows.iter().map(|row| row.strain).fold(0.0, f64::max);
@@ -224,13 +213,7 @@ impl ReadColumn {
                 )
             })
         })?;
-        Ok(Self {
-            quantity,
-            number: index + 1,
-            unit: unit.map(str::to_owned),
-            name,
-            factor,
-        })
+        Ok(Self { quantity, number: index + 1, unit: unit.map(str::to_owned), name, factor })
     }
 
     fn title(&self) -> String {
@@ -262,7 +245,8 @@ fn is_grouped(text: &str) -> bool {
     text.contains(sign) && text.replace(sign, "").parse::<f64>().is_ok()
 }
 
-/// Section (mm^2) and gauge length (mm) by which load and deformation are divided, 1 for a stress and a strain.
+/// Section (mm^2) and gauge length (mm) by which load and deformation are divided, 1 for a stress
+/// and a strain.
 struct Sizes {
     area: f64,
     length: f64,
@@ -300,11 +284,7 @@ impl Sizes {
             size(force, "width", options.width)? * size(force, "thickness", options.thickness)?;
         let length = size(extension, "gauge-length", options.gauge_length)?;
         if missing.is_empty() {
-            return Ok(Self {
-                area,
-                length,
-                stated,
-            });
+            return Ok(Self { area, length, stated });
         }
         let contains = match (force, extension) {
             (true, true) => "a force and a length change",
@@ -312,9 +292,7 @@ impl Sizes {
             _ => "a length change",
         };
         let options = missing.join(", ");
-        Err(format!(
-            "contains {contains}: give {options} of the specimen (mm)"
-        ))
+        Err(format!("contains {contains}: give {options} of the specimen (mm)"))
     }
 }
 
@@ -337,7 +315,8 @@ fn columns(labels: &[String], options: &RecordOptions) -> Result<Vec<(Quantity, 
     options.columns.iter().map(named).collect()
 }
 
-/// The column of the load and the column of the deformation. Stress is preferred to force, and strain to extension.
+/// The column of the load and the column of the deformation. Stress is preferred to force, and
+/// strain to extension.
 fn pair(
     columns: &[(Quantity, usize)],
     labels: &[String],
@@ -353,11 +332,7 @@ fn pair(
                  the {}",
                 title(first, &labels[first]),
                 title(*second, &labels[*second]),
-                if quantity.is_load() {
-                    "strain"
-                } else {
-                    "stress"
-                }
+                if quantity.is_load() { "strain" } else { "stress" }
             )),
             found => Ok(found.map(|(column, _)| column)),
         }

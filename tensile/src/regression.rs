@@ -8,7 +8,8 @@ pub(super) struct Regression {
     pub squares: f64,
     /// Slope of the line; not finite if all x are equal.
     pub slope: f64,
-    /// Standard error of the slope, from the distances of the rows to the line; not a number for two rows.
+    /// Standard error of the slope, from the distances of the rows to the line; not a number for
+    /// two rows.
     pub error: f64,
 }
 
@@ -25,17 +26,12 @@ impl Regression {
         }
         let slope = products / squares;
         let left = (total - slope * products).max(0.0);
-        Self {
-            mean,
-            squares,
-            slope,
-            error: (left / (count - 2.0) / squares).sqrt(),
-        }
+        Self { mean, squares, slope, error: (left / (count - 2.0) / squares).sqrt() }
     }
 }
 
-/// The value in the column `of` of a curve at the value `x` in its other column, which increases: linear between rows,
-/// constant beyond the ends.
+/// The value in the column `of` of a curve at the value `x` in its other column, which increases:
+/// linear between rows, constant beyond the ends.
 pub(super) fn interpolated(curve: &[[f64; 2]], of: usize, x: f64) -> f64 {
     let by = 1 - of;
     let after = curve.partition_point(|row| row[by] < x);

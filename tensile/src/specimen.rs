@@ -1,9 +1,11 @@
 //! The evaluation of one specimen: from its record to its local hardening curve.
 //!
 //! 1. Unloading loops, rows after the break and falling strains are removed (`cleaning`).
-//! 2. The line through the linear part is extended to zero stress; the strain there, slack and toe, is subtracted.
-//! 3. If Young's modulus is given, the compliance of the testing machine is removed, e - s (1 / E_measured - 1 / E), unless the strain is
-//!    the strain of an extensometer: of a slope near the modulus.
+//! 2. The line through the linear part is extended to zero stress; the strain there, slack and toe,
+//!    is subtracted.
+//! 3. If Young's modulus is given, the compliance of the testing machine is removed, e - s (1 /
+//!    E_measured - 1 / E), unless the strain is the strain of an extensometer: of a slope near the
+//!    modulus.
 //! 4. Landmarks are read from the nominal curve (`landmarks`).
 //! 5. Where the strain is uniform, nominal rows become local ones (`local_curve`).
 
@@ -56,7 +58,8 @@ pub struct Specimen {
     pub rows: usize,
     /// Rows that are not used.
     pub dropped: Vec<DroppedRow>,
-    /// Number of rows that were averaged with their neighbours, because their strain does not increase.
+    /// Number of rows that were averaged with their neighbours, because their strain does not
+    /// increase.
     pub averaged: usize,
     /// The linear part as measured.
     pub linear: LinearPart,
@@ -77,8 +80,8 @@ pub struct Specimen {
     /// Nominal curve [strain, stress] without the dropped rows.
     #[serde(skip)]
     pub nominal: Vec<[f64; 2]>,
-    /// Local curve [true stress, plastic strain] up to the upper yield or, without a draw, to the end of the uniform
-    /// deformation. It starts at zero plastic strain.
+    /// Local curve [true stress, plastic strain] up to the upper yield or, without a draw, to the
+    /// end of the uniform deformation. It starts at zero plastic strain.
     #[serde(skip)]
     pub before: Vec<[f64; 2]>,
     /// Local curve from the natural draw ratio on; empty without a draw.
@@ -96,16 +99,14 @@ const SMOOTH: f64 = 0.003;
 /// Maximum and minimum of the measured over the given modulus.
 const STIFFER: f64 = 1.25;
 const SOFTER: f64 = 0.1;
-/// Minimum of the measured over the given modulus of an extensometer: a machine's compliance lowers the slope by more.
+/// Minimum of the measured over the given modulus of an extensometer: a machine's compliance lowers
+/// the slope by more.
 const EXTENSOMETER: f64 = 0.75;
 
 impl Specimen {
     /// Evaluates a record.
     pub(super) fn new(record: &Record, options: &SpecimenOptions) -> Result<Self, TensileError> {
-        let file = |what: String| TensileError::File {
-            path: record.path.clone(),
-            what,
-        };
+        let file = |what: String| TensileError::File { path: record.path.clone(), what };
         if record.deformation == PlasticStrain {
             return Err(file(
                 "contains plastic strains: it is a hardening table already; write its rows into `plastic` of the material \
@@ -147,9 +148,7 @@ impl Specimen {
                 noise[0], noise[1]
             ))
         })?;
-        let after = draw.map_or(Vec::new(), |draw| {
-            second_part(&smooth[..=last], &draw, young)
-        });
+        let after = draw.map_or(Vec::new(), |draw| second_part(&smooth[..=last], &draw, young));
 
         let mut dropped = cleaned.dropped;
         let used = cleaned.curve.iter().position(|row| !curve.is_toe(row[0]));
@@ -248,19 +247,10 @@ impl Compensated {
             ratio if ratio >= EXTENSOMETER && record.deformation != Extension => 0.0,
             _ => 1.0 / linear.young - 1.0 / young,
         };
-        rows.iter_mut()
-            .for_each(|row| row[0] -= row[1] * compliance);
+        rows.iter_mut().for_each(|row| row[0] -= row[1] * compliance);
         let end = linear.strain[1] * (1.0 - linear.young * compliance);
         let elastic = rows.iter().position(|row| row[0] >= end).unwrap_or(0);
-        Ok(Self {
-            rows,
-            noise,
-            linear,
-            toe,
-            young,
-            compliance,
-            elastic,
-        })
+        Ok(Self { rows, noise, linear, toe, young, compliance, elastic })
     }
 
     /// A measured row without toe and compliance.
@@ -301,8 +291,9 @@ fn nominal(record: &Record, [strain, stress]: [f64; 2]) -> [f64; 2] {
     }
 }
 
-/// The linear part and the toe, which is subtracted from the curve. Its rows are found on the nominal curve, whose slope
-/// is largest at the start; its modulus is the slope of the true stress over the logarithmic strain, as the solver reads it.
+/// The linear part and the toe, which is subtracted from the curve. Its rows are found on the
+/// nominal curve, whose slope is largest at the start; its modulus is the slope of the true stress
+/// over the logarithmic strain, as the solver reads it.
 fn linear_part(
     curve: &mut [[f64; 2]],
     record: &Record,
@@ -312,10 +303,7 @@ fn linear_part(
     curve.iter_mut().for_each(|row| row[0] -= nominal.toe);
     let end = nominal.first + nominal.rows;
     let yields = offset_yield(curve, nominal.young, end).filter(|_| !is_local(record));
-    let rows = record
-        .rows
-        .iter()
-        .map(|row| true_row(&[row.strain - nominal.toe, row.stress]));
+    let rows = record.rows.iter().map(|row| true_row(&[row.strain - nominal.toe, row.stress]));
     let rows: Vec<[f64; 2]> = rows.collect();
     if let Some(metal) = yields.and_then(|yields| nominal.of_metal(&rows, yields)) {
         curve.iter_mut().for_each(|row| row[0] -= metal.toe);
@@ -382,7 +370,8 @@ fn check_yield_strain(record: &Record, strain: f64) -> Result<(), String> {
     Ok(())
 }
 
-/// Half the number of rows over which the stress is smoothed, from its noise; few enough to leave the yield peak.
+/// Half the number of rows over which the stress is smoothed, from its noise; few enough to leave
+/// the yield peak.
 fn half_window(curve: &[[f64; 2]], noise: f64) -> usize {
     let maximum = curve.iter().map(|row| row[1]).fold(0.0, f64::max);
     let rise = curve.iter().position(|row| row[1] >= 0.5 * maximum);
@@ -390,7 +379,8 @@ fn half_window(curve: &[[f64; 2]], noise: f64) -> usize {
     (needed as usize).min(rise.unwrap_or(0) / 4)
 }
 
-/// The curve with each stress replaced by the stress of the regression line through the rows around it.
+/// The curve with each stress replaced by the stress of the regression line through the rows around
+/// it.
 fn smoothed(curve: &[[f64; 2]], half: usize) -> Vec<[f64; 2]> {
     let last = curve.len().saturating_sub(1);
     let value = |row: usize| {

@@ -3,9 +3,9 @@
 /// Relative deviation that no row improves.
 pub(super) const TOLERANCE: f64 = 1e-3;
 
-/// The indices of at most `most` rows (at least 2) of a curve [stress, strain], and the maximum deviation of the
-/// interpolated stress over the stress. The row with the largest deviation is added until none exceeds
-/// [`TOLERANCE`].
+/// The indices of at most `most` rows (at least 2) of a curve [stress, strain], and the maximum
+/// deviation of the interpolated stress over the stress. The row with the largest deviation is
+/// added until none exceeds [`TOLERANCE`].
 pub(super) fn thinned(curve: &[[f64; 2]], most: usize) -> (Vec<usize>, f64) {
     let mut kept = vec![0];
     kept.extend((curve.len() > 1).then(|| curve.len() - 1));
@@ -23,7 +23,8 @@ pub(super) fn thinned(curve: &[[f64; 2]], most: usize) -> (Vec<usize>, f64) {
     }
 }
 
-/// The row between two others that deviates most from the line through them, with its relative deviation.
+/// The row between two others that deviates most from the line through them, with its relative
+/// deviation.
 fn farthest(curve: &[[f64; 2]], first: usize, last: usize) -> Option<(f64, usize)> {
     let ([s0, e0], [s1, e1]) = (curve[first], curve[last]);
     let deviation = |row: usize| {
@@ -31,9 +32,7 @@ fn farthest(curve: &[[f64; 2]], first: usize, last: usize) -> Option<(f64, usize
         let line = s0 + (s1 - s0) * (strain - e0) / (e1 - e0);
         (((line - stress) / stress).abs(), row)
     };
-    (first + 1..last)
-        .map(deviation)
-        .max_by(|a, b| a.0.total_cmp(&b.0))
+    (first + 1..last).map(deviation).max_by(|a, b| a.0.total_cmp(&b.0))
 }
 
 #[cfg(test)]
@@ -43,10 +42,8 @@ mod tests {
     #[test]
     fn the_stated_deviation_holds_and_corners_are_kept() {
         let voce = |strain: f64| 100.0 + 80.0 * (1.0 - (-strain / 0.05).exp());
-        let curve: Vec<[f64; 2]> = (0..=1000)
-            .map(|i| 3e-4 * f64::from(i))
-            .map(|strain| [voce(strain), strain])
-            .collect();
+        let curve: Vec<[f64; 2]> =
+            (0..=1000).map(|i| 3e-4 * f64::from(i)).map(|strain| [voce(strain), strain]).collect();
         let mut deviations = Vec::new();
         for most in [5, 10, 100] {
             let (kept, deviation) = thinned(&curve, most);
@@ -59,9 +56,8 @@ mod tests {
             deviations.push(deviation);
         }
         assert!(deviations[0] > deviations[1] && deviations[2] <= TOLERANCE);
-        let bilinear: Vec<[f64; 2]> = (0..=100)
-            .map(|i| [50.0 + f64::from((i - 40).max(0)), f64::from(i)])
-            .collect();
+        let bilinear: Vec<[f64; 2]> =
+            (0..=100).map(|i| [50.0 + f64::from((i - 40).max(0)), f64::from(i)]).collect();
         assert_eq!(thinned(&bilinear, 30), (vec![0, 40, 100], 0.0));
         assert_eq!(thinned(&bilinear[..1], 30), (vec![0], 0.0));
     }

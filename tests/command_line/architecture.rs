@@ -1,4 +1,5 @@
-//! Tests the structure stated in docs/ARCHITECTURE.md against the `use` declarations of the sources.
+//! Tests the structure stated in docs/ARCHITECTURE.md against the `use` declarations of the
+//! sources.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -37,7 +38,8 @@ impl Crate {
         Self { name, sources }
     }
 
-    /// The modules that each module imports from; re-exports of a module's own submodules do not count.
+    /// The modules that each module imports from; re-exports of a module's own submodules do not
+    /// count.
     fn imports(&self) -> BTreeMap<&str, BTreeSet<&str>> {
         let imports = |module: &str, text: &str| -> BTreeSet<&str> {
             uses(text)
@@ -54,9 +56,7 @@ impl Crate {
                 .collect()
         };
         let modules = self.sources.iter();
-        modules
-            .map(|(module, text)| (module.as_str(), imports(module, text)))
-            .collect()
+        modules.map(|(module, text)| (module.as_str(), imports(module, text))).collect()
     }
 
     /// The module that defines the item at a path below the crate's root; re-exports are followed.
@@ -87,13 +87,9 @@ impl Crate {
 
 /// Every Rust file below a folder.
 fn files(folder: &Path) -> Vec<PathBuf> {
-    let entries = std::fs::read_dir(folder)
-        .unwrap()
-        .map(|entry| entry.unwrap().path());
+    let entries = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
     let (folders, others): (Vec<_>, Vec<_>) = entries.partition(|path| path.is_dir());
-    let rust = others
-        .into_iter()
-        .filter(|path| path.extension().is_some_and(|it| it == "rs"));
+    let rust = others.into_iter().filter(|path| path.extension().is_some_and(|it| it == "rs"));
     let below = folders.iter().flat_map(|folder| files(folder));
     rust.chain(below).collect()
 }
@@ -145,11 +141,7 @@ fn leaves(tree: &str) -> Vec<String> {
     let named = parts.iter().filter(|part| !part.is_empty());
     named
         .flat_map(|part| leaves(part))
-        .map(|leaf| {
-            format!("{prefix}{leaf}")
-                .trim_end_matches("::self")
-                .to_owned()
-        })
+        .map(|leaf| format!("{prefix}{leaf}").trim_end_matches("::self").to_owned())
         .collect()
 }
 
@@ -181,7 +173,8 @@ fn is_part(module: &str, of: &str) -> bool {
     matches!(module, "lib" | "main") || of.starts_with(&format!("{module}::"))
 }
 
-/// The modules on circular imports: what remains after repeatedly removing modules without remaining imports.
+/// The modules on circular imports: what remains after repeatedly removing modules without
+/// remaining imports.
 fn circle<'a>(imports: &BTreeMap<&'a str, BTreeSet<&'a str>>) -> Vec<&'a str> {
     let mut left: BTreeSet<&str> = imports.keys().copied().collect();
     loop {
@@ -198,16 +191,12 @@ fn circle<'a>(imports: &BTreeMap<&'a str, BTreeSet<&'a str>>) -> Vec<&'a str> {
 fn no_crate_has_circular_imports() {
     for member in crates() {
         let left = circle(&member.imports());
-        assert!(
-            left.is_empty(),
-            "{}: circular imports among {left:?}",
-            member.name
-        );
+        assert!(left.is_empty(), "{}: circular imports among {left:?}", member.name);
     }
 }
 
-/// Each room of a crate imports only from itself and the rooms that the page lists before it. Modules outside the listed rooms are the
-/// room with the name of the crate.
+/// Each room of a crate imports only from itself and the rooms that the page lists before it.
+/// Modules outside the listed rooms are the room with the name of the crate.
 #[test]
 fn rooms_follow_the_order_of_the_page() {
     let page = std::fs::read_to_string(root().join("docs/ARCHITECTURE.md")).unwrap();
@@ -235,16 +224,9 @@ fn rooms_follow_the_order_of_the_page() {
 fn no_file_name_occurs_four_times() {
     let mut names: BTreeMap<String, Vec<String>> = BTreeMap::new();
     for member in crates() {
-        for module in member
-            .sources
-            .keys()
-            .filter(|module| *module != "lib" && *module != "main")
-        {
+        for module in member.sources.keys().filter(|module| *module != "lib" && *module != "main") {
             let name = module.rsplit("::").next().unwrap().to_owned();
-            names
-                .entry(name)
-                .or_default()
-                .push(format!("{}::{module}", member.name));
+            names.entry(name).or_default().push(format!("{}::{module}", member.name));
         }
     }
     for (name, places) in names {
@@ -261,31 +243,20 @@ fn the_tests_that_the_page_of_faults_names_exist() {
         for part in ["src", "tests"] {
             let folder = folder.as_ref().unwrap().path().join(part);
             if folder.is_dir() {
-                let texts = files(&folder)
-                    .into_iter()
-                    .map(|path| std::fs::read_to_string(path).unwrap());
+                let texts =
+                    files(&folder).into_iter().map(|path| std::fs::read_to_string(path).unwrap());
                 sources.extend(texts);
             }
         }
     }
-    for path in ["src", "tests"]
-        .iter()
-        .flat_map(|part| files(&root().join(part)))
-    {
+    for path in ["src", "tests"].iter().flat_map(|part| files(&root().join(part))) {
         sources.push_str(&std::fs::read_to_string(path).unwrap());
     }
-    let cells = page
-        .lines()
-        .filter_map(|line| line.strip_prefix("| ")?.rsplit(" | ").next());
-    let tests: Vec<&str> = cells
-        .flat_map(|cell| cell.split('`').skip(1).step_by(2))
-        .collect();
+    let cells = page.lines().filter_map(|line| line.strip_prefix("| ")?.rsplit(" | ").next());
+    let tests: Vec<&str> = cells.flat_map(|cell| cell.split('`').skip(1).step_by(2)).collect();
     assert!(tests.len() > 20);
     for test in tests {
-        assert!(
-            sources.contains(&format!("fn {test}(")),
-            "there is no test {test}"
-        );
+        assert!(sources.contains(&format!("fn {test}(")), "there is no test {test}");
     }
 }
 
@@ -306,9 +277,8 @@ fn code_lines(path: &Path) -> [usize; 2] {
     let of_tests = tests.lines().filter(is_code).count() + usize::from(!tests.is_empty());
     let [code, mut of_tests] = [before.lines().filter(is_code).count(), of_tests];
     let below = path.strip_prefix(root()).unwrap();
-    let is_test = below
-        .iter()
-        .any(|part| part == "tests" || part == "benches" || part == "tests.rs");
+    let is_test =
+        below.iter().any(|part| part == "tests" || part == "benches" || part == "tests.rs");
     if is_test {
         of_tests += code;
         return [0, of_tests];
@@ -330,18 +300,12 @@ fn the_code_fits_into_the_table_of_the_page() {
         let [code, of_tests] = [0, 1].map(|i| lines.iter().map(|lines| lines[i]).sum::<usize>());
         let name = if member == "." { "kirigami" } else { &member };
         let most = allowed(&page, &format!("`{name}`"));
-        assert!(
-            code <= most,
-            "{name} has {code} lines of code, {most} are allowed"
-        );
+        assert!(code <= most, "{name} has {code} lines of code, {most} are allowed");
         (all, tests) = (all + code, tests + of_tests);
     }
     for (name, found) in [("all crates", all), ("tests", tests)] {
         let most = allowed(&page, name);
-        assert!(
-            found <= most,
-            "{name}: {found} lines of code, {most} are allowed"
-        );
+        assert!(found <= most, "{name}: {found} lines of code, {most} are allowed");
     }
 }
 
@@ -360,18 +324,14 @@ fn long_options(command: &[&str]) -> usize {
         let long = words.take(2).find(|word| word.starts_with("--"))?;
         (!of_all.contains(&long)).then(|| long.to_owned())
     };
-    let lines = help
-        .lines()
-        .filter(|line| line.trim_start().starts_with('-'));
+    let lines = help.lines().filter(|line| line.trim_start().starts_with('-'));
     // The text of an option may begin a line with its name.
     let own: BTreeSet<String> = lines.filter_map(option).collect();
     let below = help.lines().skip_while(|line| *line != "Commands:").skip(1);
     let below = below.take_while(|line| !line.is_empty());
     let names = below.filter_map(|line| {
         let name = line.strip_prefix("  ")?;
-        name.split(' ')
-            .next()
-            .filter(|name| !name.is_empty() && *name != "help")
+        name.split(' ').next().filter(|name| !name.is_empty() && *name != "help")
     });
     let of_subcommands = names.map(|name| long_options(&[command, &[name]].concat()));
     own.len() + of_subcommands.sum::<usize>()
@@ -395,9 +355,7 @@ fn keys_options_and_words_fit_into_the_table_of_the_page() {
             }
         }
     }
-    let words = pages
-        .into_iter()
-        .map(|page| read(page).split_whitespace().count());
+    let words = pages.into_iter().map(|page| read(page).split_whitespace().count());
     for (name, found) in [
         ("keys of the configuration files", keys),
         ("long options", long_options(&[])),

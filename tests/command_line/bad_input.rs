@@ -1,4 +1,5 @@
-//! Missing programs, a failing solver, output that cannot be written, files that are none. Messages about wrong input: messages.txt.
+//! Missing programs, a failing solver, output that cannot be written, files that are none. Messages
+//! about wrong input: messages.txt.
 
 use crate::common::{Workplace, failure};
 use std::os::unix::fs::PermissionsExt;
@@ -14,10 +15,7 @@ fn the_message_about_a_missing_program_states_how_to_install_it() {
         let mut command = work.program("solve --tier tiny");
         let message = failure(command.env(variable, "/no/such/program"));
         assert!(message.contains(variable), "{message}");
-        assert!(
-            message.contains(&format!("apt-get install {package}")),
-            "{message}"
-        );
+        assert!(message.contains(&format!("apt-get install {package}")), "{message}");
     }
     let doctor = |ccx: &str| {
         let mut doctor = work.program("doctor");
@@ -41,14 +39,8 @@ fn the_output_of_a_failing_solver_is_quoted_and_the_deck_kept() {
     let work = Workplace::new();
     let ccx = failing_ccx(&work.path(""), "echo ' *ERROR reading *SOLID SECTION'");
     let message = failure(work.program("solve --tier tiny").env("KIRIGAMI_CCX", &ccx));
-    assert!(
-        message.contains("*ERROR reading *SOLID SECTION"),
-        "{message}"
-    );
-    assert!(
-        work.path("runs/solve/window.inp").exists(),
-        "the deck is kept"
-    );
+    assert!(message.contains("*ERROR reading *SOLID SECTION"), "{message}");
+    assert!(work.path("runs/solve/window.inp").exists(), "the deck is kept");
 }
 
 /// Neither the environment nor the home of the user reaches the solver.
@@ -58,18 +50,13 @@ fn the_solver_runs_in_its_own_environment() {
     let ccx = failing_ccx(&work.path(""), "env > environment.txt");
     let mut solve = work.program("solve --tier tiny");
     solve.env("KIRIGAMI_CCX", ccx);
-    solve
-        .env("CCX_NPROC_STIFFNESS", "4")
-        .env("OMP_NUM_THREADS", "4");
+    solve.env("CCX_NPROC_STIFFNESS", "4").env("OMP_NUM_THREADS", "4");
     failure(solve.env("HOME", "/somewhere").env("SECRET", "1"));
     let seen = std::fs::read_to_string(work.path("runs/solve/environment.txt")).unwrap();
     for line in ["CCX_NPROC_STIFFNESS=1", "OMP_NUM_THREADS=1"] {
         assert!(seen.lines().any(|it| it == line), "{seen}");
     }
-    assert!(
-        !seen.contains("SECRET") && !seen.contains("/somewhere"),
-        "{seen}"
-    );
+    assert!(!seen.contains("SECRET") && !seen.contains("/somewhere"), "{seen}");
 }
 
 /// As `kirigami ... > /dev/full`, and as into a pipe that is full and does not block.
@@ -80,10 +67,7 @@ fn output_that_cannot_be_written_is_an_error_and_no_panic() {
     let message = failure(work.program("completions bash").stdout(full.unwrap()));
     assert!(message.contains("No space left"), "{message}");
     let full = std::fs::File::options().write(true).open("/dev/full");
-    let message = failure(
-        work.program(&format!("campaign plan {DEMO}"))
-            .stdout(full.unwrap()),
-    );
+    let message = failure(work.program(&format!("campaign plan {DEMO}")).stdout(full.unwrap()));
     assert!(
         message.starts_with("error: cannot write to stdout: No space left")
             && message.lines().count() == 1,
@@ -123,10 +107,7 @@ fn a_refused_thread_is_an_error_and_no_panic() {
         &format!("campaign run {DEMO} --folder campaign"),
     ] {
         // No machine has memory for stacks of this size.
-        let message = failure(
-            work.program(command)
-                .env("RUST_MIN_STACK", "1000000000000000"),
-        );
+        let message = failure(work.program(command).env("RUST_MIN_STACK", "1000000000000000"));
         assert!(message.contains(fault), "{command}: {message}");
     }
 }
@@ -139,11 +120,7 @@ fn a_pipe_in_place_of_a_file_is_refused() {
         let made = std::process::Command::new("mkfifo").arg(pipe).status();
         assert!(made.unwrap().success());
     }
-    std::fs::copy(
-        work.path("configs/scenes/pin-7x7.toml"),
-        work.path("target.toml"),
-    )
-    .unwrap();
+    std::fs::copy(work.path("configs/scenes/pin-7x7.toml"), work.path("target.toml")).unwrap();
     work.edit(
         "target.toml",
         &[
@@ -163,10 +140,7 @@ fn a_pipe_in_place_of_a_file_is_refused() {
         "init sheet --material pipe.toml",
     ] {
         let message = work.error(command);
-        assert!(
-            message.contains("not a regular file"),
-            "{command}: {message}"
-        );
+        assert!(message.contains("not a regular file"), "{command}: {message}");
     }
 }
 
@@ -175,13 +149,8 @@ fn a_pipe_in_place_of_a_file_is_refused() {
 fn a_lower_limit_of_the_file_size_remains() {
     let kirigami = env!("CARGO_BIN_EXE_kirigami");
     let limited = format!("ulimit -f 100000; exec {kirigami} doctor");
-    let output = std::process::Command::new("sh")
-        .args(["-c", &limited])
-        .output();
+    let output = std::process::Command::new("sh").args(["-c", &limited]).output();
     let output = output.unwrap();
     let text = String::from_utf8_lossy(&output.stdout);
-    assert!(
-        output.status.success() && text.contains("ccx"),
-        "{output:?}"
-    );
+    assert!(output.status.success() && text.contains("ccx"), "{output:?}");
 }

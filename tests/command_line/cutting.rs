@@ -24,25 +24,14 @@ fn a_designed_sheet_is_cut_on_paper() {
     work.output(&format!("design {SCENE} --steps 3 --out run"));
     let cut = format!("cut {SCENE} --design run/state.json --out files");
     let text = work.output(&format!("{cut} --paper a3"));
-    assert!(
-        text.contains("84 holes, 48 slits") && text.contains("rows x "),
-        "{text}"
-    );
-    for name in [
-        "cut.dxf",
-        "cut.svg",
-        "cut-list.csv",
-        "attachments.csv",
-        "cut-summary.csv",
-        "tiles-a3.pdf",
-    ] {
+    assert!(text.contains("84 holes, 48 slits") && text.contains("rows x "), "{text}");
+    for name in
+        ["cut.dxf", "cut.svg", "cut-list.csv", "attachments.csv", "cut-summary.csv", "tiles-a3.pdf"]
+    {
         assert!(work.path("files").join(name).exists(), "{name}");
     }
     // Files of the last call do not remain.
-    work.edit(
-        SCENE,
-        &[("[process]", "[cutting]\nmargin = 3.0\n\n[process]")],
-    );
+    work.edit(SCENE, &[("[process]", "[cutting]\nmargin = 3.0\n\n[process]")]);
     let json = work.output(&format!("{cut} --json"));
     let json: serde_json::Value = serde_json::from_str(&json).unwrap();
     assert_eq!(json["totals"]["holes"], 84);
@@ -57,10 +46,7 @@ fn a_sheet_is_cut_for_a_machine() {
     let work = Workplace::new();
     // Before the search.
     let said = work.output(&format!("cut {SCENE} --for laser-service --design start"));
-    assert!(
-        said.contains("SendCutSend: ") && said.contains("(process.kerf)"),
-        "{said}"
-    );
+    assert!(said.contains("SendCutSend: ") && said.contains("(process.kerf)"), "{said}");
     let said = work.output(
         "cut configs/scenes/a4-plate-service.toml --for laser-service --design start --out drilled",
     );

@@ -1,5 +1,5 @@
-//! The pages: every link leads to a file and to a heading in it, docs/SUMMARY.md lists every page, and the README leads to every page
-//! by two links. Texts are free of some words.
+//! The pages: every link leads to a file and to a heading in it, docs/SUMMARY.md lists every page,
+//! and the README leads to every page by two links. Texts are free of some words.
 
 use std::collections::BTreeSet;
 use std::path::{Component, Path, PathBuf};
@@ -27,11 +27,7 @@ fn files_below(folder: &str, extension: &str) -> Vec<PathBuf> {
 /// The pages of the project, relative to its root.
 fn pages() -> Vec<PathBuf> {
     let mut pages = vec!["README.md".into(), "CHANGELOG.md".into()];
-    pages.extend(
-        ["docs", "data"]
-            .iter()
-            .flat_map(|folder| files_below(folder, "md")),
-    );
+    pages.extend(["docs", "data"].iter().flat_map(|folder| files_below(folder, "md")));
     pages
 }
 
@@ -97,9 +93,7 @@ fn every_link_leads_to_a_file_and_a_heading() {
     for page in pages() {
         for (target, heading) in links(&page) {
             let leads = root().join(&target).exists()
-                && heading
-                    .as_ref()
-                    .is_none_or(|heading| headings(&target).contains(heading));
+                && heading.as_ref().is_none_or(|heading| headings(&target).contains(heading));
             if !leads {
                 broken.push((page.clone(), target, heading));
             }
@@ -170,9 +164,7 @@ fn comments_messages_and_pages_are_free_of_house_words() {
     let members = members.unwrap().split('"').skip(1).step_by(2);
     let sources = members.chain(["."]).flat_map(|member| {
         let folders = ["src", "tests", "benches"].map(|part| format!("{member}/{part}"));
-        let folders = folders
-            .into_iter()
-            .filter(|folder| root().join(folder).is_dir());
+        let folders = folders.into_iter().filter(|folder| root().join(folder).is_dir());
         folders.flat_map(|folder| files_below(&folder, "rs"))
     });
     let mut found = Vec::new();

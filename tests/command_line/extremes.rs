@@ -1,5 +1,5 @@
-//! The table of extremes in docs/LIMITS.md: what the shipped plate does far outside of what it was made for. With `KIRIGAMI_WRITE=1` the
-//! test writes the table instead.
+//! The table of extremes in docs/LIMITS.md: what the shipped plate does far outside of what it was
+//! made for. With `KIRIGAMI_WRITE=1` the test writes the table instead.
 
 use design::equilibrium::load_step::Status;
 use design::objective::design_problem::Deployment;
@@ -17,9 +17,7 @@ struct Sweep {
 const SWEEPS: [Sweep; 6] = [
     Sweep {
         quantity: "stroke, mm (45.4)",
-        values: &[
-            -200.0, -30.0, -3.0, -1e-6, 1e-9, 1e-3, 45.4, 90.0, 120.0, 200.0, 1e3,
-        ],
+        values: &[-200.0, -30.0, -3.0, -1e-6, 1e-9, 1e-3, 45.4, 90.0, 120.0, 200.0, 1e3],
         change: |scene, stroke| scene.drive.as_mut().unwrap().stroke = stroke,
     },
     Sweep {
@@ -45,12 +43,7 @@ const SWEEPS: [Sweep; 6] = [
         change: |scene, angle| {
             let [width, height] = scene.sheet.size.take().unwrap();
             let lean = height / angle.to_radians().tan();
-            let corners = [
-                [0.0, 0.0],
-                [width, 0.0],
-                [width + lean, height],
-                [lean, height],
-            ];
+            let corners = [[0.0, 0.0], [width, 0.0], [width + lean, height], [lean, height]];
             scene.sheet.corners = Some(corners);
         },
     },
@@ -79,10 +72,7 @@ const SWEEPS: [Sweep; 6] = [
             scene.supports[0].panel = [columns / 2, rows - 1];
             scene.loads[0].panel = [columns / 2, 0];
             enlarge(scene, [columns as f64 / 3.0, rows as f64 / 4.0]);
-            scene.posture = Some(PostureConfig {
-                kind: Posture::HeldFlat,
-                down: None,
-            });
+            scene.posture = Some(PostureConfig { kind: Posture::HeldFlat, down: None });
         },
     },
 ];

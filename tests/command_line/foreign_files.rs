@@ -33,14 +33,8 @@ fn a_scene_is_not_replaced_by_its_run() {
     let own = work.path("configs/own/scene.toml");
     std::fs::rename(work.path(SCENE), &own).unwrap();
     let text = std::fs::read_to_string(&own).unwrap();
-    let output = text
-        .lines()
-        .find(|line| line.starts_with("output"))
-        .unwrap();
-    work.edit(
-        "configs/own/scene.toml",
-        &[(output, "output = \".\"  # here")],
-    );
+    let output = text.lines().find(|line| line.starts_with("output")).unwrap();
+    work.edit("configs/own/scene.toml", &[(output, "output = \".\"  # here")]);
     let before = std::fs::read(&own).unwrap();
     let message = work.error("design configs/own/scene.toml --steps 1");
     assert!(message.contains("scene.toml"), "{message}");

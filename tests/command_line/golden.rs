@@ -1,5 +1,6 @@
-//! The start designs of the shipped scenes have the losses and the cut files of tests/command_line/golden.txt: a change of the code that is
-//! not meant to change a design does not. With `KIRIGAMI_WRITE=1` the test writes the file instead, and the commit says why.
+//! The start designs of the shipped scenes have the losses and the cut files of
+//! tests/command_line/golden.txt: a change of the code that is not meant to change a design does
+//! not. With `KIRIGAMI_WRITE=1` the test writes the file instead, and the commit says why.
 
 use crate::common::Workplace;
 use design::geometry::polygon::bounds;
@@ -15,7 +16,8 @@ fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
-/// The scenes in a folder, but for the scene of the demo, which reads the weights that the demo trains.
+/// The scenes in a folder, but for the scene of the demo, which reads the weights that the demo
+/// trains.
 fn scenes(folder: &str) -> Vec<PathBuf> {
     let folder = std::fs::read_dir(root().join(folder)).unwrap();
     let mut scenes: Vec<PathBuf> = folder.map(|file| file.unwrap().path()).collect();
@@ -29,10 +31,7 @@ fn losses_and_cut_files_of_the_shipped_scenes_do_not_change() {
     let work = Workplace::new();
     let mut found = String::new();
     for scene in [scenes("configs/scenes"), scenes("configs/examples")].concat() {
-        let (name, scene) = (
-            scene.file_stem().unwrap().to_str().unwrap(),
-            scene.display(),
-        );
+        let (name, scene) = (scene.file_stem().unwrap().to_str().unwrap(), scene.display());
         let listing = work.output(&format!("inspect gradient {scene} --design start --json"));
         let listing: serde_json::Value = serde_json::from_str(&listing).unwrap();
         work.output(&format!("cut {scene} --design start --out {name} --force"));
@@ -49,10 +48,7 @@ fn losses_and_cut_files_of_the_shipped_scenes_do_not_change() {
     for (found, golden) in std::iter::zip(found.lines(), golden.lines()) {
         let [found, golden] = [found, golden].map(|line| line.split(' ').collect::<Vec<_>>());
         let [loss, expected] = [&found, &golden].map(|cells| cells[1].parse::<f64>().unwrap());
-        assert!(
-            (loss / expected - 1.0).abs() < ROUNDING,
-            "{found:?} {golden:?}"
-        );
+        assert!((loss / expected - 1.0).abs() < ROUNDING, "{found:?} {golden:?}");
         assert_eq!((found[0], found[2]), (golden[0], golden[2]));
     }
 }
@@ -65,13 +61,7 @@ fn picture(scene: &Path) -> String {
     let flat = vec![[0.0; 3]; sheet.panels.len()];
     let states = [&flat, &deployment.compared().configuration];
     let [flat, opened] = states.map(|state| deployed_corners(sheet, state));
-    let target = scene
-        .target
-        .points
-        .iter()
-        .step_by(4)
-        .copied()
-        .collect::<Vec<_>>();
+    let target = scene.target.points.iter().step_by(4).copied().collect::<Vec<_>>();
     let path = |corners: &[[f64; 2]]| -> String {
         let corners = corners.iter().map(|[x, y]| format!("{x:.1} {:.1}", -y));
         format!("M{}Z", corners.collect::<Vec<_>>().join("L"))
@@ -104,11 +94,6 @@ fn the_pictures_of_the_finished_sheets_show_them() {
         if std::env::var_os("KIRIGAMI_WRITE").is_some() {
             std::fs::write(&file, &drawn).unwrap();
         }
-        assert_eq!(
-            std::fs::read_to_string(&file).unwrap(),
-            drawn,
-            "{}",
-            file.display()
-        );
+        assert_eq!(std::fs::read_to_string(&file).unwrap(), drawn, "{}", file.display());
     }
 }

@@ -1,5 +1,5 @@
-//! docs/KEYS.md, the reference of every configuration file, is what the types say that read the files. With `KIRIGAMI_WRITE=1` the
-//! test writes the page instead.
+//! docs/KEYS.md, the reference of every configuration file, is what the types say that read the
+//! files. With `KIRIGAMI_WRITE=1` the test writes the page instead.
 
 use dataset::ColumnMeaning;
 use fe_driver::Campaign;
@@ -50,11 +50,7 @@ fn file(page: &mut String, described: &mut Described, title: &str, schema: &Valu
             _ => format!("`[{key}]` of a {title}"),
         }
         .to_lowercase();
-        let need = if required(schema, key) {
-            ", required"
-        } else {
-            ""
-        };
+        let need = if required(schema, key) { ", required" } else { "" };
         writeln!(page, "\n### {section}{need}\n").unwrap();
         let meaning = text(property);
         if !text(&types[name]).starts_with(meaning.trim_end_matches('.')) {
@@ -97,9 +93,7 @@ fn required(schema: &Value, key: &str) -> bool {
 /// The name of the type of a key, or of the items of its list, if that is not a number or text.
 fn type_name(property: &Value) -> Option<&str> {
     let alternatives = property["anyOf"].as_array().into_iter().flatten();
-    let mut places = [property, &property["items"]]
-        .into_iter()
-        .chain(alternatives);
+    let mut places = [property, &property["items"]].into_iter().chain(alternatives);
     let name = places.find_map(|place| place["$ref"].as_str())?;
     name.rsplit('/').next()
 }
@@ -117,11 +111,7 @@ fn table<'a>(
     keys: impl Iterator<Item = (&'a String, &'a Value)>,
     schema: &Value,
 ) {
-    writeln!(
-        page,
-        "\n| key | type | range | default | meaning |\n|---|---|---|---|---|"
-    )
-    .unwrap();
+    writeln!(page, "\n| key | type | range | default | meaning |\n|---|---|---|---|---|").unwrap();
     for (key, property) in keys {
         let default = match property.get("default") {
             _ if required(schema, key) => "required".to_owned(),
@@ -129,11 +119,7 @@ fn table<'a>(
             Some(default) => format!("`{default}`"),
         };
         let (kind, range, meaning) = (kind(property), range(property), text(property));
-        writeln!(
-            page,
-            "| `{key}` | {kind} | {range} | {default} | {meaning} |"
-        )
-        .unwrap();
+        writeln!(page, "| `{key}` | {kind} | {range} | {default} | {meaning} |").unwrap();
     }
 }
 
@@ -143,20 +129,14 @@ fn range(property: &Value) -> String {
     if range.is_empty() && property.get("items").is_some() {
         return self::range(&property["items"]);
     }
-    let mut alternatives = property["anyOf"]
-        .as_array()
-        .into_iter()
-        .flatten()
-        .map(self::range);
+    let mut alternatives = property["anyOf"].as_array().into_iter().flatten().map(self::range);
     let stated = alternatives.find(|range| !range.is_empty());
     stated.unwrap_or(range)
 }
 
 /// The alternatives of an enumeration.
 fn choices(page: &mut String, schema: &Value) {
-    let alternatives = ["oneOf", "anyOf"]
-        .iter()
-        .find_map(|key| schema[key].as_array());
+    let alternatives = ["oneOf", "anyOf"].iter().find_map(|key| schema[key].as_array());
     if let Some(names) = schema["enum"].as_array() {
         writeln!(page, "\nOne of {}.", quoted(names)).unwrap();
     }
@@ -186,10 +166,7 @@ fn text(schema: &Value) -> String {
     let text = schema["description"].as_str().unwrap_or_default();
     // The first paragraph: tables and notes of the sources do not fit into a cell.
     let text = text.split("\n\n").next().unwrap_or_default();
-    text.split_whitespace()
-        .collect::<Vec<_>>()
-        .join(" ")
-        .replace('|', "\\|")
+    text.split_whitespace().collect::<Vec<_>>().join(" ").replace('|', "\\|")
 }
 
 /// The type of a value in words.
@@ -229,21 +206,13 @@ fn the_page_of_keys_is_what_the_types_say() {
         std::fs::write(path, &page).unwrap();
     }
     let shipped = std::fs::read_to_string(path).unwrap();
-    assert!(
-        shipped == page,
-        "run `KIRIGAMI_WRITE=1 cargo test --test command_line keys`"
-    );
+    assert!(shipped == page, "run `KIRIGAMI_WRITE=1 cargo test --test command_line keys`");
 }
 
 /// The table of columns in docs/CAMPAIGN.md.
 fn column_table() -> String {
     let mut table = "| column | unit | meaning |\n|---|---|---|\n".to_owned();
-    for ColumnMeaning {
-        name,
-        unit,
-        meaning,
-    } in dataset::columns()
-    {
+    for ColumnMeaning { name, unit, meaning } in dataset::columns() {
         writeln!(table, "| `{name}` | {unit} | {meaning} |").unwrap();
     }
     table

@@ -27,10 +27,7 @@ fn a_design_within_an_accuracy_is_searched_on_the_cheapest_level_that_has_it() {
     let loss = |scores: &Value| scores["loss"].as_f64().unwrap();
     assert!(loss(&report["after"]) < 0.95 * loss(&report["before"]));
     let text = std::fs::read_to_string(work.path("plate/report.txt")).unwrap();
-    assert!(
-        text.lines().next().unwrap().ends_with("level standard"),
-        "{text}"
-    );
+    assert!(text.lines().next().unwrap().ends_with("level standard"), "{text}");
     assert!(text.contains("asked for: 0.5 mm"), "{text}");
     // The same command, and the run folder alone, are the same run.
     for again in [&*design, "design plate --json --quiet"] {
@@ -44,13 +41,8 @@ fn a_design_within_an_accuracy_is_searched_on_the_cheapest_level_that_has_it() {
 #[test]
 fn an_accuracy_that_no_level_has_is_said() {
     let work = Workplace::new();
-    let report = work.output(&format!(
-        "design {PLATE} --out plate --quiet --within 0.001mm"
-    ));
-    assert!(
-        report.contains("less than the mesh of the windows"),
-        "{report}"
-    );
+    let report = work.output(&format!("design {PLATE} --out plate --quiet --within 0.001mm"));
+    assert!(report.contains("less than the mesh of the windows"), "{report}");
 }
 
 #[test]
@@ -66,9 +58,7 @@ fn levels_are_compared_at_one_design() {
     assert!(picture.contains("draft") && picture.contains("mesh of the windows"));
     let text = work.output(&levels);
     assert!(text.contains("no level lowers: window mesh"), "{text}");
-    let draft = work.output(&format!(
-        "inspect equilibrium {PLATE} --design start --level draft"
-    ));
+    let draft = work.output(&format!("inspect equilibrium {PLATE} --design start --level draft"));
     // The weight comes on at negative load factors.
     let loaded = (draft.lines())
         .filter(|line| line.contains("Converged") && !line.trim_start().starts_with('-'));

@@ -1,5 +1,6 @@
-//! The output of `inspect` `pattern`, `deploy`, `equilibrium` and `gradient` with `--json`, against the reference cases, and the output of
-//! `tolerances`. The panels of the cases are 1 x 1; here they are 100 mm wide, with the constants of (11) that give the same shape.
+//! The output of `inspect` `pattern`, `deploy`, `equilibrium` and `gradient` with `--json`, against
+//! the reference cases, and the output of `tolerances`. The panels of the cases are 1 x 1; here
+//! they are 100 mm wide, with the constants of (11) that give the same shape.
 
 use crate::common::Workplace;
 use serde_json::Value;
@@ -27,7 +28,8 @@ fn printed(work: &Workplace, command: &str, sections: &str, options: &str) -> Va
     serde_json::from_str(&text).unwrap()
 }
 
-/// Asserts that every number of `found` is `scale` times the number of `expected`, to `error` of `scale`.
+/// Asserts that every number of `found` is `scale` times the number of `expected`, to `error` of
+/// `scale`.
 fn assert_close(found: &Value, expected: &Value, scale: f64, error: f64, place: &str) {
     match (found, expected) {
         (Value::Array(found), Value::Array(expected)) => {
@@ -60,14 +62,11 @@ fn assert_motions(found: &Value, expected: &Value, error: f64) {
 
 fn sheet(case: &Value, start: &Value) -> String {
     let corners = case["outline_corners"].as_array().unwrap().iter();
-    let corners: Vec<[f64; 2]> = corners
-        .map(|corner| [0, 1].map(|axis| SIZE * corner[axis].as_f64().unwrap()))
-        .collect();
+    let corners: Vec<[f64; 2]> =
+        corners.map(|corner| [0, 1].map(|axis| SIZE * corner[axis].as_f64().unwrap())).collect();
     let (m, n) = (&case["M"], &case["N"]);
     let numbers = |value: &Value| -> Vec<f64> { serde_json::from_value(value.clone()).unwrap() };
-    let r: Vec<f64> = (numbers(&start["z"]).iter())
-        .map(|z| 1.0 / (1.0 + (-z).exp()))
-        .collect();
+    let r: Vec<f64> = (numbers(&start["z"]).iter()).map(|z| 1.0 / (1.0 + (-z).exp())).collect();
     let edges = start["ell"].as_array().unwrap().iter();
     let tau: Vec<Vec<f64>> = edges.map(|ell| positions(&numbers(ell))).collect();
     format!(
@@ -96,10 +95,7 @@ fn patterns_and_deployments() {
             sheet(&case, &case)
         );
         let pattern = printed(&work, "pattern", &sections, "");
-        assert!(
-            work.error("inspect equilibrium case.toml")
-                .contains("the level `pin`")
-        );
+        assert!(work.error("inspect equilibrium case.toml").contains("the level `pin`"));
         let (length, area) = (SIZE, SIZE * SIZE);
         for (key, scale) in [
             ("M", 1.0),
@@ -148,8 +144,8 @@ fn patterns_and_deployments() {
     }
 }
 
-/// That they agree with an independent implementation is tested in `design`, without contact, as the implementation has
-/// none.
+/// That they agree with an independent implementation is tested in `design`, without contact, as
+/// the implementation has none.
 #[test]
 fn equilibria_objective_and_gradient() {
     let work = Workplace::new();
@@ -170,21 +166,14 @@ fn equilibria_objective_and_gradient() {
     let steps = equilibrium["steps"].as_array().unwrap();
     assert_eq!(steps.len(), 5);
     assert!(steps.iter().all(|step| step["status"] == "converged"));
-    assert!(
-        work.error("inspect deploy case.toml")
-            .contains("--opening-deg")
-    );
+    assert!(work.error("inspect deploy case.toml").contains("--opening-deg"));
     let gradient = printed(&work, "gradient", &sections, "");
     work.edit("case.toml", &[("force = [1.2, 0.0]", "force = [1.2, nan]")]);
-    assert!(
-        work.error("inspect gradient case.toml")
-            .contains("loads[0].force")
-    );
+    assert!(work.error("inspect gradient case.toml").contains("loads[0].force"));
     let number = |of: &Value| of.as_f64().unwrap();
     let terms = gradient["terms"].as_object().unwrap().iter();
-    let sum: f64 = terms
-        .map(|(name, value)| number(value) * number(&gradient["weights"][name]))
-        .sum();
+    let sum: f64 =
+        terms.map(|(name, value)| number(value) * number(&gradient["weights"][name])).sum();
     assert!((sum / number(&gradient["loss"]) - 1.0).abs() < 1e-12);
     for key in ["compression", "shear"] {
         assert!(number(&gradient["terms"][key]) > 0.0, "{key}");

@@ -1,4 +1,5 @@
-//! The command line without external programs: what is printed and written, refusals, and what the project says of itself.
+//! The command line without external programs: what is printed and written, refusals, and what the
+//! project says of itself.
 
 mod architecture;
 mod bad_input;

@@ -15,25 +15,20 @@ fn number(json: &Value, path: &str) -> f64 {
 /// Mean of the factors of the three records.
 const FACTOR: f64 = (1.0 + 0.975 + 1.03) / 3.0;
 
-/// The records are curves of sigma = 46 - 12 exp(-p / 0.003) + 8 (L^2 - 1 / L) with L = exp(p) and E = 3000 MPa, times 1, 0.975 and 1.03.
-/// The expected numbers follow from this law; plateau and natural draw ratio by Maxwell's rule.
+/// The records are curves of sigma = 46 - 12 exp(-p / 0.003) + 8 (L^2 - 1 / L) with L = exp(p) and
+/// E = 3000 MPa, times 1, 0.975 and 1.03. The expected numbers follow from this law; plateau and
+/// natural draw ratio by Maxwell's rule.
 #[test]
 fn records_of_a_film_become_a_material_file_that_is_checked() {
     let work = Workplace::new();
     let printed = work.output(FIT);
-    for text in [
-        "strip-2.csv",
-        "natural draw ratio",
-        "note: between the plastic strains",
-        "material check",
-    ] {
+    for text in
+        ["strip-2.csv", "natural draw ratio", "note: between the plastic strains", "material check"]
+    {
         assert!(printed.contains(text), "{text}: {printed}");
     }
     let message = work.error(FIT);
-    assert!(
-        message.contains("film.toml exists") && message.contains("--replace"),
-        "{message}"
-    );
+    assert!(message.contains("film.toml exists") && message.contains("--replace"), "{message}");
     let json = work.output(&format!("{FIT} --replace --json"));
     let json: Value = serde_json::from_str(&json).unwrap();
     for (path, expected, tolerance) in [
@@ -44,10 +39,7 @@ fn records_of_a_film_become_a_material_file_that_is_checked() {
         ("/fit/draw_ratio/mean", 3.3157, 0.02),
     ] {
         let found = number(&json, path);
-        assert!(
-            (found / expected - 1.0).abs() < tolerance,
-            "{path}: {found} {expected}"
-        );
+        assert!((found / expected - 1.0).abs() < tolerance, "{path}: {found} {expected}");
     }
     let scatter =
         number(&json, "/fit/offset_yield/deviation") / number(&json, "/fit/offset_yield/mean");
@@ -63,10 +55,7 @@ fn records_of_a_film_become_a_material_file_that_is_checked() {
 
     let check = "material check runs/material/film.toml configs/scenes/pet-7x7.toml";
     let printed = work.output(check);
-    assert!(
-        printed.contains("*PLASTIC") && printed.contains("Gamma"),
-        "{printed}"
-    );
+    assert!(printed.contains("*PLASTIC") && printed.contains("Gamma"), "{printed}");
     let checked: Value = serde_json::from_str(&work.output(&format!("{check} --json"))).unwrap();
     assert_eq!(checked["law_hash"], json["law_hash"]);
     // The panels of the scene: 4200 mm over 7.
@@ -81,9 +70,7 @@ fn the_unit_of_every_column_is_printed() {
     let work = Workplace::new();
     let row = |printed: &str, quantity: &str| -> Vec<String> {
         let line = printed.lines().find(|line| line.contains(quantity));
-        let words = line
-            .unwrap_or_else(|| panic!("{printed}"))
-            .split_whitespace();
+        let words = line.unwrap_or_else(|| panic!("{printed}")).split_whitespace();
         words.map(str::to_owned).collect()
     };
     let printed = work.output(FIT);
@@ -105,17 +92,13 @@ fn the_unit_of_every_column_is_printed() {
 #[test]
 fn a_brittle_material_fails_its_check() {
     let work = Workplace::new();
-    let output = work
-        .program("material check configs/materials/paper-0.2mm.toml")
-        .output()
-        .unwrap();
+    let output =
+        work.program("material check configs/materials/paper-0.2mm.toml").output().unwrap();
     let printed = String::from_utf8(output.stdout).unwrap();
-    assert!(
-        printed.contains("error: a film that opens by 60 deg, as most do, tears"),
-        "{printed}"
-    );
+    assert!(printed.contains("error: a film that opens by 60 deg, as most do, tears"), "{printed}");
     work.output("material check configs/materials/s235-1.5mm.toml");
-    // A plate of the shipped scene: neither its width nor its buckling nor Gamma, for a sheet on a surface, is a finding.
+    // A plate of the shipped scene: neither its width nor its buckling nor Gamma, for a sheet on a
+    // surface, is a finding.
     let plate = "material check configs/materials/polypropylene-3mm.toml configs/scenes/a4-plate-service.toml";
     let plate = work.output(plate);
     assert!(!plate.contains("warning: "), "{plate}");

@@ -1,4 +1,5 @@
-//! `compare` and `export` on a designed sheet: from the template to the report, and the files of other programs.
+//! `compare` and `export` on a designed sheet: from the template to the report, and the files of
+//! other programs.
 
 use crate::common::Workplace;
 use serde_json::Value;
@@ -10,14 +11,12 @@ const SCENE: &str = "configs/scenes/linear-7x7.toml";
 fn designed() -> (Workplace, Vec<Vec<[[f64; 2]; 4]>>) {
     let work = Workplace::new();
     work.output(&format!("design {SCENE} --steps 2 --quiet"));
-    let listing = work.output(&format!(
-        "inspect equilibrium {SCENE} --design runs/linear-7x7/state.json --json"
-    ));
+    let listing = work
+        .output(&format!("inspect equilibrium {SCENE} --design runs/linear-7x7/state.json --json"));
     let listing: Value = serde_json::from_str(&listing).unwrap();
     let steps = listing["steps"].as_array().unwrap();
-    let corners = steps
-        .iter()
-        .map(|step| serde_json::from_value(step["panel_corners"].clone()).unwrap());
+    let corners =
+        steps.iter().map(|step| serde_json::from_value(step["panel_corners"].clone()).unwrap());
     (work, corners.collect())
 }
 
@@ -45,10 +44,7 @@ fn a_measured_sheet_is_compared_with_its_path() {
     let template = std::fs::read_to_string(work.path("template/template.csv")).unwrap();
     assert_eq!(template.lines().count(), 1 + 5 * 49);
     assert!(work.path("template/numbering.png").exists());
-    assert!(
-        work.error(&format!("compare {SCENE} --template --out template"))
-            .contains("exists")
-    );
+    assert!(work.error(&format!("compare {SCENE} --template --out template")).contains("exists"));
 
     // The sixth of ten load steps.
     measure(&work, "points.csv", &steps[5]);
@@ -59,20 +55,11 @@ fn a_measured_sheet_is_compared_with_its_path() {
     assert!(number(&report["full"]["corners"]["rms"]) > 1.0);
     assert!((number(&report["motion"]["rotation_deg"]) - 90.0).abs() < 1e-4);
     assert_eq!(report["openings"].as_array().unwrap().len(), 84);
-    for name in [
-        "comparison.txt",
-        "comparison.json",
-        "comparison.svg",
-        "comparison.png",
-    ] {
+    for name in ["comparison.txt", "comparison.json", "comparison.svg", "comparison.png"] {
         assert!(work.path("report").join(name).exists(), "{name}");
     }
     let rows = |name: &str| {
-        std::fs::read_to_string(work.path("report").join(name))
-            .unwrap()
-            .lines()
-            .count()
-            - 1
+        std::fs::read_to_string(work.path("report").join(name)).unwrap().lines().count() - 1
     };
     assert_eq!((rows("residuals.csv"), rows("openings.csv")), (4 * 49, 84));
 
@@ -87,14 +74,7 @@ fn a_measured_sheet_is_compared_with_its_path() {
     let report = compared(&work, "points.csv --closed closed.csv --out report");
     let slip = &report["closed"]["slips"][0];
     assert_eq!(slip["panel"], 24);
-    assert!(
-        slip["slip"]
-            .as_array()
-            .unwrap()
-            .iter()
-            .all(|x| number(x).abs() < 1e-2),
-        "{slip}"
-    );
+    assert!(slip["slip"].as_array().unwrap().iter().all(|x| number(x).abs() < 1e-2), "{slip}");
 }
 
 /// The spreadsheets of countries with a decimal comma.
@@ -121,17 +101,11 @@ fn a_deployment_is_exported_state_by_state() {
     let printed = work.output(&format!("export {SCENE} --out export"));
     assert!(printed.contains("11 states"), "{printed}");
     parsed(&work.path("export/sheet.pvd"), |series| {
-        let sets: Vec<_> = series
-            .descendants()
-            .filter(|node| node.has_tag_name("DataSet"))
-            .collect();
+        let sets: Vec<_> =
+            series.descendants().filter(|node| node.has_tag_name("DataSet")).collect();
         assert_eq!(sets.len(), 2 * (1 + steps.len()));
         for set in &sets {
-            assert!(
-                work.path("export")
-                    .join(set.attribute("file").unwrap())
-                    .exists()
-            );
+            assert!(work.path("export").join(set.attribute("file").unwrap()).exists());
         }
         assert_eq!(sets[2].attribute("timestep"), Some("0.1"));
     });
@@ -140,16 +114,10 @@ fn a_deployment_is_exported_state_by_state() {
         ("hinges-010.vtu", "84", "84", "W (N mm)"),
     ] {
         parsed(&work.path("export/vtk").join(name), |grid| {
-            let piece = grid
-                .descendants()
-                .find(|node| node.has_tag_name("Piece"))
-                .unwrap();
+            let piece = grid.descendants().find(|node| node.has_tag_name("Piece")).unwrap();
             assert_eq!(piece.attribute("NumberOfPoints"), Some(points));
             assert_eq!(piece.attribute("NumberOfCells"), Some(cells));
-            assert!(
-                grid.descendants()
-                    .any(|node| node.attribute("Name") == Some(field))
-            );
+            assert!(grid.descendants().any(|node| node.attribute("Name") == Some(field)));
         });
     }
 }

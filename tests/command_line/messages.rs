@@ -1,9 +1,12 @@
-//! What the program says to wrong input, word for word: the cases of messages.txt, each in a new copy of the configurations. With
-//! `KIRIGAMI_WRITE=1` the test writes the messages instead, and the commit says why they changed.
+//! What the program says to wrong input, word for word: the cases of messages.txt, each in a new
+//! copy of the configurations. With `KIRIGAMI_WRITE=1` the test writes the messages instead, and
+//! the commit says why they changed.
 //!
 //! A line of a case is
-//! * `edit FILE: OLD => NEW`, a replacement of text, `write FILE: TEXT`, or `remove PATH`, with `\n` for a line break,
-//! * `$ COMMAND`, a run of the program, followed by what a failing one prints to standard error, each line after `| `.
+//! * `edit FILE: OLD => NEW`, a replacement of text, `write FILE: TEXT`, or `remove PATH`, with
+//!   `\n` for a line break,
+//! * `$ COMMAND`, a run of the program, followed by what a failing one prints to standard error,
+//!   each line after `| `.
 
 use crate::common::Workplace;
 use std::fmt::Write;
@@ -55,9 +58,7 @@ fn message(work: &Workplace, command: &str) -> String {
     let folder = work.path("").display().to_string();
     let text = text.replace(folder.trim_end_matches('/'), "FOLDER");
     let lines = text.lines().map(|line| format!("| {line}"));
-    lines
-        .map(|line| line.trim_end().to_owned() + "\n")
-        .collect()
+    lines.map(|line| line.trim_end().to_owned() + "\n").collect()
 }
 
 #[test]

@@ -1,4 +1,5 @@
-//! The folder of a run holds what its design depends on: it is replayed where scene, material and weights are gone.
+//! The folder of a run holds what its design depends on: it is replayed where scene, material and
+//! weights are gone.
 
 use crate::common::Workplace;
 use serde_json::Value;
@@ -10,10 +11,8 @@ fn moved_run() -> Workplace {
     let work = Workplace::new();
     std::fs::create_dir_all(work.path("runs/demo")).unwrap();
     for kind in ["safetensors", "json"] {
-        let [shipped, named] = [
-            format!("data/pet-0.5mm/medium.{kind}"),
-            format!("runs/demo/surrogate.{kind}"),
-        ];
+        let [shipped, named] =
+            [format!("data/pet-0.5mm/medium.{kind}"), format!("runs/demo/surrogate.{kind}")];
         std::fs::copy(work.path(&shipped), work.path(&named)).unwrap();
     }
     // After two steps the report has errors.
@@ -67,10 +66,9 @@ fn a_run_is_replayed_from_its_folder_alone() {
     work.output("material check moved/inputs/material.toml moved");
     // The design of the run, unless the start design is asked for.
     let verify = "verify moved --sample 1 --tier tiny --out verified";
-    for (option, name) in [
-        ("", "The design moved/state.json: "),
-        (" --design start", "The start design of moved: "),
-    ] {
+    for (option, name) in
+        [("", "The design moved/state.json: "), (" --design start", "The start design of moved: ")]
+    {
         let page = work.output(&format!("{verify}{option}"));
         assert!(page.contains(name), "{page}");
     }
@@ -85,12 +83,9 @@ fn a_run_is_replayed_from_its_folder_alone() {
 #[test]
 fn a_changed_copy_is_refused() {
     let work = moved_run();
-    for name in [
-        "scene.toml",
-        "inputs/material.toml",
-        "inputs/weights.json",
-        "inputs/weights.safetensors",
-    ] {
+    for name in
+        ["scene.toml", "inputs/material.toml", "inputs/weights.json", "inputs/weights.safetensors"]
+    {
         let path = work.path("moved").join(name);
         let original = std::fs::read(&path).unwrap();
         let mut changed = original.clone();
@@ -98,10 +93,7 @@ fn a_changed_copy_is_refused() {
         changed[last] ^= 1;
         std::fs::write(&path, changed).unwrap();
         let message = work.error("cut moved");
-        assert!(
-            message.contains(name) && message.contains("BLAKE3"),
-            "{message}"
-        );
+        assert!(message.contains(name) && message.contains("BLAKE3"), "{message}");
         std::fs::write(&path, original).unwrap();
     }
     work.output("cut moved --force");

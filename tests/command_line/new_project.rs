@@ -31,7 +31,8 @@ fn a_project_with_weights_is_designed_at_once() {
         };
         assert_eq!(of(&project), of(&shipped), "{section}.{key}");
     }
-    // The stroke of the rigid panels opened by 25 degrees; the shipped sheet has a target and a stroke of its own.
+    // The stroke of the rigid panels opened by 25 degrees; the shipped sheet has a target and a
+    // stroke of its own.
     let stroke = project["drive"]["stroke"].as_float().unwrap();
     assert!((stroke - 30.4).abs() < 0.1, "{stroke}");
 
@@ -46,10 +47,7 @@ fn a_project_without_weights_begins_with_its_campaign() {
     let work = Workplace::new();
     let steel = "--material configs/materials/s235-1.5mm.toml";
     let said = work.output(&format!("init steel {steel} --size 3300x4600"));
-    assert!(
-        said.contains("kirigami campaign run steel/campaign.toml"),
-        "{said}"
-    );
+    assert!(said.contains("kirigami campaign run steel/campaign.toml"), "{said}");
     // Lengths of the campaign are the lengths of the film, times the ratio of the thicknesses.
     let campaign = keys(&work, "steel/campaign.toml");
     assert_eq!(campaign["design"]["r_win"].as_float(), Some(300.0));
@@ -78,13 +76,8 @@ fn a_project_without_weights_begins_with_its_campaign() {
     work.edit("steel/training.toml", &[("epochs = 80", "epochs = 2")]);
     // Its hinges alone: an hour is not for a test.
     let (_, campaign) = said.split_once("train weights from nothing").unwrap();
-    assert!(
-        said.contains("kirigami material learn steel/material.toml"),
-        "{said}"
-    );
-    let lines = campaign
-        .lines()
-        .filter(|line| line.starts_with("kirigami "));
+    assert!(said.contains("kirigami material learn steel/material.toml"), "{said}");
+    let lines = campaign.lines().filter(|line| line.starts_with("kirigami "));
     for line in lines.filter(|line| !line.contains(" verify ")) {
         let command = line.split(" #").next().unwrap().trim();
         let command = command.strip_prefix("kirigami ").unwrap();
@@ -107,17 +100,17 @@ fn a_drawing_becomes_the_target() {
     work.output("design leaf/scene.toml --steps 1 --force");
 }
 
-/// `init FOLDER` alone gives a project that can be designed: a plate of A4. A film of 0.5 mm is larger.
+/// `init FOLDER` alone gives a project that can be designed: a plate of A4. A film of 0.5 mm is
+/// larger.
 #[test]
 fn a_project_with_all_defaults_is_designed() {
     let work = Workplace::new();
     let said = work.output("init plate");
     assert!(said.contains("Nothing holds its panels there"), "{said}");
     work.output("init film --thickness 0.5");
-    for (project, thickness, sides) in [
-        ("plate", 3.0, "[210.0, 297.0]"),
-        ("film", 0.5, "[1050.0, 1485.0]"),
-    ] {
+    for (project, thickness, sides) in
+        [("plate", 3.0, "[210.0, 297.0]"), ("film", 0.5, "[1050.0, 1485.0]")]
+    {
         let scene = keys(&work, &format!("{project}/scene.toml"));
         assert_eq!(scene["thickness"].as_float(), Some(thickness));
         let size = scene["sheet"]["size"].to_string();
@@ -126,14 +119,13 @@ fn a_project_with_all_defaults_is_designed() {
     }
 }
 
-/// With ligaments of 0.93 thicknesses, as in the shipped plate of polypropylene, both would leave their plane.
+/// With ligaments of 0.93 thicknesses, as in the shipped plate of polypropylene, both would leave
+/// their plane.
 #[test]
 fn plates_of_other_materials_stay_in_their_plane() {
     let work = Workplace::new();
     for material in ["petg-3mm", "aluminium-2mm"] {
-        work.output(&format!(
-            "init plate --material configs/materials/{material}.toml"
-        ));
+        work.output(&format!("init plate --material configs/materials/{material}.toml"));
         let widest = keys(&work, "plate/scene.toml")["ligament"]["range"][1].clone();
         assert!(widest.as_float().unwrap() < 2.2, "{widest}");
         let said = work.output("design plate/scene.toml");
@@ -148,22 +140,17 @@ fn weights_of_a_film_do_not_serve_a_plate() {
     let work = Workplace::new();
     let film = "--material configs/materials/pet-0.5mm.toml";
     let said = work.output(&format!("init plate {film} --thickness 3"));
-    assert!(
-        said.contains("kirigami campaign run plate/campaign.toml"),
-        "{said}"
-    );
+    assert!(said.contains("kirigami campaign run plate/campaign.toml"), "{said}");
     let campaign = keys(&work, "plate/campaign.toml");
     assert_eq!(campaign["tier"].as_str(), Some("plate"));
     // In the thickness of the film's weights, the law is theirs.
-    work.edit(
-        "plate/material.toml",
-        &[("thickness = 3.0", "thickness = 0.5")],
-    );
+    work.edit("plate/material.toml", &[("thickness = 3.0", "thickness = 0.5")]);
     let message = work.error("design plate/scene.toml --weights data/pet-0.5mm/medium.safetensors");
     assert!(message.contains("no law holds for both"), "{message}");
 }
 
-/// The sheet of a stock is smaller than the stock by its margins and by what is cut beyond its edge.
+/// The sheet of a stock is smaller than the stock by its margins and by what is cut beyond its
+/// edge.
 #[test]
 fn a_project_fits_the_stock_that_it_is_cut_from() {
     let work = Workplace::new();

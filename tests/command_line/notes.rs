@@ -1,4 +1,5 @@
-//! `--verbose`: programs, files and solver statuses on standard error, and nothing of it without the option.
+//! `--verbose`: programs, files and solver statuses on standard error, and nothing of it without
+//! the option.
 
 use crate::common::{Workplace, assert_contains};
 
@@ -31,10 +32,7 @@ fn programs_files_and_load_steps_are_named() {
     );
 
     let [_, notes] = printed(&work, "solve --tier tiny --theta-deg 5 --out solved -v");
-    let ended: Vec<&str> = notes
-        .lines()
-        .filter(|line| line.starts_with("ended after "))
-        .collect();
+    let ended: Vec<&str> = notes.lines().filter(|line| line.starts_with("ended after ")).collect();
     let of = |program: &str| ended.iter().any(|line| line.contains(program));
     assert!(of("gmsh") && of("ccx"), "{notes}");
     assert_contains(&notes, &["running ", "s (exit status: 0): "]);

@@ -32,17 +32,11 @@ fn all_scenes_are_designed_and_the_table_compares_them() {
     // A run that fails does not end the others, and is named.
     work.edit(
         "configs/scenes/pin-7x7.toml",
-        &[
-            ("steps = 150", "steps = 2"),
-            ("opening_deg = 60.0", "opening_deg = 50.0"),
-        ],
+        &[("steps = 150", "steps = 2"), ("opening_deg = 60.0", "opening_deg = 50.0")],
     );
     let message = work.error(&format!("{design} --quiet"));
     assert!(message.contains("1 of 2 runs failed"), "{message}");
-    assert!(
-        message.contains("sheets/pin-7x7: ") && message.contains("another run"),
-        "{message}"
-    );
+    assert!(message.contains("sheets/pin-7x7: ") && message.contains("another run"), "{message}");
     assert_eq!(column(&work, "state"), ["failed", "completed"]);
 }
 
@@ -65,11 +59,7 @@ fn a_stopped_command_continues_with_the_runs_that_are_left() {
     let scenes = "configs/scenes/linear-7x7.toml configs/scenes/pin-7x7.toml";
     let design = format!("design {scenes} --out sheets --steps");
     let mut command = work.program(&format!("{design} 100000"));
-    let mut child = command
-        .stderr(Stdio::null())
-        .stdout(Stdio::null())
-        .spawn()
-        .unwrap();
+    let mut child = command.stderr(Stdio::null()).stdout(Stdio::null()).spawn().unwrap();
     let deadline = Instant::now() + Duration::from_secs(60);
     while !work.path("sheets/linear-7x7/state.json").exists() {
         assert!(Instant::now() < deadline, "no state is saved");
@@ -78,12 +68,7 @@ fn a_stopped_command_continues_with_the_runs_that_are_left() {
     kill(Pid::from_raw(child.id() as i32), Signal::SIGTERM).unwrap();
     assert_eq!(child.wait().unwrap().code(), Some(75));
     let states = column(&work, "state");
-    assert!(
-        states
-            .iter()
-            .all(|state| state == "stopped" || state == "not run"),
-        "{states:?}"
-    );
+    assert!(states.iter().all(|state| state == "stopped" || state == "not run"), "{states:?}");
     let steps = column(&work, "steps")[0].parse::<usize>().unwrap();
     work.output(&format!("{design} {}", steps + 1));
     assert_eq!(column(&work, "state"), ["completed", "completed"]);
@@ -102,9 +87,7 @@ fn a_link_or_a_pipe_in_place_of_a_lock_is_refused_at_once() {
     assert!(message.contains("run/lock: a link, a pipe"), "{message}");
     assert_eq!(std::fs::read_to_string(victim).unwrap(), "kept");
     std::fs::remove_file(work.path("run/lock")).unwrap();
-    let pipe = std::process::Command::new("mkfifo")
-        .arg(work.path("run/lock"))
-        .status();
+    let pipe = std::process::Command::new("mkfifo").arg(work.path("run/lock")).status();
     assert!(pipe.unwrap().success());
     let message = work.error(design);
     assert!(message.contains("run/lock: a link, a pipe"), "{message}");

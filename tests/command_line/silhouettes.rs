@@ -9,12 +9,7 @@ const SIDE: f64 = 180.0;
 #[test]
 fn a_drawing_becomes_a_sheet_with_a_cut_file() {
     let work = Workplace::new();
-    for (drawing, in_common) in [
-        ("leaf", 0.93),
-        ("vase", 0.85),
-        ("bell", 0.85),
-        ("shield", 0.85),
-    ] {
+    for (drawing, in_common) in [("leaf", 0.93), ("vase", 0.85), ("bell", 0.85), ("shield", 0.85)] {
         let said = work.output(&format!(
             "init {drawing} --target configs/targets/{drawing}.svg --thickness 2 --size {SIDE}x{SIDE}"
         ));
@@ -31,20 +26,14 @@ fn a_drawing_becomes_a_sheet_with_a_cut_file() {
         let report = std::fs::read_to_string(run.join("report.json")).unwrap();
         let report: Value = serde_json::from_str(&report).unwrap();
         let after = |key: &str| report["after"][key].as_f64().unwrap();
-        assert!(
-            after("outline_error") < 0.04 * SIDE,
-            "{drawing}: {}",
-            report["after"]
-        );
+        assert!(after("outline_error") < 0.04 * SIDE, "{drawing}: {}", report["after"]);
         let apart = after("symmetric_difference");
-        assert!(
-            (2.0 - apart) / (2.0 + apart) > in_common,
-            "{drawing}: {apart}"
-        );
+        assert!((2.0 - apart) / (2.0 + apart) > in_common, "{drawing}: {apart}");
     }
 }
 
-/// A scene of any target is fitted before its search; its run has what was chosen, and is designed again without a fit.
+/// A scene of any target is fitted before its search; its run has what was chosen, and is designed
+/// again without a fit.
 #[test]
 fn a_scene_is_fitted_to_its_target() {
     let work = Workplace::new();
@@ -68,15 +57,13 @@ fn a_scene_is_fitted_to_its_target() {
 fn a_fit_needs_hinges_that_carry_loads() {
     let work = Workplace::new();
     let refused = work.error("-q design configs/scenes/pin-7x7.toml --fit --out pins");
-    assert!(
-        refused.contains("its search is on pins already"),
-        "{refused}"
-    );
+    assert!(refused.contains("its search is on pins already"), "{refused}");
     work.output("design configs/scenes/linear-7x7.toml --fit --steps 1 --force --out springs");
     assert!(work.path("springs/report.json").exists());
 }
 
-/// The fit does not depend on chance or on the number of cores: the same command writes the same scene.
+/// The fit does not depend on chance or on the number of cores: the same command writes the same
+/// scene.
 #[test]
 fn the_same_drawing_becomes_the_same_scene() {
     let work = Workplace::new();

@@ -1,4 +1,5 @@
-//! Residual opening of a sheet of polypropylene, in its thickness and in twice that, and laws that do not fit.
+//! Residual opening of a sheet of polypropylene, in its thickness and in twice that, and laws that
+//! do not fit.
 
 use crate::common::Workplace;
 use serde_json::Value;
@@ -13,10 +14,7 @@ const WEIGHTS: &str = "data/polypropylene-3mm/medium.safetensors\"\n";
 fn four_panels(work: &Workplace, name: &str, replacements: &[(&str, &str)]) {
     let shipped = work.path("configs/sheets/four-panels-springback.toml");
     std::fs::copy(shipped, work.path(name)).unwrap();
-    let paths = [
-        ("\"../../", "\""),
-        ("\"../materials", "\"configs/materials"),
-    ];
+    let paths = [("\"../../", "\""), ("\"../materials", "\"configs/materials")];
     work.edit(name, &[&paths, replacements].concat());
 }
 
@@ -42,10 +40,7 @@ fn a_plate_springs_back_and_one_of_twice_the_thickness_twice_as_far() {
     ];
     four_panels(&work, "six.toml", &doubled);
     let [three, six] = ["three", "six"].map(|name| {
-        let report = report(
-            &work,
-            &format!("{name}.toml --steps 0 --force --out {name}"),
-        );
+        let report = report(&work, &format!("{name}.toml --steps 0 --force --out {name}"));
         released(&report).clone()
     });
     let share = share(&three);
@@ -59,10 +54,7 @@ fn a_plate_springs_back_and_one_of_twice_the_thickness_twice_as_far() {
         ("/corners/0", 2.0),
     ] {
         let (found, expected) = (number(&six, place), scale * number(&three, place));
-        assert!(
-            (found / expected - 1.0).abs() < 1e-6,
-            "{place}: {found} {expected}"
-        );
+        assert!((found / expected - 1.0).abs() < 1e-6, "{place}: {found} {expected}");
     }
 }
 
@@ -114,11 +106,7 @@ fn the_report_says_what_stays_by_the_law_that_the_scene_names() {
     assert!(share < 90.0, "{share}");
     let stays = format!("stay when the load is taken off, {share:.0} %");
     assert!(text().contains(&stays), "{}", text());
-    assert!(
-        text().contains("falls to about 1/3 in 2 years"),
-        "{}",
-        text()
-    );
+    assert!(text().contains("falls to about 1/3 in 2 years"), "{}", text());
     // The same run goes on without it.
     let without = report(&work, "without.toml");
     assert!(released(&without).is_null());
@@ -134,13 +122,11 @@ fn a_scene_with_a_law_for_another_sheet_is_refused() {
     other.save(&work.path("other.json")).unwrap();
     four_panels(&work, "scene.toml", &[(WEIGHTS, &with_law("other.json"))]);
     let error = work.error("design scene.toml");
-    assert!(
-        error.contains("the sheet is of another material law"),
-        "{error}"
-    );
+    assert!(error.contains("the sheet is of another material law"), "{error}");
 }
 
-/// The search moves the sheet without loads to its target, and everything that it writes is of that state.
+/// The search moves the sheet without loads to its target, and everything that it writes is of that
+/// state.
 #[test]
 fn a_design_for_the_shape_that_stays() {
     let work = Workplace::new();
@@ -148,38 +134,23 @@ fn a_design_for_the_shape_that_stays() {
     let released = [
         ("runs/springback/four-panels", "run"),
         (WEIGHTS, &*law),
-        (
-            "size = [120.0, 120.0]\nrotation",
-            "size = [140.0, 135.0]\nrotation",
-        ),
-        (
-            "[optimiser]",
-            "[objective]\ntarget_state = \"released\"\n\n[optimiser]",
-        ),
+        ("size = [120.0, 120.0]\nrotation", "size = [140.0, 135.0]\nrotation"),
+        ("[optimiser]", "[objective]\ntarget_state = \"released\"\n\n[optimiser]"),
         ("steps = 1\n", "steps = 6\n"),
     ];
     four_panels(&work, "scene.toml", &released);
     let found = report(&work, "scene.toml");
     let number = |place: &str| found.pointer(place).unwrap().as_f64().unwrap();
     assert_eq!(found["facts"]["target_state"], "released");
-    let (before, after) = (
-        number("/before/outline_error"),
-        number("/after/outline_error"),
-    );
+    let (before, after) = (number("/before/outline_error"), number("/after/outline_error"));
     assert!(after < 0.9 * before, "{before} {after}");
-    let [loaded, free] = [0, 1].map(|i| {
-        number(&format!(
-            "/facts/creep_and_springback/released/outline_error/{i}"
-        ))
-    });
+    let [loaded, free] =
+        [0, 1].map(|i| number(&format!("/facts/creep_and_springback/released/outline_error/{i}")));
     assert!((free / after - 1.0).abs() < 1e-9, "{free} {after}");
     assert!((loaded / free - 1.0).abs() > 0.1, "{loaded} {free}");
     for (file, text) in [
         ("deployed.svg", "Loads taken off"),
-        (
-            "report.txt",
-            "after the loads were taken off; the target is for that state",
-        ),
+        ("report.txt", "after the loads were taken off; the target is for that state"),
         ("run.html", "\"unloaded\":true"),
     ] {
         let written = std::fs::read_to_string(work.path("run").join(file)).unwrap();

@@ -31,26 +31,11 @@ impl Tab {
         let [to, from] = &pipes;
         // Chromium reads commands from file descriptor 3 and writes to 4.
         let browser = Command::new("sh")
-            .args([
-                "-c",
-                "exec chromium \"$@\" 3<\"$TO\" 4>\"$FROM\"",
-                "chromium",
-            ])
-            .args([
-                "--headless",
-                "--no-sandbox",
-                "--disable-gpu",
-                "--no-first-run",
-            ])
-            .args([
-                "--disable-background-networking",
-                "--disable-component-update",
-            ])
+            .args(["-c", "exec chromium \"$@\" 3<\"$TO\" 4>\"$FROM\"", "chromium"])
+            .args(["--headless", "--no-sandbox", "--disable-gpu", "--no-first-run"])
+            .args(["--disable-background-networking", "--disable-component-update"])
             .args(["--remote-debugging-pipe", "--window-size=1400,1000"])
-            .arg(format!(
-                "--user-data-dir={}",
-                profile.path().join("profile").display()
-            ))
+            .arg(format!("--user-data-dir={}", profile.path().join("profile").display()))
             .env("TO", to)
             .env("FROM", from)
             .stdout(Stdio::null())
@@ -59,20 +44,10 @@ impl Tab {
             .expect("this test opens a page in Chromium: run scripts/install-tools tests");
         let to = OpenOptions::new().write(true).open(to).unwrap();
         let from = BufReader::new(File::open(from).unwrap());
-        let mut tab = Self {
-            browser,
-            to,
-            from,
-            session: None,
-            sent: 0,
-            _profile: profile,
-        };
+        let mut tab = Self { browser, to, from, session: None, sent: 0, _profile: profile };
         let targets = tab.call("Target.getTargets", json!({}));
         let targets = targets["targetInfos"].as_array().unwrap();
-        let page = targets
-            .iter()
-            .find(|target| target["type"] == "page")
-            .unwrap();
+        let page = targets.iter().find(|target| target["type"] == "page").unwrap();
         let attach = json!({ "targetId": page["targetId"], "flatten": true });
         let attached = tab.call("Target.attachToTarget", attach);
         tab.session = Some(attached["sessionId"].as_str().unwrap().to_owned());
@@ -94,9 +69,7 @@ impl Tab {
         if let Some(session) = &self.session {
             message["sessionId"] = json!(session);
         }
-        self.to
-            .write_all(format!("{message}\0").as_bytes())
-            .unwrap();
+        self.to.write_all(format!("{message}\0").as_bytes()).unwrap();
         loop {
             let mut answer = Vec::new();
             self.from.read_until(0, &mut answer).unwrap();
@@ -114,10 +87,7 @@ impl Tab {
         let question =
             json!({ "expression": expression, "returnByValue": true, "awaitPromise": true });
         let mut answer = self.call("Runtime.evaluate", question);
-        assert!(
-            answer["exceptionDetails"].is_null(),
-            "{expression}: {answer}"
-        );
+        assert!(answer["exceptionDetails"].is_null(), "{expression}: {answer}");
         answer["result"]["value"].take()
     }
 
@@ -176,18 +146,13 @@ impl Tab {
     pub fn bytes(&mut self, method: &str, parameters: Value) -> Vec<u8> {
         let mut result = self.call(method, parameters);
         let text: String = serde_json::from_value(result["data"].take()).unwrap();
-        base64::engine::general_purpose::STANDARD
-            .decode(text)
-            .unwrap()
+        base64::engine::general_purpose::STANDARD.decode(text).unwrap()
     }
 
     /// Makes the screen `dark` or `light`.
     pub fn prefer(&mut self, scheme: &str) {
         let feature = json!({ "name": "prefers-color-scheme", "value": scheme });
-        self.call(
-            "Emulation.setEmulatedMedia",
-            json!({ "features": [feature] }),
-        );
+        self.call("Emulation.setEmulatedMedia", json!({ "features": [feature] }));
     }
 
     /// Drops a file onto an element.
@@ -202,10 +167,7 @@ impl Tab {
 
     pub fn press(&mut self, key: &str) {
         for kind in ["keyDown", "keyUp"] {
-            self.call(
-                "Input.dispatchKeyEvent",
-                json!({ "type": kind, "key": key }),
-            );
+            self.call("Input.dispatchKeyEvent", json!({ "type": kind, "key": key }));
         }
     }
 }

@@ -1,4 +1,5 @@
-//! A working folder with small configurations, in which the program of the package under test is run.
+//! A working folder with small configurations, in which the program of the package under test is
+//! run.
 #![allow(dead_code)] // every test program uses only a part
 
 use dataset::{Database, Row};
@@ -39,7 +40,8 @@ impl Workplace {
         std::fs::write(path, text).unwrap();
     }
 
-    /// Changes the keys of a campaign, and the keys of each of its boxes of rays, which are counted from 0.
+    /// Changes the keys of a campaign, and the keys of each of its boxes of rays, which are counted
+    /// from 0.
     pub fn edit_campaign(
         &self,
         name: &str,
@@ -61,9 +63,7 @@ impl Workplace {
     /// The program with arguments, ready to run in the folder.
     pub fn program(&self, arguments: &str) -> Command {
         let mut command = Command::new(PROGRAM);
-        command
-            .current_dir(self.folder.path())
-            .args(arguments.split_whitespace());
+        command.current_dir(self.folder.path()).args(arguments.split_whitespace());
         command
     }
 

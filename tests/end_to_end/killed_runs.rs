@@ -174,18 +174,13 @@ fn a_campaign_killed_twenty_times_gives_the_same_database() {
         }
         assert!(replay.run(&folder).status().unwrap().success());
         assert_eq!(timeless(&replay.collected(&folder)), whole);
-        assert_eq!(
-            left_running(&replay.work.path(&folder)),
-            Vec::<PathBuf>::new()
-        );
+        assert_eq!(left_running(&replay.work.path(&folder)), Vec::<PathBuf>::new());
     }
-    assert!(
-        interrupted >= 10,
-        "only {interrupted} runs were killed before their end"
-    );
+    assert!(interrupted >= 10, "only {interrupted} runs were killed before their end");
 }
 
-/// With its rays on two meshes. Of the spot check, whose file has four states of a ray, nothing can be restored.
+/// With its rays on two meshes. Of the spot check, whose file has four states of a ray, nothing can
+/// be restored.
 #[test]
 fn a_lost_folder_is_restored_from_the_database() {
     let replay = Replay::of(&[
@@ -198,9 +193,8 @@ fn a_lost_folder_is_restored_from_the_database() {
     let restored = replay.work.output(&format!("{restore} --folder restored"));
     assert!(restored.contains("8 rays restored"), "{restored}");
     // A database has no wall times, so the restored folder has no throughput.
-    let status = (replay.work).output(&format!(
-        "campaign status {CAMPAIGN} --folder restored --json"
-    ));
+    let status =
+        (replay.work).output(&format!("campaign status {CAMPAIGN} --folder restored --json"));
     let status: serde_json::Value = serde_json::from_str(&status).unwrap();
     assert!(status["throughput"].is_null(), "{status}");
     let collect = format!("campaign collect {CAMPAIGN} --folder restored --out part/rows.parquet");
@@ -209,7 +203,8 @@ fn a_lost_folder_is_restored_from_the_database() {
     let said = replay.work.output(&format!("{collect} --partial"));
     assert!(said.contains("no spot check: "), "{said}");
     assert_eq!(replay.database("part/rows").rows(), before.rows());
-    // Nothing but the spot check is left to solve, so missing output of the other rays causes no error.
+    // Nothing but the spot check is left to solve, so missing output of the other rays causes no
+    // error.
     for ray in before.rows().chunk_by(|a, b| a.job == b.job) {
         let output = format!("recorded/{}.dat", ray[0].job);
         std::fs::remove_file(replay.work.path(&output)).unwrap();
@@ -223,10 +218,7 @@ fn a_lost_folder_is_restored_from_the_database() {
 
     replay.work.edit(CAMPAIGN, &[("kerf = 0.2", "kerf = 0.3")]);
     let message = replay.work.error(&format!("{restore} --folder other"));
-    assert!(
-        message.contains("none of the jobs belongs to the campaign"),
-        "{message}"
-    );
+    assert!(message.contains("none of the jobs belongs to the campaign"), "{message}");
 }
 
 #[test]
@@ -236,35 +228,26 @@ fn a_run_that_ends_early_has_its_own_exit_code() {
     let output = run.args(["--time-limit", "0"]).output().unwrap();
     assert_eq!(output.status.code(), Some(75));
     let message = String::from_utf8(output.stderr).unwrap();
-    assert!(
-        message.contains("6 rays left; run the same command again"),
-        "{message}"
-    );
+    assert!(message.contains("6 rays left; run the same command again"), "{message}");
 
     let arguments = format!("{CAMPAIGN} --folder short");
     let refused = replay.work.error(&format!("campaign collect {arguments}"));
-    assert!(
-        refused.contains("missing: 6 rays not solved yet"),
-        "{refused}"
-    );
+    assert!(refused.contains("missing: 6 rays not solved yet"), "{refused}");
     for shard in ["1/2", "2/2"] {
         let status = replay.run("short").args(["--shard", shard]).status();
         assert!(status.unwrap().success());
     }
-    let status = replay
-        .work
-        .output(&format!("campaign status {arguments} --json"));
+    let status = replay.work.output(&format!("campaign status {arguments} --json"));
     let status: serde_json::Value = serde_json::from_str(&status).unwrap();
     assert_eq!(status["tally"]["complete"], 6);
     assert!(status["throughput"]["rays_per_hour"].as_f64().unwrap() > 0.0);
-    let plan = replay
-        .work
-        .output(&format!("campaign plan {arguments} --json"));
+    let plan = replay.work.output(&format!("campaign plan {arguments} --json"));
     let plan: serde_json::Value = serde_json::from_str(&plan).unwrap();
     assert_eq!(plan["reasons"], serde_json::json!({}));
 }
 
-/// As after the failure of a node whose processes still run, and on a file system whose locks end at the host.
+/// As after the failure of a node whose processes still run, and on a file system whose locks end
+/// at the host.
 #[test]
 fn a_ray_that_two_hosts_solve_is_counted_once() {
     let replay = Replay::new();
@@ -295,16 +278,8 @@ fn a_host_with_another_version_of_a_solver_is_refused() {
     assert!(shard("1/2").status().unwrap().success());
     let newer = failing_ccx(&replay.work.path(""), "");
     let text = std::fs::read_to_string(&newer).unwrap();
-    std::fs::write(
-        &newer,
-        text.replace("ccx -v", "echo 'This is Version 2.99'"),
-    )
-    .unwrap();
-    let message = failure(
-        shard("2/2")
-            .env("KIRIGAMI_HOST", "b")
-            .env("KIRIGAMI_CCX", &newer),
-    );
+    std::fs::write(&newer, text.replace("ccx -v", "echo 'This is Version 2.99'")).unwrap();
+    let message = failure(shard("2/2").env("KIRIGAMI_HOST", "b").env("KIRIGAMI_CCX", &newer));
     assert!(
         message.contains("b has gmsh")
             && message.contains("ccx 2.99")
@@ -331,7 +306,8 @@ fn a_file_system_without_locks_is_no_obstacle() {
     assert_eq!(timeless(&replay.collected("unlocked")), whole);
 }
 
-/// It is killed before each of its renames in turn: there is always a whole database, and the same command works.
+/// It is killed before each of its renames in turn: there is always a whole database, and the same
+/// command works.
 #[test]
 fn a_database_that_is_replaced_is_the_old_one_or_the_new_one() {
     let replay = Replay::new();
@@ -365,7 +341,8 @@ fn a_database_that_is_replaced_is_the_old_one_or_the_new_one() {
     for call in ["rename", "renameat", "renameat2"] {
         found.extend((1..).map_while(|number| killed_at(call, number)));
     }
-    // Before each of the three: the Parquet file, the manifest, which decides, and the name of the Parquet file.
+    // Before each of the three: the Parquet file, the manifest, which decides, and the name of the
+    // Parquet file.
     found.sort_by_key(|hash| *hash == new);
     assert_eq!(found, [old.clone(), old, new]);
 }
@@ -412,10 +389,7 @@ fn a_ray_that_is_solved_differently_is_named() {
     let check = || replay.campaign("check", "checked", "--every 2");
     let same = check().stdout(Stdio::piped()).output().unwrap();
     let text = String::from_utf8(same.stdout).unwrap();
-    assert!(
-        same.status.success() && text.contains("3 rays solved again"),
-        "{text}"
-    );
+    assert!(same.status.success() && text.contains("3 rays solved again"), "{text}");
 
     // One digit of the first forces of a ray.
     let index = std::fs::read_to_string(replay.work.path("checked/campaign.json")).unwrap();
@@ -424,16 +398,8 @@ fn a_ray_that_is_solved_differently_is_named() {
     let output = replay.work.path(&format!("recorded/{job}.dat"));
     let text = std::fs::read_to_string(&output).unwrap();
     let place = text.find("E-").unwrap() - 3;
-    let digit = if &text[place..=place] == "5" {
-        "6"
-    } else {
-        "5"
-    };
-    std::fs::write(
-        &output,
-        [&text[..place], digit, &text[place + 1..]].concat(),
-    )
-    .unwrap();
+    let digit = if &text[place..=place] == "5" { "6" } else { "5" };
+    std::fs::write(&output, [&text[..place], digit, &text[place + 1..]].concat()).unwrap();
     let differs = check().stdout(Stdio::piped()).output().unwrap();
     assert_eq!(differs.status.code(), Some(1));
     let text = String::from_utf8(differs.stdout).unwrap();
@@ -444,11 +410,7 @@ fn a_ray_that_is_solved_differently_is_named() {
 fn a_stopped_solve_has_the_exit_code_of_stopped_runs() {
     let work = Workplace::new();
     let mut solve = work.program("solve --tier paper --theta-deg 60 --out one");
-    let mut solve = solve
-        .stdout(Stdio::null())
-        .stderr(Stdio::null())
-        .spawn()
-        .unwrap();
+    let mut solve = solve.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
     while !work.path("one/window.sta").exists() {
         assert!(solve.try_wait().unwrap().is_none(), "the solve has ended");
         std::thread::sleep(Duration::from_millis(20));

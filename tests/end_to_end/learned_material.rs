@@ -15,9 +15,7 @@ fn learn(material: &str, options: &str) -> String {
 }
 
 fn learn_from(weights: &[&str], material: &str, options: &str) -> String {
-    let from = weights
-        .iter()
-        .map(|name| format!("--from {}", shipped(name).display()));
+    let from = weights.iter().map(|name| format!("--from {}", shipped(name).display()));
     let from: Vec<String> = from.collect();
     format!("material learn {} {material} {options}", from.join(" "))
 }
@@ -50,7 +48,8 @@ fn shorten(work: &Workplace) {
     work.edit("learned/fine-tuning.toml", &[("epochs = 80", "epochs = 3")]);
 }
 
-/// The summary of the spot check's database, and the number of states in the first round of learn.csv.
+/// The summary of the spot check's database, and the number of states in the first round of
+/// learn.csv.
 fn spot_check(work: &Workplace) -> (String, String) {
     let summary = work.output("dataset summary learned/spot-check.parquet");
     let table = std::fs::read_to_string(work.path("learned/learn.csv")).unwrap();
@@ -84,10 +83,8 @@ fn spoil_last_states(solves: &Path) {
 #[test]
 fn a_stopped_run_is_continued_and_its_folder_belongs_to_one_material() {
     let work = Workplace::new();
-    let stopped = work
-        .program(&learn(POLYPROPYLENE, &format!("{OPTIONS} --time 0s")))
-        .output()
-        .unwrap();
+    let stopped =
+        work.program(&learn(POLYPROPYLENE, &format!("{OPTIONS} --time 0s"))).output().unwrap();
     assert_eq!(stopped.status.code(), Some(75), "{stopped:?}");
     let said = String::from_utf8_lossy(&stopped.stdout);
     assert!(said.contains("no weights yet"), "{said}");
@@ -107,18 +104,13 @@ fn a_stopped_run_is_continued_and_its_folder_belongs_to_one_material() {
     let rays: Vec<f64> = rows.iter().map(|row| row[0]).collect();
     assert_eq!(rays, [6.0, 12.0]);
     // All rays reach their ends, and W has an error.
-    assert!(
-        rows.iter().all(|row| row[1] == 1.0 && row[6] > 0.0),
-        "{table}"
-    );
+    assert!(rows.iter().all(|row| row[1] == 1.0 && row[6] > 0.0), "{table}");
 
     // The finished rounds are read again, not solved or trained.
     let fits = work.path("learned/fits/6-rays.safetensors");
     let before = std::fs::metadata(&fits).unwrap().modified().unwrap();
-    let printed = work.output(&learn(
-        POLYPROPYLENE,
-        &format!("{OPTIONS} --accuracy 100% --forces 100%"),
-    ));
+    let printed =
+        work.output(&learn(POLYPROPYLENE, &format!("{OPTIONS} --accuracy 100% --forces 100%")));
     for text in [
         "accurate enough",
         "asked 100 %",
@@ -126,10 +118,7 @@ fn a_stopped_run_is_continued_and_its_folder_belongs_to_one_material() {
     ] {
         assert!(printed.contains(text), "{text}: {printed}");
     }
-    assert_eq!(
-        std::fs::metadata(&fits).unwrap().modified().unwrap(),
-        before
-    );
+    assert_eq!(std::fs::metadata(&fits).unwrap().modified().unwrap(), before);
     // Accurate enough are also the weights of six rays, but twelve are solved.
     let card = std::fs::read_to_string(work.path("learned/weights.json")).unwrap();
     let card: serde_json::Value = serde_json::from_str(&card).unwrap();
@@ -140,10 +129,7 @@ fn a_stopped_run_is_continued_and_its_folder_belongs_to_one_material() {
     assert!(summary.contains("12 rows of 3 rays"), "{summary}");
     assert_eq!(states, "12");
     spoil_last_states(&work.path("learned/spot-check/solves"));
-    work.output(&learn(
-        POLYPROPYLENE,
-        &format!("{OPTIONS} --accuracy 100% --forces 100%"),
-    ));
+    work.output(&learn(POLYPROPYLENE, &format!("{OPTIONS} --accuracy 100% --forces 100%")));
     let (summary, states) = spot_check(&work);
     assert!(summary.contains("rejected"), "{summary}");
     assert!(
@@ -162,24 +148,14 @@ fn a_stopped_run_is_continued_and_its_folder_belongs_to_one_material() {
     let options = format!("{OPTIONS} --accuracy 100% --forces 100%");
     work.output(&learn_from(&["small"], POLYPROPYLENE, &options));
     let card = work.output("surrogate card learned/weights.safetensors");
-    assert!(
-        card.contains("fine-tuned from") && !card.contains("distilled from"),
-        "{card}"
-    );
+    assert!(card.contains("fine-tuned from") && !card.contains("distilled from"), "{card}");
     // Several networks must have the same sizes.
     let message =
         failure(&mut work.program(&learn_from(&["medium-1", "small"], POLYPROPYLENE, &options)));
-    assert!(
-        message.contains("small.safetensors: its layers have other sizes"),
-        "{message}"
-    );
+    assert!(message.contains("small.safetensors: its layers have other sizes"), "{message}");
 
     for (material, options, expected) in [
-        (
-            "configs/materials/s235-1.5mm.toml",
-            OPTIONS,
-            "another material law",
-        ),
+        ("configs/materials/s235-1.5mm.toml", OPTIONS, "another material law"),
         (POLYPROPYLENE, "--out learned", "pass --tier tiny"),
     ] {
         let message = failure(&mut work.program(&learn(material, options)));
@@ -195,14 +171,8 @@ fn unsuitable_weights_are_refused_before_a_window_is_solved() {
     card.damage_sharpness = 9.0;
     let sharper = Surrogate::from_parts(small.layers(), card).unwrap();
     let path = work.path("sharper");
-    sharper
-        .save(&path.with_added_extension("safetensors"))
-        .unwrap();
-    let message = work.error(&learn_from(
-        &[path.to_str().unwrap()],
-        POLYPROPYLENE,
-        OPTIONS,
-    ));
+    sharper.save(&path.with_added_extension("safetensors")).unwrap();
+    let message = work.error(&learn_from(&[path.to_str().unwrap()], POLYPROPYLENE, OPTIONS));
     assert!(
         message.contains("sharper.safetensors") && message.contains("damage_sharpness"),
         "{message}"

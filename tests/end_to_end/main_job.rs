@@ -1,6 +1,8 @@
-//! The main job from end to end with the real gmsh and CalculiX: campaign, database, weights, design, verification.
+//! The main job from end to end with the real gmsh and CalculiX: campaign, database, weights,
+//! design, verification.
 //!
-//! One story in steps, because each needs the files of those before it. A step that fails is named before its message.
+//! One story in steps, because each needs the files of those before it. A step that fails is named
+//! before its message.
 
 use crate::common::{Workplace, assert_contains};
 use dataset::Database;
@@ -55,10 +57,7 @@ fn small_demo() -> Workplace {
             ("median_deg = 20.0", "median_deg = 15.0"),
         ],
     );
-    work.edit(
-        "configs/training/demo.toml",
-        &[("epochs = 300", "epochs = 20")],
-    );
+    work.edit("configs/training/demo.toml", &[("epochs = 300", "epochs = 20")]);
     work.edit("configs/scenes/demo.toml", &[("steps = 150", "steps = 3")]);
     work
 }
@@ -142,12 +141,7 @@ fn hinges_of_the_design_are_solved_once(work: &Workplace) {
     let page = work.output(replay);
     assert_contains(
         &page,
-        &[
-            "The design ",
-            "runs/demo/design/state.json: ",
-            "states of 12 hinges",
-            " M_theta ",
-        ],
+        &["The design ", "runs/demo/design/state.json: ", "states of 12 hinges", " M_theta "],
     );
     let states = std::fs::read_to_string(work.path("replay/replay.csv")).unwrap();
     assert!(states.lines().count() > 12 * 5, "{states}");
@@ -158,8 +152,9 @@ fn hinges_of_the_design_are_solved_once(work: &Workplace) {
     assert!(again.elapsed() < Duration::from_secs(5), "solved once");
 }
 
-/// Six rays make no law whose corrections converge. The corrections of the shipped weights converge, though the
-/// coarsest mesh is far from these weights: the panels move less in every round.
+/// Six rays make no law whose corrections converge. The corrections of the shipped weights
+/// converge, though the coarsest mesh is far from these weights: the panels move less in every
+/// round.
 fn balance(rounds: usize) -> String {
     format!(
         "verify shipped.toml --design runs/demo/design/state.json --equilibrium --rounds {rounds} --tier tiny --out balance --json"
@@ -193,20 +188,15 @@ fn a_failed_round_keeps_the_rounds_before(work: &Workplace) {
     let mut further = work.program(&balance(3));
     further.env("KIRIGAMI_CCX", failing_ccx(&work.path(""), diverging));
     assert!(further.output().unwrap().status.success());
-    assert_contains(
-        &balance_page(work),
-        &["a further round failed: ", "\n| 2 |"],
-    );
+    assert_contains(&balance_page(work), &["a further round failed: ", "\n| 2 |"]);
 }
 
 fn weights_are_tested_on_the_spot_check(work: &Workplace) {
     let test = "surrogate test runs/demo/surrogate.safetensors runs/demo/spot-check.parquet";
     let card = || json(&std::fs::read_to_string(work.path("runs/demo/surrogate.json")).unwrap());
-    // Six rays do not cover the region in which the states are drawn; the rays of the shipped weights cover most of it.
-    let tested = [
-        "tested on tier tiny, 3 rays",
-        " of 12 states inside the training domain",
-    ];
+    // Six rays do not cover the region in which the states are drawn; the rays of the shipped
+    // weights cover most of it.
+    let tested = ["tested on tier tiny, 3 rays", " of 12 states inside the training domain"];
     assert_contains(&work.output(test), &tested);
     let shipped = test.replace("runs/demo/surrogate.safetensors", SHIPPED_WEIGHTS);
     let page = work.output(&shipped);
@@ -233,16 +223,9 @@ fn rays_are_proposed_where_hinges_leave_the_domain(work: &Workplace) {
     let further = std::fs::read_to_string(work.path("configs/campaigns/further.csv")).unwrap();
     let rays = further.lines().count() - 1;
     assert!((1..=12).contains(&rays), "{further}");
-    work.edit(
-        CAMPAIGN,
-        &[(
-            "spot_rays = 3",
-            "extra_rays = \"further.csv\"\nspot_rays = 3",
-        )],
-    );
-    let plan = json(&work.output(&format!(
-        "campaign plan {CAMPAIGN} --folder runs/demo/campaign --json"
-    )));
+    work.edit(CAMPAIGN, &[("spot_rays = 3", "extra_rays = \"further.csv\"\nspot_rays = 3")]);
+    let plan =
+        json(&work.output(&format!("campaign plan {CAMPAIGN} --folder runs/demo/campaign --json")));
     let open = plan["tally"]["open"].as_u64().unwrap() as usize;
     assert_eq!(open, rays, "{plan}");
     work.edit(CAMPAIGN, &[("extra_rays = \"further.csv\"\n", "")]);
@@ -251,14 +234,8 @@ fn rays_are_proposed_where_hinges_leave_the_domain(work: &Workplace) {
 fn a_folder_keeps_its_campaign_and_its_scene(work: &Workplace) {
     let before = events(work);
     work.edit(CAMPAIGN, &[("name = \"demo\"", "name = \"other\"")]);
-    assert_contains(
-        &work.error(RUN),
-        &["contains the campaign `demo`, not `other`"],
-    );
-    work.edit(
-        "configs/scenes/demo.toml",
-        &[("[27.85, 0.0]", "[20.0, 0.0]")],
-    );
+    assert_contains(&work.error(RUN), &["contains the campaign `demo`, not `other`"]);
+    work.edit("configs/scenes/demo.toml", &[("[27.85, 0.0]", "[20.0, 0.0]")]);
     assert_contains(
         &work.error("design configs/scenes/demo.toml"),
         &["another run, the key `loads` changed"],

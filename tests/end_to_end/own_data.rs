@@ -73,38 +73,24 @@ fn a_table_becomes_weights_that_predict_it() {
     }
     // The table has no D_peak.
     let card = work.output(&format!("surrogate card {WEIGHTS}"));
-    let damage = card
-        .lines()
-        .find(|line| line.contains("damage D_peak"))
-        .unwrap();
-    assert!(
-        damage.trim_end().ends_with('-') && !damage.contains('%'),
-        "{damage}"
-    );
+    let damage = card.lines().find(|line| line.contains("damage D_peak")).unwrap();
+    assert!(damage.trim_end().ends_with('-') && !damage.contains('%'), "{damage}");
     for name in ["own-last.safetensors", "own-seed-1.json", "own-parity.png"] {
         assert!(work.path("runs").join(name).exists(), "{name}");
     }
     assert!(!work.path("runs/own.state").exists());
 
     let tested = work.output(&format!("surrogate test {WEIGHTS} {DATABASE}"));
-    let energy = tested
-        .lines()
-        .find(|line| line.contains("W, relative to its root mean square"))
-        .unwrap();
-    let percent: f64 = energy
-        .split_whitespace()
-        .find_map(|word| word.parse().ok())
-        .unwrap();
+    let energy =
+        tested.lines().find(|line| line.contains("W, relative to its root mean square")).unwrap();
+    let percent: f64 = energy.split_whitespace().find_map(|word| word.parse().ok()).unwrap();
     assert!(
         tested.contains("30 rays") && tested.contains("of 300 states inside") && percent < 20.0,
         "{tested}"
     );
 
     let card = work.output(&format!("surrogate card {WEIGHTS}"));
-    assert!(
-        card.contains("PET film 0.5 mm") && card.contains("edge"),
-        "{card}"
-    );
+    assert!(card.contains("PET film 0.5 mm") && card.contains("edge"), "{card}");
 
     let tuned = format!("{train} --from {WEIGHTS} --out runs/tuned.safetensors");
     work.output(&tuned);
@@ -167,9 +153,8 @@ fn a_database_is_compared_with_another_of_the_same_rays() {
     std::fs::write(work.path("stiff.csv"), stiffer).unwrap();
     let import = "dataset import stiff.csv --columns configs/import/example.toml";
     work.output(&format!("{import} --out stiff.parquet"));
-    let output = work.output(&format!(
-        "dataset compare stiff.parquet {DATABASE} --out results/tiers"
-    ));
+    let output =
+        work.output(&format!("dataset compare stiff.parquet {DATABASE} --out results/tiers"));
     assert!(output.contains("300 states of 30 rays"), "{output}");
     let page = std::fs::read_to_string(work.path("results/tiers/compare.md")).unwrap();
     let row = "| F_s | 5.00 % | 5.00 % | 5.00 % | 5.00 % |";
@@ -193,11 +178,7 @@ fn a_measured_curve_is_a_material() {
     std::fs::write(work.path("configs/materials/curve.csv"), curve).unwrap();
     let text = std::fs::read_to_string(work.path(file)).unwrap();
     let (head, _) = text.split_once("plastic = [").unwrap();
-    std::fs::write(
-        work.path(file),
-        format!("{head}tensile_csv = \"curve.csv\"\n"),
-    )
-    .unwrap();
+    std::fs::write(work.path(file), format!("{head}tensile_csv = \"curve.csv\"\n")).unwrap();
     let solve = format!("solve --material {file} --tier tiny --theta-deg 3");
     let json = work.output(&format!("{solve} --json"));
     let solved: serde_json::Value = serde_json::from_str(&json).unwrap();
@@ -267,10 +248,7 @@ fn compared(work: &Workplace, name: &str) -> Vec<String> {
 #[test]
 fn seeds_that_are_stopped_continue_and_one_is_chosen() {
     let work = workplace();
-    work.edit(
-        "configs/training/demo.toml",
-        &[("epochs = 150", "epochs = 40")],
-    );
+    work.edit("configs/training/demo.toml", &[("epochs = 150", "epochs = 40")]);
     let train = format!("train {DATABASE} --config configs/training/demo.toml");
     work.output(&format!("{train} --seeds 3 --out runs/whole.safetensors"));
 
@@ -295,20 +273,12 @@ fn seeds_that_are_stopped_continue_and_one_is_chosen() {
     let read = |name: &str| std::fs::read(work.path(&format!("runs/{name}"))).unwrap();
     let best = read(&format!("array-seed-{seed}.safetensors"));
     assert!(best == read("array.safetensors"));
-    for name in [
-        "array-seeds.md",
-        "array-parity.png",
-        "array-last.safetensors",
-    ] {
+    for name in ["array-seeds.md", "array-parity.png", "array-last.safetensors"] {
         assert!(work.path("runs").join(name).exists(), "{name}");
     }
 
     // The same command trains nothing again; a seed whose files are lost is trained again.
-    let files = [
-        "array-seed-0.state",
-        "array-seed-2.safetensors",
-        "array.safetensors",
-    ];
+    let files = ["array-seed-0.state", "array-seed-2.safetensors", "array.safetensors"];
     let before = files.map(read);
     work.output(&seeds);
     assert!(files.map(read) == before);
@@ -318,10 +288,7 @@ fn seeds_that_are_stopped_continue_and_one_is_chosen() {
     assert_eq!(compared(&work, "array"), table);
 
     // Weights of another training are replaced on request only.
-    work.edit(
-        "configs/training/demo.toml",
-        &[("epochs = 40", "epochs = 20")],
-    );
+    work.edit("configs/training/demo.toml", &[("epochs = 40", "epochs = 20")]);
     assert!(work.error(&seeds).contains("exists"));
     work.output(&format!("{seeds} --replace"));
     assert_ne!(compared(&work, "array"), table);

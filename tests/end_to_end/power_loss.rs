@@ -1,5 +1,5 @@
-//! What a loss of power can leave: the system calls of a run are replayed against a disk that keeps only what was
-//! synced, and any part of the rest.
+//! What a loss of power can leave: the system calls of a run are replayed against a disk that keeps
+//! only what was synced, and any part of the rest.
 
 use crate::common::Workplace;
 use std::collections::{HashMap, HashSet};
@@ -48,10 +48,7 @@ impl Disk {
         let depends =
             |name: &&String| is_data(name) && (job.starts_with(*name) || folder(name) == job);
         let lost: Vec<_> = self.unsynced_names.iter().filter(depends).collect();
-        assert!(
-            lost.is_empty(),
-            "{job}/result.json may be left without {lost:?}"
-        );
+        assert!(lost.is_empty(), "{job}/result.json may be left without {lost:?}");
     }
 }
 
@@ -64,8 +61,8 @@ fn folder(path: &str) -> &str {
     path.rsplit_once('/').map_or("", |(folder, _)| folder)
 }
 
-/// The system calls in the output of `strace -f -y`: their names, and the paths in their arguments that begin with
-/// `below`. A call that another thread interrupts stands in two lines.
+/// The system calls in the output of `strace -f -y`: their names, and the paths in their arguments
+/// that begin with `below`. A call that another thread interrupts stands in two lines.
 fn system_calls(trace: &str, below: &str) -> Vec<(String, Vec<String>)> {
     let mut unfinished: HashMap<&str, String> = HashMap::new();
     let mut calls = Vec::new();
@@ -91,9 +88,7 @@ fn system_calls(trace: &str, below: &str) -> Vec<(String, Vec<String>)> {
         }
         // A path is the text of an argument, or stands in <> after the number of an open file.
         let paths = arguments.split(['"', '<', '>']);
-        let paths = paths
-            .filter(|text| text.starts_with(below))
-            .map(str::to_owned);
+        let paths = paths.filter(|text| text.starts_with(below)).map(str::to_owned);
         calls.push((call.to_owned(), paths.collect()));
     }
     calls
@@ -113,26 +108,14 @@ fn a_loss_of_power_at_any_moment_leaves_whole_files_and_whole_jobs() {
     );
     let folder = work.path("runs");
     let below = folder.parent().unwrap().to_str().unwrap();
-    let run = work.program(&format!(
-        "campaign run configs/campaigns/demo.toml --folder {below}/runs/demo"
-    ));
+    let run = work
+        .program(&format!("campaign run configs/campaigns/demo.toml --folder {below}/runs/demo"));
     let calls =
         "trace=write,pwrite64,writev,fsync,fdatasync,rename,renameat,renameat2,mkdir,mkdirat";
     let mut traced = Command::new("strace");
     // `-s 0` omits what is written, but no path.
     traced
-        .args([
-            "-f",
-            "-y",
-            "-qqq",
-            "--seccomp-bpf",
-            "-s",
-            "0",
-            "-o",
-            "trace",
-            "-e",
-            calls,
-        ])
+        .args(["-f", "-y", "-qqq", "--seccomp-bpf", "-s", "0", "-o", "trace", "-e", calls])
         .arg(run.get_program())
         .args(run.get_args())
         .current_dir(work.path(""))
@@ -150,10 +133,6 @@ fn a_loss_of_power_at_any_moment_leaves_whole_files_and_whole_jobs() {
     }
     assert_eq!(results, 2, "{trace}");
     // What the run has reported is on the disk.
-    let lost: Vec<_> = disk
-        .unsynced_names
-        .iter()
-        .filter(|name| is_data(name))
-        .collect();
+    let lost: Vec<_> = disk.unsynced_names.iter().filter(|name| is_data(name)).collect();
     assert!(lost.is_empty(), "{lost:?}");
 }

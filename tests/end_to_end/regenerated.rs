@@ -1,5 +1,5 @@
-//! A campaign file says everything: the commands of docs/CAMPAIGN.md make its database, its spot check and its weights, the
-//! same ones every time.
+//! A campaign file says everything: the commands of docs/CAMPAIGN.md make its database, its spot
+//! check and its weights, the same ones every time.
 
 use crate::common::{Workplace, timeless};
 use crate::fake_solver::{FakeSolver, Fault};
@@ -30,10 +30,7 @@ fn small_demo(changes: &[(&str, &str)]) -> Workplace {
         ],
     );
     work.edit(CAMPAIGN, changes);
-    work.edit(
-        "configs/training/demo.toml",
-        &[("epochs = 300", "epochs = 5")],
-    );
+    work.edit("configs/training/demo.toml", &[("epochs = 300", "epochs = 5")]);
     work
 }
 
@@ -51,16 +48,10 @@ fn regenerate(work: &Workplace) -> String {
     let commands: Vec<String> = commands.collect();
     let verbs = ["campaign plan", "campaign run", "campaign collect", "train"];
     for (command, verb) in std::iter::zip(&commands, verbs) {
-        assert!(
-            command.starts_with(verb) && command.contains(CAMPAIGN),
-            "{command}"
-        );
+        assert!(command.starts_with(verb) && command.contains(CAMPAIGN), "{command}");
     }
     assert_eq!(commands.len(), verbs.len());
-    commands
-        .iter()
-        .map(|command| work.output(command))
-        .collect()
+    commands.iter().map(|command| work.output(command)).collect()
 }
 
 fn database(work: &Workplace, name: &str) -> Database {
@@ -102,10 +93,7 @@ fn a_database_and_its_weights_are_regenerated_to_the_digits() {
             let card = network(work, name).card().clone();
             card.spot_check.expect("the spot check is recorded")
         });
-        assert_eq!(
-            (check.errors.rows, check.tier.as_deref()),
-            (12, Some("tiny"))
-        );
+        assert_eq!((check.errors.rows, check.tier.as_deref()), (12, Some("tiny")));
         assert_eq!(check, same, "{name}");
     }
     // Four networks of four seeds.
@@ -118,10 +106,7 @@ fn a_database_and_its_weights_are_regenerated_to_the_digits() {
     // Networks may begin from weights of another material.
     let base = network(&once, "demo");
     base.save(&once.path("runs/base.safetensors")).unwrap();
-    let (key, named) = (
-        "spot_rays",
-        "pretrained = [\"../../runs/base.safetensors\"]\nspot_rays",
-    );
+    let (key, named) = ("spot_rays", "pretrained = [\"../../runs/base.safetensors\"]\nspot_rays");
     once.edit(CAMPAIGN, &[(key, named)]);
     once.output(&format!("train {CAMPAIGN} --replace"));
     for name in NETWORKS {
@@ -130,15 +115,9 @@ fn a_database_and_its_weights_are_regenerated_to_the_digits() {
     }
     let other =
         Path::new(env!("CARGO_MANIFEST_DIR")).join("surrogate/tests/cases/chi_tiny.safetensors");
-    once.edit(
-        CAMPAIGN,
-        &[("../../runs/base.safetensors", other.to_str().unwrap())],
-    );
+    once.edit(CAMPAIGN, &[("../../runs/base.safetensors", other.to_str().unwrap())]);
     let refused = once.error(&format!("train {CAMPAIGN}"));
-    assert!(
-        refused.contains("no training has a network of the sizes of"),
-        "{refused}"
-    );
+    assert!(refused.contains("no training has a network of the sizes of"), "{refused}");
 }
 
 /// Hinges that are a tenth too stiff on the mesh `tiny`, and right on any other.
@@ -167,7 +146,8 @@ impl Solver for Meshes {
     }
 }
 
-/// The rays that are solved on both meshes are in one database, and the training corrects the others by them.
+/// The rays that are solved on both meshes are in one database, and the training corrects the
+/// others by them.
 #[test]
 fn rays_on_a_finer_mesh_correct_the_others() {
     let work = small_demo(&[
@@ -180,11 +160,7 @@ fn rays_on_a_finer_mesh_correct_the_others() {
         tiny: FakeSolver::new(stiffness.map(|k| 1.1 * k), |_| None),
         other: FakeSolver::new(stiffness, |_| None),
     };
-    let options = RunOptions {
-        shard: Shard::WHOLE,
-        workers: 1,
-        time_limit: None,
-    };
+    let options = RunOptions { shard: Shard::WHOLE, workers: 1, time_limit: None };
     let (folder, stop) = (work.path("runs/demo"), AtomicBool::new(false));
     run(&campaign, &folder, &solver, &options, &stop, &mut |_| {}).unwrap();
 

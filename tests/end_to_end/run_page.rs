@@ -1,4 +1,5 @@
-//! The page of a run in a browser: its scripts run without an error, and what it shows is what the report says.
+//! The page of a run in a browser: its scripts run without an error, and what it shows is what the
+//! report says.
 
 use crate::browser::Tab;
 use crate::common::Workplace;
@@ -16,7 +17,8 @@ fn opened(work: &Workplace, run: &str, address: &str) -> (String, Value) {
     let document = document.as_str().unwrap().to_owned();
     let start: String = document.chars().take(300).collect();
     assert!(!start.contains("data-error"), "{start}");
-    // The gauge of the training domain in the page agrees with the run at every state of every hinge.
+    // The gauge of the training domain in the page agrees with the run at every state of every
+    // hinge.
     assert!(start.contains("data-disagreements=\"0\""), "{start}");
     let report = std::fs::read_to_string(work.path(run).join("report.json")).unwrap();
     (document, serde_json::from_str(&report).unwrap())
@@ -48,10 +50,7 @@ fn a_sheet_of_springs_shows_its_loads_and_the_numbers_of_a_hinge() {
     let work = Workplace::new();
     let opened_hinge =
         "[[opening_couples]]\npanels = [[1, 1], [2, 1]]\ncouple = 5.0\n\n[target.circle]";
-    work.edit(
-        "configs/scenes/linear-7x7.toml",
-        &[("[target.circle]", opened_hinge)],
-    );
+    work.edit("configs/scenes/linear-7x7.toml", &[("[target.circle]", opened_hinge)]);
     work.output("design configs/scenes/linear-7x7.toml --steps 2 --out run");
     let (document, report) = opened(&work, "run", "hinge=17&quantity=moment");
     // One label for each of the four forces, and for the two couples that open a hinge.
@@ -62,16 +61,11 @@ fn a_sheet_of_springs_shows_its_loads_and_the_numbers_of_a_hinge() {
     ));
     assert!(document.contains("Load step 10 of 10 \u{b7} load factor 1 \u{b7} load 160 N"));
     let row = &report["hinges"][17];
-    for (name, key, unit) in [
-        ("w_lig", "w_lig", 1e-2),
-        ("\u{3b8}", "theta_deg", 1e-2),
-        ("\u{3b7}_a", "eta_a", 1e-4),
-    ] {
+    for (name, key, unit) in
+        [("w_lig", "w_lig", 1e-2), ("\u{3b8}", "theta_deg", 1e-2), ("\u{3b7}_a", "eta_a", 1e-4)]
+    {
         let (found, expected) = (number(cell(&document, name)), row[key].as_f64().unwrap());
-        assert!(
-            (found - expected).abs() <= 0.51 * unit,
-            "{name}: {found} {expected}"
-        );
+        assert!((found - expected).abs() <= 0.51 * unit, "{name}: {found} {expected}");
     }
     assert!(
         !document.contains("<td>D_peak</td>")
@@ -113,10 +107,7 @@ fn the_page_is_dark_on_a_dark_screen() {
 fn a_learned_sheet_shows_damage_and_the_training_domain() {
     let work = Workplace::new();
     // So large a load drives hinges out of the training domain, and one by more than its width.
-    work.edit(
-        "configs/scenes/pet-3x3.toml",
-        &[("[27.85, 0.0]", "[600.0, 0.0]")],
-    );
+    work.edit("configs/scenes/pet-3x3.toml", &[("[27.85, 0.0]", "[600.0, 0.0]")]);
     let design = "design configs/scenes/pet-3x3.toml --steps 1 --out run \
                   --weights data/pet-0.5mm/small.safetensors";
     assert!(work.error(design).contains("no cut file"));
@@ -124,10 +115,7 @@ fn a_learned_sheet_shows_damage_and_the_training_domain() {
     let report: Value = serde_json::from_str(&report).unwrap();
     let hinges = report["hinges"].as_array().unwrap();
     let inside = |row: &Value| row["inside"].as_bool().unwrap();
-    let left = hinges
-        .iter()
-        .position(|row| !inside(row))
-        .expect("a hinge leaves the domain");
+    let left = hinges.iter().position(|row| !inside(row)).expect("a hinge leaves the domain");
     let (document, _) = opened(&work, "run", &format!("hinge={left}&quantity=d_peak"));
     assert_eq!(cell(&document, "D_peak"), "not known");
     assert!(document.contains("left it at load step") && document.contains("left the domain:"));
@@ -136,15 +124,10 @@ fn a_learned_sheet_shows_damage_and_the_training_domain() {
         document.contains("Shaded: the training domain")
             || document.contains("No state with these")
     );
-    let stays = hinges
-        .iter()
-        .position(inside)
-        .expect("a hinge stays inside");
+    let stays = hinges.iter().position(inside).expect("a hinge stays inside");
     let (document, _) = opened(&work, "run", &format!("hinge={stays}"));
-    let (found, expected) = (
-        number(cell(&document, "maximum")),
-        hinges[stays]["damage"].as_f64().unwrap(),
-    );
+    let (found, expected) =
+        (number(cell(&document, "maximum")), hinges[stays]["damage"].as_f64().unwrap());
     assert!((found / expected - 1.0).abs() < 1e-2, "{found} {expected}");
 }
 
@@ -158,22 +141,17 @@ fn a_hostile_title_is_only_text_and_the_page_prints_on_two_sheets() {
     );
     work.output("design configs/scenes/pin-7x7.toml --steps 1 --out run");
     let (document, _) = opened(&work, "run", "state=3");
-    assert!(
-        document.contains("<h1 id=\"title\">&lt;/script&gt;&lt;script&gt;"),
-        "shown as text"
-    );
+    assert!(document.contains("<h1 id=\"title\">&lt;/script&gt;&lt;script&gt;"), "shown as text");
     assert!(!document.contains("<title>taken"));
     assert_eq!(printed_pages(&work), 2);
 }
 
-/// A browser, the second reader of cut files: slots and outline have the size of the sheet, arcs included, 5 mm from the corner of the page.
+/// A browser, the second reader of cut files: slots and outline have the size of the sheet, arcs
+/// included, 5 mm from the corner of the page.
 #[test]
 fn a_browser_reads_the_cut_file_as_large_as_the_sheet() {
     let work = Workplace::new();
-    let scene = concat!(
-        env!("CARGO_MANIFEST_DIR"),
-        "/configs/scenes/a4-plate-service.toml"
-    );
+    let scene = concat!(env!("CARGO_MANIFEST_DIR"), "/configs/scenes/a4-plate-service.toml");
     let cut = format!("cut {scene} --for laser-service --design start --json --out cut");
     let said = work.output(&cut);
     let said: Value = serde_json::from_str(&said).unwrap();

@@ -1,6 +1,6 @@
-//! A campaign of many rays, whose folders are written from the shipped rows: the time, memory and files that `status` and
-//! `collect` need. It asserts little and prints much:
-//! `RAYS=10000 cargo test --release --test end_to_end scale -- --ignored --nocapture`
+//! A campaign of many rays, whose folders are written from the shipped rows: the time, memory and
+//! files that `status` and `collect` need. It asserts little and prints much: `RAYS=10000 cargo
+//! test --release --test end_to_end scale -- --ignored --nocapture`
 
 use crate::common::Workplace;
 use dataset::Database;
@@ -53,10 +53,7 @@ fn the_cost_of_many_rays() {
     let windows: Vec<CollectedWindow> = solves.map(collected).collect();
     let start = Instant::now();
     restore(&campaign, &folder, &windows).unwrap();
-    println!(
-        "{count} rays written in {:.1} s",
-        start.elapsed().as_secs_f64()
-    );
+    println!("{count} rays written in {:.1} s", start.elapsed().as_secs_f64());
     drop(windows);
     let (files, bytes) = size(&folder);
     println!("{files} files and folders, {:.1} MB", bytes as f64 / 1e6);
@@ -72,8 +69,9 @@ fn the_cost_of_many_rays() {
     }
 }
 
-/// Runs a command, which must succeed; the maximum resident memory of its process (MiB). The kernel's own record of a
-/// child also counts the memory of the parent, of which it is a copy before it begins.
+/// Runs a command, which must succeed; the maximum resident memory of its process (MiB). The
+/// kernel's own record of a child also counts the memory of the parent, of which it is a copy
+/// before it begins.
 fn memory_mib(command: &mut Command) -> f64 {
     let mut child = command.stdout(Stdio::null()).spawn().unwrap();
     let status = format!("/proc/{}/status", child.id());
@@ -94,18 +92,13 @@ fn memory_mib(command: &mut Command) -> f64 {
 
 /// The number of files and folders below a folder, and their size on the disk.
 fn size(folder: &Path) -> (usize, u64) {
-    let entries = std::fs::read_dir(folder)
-        .unwrap()
-        .map(|entry| entry.unwrap());
+    let entries = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap());
     entries.fold((0, 0), |(files, bytes), entry| {
         let metadata = entry.metadata().unwrap();
         let below = match metadata.is_dir() {
             true => size(&entry.path()),
             false => (0, 0),
         };
-        (
-            files + 1 + below.0,
-            bytes + 512 * metadata.blocks() + below.1,
-        )
+        (files + 1 + below.0, bytes + 512 * metadata.blocks() + below.1)
     })
 }

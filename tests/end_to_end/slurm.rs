@@ -1,6 +1,6 @@
-//! A campaign on a real Slurm, of one controller and two nodes on this machine: tasks are cancelled, stopped, frozen
-//! until their time limit and lost with their node, the controller is restarted, and the database equals the database
-//! of one run.
+//! A campaign on a real Slurm, of one controller and two nodes on this machine: tasks are
+//! cancelled, stopped, frozen until their time limit and lost with their node, the controller is
+//! restarted, and the database equals the database of one run.
 
 use crate::common::{Workplace, failure};
 use dataset::{Database, Row, SplitPlan};
@@ -45,11 +45,7 @@ impl Cluster {
         command.stdout(Stdio::null()).stderr(errors);
         let status = command.status().unwrap();
         let stderr = std::fs::read(self.slurm.path().join("errors")).unwrap();
-        Output {
-            status,
-            stdout: Vec::new(),
-            stderr,
-        }
+        Output { status, stdout: Vec::new(), stderr }
     }
 
     fn logs(&self, output: &Output) -> String {
@@ -90,17 +86,12 @@ impl Cluster {
     }
 
     fn queue(&self) -> String {
-        let queue = self
-            .command("squeue --array --states=all")
-            .output()
-            .unwrap();
+        let queue = self.command("squeue --array --states=all").output().unwrap();
         String::from_utf8_lossy(&queue.stdout).into_owned()
     }
 
     fn submit(&self) -> String {
-        self.output(&format!(
-            "kirigami campaign submit {CAMPAIGN} --shards 4 --time 1"
-        ))
+        self.output(&format!("kirigami campaign submit {CAMPAIGN} --shards 4 --time 1"))
     }
 
     fn status(&self) -> Value {
@@ -160,27 +151,22 @@ fn environments(folder: &Path) -> Vec<(String, String)> {
 /// The Parquet file of a database with the CPU times, which no two runs share, set to zero.
 fn timeless(path: &Path) -> Vec<u8> {
     let rows = Database::read(path).unwrap().rows().to_vec();
-    let rows = rows
-        .into_iter()
-        .map(|row| Row { cpu_s: 0.0, ..row })
-        .collect();
+    let rows = rows.into_iter().map(|row| Row { cpu_s: 0.0, ..row }).collect();
     let database = Database::collect(rows, &SplitPlan::default()).unwrap();
     let path = path.with_extension("timeless.parquet");
     database.write(&path, false).unwrap();
     std::fs::read(path).unwrap()
 }
 
-/// A workplace whose `PATH` begins with scripts in place of Slurm's programs: `sbatch` counts the arrays, and fails for the
-/// job that collects; the others run `answer`.
+/// A workplace whose `PATH` begins with scripts in place of Slurm's programs: `sbatch` counts the
+/// arrays, and fails for the job that collects; the others run `answer`.
 struct Scripted {
     work: Workplace,
 }
 
 impl Scripted {
     fn new() -> Self {
-        let scripted = Self {
-            work: Workplace::new(),
-        };
+        let scripted = Self { work: Workplace::new() };
         std::fs::create_dir(scripted.work.path("bin")).unwrap();
         let arrays = scripted.work.path("arrays").display().to_string();
         scripted.script(
@@ -224,17 +210,11 @@ fn an_array_is_not_submitted_twice() {
     let slurm = Scripted::new();
     slurm.answer("true");
     let (message, arrays) = slurm.submit();
-    assert!(
-        message.contains("array 7 is submitted, but not"),
-        "{message}"
-    );
+    assert!(message.contains("array 7 is submitted, but not"), "{message}");
     assert_eq!(arrays, 1);
     slurm.answer("exit 1");
     let (message, arrays) = slurm.submit();
-    assert!(
-        message.contains("does not say whether array 7"),
-        "{message}"
-    );
+    assert!(message.contains("does not say whether array 7"), "{message}");
     assert_eq!(arrays, 1);
     // The accounting learns of a job late: its silence is no evidence.
     slurm.script("sacct", "true");
@@ -245,17 +225,15 @@ fn an_array_is_not_submitted_twice() {
 
     slurm.answer("echo '7_1|RUNNING'");
     let (message, arrays) = slurm.submit();
-    assert!(
-        message.contains("1 running") && message.contains("scancel 7"),
-        "{message}"
-    );
+    assert!(message.contains("1 running") && message.contains("scancel 7"), "{message}");
     assert_eq!(arrays, 1);
     // The queue has forgotten it: all of its tasks have ended.
     slurm.answer("true");
     assert_eq!(slurm.submit().1, 2);
 }
 
-/// The campaign has 40 rays and the 3 of its spot check. A site that refuses an array says only that its specification is invalid.
+/// The campaign has 40 rays and the 3 of its spot check. A site that refuses an array says only
+/// that its specification is invalid.
 #[test]
 fn an_array_has_no_more_tasks_than_rays_and_a_refusal_names_the_limit() {
     let slurm = Scripted::new();
@@ -266,10 +244,7 @@ fn an_array_has_no_more_tasks_than_rays_and_a_refusal_names_the_limit() {
         let submit = format!("submit {CAMPAIGN} --shards {shards} --time 1");
         let message = failure(&mut slurm.campaign(&submit));
         assert!(message.contains(&format!("{tasks} tasks: ")), "{message}");
-        assert!(
-            message.contains("MaxArraySize") && message.contains("--shards"),
-            "{message}"
-        );
+        assert!(message.contains("MaxArraySize") && message.contains("--shards"), "{message}");
     }
 }
 
@@ -342,10 +317,7 @@ fn an_array_whose_submission_was_killed_is_not_submitted_again() {
 fn hostile_names_reach_slurm_as_they_are() {
     let cluster = Cluster::up();
     let name = "a b #;&(x) ~*";
-    let (campaign, folder) = (
-        format!("configs/campaigns/{name}.toml"),
-        format!("runs/{name}"),
-    );
+    let (campaign, folder) = (format!("configs/campaigns/{name}.toml"), format!("runs/{name}"));
     std::fs::rename(cluster.work.path(CAMPAIGN), cluster.work.path(&campaign)).unwrap();
     let submit = || {
         let mut command = cluster.command("kirigami campaign submit");
@@ -381,10 +353,7 @@ fn a_campaign_on_slurm_gives_the_database_of_one_run() {
     let cluster = Cluster::up();
     let submitted = cluster.submit();
     assert!(submitted.contains("43 rays to solve"), "{submitted}");
-    let array = cluster.status()["slurm"]["array"]
-        .as_str()
-        .unwrap()
-        .to_owned();
+    let array = cluster.status()["slurm"]["array"].as_str().unwrap().to_owned();
     let again = format!("kirigami campaign submit {CAMPAIGN} --shards 4 --time 1");
     let refused = cluster.command(&again).output().unwrap();
     assert_eq!(refused.status.code(), Some(1));
@@ -400,15 +369,12 @@ fn a_campaign_on_slurm_gives_the_database_of_one_run() {
     // Task 3 loses its node, and is queued again by Slurm.
     cluster.at_work(3);
     let task = |format: &str, task: usize| {
-        let shown = cluster.output(&format!(
-            "squeue --noheader --format={format} --jobs={array}_{task}"
-        ));
+        let shown =
+            cluster.output(&format!("squeue --noheader --format={format} --jobs={array}_{task}"));
         shown.trim().to_owned()
     };
     let node = task("%N", 3);
-    cluster.output(&format!(
-        "scontrol update nodename={node} state=down reason=test"
-    ));
+    cluster.output(&format!("scontrol update nodename={node} state=down reason=test"));
     cluster.until("task 3 is queued again", || task("%T", 3) == "PENDING");
     cluster.until("the node is in service again", || {
         // A node that has returned by itself cannot be resumed.
@@ -433,9 +399,7 @@ fn a_campaign_on_slurm_gives_the_database_of_one_run() {
 
     let run = format!("kirigami campaign run {CAMPAIGN} --folder runs/whole");
     cluster.output(&run);
-    cluster.output(&format!(
-        "kirigami campaign collect {CAMPAIGN} --folder runs/whole"
-    ));
+    cluster.output(&format!("kirigami campaign collect {CAMPAIGN} --folder runs/whole"));
     let whole = timeless(&cluster.work.path("runs/whole/hinges.parquet"));
 
     let collected = cluster.work.path("runs/demo/hinges.parquet");
@@ -449,18 +413,12 @@ fn a_campaign_on_slurm_gives_the_database_of_one_run() {
     let expected = serde_json::json!({ "cancelled": 1, "completed": 2, "timeout": 1 });
     assert_eq!(status["slurm"]["tasks"], expected, "{}", cluster.queue());
     assert!(status["tally"]["open"].as_u64().unwrap() > 0, "{status}");
-    assert!(
-        !collected.exists(),
-        "nothing is collected while rays are missing"
-    );
+    assert!(!collected.exists(), "nothing is collected while rays are missing");
     let log = format!("runs/demo/slurm/demo-{array}-4.log");
     let log = std::fs::read_to_string(cluster.work.path(&log)).unwrap();
     assert!(log.contains("run the same command again"), "{log}");
     let shown = cluster.output(&format!("kirigami campaign status {CAMPAIGN}"));
-    assert!(
-        shown.contains("1 cancelled, 2 completed, 1 timeout"),
-        "{shown}"
-    );
+    assert!(shown.contains("1 cancelled, 2 completed, 1 timeout"), "{shown}");
 
     cluster.submit();
     cluster.until("the database is collected", || ended("completed"));

@@ -41,9 +41,7 @@ fn serve(folder: &'static str) -> (String, Asked) {
                 body.len()
             );
             // A browser that has ended reads no answer.
-            let _ = stream
-                .write_all(head.as_bytes())
-                .and_then(|()| stream.write_all(&body));
+            let _ = stream.write_all(head.as_bytes()).and_then(|()| stream.write_all(&body));
         }
     });
     (address, asked)
@@ -76,10 +74,7 @@ fn a_silhouette_becomes_a_cut_file_and_nothing_is_sent() {
     let text = format!("fetch({cut}).then((answer) => answer.text())");
     let file = tab.value(&text);
     assert!(file.as_str().unwrap().trim_end().ends_with("EOF"));
-    assert_eq!(
-        tab.value("document.getElementById('offline').hidden"),
-        json!(true)
-    );
+    assert_eq!(tab.value("document.getElementById('offline').hidden"), json!(true));
     let asked = asked.lock().unwrap();
     let sent = |(line, _): &&(String, usize)| !line.starts_with("GET ") || line.contains('?');
     assert_eq!(asked.iter().find(sent), None);

@@ -1,4 +1,5 @@
-//! `kirigami studio` as a person uses it: a sheet is drawn, opened, designed and cut in Chromium, and no other page is admitted.
+//! `kirigami studio` as a person uses it: a sheet is drawn, opened, designed and cut in Chromium,
+//! and no other page is admitted.
 
 use crate::browser::{PATIENCE, Tab};
 use crate::common::Workplace;
@@ -23,31 +24,18 @@ impl Studio {
         if !scene.is_empty() {
             command.arg(scene);
         }
-        let mut program = command
-            .stdout(Stdio::piped())
-            .stderr(Stdio::null())
-            .spawn()
-            .unwrap();
+        let mut program = command.stdout(Stdio::piped()).stderr(Stdio::null()).spawn().unwrap();
         let mut line = String::new();
         let mut stdout = BufReader::new(program.stdout.take().unwrap());
         stdout.read_line(&mut line).unwrap();
         // What the commands of the studio print is of no interest, but must go somewhere.
         std::thread::spawn(move || std::io::copy(&mut stdout, &mut std::io::sink()));
-        let address = line
-            .trim()
-            .strip_prefix("kirigami studio: ")
-            .unwrap()
-            .to_owned();
+        let address = line.trim().strip_prefix("kirigami studio: ").unwrap().to_owned();
         Self { program, address }
     }
 
     fn host(&self) -> &str {
-        self.address
-            .strip_prefix("http://")
-            .unwrap()
-            .split('/')
-            .next()
-            .unwrap()
+        self.address.strip_prefix("http://").unwrap().split('/').next().unwrap()
     }
 
     fn query(&self) -> &str {
@@ -57,13 +45,7 @@ impl Studio {
     /// Ends the studio as Ctrl-C does.
     fn interrupt(&mut self) {
         let id = self.program.id().to_string();
-        assert!(
-            Command::new("kill")
-                .args(["-INT", &id])
-                .status()
-                .unwrap()
-                .success()
-        );
+        assert!(Command::new("kill").args(["-INT", &id]).status().unwrap().success());
         assert!(self.program.wait().unwrap().success());
     }
 
@@ -77,31 +59,22 @@ impl Studio {
         let mut answer = Vec::new();
         let _ = stream.read_to_end(&mut answer);
         let answer = String::from_utf8_lossy(&answer).into_owned();
-        let status = answer
-            .split(' ')
-            .nth(1)
-            .and_then(|status| status.parse().ok());
+        let status = answer.split(' ').nth(1).and_then(|status| status.parse().ok());
         let (_, body) = answer.split_once("\r\n\r\n").unwrap_or_default();
         (status.unwrap_or(0), body.to_owned())
     }
 
     fn ask(&self, request: &Value) -> u16 {
         let head = format!("POST /request?{}", self.query());
-        self.raw(&head, self.host(), request.to_string().as_bytes())
-            .0
+        self.raw(&head, self.host(), request.to_string().as_bytes()).0
     }
 
     /// The stream of events.
     fn events(&self) -> BufReader<TcpStream> {
         let mut stream = TcpStream::connect(self.host()).unwrap();
         stream.set_read_timeout(Some(PATIENCE)).unwrap();
-        write!(
-            stream,
-            "GET /events?{} HTTP/1.1\r\nHost: {}\r\n\r\n",
-            self.query(),
-            self.host()
-        )
-        .unwrap();
+        write!(stream, "GET /events?{} HTTP/1.1\r\nHost: {}\r\n\r\n", self.query(), self.host())
+            .unwrap();
         BufReader::new(stream)
     }
 }
@@ -119,11 +92,7 @@ fn next(events: &mut BufReader<TcpStream>, kind: &str) -> Value {
     loop {
         let begins = line.trim() == format!("event: {kind}");
         line.clear();
-        assert_ne!(
-            events.read_line(&mut line).unwrap(),
-            0,
-            "the stream has ended"
-        );
+        assert_ne!(events.read_line(&mut line).unwrap(), 0, "the stream has ended");
         if begins {
             return serde_json::from_str(line.trim().strip_prefix("data: ").unwrap()).unwrap();
         }
@@ -234,9 +203,7 @@ fn a_sheet_is_drawn_designed_and_cut_in_the_browser() {
 
     // A drawing is dropped onto the sheet.
     let leaf = Path::new(env!("CARGO_MANIFEST_DIR")).join("configs/targets/leaf.svg");
-    after(&mut tab, |tab| {
-        tab.drop_file(leaf.to_str().unwrap(), "#stage")
-    });
+    after(&mut tab, |tab| tab.drop_file(leaf.to_str().unwrap(), "#stage"));
     assert!(scene_on_disk(&project).contains("[target.svg]"));
 
     // Undo and redo.
@@ -281,25 +248,18 @@ fn a_sheet_is_drawn_designed_and_cut_in_the_browser() {
     tab.wait(FOUND);
     let fetched = "(async () => (await fetch([...document.querySelectorAll('#files a')].find((link) => link.textContent === 'cut.dxf').href)).text())()";
     let fetched = tab.value(fetched);
-    assert_eq!(
-        tab.value("document.documentElement.dataset.error ?? null"),
-        Value::Null
-    );
+    assert_eq!(tab.value("document.documentElement.dataset.error ?? null"), Value::Null);
 
     // The command line repeats it: to the byte.
     let run = project.join("design-1");
     let repeated = work.path("repeated");
-    work.output(&format!(
-        "design {} --restart --out {}",
-        run.display(),
-        repeated.display()
-    ));
+    work.output(&format!("design {} --restart --out {}", run.display(), repeated.display()));
     let cut = |folder: &Path| std::fs::read_to_string(folder.join("cut.dxf")).unwrap();
     assert_eq!(cut(&run), cut(&repeated));
     assert_eq!(fetched, json!(cut(&run)));
 
-    // Tiles and the file of a machine, from the run of the sheet that is shown, with what services refuse. Only what was written is
-    // said to be.
+    // Tiles and the file of a machine, from the run of the sheet that is shown, with what services
+    // refuse. Only what was written is said to be.
     tab.click("#write");
     let said = "document.getElementById('progress').textContent";
     tab.wait(&format!("{said}.startsWith('nothing was written')"));
@@ -342,7 +302,8 @@ fn a_sheet_is_drawn_designed_and_cut_in_the_browser() {
     assert_eq!(scene_on_disk(&project), left);
 }
 
-/// The tutorial docs/STUDIO.md, whose pictures are written to the folder that STUDIO_PICTURES names.
+/// The tutorial docs/STUDIO.md, whose pictures are written to the folder that STUDIO_PICTURES
+/// names.
 #[test]
 fn the_tutorial_leads_from_an_empty_page_to_a_cut_sheet() {
     let folder = std::env::var_os("STUDIO_PICTURES").map(PathBuf::from);
@@ -363,9 +324,7 @@ fn the_tutorial_leads_from_an_empty_page_to_a_cut_sheet() {
     let project = work.path("studio/leaf");
     assert!(scene_on_disk(&project).contains("title = \"Leaf\""));
     let leaf = Path::new(env!("CARGO_MANIFEST_DIR")).join("configs/targets/leaf.svg");
-    after(&mut tab, |tab| {
-        tab.drop_file(leaf.to_str().unwrap(), "#stage")
-    });
+    after(&mut tab, |tab| tab.drop_file(leaf.to_str().unwrap(), "#stage"));
     tab.click("input[value=target]");
     picture(&mut tab, "target");
     tab.click("input[value=look]");
@@ -378,10 +337,7 @@ fn the_tutorial_leads_from_an_empty_page_to_a_cut_sheet() {
     tab.value("document.getElementById('studio').scrollTop = 0");
     picture(&mut tab, "cut");
     assert!(project.join("design-1/cut/tiles-a4.pdf").is_file());
-    assert_eq!(
-        tab.value("document.documentElement.dataset.error ?? null"),
-        Value::Null
-    );
+    assert_eq!(tab.value("document.documentElement.dataset.error ?? null"), Value::Null);
 }
 
 #[test]
@@ -421,14 +377,8 @@ fn panels_are_held_and_pulled_by_clicks() {
     assert!(scene_on_disk(&project).contains("panels = [4, 4]"));
     assert_eq!(tab.value("hingeCount"), json!(24));
     let now = tab.value(load).as_f64().unwrap();
-    assert!(
-        now > 0.2 * before && now < 10.0 * before,
-        "{now} N, not {before} N"
-    );
-    assert_eq!(
-        tab.value("document.getElementById('refusal').hidden"),
-        json!(true)
-    );
+    assert!(now > 0.2 * before && now < 10.0 * before, "{now} N, not {before} N");
+    assert_eq!(tab.value("document.getElementById('refusal').hidden"), json!(true));
     // A size that is too small for the material is refused with what to do.
     tab.click("#another");
     for (id, value) in [("new-width", "60"), ("new-height", "60")] {
@@ -437,10 +387,7 @@ fn panels_are_held_and_pulled_by_clicks() {
     tab.click("#new-sheet button");
     tab.wait("document.getElementById('refusal').textContent.includes('use a larger sheet')");
     tab.click("#back");
-    assert_eq!(
-        tab.value("document.getElementById('tools').hidden"),
-        json!(false)
-    );
+    assert_eq!(tab.value("document.getElementById('tools').hidden"), json!(false));
 }
 
 #[test]
@@ -462,20 +409,13 @@ fn nobody_else_is_let_in_and_floods_lose_nothing() {
     assert_eq!(status("GET /events?token=0", host), 403);
     assert_eq!(status("POST /request", host), 403);
     for name in ["/etc/passwd", "..%2f..%2fscene.toml", "state.json"] {
-        assert_eq!(
-            status(&format!("GET /files/{name}?{query}"), host),
-            404,
-            "{name}"
-        );
+        assert_eq!(status(&format!("GET /files/{name}?{query}"), host), 404, "{name}");
     }
 
     // What is no request is refused with the reason.
     let post = format!("POST /request?{query}");
     let (code, reason) = studio.raw(&post, host, br#"{"do": "fly"}"#);
-    assert!(
-        code == 400 && reason.contains("unknown variant `fly`"),
-        "{code} {reason}"
-    );
+    assert!(code == 400 && reason.contains("unknown variant `fly`"), "{code} {reason}");
     let long = vec![b'x'; 50 << 20];
     let (code, _) = studio.raw(&post, host, &long);
     // The refusal may be lost with the connection, of which the server reads no more.
@@ -505,7 +445,8 @@ fn nobody_else_is_let_in_and_floods_lose_nothing() {
     }
     let on_disk = scene_on_disk(&work.path("studio/a4-plate"));
     assert!(on_disk.contains("stroke = 40.0"), "{on_disk}");
-    // A silent connection is closed: one that stays open ends the test at the patience of its stream.
+    // A silent connection is closed: one that stays open ends the test at the patience of its
+    // stream.
     silent.set_read_timeout(Some(PATIENCE)).unwrap();
     assert_eq!((&silent).read(&mut [0]).unwrap(), 0);
 }
@@ -538,10 +479,7 @@ fn a_silhouette_becomes_a_cut_file_without_another_control() {
     reload(&mut tab, &studio);
     tab.wait(FOUND);
     assert_ne!(tab.value(figure), fitted);
-    assert_eq!(
-        tab.value("document.getElementById('blocking').textContent"),
-        json!("")
-    );
+    assert_eq!(tab.value("document.getElementById('blocking').textContent"), json!(""));
     // Another tab shows the same.
     let mut other = Tab::open(&studio.address);
     at_rest(&mut other);
@@ -552,13 +490,12 @@ fn a_silhouette_becomes_a_cut_file_without_another_control() {
     assert!(names.contains(&"leaf-cut.dxf".to_owned()), "{names:?}");
     assert!(work.path("studio/leaf/design-1/cut.dxf").is_file());
 
-    // A drawing that is refused is refused where it was dropped, by its name, also after the sheet is at rest again.
+    // A drawing that is refused is refused where it was dropped, by its name, also after the sheet
+    // is at rest again.
     let scene = scene_on_disk(&work.path("studio/leaf"));
     tab.drop_file(drawing.to_str().unwrap(), "#stage");
     let says = "document.getElementById('drop-says')";
-    tab.wait(&format!(
-        "!{says}.hidden && {says}.textContent.includes('two leaves.svg')"
-    ));
+    tab.wait(&format!("!{says}.hidden && {says}.textContent.includes('two leaves.svg')"));
     at_rest(&mut tab);
     assert_eq!(tab.value(&format!("{says}.hidden")), json!(false));
     assert_eq!(scene_on_disk(&work.path("studio/leaf")), scene);
@@ -574,10 +511,7 @@ fn every_control_is_explained_and_no_window_is_too_narrow() {
         .map((control) => control.dataset.path ?? control.id)";
     assert_eq!(tab.value(unexplained), json!([]));
     let thickness = tab.value("document.querySelector('[data-path=thickness]').parentNode.title");
-    assert!(
-        thickness.as_str().unwrap().ends_with("Range: 0.02 to 10."),
-        "{thickness}"
-    );
+    assert!(thickness.as_str().unwrap().ends_with("Range: 0.02 to 10."), "{thickness}");
     for width in [1400, 1280, 820, 390] {
         let size =
             json!({ "width": width, "height": 900, "deviceScaleFactor": 1, "mobile": false });
@@ -591,7 +525,8 @@ fn every_control_is_explained_and_no_window_is_too_narrow() {
     }
 }
 
-/// The texts of a page whose contrast is below 4.5, and the fields whose border has less than 3, with the contrast.
+/// The texts of a page whose contrast is below 4.5, and the fields whose border has less than 3,
+/// with the contrast.
 const FAINT: &str = r"(() => {
     const numbers = (colour) => colour.match(/[\d.]+/g).map(Number);
     const light = (colour) => numbers(colour).slice(0, 3).map((c) => c / 255).map((c) => (c <= 0.03928 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4))
@@ -658,18 +593,12 @@ fn a_new_sheet_has_the_tool_of_its_service_and_fits_on_its_stock() {
     assert_eq!(studio.ask(&request("refused", "SnapCut")), 204);
     let said = next(&mut events, "says");
     let message = said["message"].as_str().unwrap();
-    assert!(
-        message.contains("SnapCut wants holes of 4.50 mm"),
-        "{message}"
-    );
+    assert!(message.contains("SnapCut wants holes of 4.50 mm"), "{message}");
     assert!(!work.path("studio/refused").exists());
     assert_eq!(studio.ask(&request("plate", "SendCutSend")), 204);
     let scene = &next(&mut events, "scene")["scene"];
     let process = &scene["process"];
-    assert_eq!(
-        (&process["hole_diameter"], &process["kerf"]),
-        (&json!(1.6), &json!(1.5))
-    );
+    assert_eq!((&process["hole_diameter"], &process["kerf"]), (&json!(1.6), &json!(1.5)));
     assert_eq!(scene["sheet"]["size"], json!([197.0, 284.0]));
     // The service accepts every ligament of the range.
     let narrowest = scene["ligament"]["range"][0].as_f64().unwrap();
@@ -706,10 +635,7 @@ fn the_scene_of_a_user_is_not_changed() {
     });
     // Each studio has a copy of its own, with runs of its own.
     let copy = std::fs::read_to_string(&files[0]).unwrap();
-    assert!(
-        copy.contains("output = \"design-1\"") && !copy.contains(".."),
-        "{copy}"
-    );
+    assert!(copy.contains("output = \"design-1\"") && !copy.contains(".."), "{copy}");
     assert_eq!(
         files,
         ["a4-plate", "a4-plate-2"].map(|name| work.path("studio").join(name).join("scene.toml"))

@@ -1,5 +1,5 @@
-//! Time of ten training steps (2560 rows in batches of 256), including set-up and one validation, for
-//! the network sizes of `demo.toml` and `paper.toml`.
+//! Time of ten training steps (2560 rows in batches of 256), including set-up and one validation,
+//! for the network sizes of `demo.toml` and `paper.toml`.
 
 use dataset::{Database, Row, SplitPlan};
 use hinge::{HingeConstants, HingeSample};

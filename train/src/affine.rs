@@ -29,11 +29,11 @@ pub(crate) fn forward(layers: &[Affine], inputs: Tensor<2>) -> Tensor<2> {
     values
 }
 
-/// tanh. In float32 it is computed by [`tanh_in_place`], because the library call of the backends is several times
-/// slower.
+/// tanh. In float32 it is computed by [`tanh_in_place`], because the library call of the backends
+/// is several times slower.
 ///
-/// Burn cannot differentiate that function. The result is therefore y + (1 - y^2) (x - x_0), where x_0 equals x but is
-/// not differentiated; it has the value and the derivative of tanh x.
+/// Burn cannot differentiate that function. The result is therefore y + (1 - y^2) (x - x_0), where
+/// x_0 equals x but is not differentiated; it has the value and the derivative of tanh x.
 pub(crate) fn tanh<const D: usize>(x: Tensor<D>) -> Tensor<D> {
     let at = x.clone().detach();
     let mut data = at.clone().into_data();

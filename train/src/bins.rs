@@ -11,16 +11,12 @@ const BINS: usize = 5;
 /// The quantity by which rows are binned.
 type Quantity<'a> = &'a dyn Fn(&Row) -> f64;
 
-/// Errors on `rows`, whose targets and predictions are `parity`, by compression, shear,
-/// rotation, ligament width, cut angle, hole if it is a feature, and distance from the edge of the domain. Bins without rows
-/// are omitted.
+/// Errors on `rows`, whose targets and predictions are `parity`, by compression, shear, rotation,
+/// ligament width, cut angle, hole if it is a feature, and distance from the edge of the domain.
+/// Bins without rows are omitted.
 pub(crate) fn error_bins(parity: &Parity, rows: &[Row], domain: &TrainingDomain) -> Vec<ErrorBin> {
     let degrees = |[minimum, maximum]: [f64; 2]| [minimum.to_degrees(), maximum.to_degrees()];
-    let edge = |row: &Row| {
-        domain
-            .depth(&row.design, &row.sample.deformation())
-            .max(0.0)
-    };
+    let edge = |row: &Row| domain.depth(&row.design, &row.sample.deformation()).max(0.0);
     let coordinates = |row: &Row| domain.coordinates(&row.design, &row.sample.deformation());
     let [eta_a, eta_s, theta] = domain.bounds();
     let hole = |row: &Row| row.design.fillet_ratio;
@@ -29,13 +25,9 @@ pub(crate) fn error_bins(parity: &Parity, rows: &[Row], domain: &TrainingDomain)
     let quantities: [(&str, [f64; 2], Quantity); 6] = [
         ("eta_a", eta_a, &|row| coordinates(row)[0]),
         ("eta_s", eta_s, &|row| coordinates(row)[1]),
-        ("theta_deg", degrees(theta), &|row| {
-            row.sample.theta.to_degrees()
-        }),
+        ("theta_deg", degrees(theta), &|row| row.sample.theta.to_degrees()),
         ("w_lig", domain.w_lig, &|row| row.design.w_lig),
-        ("alpha_deg", degrees(domain.alpha), &|row| {
-            row.design.alpha.to_degrees()
-        }),
+        ("alpha_deg", degrees(domain.alpha), &|row| row.design.alpha.to_degrees()),
         ("edge", [0.0, 1.0], &edge),
     ];
     let mut bins = Vec::new();
@@ -73,10 +65,7 @@ mod tests {
         Row {
             job: String::new(),
             design: constants.hinge(w_lig, 1.5),
-            sample: HingeSample {
-                theta,
-                ..HingeSample::default()
-            },
+            sample: HingeSample { theta, ..HingeSample::default() },
             ..Row::default()
         }
     }
@@ -84,32 +73,17 @@ mod tests {
     #[test]
     fn every_row_is_in_exactly_one_bin_of_each_quantity() {
         let rows = [row(5.0, 0.1), row(12.0, 0.5), row(25.0, 1.0)];
-        let state_of = |error: f64| ComparedState {
-            value: [1.0 + error; 6],
-            reference: [1.0; 6],
-        };
-        let parity = Parity {
-            states: [0.1, 0.2, 0.4].map(state_of).to_vec(),
-        };
+        let state_of = |error: f64| ComparedState { value: [1.0 + error; 6], reference: [1.0; 6] };
+        let parity = Parity { states: [0.1, 0.2, 0.4].map(state_of).to_vec() };
         let state = [[-1.0, 1.0], [-1.0, 1.0], [0.0, 1.0]];
         let mut domain = TrainingDomain::from_box(state, [5.0, 25.0], [1.0, 2.0]);
         domain.holes = Some([0.1, 0.3]);
         let bins = error_bins(&parity, &rows, &domain);
-        for quantity in [
-            "eta_a",
-            "eta_s",
-            "theta_deg",
-            "w_lig",
-            "alpha_deg",
-            "fillet_ratio",
-            "edge",
-        ] {
+        for quantity in
+            ["eta_a", "eta_s", "theta_deg", "w_lig", "alpha_deg", "fillet_ratio", "edge"]
+        {
             let of = bins.iter().filter(|bin| bin.quantity == quantity);
-            assert_eq!(
-                of.map(|bin| bin.errors.rows).sum::<usize>(),
-                3,
-                "{quantity}"
-            );
+            assert_eq!(of.map(|bin| bin.errors.rows).sum::<usize>(), 3, "{quantity}");
         }
         let widest = bins.iter().rfind(|bin| bin.quantity == "w_lig").unwrap();
         assert_eq!(widest.range, [21.0, 25.0]);

@@ -11,9 +11,10 @@ use surrogate::Surrogate;
 pub struct TrainingConfig {
     /// Seed of the initial weights and of the order of the rows.
     pub seed: u64,
-    /// Number of units of each layer of chi after the features (13): 1 to 16 layers, each with an even number of units. The
-    /// last layer, the embedding, is linear. The heads of D and D_peak have two hidden layers of the size of the first. In a
-    /// fine-tuning, the sizes are the sizes of the given weights.
+    /// Number of units of each layer of chi after the features (13): 1 to 16 layers, each with an
+    /// even number of units. The last layer, the embedding, is linear. The heads of D and D_peak
+    /// have two hidden layers of the size of the first. In a fine-tuning, the sizes are the sizes
+    /// of the given weights.
     #[schemars(inner(range(min = 1, max = 4096)))]
     pub embedding: Vec<usize>,
     /// Number of passes over the training rows.
@@ -25,8 +26,8 @@ pub struct TrainingConfig {
     /// The learning rate at the first step; it decreases to zero as a half cosine over all steps.
     #[schemars(range(min = 1e-30, max = 1.0))]
     pub learning_rate: f64,
-    /// Number of first layers of each network that are not trained, for fine-tuning; at most the number of hidden layers
-    /// of each network.
+    /// Number of first layers of each network that are not trained, for fine-tuning; at most the
+    /// number of hidden layers of each network.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub frozen_layers: usize,
 }
@@ -35,16 +36,14 @@ pub struct TrainingConfig {
 pub(crate) const ENERGY_WEIGHT: f64 = 0.1;
 /// w_D of (15): the weight of the damage.
 pub(crate) const DAMAGE_WEIGHT: f64 = 0.1;
-/// beta of the damage heads, D = D_s softplus(beta y) / beta: the larger, the sharper the onset at yield.
+/// beta of the damage heads, D = D_s softplus(beta y) / beta: the larger, the sharper the onset at
+/// yield.
 pub(crate) const DAMAGE_SHARPNESS: f64 = 8.0;
 
 /// Maximum number of layers of a network.
 const MOST_LAYERS: usize = 16;
 
-#[allow(
-    clippy::trivially_copy_pass_by_ref,
-    reason = "serde passes a reference"
-)]
+#[allow(clippy::trivially_copy_pass_by_ref, reason = "serde passes a reference")]
 fn is_zero(count: &usize) -> bool {
     *count == 0
 }
@@ -56,21 +55,14 @@ pub enum InvalidConfig {
     #[error(transparent)]
     OutOfRange(#[from] OutOfRange),
     #[error("{key} = {value} violates {rule}")]
-    Rule {
-        key: &'static str,
-        value: String,
-        rule: &'static str,
-    },
+    Rule { key: &'static str, value: String, rule: &'static str },
 }
 
 impl TrainingConfig {
     /// The same configuration with the network sizes of given weights.
     pub fn with_sizes_of(self, weights: &Surrogate) -> Self {
         let mut sizes = weights.layers().widths().into_iter();
-        Self {
-            embedding: sizes.next().unwrap_or_default(),
-            ..self
-        }
+        Self { embedding: sizes.next().unwrap_or_default(), ..self }
     }
 
     /// Number of units of the hidden layers of a damage head.

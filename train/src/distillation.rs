@@ -1,10 +1,10 @@
 //! The median of several networks as further targets of one network (knowledge distillation).
 //!
-//! Networks that start from different weights make different errors between the rays, and their median has smaller errors
-//! than each has in the mean. One network that is also trained on it, at states that no solver has computed, approaches it at
-//! the cost of one network. A network that is wrong by orders of magnitude moves the median no further than to a value
-//! between the values of the others.
-//! (Hinton, Vinyals and Dean, "Distilling the knowledge in a neural network", 2015.)
+//! Networks that start from different weights make different errors between the rays, and their
+//! median has smaller errors than each has in the mean. One network that is also trained on it, at
+//! states that no solver has computed, approaches it at the cost of one network. A network that is
+//! wrong by orders of magnitude moves the median no further than to a value between the values of
+//! the others. (Hinton, Vinyals and Dean, "Distilling the knowledge in a neural network", 2015.)
 
 use dataset::Database;
 use hinge::{HingeDeformation, HingeDesign, HingeSample};
@@ -29,10 +29,7 @@ pub struct TrainingData<'a> {
 
 impl<'a> From<&'a Database> for TrainingData<'a> {
     fn from(database: &'a Database) -> Self {
-        Self {
-            database,
-            distillation: None,
-        }
+        Self { database, distillation: None }
     }
 }
 
@@ -51,9 +48,8 @@ impl Distillation {
     pub fn new(members: &[Surrogate], states: &[(HingeDesign, HingeDeformation)]) -> Self {
         assert!(!members.is_empty(), "a median needs at least one network");
         let (designs, deformations): (Vec<_>, Vec<_>) = states.iter().copied().unzip();
-        let predicted: Vec<Vec<HingeSample>> = (members.iter())
-            .map(|member| member.samples(&designs, &deformations))
-            .collect();
+        let predicted: Vec<Vec<HingeSample>> =
+            (members.iter()).map(|member| member.samples(&designs, &deformations)).collect();
         let of_state = |state: usize| {
             let members: Vec<_> = predicted.iter().map(|member| &member[state]).collect();
             medians(&members)
@@ -70,10 +66,7 @@ impl Distillation {
 }
 
 fn teacher(network: &Surrogate) -> Teacher {
-    Teacher {
-        weights: network.hash(),
-        fine_tuned_from: network.card().fine_tuned_from.clone(),
-    }
+    Teacher { weights: network.hash(), fine_tuned_from: network.card().fine_tuned_from.clone() }
 }
 
 fn hash(samples: &[(HingeDesign, HingeSample)]) -> String {
@@ -81,7 +74,8 @@ fn hash(samples: &[(HingeDesign, HingeSample)]) -> String {
     blake3::hash(&bytes).to_hex().to_string()
 }
 
-/// The medians of W, forces and damage at one state. D_peak is unknown if one network does not predict it.
+/// The medians of W, forces and damage at one state. D_peak is unknown if one network does not
+/// predict it.
 fn medians(members: &[&HingeSample]) -> HingeSample {
     let of = |value: fn(&HingeSample) -> f64| {
         median(members.iter().map(|sample| value(sample)).collect())
@@ -114,11 +108,8 @@ mod tests {
         let state = HingeDeformation::from_eta(-0.2, 0.1, 0.4, design.w_lig);
         let distillation = Distillation::new(&members, &[(design, state)]);
         let of_members = members.map(|member| member.samples(&[design], &[state])[0]);
-        let quantities: [fn(&HingeSample) -> f64; 3] = [
-            |sample| sample.w,
-            |sample| sample.m_theta,
-            |sample| sample.d,
-        ];
+        let quantities: [fn(&HingeSample) -> f64; 3] =
+            [|sample| sample.w, |sample| sample.m_theta, |sample| sample.d];
         for value in quantities {
             let mut values = of_members.each_ref().map(value);
             values.sort_by(f64::total_cmp);

@@ -13,8 +13,8 @@ pub struct Epoch {
     pub training_loss: f64,
     /// The loss (15) on the validation part at the end of the epoch.
     pub validation_loss: f64,
-    /// Relative errors of each network on the validation part: of W and the forces (their geometric mean), of D,
-    /// and of D_peak; NaN if no validation row has a known target that is not zero.
+    /// Relative errors of each network on the validation part: of W and the forces (their geometric
+    /// mean), of D, and of D_peak; NaN if no validation row has a known target that is not zero.
     #[serde(deserialize_with = "numbers_or_null")]
     pub validation_errors: [f64; 3],
     /// Learning rate at the end of the epoch.

@@ -27,13 +27,7 @@ pub enum TrainError {
         "job {job}, lambda = {lambda}: {target} = {value:e} is {times:.0} times the 90 % quantile of the \
          training rows and would dominate the loss; check that job or remove its rows"
     )]
-    Outlier {
-        target: &'static str,
-        job: String,
-        lambda: f64,
-        value: f64,
-        times: f64,
-    },
+    Outlier { target: &'static str, job: String, lambda: f64, value: f64, times: f64 },
     #[error("the loss is not finite in epoch {epoch}; lower `learning_rate` = {learning_rate}")]
     Diverged { epoch: usize, learning_rate: f64 },
     #[error("the weights cannot be exported: {0}")]
@@ -44,10 +38,7 @@ pub enum TrainError {
         "the initial weights have the layers {found:?}, but the configuration has {expected:?} \
          (embedding and damage heads); change the configuration, or start with random weights"
     )]
-    OtherSizes {
-        expected: Vec<Vec<usize>>,
-        found: Vec<Vec<usize>>,
-    },
+    OtherSizes { expected: Vec<Vec<usize>>, found: Vec<Vec<usize>> },
     #[error(
         "the initial weights have `damage_sharpness = {found}`, and a training has {expected}; start with random weights",
         expected = crate::config::DAMAGE_SHARPNESS

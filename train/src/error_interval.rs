@@ -1,7 +1,7 @@
 //! Confidence intervals of the errors of weights: how much they would differ at other rays.
 //!
-//! States on one ray have like errors, so that whole rays are drawn with replacement (the cluster bootstrap of Davison and
-//! Hinkley, Bootstrap Methods and their Application, 1997, section 3.8).
+//! States on one ray have like errors, so that whole rays are drawn with replacement (the cluster
+//! bootstrap of Davison and Hinkley, Bootstrap Methods and their Application, 1997, section 3.8).
 
 use crate::validation::Parity;
 use dataset::Row;
@@ -31,8 +31,8 @@ pub struct ErrorInterval {
 }
 
 impl ErrorInterval {
-    /// The errors of W and of the three forces together at the rows, whose rays are their jobs; `None` below six rays, and if a force
-    /// is not known or zero everywhere.
+    /// The errors of W and of the three forces together at the rows, whose rays are their jobs;
+    /// `None` below six rays, and if a force is not known or zero everywhere.
     pub fn of(surrogate: &Surrogate, rows: &[Row]) -> Option<[Self; 2]> {
         let parity = Parity::new(surrogate, rows);
         let points: [Vec<[f64; 2]>; QUANTITIES] =
@@ -56,11 +56,7 @@ impl ErrorInterval {
 impl fmt::Display for ErrorInterval {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let [low, high] = self.interval;
-        write!(
-            f,
-            "{:.2} % (95 % interval {low:.2} to {high:.2})",
-            self.error
-        )
+        write!(f, "{:.2} % (95 % interval {low:.2} to {high:.2})", self.error)
     }
 }
 

@@ -19,14 +19,8 @@ fn layer(affine: Affine) -> Result<Layer, TrainError> {
     let weight = affine.weight.inner().transpose();
     let bias = affine.bias.inner();
     Ok(Layer {
-        weight: Tensor {
-            shape: weight.dims().to_vec(),
-            values: weight.try_into_vec_as()?,
-        },
-        bias: Tensor {
-            shape: bias.dims().to_vec(),
-            values: bias.try_into_vec_as()?,
-        },
+        weight: Tensor { shape: weight.dims().to_vec(), values: weight.try_into_vec_as()? },
+        bias: Tensor { shape: bias.dims().to_vec(), values: bias.try_into_vec_as()? },
     })
 }
 
@@ -74,10 +68,7 @@ mod tests {
             format_version: FORMAT_VERSION,
             weights_hash: None,
             units: UNITS.into(),
-            features: FEATURE_NAMES[..scales.features()]
-                .iter()
-                .map(ToString::to_string)
-                .collect(),
+            features: FEATURE_NAMES[..scales.features()].iter().map(ToString::to_string).collect(),
             standardisation: scales.standardisation.clone(),
             energy_scale: scales.energy,
             damage_scale: scales.damage,
@@ -108,11 +99,7 @@ mod tests {
     fn disagreement(dtype: DType, several_holes: bool) -> [f64; 6] {
         let features = feature_names(several_holes).len();
         let options = options(dtype);
-        let config = TrainingConfig {
-            seed: 1,
-            embedding: vec![64, 64, 32],
-            ..config()
-        };
+        let config = TrainingConfig { seed: 1, embedding: vec![64, 64, 32], ..config() };
         let networks = Networks::new(&config, features, true, &options);
         let mut rows: Vec<Row> = (0..200).map(row).collect();
         if several_holes {
@@ -121,10 +108,8 @@ mod tests {
             }
         }
         let scales = Scales::new(&rows, 0.16, feature_names(several_holes)).unwrap();
-        let samples: Vec<_> = rows
-            .iter()
-            .map(|row| scales.sample(&row.design, &row.sample))
-            .collect();
+        let samples: Vec<_> =
+            rows.iter().map(|row| scales.sample(&row.design, &row.sample)).collect();
         let predicted = predict(&networks, &Batch::new(&samples, features, &options));
         let column = |tensor: &burn::tensor::Tensor<2>, k: usize, scale: f64| -> Vec<f64> {
             let column = tensor.clone().inner().narrow(1, k, 1);
@@ -147,9 +132,7 @@ mod tests {
         let parity = Parity::new(&surrogate(&networks, &scales), &rows);
         std::array::from_fn(|quantity| {
             let pairs = || burn[quantity].iter().zip(parity.points(quantity));
-            let error: f64 = pairs()
-                .map(|(burn, [_, predicted])| (burn - predicted).powi(2))
-                .sum();
+            let error: f64 = pairs().map(|(burn, [_, predicted])| (burn - predicted).powi(2)).sum();
             let norm: f64 = pairs().map(|(_, [_, predicted])| predicted.powi(2)).sum();
             (error / norm).sqrt()
         })

@@ -1,14 +1,16 @@
 //! Pretrained weights as the initial networks of a training on another material, thickness or mesh.
 //!
-//! The pretrained weights, of the energy W_0, are scaled to the size of the database's windows ([`Surrogate::scaled`]), their first layers to the
-//! standardisation of the rows, and the last layer of chi to their root mean square of W. One factor for each of W, D
-//! and D_peak is fitted to the rows by least squares:
+//! The pretrained weights, of the energy W_0, are scaled to the size of the database's windows
+//! ([`Surrogate::scaled`]), their first layers to the standardisation of the rows, and the last
+//! layer of chi to their root mean square of W. One factor for each of W, D and D_peak is fitted to
+//! the rows by least squares:
 //!
 //! ```text
 //! W = c_W W_0,   c_W = sum W* W_0 / sum W_0^2,   and the same for D and D_peak
 //! ```
 //!
-//! Apart from these factors and from rounding, the function of the networks is the function of the pretrained networks.
+//! Apart from these factors and from rounding, the function of the networks is the function of the
+//! pretrained networks.
 
 use crate::config::{DAMAGE_SHARPNESS, TrainingConfig};
 use crate::error::TrainError;
@@ -29,7 +31,8 @@ pub(crate) struct Initial {
 }
 
 impl Initial {
-    /// The pretrained weights for the windows of a database, fitted to the training rows, which include their mirror images.
+    /// The pretrained weights for the windows of a database, fitted to the training rows, which
+    /// include their mirror images.
     pub fn new(
         pretrained: &Surrogate,
         rows: &[Row],
@@ -66,23 +69,21 @@ impl Initial {
     }
 }
 
-/// The pretrained weights for windows of another size. Campaigns choose the radius of the windows in proportion to the thickness.
+/// The pretrained weights for windows of another size. Campaigns choose the radius of the windows
+/// in proportion to the thickness.
 fn at_size_of(pretrained: &Surrogate, hinge: &HingeConstants) -> Surrogate {
     let factor = hinge.r_win / pretrained.card().hinge.r_win;
     pretrained.clone().scaled(factor)
 }
 
-/// Completes the card of a network that starts from pretrained weights and is trained on `rows`. If all of them are of the
-/// law of these weights and in their domain, that domain is kept: the rays they were trained on count as well.
+/// Completes the card of a network that starts from pretrained weights and is trained on `rows`. If
+/// all of them are of the law of these weights and in their domain, that domain is kept: the rays
+/// they were trained on count as well.
 pub(crate) fn inherit(card: &mut Card, pretrained: &Surrogate, rows: &[Row]) {
     card.fine_tuned_from = Some(pretrained.hash());
     let pretrained = at_size_of(pretrained, &card.hinge);
     let law = &pretrained.card().material_hash;
-    let inside = |row: &Row| {
-        pretrained
-            .domain()
-            .contains(&row.design, &row.sample.deformation())
-    };
+    let inside = |row: &Row| pretrained.domain().contains(&row.design, &row.sample.deformation());
     if law.is_some() && *law == card.material_hash && rows.iter().all(inside) {
         card.domain = pretrained.domain().clone();
     }
@@ -93,9 +94,7 @@ pub fn check_pretrained(pretrained: &Surrogate, config: &TrainingConfig) -> Resu
     let given = pretrained.layers();
     let heads = 1 + usize::from(given.chi_p.is_some());
     let damage = std::iter::repeat_n(config.damage().to_vec(), heads);
-    let expected: Vec<_> = std::iter::once(config.embedding.clone())
-        .chain(damage)
-        .collect();
+    let expected: Vec<_> = std::iter::once(config.embedding.clone()).chain(damage).collect();
     let found = given.widths();
     if found != expected {
         return Err(TrainError::OtherSizes { expected, found });
@@ -108,11 +107,7 @@ pub fn check_pretrained(pretrained: &Surrogate, config: &TrainingConfig) -> Resu
     let folded = Networks::from_layers(&given, &exact);
     let unchanged = layers(&folded)? == given;
     let centred = mirror::is_centred(&pretrained.card().standardisation);
-    if unchanged && centred {
-        Ok(())
-    } else {
-        Err(TrainError::NotSymmetric)
-    }
+    if unchanged && centred { Ok(()) } else { Err(TrainError::NotSymmetric) }
 }
 
 /// The factor of the predictions that is closest to the targets.
@@ -123,8 +118,9 @@ fn factor(points: impl Iterator<Item = [f64; 2]>) -> f64 {
     products.sum::<f64>() / squares.sum::<f64>()
 }
 
-/// Changes a first layer such that its outputs for inputs standardised by `to` are those for inputs standardised by
-/// `from` before. They do not depend on a feature that `to` alone has, the radius of the hole.
+/// Changes a first layer such that its outputs for inputs standardised by `to` are those for inputs
+/// standardised by `from` before. They do not depend on a feature that `to` alone has, the radius
+/// of the hole.
 fn restandardise(first: &mut Layer, from: &Standardisation, to: &Standardisation) {
     let [known, features] = [from, to].map(|features| features.mean.len());
     let mut weights = Vec::with_capacity(first.bias.values.len() * features);

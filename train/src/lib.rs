@@ -1,9 +1,9 @@
 //! Training of the condensed hinge energy with Burn.
 //!
 //! [`train`] takes a database and a configuration and returns a [`surrogate::Surrogate`] with its
-//! test errors. The loss (15) contains forces, which are derivatives of the network. Their parameter gradient needs
-//! no second-order differentiation: the three force tangents are propagated forwards through the network as
-//! tensor operations, followed by one reverse pass.
+//! test errors. The loss (15) contains forces, which are derivatives of the network. Their
+//! parameter gradient needs no second-order differentiation: the three force tangents are
+//! propagated forwards through the network as tensor operations, followed by one reverse pass.
 //!
 //! ```no_run
 //! use dataset::Database;

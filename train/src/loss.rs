@@ -5,9 +5,10 @@
 //!     + w_D |D - D*|^2 / D_s^2                                                     (15)
 //! ```
 //!
-//! If D_peak is also predicted, the last term is the mean over both damage measures, and rows without D_peak do not
-//! contribute to its part. A damage measure is softplus(beta y) / beta of the output y of its head. With a large
-//! beta, a moderately negative y represents the zero damage of a ligament before yield.
+//! If D_peak is also predicted, the last term is the mean over both damage measures, and rows
+//! without D_peak do not contribute to its part. A damage measure is softplus(beta y) / beta of the
+//! output y of its head. With a large beta, a moderately negative y represents the zero damage of a
+//! ligament before yield.
 
 use crate::affine::forward;
 use crate::config::{DAMAGE_SHARPNESS, DAMAGE_WEIGHT, ENERGY_WEIGHT};
@@ -54,9 +55,7 @@ pub(crate) fn loss(networks: &Networks, batch: &Batch) -> Tensor<1> {
     let damage_error = (predicted.damage - heads(&batch.damage)).square();
     mean_square(predicted.energy, &batch.energy).mul_scalar(ENERGY_WEIGHT)
         + mean_square(predicted.forces, &batch.forces).mul_scalar(1.0 - ENERGY_WEIGHT)
-        + (damage_error * heads(&batch.damage_weights))
-            .mean()
-            .mul_scalar(DAMAGE_WEIGHT)
+        + (damage_error * heads(&batch.damage_weights)).mean().mul_scalar(DAMAGE_WEIGHT)
 }
 
 #[cfg(test)]
@@ -80,29 +79,21 @@ pub(crate) mod tests {
     }
 
     fn layer(networks: &mut Networks, head: bool, index: usize) -> &mut Dense {
-        let network = if head {
-            &mut networks.chi_d
-        } else {
-            &mut networks.chi
-        };
+        let network = if head { &mut networks.chi_d } else { &mut networks.chi };
         &mut network.layers[index]
     }
 
     /// An arbitrary direction with the given shape.
     fn direction(shape: [usize; 2], options: &TensorCreationOptions) -> Tensor<2> {
-        let values: Vec<f64> = (0..shape[0] * shape[1])
-            .map(|index| (1.1 * index as f64 + 0.4).cos())
-            .collect();
+        let values: Vec<f64> =
+            (0..shape[0] * shape[1]).map(|index| (1.1 * index as f64 + 0.4).cos()).collect();
         Tensor::from_data(TensorData::new(values, shape), options.clone())
     }
 
     #[test]
     fn the_parameter_gradient_agrees_with_finite_differences() {
         let options = options(DType::F64);
-        let config = TrainingConfig {
-            seed: 3,
-            ..config()
-        };
+        let config = TrainingConfig { seed: 3, ..config() };
         let networks = Networks::new(&config, 6, true, &options);
         let batch = Batch::new(&samples(8), 6, &options);
         let gradients = loss(&networks, &batch).backward();

@@ -2,14 +2,15 @@
 //!
 //! W(a, s, theta; alpha) = W(a, -s, theta; pi - alpha) is W(x) = W(S x) in standardised features,
 //! with S = diag(1, -1, 1, 1, -1, 1) if the means of eta_s and alpha are 0 and pi / 2. The units of
-//! each layer form pairs (j, n - 1 - j). One unit of a pair has the value of the other unit at the mirror image:
+//! each layer form pairs (j, n - 1 - j). One unit of a pair has the value of the other unit at the
+//! mirror image:
 //!
 //! ```text
 //! h_{n-1-j}(x) = h_j(S x)      if  W_0 = [A, S A R],  W_l = [A, R A R],  b_l = [b, R b]
 //! ```
 //!
-//! with R the reversal of order. Only the halves A and b are trained. |chi - chi_0|^2
-//! is invariant because it is symmetric in the units of a pair; the output of a damage head is invariant with
+//! with R the reversal of order. Only the halves A and b are trained. |chi - chi_0|^2 is invariant
+//! because it is symmetric in the units of a pair; the output of a damage head is invariant with
 //! W_L = [B; R B].
 
 use crate::affine::Affine;
@@ -55,19 +56,15 @@ impl Fold {
                 let signs = TensorData::new(SIGNS[..features].to_vec(), [features, 1]);
                 let signs: Tensor<2> = Tensor::from_data(signs, options);
                 let images = (weight.clone() * signs).flip([1]);
-                Affine {
-                    weight: Tensor::cat(vec![weight, images], 1),
-                    bias: paired(bias),
-                }
+                Affine { weight: Tensor::cat(vec![weight, images], 1), bias: paired(bias) }
             }
             Self::Hidden => Affine {
                 weight: Tensor::cat(vec![weight.clone(), weight.flip([0, 1])], 1),
                 bias: paired(bias),
             },
-            Self::Invariant => Affine {
-                weight: Tensor::cat(vec![weight.clone(), weight.flip([0])], 0),
-                bias,
-            },
+            Self::Invariant => {
+                Affine { weight: Tensor::cat(vec![weight.clone(), weight.flip([0])], 0), bias }
+            }
         }
     }
 
@@ -87,8 +84,8 @@ pub(crate) fn is_centred(standardisation: &Standardisation) -> bool {
     standardisation.mean[ETA_S] == 0.0 && standardisation.mean[ALPHA] == FRAC_PI_2
 }
 
-/// Sets the means of eta_s and alpha of rows with their mirror images to their exact values, so that the mirror image
-/// of standardised features x is S x.
+/// Sets the means of eta_s and alpha of rows with their mirror images to their exact values, so
+/// that the mirror image of standardised features x is S x.
 pub(crate) fn centre(standardisation: &mut Standardisation) {
     standardisation.mean[ETA_S] = 0.0;
     standardisation.mean[ALPHA] = FRAC_PI_2;

@@ -9,8 +9,8 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use surrogate::{Layer, Layers};
 
-/// The networks have no common layers: D_peak, which has more scatter, would otherwise cause the network of D to
-/// overfit.
+/// The networks have no common layers: D_peak, which has more scatter, would otherwise cause the
+/// network of D to overfit.
 #[derive(Module, Debug)]
 pub(crate) struct Networks {
     pub chi: Mlp,
@@ -33,8 +33,8 @@ pub(crate) struct Dense {
     fold: Fold,
 }
 
-/// Tensors of a number type on the processor, recording gradients: of Burn's backend flex, or of the slower ndarray in a build with
-/// that feature.
+/// Tensors of a number type on the processor, recording gradients: of Burn's backend flex, or of
+/// the slower ndarray in a build with that feature.
 pub(crate) fn options(dtype: DType) -> TensorCreationOptions {
     #[cfg(not(feature = "ndarray"))]
     let device = Device::flex();
@@ -45,8 +45,8 @@ pub(crate) fn options(dtype: DType) -> TensorCreationOptions {
 }
 
 impl Networks {
-    /// Initial networks with Xavier's uniform weights and zero biases. The random numbers do not come from the backend,
-    /// so that a seed gives the same weights on every backend.
+    /// Initial networks with Xavier's uniform weights and zero biases. The random numbers do not
+    /// come from the backend, so that a seed gives the same weights on every backend.
     pub fn new(
         config: &TrainingConfig,
         features: usize,
@@ -59,15 +59,10 @@ impl Networks {
         let head = [first, second, 1];
         let mut network = |widths: &[usize], folds: Vec<Fold>| {
             let inputs = std::iter::once(features).chain(widths.iter().copied());
-            let layers = inputs
-                .zip(widths)
-                .zip(folds)
-                .map(|((inputs, &outputs), fold)| {
-                    Dense::new([inputs, outputs], fold, &mut rng, options)
-                });
-            Mlp {
-                layers: layers.collect(),
-            }
+            let layers = inputs.zip(widths).zip(folds).map(|((inputs, &outputs), fold)| {
+                Dense::new([inputs, outputs], fold, &mut rng, options)
+            });
+            Mlp { layers: layers.collect() }
         };
         Self {
             chi: network(embedding, folds(embedding.len())),
@@ -99,20 +94,12 @@ impl Networks {
     pub fn frozen(self, layers: usize) -> Self {
         let freeze = |mut network: Mlp| {
             let freeze = |(index, layer): (usize, Dense)| {
-                if index < layers {
-                    layer.no_grad()
-                } else {
-                    layer
-                }
+                if index < layers { layer.no_grad() } else { layer }
             };
             network.layers = network.layers.into_iter().enumerate().map(freeze).collect();
             network
         };
-        Self {
-            chi: freeze(self.chi),
-            chi_d: freeze(self.chi_d),
-            chi_p: self.chi_p.map(freeze),
-        }
+        Self { chi: freeze(self.chi), chi_d: freeze(self.chi_d), chi_p: self.chi_p.map(freeze) }
     }
 
     /// The damage heads.
@@ -178,9 +165,6 @@ impl Dense {
     }
 
     fn affine(&self) -> Affine {
-        self.fold.unfold(Affine {
-            weight: self.weight.val(),
-            bias: self.bias.val(),
-        })
+        self.fold.unfold(Affine { weight: self.weight.val(), bias: self.bias.val() })
     }
 }

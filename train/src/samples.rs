@@ -20,10 +20,11 @@ pub(crate) struct Scales {
     pub forces: [f64; 3],
     /// D_s: root mean square of D.
     pub damage: f64,
-    /// Root mean square of D_peak over the rows that have it; `None` if no row has a non-zero D_peak.
+    /// Root mean square of D_peak over the rows that have it; `None` if no row has a non-zero
+    /// D_peak.
     pub peak: Option<f64>,
-    /// Number of rows divided by the number of rows with D_peak. With this weight, a mean over all rows is the mean
-    /// over the rows with D_peak.
+    /// Number of rows divided by the number of rows with D_peak. With this weight, a mean over all
+    /// rows is the mean over the rows with D_peak.
     pub peak_weight: f64,
 }
 
@@ -66,8 +67,8 @@ pub(crate) struct Batch {
 impl Scales {
     /// Computes the scales; an error if a feature is constant, or a target is zero or has outliers.
     ///
-    /// `hole` is the hole of the hinges that the networks see, over w_lig, and `names` are their features. The rows include their
-    /// mirror images.
+    /// `hole` is the hole of the hinges that the networks see, over w_lig, and `names` are their
+    /// features. The rows include their mirror images.
     pub fn new(rows: &[Row], hole: f64, names: &[&'static str]) -> Result<Self, TrainError> {
         let count = rows.len() as f64;
         let root_mean_square = |target: &'static str, value: fn(&Row) -> f64| {
@@ -87,9 +88,8 @@ impl Scales {
                 features(&ligament.design(&row.design), &state)
             })
             .collect();
-        let mean: Vec<f64> = (0..names.len())
-            .map(|k| xi.iter().map(|xi| xi[k]).sum::<f64>() / count)
-            .collect();
+        let mean: Vec<f64> =
+            (0..names.len()).map(|k| xi.iter().map(|xi| xi[k]).sum::<f64>() / count).collect();
         let std: Vec<f64> = (0..names.len())
             .map(|k| {
                 let squares: f64 = xi.iter().map(|xi| (xi[k] - mean[k]).powi(2)).sum();
@@ -97,18 +97,13 @@ impl Scales {
             })
             .collect();
         for (k, &feature) in names.iter().enumerate() {
-            // The rounding error of the mean gives a constant feature a standard deviation of this size.
+            // The rounding error of the mean gives a constant feature a standard deviation of this
+            // size.
             if !(std[k] > 1e-12 * mean[k].abs() && std[k].is_finite()) {
-                return Err(TrainError::ConstantFeature {
-                    feature,
-                    value: mean[k],
-                });
+                return Err(TrainError::ConstantFeature { feature, value: mean[k] });
             }
         }
-        let with_peak = rows
-            .iter()
-            .filter(|row| row.sample.d_peak.is_some())
-            .count();
+        let with_peak = rows.iter().filter(|row| row.sample.d_peak.is_some()).count();
         let peak_weight = count / (with_peak as f64).max(1.0);
         let mut standardisation = Standardisation { mean, std };
         mirror::centre(&mut standardisation);
@@ -139,11 +134,7 @@ impl Scales {
             energy: card.energy_scale,
             damage: card.damage_scale,
             peak: card.peak_scale,
-            ..Self::new(
-                rows,
-                card.hinge.fillet_ratio,
-                feature_names(card.domain.holes.is_some()),
-            )?
+            ..Self::new(rows, card.hinge.fillet_ratio, feature_names(card.domain.holes.is_some()))?
         })
     }
 
@@ -174,16 +165,15 @@ impl Scales {
             forces: std::array::from_fn(|k| forces[k] / self.forces[k]),
             damage: [
                 sample.d / self.damage,
-                self.peak
-                    .map_or(0.0, |scale| sample.d_peak.unwrap_or(0.0) / scale),
+                self.peak.map_or(0.0, |scale| sample.d_peak.unwrap_or(0.0) / scale),
             ],
             damage_weights: [1.0, sample.d_peak.map_or(0.0, |_| self.peak_weight)],
         }
     }
 }
 
-/// Maximum of a target over its 90 % quantile. Deployed hinges and the extremes of the box differ by a factor of ten;
-/// an erroneous solve has larger errors, by powers of ten.
+/// Maximum of a target over its 90 % quantile. Deployed hinges and the extremes of the box differ
+/// by a factor of ten; an erroneous solve has larger errors, by powers of ten.
 const OUTLIER: f64 = 100.0;
 
 fn refuse_outlier(

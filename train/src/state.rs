@@ -1,7 +1,8 @@
 //! The state of a training between two epochs on disk. A resumed training continues bit-exactly.
 //!
-//! The file is a BLAKE3 hash followed by the hashed safetensors: the current networks, the networks of the best epoch
-//! and the state of the optimiser as Burn's own records (bytes), and all other data as JSON.
+//! The file is a BLAKE3 hash followed by the hashed safetensors: the current networks, the networks
+//! of the best epoch and the state of the optimiser as Burn's own records (bytes), and all other
+//! data as JSON.
 
 use crate::epoch::Epoch;
 use crate::networks::Networks;
@@ -52,11 +53,7 @@ pub(crate) struct Progress {
 
 impl Progress {
     pub fn new(card: &Card, history: &[Epoch]) -> Self {
-        Self {
-            format_version: FORMAT_VERSION,
-            card: card.clone(),
-            history: history.to_vec(),
-        }
+        Self { format_version: FORMAT_VERSION, card: card.clone(), history: history.to_vec() }
     }
 }
 
@@ -83,20 +80,12 @@ pub(crate) fn write(
         best.clone().into_record().into_bytes()?,
         optimiser.into_bytes()?,
     ];
-    let malformed = |reason: String| StateError::Malformed {
-        path: path.to_owned(),
-        reason,
-    };
+    let malformed = |reason: String| StateError::Malformed { path: path.to_owned(), reason };
     let progress = serde_json::to_string(progress).map_err(|error| malformed(error.to_string()))?;
     let views: Result<Vec<_>, _> = RECORDS
         .into_iter()
         .zip(&records)
-        .map(|(name, record)| {
-            Ok((
-                name,
-                TensorView::new(Dtype::U8, vec![record.len()], record)?,
-            ))
-        })
+        .map(|(name, record)| Ok((name, TensorView::new(Dtype::U8, vec![record.len()], record)?)))
         .collect();
     let metadata = Some([("progress".to_owned(), progress)].into());
     let body = views
@@ -104,17 +93,12 @@ pub(crate) fn write(
         .map_err(|error| malformed(error.to_string()))?;
     let mut bytes = blake3::hash(&body).as_bytes().to_vec();
     bytes.extend(body);
-    support::whole_file::write(path, &bytes)
-        .map_err(FileError::at(path))
-        .map_err(StateError::Write)
+    support::whole_file::write(path, &bytes).map_err(FileError::at(path)).map_err(StateError::Write)
 }
 
 impl State {
     pub fn read(path: &Path) -> Result<Self, StateError> {
-        let malformed = |reason: String| StateError::Malformed {
-            path: path.to_owned(),
-            reason,
-        };
+        let malformed = |reason: String| StateError::Malformed { path: path.to_owned(), reason };
         let bytes = support::regular_file::read(path)
             .map_err(FileError::at(path))
             .map_err(StateError::Read)?;
@@ -128,10 +112,7 @@ impl State {
             SafeTensors::deserialize(body).map_err(|error| malformed(error.to_string()))?;
         let (_, metadata) =
             SafeTensors::read_metadata(body).map_err(|error| malformed(error.to_string()))?;
-        let progress = metadata
-            .metadata()
-            .as_ref()
-            .and_then(|map| map.get("progress"));
+        let progress = metadata.metadata().as_ref().and_then(|map| map.get("progress"));
         let progress = progress.ok_or_else(|| malformed("it contains no progress".into()))?;
         let progress: Progress =
             serde_json::from_str(progress).map_err(|error| malformed(error.to_string()))?;
@@ -143,29 +124,21 @@ impl State {
         }
         let mut records = RECORDS.map(|_| Vec::new());
         for (record, name) in records.iter_mut().zip(RECORDS) {
-            let view = tensors
-                .tensor(name)
-                .map_err(|error| malformed(error.to_string()))?;
+            let view = tensors.tensor(name).map_err(|error| malformed(error.to_string()))?;
             *record = view.data().to_vec();
         }
-        Ok(Self {
-            progress,
-            path: path.to_owned(),
-            records,
-        })
+        Ok(Self { progress, path: path.to_owned(), records })
     }
 
-    /// An error if the state has a different configuration, database, split or distillation, or different initial weights.
+    /// An error if the state has a different configuration, database, split or distillation, or
+    /// different initial weights.
     pub fn check(&self, card: &Card) -> Result<(), StateError> {
         let saved = &self.progress.card;
         for (what, same) in [
             ("configuration", saved.training == card.training),
             ("database", saved.dataset_hash == card.dataset_hash),
             ("split", saved.split_hash == card.split_hash),
-            (
-                "network to start from",
-                saved.fine_tuned_from == card.fine_tuned_from,
-            ),
+            ("network to start from", saved.fine_tuned_from == card.fine_tuned_from),
             ("distillation", saved.distillation == card.distillation),
         ] {
             if !same {
@@ -176,18 +149,15 @@ impl State {
         Ok(())
     }
 
-    /// The current networks, the networks of the best epoch, and the optimiser. The arguments must have the same sizes.
+    /// The current networks, the networks of the best epoch, and the optimiser. The arguments must
+    /// have the same sizes.
     pub fn restore(
         self,
         networks: &Networks,
         optimiser: ModuleOptimizer,
     ) -> Result<(Networks, Networks, ModuleOptimizer), StateError> {
         let [current, best, adam] = self.records.map(Bytes::from_bytes_vec);
-        let load = |record| {
-            networks
-                .clone()
-                .try_load_record(ModuleRecord::from_bytes(record)?)
-        };
+        let load = |record| networks.clone().try_load_record(ModuleRecord::from_bytes(record)?);
         Ok((load(current)?, load(best)?, optimiser.from_bytes(adam)?))
     }
 }

@@ -1,5 +1,5 @@
-//! The training loop: optimiser steps with a cosine learning-rate schedule. Each network is taken from the epoch of its
-//! minimum validation error.
+//! The training loop: optimiser steps with a cosine learning-rate schedule. Each network is taken
+//! from the epoch of its minimum validation error.
 
 use crate::bins::error_bins;
 use crate::config::{DAMAGE_SHARPNESS, TrainingConfig};
@@ -29,8 +29,8 @@ use surrogate::{Card, FORMAT_VERSION, Surrogate, TestErrors, UNITS, feature_name
 /// A trained surrogate with its history and test errors.
 #[derive(Clone, Debug)]
 pub struct Trained {
-    /// The surrogate in which each network is from the epoch of its minimum validation error, or from the last epoch if
-    /// that error is not known.
+    /// The surrogate in which each network is from the epoch of its minimum validation error, or
+    /// from the last epoch if that error is not known.
     pub surrogate: Surrogate,
     /// The surrogate of the last epoch.
     pub last: Surrogate,
@@ -47,10 +47,12 @@ pub struct Trained {
 pub enum Start<'a> {
     /// Random weights.
     Fresh,
-    /// The weights of another material, thickness or database: fine-tuning. They are scaled to the rows; apart from one
-    /// factor for each of W, D and D_peak, the initial networks have the function of the weights.
+    /// The weights of another material, thickness or database: fine-tuning. They are scaled to the
+    /// rows; apart from one factor for each of W, D and D_peak, the initial networks have the
+    /// function of the weights.
     Weights(&'a Surrogate),
-    /// A state written by [`Training::save`]; the training continues bit-exactly as if it had not been stopped.
+    /// A state written by [`Training::save`]; the training continues bit-exactly as if it had not
+    /// been stopped.
     State {
         /// The file.
         state: &'a Path,
@@ -85,7 +87,8 @@ struct Parts {
 
 /// Fits (14) to the database by minimising (15); section 2.4.
 ///
-/// The same seed gives the same weights on the same machine. `progress` is called after every epoch.
+/// The same seed gives the same weights on the same machine. `progress` is called after every
+/// epoch.
 pub fn train(
     database: &Database,
     config: &TrainingConfig,
@@ -187,10 +190,7 @@ impl Training {
         let epoch = self.history.len() + 1;
         let training_loss = self.descend(epoch)?;
         let learning_rate = self.learning_rate(epoch * self.steps_per_epoch());
-        let diverged = TrainError::Diverged {
-            epoch,
-            learning_rate,
-        };
+        let diverged = TrainError::Diverged { epoch, learning_rate };
         if !training_loss.is_finite() {
             return Err(diverged);
         }
@@ -202,14 +202,11 @@ impl Training {
         }
         let errors = validation.network_errors();
         let better = [0, 1, 2].map(|network| {
-            let before = self
-                .history
-                .iter()
-                .map(|epoch| epoch.validation_errors[network]);
+            let before = self.history.iter().map(|epoch| epoch.validation_errors[network]);
             errors[network] < before.fold(f64::INFINITY, f64::min)
         });
-        // The networks have no common layers, and the damage heads overfit earlier. Without a known error, the network of
-        // the last epoch is kept.
+        // The networks have no common layers, and the damage heads overfit earlier. Without a known
+        // error, the network of the last epoch is kept.
         let kept = [0, 1, 2].map(|network| better[network] || errors[network].is_nan());
         if kept[0] {
             self.best.chi = self.networks.chi.clone();
@@ -269,8 +266,8 @@ impl Training {
         Ok(())
     }
 
-    /// Makes the optimiser steps of one epoch, over the samples in an order given by seed and epoch. Returns the mean
-    /// of (15), each batch evaluated before its step.
+    /// Makes the optimiser steps of one epoch, over the samples in an order given by seed and
+    /// epoch. Returns the mean of (15), each batch evaluated before its step.
     fn descend(&mut self, epoch: usize) -> Result<f64, TrainError> {
         let mut order: Vec<usize> = (0..self.samples.len()).collect();
         let mut rng = ChaCha8Rng::seed_from_u64(self.config.seed);

@@ -1,4 +1,5 @@
-//! Errors of a surrogate on rows that are not used in training, measured with the exported float64 networks.
+//! Errors of a surrogate on rows that are not used in training, measured with the exported float64
+//! networks.
 
 use crate::config::{DAMAGE_WEIGHT, ENERGY_WEIGHT};
 use crate::samples::Scales;
@@ -6,11 +7,12 @@ use dataset::{ComparedState, Row};
 use support::statistics::root_mean_square;
 use surrogate::{FitError, SpotCheck, Surrogate, TestErrors};
 
-/// Predictions of a surrogate with their targets, the values of the finite elements, one state a row.
+/// Predictions of a surrogate with their targets, the values of the finite elements, one state a
+/// row.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Parity {
-    /// Targets (`reference`) and predictions (`value`), in the order of the rows. Quantities that are not known, or that the
-    /// surrogate does not predict, are NaN.
+    /// Targets (`reference`) and predictions (`value`), in the order of the rows. Quantities that
+    /// are not known, or that the surrogate does not predict, are NaN.
     pub states: Vec<ComparedState>,
 }
 
@@ -34,23 +36,17 @@ pub fn spot_check(surrogate: &Surrogate, rows: &[Row], tier: &str) -> SpotCheck 
 impl Parity {
     /// Evaluates the surrogate at every row.
     pub fn new(surrogate: &Surrogate, rows: &[Row]) -> Self {
-        let (designs, deformations): (Vec<_>, Vec<_>) = rows
-            .iter()
-            .map(|row| (row.design, row.sample.deformation()))
-            .unzip();
+        let (designs, deformations): (Vec<_>, Vec<_>) =
+            rows.iter().map(|row| (row.design, row.sample.deformation())).unzip();
         let predictions = surrogate.samples(&designs, &deformations);
         let states = std::iter::zip(&predictions, rows)
             .map(|(prediction, row)| ComparedState::new(prediction, &row.sample));
-        Self {
-            states: states.collect(),
-        }
+        Self { states: states.collect() }
     }
 
     /// [target, prediction] of the quantity `i` of [`dataset::COMPARED`] in every state.
     pub fn points(&self, i: usize) -> impl Iterator<Item = [f64; 2]> {
-        self.states
-            .iter()
-            .map(move |state| [state.reference[i], state.value[i]])
+        self.states.iter().map(move |state| [state.reference[i], state.value[i]])
     }
 
     /// The errors by quantity.
@@ -59,18 +55,15 @@ impl Parity {
         TestErrors::new(self.states.len(), by_quantity)
     }
 
-    /// Root mean square errors of (F_a, F_s, M_theta / w_lig), each over the Euclidean norm of the three by the finite elements in
-    /// its state, for the ligament widths of the states; `None` without a state under load.
+    /// Root mean square errors of (F_a, F_s, M_theta / w_lig), each over the Euclidean norm of the
+    /// three by the finite elements in its state, for the ligament widths of the states; `None`
+    /// without a state under load.
     pub fn force_errors(&self, widths: impl Iterator<Item = f64>) -> Option<[f64; 3]> {
         let errors: Vec<[f64; 3]> = std::iter::zip(&self.states, widths)
             .filter_map(|(state, w_lig)| {
                 let forces = |of: [f64; 6]| [of[1], of[2], of[3] / w_lig];
                 let [value, reference] = [state.value, state.reference].map(forces);
-                let norm = reference
-                    .iter()
-                    .map(|force| force * force)
-                    .sum::<f64>()
-                    .sqrt();
+                let norm = reference.iter().map(|force| force * force).sum::<f64>().sqrt();
                 let error = |i: usize| (value[i] - reference[i]) / norm;
                 (norm > 0.0).then(|| std::array::from_fn(error))
             })
@@ -82,9 +75,7 @@ impl Parity {
     /// The states of the rows with these indices.
     pub(crate) fn of_rows(&self, indices: &[usize]) -> Self {
         let states = indices.iter().map(|&index| self.states[index]);
-        Self {
-            states: states.collect(),
-        }
+        Self { states: states.collect() }
     }
 
     /// The loss (15) in the scales of the training rows.
@@ -102,16 +93,15 @@ impl Parity {
         ];
         let peak = scales.peak.map(|scale| (scale, damage_weight));
         let terms = terms.into_iter().chain(peak).enumerate();
-        terms
-            .map(|(i, (scale, weight))| weight * (rms_error(self.points(i)) / scale).powi(2))
-            .sum()
+        terms.map(|(i, (scale, weight))| weight * (rms_error(self.points(i)) / scale).powi(2)).sum()
     }
 
-    /// The relative root mean square error of each network, by which its best epoch is chosen: the geometric mean of
-    /// the known errors of W and the forces; the error of D; and the error of D_peak. NaN if it is not known. The
-    /// geometric mean prevents a few states of large force, which dominate the loss, from determining the choice. The
-    /// error of each state is limited to the root mean square of its quantity, so that a single ray far from all
-    /// training rays does not determine the choice.
+    /// The relative root mean square error of each network, by which its best epoch is chosen: the
+    /// geometric mean of the known errors of W and the forces; the error of D; and the error of
+    /// D_peak. NaN if it is not known. The geometric mean prevents a few states of large force,
+    /// which dominate the loss, from determining the choice. The error of each state is limited to
+    /// the root mean square of its quantity, so that a single ray far from all training rays does
+    /// not determine the choice.
     pub(crate) fn network_errors(&self) -> [f64; 3] {
         let [w, f_a, f_s, m_theta, damage, damage_peak] =
             std::array::from_fn(|i| limited_error(self.points(i)));
@@ -125,21 +115,14 @@ impl Parity {
     }
 }
 
-/// The root mean square error divided by the root mean square of the targets, each error being limited to the latter; NaN
-/// if no target is known and predicted, or all are zero.
+/// The root mean square error divided by the root mean square of the targets, each error being
+/// limited to the latter; NaN if no target is known and predicted, or all are zero.
 fn limited_error(points: impl Iterator<Item = [f64; 2]>) -> f64 {
-    let known: Vec<[f64; 2]> = known(points)
-        .filter(|[_, predicted]| !predicted.is_nan())
-        .collect();
+    let known: Vec<[f64; 2]> = known(points).filter(|[_, predicted]| !predicted.is_nan()).collect();
     let target = root_mean_square(known.iter().map(|[target, _]| *target));
-    let errors = known
-        .iter()
-        .map(|[target_here, predicted]| (predicted - target_here).abs().min(target));
-    if target > 0.0 {
-        root_mean_square(errors) / target
-    } else {
-        f64::NAN
-    }
+    let errors =
+        known.iter().map(|[target_here, predicted]| (predicted - target_here).abs().min(target));
+    if target > 0.0 { root_mean_square(errors) / target } else { f64::NAN }
 }
 
 fn rms_error(points: impl Iterator<Item = [f64; 2]>) -> f64 {
@@ -151,20 +134,17 @@ fn known(points: impl Iterator<Item = [f64; 2]>) -> impl Iterator<Item = [f64; 2
     points.filter(|[target, _]| !target.is_nan())
 }
 
-/// Errors of points [target, prediction] relative to the targets; not known if no target is known, or all are zero.
+/// Errors of points [target, prediction] relative to the targets; not known if no target is known,
+/// or all are zero.
 pub(crate) fn fit_error(points: impl Iterator<Item = [f64; 2]>) -> FitError {
     let points: Vec<[f64; 2]> = known(points).collect();
     let target = root_mean_square(points.iter().map(|[target, _]| *target));
     let nonzero = points.iter().filter(|[target, _]| *target != 0.0);
-    let mut relative: Vec<f64> = nonzero
-        .map(|[target, predicted]| ((predicted - target) / target).abs())
-        .collect();
+    let mut relative: Vec<f64> =
+        nonzero.map(|[target, predicted]| ((predicted - target) / target).abs()).collect();
     relative.sort_by(f64::total_cmp);
     match relative.get(relative.len() / 2) {
-        Some(&median) => FitError {
-            relative_rmse: rms_error(points.into_iter()) / target,
-            median,
-        },
+        Some(&median) => FitError { relative_rmse: rms_error(points.into_iter()) / target, median },
         None => FitError::unknown(),
     }
 }
@@ -173,7 +153,8 @@ pub(crate) fn fit_error(points: impl Iterator<Item = [f64; 2]>) -> FitError {
 mod tests {
     use super::*;
 
-    /// Forces (3, 4, 0) N with errors of 0.5 and -1 N, and a moment of 20 N mm at 2 mm with an error of 2 N mm.
+    /// Forces (3, 4, 0) N with errors of 0.5 and -1 N, and a moment of 20 N mm at 2 mm with an
+    /// error of 2 N mm.
     #[test]
     fn errors_of_forces_are_relative_to_the_norm_of_their_state() {
         let state = |reference: [f64; 3], error: [f64; 3]| {
@@ -187,15 +168,10 @@ mod tests {
             state([3.0, 4.0, 0.0], [0.5, -1.0, 0.0]),
             state([0.0, 0.0, 20.0], [0.0, 0.0, 2.0]),
         ];
-        let found = Parity { states }
-            .force_errors([2.0, 2.0].into_iter())
-            .unwrap();
+        let found = Parity { states }.force_errors([2.0, 2.0].into_iter()).unwrap();
         let half = 0.5_f64.sqrt();
         for (found, expected) in std::iter::zip(found, [0.1, 0.2, 0.1]) {
-            assert!(
-                (found - expected * half).abs() < 1e-12,
-                "{found} {expected}"
-            );
+            assert!((found - expected * half).abs() < 1e-12, "{found} {expected}");
         }
         assert_eq!(Parity::default().force_errors(std::iter::empty()), None);
     }
@@ -222,10 +198,7 @@ mod tests {
             assert!(fit(&points).relative_rmse.is_nan());
             assert!(fit(&points).median.is_nan());
         }
-        assert_eq!(
-            fit(&[[2.0, 2.1], unknown]).relative_rmse,
-            fit(&[[2.0, 2.1]]).relative_rmse
-        );
+        assert_eq!(fit(&[[2.0, 2.1], unknown]).relative_rmse, fit(&[[2.0, 2.1]]).relative_rmse);
     }
 
     #[test]

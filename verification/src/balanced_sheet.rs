@@ -1,11 +1,13 @@
 //! The equilibrium of a sheet with finite elements for its hinges.
 //!
-//! Every hinge is solved along its path in the sheet. The hinge law is corrected to the forces of the finite elements at full load, of
-//! this round and, unless that makes too long a step, of the rounds before ([`CorrectedLaw`]), and the sheet is deployed again; hinges
-//! then have other states, and this is repeated until the panels stay where they are. It is a quasi-Newton iteration for the equilibrium
-//! of the finite-element hinges: in the first round the tangent is the tangent of the hinge law, and it learns from each further round.
-//! Windows of the finest mesh are expensive: the sheet is balanced on a cheaper mesh first ([`Tier::draft`]), from which the finest one
-//! begins, and the difference between both is the error of the cheaper mesh.
+//! Every hinge is solved along its path in the sheet. The hinge law is corrected to the forces of
+//! the finite elements at full load, of this round and, unless that makes too long a step, of the
+//! rounds before ([`CorrectedLaw`]), and the sheet is deployed again; hinges then have other
+//! states, and this is repeated until the panels stay where they are. It is a quasi-Newton
+//! iteration for the equilibrium of the finite-element hinges: in the first round the tangent is
+//! the tangent of the hinge law, and it learns from each further round. Windows of the finest mesh
+//! are expensive: the sheet is balanced on a cheaper mesh first ([`Tier::draft`]), from which the
+//! finest one begins, and the difference between both is the error of the cheaper mesh.
 
 use crate::recorded_path::paths_of;
 use crate::replay::{ElementWindows, UnsolvedHinge};
@@ -22,11 +24,11 @@ use scene::analysis::error_budget::ErrorBudget;
 use serde::Serialize;
 use std::sync::Arc;
 
-/// Largest movement of a panel corner in a round, relative to the size of the deployed sheet, at which the iteration
-/// ends: a tenth of a millimetre in a metre.
+/// Largest movement of a panel corner in a round, relative to the size of the deployed sheet, at
+/// which the iteration ends: a tenth of a millimetre in a metre.
 pub const BALANCED: f64 = 1e-4;
-/// Largest force error of a round at which the iteration ends: panels that hardly move do not show that stiff hinges carry
-/// another load.
+/// Largest force error of a round at which the iteration ends: panels that hardly move do not show
+/// that stiff hinges carry another load.
 pub const BALANCED_FORCES: f64 = 0.02;
 
 /// One round: the hinges are solved, and the sheet is deployed with their forces.
@@ -34,12 +36,13 @@ pub const BALANCED_FORCES: f64 = 0.02;
 pub struct Round {
     /// Mesh tier of its windows.
     pub tier: Tier,
-    /// Root mean square difference of (F_a, F_s, M_theta / w_lig) of the solved hinges between finite elements and
-    /// corrected law, relative to the root mean square of the former.
+    /// Root mean square difference of (F_a, F_s, M_theta / w_lig) of the solved hinges between
+    /// finite elements and corrected law, relative to the root mean square of the former.
     pub force_error: f64,
     /// Largest movement of a panel corner (mm).
     pub movement: f64,
-    /// Hinges that were not solved: in this round the law stands for them, as corrected in the rounds before.
+    /// Hinges that were not solved: in this round the law stands for them, as corrected in the
+    /// rounds before.
     pub unsolved: Vec<UnsolvedHinge>,
 }
 
@@ -47,7 +50,8 @@ pub struct Round {
 pub struct Balanced {
     /// By the hinge law alone, followed by the deployment with the corrected law of each round.
     deployments: Vec<Deployment>,
-    /// The last state of each hinge by finite elements, in the last round that solved it; `None` if no round did.
+    /// The last state of each hinge by finite elements, in the last round that solved it; `None` if
+    /// no round did.
     pub hinges: Vec<Option<HingeSample>>,
     /// All rounds in their order.
     pub rounds: Vec<Round>,
@@ -63,8 +67,9 @@ pub struct Balanced {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum BalanceEnd {
-    /// The last round moved the panels by less than [`BALANCED`], and its forces differed by less than [`BALANCED_FORCES`]. Forces at the
-    /// new states are not solved; the force error of the round is the force error of the states before.
+    /// The last round moved the panels by less than [`BALANCED`], and its forces differed by less
+    /// than [`BALANCED_FORCES`]. Forces at the new states are not solved; the force error of the
+    /// round is the force error of the states before.
     Converged,
     /// All rounds were made, and the panels still move or the forces still differ.
     RoundsMade,
@@ -88,9 +93,9 @@ impl BalanceEnd {
 /// Most rounds on the cheaper mesh, which takes a sixth of the time of the finest one.
 pub(crate) const DRAFT_ROUNDS: usize = 6;
 
-/// Deploys a design with finite elements for its hinges: on the cheaper mesh of [`Tier::draft`] until it is balanced, then in at most
-/// `rounds` rounds on the mesh of the windows. Also returns the problem of the scene with the hinge law corrected to the finite
-/// elements of all rounds.
+/// Deploys a design with finite elements for its hinges: on the cheaper mesh of [`Tier::draft`]
+/// until it is balanced, then in at most `rounds` rounds on the mesh of the windows. Also returns
+/// the problem of the scene with the hinge law corrected to the finite elements of all rounds.
 ///
 /// A hinge that is not solved ends no round unless it is the only one: see [`Round::unsolved`].
 pub fn balanced(
@@ -109,13 +114,7 @@ pub fn balanced(
     let deployed = problem.deploy(design)?;
     deployed.at_full_load()?;
     let count = deployed.sheet.designs().len();
-    let mut iteration = Iteration {
-        scene,
-        design,
-        law,
-        missing: vec![Vec::new(); count],
-        problem,
-    };
+    let mut iteration = Iteration { scene, design, law, missing: vec![Vec::new(); count], problem };
     let mut found = Balanced {
         deployments: vec![deployed],
         hinges: vec![None; count],
@@ -140,7 +139,8 @@ pub fn balanced(
 struct Iteration<'a> {
     scene: &'a Scene,
     design: &'a DesignVector,
-    /// The law that is corrected: the law of the scene, or the law that was balanced on the cheaper mesh.
+    /// The law that is corrected: the law of the scene, or the law that was balanced on the cheaper
+    /// mesh.
     law: Arc<dyn HingeLaw>,
     /// What it lacks of the forces of each hinge, round by round.
     missing: Vec<Vec<MissingForces>>,
@@ -149,16 +149,18 @@ struct Iteration<'a> {
 }
 
 impl Iteration<'_> {
-    /// Takes the corrected law as the law that further rounds correct. Their finite elements have other forces in nearly the states of the
-    /// rounds before: one correction that met both would have a slope that no hinge has.
+    /// Takes the corrected law as the law that further rounds correct. Their finite elements have
+    /// other forces in nearly the states of the rounds before: one correction that met both would
+    /// have a slope that no hinge has.
     fn start_from_corrected_law(&mut self) -> Result<(), VerificationError> {
         self.law = law_of(&mut self.problem)?.clone();
         self.missing.iter_mut().for_each(Vec::clear);
         Ok(())
     }
 
-    /// Rounds on one mesh until the sheet is balanced. A round after the very first that finds no solved hinge or no equilibrium ends
-    /// them, and the results come from the rounds before; any other error is an error of the task.
+    /// Rounds on one mesh until the sheet is balanced. A round after the very first that finds no
+    /// solved hinge or no equilibrium ends them, and the results come from the rounds before; any
+    /// other error is an error of the task.
     fn rounds(
         &mut self,
         windows: &ElementWindows,
@@ -182,8 +184,8 @@ impl Iteration<'_> {
         Ok(())
     }
 
-    /// Solves the hinges along their paths in the last deployment, and deploys the sheet with the law corrected to them.
-    /// After an error the problem has the law that it had before.
+    /// Solves the hinges along their paths in the last deployment, and deploys the sheet with the
+    /// law corrected to them. After an error the problem has the law that it had before.
     fn round(
         &mut self,
         windows: &ElementWindows,
@@ -192,15 +194,11 @@ impl Iteration<'_> {
         let deployed = found.by_elements();
         let solved = windows.solve(&paths_of(deployed), &self.scene.material)?;
         let ends = solved.samples.iter();
-        let ends: Vec<Option<HingeSample>> = ends
-            .map(|samples| samples.as_ref()?.last().copied())
-            .collect();
+        let ends: Vec<Option<HingeSample>> =
+            ends.map(|samples| samples.as_ref()?.last().copied()).collect();
         let force_error = force_error(&self.problem.model, deployed, &ends);
         self.add_missing_forces(deployed, &ends);
-        let last = found
-            .rounds
-            .last()
-            .filter(|round| round.tier == windows.tier);
+        let last = found.rounds.last().filter(|round| round.tier == windows.tier);
         let last = last.map_or(f64::INFINITY, |round| round.movement);
         let (next, movement) = self.step(deployed, last)?;
         if movement <= BALANCED * size(&next) && force_error <= BALANCED_FORCES {
@@ -220,12 +218,14 @@ impl Iteration<'_> {
         Ok(())
     }
 
-    /// The sheet with the law corrected to the finite elements so far, and its largest movement (mm).
+    /// The sheet with the law corrected to the finite elements so far, and its largest movement
+    /// (mm).
     ///
-    /// The slopes between states that hardly differ are slopes of the noise of their forces, and may throw the sheet far away. A step
-    /// longer than the `last` one is therefore compared with the step by the newest forces alone, on the tangent of the law, and the
-    /// shorter step is made; after a step by the newest forces the earlier forces are forgotten. After an error the problem has the law
-    /// that it had before.
+    /// The slopes between states that hardly differ are slopes of the noise of their forces, and
+    /// may throw the sheet far away. A step longer than the `last` one is therefore compared with
+    /// the step by the newest forces alone, on the tangent of the law, and the shorter step is
+    /// made; after a step by the newest forces the earlier forces are forgotten. After an error the
+    /// problem has the law that it had before.
     fn step(
         &mut self,
         deployed: &Deployment,
@@ -234,15 +234,13 @@ impl Iteration<'_> {
         let before = law_of(&mut self.problem)?.clone();
         let secant = self.corrected(deployed, &self.missing.clone());
         let length = |step: &Result<(Deployment, f64), VerificationError>| {
-            step.as_ref()
-                .map_or(f64::INFINITY, |(_, movement)| *movement)
+            step.as_ref().map_or(f64::INFINITY, |(_, movement)| *movement)
         };
         if length(&secant) > last && self.missing.iter().any(|missing| missing.len() > 1) {
             let by_secant = law_of(&mut self.problem)?.clone();
             let newest = self.missing.iter();
-            let newest: Vec<_> = newest
-                .map(|missing| Vec::from_iter(missing.last().copied()))
-                .collect();
+            let newest: Vec<_> =
+                newest.map(|missing| Vec::from_iter(missing.last().copied())).collect();
             let plain = self.corrected(deployed, &newest);
             if length(&plain) < length(&secant) {
                 self.missing = newest;
@@ -266,17 +264,15 @@ impl Iteration<'_> {
         let corrections = (designs.iter().zip(missing))
             .map(|(design, missing)| Correction::new(design, missing))
             .collect();
-        *law_of(&mut self.problem)? = Arc::new(CorrectedLaw {
-            law: self.law.clone(),
-            corrections,
-        });
+        *law_of(&mut self.problem)? = Arc::new(CorrectedLaw { law: self.law.clone(), corrections });
         let next = self.problem.deploy(self.design)?;
         next.at_full_load()?;
         let movement = movements(deployed, &next).into_iter().fold(0.0, f64::max);
         Ok((next, movement))
     }
 
-    /// Adds what the law lacks of the forces of finite elements at the last states of the solved hinges.
+    /// Adds what the law lacks of the forces of finite elements at the last states of the solved
+    /// hinges.
     fn add_missing_forces(&mut self, deployed: &Deployment, ends: &[Option<HingeSample>]) {
         let states = &deployed.final_step().deformations;
         let prepared = self.law.prepare(&deployed.sheet.designs());
@@ -307,13 +303,15 @@ impl Balanced {
         &self.deployments[0]
     }
 
-    /// The error budget of the deployment by the hinge law alone, before finite elements: see [`ErrorBudget::new`].
+    /// The error budget of the deployment by the hinge law alone, before finite elements: see
+    /// [`ErrorBudget::new`].
     pub fn budget(&self, scene: &Scene) -> Result<Option<ErrorBudget>, VerificationError> {
         let problem = scene.problem()?;
         Ok(ErrorBudget::new(scene, &problem, self.by_law(), None))
     }
 
-    /// The deployment with the corrected law of the last round on each mesh that had one, the finest one last.
+    /// The deployment with the corrected law of the last round on each mesh that had one, the
+    /// finest one last.
     pub fn by_mesh(&self) -> impl Iterator<Item = (Tier, &Deployment)> {
         let rounds = self.rounds.iter().zip(&self.deployments[1..]).enumerate();
         rounds.filter_map(|(i, (round, deployment))| {
@@ -322,8 +320,9 @@ impl Balanced {
         })
     }
 
-    /// The error of the cheaper mesh: its tier and deployment, and the tier and deployment of the finest mesh. `None` if there is one
-    /// mesh, or if the sheet was not balanced on the cheaper mesh.
+    /// The error of the cheaper mesh: its tier and deployment, and the tier and deployment of the
+    /// finest mesh. `None` if there is one mesh, or if the sheet was not balanced on the cheaper
+    /// mesh.
     pub fn mesh_error(&self) -> Option<[(Tier, &Deployment); 2]> {
         let meshes: Vec<_> = self.by_mesh().collect();
         match (&self.draft_ended, &meshes[..]) {

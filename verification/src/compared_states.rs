@@ -1,4 +1,5 @@
-//! Differences of values from finer reference values, group by group: a table of their distribution.
+//! Differences of values from finer reference values, group by group: a table of their
+//! distribution.
 
 use dataset::{COMPARED, ComparedState, reference_rms, relative_rms};
 use support::table::Table;
@@ -10,13 +11,11 @@ const MIN_SCALE: f64 = 0.1;
 pub const SCALE: &str = "for all states together and for each group alone, the latter relative to at \
                          least a tenth of the value over all";
 
-/// The difference of each group, relative to its own reference or to a tenth of the reference of all groups, if larger.
+/// The difference of each group, relative to its own reference or to a tenth of the reference of
+/// all groups, if larger.
 pub fn each_relative(groups: &[&[ComparedState]]) -> Vec<[f64; 6]> {
     let min_scale = reference_rms(groups.iter().copied().flatten()).map(|rms| MIN_SCALE * rms);
-    groups
-        .iter()
-        .map(|states| relative_rms(states, min_scale))
-        .collect()
+    groups.iter().map(|states| relative_rms(states, min_scale)).collect()
 }
 
 /// One row per quantity: the difference over all states, and its distribution over the groups.
@@ -46,13 +45,10 @@ pub fn spread_table(groups: &[&[ComparedState]], group: &str) -> Table {
     table
 }
 
-/// Cuts off at 1000 %: if the reference is almost zero (damage of hinges that do not yield), the ratio is meaningless.
+/// Cuts off at 1000 %: if the reference is almost zero (damage of hinges that do not yield), the
+/// ratio is meaningless.
 fn percent(relative: f64) -> String {
-    if relative < 10.0 {
-        format!("{:.2} %", 100.0 * relative)
-    } else {
-        "over 1000 %".into()
-    }
+    if relative < 10.0 { format!("{:.2} %", 100.0 * relative) } else { "over 1000 %".into() }
 }
 
 #[cfg(test)]

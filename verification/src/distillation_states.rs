@@ -3,13 +3,16 @@
 use fe_driver::{DrawnStates, SpotPath, random_paths};
 use hinge::{HingeDeformation, HingeDesign};
 
-/// Number of states of the distillation. With 10 000 the errors of steel at two spot checks are a tenth to a third larger.
+/// Number of states of the distillation. With 10 000 the errors of steel at two spot checks are a
+/// tenth to a third larger.
 const DISTILLATION_STATES: usize = 20_000;
 
-/// The states at which one network learns the median of several, drawn uniformly inside the region. If they lie on rays of the campaign
-/// alone, the network is free in the corners that no ray passes: the moment of one such network of steel was wrong by 27 times the root
-/// mean square there, although the moments of the several networks were not (docs/TRIED.md). Some states lie outside the training domain
-/// of the solved rays: the networks extrapolate there, and the one network follows their median.
+/// The states at which one network learns the median of several, drawn uniformly inside the region.
+/// If they lie on rays of the campaign alone, the network is free in the corners that no ray
+/// passes: the moment of one such network of steel was wrong by 27 times the root mean square
+/// there, although the moments of the several networks were not (docs/TRIED.md). Some states lie
+/// outside the training domain of the solved rays: the networks extrapolate there, and the one
+/// network follows their median.
 pub fn distillation_states(drawn: DrawnStates) -> Vec<(HingeDesign, HingeDeformation)> {
     // Other states than the states of a spot check, whose seeds are small by habit.
     const SEED: u64 = u64::MAX;
@@ -36,11 +39,7 @@ mod tests {
             regime: campaign.tier.regime(),
         });
         assert_eq!(states.len(), DISTILLATION_STATES);
-        assert!(
-            states
-                .iter()
-                .all(|(design, state)| region.contains(design, state))
-        );
+        assert!(states.iter().all(|(design, state)| region.contains(design, state)));
         // Uniform in three dimensions: half of the states are in the outer fifth of their rays.
         let outer = |(design, state): &&(HingeDesign, HingeDeformation)| {
             !region.contains(design, &state.at(0.5f64.cbrt().recip()))

@@ -4,8 +4,8 @@ use crate::recorded_path::RecordedPath;
 use fe_driver::Ray;
 use hinge::{HingeDeformation, TrainingDomain};
 
-/// A ray for every hinge that leaves the training domain on its path. It leads through the outermost such state, to `beyond`
-/// times it.
+/// A ray for every hinge that leaves the training domain on its path. It leads through the
+/// outermost such state, to `beyond` times it.
 pub fn rays_on_paths(paths: &[RecordedPath], domain: &TrainingDomain, beyond: f64) -> Vec<Ray> {
     let ray = |path: &RecordedPath| {
         let size = |state: &HingeDeformation| {
@@ -15,10 +15,7 @@ pub fn rays_on_paths(paths: &[RecordedPath], domain: &TrainingDomain, beyond: f6
         let outside = path.states.iter();
         let outside = outside.filter(|state| !domain.contains(&path.design, state));
         let furthest = outside.max_by(|x, y| size(x).total_cmp(&size(y)))?;
-        Some(Ray {
-            design: path.design,
-            end: furthest.at(beyond),
-        })
+        Some(Ray { design: path.design, end: furthest.at(beyond) })
     };
     paths.iter().filter_map(ray).collect()
 }

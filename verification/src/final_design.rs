@@ -1,8 +1,10 @@
 //! A design searched for with finite elements for its hinges: the level `final`.
 //!
-//! The search runs at `standard`. The sheet it finds is balanced with finite elements for every hinge ([`balanced`]), by how much that
-//! moves the corners of its panels is the error of the search, and the law that is corrected to the solved hinges takes the place of the
-//! learned one. The search goes on with it, until a further balance moves the corners by less than [`BALANCED`], or all rounds are made.
+//! The search runs at `standard`. The sheet it finds is balanced with finite elements for every
+//! hinge ([`balanced`]), by how much that moves the corners of its panels is the error of the
+//! search, and the law that is corrected to the solved hinges takes the place of the learned one.
+//! The search goes on with it, until a further balance moves the corners by less than [`BALANCED`],
+//! or all rounds are made.
 
 use crate::balanced_sheet::{BALANCED, Balanced, DRAFT_ROUNDS, balanced};
 use crate::replay::ElementWindows;
@@ -23,17 +25,17 @@ const ROUNDS: usize = 3;
 /// The file of solved hinges, in the folder of the search that found them.
 const SOLVED_HINGES: &str = "solved-hinges.json";
 
-/// The CPU time of the solves of a sheet with `hinges` hinges (s), at most, at the usual time of the meshes.
+/// The CPU time of the solves of a sheet with `hinges` hinges (s), at most, at the usual time of
+/// the meshes.
 pub fn most_cpu_seconds(tier: Tier, hinges: usize) -> f64 {
     let rounds = |tier: Tier, count: usize| tier.usual_cpu_seconds() * count as f64;
-    let draft = tier
-        .draft()
-        .map_or(0.0, |draft| rounds(draft, DRAFT_ROUNDS));
+    let draft = tier.draft().map_or(0.0, |draft| rounds(draft, DRAFT_ROUNDS));
     (draft + rounds(tier, ROUNDS)) * (SEARCHES * hinges) as f64
 }
 
-/// Designs a scene with finite elements for its hinges. Its searches are runs in folders of its run folder. A search that is stopped ends
-/// it: its design is the one that is returned. Solved windows are kept by the service, and not solved again.
+/// Designs a scene with finite elements for its hinges. Its searches are runs in folders of its run
+/// folder. A search that is stopped ends it: its design is the one that is returned. Solved windows
+/// are kept by the service, and not solved again.
 pub fn final_design(
     scene: &Scene,
     windows: &ElementWindows,
@@ -56,11 +58,7 @@ pub fn final_design(
         let file = at.output().join(SOLVED_HINGES);
         let file = std::path::absolute(&file).map_err(FileError::at(&file))?;
         solved_hinges(&found).write(&file)?;
-        let own = AtLevel {
-            level,
-            problem: designed.problem,
-            deployment: found.by_law().clone(),
-        };
+        let own = AtLevel { level, problem: designed.problem, deployment: found.by_law().clone() };
         let finer = AtLevel {
             level: Level::Final,
             problem: corrected,
@@ -101,7 +99,5 @@ fn solved_hinges(found: &Balanced) -> SolvedHinges {
             forces: end.forces().to_array(),
         })
     });
-    SolvedHinges {
-        hinges: solved.collect(),
-    }
+    SolvedHinges { hinges: solved.collect() }
 }

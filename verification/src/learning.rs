@@ -1,6 +1,8 @@
-//! Rays of a campaign solved in rounds, each with twice the rays of the one before, until weights are accurate.
+//! Rays of a campaign solved in rounds, each with twice the rays of the one before, until weights
+//! are accurate.
 //!
-//! After each round weights are trained on all rays so far, and tested at random states of rays that no training contains.
+//! After each round weights are trained on all rays so far, and tested at random states of rays
+//! that no training contains.
 
 use crate::rows::collected;
 use crate::verification_error::VerificationError;
@@ -72,8 +74,8 @@ pub trait LearningSteps {
     /// Trains weights on the rows of the first `rays` rays; also returns the time that it took (s).
     fn train(&mut self, rays: usize, database: &Database) -> Result<(Surrogate, f64), Self::Error>;
 
-    /// Takes a finished round with its weights. `is_latest` is false while the rays of the next round are known from an
-    /// earlier run.
+    /// Takes a finished round with its weights. `is_latest` is false while the rays of the next
+    /// round are known from an earlier run.
     fn round(
         &mut self,
         round: &LearningRound,
@@ -98,11 +100,12 @@ pub enum LearningEnd {
     AllRays,
 }
 
-/// Fewest rays on which a round that the deadline ends is trained: a geometry in each part of the split, and some more.
+/// Fewest rays on which a round that the deadline ends is trained: a geometry in each part of the
+/// split, and some more.
 const LEAST_RAYS: usize = 6;
 
-/// Makes rounds until the weights are accurate enough, all rays are solved, or the time is over. A round that the deadline ends
-/// early is trained on the rays that it has.
+/// Makes rounds until the weights are accurate enough, all rays are solved, or the time is over. A
+/// round that the deadline ends early is trained on the rays that it has.
 pub fn learn<S: LearningSteps>(task: LearningTask, steps: &mut S) -> Result<LearningEnd, S::Error> {
     let solved = closed_before(task.folder)?;
     let mut counts = counts(task.first_rays, task.campaign.rays()).peekable();
@@ -131,9 +134,7 @@ pub fn learn<S: LearningSteps>(task: LearningTask, steps: &mut S) -> Result<Lear
             return Ok(LearningEnd::Accurate);
         }
         if let Some(next) = counts.peek()
-            && task
-                .deadline
-                .is_some_and(|deadline| Instant::now() >= deadline)
+            && task.deadline.is_some_and(|deadline| Instant::now() >= deadline)
         {
             let (left, what) = (next - rays, "rays of the next round");
             return Ok(LearningEnd::Unfinished { left, what });
@@ -179,15 +180,7 @@ fn solve_first<S: LearningSteps>(
     };
     let first = task.campaign.first_rays(rays);
     let progress = &mut |progress: &Progress| steps.solving(progress);
-    let tally = run(
-        &first,
-        task.folder,
-        task.solver,
-        &options,
-        task.stop,
-        progress,
-    )?
-    .tally;
+    let tally = run(&first, task.folder, task.solver, &options, task.stop, progress)?.tally;
     if tally.to_run() > 0 {
         let (left, what) = (tally.to_run(), "rays of this round");
         return Ok(Some(LearningEnd::Unfinished { left, what }));
@@ -226,9 +219,7 @@ impl LearningRound {
 /// Numbers of rays of the rounds: each twice the one before, the last with all.
 fn counts(first: usize, all: usize) -> impl Iterator<Item = usize> {
     let doubled = std::iter::successors(Some(first), |count| Some(2 * count));
-    doubled
-        .take_while(move |count| *count < all)
-        .chain(std::iter::once(all))
+    doubled.take_while(move |count| *count < all).chain(std::iter::once(all))
 }
 
 #[cfg(test)]

@@ -1,4 +1,5 @@
-//! Designs and weights are checked by finite elements: lists of window solves, and what follows from them.
+//! Designs and weights are checked by finite elements: lists of window solves, and what follows
+//! from them.
 //!
 //! | task | entry point |
 //! |---|---|
@@ -11,8 +12,9 @@
 //! | rays where the training data is thin | [`rays_on_paths`] |
 //! | rays of a campaign solved in rounds until weights are accurate | [`learn`] |
 //!
-//! Windows are solved by a [`SolveService`](fe_driver::SolveService). One that fails ends no task: it is named in the
-//! result, which says what it leaves unknown. The example checks weights at eight states:
+//! Windows are solved by a [`SolveService`](fe_driver::SolveService). One that fails ends no task:
+//! it is named in the result, which says what it leaves unknown. The example checks weights at
+//! eight states:
 //!
 //! ```no_run
 //! use fe_driver::{CalculiX, DrawnStates, SolveService, SolveStore, random_paths};

@@ -5,8 +5,8 @@ use dataset::Fidelity;
 use mesher::Tier;
 use surrogate::Surrogate;
 
-/// The mesh tier to test weights on: `requested`, or the tier of the database they were trained on, or the finer tier
-/// that the database was corrected to.
+/// The mesh tier to test weights on: `requested`, or the tier of the database they were trained on,
+/// or the finer tier that the database was corrected to.
 pub fn verification_tier(
     requested: Option<Tier>,
     surrogate: &Surrogate,
@@ -16,9 +16,7 @@ pub fn verification_tier(
 
 fn tier_of(trained_on: &str) -> Result<Tier, VerificationError> {
     let tier = Fidelity::from_tier(trained_on).mesh().parse();
-    tier.map_err(|_| VerificationError::NoTier {
-        trained_on: trained_on.to_owned(),
-    })
+    tier.map_err(|_| VerificationError::NoTier { trained_on: trained_on.to_owned() })
 }
 
 #[cfg(test)]

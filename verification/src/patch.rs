@@ -1,5 +1,5 @@
-//! A part of a sheet that is too large to be solved as a whole: 3 x 3 panels, joined to panels that move as the hinge law
-//! predicts.
+//! A part of a sheet that is too large to be solved as a whole: 3 x 3 panels, joined to panels that
+//! move as the hinge law predicts.
 
 use crate::verification_error::VerificationError;
 use design::objective::design_problem::Deployment;
@@ -37,10 +37,7 @@ impl SheetPart {
             let hinge = &sheet.hinges[*h];
             near(&hinge.panel_a()) || near(&hinge.panel_b())
         });
-        Ok(Self {
-            hinges: hinges.collect(),
-            panels,
-        })
+        Ok(Self { hinges: hinges.collect(), panels })
     }
 
     /// This part of the whole sheet `whole`; the panels around it move as in the deployment.
@@ -66,9 +63,8 @@ impl SheetPart {
         if part.stroke.take().is_some() && !part.pulled.is_empty() {
             return Err(VerificationError::DrivenPatch);
         }
-        part.shape.panels = (self.panels.iter())
-            .map(|panel| whole.shape.panels[*panel].clone())
-            .collect();
+        part.shape.panels =
+            (self.panels.iter()).map(|panel| whole.shape.panels[*panel].clone()).collect();
         part.shape.windows.clear();
         for (number, hinge) in self.hinges.iter().enumerate() {
             let window = whole.shape.windows[*hinge];

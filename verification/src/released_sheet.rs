@@ -1,9 +1,10 @@
 //! An unloaded sheet, with finite elements for its hinges.
 //!
-//! Every hinge is solved along its path in the deployed sheet, and from there straight to its state without loads by the law of released
-//! hinges: it is elastic on the way, and the way does not matter. The deformation at which the law is without forces is moved until the
-//! law has the forces of the finite elements there, and the sheet is unloaded again; this is repeated until the panels stay where they
-//! are.
+//! Every hinge is solved along its path in the deployed sheet, and from there straight to its state
+//! without loads by the law of released hinges: it is elastic on the way, and the way does not
+//! matter. The deformation at which the law is without forces is moved until the law has the forces
+//! of the finite elements there, and the sheet is unloaded again; this is repeated until the panels
+//! stay where they are.
 
 use crate::balanced_sheet::{BALANCED, Balanced, size};
 use crate::recorded_path::paths_of;
@@ -36,8 +37,8 @@ pub struct ReleasedByElements {
     pub movements: Vec<f64>,
     /// Whether the last of them is below [`BALANCED`] times the size of the sheet.
     pub is_balanced: bool,
-    /// Largest share of the load that hinges carry without loads, of root mean square forces (F_a, F_s, M_theta / w_lig): what the hinges do
-    /// to each other.
+    /// Largest share of the load that hinges carry without loads, of root mean square forces (F_a,
+    /// F_s, M_theta / w_lig): what the hinges do to each other.
     pub own_forces: f64,
     /// Hinges that were not solved in the last round: the law stands for them.
     pub unsolved: Vec<UnsolvedHinge>,
@@ -65,9 +66,8 @@ pub fn released_by_elements(
         let ends = solved_back(scene, deployed, &released, windows)?;
         unsolved = ends.unsolved;
         let ends = ends.samples.iter();
-        let ends: Vec<_> = ends
-            .map(|samples| Some(samples.as_ref()?.last()?.forces().to_array()))
-            .collect();
+        let ends: Vec<_> =
+            ends.map(|samples| Some(samples.as_ref()?.last()?.forces().to_array())).collect();
         own_forces = share(deployed, found, &ends);
         let states = &released.last().deformations;
         let hinges = (released.hinges.iter().zip(states).zip(&ends))
@@ -79,10 +79,7 @@ pub fn released_by_elements(
                 let back = solved(hinge.stiffness, *forces).ok_or(VerificationError::NotElastic)?;
                 let state = state.to_array();
                 let rest = from_fn(|i| state[i] - back[i]);
-                Ok(ReleasedHinge {
-                    rest: rest.into(),
-                    ..*hinge
-                })
+                Ok(ReleasedHinge { rest: rest.into(), ..*hinge })
             })
             .collect::<Result<_, VerificationError>>()?;
         released = problem.unload(deployed, hinges)?;
@@ -98,9 +95,7 @@ pub fn released_by_elements(
         by_elements: ResidualShape::new(problem, deployed, &released)?,
         by_law,
         corners: distances(&first, &last),
-        is_balanced: movements
-            .last()
-            .is_some_and(|last| *last <= BALANCED * size(deployed)),
+        is_balanced: movements.last().is_some_and(|last| *last <= BALANCED * size(deployed)),
         movements,
         own_forces,
         unsolved,
@@ -178,18 +173,11 @@ impl ReleasedByElements {
             "Without loads hinges hold each other with {:.0} % of the forces that they had under load.",
             100.0 * self.own_forces
         ));
-        let movements = self
-            .movements
-            .iter()
-            .map(|movement| format!("{movement:.3}"));
+        let movements = self.movements.iter().map(|movement| format!("{movement:.3}"));
         page.text(format!(
             "Rounds, largest movement of a corner, mm: {}{}",
             movements.collect::<Vec<_>>().join(", "),
-            if self.is_balanced {
-                ""
-            } else {
-                " (still moving: use more --rounds)"
-            }
+            if self.is_balanced { "" } else { " (still moving: use more --rounds)" }
         ));
         page
     }

@@ -1,11 +1,13 @@
-//! Hinges deformed along straight rays and unloaded, by finite elements: the deformation without forces and the
-//! stiffness about it.
+//! Hinges deformed along straight rays and unloaded, by finite elements: the deformation without
+//! forces and the stiffness about it.
 //!
-//! The window of a hinge is driven, and where it is without forces is not known before. Its path leads to the state that it
-//! reaches, back to a guess of that deformation, and from there to and fro in a, s and theta. Unloading is elastic (and yields
-//! the other way where residual stresses are large): forces on this tour give the stiffness, and Newton's method the next guess,
-//! in a window that is deformed again from the flat state. A guess too far back, at which the hinge has yielded the other way, shows by
-//! a step that is hardly shorter than the one before: then the next guess is half as far from the reached state.
+//! The window of a hinge is driven, and where it is without forces is not known before. Its path
+//! leads to the state that it reaches, back to a guess of that deformation, and from there to and
+//! fro in a, s and theta. Unloading is elastic (and yields the other way where residual stresses
+//! are large): forces on this tour give the stiffness, and Newton's method the next guess, in a
+//! window that is deformed again from the flat state. A guess too far back, at which the hinge has
+//! yielded the other way, shows by a step that is hardly shorter than the one before: then the next
+//! guess is half as far from the reached state.
 
 use crate::verification_error::VerificationError;
 use faer::linalg::solvers::{Llt, Solve};
@@ -31,21 +33,25 @@ pub struct Releases {
 
 /// Most windows of a hinge.
 const ROUNDS: usize = 12;
-/// A guess is good if Newton's step from it is shorter than this part of its distance from the reached state: what the step leaves
-/// is of second order.
+/// A guess is good if Newton's step from it is shorter than this part of its distance from the
+/// reached state: what the step leaves is of second order.
 const ENOUGH: f64 = 0.05;
 /// A step is no longer than this part of the distance of the reached state from the flat one.
 const LONGEST_STEP: f64 = 0.5;
 /// A step that is longer than this part of the one before is not made.
 const SHORTENS: f64 = 0.7;
-/// Amplitudes of the tour in eta_a, eta_s and theta (rad); smaller about a guess closer to the reached state than [`FAR`].
+/// Amplitudes of the tour in eta_a, eta_s and theta (rad); smaller about a guess closer to the
+/// reached state than [`FAR`].
 const AMPLITUDES: [f64; 3] = [0.02, 0.02, 0.05];
-/// Distance of the guess from the reached state in (eta_a, eta_s, theta) from which on the tour has its amplitudes.
+/// Distance of the guess from the reached state in (eta_a, eta_s, theta) from which on the tour has
+/// its amplitudes.
 const FAR: f64 = 0.1;
-/// Numbers of legs to the reached state and back; the tour has two for each direction. All have the same number of increments.
+/// Numbers of legs to the reached state and back; the tour has two for each direction. All have the
+/// same number of increments.
 const LEGS: [usize; 2] = [10, 4];
 
-/// Unloads hinges at the end of their rays. `guess` is where they are expected to be without forces.
+/// Unloads hinges at the end of their rays. `guess` is where they are expected to be without
+/// forces.
 pub fn releases(
     windows: &SolveService,
     hinges: &[HingePath],
@@ -70,9 +76,8 @@ pub fn releases(
         .collect();
     for _ in 0..ROUNDS {
         let problem = |hinge: &Released| WindowProblem::new(hinge.path(), material, tier);
-        let solves: Vec<WindowSolve> = (open.iter())
-            .map(|hinge| WindowSolve::new(problem(hinge), &versions))
-            .collect();
+        let solves: Vec<WindowSolve> =
+            (open.iter()).map(|hinge| WindowSolve::new(problem(hinge), &versions)).collect();
         let solved = windows.solve(&solves)?;
         found.windows += solved.len();
         let mut further = Vec::new();
@@ -84,11 +89,7 @@ pub fn releases(
             };
             match next {
                 Next::Row(row) => rows[hinge.index] = Some(row),
-                Next::Guess(guess, step) => further.push(Released {
-                    guess,
-                    step,
-                    ..hinge
-                }),
+                Next::Guess(guess, step) => further.push(Released { guess, step, ..hinge }),
                 Next::Failed(reason) => found.failed.push(reason),
             }
         }
@@ -101,7 +102,8 @@ pub fn releases(
     Ok(found)
 }
 
-/// Where a hinge is expected without forces before anything is known: films spring back nearly to the flat state.
+/// Where a hinge is expected without forces before anything is known: films spring back nearly to
+/// the flat state.
 pub fn first_guess(
     material: &SheetMaterial,
     design: &HingeDesign,
@@ -137,14 +139,9 @@ impl Released {
     fn path(&self) -> HingePath {
         let [out, back] = LEGS;
         let guess = self.guess.to_array();
-        let mut states: Vec<_> = (1..=out)
-            .map(|k| self.reached.at(k as f64 / out as f64))
-            .collect();
-        states.extend(
-            (0..back)
-                .rev()
-                .map(|k| self.towards_reached(k as f64 / back as f64)),
-        );
+        let mut states: Vec<_> =
+            (1..=out).map(|k| self.reached.at(k as f64 / out as f64)).collect();
+        states.extend((0..back).rev().map(|k| self.towards_reached(k as f64 / back as f64)));
         let amplitude = (self.distance() / FAR).min(1.0);
         for i in 0..3 {
             let mut away = guess;
@@ -195,10 +192,9 @@ impl Released {
         let all = (out + back + 6) as f64;
         let tour = (out + back) as f64 / all - 1e-9;
         let tour: Vec<_> = samples.iter().filter(|at| at.lambda >= tour).collect();
-        let (Some((forces, stiffness)), Some(reached)) = (
-            self.response(&tour),
-            HingeSample::at(samples, out as f64 / all),
-        ) else {
+        let (Some((forces, stiffness)), Some(reached)) =
+            (self.response(&tour), HingeSample::at(samples, out as f64 / all))
+        else {
             return Next::Failed(format!(
                 "{}: the tour about the guess has no stiffness",
                 self.name()
@@ -226,9 +222,11 @@ impl Released {
         ))
     }
 
-    /// Forces at the guess and the symmetric stiffness about it, by least squares; moments count as forces at w_lig.
+    /// Forces at the guess and the symmetric stiffness about it, by least squares; moments count as
+    /// forces at w_lig.
     fn response(&self, tour: &[&HingeSample]) -> Option<([f64; 3], [[f64; 3]; 3])> {
-        /// Places of (K_aa, K_as, K_a theta, K_ss, K_s theta, K_theta theta) among the nine unknowns.
+        /// Places of (K_aa, K_as, K_a theta, K_ss, K_s theta, K_theta theta) among the nine
+        /// unknowns.
         const STIFFNESS: [[usize; 3]; 3] = [[3, 4, 5], [4, 6, 7], [5, 7, 8]];
         let lengths = self.lengths();
         let guess = self.guess.to_array();

@@ -1,4 +1,5 @@
-//! The hinges of a sheet solved along their paths in it, and compared with a surrogate at every load step.
+//! The hinges of a sheet solved along their paths in it, and compared with a surrogate at every
+//! load step.
 
 use crate::recorded_path::RecordedPath;
 use crate::verification_error::VerificationError;
@@ -87,10 +88,9 @@ impl ElementWindows<'_> {
                 Ok(samples) => solved.samples.push(Some(samples.clone())),
                 Err(failed) => {
                     solved.samples.push(None);
-                    solved.unsolved.push(UnsolvedHinge {
-                        hinge: path.hinge,
-                        reason: failed.to_string(),
-                    });
+                    solved
+                        .unsolved
+                        .push(UnsolvedHinge { hinge: path.hinge, reason: failed.to_string() });
                 }
             }
         }
@@ -104,8 +104,8 @@ impl ElementWindows<'_> {
 }
 
 impl Replay {
-    /// Compares a surrogate with the solved windows of hinges of the scene along their paths in the design, which has a
-    /// name for a person.
+    /// Compares a surrogate with the solved windows of hinges of the scene along their paths in the
+    /// design, which has a name for a person.
     pub fn new(
         windows: &ElementWindows,
         (paths, name): (Vec<RecordedPath>, &str),
@@ -117,12 +117,7 @@ impl Replay {
         let hinges = hinges
             .filter_map(|(path, samples)| Some(ReplayedHinge::new(path, &samples?, surrogate)))
             .collect();
-        Ok(Self {
-            name: name.to_owned(),
-            tier: windows.tier,
-            hinges,
-            unsolved: solved.unsolved,
-        })
+        Ok(Self { name: name.to_owned(), tier: windows.tier, hinges, unsolved: solved.unsolved })
     }
 
     /// The states of each hinge.
@@ -139,14 +134,11 @@ impl ReplayedHinge {
         let predicted = surrogate.samples(&designs, &path.states);
         let domain = surrogate.domain();
         let inside = |state: &HingeDeformation| domain.contains(&path.design, state);
-        // Damage grows along the path: it is not known once a state was outside the training domain.
+        // Damage grows along the path: it is not known once a state was outside the training
+        // domain.
         let left = path.states.iter().position(|state| !inside(state));
         let known = |(k, value): (usize, &HingeSample)| match left {
-            Some(left) if k >= left => HingeSample {
-                d: f64::NAN,
-                d_peak: None,
-                ..*value
-            },
+            Some(left) if k >= left => HingeSample { d: f64::NAN, d_peak: None, ..*value },
             _ => *value,
         };
         let states = (predicted.iter().enumerate().map(known))

@@ -48,26 +48,18 @@ impl Replay {
 
 /// Every hinge at full load.
 fn ends_table(hinges: &[ReplayedHinge]) -> Table {
-    let ends = hinges
-        .iter()
-        .filter_map(|hinge| Some((hinge, *hinge.states.last()?)));
+    let ends = hinges.iter().filter_map(|hinge| Some((hinge, *hinge.states.last()?)));
     let ends: Vec<(&ReplayedHinge, ComparedState)> = ends.collect();
     let eta = |hinge: &ReplayedHinge| hinge.path.end().eta(hinge.path.design.w_lig);
     let degrees = |angle: f64, decimals| Cell::fixed(angle.to_degrees(), decimals);
     type End<'a> = (&'a ReplayedHinge, ComparedState);
     Columns::new()
         .column("hinge", |(hinge, _): &End| hinge.path.hinge)
-        .column("w_lig\nmm", |(hinge, _)| {
-            Cell::fixed(hinge.path.design.w_lig, 1)
-        })
-        .column("alpha\ndeg", |(hinge, _)| {
-            degrees(hinge.path.design.alpha, 0)
-        })
+        .column("w_lig\nmm", |(hinge, _)| Cell::fixed(hinge.path.design.w_lig, 1))
+        .column("alpha\ndeg", |(hinge, _)| degrees(hinge.path.design.alpha, 0))
         .column("eta_a", |(hinge, _)| Cell::fixed(eta(hinge)[0], 3))
         .column("eta_s", |(hinge, _)| Cell::fixed(eta(hinge)[1], 3))
-        .column("theta, deg", |(hinge, _)| {
-            degrees(hinge.path.end().theta, 1)
-        })
+        .column("theta, deg", |(hinge, _)| degrees(hinge.path.end().theta, 1))
         .column("inside", |(hinge, _)| Cell::percent(hinge.inside, 0))
         .column("W\nN mm", |(_, end)| Cell::fixed(end.value[0], 2))
         .column("by FE", |(_, end)| Cell::fixed(end.reference[0], 2))
@@ -86,16 +78,10 @@ impl Replay {
         let mut columns = Columns::new()
             .column("hinge", |(path, ..): &State| path.hinge)
             .column("w_lig_mm", |(path, ..)| number(path.design.w_lig))
-            .column("alpha_deg", |(path, ..)| {
-                number(path.design.alpha.to_degrees())
-            })
+            .column("alpha_deg", |(path, ..)| number(path.design.alpha.to_degrees()))
             .column("step", |(_, k, _)| k + 1)
-            .column("eta_a", move |of| {
-                number(state(of).eta(of.0.design.w_lig)[0])
-            })
-            .column("eta_s", move |of| {
-                number(state(of).eta(of.0.design.w_lig)[1])
-            })
+            .column("eta_a", move |of| number(state(of).eta(of.0.design.w_lig)[0]))
+            .column("eta_s", move |of| number(state(of).eta(of.0.design.w_lig)[1]))
             .column("theta_deg", move |of| number(state(of).theta.to_degrees()));
         for (i, name) in COMPARED.iter().enumerate() {
             columns = columns.column(format!("surrogate_{name}"), move |of| number(of.2.value[i]));

@@ -17,14 +17,11 @@ impl LearningRound {
             .column("inside", |round| round.check.inside);
         let names = ["W\n%", "F_a\n%", "F_s\n%", "M\n%", "D\n%", "D_peak\n%"];
         for (i, name) in names.into_iter().enumerate() {
-            columns = columns.column(name, move |round| {
-                Cell::fixed(round.check.errors.percents()[i], 2)
-            });
+            columns =
+                columns.column(name, move |round| Cell::fixed(round.check.errors.percents()[i], 2));
         }
         columns
-            .column("forces\n%", |round| {
-                Cell::fixed(round.check.errors.forces_percent(), 2)
-            })
+            .column("forces\n%", |round| Cell::fixed(round.check.errors.forces_percent(), 2))
             .column("W, 95 %", |round| interval(round, 0))
             .column("forces, 95 %", |round| interval(round, 1))
             .table(rounds)

@@ -1,5 +1,5 @@
-//! Solved windows as rows of a database, and back. A database is a table of text and numbers; this is the only place where
-//! kinds of failure, tiers and versions are written to it and read from it.
+//! Solved windows as rows of a database, and back. A database is a table of text and numbers; this
+//! is the only place where kinds of failure, tiers and versions are written to it and read from it.
 
 use crate::verification_error::VerificationError;
 use dataset::{Database, Row, SplitPlan};
@@ -31,10 +31,7 @@ pub fn rows(
         ccx: tools.ccx.clone(),
         cpu_s: record.cpu_seconds,
     };
-    let of_sample = move |sample| Row {
-        sample,
-        ..row.clone()
-    };
+    let of_sample = move |sample| Row { sample, ..row.clone() };
     samples.into_iter().map(of_sample)
 }
 
@@ -83,10 +80,7 @@ fn collected_window(rows: &[Row]) -> Result<CollectedWindow, UnknownName> {
     let solved_tier: Tier = row.solved_tier.parse()?;
     Ok(CollectedWindow {
         id: row.job.clone(),
-        tools: ToolVersions {
-            gmsh: row.gmsh.clone(),
-            ccx: row.ccx.clone(),
-        },
+        tools: ToolVersions { gmsh: row.gmsh.clone(), ccx: row.ccx.clone() },
         solved_tier,
         samples: rows.iter().map(|row| row.sample).collect(),
         cpu_seconds: row.cpu_s,

@@ -48,7 +48,8 @@ pub struct SheetTask {
     part: SheetPart,
     /// Displacement and load by the law, before the loads and at every load step.
     curve: Vec<[f64; 2]>,
-    /// The plate out of its plane by the law at every load step; `None` for a patch, and where the law has none.
+    /// The plate out of its plane by the law at every load step; `None` for a patch, and where the
+    /// law has none.
     out_of_plane: Option<Vec<OutOfPlane>>,
 }
 
@@ -69,7 +70,8 @@ pub struct SheetCheck {
     pub contact: bool,
     /// Longer side of the flat sheet (mm).
     pub size: f64,
-    /// Smallest radius of a window in the mesh, and the radius of the windows of the hinge law (mm).
+    /// Smallest radius of a window in the mesh, and the radius of the windows of the hinge law
+    /// (mm).
     pub radius: [f64; 2],
     /// Smallest and largest ligament width over the thickness.
     pub slenderness: [f64; 2],
@@ -95,7 +97,8 @@ pub struct SheetCheck {
     pub hinges: Vec<HingeCheck>,
     /// The panels at its end.
     pub panels: Vec<PanelCheck>,
-    /// Internal energy of the panels outside of the windows over the whole internal energy (1) at its end.
+    /// Internal energy of the panels outside of the windows over the whole internal energy (1) at
+    /// its end.
     pub panel_energy: f64,
     /// The middle surface at its end.
     #[serde(skip)]
@@ -117,7 +120,8 @@ pub struct StateCheck {
     pub opening_deg: [f64; 2],
     /// Largest tilt of a panel (deg).
     pub tilt_deg: f64,
-    /// The largest tilt by the hinge law and the bumps of the ligaments; `None` where there is no margin, and from a margin of 1 on.
+    /// The largest tilt by the hinge law and the bumps of the ligaments; `None` where there is no
+    /// margin, and from a margin of 1 on.
     pub tilt_by_law_deg: Option<f64>,
     /// Lowest and highest point of the panels (mm).
     pub z: [f64; 2],
@@ -125,10 +129,12 @@ pub struct StateCheck {
     pub bending: f64,
     /// Kinetic over internal energy; zero on a static path.
     pub kinetic: f64,
-    /// Distance of the flanks of a cut where they come nearest (mm), negative where they pass through each other; `None` for a patch, and where
-    /// panels tilt, whose flanks pass each other in space.
+    /// Distance of the flanks of a cut where they come nearest (mm), negative where they pass
+    /// through each other; `None` for a patch, and where panels tilt, whose flanks pass each other
+    /// in space.
     pub flank_gap: Option<f64>,
-    /// The margin against leaving the plane by the hinge law, at its next load step; `None` for a patch, and where the law has none.
+    /// The margin against leaving the plane by the hinge law, at its next load step; `None` for a
+    /// patch, and where the law has none.
     pub margin: Option<f64>,
 }
 
@@ -163,7 +169,8 @@ pub struct PanelCheck {
 }
 
 impl SheetTask {
-    /// The design of a scene, kept in its plane as `support` says, or as its posture does. Of a `patch`, the panel [column, row] and those around it are solved.
+    /// The design of a scene, kept in its plane as `support` says, or as its posture does. Of a
+    /// `patch`, the panel [column, row] and those around it are solved.
     pub fn new(
         scene: &Scene,
         design: &DesignVector,
@@ -231,10 +238,7 @@ impl SheetTask {
                     .fold(f64::INFINITY, f64::min),
                 sheet.options.process.r_win,
             ],
-            slenderness: [
-                widths.clone().fold(f64::INFINITY, f64::min),
-                widths.fold(0.0, f64::max),
-            ],
+            slenderness: [widths.clone().fold(f64::INFINITY, f64::min), widths.fold(0.0, f64::max)],
             outside: (self.part.hinges.iter().copied())
                 .filter(|h| self.deployment.path.iter().any(|step| !step.inside[*h]))
                 .collect(),
@@ -262,7 +266,8 @@ impl SheetTask {
         self.part.panels.len() < self.deployment.sheet.panels.len()
     }
 
-    /// What the law predicts at a fraction of the loads: motions of the panels, and (displacement, load).
+    /// What the law predicts at a fraction of the loads: motions of the panels, and (displacement,
+    /// load).
     fn by_law(&self, fraction: f64) -> (Configuration, [f64; 2]) {
         let weighed = self.deployment.weight_steps();
         let loaded = &self.deployment.path[weighed.len()..];
@@ -282,7 +287,8 @@ impl SheetTask {
         (configuration, [0, 1].map(|i| mix(from[i], to[i])))
     }
 
-    /// Distances in space of the corners of the panels between a configuration and finite elements (mm).
+    /// Distances in space of the corners of the panels between a configuration and finite elements
+    /// (mm).
     fn corner_errors(&self, configuration: &[[f64; 3]], state: &SheetState) -> Vec<[f64; 4]> {
         let sheet = &self.deployment.sheet;
         let deployed = deployed_corners(sheet, configuration);
@@ -306,9 +312,7 @@ impl SheetTask {
         let openings = hinge_deformations(sheet, &configuration);
         let hinges = &self.part.hinges;
         let by_law: f64 = hinges.iter().map(|h| openings[*h].theta).sum();
-        let by_elements = hinges
-            .iter()
-            .map(|h| self.opening(state, *h, &configuration));
+        let by_elements = hinges.iter().map(|h| self.opening(state, *h, &configuration));
         let by_elements: f64 = by_elements.sum();
         let mean = |sum: f64| (sum / hinges.len() as f64).to_degrees();
         let whole = !self.is_patch();
@@ -336,9 +340,8 @@ impl SheetTask {
             let [u, v, _] = moved.moved(panel.reference);
             [u - x, v - y, moved.turn()]
         };
-        let configuration: Configuration = std::iter::zip(&sheet.panels, &state.panels)
-            .map(motion)
-            .collect();
+        let configuration: Configuration =
+            std::iter::zip(&sheet.panels, &state.panels).map(motion).collect();
         let states = hinge_deformations(sheet, &configuration);
         let regime = |design: &HingeDesign| self.scene.material.regime(design.w_lig);
         let hinges = std::iter::zip(&sheet.hinges, sheet.designs());
@@ -370,7 +373,8 @@ impl SheetTask {
         Some(from + share * (to - from))
     }
 
-    /// The load step at or after a fraction of the loads, counted from 1, and the share of the way to it from the one before.
+    /// The load step at or after a fraction of the loads, counted from 1, and the share of the way
+    /// to it from the one before.
     fn place(&self, fraction: f64) -> (usize, f64) {
         let steps = self.deployment.path.len() - self.deployment.weight_steps().len();
         let place = fraction.clamp(0.0, 1.0) * steps as f64;
@@ -378,7 +382,8 @@ impl SheetTask {
         (after, place - (after - 1) as f64)
     }
 
-    /// Rotation of a hinge in the plane by finite elements (rad); a panel that is not solved moves by the law.
+    /// Rotation of a hinge in the plane by finite elements (rad); a panel that is not solved moves
+    /// by the law.
     fn opening(&self, state: &SheetState, hinge: usize, by_law: &[[f64; 3]]) -> f64 {
         let hinge = &self.deployment.sheet.hinges[hinge];
         let turn = |panel: usize| match self.part.panels.binary_search(&panel) {
@@ -405,13 +410,9 @@ impl SheetTask {
             w_lig: sheet.hinges[h].w_lig,
             theta_deg: [states[h].theta, self.opening(last, h, &configuration)]
                 .map(f64::to_degrees),
-            energy: [
-                energies.as_ref().map_or(f64::NAN, |energies| energies[h].w),
-                found.energy,
-            ],
+            energy: [energies.as_ref().map_or(f64::NAN, |energies| energies[h].w), found.energy],
             d_peak: [
-                full.then(|| self.deployment.damage_max(DamageMeasure::Peak, h))
-                    .flatten(),
+                full.then(|| self.deployment.damage_max(DamageMeasure::Peak, h)).flatten(),
                 Some(found.d_peak),
             ],
         });
@@ -455,9 +456,7 @@ fn findings(check: &SheetCheck) -> Vec<Finding> {
         let reason = reason.unwrap_or("no increment converged");
         let message = format!("the sheet was not solved: {reason}");
         let unsolved = Severity::Error.finding(message);
-        return std::iter::once(unsolved)
-            .chain(outside_domain(check))
-            .collect();
+        return std::iter::once(unsolved).chain(outside_domain(check)).collect();
     };
     let stopped = check.stopped.as_ref().map(|reason| {
         Severity::Error.finding(format!(
@@ -479,21 +478,18 @@ fn findings(check: &SheetCheck) -> Vec<Finding> {
     found
 }
 
-/// Whether a sheet of a size (mm) is flat, by the rule of a design, where it is least so: on the way or at the end.
+/// Whether a sheet of a size (mm) is flat, by the rule of a design, where it is least so: on the
+/// way or at the end.
 fn flatness(support: Posture, size: f64, path: &[StateCheck]) -> Option<Finding> {
     let most = |value: fn(&StateCheck) -> f64| {
-        path.iter()
-            .max_by(|one, other| value(one).total_cmp(&value(other)))
+        path.iter().max_by(|one, other| value(one).total_cmp(&value(other)))
     };
     let tilted = most(|state| state.tilt_deg)?;
     let off = most(|state| state.corners[0])?;
     let [rms, largest] = off.corners;
     let (error, tilt) = (rms / size, tilted.tilt_deg);
     let [as_predicted, otherwise] = match support {
-        Posture::HeldFlat => [
-            "agrees with the hinge law",
-            "opens otherwise than predicted",
-        ],
+        Posture::HeldFlat => ["agrees with the hinge law", "opens otherwise than predicted"],
         _ => ["stays flat", "does not stay flat"],
     };
     let (severity, what) = match Flatness::of(error, tilt) {
@@ -516,10 +512,7 @@ fn flatness(support: Posture, size: f64, path: &[StateCheck]) -> Option<Finding>
 fn flanks_pass(path: &[StateCheck]) -> Option<Finding> {
     let gap = |state: &&StateCheck| state.flank_gap.is_some_and(|gap| gap < -FLANKS_TOUCH);
     let first = path.iter().find(gap)?;
-    let deepest = path
-        .iter()
-        .filter_map(|state| state.flank_gap)
-        .fold(0.0, f64::min);
+    let deepest = path.iter().filter_map(|state| state.flank_gap).fold(0.0, f64::min);
     Some(Severity::Warning.finding(format!(
             "flanks of cuts pass through each other, by up to {:.2} mm, from {:.0} % of the path on: the sheet may go another way. Pull other \
              panels, or more of them; with --contact the flanks of a plate touch, in several times the time",
@@ -545,9 +538,7 @@ fn tearing(check: &SheetCheck) -> Option<Finding> {
     let torn: Vec<String> = torn.map(|hinge| hinge.to_string()).collect();
     (!torn.is_empty()).then(|| {
         let hinges = torn.join(", ");
-        Severity::Error.finding(format!(
-            "ligaments tear: D_peak is 1 or more (hinges {hinges})"
-        ))
+        Severity::Error.finding(format!("ligaments tear: D_peak is 1 or more (hinges {hinges})"))
     })
 }
 
@@ -593,10 +584,7 @@ mod tests {
             tilt_by_law_deg: None,
         };
         let found = |on_the_way: [f64; 2], support| {
-            let path = [
-                state(0.4, on_the_way[0], on_the_way[1]),
-                state(1.0, 0.4, 0.3),
-            ];
+            let path = [state(0.4, on_the_way[0], on_the_way[1]), state(1.0, 0.4, 0.3)];
             flatness(support, 200.0, &path).unwrap()
         };
         // 0.3 and 5 % of the sheet are 0.6 and 10 mm.
@@ -609,19 +597,13 @@ mod tests {
         ] {
             let found = found(on_the_way, Posture::Free);
             assert_eq!(found.severity, severity, "{found:?}");
-            assert!(
-                found.message.contains(&format!("the sheet {what}: ")),
-                "{found:?}"
-            );
+            assert!(found.message.contains(&format!("the sheet {what}: ")), "{found:?}");
             let largest = on_the_way[0].max(0.4);
             let tilt = format!("tilt by up to {largest:.1} deg");
             assert!(found.message.contains(&tilt), "{found:?}");
         }
         let held = found([0.3, 1.0], Posture::HeldFlat);
-        for part in [
-            "opens otherwise than predicted",
-            "2.00 mm at most, at 40 % of the path",
-        ] {
+        for part in ["opens otherwise than predicted", "2.00 mm at most, at 40 % of the path"] {
             assert!(held.message.contains(part), "{held:?}");
         }
         assert_eq!(flatness(Posture::Free, 200.0, &[]), None);

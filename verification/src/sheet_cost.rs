@@ -14,7 +14,8 @@ pub struct SheetCost {
     pub memory_mib: f64,
 }
 
-/// Unknowns of the sheet from which the estimates are scaled, its CPU time (s) and memory (MiB) with panels held flat.
+/// Unknowns of the sheet from which the estimates are scaled, its CPU time (s) and memory (MiB)
+/// with panels held flat.
 const REFERENCE: [f64; 3] = [13_000.0, 34.0, 53.0];
 /// The power of the number of unknowns with which the time grows.
 const GROWTH: f64 = 1.4;

@@ -30,7 +30,8 @@ pub struct SheetErrors {
     errors: Vec<MeshErrors>,
     /// The cheaper mesh in addition to the finest one, if the sheet was balanced on both.
     between: Option<MeshErrors>,
-    /// Standard deviations of the causes in the error budget of the report that finite elements see, if there is one.
+    /// Standard deviations of the causes in the error budget of the report that finite elements
+    /// see, if there is one.
     budget: Option<Effect>,
     /// Hinges that leave the training domain in the sheet by the law or in that by finite elements.
     outside: Vec<usize>,
@@ -46,8 +47,8 @@ struct MeshErrors {
     corners: [f64; 2],
     /// Difference of the hinge rotations (deg): root mean square and maximum.
     rotations_deg: [f64; 2],
-    /// Load factor at the end of the path by these finite elements, and the relative difference of the other from it; zero under
-    /// dead loads.
+    /// Load factor at the end of the path by these finite elements, and the relative difference of
+    /// the other from it; zero under dead loads.
     load_factor: f64,
     load: f64,
 }
@@ -114,12 +115,8 @@ impl SheetErrors {
             self.hinges.len(),
             self.cpu_seconds / 60.0,
         ));
-        let mut rounds = Table::new([
-            "round",
-            "mesh of the windows",
-            "force error",
-            "movement\nmm",
-        ]);
+        let mut rounds =
+            Table::new(["round", "mesh of the windows", "force error", "movement\nmm"]);
         for (i, round) in self.rounds.iter().enumerate() {
             rounds.row([
                 Cell::text(i + 1),
@@ -187,13 +184,7 @@ impl SheetErrors {
             let of = format!("error of `{draft}`, by `{}`", between.tier);
             table.row(between.cells(of, self.size));
         }
-        if let Some(Effect {
-            corners: [rms, maximum],
-            load,
-            at_least,
-            ..
-        }) = &self.budget
-        {
+        if let Some(Effect { corners: [rms, maximum], load, at_least, .. }) = &self.budget {
             let bound = if *at_least { "at least " } else { "" };
             table.row([
                 "error budget of the report: standard deviation of what finite elements see".into(),

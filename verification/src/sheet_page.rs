@@ -103,18 +103,12 @@ impl SheetCheck {
 fn path_columns() -> Columns<'static, StateCheck> {
     let of = |pair: Option<[f64; 2]>, i: usize| pair.map(|pair| pair[i]);
     Columns::new()
-        .column("path\n%", |state: &StateCheck| {
-            Cell::fixed(100.0 * state.fraction, 1)
-        })
-        .column("stroke\nmm", move |state| {
-            Cell::fixed(of(state.stroke, 1), 3)
-        })
+        .column("path\n%", |state: &StateCheck| Cell::fixed(100.0 * state.fraction, 1))
+        .column("stroke\nmm", move |state| Cell::fixed(of(state.stroke, 1), 3))
         .column("by law", move |state| Cell::fixed(of(state.stroke, 0), 3))
         .column("load\nN", move |state| Cell::fixed(of(state.load, 1), 4))
         .column("by law", move |state| Cell::fixed(of(state.load, 0), 4))
-        .column("mean opening\ndeg", |state| {
-            Cell::fixed(state.opening_deg[1], 2)
-        })
+        .column("mean opening\ndeg", |state| Cell::fixed(state.opening_deg[1], 2))
         .column("by law", |state| Cell::fixed(state.opening_deg[0], 2))
         .column("corners\nmm", |state| Cell::fixed(state.corners[0], 3))
         .column("max", |state| Cell::fixed(state.corners[1], 3))

@@ -34,9 +34,8 @@ pub fn spot_check(
 ) -> Result<SpotStates, VerificationError> {
     let versions = windows.versions();
     let problem = |path: &SpotPath| WindowProblem::new(path.hinge.clone(), material, tier);
-    let solves: Vec<WindowSolve> = (paths.iter())
-        .map(|path| WindowSolve::new(problem(path), &versions))
-        .collect();
+    let solves: Vec<WindowSolve> =
+        (paths.iter()).map(|path| WindowSolve::new(problem(path), &versions)).collect();
     let solved = windows.solve(&solves)?;
     let mut check = SpotStates::default();
     for (path, window) in paths.iter().zip(&solved) {
@@ -46,7 +45,8 @@ pub fn spot_check(
 }
 
 impl SpotStates {
-    /// The spot check of a campaign, as far as its rays are solved in `folder`; `parts` are the jobs there.
+    /// The spot check of a campaign, as far as its rays are solved in `folder`; `parts` are the
+    /// jobs there.
     pub fn collected(
         campaign: &Campaign,
         parts: &HashMap<String, JobPart>,
@@ -57,9 +57,8 @@ impl SpotStates {
             let is_spot = |window: &Solved| parts.get(&window.id) == Some(&JobPart::SpotCheck);
             window.as_ref().map_or(true, is_spot)
         });
-        let windows: Vec<Solved> = windows
-            .collect::<Result<_, _>>()
-            .map_err(fe_driver::CampaignError::from)?;
+        let windows: Vec<Solved> =
+            windows.collect::<Result<_, _>>().map_err(fe_driver::CampaignError::from)?;
         let mut check = Self::default();
         for path in campaign.spot_paths() {
             let of_path = |window: &&Solved| window.solve.problem.hinge == path.hinge;

@@ -70,12 +70,7 @@ pub enum VerificationError {
     #[error(
         "there is no panel [{column}, {row}]: the sheet has {m} columns and {n} rows, counted from 0"
     )]
-    NoSuchPanel {
-        column: usize,
-        row: usize,
-        m: usize,
-        n: usize,
-    },
+    NoSuchPanel { column: usize, row: usize, m: usize, n: usize },
     #[error(
         "the patch contains a panel that is pulled by a prescribed stroke, whose load it does not know: choose another patch"
     )]

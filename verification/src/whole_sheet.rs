@@ -46,7 +46,8 @@ pub fn with_support(scene: &Scene, support: Option<Posture>) -> Result<Scene, Ve
     Ok(scene)
 }
 
-/// A sheet of a scene as a finite-element problem, kept in its plane as `support` says, with `contact` of the flanks of its cuts or without.
+/// A sheet of a scene as a finite-element problem, kept in its plane as `support` says, with
+/// `contact` of the flanks of its cuts or without.
 pub fn sheet_problem(
     scene: &Scene,
     sheet: &Sheet,
@@ -133,7 +134,8 @@ fn held(scene: &Scene, sheet: &Sheet) -> Result<Vec<Held>, VerificationError> {
     held.collect()
 }
 
-/// The part of a panel that a support holds: its clip, the whole panel of a clamp without one, or a point.
+/// The part of a panel that a support holds: its clip, the whole panel of a clamp without one, or a
+/// point.
 fn place(sheet: &Sheet, attachment: &AttachmentPoint, kind: SupportKind) -> Place {
     let panel = &sheet.panels[attachment.panel];
     match (attachment.clip, attachment.point, kind) {
@@ -149,15 +151,14 @@ fn place(sheet: &Sheet, attachment: &AttachmentPoint, kind: SupportKind) -> Plac
             Place::Line([end(-1.0), end(1.0)])
         }
         (_, _, SupportKind::Clamp) => Place::Panel,
-        (_, point, _) => Place::Point(on_finished_edge(
-            sheet,
-            attachment.panel,
-            panel.position(point),
-        )),
+        (_, point, _) => {
+            Place::Point(on_finished_edge(sheet, attachment.panel, panel.position(point)))
+        }
     }
 }
 
-/// A point of a panel; if it lies on the line of a cut, the nearest point of the finished edge, half a kerf inside.
+/// A point of a panel; if it lies on the line of a cut, the nearest point of the finished edge,
+/// half a kerf inside.
 fn on_finished_edge(sheet: &Sheet, panel: usize, point: [f64; 2]) -> [f64; 2] {
     let kerf = sheet.options.process.kerf;
     let corners = finished_corners(sheet, panel);
@@ -175,7 +176,8 @@ fn on_finished_edge(sheet: &Sheet, panel: usize, point: [f64; 2]) -> [f64; 2] {
     moved
 }
 
-/// The corners of a panel between its finished edges: the edges of cuts are half a kerf inside of their lines.
+/// The corners of a panel between its finished edges: the edges of cuts are half a kerf inside of
+/// their lines.
 fn finished_corners(sheet: &Sheet, panel: usize) -> [[f64; 2]; 4] {
     let Grid { m, n } = sheet.grid;
     let (column, row) = (panel % m, panel / m);
@@ -186,11 +188,7 @@ fn finished_corners(sheet: &Sheet, panel: usize) -> [[f64; 2]; 4] {
         let along = [q[0] - p[0], q[1] - p[1]];
         let length = along[0].hypot(along[1]);
         let direction = along.map(|x| x / length);
-        let inside = if on_outline[edge] {
-            0.0
-        } else {
-            0.5 * sheet.options.process.kerf
-        };
+        let inside = if on_outline[edge] { 0.0 } else { 0.5 * sheet.options.process.kerf };
         let start = [p[0] - inside * direction[1], p[1] + inside * direction[0]];
         (start, direction)
     });
@@ -202,8 +200,8 @@ fn finished_corners(sheet: &Sheet, panel: usize) -> [[f64; 2]; 4] {
     })
 }
 
-/// The radius of each window in the mesh (mm): r_win, or as much less as the windows need to be apart. The mesh of a smaller window is a
-/// part of the mesh of a larger window.
+/// The radius of each window in the mesh (mm): r_win, or as much less as the windows need to be
+/// apart. The mesh of a smaller window is a part of the mesh of a larger window.
 pub(crate) fn meshed_radii(sheet: &Sheet) -> Result<Vec<f64>, VerificationError> {
     let r_win = sheet.options.process.r_win;
     let widths = || sheet.hinges.iter().map(|hinge| hinge.w_lig);
@@ -211,10 +209,7 @@ pub(crate) fn meshed_radii(sheet: &Sheet) -> Result<Vec<f64>, VerificationError>
     loop {
         let radii: Vec<f64> = widths().map(|w_lig| r_win.min(ratio * w_lig)).collect();
         let windows: Vec<Window> = std::iter::zip(Window::of_sheet(sheet), &radii)
-            .map(|(window, radius)| Window {
-                radius: APART * radius,
-                ..window
-            })
+            .map(|(window, radius)| Window { radius: APART * radius, ..window })
             .collect();
         let apart = (windows.iter().enumerate())
             .all(|(h, one)| windows[..h].iter().all(|other| !one.overlaps(other)));
@@ -250,14 +245,8 @@ fn sheet_shape(sheet: &Sheet, thickness: f64, tier: Tier) -> Result<SheetShape, 
                 Regime::Film
             };
             PlacedWindow {
-                design: HingeDesign {
-                    r_win: *radius,
-                    ..design
-                },
-                frame: Frame {
-                    origin: window.foot,
-                    e_x: window.e_sec,
-                },
+                design: HingeDesign { r_win: *radius, ..design },
+                frame: Frame { origin: window.foot, e_x: window.e_sec },
                 panels: [Some(hinge.site.a), Some(hinge.site.b)],
                 bump: Imperfection::of(regime).amplitude,
             }
@@ -266,10 +255,7 @@ fn sheet_shape(sheet: &Sheet, thickness: f64, tier: Tier) -> Result<SheetShape, 
     Ok(SheetShape {
         thickness,
         panels: (0..sheet.panels.len())
-            .map(|panel| PanelShape {
-                corners: finished_corners(sheet, panel),
-                marks: Vec::new(),
-            })
+            .map(|panel| PanelShape { corners: finished_corners(sheet, panel), marks: Vec::new() })
             .collect(),
         windows: placed.collect(),
         plane,

@@ -18,9 +18,8 @@ fn written() -> (TempDir, PathBuf, Database) {
 
 fn files(folder: &Path) -> Vec<String> {
     let entries = std::fs::read_dir(folder).unwrap();
-    let mut names: Vec<String> = entries
-        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
-        .collect();
+    let mut names: Vec<String> =
+        entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
     names.sort();
     names
 }
@@ -34,10 +33,7 @@ fn a_written_database_is_read_back_bit_exactly() {
     assert_eq!(read.rows().len(), 50);
     assert_eq!(files(folder.path()), ["film.json", "film.parquet"]);
     let manifest = read.manifest();
-    assert_eq!(
-        (manifest.rays, manifest.partial_rays, manifest.geometries),
-        (10, 1, 10)
-    );
+    assert_eq!((manifest.rays, manifest.partial_rays, manifest.geometries), (10, 1, 10));
     assert_eq!(manifest.domain.w_lig, [5.0, 14.0]);
     assert_eq!(manifest.cpu_s, 95.0);
     assert_eq!(manifest.units["F_a"], "N");
@@ -68,10 +64,7 @@ fn rows_are_sorted_by_job_and_lambda_so_that_the_file_is_the_same() {
     shuffled.reverse();
     let again = collect(shuffled).unwrap();
     assert_eq!(database.manifest().hash, again.manifest().hash);
-    let lambdas: Vec<f64> = database.rows()[..5]
-        .iter()
-        .map(|row| row.sample.lambda)
-        .collect();
+    let lambdas: Vec<f64> = database.rows()[..5].iter().map(|row| row.sample.lambda).collect();
     assert_eq!(lambdas, [0.2, 0.4, 0.6, 0.8, 1.0]);
 }
 
@@ -97,38 +90,22 @@ fn rejected_rows_are_counted_and_printed() {
     let rejected: Vec<_> = database.manifest().rejected.iter().collect();
     assert_eq!(
         rejected,
-        [
-            (&Rejection::NotFinite, &1),
-            (&Rejection::Negative, &1),
-            (&Rejection::EnergyResidual, &2)
-        ]
+        [(&Rejection::NotFinite, &1), (&Rejection::Negative, &1), (&Rejection::EnergyResidual, &2)]
     );
     let summary = database.to_string();
     assert!(
         summary.contains("rejected 2 rows: the energy is not the work of the forces"),
         "{summary}"
     );
-    assert!(
-        summary.contains("46 rows of 10 rays (1 partial)"),
-        "{summary}"
-    );
+    assert!(summary.contains("46 rows of 10 rays (1 partial)"), "{summary}");
 }
 
 #[test]
 fn an_empty_database_is_an_error() {
     let message = |rows| collect(rows).unwrap_err().to_string();
-    assert_eq!(
-        message(vec![]),
-        "no rows: run the campaign before collecting it"
-    );
-    let bad = vec![Row {
-        cpu_s: f64::NAN,
-        ..row(0, 1.0)
-    }];
-    assert_eq!(
-        message(bad),
-        "no rows: 1 were rejected since a number is not finite"
-    );
+    assert_eq!(message(vec![]), "no rows: run the campaign before collecting it");
+    let bad = vec![Row { cpu_s: f64::NAN, ..row(0, 1.0) }];
+    assert_eq!(message(bad), "no rows: 1 were rejected since a number is not finite");
 }
 
 #[test]
@@ -153,10 +130,7 @@ fn inconsistent_rows_are_an_error() {
     }
     let twice = rows().into_iter().chain([row(3, 0.4)]).collect();
     let error = collect(twice).unwrap_err();
-    assert!(
-        matches!(error, DatasetError::Duplicate { lambda: 0.4, .. }),
-        "{error}"
-    );
+    assert!(matches!(error, DatasetError::Duplicate { lambda: 0.4, .. }), "{error}");
 }
 
 #[test]
@@ -183,10 +157,8 @@ fn a_missing_malformed_or_newer_manifest_is_an_error() {
     let manifest = path.with_extension("json");
     let text = std::fs::read_to_string(&manifest).unwrap();
     for version in [3, 9] {
-        let other = text.replace(
-            "\"format_version\": 4",
-            &format!("\"format_version\": {version}"),
-        );
+        let other =
+            text.replace("\"format_version\": 4", &format!("\"format_version\": {version}"));
         std::fs::write(&manifest, other).unwrap();
         let error = Database::read(&path).unwrap_err();
         assert!(
@@ -195,10 +167,7 @@ fn a_missing_malformed_or_newer_manifest_is_an_error() {
         );
     }
     std::fs::write(&manifest, &text[..100]).unwrap();
-    assert!(matches!(
-        Database::read(&path),
-        Err(DatasetError::Manifest { .. })
-    ));
+    assert!(matches!(Database::read(&path), Err(DatasetError::Manifest { .. })));
     std::fs::remove_file(&manifest).unwrap();
     assert!(matches!(Database::read(&path), Err(DatasetError::Read(_))));
 }
@@ -206,10 +175,7 @@ fn a_missing_malformed_or_newer_manifest_is_an_error() {
 #[test]
 fn a_material_law_without_a_hash_is_not_known() {
     let law = |rows: Vec<Row>| collect(rows).unwrap().to_string();
-    let unknown = rows().into_iter().map(|row| Row {
-        material_hash: String::new(),
-        ..row
-    });
+    let unknown = rows().into_iter().map(|row| Row { material_hash: String::new(), ..row });
     assert!(law(unknown.collect()).contains("material law not known"));
     assert!(law(rows()).contains("material law f11f"));
 }
@@ -217,10 +183,7 @@ fn a_material_law_without_a_hash_is_not_known() {
 /// The error of reading these bytes with a manifest that contains their hash.
 fn vouched(path: &Path, bytes: &[u8]) -> DatasetError {
     std::fs::write(path, bytes).unwrap();
-    let Err(DatasetError::Hash {
-        expected, found, ..
-    }) = Database::read(path)
-    else {
+    let Err(DatasetError::Hash { expected, found, .. }) = Database::read(path) else {
         panic!("other bytes have another hash");
     };
     let manifest = path.with_extension("json");
@@ -259,9 +222,6 @@ fn a_single_geometry_is_an_error() {
     one.iter_mut().for_each(|row| row.design = rows()[0].design);
     for rows in [one, vec![row(0, 1.0)]] {
         let error = collect(rows).unwrap_err();
-        assert!(
-            matches!(error, DatasetError::TooFewGeometries { found: 1 }),
-            "{error}"
-        );
+        assert!(matches!(error, DatasetError::TooFewGeometries { found: 1 }), "{error}");
     }
 }

@@ -34,18 +34,11 @@ fn foreign_map() -> ColumnMap {
         ("M_theta", "M"),
     ];
     let degree = 1f64.to_radians();
-    let numbers = [
-        ("fillet_ratio", 0.16),
-        ("kerf", 0.2),
-        ("r_win", 100.0),
-        ("D", 0.0),
-    ];
+    let numbers = [("fillet_ratio", 0.16), ("kerf", 0.2), ("r_win", 100.0), ("D", 0.0)];
     let numbers = numbers.map(|(name, value)| (name.to_owned(), Constant::Number(value)));
     let material = [("material".to_owned(), Constant::Text("steel".into()))];
     ColumnMap {
-        columns: columns
-            .map(|(ours, theirs)| (ours.into(), theirs.into()))
-            .into(),
+        columns: columns.map(|(ours, theirs)| (ours.into(), theirs.into())).into(),
         factors: [("alpha", degree), ("theta", degree), ("lambda", 0.05)]
             .map(|(name, factor)| (name.into(), factor))
             .into(),
@@ -76,10 +69,7 @@ fn a_foreign_table_is_imported() {
     let row = &database.rows()[1];
     assert_eq!((row.job.as_str(), row.sample.lambda), ("A", 1.0));
     assert!((row.design.alpha - 60f64.to_radians()).abs() < 1e-15);
-    assert_eq!(
-        [row.sample.w, row.sample.f_s, row.sample.d],
-        [6.0, 4.0, 0.0]
-    );
+    assert_eq!([row.sample.w, row.sample.f_s, row.sample.d], [6.0, 4.0, 0.0]);
     assert_eq!((row.material.as_str(), row.design.kerf), ("steel", 0.2));
 }
 
@@ -122,18 +112,12 @@ fn errors_in_tables_and_column_maps_name_the_place() {
         let mut bare = foreign_map();
         bare.constants.remove(column);
         let message = error(FOREIGN, &bare);
-        assert!(
-            message.contains(&format!("no column `{column}`")),
-            "{message}"
-        );
+        assert!(message.contains(&format!("no column `{column}`")), "{message}");
     }
     let mut degrees = foreign_map();
     degrees.factors.remove("theta");
     let message = error(FOREIGN, &degrees);
-    assert!(
-        message.contains("column `theta`, row 0: 10 is no angle"),
-        "{message}"
-    );
+    assert!(message.contains("column `theta`, row 0: 10 is no angle"), "{message}");
 }
 
 #[test]

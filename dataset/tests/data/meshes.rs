@@ -35,9 +35,7 @@ fn the_rays_of_both_meshes_may_arrive_one_by_one() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("film.parquet");
     let database = both();
-    let rays = database
-        .rows()
-        .chunk_by(|left, right| left.job == right.job);
+    let rays = database.rows().chunk_by(|left, right| left.job == right.job);
     let rays = rays.map(|ray| Ok::<_, DatasetError>(ray.to_vec()));
     let collected = Collected::write(rays, &SplitPlan::default(), &path, false).unwrap();
     let read = Database::read(&path).unwrap();
@@ -48,18 +46,15 @@ fn the_rays_of_both_meshes_may_arrive_one_by_one() {
 
 #[test]
 fn counts_split_and_domain_are_of_the_rays_alone() {
-    // One of the rays on the finer mesh is partial, and one goes on beyond its end, where it would widen the domain.
+    // One of the rays on the finer mesh is partial, and one goes on beyond its end, where it would
+    // widen the domain.
     let beyond = row(3, 1.2);
     let further = on_tier("reference", std::slice::from_ref(&beyond));
     let database = collect([rows(), finer(4), further].concat()).unwrap();
     let (manifest, alone) = (database.manifest(), collect(rows()).unwrap());
     let wide = collect([rows(), vec![beyond]].concat()).unwrap();
     assert_ne!(wide.manifest().domain, alone.manifest().domain);
-    let expected = FinerMesh {
-        tier: "reference".into(),
-        rays: 4,
-        cpu_s: 160.0,
-    };
+    let expected = FinerMesh { tier: "reference".into(), rays: 4, cpu_s: 160.0 };
     assert_eq!(manifest.finer, Some(expected));
     assert_eq!(alone.manifest().finer, None);
     assert_eq!((manifest.rows, database.rows().len()), (71, 71));

@@ -4,15 +4,17 @@
 //! H_i lambda_i = g_i,     dL/dp -= sum_i sum_h d/dp [ grad W(eps_h(q_i, p); p) . D eps_h(q_i, p)[lambda_i] ]
 //! ```
 //!
-//! which is local to each hinge in p = (attachment point, reference points, angle of e_sec, w_lig, alpha). Each load
-//! step reuses the factors of its own tangent, refined against that tangent. For the constants
-//! of (11) the bracket is `eps_c e_c . D eps_h[lambda]`, for the loads it is `-zeta lambda`, for the weight minus its
-//! virtual work. Under displacement
-//! control the system has the border of the stroke, whose condition (f . q)/F = stroke also depends on the loads. A function
-//! that depends on the load factor zeta_i, by g_zeta, has the condition (f . lambda_i)/F = -g_zeta/F.
+//! which is local to each hinge in p = (attachment point, reference points, angle of e_sec, w_lig,
+//! alpha). Each load step reuses the factors of its own tangent, refined against that tangent. For
+//! the constants of (11) the bracket is `eps_c e_c . D eps_h[lambda]`, for the loads it is `-zeta
+//! lambda`, for the weight minus its virtual work. Under displacement control the system has the
+//! border of the stroke, whose condition (f . q)/F = stroke also depends on the loads. A function
+//! that depends on the load factor zeta_i, by g_zeta, has the condition (f . lambda_i)/F =
+//! -g_zeta/F.
 //!
-//! The supports resist with the forces r = grad Pi at the supported degrees of freedom. For a function that depends on them, by
-//! g_r, lambda is -g_r there, and the equations of the free degrees of freedom have the right-hand side g_i + H g_r.
+//! The supports resist with the forces r = grad Pi at the supported degrees of freedom. For a
+//! function that depends on them, by g_r, lambda is -g_r there, and the equations of the free
+//! degrees of freedom have the right-hand side g_i + H g_r.
 
 use crate::equilibrium::corrector::Branch;
 use crate::equilibrium::hinged_sheet::HingedSheet;
@@ -48,7 +50,8 @@ pub(crate) struct PathGradient<'a> {
     pub by_load_factor: f64,
     /// In the last configuration.
     pub by_last: Vec<[f64; 3]>,
-    /// In the forces (F_x, F_y, M) of the supports in the last state; zero at free degrees of freedom. `None` if it depends on none.
+    /// In the forces (F_x, F_y, M) of the supports in the last state; zero at free degrees of
+    /// freedom. `None` if it depends on none.
     pub by_reactions: Option<Vec<[f64; 3]>>,
 }
 
@@ -56,27 +59,24 @@ pub(crate) struct PathGradient<'a> {
 pub(crate) struct AdjointSums {
     /// Gradient with respect to (F_x, F_y, M) of every panel at full load.
     pub loads: Vec<[f64; 3]>,
-    /// Gradient with respect to (k_a, k_s, k_theta) of every hinge; zero for a law without such constants.
+    /// Gradient with respect to (k_a, k_s, k_theta) of every hinge; zero for a law without such
+    /// constants.
     pub constants: Vec<[f64; 3]>,
-    /// lambda of the last state, a virtual motion of every panel: the function changes by minus the work on it of an additional
-    /// force of the hinges.
+    /// lambda of the last state, a virtual motion of every panel: the function changes by minus the
+    /// work on it of an additional force of the hinges.
     pub virtual_motion: Vec<[f64; 3]>,
     /// Maximum componentwise backward error of the solves.
     pub residual: f64,
 }
 
-/// The gradient, with respect to the sheet, of a function of the path: the direct dependence through the hinge
-/// states, and the dependence through the equilibria. The result is added to `by_sheet`.
+/// The gradient, with respect to the sheet, of a function of the path: the direct dependence
+/// through the hinge states, and the dependence through the equilibria. The result is added to
+/// `by_sheet`.
 pub(crate) fn adjoint(
     solver: &EquilibriumSolver,
     sheet: HingedSheet,
     path: &[LoadStep],
-    PathGradient {
-        by_states,
-        by_load_factor,
-        by_last,
-        by_reactions,
-    }: PathGradient,
+    PathGradient { by_states, by_load_factor, by_last, by_reactions }: PathGradient,
     by_sheet: &mut SheetGradient,
 ) -> Result<AdjointSums, SingularTangent> {
     let mut by_configurations = vec![vec![[0.0; 3]; by_last.len()]; path.len()];
@@ -89,11 +89,7 @@ pub(crate) fn adjoint(
     };
     for (i, (step, mut by_q)) in std::iter::zip(path, by_configurations).enumerate() {
         let is_last = i + 1 == path.len();
-        if !is_last
-            && by_states
-                .iter()
-                .all(|hinge| hinge[i] == HingeGradient::default())
-        {
+        if !is_last && by_states.iter().all(|hinge| hinge[i] == HingeGradient::default()) {
             continue;
         }
         let hinges = || sheet.sheet.hinges.iter().enumerate();
@@ -113,9 +109,7 @@ pub(crate) fn adjoint(
         let solution = (step.tangent.as_ref())
             .and_then(|tangent| refined_solve(&solver.pattern, tangent, stroke, (&rhs, slack)))
             .filter(|solution| solution.error < SINGULAR)
-            .ok_or(SingularTangent {
-                load_factor: step.load_factor,
-            })?;
+            .ok_or(SingularTangent { load_factor: step.load_factor })?;
         sums.residual = sums.residual.max(solution.error);
         let mut lambda = solver.pattern.spread(&solution.x);
         if let Some(held) = &held {
@@ -170,7 +164,8 @@ struct HeldMotion {
     resistance: Vec<[f64; 3]>,
 }
 
-/// The virtual motion of the supports for a function with the given gradient in their forces, minus that gradient.
+/// The virtual motion of the supports for a function with the given gradient in their forces, minus
+/// that gradient.
 fn held_motion(
     solver: &EquilibriumSolver,
     sheet: HingedSheet,
@@ -182,10 +177,7 @@ fn held_motion(
     let potential = Branch::new(solver, sheet, Stage::Actuation).potential(1.0);
     let state = potential.state(step.configuration.clone());
     let state = state.expect("the energy of an equilibrium is finite");
-    HeldMotion {
-        resistance: potential.resistance(&state, &motion),
-        motion,
-    }
+    HeldMotion { resistance: potential.resistance(&state, &motion), motion }
 }
 
 fn add_motions(sum: &mut [[f64; 3]], motion: &[[f64; 3]], factor: f64) {

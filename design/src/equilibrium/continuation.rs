@@ -1,13 +1,15 @@
 //! Following the stable branch of an equilibrium path by its length, and past its limit points.
 //!
-//! An increment is predicted by the cubic through the last two points and corrected in the plane normal to the path.
-//! It is accepted if the equilibrium is stable and the prediction was right to AGREEMENT in every rotation and every
-//! hinge translation: a hinge that jumps by more is noticed. Otherwise the increment is shortened. The length of the
-//! next increment follows from the error of the prediction.
+//! An increment is predicted by the cubic through the last two points and corrected in the plane
+//! normal to the path. It is accepted if the equilibrium is stable and the prediction was right to
+//! AGREEMENT in every rotation and every hinge translation: a hinge that jumps by more is noticed.
+//! Otherwise the increment is shortened. The length of the next increment follows from the error of
+//! the prediction.
 //!
-//! Where an increment shorter than the resolution leads to an unstable equilibrium, the branch has ended: at a limit
-//! point, beyond which the load decreases, or at a bifurcation. Dead loads then move the sheet downhill in energy, from
-//! the unstable side of the limit point, to another minimum, from which its branch is followed.
+//! Where an increment shorter than the resolution leads to an unstable equilibrium, the branch has
+//! ended: at a limit point, beyond which the load decreases, or at a bifurcation. Dead loads then
+//! move the sheet downhill in energy, from the unstable side of the limit point, to another
+//! minimum, from which its branch is followed.
 //!
 //! The increments do not depend on the load steps, which are read off the path between them.
 
@@ -22,29 +24,31 @@ use crate::equilibrium::solver::EquilibriumSolver;
 use crate::hinge_law::Order;
 use crate::sheet::kinematics::Configuration;
 
-/// Length of the first increment of a branch. Lengths are in rad, or in panel sizes for hinge translations.
+/// Length of the first increment of a branch. Lengths are in rad, or in panel sizes for hinge
+/// translations.
 const FIRST: f64 = 0.04;
 /// Maximum rotation in an increment (rad).
 const TURN: f64 = 0.1;
 /// Error of a prediction that increments aim at, and the maximum that is accepted.
 const AGREEMENT: [f64; 2] = [1e-3, 4e-3];
-/// Distance of the path from the middle of the cubic between two points from which a jump is suspected between them.
+/// Distance of the path from the middle of the cubic between two points from which a jump is
+/// suspected between them.
 const DOUBT: f64 = 1e-3;
 /// Range of the ratio of an increment to the last, if that was accepted and if it was rejected.
 const GROWTH: [f64; 2] = [0.5, 2.0];
 const CUT: [f64; 2] = [0.1, 0.5];
-/// Resolution of a limit point and of a bifurcation, from which the next branch grows like a square root.
+/// Resolution of a limit point and of a bifurcation, from which the next branch grows like a square
+/// root.
 const RESOLVED: [f64; 2] = [1e-3, 1e-5];
 /// Length below which increments are given up.
 const SHORTEST: f64 = 1e-9;
-/// Parts of the load that are skipped where the path cannot be followed, in the order in which they are tried; then all
-/// that is left of the load.
-const SKIPPED: [f64; 12] = [
-    0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.03, 0.01, 0.003,
-];
+/// Parts of the load that are skipped where the path cannot be followed, in the order in which they
+/// are tried; then all that is left of the load.
+const SKIPPED: [f64; 12] = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.03, 0.01, 0.003];
 /// Part of the load up to which a jump has led nowhere.
 const NOWHERE: f64 = 1e-6;
-/// Number of such jumps after which the next ones lead ahead, and the part of the load by which the first of them does.
+/// Number of such jumps after which the next ones lead ahead, and the part of the load by which the
+/// first of them does.
 const RETURNS: (i32, f64) = (3, 1e-9);
 /// Length from which the motion at a bifurcation is a jump.
 pub(crate) const LEAP: f64 = 0.03;
@@ -70,8 +74,8 @@ pub(crate) struct Follower<'a> {
 }
 
 impl<'a> Follower<'a> {
-    /// The beginning of the path, an equilibrium at the load parameter 0; `None` if its energy is not finite. A start
-    /// that is not stable is left.
+    /// The beginning of the path, an equilibrium at the load parameter 0; `None` if its energy is
+    /// not finite. A start that is not stable is left.
     pub fn new(
         solver: &'a EquilibriumSolver,
         sheet: HingedSheet<'a>,
@@ -81,11 +85,7 @@ impl<'a> Follower<'a> {
         let mut branch = Branch::new(solver, sheet, stage);
         let potential = branch.potential(0.0);
         let state = potential.state(start.clone())?;
-        let place = PathPoint {
-            at: 0.0,
-            configuration: start,
-            forces: state.forces(),
-        };
+        let place = PathPoint { at: 0.0, configuration: start, forces: state.forces() };
         let (_, factor) = branch.factor(&potential, &state);
         let stable = factor.filter(|factor| factor.unstable_directions() == 0);
         let mut follower = Self {
@@ -131,7 +131,8 @@ impl<'a> Follower<'a> {
         }
     }
 
-    /// One increment, or a jump from the end of the branch to another; the failure where the path ends.
+    /// One increment, or a jump from the end of the branch to another; the failure where the path
+    /// ends.
     pub fn advance(&mut self) -> Result<(), Failure> {
         match self.increment() {
             Some(()) => Ok(()),
@@ -175,7 +176,8 @@ impl<'a> Follower<'a> {
             let stable = self.branch.is_stable(&mut corrected);
             let point = self.branch.point(corrected, Some(&self.last.rate));
             let fold = point.rate.at <= 0.0;
-            // Between stable states the load falls only past limit points between them, or, by less, by rounding.
+            // Between stable states the load falls only past limit points between them, or, by
+            // less, by rounding.
             let fallen = self.last.place.at - point.place.at > NOWHERE;
             let passed = stable && !fold && fallen && length > RESOLVED[0];
             if !stable || passed {
@@ -232,7 +234,8 @@ impl<'a> Follower<'a> {
         (self.length > SHORTEST).then_some(())
     }
 
-    /// The arc from the last point to another, and the ratio of lengths by the rates at its two ends.
+    /// The arc from the last point to another, and the ratio of lengths by the rates at its two
+    /// ends.
     fn arc_to(&self, point: &Point) -> (Arc, f64) {
         let last = &self.last;
         let product = |place: &PathPoint| {
@@ -240,11 +243,8 @@ impl<'a> Follower<'a> {
         };
         let along = |place: &PathPoint| product(place) / product(&last.rate);
         let change = PathPoint::sum([(1.0, &point.place), (-1.0, &last.place)]);
-        let (length, stretch) = if last.is_still() {
-            (change.at, 1.0)
-        } else {
-            (along(&change), along(&point.rate))
-        };
+        let (length, stretch) =
+            if last.is_still() { (change.at, 1.0) } else { (along(&change), along(&point.rate)) };
         let arc = Arc {
             from: last.place.clone(),
             from_rate: last.rate.clone(),
@@ -257,10 +257,7 @@ impl<'a> Follower<'a> {
 
     fn accept(&mut self, point: Point, (arc, stretch): (Arc, f64), next: f64) {
         let left = |(distance, resolution)| ((distance - arc.length) / stretch, resolution);
-        self.unstable = self
-            .unstable
-            .map(left)
-            .filter(|(distance, _)| *distance > 0.0);
+        self.unstable = self.unstable.map(left).filter(|(distance, _)| *distance > 0.0);
         let before = std::mem::replace(&mut self.last, point);
         if let Some(held) = before.factor {
             self.branch.spare = held.factor.values;
@@ -270,19 +267,16 @@ impl<'a> Follower<'a> {
         self.branch.effort.increments += 1;
     }
 
-    /// The jump that dead loads cause at the end of the branch; `beyond` is the unstable point next to it.
+    /// The jump that dead loads cause at the end of the branch; `beyond` is the unstable point next
+    /// to it.
     fn jump(&mut self, beyond: Point, fold: bool) -> Option<()> {
-        let start = if fold {
-            self.beyond_limit_point(&beyond)
-        } else {
-            beyond.place
-        };
+        let start = if fold { self.beyond_limit_point(&beyond) } else { beyond.place };
         let start = self.step_past_returns(start);
         self.restart_on_stable_branch(start, fold).ok()
     }
 
-    /// Continues the path from the stable equilibrium downhill of a start; a long way to it is a jump, as is any from a
-    /// limit point.
+    /// Continues the path from the stable equilibrium downhill of a start; a long way to it is a
+    /// jump, as is any from a limit point.
     fn restart_on_stable_branch(
         &mut self,
         start: PathPoint,
@@ -295,8 +289,8 @@ impl<'a> Follower<'a> {
         Ok(())
     }
 
-    /// A place at the load of the limit point, past it: there the unstable equilibrium is the ridge of the energy, from
-    /// which the sheet moves away. Nearer to the limit point if panels overlap.
+    /// A place at the load of the limit point, past it: there the unstable equilibrium is the ridge
+    /// of the energy, from which the sheet moves away. Nearer to the limit point if panels overlap.
     fn beyond_limit_point(&self, beyond: &Point) -> PathPoint {
         let (arc, _) = self.arc_to(beyond);
         let top = bisected(0.0, arc.length, |length| arc.slope(length) > 0.0);
@@ -317,11 +311,7 @@ impl<'a> Follower<'a> {
     /// A start ahead of a jump, the farther the more jumps have ended where they began.
     fn step_past_returns(&mut self, mut start: PathPoint) -> PathPoint {
         let (at, returns) = self.jumped;
-        let returns = if start.at - at < NOWHERE {
-            returns + 1
-        } else {
-            0
-        };
+        let returns = if start.at - at < NOWHERE { returns + 1 } else { 0 };
         self.jumped = (start.at.max(at), returns);
         let (few, first) = RETURNS;
         if returns > few {
@@ -363,17 +353,12 @@ impl Branch<'_> {
     /// Whether a corrected place is stable. If the tangent near it is not, its own decides.
     fn is_stable(&mut self, corrected: &mut Corrected) -> bool {
         if corrected.factor.unstable_directions() > 0 {
-            let PathPoint {
-                at, configuration, ..
-            } = corrected.place.clone();
+            let PathPoint { at, configuration, .. } = corrected.place.clone();
             let potential = self.potential(at);
             if let Some(state) = potential.state(configuration)
                 && let (_, Some(factor)) = self.factor(&potential, &state)
             {
-                *corrected = Corrected {
-                    error: corrected.error,
-                    ..self.exact(at, state, factor)
-                };
+                *corrected = Corrected { error: corrected.error, ..self.exact(at, state, factor) };
             }
         }
         corrected.factor.unstable_directions() == 0
@@ -384,10 +369,7 @@ impl Branch<'_> {
         let Minimum { state, factor, .. } = self.minimum(&start)?;
         match factor.filter(|factor| factor.unstable_directions() == 0) {
             Some(factor) => Ok(self.exact(start.at, state, factor)),
-            None => Err(Failure {
-                residual: state.residual,
-                end: DescentEnd::Stagnated,
-            }),
+            None => Err(Failure { residual: state.residual, end: DescentEnd::Stagnated }),
         }
     }
 
@@ -413,7 +395,8 @@ impl Branch<'_> {
         potential.minimise(configuration, &mut self.effort)
     }
 
-    /// The maximum rotation or hinge translation between two places, in the frames of a state near them.
+    /// The maximum rotation or hinge translation between two places, in the frames of a state near
+    /// them.
     pub fn distance(&self, near: &State, to: &PathPoint, from: &PathPoint) -> f64 {
         let motion = moved(&to.configuration, &from.configuration, -1.0);
         self.potential(from.at).length(near, &motion)

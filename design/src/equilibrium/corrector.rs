@@ -1,15 +1,15 @@
-//! Equilibria on a branch of the path: prediction corrected by Newton's method, in the plane normal to the path or at a
-//! given load.
+//! Equilibria on a branch of the path: prediction corrected by Newton's method, in the plane normal
+//! to the path or at a given load.
 //!
-//! With d_0 the correction at constant load, q' the rate with the load and p the rate along the path, the
-//! correction in the plane is
+//! With d_0 the correction at constant load, q' the rate with the load and p the rate along the
+//! path, the correction in the plane is
 //!
 //! ```text
 //! d = d_0 + dt q',     dt = -(p . d_0) / (p . q')
 //! ```
 //!
-//! which is regular where the load has a maximum along the path. One factorisation serves as many corrections as it
-//! contracts fast enough.
+//! which is regular where the load has a maximum along the path. One factorisation serves as many
+//! corrections as it contracts fast enough.
 
 use crate::equilibrium::displacement_control::HeldFactor;
 use crate::equilibrium::hinged_sheet::HingedSheet;
@@ -24,17 +24,20 @@ use crate::hinge_law::Order;
 const CORRECTIONS: usize = 10;
 /// Ratio of two successive corrections above which the tangent is factorised again.
 const CONTRACTION: f64 = 0.1;
-/// Ratio of two successive corrections by a new tangent above which the corrections do not converge.
+/// Ratio of two successive corrections by a new tangent above which the corrections do not
+/// converge.
 const DIVERGENCE: f64 = 0.5;
-/// Expected length of the next correction (rad, or panel sizes) from which it is not needed to follow the path. Stiff
-/// hinges amplify the error of the hinge forces.
+/// Expected length of the next correction (rad, or panel sizes) from which it is not needed to
+/// follow the path. Stiff hinges amplify the error of the hinge forces.
 const CLOSE: f64 = 1e-8;
-/// Expected length of the next correction below which a balanced state is as smooth in the design as rounding allows.
+/// Expected length of the next correction below which a balanced state is as smooth in the design
+/// as rounding allows.
 const EXACT: f64 = 1e-13;
-/// Length of the first correction of a load step (rad, or panel sizes) up to which the factors of the predicted tangent
-/// are kept.
+/// Length of the first correction of a load step (rad, or panel sizes) up to which the factors of
+/// the predicted tangent are kept.
 const NEAR: f64 = 1e-4;
-/// Relative change of a rate below which it is not refined further, and the maximum number of refinements.
+/// Relative change of a rate below which it is not refined further, and the maximum number of
+/// refinements.
 const RATE: (f64, usize) = (1e-3, 3);
 
 /// The equilibria of a sheet under the loads, stroke and support motions of a solver.
@@ -54,7 +57,8 @@ pub(crate) struct Branch<'a> {
 /// An equilibrium close enough to the path to follow it.
 pub(crate) struct Corrected {
     pub place: PathPoint,
-    /// The state at the place, the factors of a tangent near it, and the rate with the load parameter by them.
+    /// The state at the place, the factors of a tangent near it, and the rate with the load
+    /// parameter by them.
     pub state: State,
     pub factor: HeldFactor,
     pub rate: Vec<[f64; 3]>,
@@ -93,20 +97,11 @@ impl Point {
             configuration: vec![[0.0; 3]; place.configuration.len()],
             forces: vec![[0.0; 3]; place.forces.len()],
         };
-        Self {
-            place,
-            rate,
-            turning: 0.0,
-            factor: None,
-        }
+        Self { place, rate, turning: 0.0, factor: None }
     }
 
     pub fn is_still(&self) -> bool {
-        self.rate
-            .configuration
-            .as_flattened()
-            .iter()
-            .all(|rate| *rate == 0.0)
+        self.rate.configuration.as_flattened().iter().all(|rate| *rate == 0.0)
     }
 }
 
@@ -141,7 +136,8 @@ impl<'a> Branch<'a> {
         }
     }
 
-    /// Moves supports and stroke of a place to their values at its load parameter; their values in `known` must be right.
+    /// Moves supports and stroke of a place to their values at its load parameter; their values in
+    /// `known` must be right.
     pub fn hold(&self, place: &mut PathPoint, known: &PathPoint) {
         let ahead = match self.stage {
             Stage::Weight => 0.0,
@@ -161,9 +157,9 @@ impl<'a> Branch<'a> {
         }
     }
 
-    /// The equilibrium near a predicted place: in the plane normal to the rate `normal`, or at the load of the place.
-    /// Otherwise the error of the prediction if that is larger than `limit`, infinite if the corrections do not
-    /// converge.
+    /// The equilibrium near a predicted place: in the plane normal to the rate `normal`, or at the
+    /// load of the place. Otherwise the error of the prediction if that is larger than `limit`,
+    /// infinite if the corrections do not converge.
     pub fn close(
         &mut self,
         mut place: PathPoint,
@@ -206,10 +202,7 @@ impl<'a> Branch<'a> {
             if next <= CLOSE {
                 let state = self.state(&place, Order::Tangent).ok_or(DIVERGED)?;
                 return Ok(Corrected {
-                    place: PathPoint {
-                        forces: state.forces(),
-                        ..place
-                    },
+                    place: PathPoint { forces: state.forces(), ..place },
                     state,
                     factor: near.factor,
                     rate,
@@ -241,7 +234,8 @@ impl<'a> Branch<'a> {
             let mut polished = false;
             place = self.corrected(place.at, &near.state, &last);
             for _ in 0..CORRECTIONS {
-                // One more correction makes a balanced state as smooth in the design as rounding allows.
+                // One more correction makes a balanced state as smooth in the design as rounding
+                // allows.
                 let ready = polished || next <= EXACT;
                 let order = if !ready {
                     Order::Forces
@@ -288,11 +282,7 @@ impl<'a> Branch<'a> {
     fn linearised(&mut self, at: f64, state: State) -> Option<Linearised> {
         let potential = self.potential(at);
         let (values, factor) = self.factor(&potential, &state);
-        Some(Linearised {
-            state,
-            values,
-            factor: factor?,
-        })
+        Some(Linearised { state, values, factor: factor? })
     }
 
     /// The tangent of a state and its factors.
@@ -307,8 +297,8 @@ impl<'a> Branch<'a> {
         (values, factor)
     }
 
-    /// The correction of a state by factors: with the rate with the load parameter in the plane normal to the path, or at
-    /// constant load.
+    /// The correction of a state by factors: with the rate with the load parameter in the plane
+    /// normal to the path, or at constant load.
     fn correction(
         &mut self,
         state: &State,
@@ -363,30 +353,20 @@ impl<'a> Branch<'a> {
 
     /// The point of the branch at a corrected place, seen along the rate `before`.
     pub fn point(&self, corrected: Corrected, before: Option<&PathPoint>) -> Point {
-        let Corrected {
-            place,
-            state,
-            factor,
-            rate,
-            ..
-        } = corrected;
+        let Corrected { place, state, factor, rate, .. } = corrected;
         let potential = self.potential(place.at);
         let rate = self.refined_rate(&potential, &state, &factor, rate);
         let size = potential.length(&state, &rate);
         // Without any motion the path is followed by its load parameter.
         let size = if size > 0.0 { size } else { 1.0 };
-        // A stable branch goes on to higher loads, however sharply it turns where hinges lock; beyond a limit point the
-        // path goes on in the direction in which it came.
+        // A stable branch goes on to higher loads, however sharply it turns where hinges lock;
+        // beyond a limit point the path goes on in the direction in which it came.
         let unstable = factor.unstable_directions() > 0;
         let backwards = before
             .is_some_and(|before| unstable && self.product(&before.configuration, &rate) < 0.0);
         let scale = if backwards { -1.0 / size } else { 1.0 / size };
         let forces = potential.force_rates(&state, &rate);
-        let rate = PathPoint {
-            at: 1.0,
-            configuration: rate,
-            forces,
-        };
+        let rate = PathPoint { at: 1.0, configuration: rate, forces };
         let rate = PathPoint::sum([(scale, &rate)]);
         let turning = |most: f64, rate: &[f64; 3]| rate[2].abs().max(most);
         Point {
@@ -441,10 +421,6 @@ impl<'a> Branch<'a> {
 
 impl From<Linearised> for Minimum {
     fn from(near: Linearised) -> Self {
-        Self {
-            state: near.state,
-            tangent: near.values,
-            factor: Some(near.factor),
-        }
+        Self { state: near.state, tangent: near.values, factor: Some(near.factor) }
     }
 }

@@ -1,9 +1,9 @@
 //! Displacement control: the stroke of the loads is prescribed; the load factor is an unknown.
 //!
-//! The stroke c . q with c = f / F is the work of the full loads divided by the sum F of their magnitudes: for
-//! one pulled panel, the displacement along the pull. An equilibrium minimises U at given c . q, and zeta is the
-//! multiplier of that constraint, so the path can be followed past limit points of the load. Linear
-//! systems have the border c,
+//! The stroke c . q with c = f / F is the work of the full loads divided by the sum F of their
+//! magnitudes: for one pulled panel, the displacement along the pull. An equilibrium minimises U at
+//! given c . q, and zeta is the multiplier of that constraint, so the path can be followed past
+//! limit points of the load. Linear systems have the border c,
 //!
 //! ```text
 //! [ H   c ] [ x  ]   [ b ]          x = H^-1 b - mu y,   y = H^-1 c,
@@ -24,9 +24,9 @@ pub(crate) struct Stroke {
 }
 
 impl Stroke {
-    /// The stroke of the loads (F_x, F_y, M), given in `loads` with three entries per panel, in the free degrees of
-    /// freedom; `None` without any load. If there are only couples, F is the sum of the couples and the
-    /// stroke is an angle.
+    /// The stroke of the loads (F_x, F_y, M), given in `loads` with three entries per panel, in the
+    /// free degrees of freedom; `None` without any load. If there are only couples, F is the sum of
+    /// the couples and the stroke is an angle.
     pub fn new(loads: &[[f64; 3]], gathered: &[f64]) -> Option<Self> {
         magnitude(loads).map(|(size, of_forces)| Self {
             direction: gathered.iter().map(|f| f / size).collect(),
@@ -64,11 +64,7 @@ impl Stroke {
     /// Whether the sum F is differentiable in each component of the load on a panel.
     pub fn smooth_in(&self, &[x, y, m]: &[f64; 3]) -> [bool; 3] {
         let pulled = x.hypot(y) > 0.0;
-        if self.of_forces {
-            [pulled, pulled, true]
-        } else {
-            [false, false, m != 0.0]
-        }
+        if self.of_forces { [pulled, pulled, true] } else { [false, false, m != 0.0] }
     }
 
     /// The stroke of the adjoint of a function with the given derivative in the load factor.
@@ -115,15 +111,12 @@ impl HeldFactor {
             }
         });
         let regular = |border: &Border| border.compliance.is_finite() && border.compliance != 0.0;
-        border.as_ref().is_none_or(regular).then_some(Self {
-            factor,
-            shifted: false,
-            border,
-        })
+        border.as_ref().is_none_or(regular).then_some(Self { factor, shifted: false, border })
     }
 
-    /// Number of directions of negative curvature, at constant stroke if that is prescribed. The border adds one
-    /// negative pivot, or removes one if the force of the sheet decreases with the stroke.
+    /// Number of directions of negative curvature, at constant stroke if that is prescribed. The
+    /// border adds one negative pivot, or removes one if the force of the sheet decreases with the
+    /// stroke.
     pub fn unstable_directions(&self) -> usize {
         let softening = (self.border.as_ref()).is_some_and(|border| border.compliance < 0.0);
         (self.factor.negative_pivots).saturating_sub(usize::from(softening))
@@ -149,8 +142,8 @@ impl HeldFactor {
     }
 }
 
-/// The sum of the magnitudes of the translational components, or of the rotational ones if the former are zero, and
-/// whether it is the former; `None` if all are zero.
+/// The sum of the magnitudes of the translational components, or of the rotational ones if the
+/// former are zero, and whether it is the former; `None` if all are zero.
 pub fn magnitude(by_panel: &[[f64; 3]]) -> Option<(f64, bool)> {
     let along: f64 = by_panel.iter().map(|[x, y, _]| x.hypot(*y)).sum();
     let about: f64 = by_panel.iter().map(|[_, _, m]| m.abs()).sum();

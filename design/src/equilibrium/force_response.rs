@@ -1,5 +1,5 @@
-//! The first-order response of an equilibrium to an error of its hinge forces. With df_h the error of (F_a, F_s, M_theta) at
-//! hinge h and B the rates of the hinge states,
+//! The first-order response of an equilibrium to an error of its hinge forces. With df_h the error
+//! of (F_a, F_s, M_theta) at hinge h and B the rates of the hinge states,
 //!
 //! ```text
 //! H dq + mu c = -B^T df,    c . dq = 0,    dP = -mu            prescribed stroke c . q, load P
@@ -27,7 +27,8 @@ pub struct ForceResponse<'a> {
     sheet: &'a Sheet,
     step: &'a LoadStep,
     motions: Vec<HingeMotion>,
-    /// If supports move the sheet: rates of (a, s, theta) of every hinge along the path, by their displacement.
+    /// If supports move the sheet: rates of (a, s, theta) of every hinge along the path, by their
+    /// displacement.
     path_rates: Option<Vec<[f64; 3]>>,
 }
 
@@ -36,8 +37,8 @@ pub struct ForceResponse<'a> {
 pub struct Response {
     /// Changes of the motions (u_x, u_y, phi) of the panels (mm, mm, rad).
     pub motions: Configuration,
-    /// Change of the load that the prescribed displacement takes (N; N mm if couples or rotations move the sheet); `None`
-    /// under dead loads.
+    /// Change of the load that the prescribed displacement takes (N; N mm if couples or rotations
+    /// move the sheet); `None` under dead loads.
     pub load: Option<f64>,
 }
 
@@ -61,8 +62,8 @@ impl<'a> ForceResponse<'a> {
         Some(response)
     }
 
-    /// The response to errors (F_a, F_s, M_theta) of the forces of some hinges, given with their indices (N, N, N mm); `None`
-    /// if the tangent is singular.
+    /// The response to errors (F_a, F_s, M_theta) of the forces of some hinges, given with their
+    /// indices (N, N, N mm); `None` if the tangent is singular.
     pub fn to(&self, errors: &[(usize, [f64; 3])]) -> Option<Response> {
         let mut forces = vec![[0.0; 3]; self.sheet.panels.len()];
         for &(h, error) in errors {
@@ -75,10 +76,7 @@ impl<'a> ForceResponse<'a> {
             work.sum()
         });
         let by_stroke = self.solver.is_driven().then_some(-mu);
-        Some(Response {
-            motions,
-            load: by_path.or(by_stroke),
-        })
+        Some(Response { motions, load: by_path.or(by_stroke) })
     }
 
     fn solve(&self, forces: &[[f64; 3]], stroke: Option<&Stroke>) -> Option<(Configuration, f64)> {

@@ -13,7 +13,8 @@ pub struct HingedSheet<'a> {
     pub law: &'a dyn PreparedLaw,
     /// Contact of panel edges; `None` without contact.
     pub contact: Option<&'a Contact>,
-    /// Whether gradients of the damage along the path are computed, and with them the derivatives that the adjoint needs.
+    /// Whether gradients of the damage along the path are computed, and with them the derivatives
+    /// that the adjoint needs.
     pub damage_gradient: bool,
 }
 

@@ -15,16 +15,16 @@ use support::vectors::dot;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Status {
-    /// A stable equilibrium to the tolerance, or to the rounding error of hinges that are stiff relative to the
-    /// load, inside the domain of the hinge law.
+    /// A stable equilibrium to the tolerance, or to the rounding error of hinges that are stiff
+    /// relative to the load, inside the domain of the hinge law.
     Converged,
     /// A stable equilibrium with hinges outside the domain of the hinge law.
     LeftDomain,
-    /// The residual stagnated between the two tolerances, or the state is stationary but its tangent is
-    /// singular or rounding leaves a residual above the loose tolerance.
+    /// The residual stagnated between the two tolerances, or the state is stationary but its
+    /// tangent is singular or rounding leaves a residual above the loose tolerance.
     Almost,
-    /// A stable equilibrium on another branch than the state before: that branch ended at a limit point of the load, or
-    /// of the stroke under displacement control, and the sheet jumped.
+    /// A stable equilibrium on another branch than the state before: that branch ended at a limit
+    /// point of the load, or of the stroke under displacement control, and the sheet jumped.
     LimitPoint,
     /// No equilibrium was found: this is the last one found before, and the path ends.
     Diverged,
@@ -74,8 +74,8 @@ pub struct Effort {
 /// The state at one load factor.
 #[derive(Clone, Debug)]
 pub struct LoadStep {
-    /// zeta: i/N, or under displacement control the multiplier of the stroke. 0 while the weight comes on, unless a stroke of
-    /// zero is prescribed meanwhile.
+    /// zeta: i/N, or under displacement control the multiplier of the stroke. 0 while the weight
+    /// comes on, unless a stroke of zero is prescribed meanwhile.
     pub load_factor: f64,
     /// The part of the weight that is on; 1 once the loads act.
     pub weight: f64,
@@ -95,17 +95,19 @@ pub struct LoadStep {
     pub descent_end: Option<DescentEnd>,
     /// Maximum unbalanced force, relative to the maximum force.
     pub residual: f64,
-    /// The part of the residual that rounding can cause: below it no state is closer to equilibrium.
+    /// The part of the residual that rounding can cause: below it no state is closer to
+    /// equilibrium.
     pub rounding: f64,
     /// What the path cost since the step before.
     pub effort: Effort,
     /// Number of jumps since the step before, at limit points or bifurcations.
     pub jumps: usize,
-    /// Number of pivots of the tangent that are not positive: 0 in a state that is stable under dead loads, and
-    /// where `pivot_ratio` is 0. Under displacement control past a limit point of the load it is 1.
+    /// Number of pivots of the tangent that are not positive: 0 in a state that is stable under
+    /// dead loads, and where `pivot_ratio` is 0. Under displacement control past a limit point of
+    /// the load it is 1.
     pub negative_pivots: usize,
-    /// Minimum ratio of a pivot of the tangent to its diagonal entry: small near a singular tangent, 0 if
-    /// the tangent could not be factorised.
+    /// Minimum ratio of a pivot of the tangent to its diagonal entry: small near a singular
+    /// tangent, 0 if the tangent could not be factorised.
     pub pivot_ratio: f64,
     /// Whether each hinge is inside the domain of the hinge law.
     pub inside: Vec<bool>,
@@ -162,17 +164,17 @@ impl LoadStep {
     /// that it does not depend on units; infinite if the tangent could not be factorised.
     pub fn condition(&self, solver: &EquilibriumSolver) -> f64 {
         match &self.tangent {
-            Some(StepTangent {
-                values,
-                factor: Some(held),
-            }) => solver.pattern.condition(values, &held.factor),
+            Some(StepTangent { values, factor: Some(held) }) => {
+                solver.pattern.condition(values, &held.factor)
+            }
             _ => f64::INFINITY,
         }
     }
 
-    /// Stiffness of the sheet against a further load, the supports being held: increment of the sum of the loads for
-    /// an increment of their stroke, 1 / (c . H^-1 c) (N/mm; N mm/rad if there are only couples). Negative past a
-    /// limit point of the load; `None` without loads, or if the tangent could not be factorised.
+    /// Stiffness of the sheet against a further load, the supports being held: increment of the sum
+    /// of the loads for an increment of their stroke, 1 / (c . H^-1 c) (N/mm; N mm/rad if there are
+    /// only couples). Negative past a limit point of the load; `None` without loads, or if the
+    /// tangent could not be factorised.
     pub fn stiffness(&self, solver: &EquilibriumSolver) -> Option<f64> {
         let held = self.tangent.as_ref()?.factor.as_ref()?;
         let stroke = Stroke::new(&solver.loads, &solver.pattern.gather(&solver.loads))?;

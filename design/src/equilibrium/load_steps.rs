@@ -1,7 +1,7 @@
 //! Load steps of an equilibrium path, from the flat sheet or from the end of another path.
 //!
-//! Newton's method follows the path in increments of its own, and the load steps are read off it: the cubic between two
-//! points of the path is the start of a correction at the load of the step.
+//! Newton's method follows the path in increments of its own, and the load steps are read off it:
+//! the cubic between two points of the path is the start of a correction at the load of the step.
 
 use crate::equilibrium::continuation::{Follower, LEAP};
 use crate::equilibrium::corrector::{Branch, Point};
@@ -20,7 +20,8 @@ use crate::sheet::panel_vectors::add_at_hinge;
 /// The end of an increment of a path.
 #[derive(Clone, Debug)]
 pub struct Increment {
-    /// Load parameter: the fraction of the loads or, if they are prescribed, of the stroke and the support motions.
+    /// Load parameter: the fraction of the loads or, if they are prescribed, of the stroke and the
+    /// support motions.
     pub at: f64,
     /// zeta
     pub load_factor: f64,
@@ -29,8 +30,8 @@ pub struct Increment {
 }
 
 impl EquilibriumSolver {
-    /// Follows the equilibrium path from the flat sheet: first the load steps of the weight, then the load steps of the loads. The
-    /// path ends early if no equilibrium is found.
+    /// Follows the equilibrium path from the flat sheet: first the load steps of the weight, then
+    /// the load steps of the loads. The path ends early if no equilibrium is found.
     ///
     /// # Panics
     /// If the grids of sheet and solver differ.
@@ -57,13 +58,11 @@ impl EquilibriumSolver {
     /// Load factor and configuration of the sheet before the loads: flat, or under its weight.
     pub fn before_loads(&self, sheet: HingedSheet) -> (f64, Configuration) {
         let weighed = self.weighed(sheet).pop();
-        weighed.map_or_else(
-            || (0.0, self.flat()),
-            |last| (last.load_factor, last.configuration),
-        )
+        weighed.map_or_else(|| (0.0, self.flat()), |last| (last.load_factor, last.configuration))
     }
 
-    /// Follows the equilibrium path from a start that is an equilibrium under the weight and the forces held constant.
+    /// Follows the equilibrium path from a start that is an equilibrium under the weight and the
+    /// forces held constant.
     ///
     /// # Panics
     /// If the sheet or the start has another grid than the solver.
@@ -85,8 +84,9 @@ impl EquilibriumSolver {
         (1..=steps).map(move |i| i as f64 / steps as f64)
     }
 
-    /// The equilibria at load parameters, in ascending order, on the path from the sheet before the loads: fractions of the loads or,
-    /// if they are prescribed, of the stroke and the support motions.
+    /// The equilibria at load parameters, in ascending order, on the path from the sheet before the
+    /// loads: fractions of the loads or, if they are prescribed, of the stroke and the support
+    /// motions.
     ///
     /// # Panics
     /// If the grids of sheet and solver differ.
@@ -95,7 +95,8 @@ impl EquilibriumSolver {
         self.read(sheet, Stage::Actuation, start, parameters.iter().copied())
     }
 
-    /// The load step at full load in a configuration that is in equilibrium there, as one of a path is.
+    /// The load step at full load in a configuration that is in equilibrium there, as one of a path
+    /// is.
     ///
     /// # Panics
     /// If the grids of sheet and solver differ.
@@ -107,23 +108,17 @@ impl EquilibriumSolver {
         };
         let (tangent, factor) = branch.factor(&potential, &state);
         let found = state.residual <= self.settings.loose_tolerance().max(state.rounding);
-        let minimum = Minimum {
-            state,
-            tangent,
-            factor,
-        };
+        let minimum = Minimum { state, tangent, factor };
         let step = branch.load_step(minimum, 0);
         if found {
             return step;
         }
-        LoadStep {
-            status: Status::Diverged,
-            ..step
-        }
+        LoadStep { status: Status::Diverged, ..step }
     }
 
-    /// The forces (F_x, F_y, M) on every panel that hold the sheet in a configuration with a part of its weight: the loads on free
-    /// degrees of freedom, the reactions at supported ones (N, N, N mm).
+    /// The forces (F_x, F_y, M) on every panel that hold the sheet in a configuration with a part
+    /// of its weight: the loads on free degrees of freedom, the reactions at supported ones (N, N,
+    /// N mm).
     pub fn holding_forces(
         &self,
         hinged: HingedSheet,
@@ -146,8 +141,8 @@ impl EquilibriumSolver {
         forces
     }
 
-    /// The forces (F_x, F_y, M) by which the supports hold the panels in an equilibrium at full load (N, N, N mm); zero at free
-    /// degrees of freedom.
+    /// The forces (F_x, F_y, M) by which the supports hold the panels in an equilibrium at full
+    /// load (N, N, N mm); zero at free degrees of freedom.
     pub fn reactions(&self, sheet: HingedSheet, configuration: &[[f64; 3]]) -> Vec<[f64; 3]> {
         let potential = Branch::new(self, sheet, Stage::Actuation).potential(1.0);
         let state = potential.state_up_to(configuration.to_vec(), Order::Forces);
@@ -155,7 +150,8 @@ impl EquilibriumSolver {
         self.at_supports(&state.unbalanced)
     }
 
-    /// The load steps that end at load parameters in ascending order. The path ends early if no equilibrium is found.
+    /// The load steps that end at load parameters in ascending order. The path ends early if no
+    /// equilibrium is found.
     fn read(
         &self,
         sheet: HingedSheet,
@@ -182,7 +178,8 @@ impl EquilibriumSolver {
         path
     }
 
-    /// The ends of the increments of the path from the sheet before the loads, which are close together where it bends.
+    /// The ends of the increments of the path from the sheet before the loads, which are close
+    /// together where it bends.
     ///
     /// # Panics
     /// If the grids of sheet and solver differ.
@@ -205,10 +202,7 @@ impl EquilibriumSolver {
         stage: Stage,
         start: Configuration,
     ) -> Option<Follower<'a>> {
-        assert_eq!(
-            self.grid, sheet.sheet.grid,
-            "the grids of solver and sheet must be the same"
-        );
+        assert_eq!(self.grid, sheet.sheet.grid, "the grids of solver and sheet must be the same");
         assert_eq!(start.len(), self.grid.panel_count(), "one motion per panel");
         Follower::new(self, sheet, stage, start)
     }
@@ -231,11 +225,9 @@ impl Follower<'_> {
         let jumps = std::mem::take(&mut self.jumps);
         match found {
             Ok(minimum) => self.branch.load_step(minimum, jumps),
-            Err(Failure { residual, end }) => LoadStep {
-                residual,
-                descent_end: Some(end),
-                ..self.last_point(jumps)
-            },
+            Err(Failure { residual, end }) => {
+                LoadStep { residual, descent_end: Some(end), ..self.last_point(jumps) }
+            }
         }
     }
 
@@ -263,7 +255,8 @@ impl Follower<'_> {
     fn followed(&mut self, to: f64) -> Result<Minimum, Failure> {
         while self.last.place.at < to {
             if let Err(failure) = self.advance() {
-                // A sheet without stiffness is at rest in any state; beyond the increments the load steps go on.
+                // A sheet without stiffness is at rest in any state; beyond the increments the load
+                // steps go on.
                 let (minimum, moved) = match failure.end {
                     DescentEnd::Stagnated | DescentEnd::Increments => {
                         self.minimised(to).map_err(|_| failure)?
@@ -276,10 +269,7 @@ impl Follower<'_> {
         }
         let mut place = match &self.arc {
             Some(arc) => arc.reading(to),
-            None => PathPoint {
-                at: to,
-                ..self.last.place.clone()
-            },
+            None => PathPoint { at: to, ..self.last.place.clone() },
         };
         self.branch.hold(&mut place, &self.last.place);
         let start = place.clone();
@@ -295,12 +285,10 @@ impl Follower<'_> {
         Ok(minimum)
     }
 
-    /// The minimum at `to` that is reached from the last point, from where the path goes on, and its distance.
+    /// The minimum at `to` that is reached from the last point, from where the path goes on, and
+    /// its distance.
     fn minimised(&mut self, to: f64) -> Result<(Minimum, f64), Failure> {
-        let mut start = PathPoint {
-            at: to,
-            ..self.last.place.clone()
-        };
+        let mut start = PathPoint { at: to, ..self.last.place.clone() };
         self.branch.hold(&mut start, &self.last.place);
         let minimum = self.branch.minimum(&start)?;
         let moved = self.branch.moved(&minimum, &start);
@@ -318,10 +306,7 @@ impl Branch<'_> {
     /// The load step at a minimum, `jumps` jumps after the last.
     pub fn load_step(&mut self, minimum: Minimum, jumps: usize) -> LoadStep {
         let status = self.status(&minimum, jumps > 0);
-        let tangent = StepTangent {
-            values: minimum.tangent,
-            factor: minimum.factor,
-        };
+        let tangent = StepTangent { values: minimum.tangent, factor: minimum.factor };
         self.force = minimum.state.force;
         self.reported(minimum.state, Some(tangent), status, jumps)
     }
@@ -377,7 +362,8 @@ impl Branch<'_> {
     fn status(&self, minimum: &Minimum, jumped: bool) -> Status {
         let stable = (minimum.factor.as_ref()).is_some_and(|held| held.unstable_directions() == 0);
         let settings = &self.solver.settings;
-        // Rounding may explain a residual above the loose tolerance; it is no converged state nevertheless.
+        // Rounding may explain a residual above the loose tolerance; it is no converged state
+        // nevertheless.
         let balanced = minimum.state.is_balanced(settings.tolerance)
             && minimum.state.residual <= settings.loose_tolerance();
         let law = self.sheet.law;

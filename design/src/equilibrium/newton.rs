@@ -1,13 +1,14 @@
 //! Minimisation of the potential (10) at one load factor by a damped Newton method.
 //!
-//! With S the diagonal of the tangent at the start, a step solves (H + sigma S) d = -grad Pi with the
-//! smallest tested sigma that makes the matrix positive definite. It is shortened until the rotations are
-//! moderate, and accepted if Pi decreases by a fraction of the predicted decrease.
+//! With S the diagonal of the tangent at the start, a step solves (H + sigma S) d = -grad Pi with
+//! the smallest tested sigma that makes the matrix positive definite. It is shortened until the
+//! rotations are moderate, and accepted if Pi decreases by a fraction of the predicted decrease.
 //!
 //! If hinges are much stiffer in translation than in rotation, a step along the mechanism stretches
-//! them to second order. The forces f of that stretch are large, vanish with the next step, and would
-//! corrupt the geometric part f . d2(eps) of H. That part therefore uses the forces predicted by their rates
-//! (Magisano, Leonetti and Garcea 2017), until the state is stationary or no descent step is found.
+//! them to second order. The forces f of that stretch are large, vanish with the next step, and
+//! would corrupt the geometric part f . d2(eps) of H. That part therefore uses the forces predicted
+//! by their rates (Magisano, Leonetti and Garcea 2017), until the state is stationary or no descent
+//! step is found.
 
 use crate::equilibrium::displacement_control::HeldFactor;
 use crate::equilibrium::load_step::{DescentEnd, Effort};
@@ -29,8 +30,8 @@ const SHORTEST_FRACTION: f64 = 1e-9;
 const SHIFTS: [f64; 3] = [1e-8, 8.0, 1e8];
 /// Curvature relative to S below which a direction is considered unstable.
 const NEGATIVE_CURVATURE: f64 = -1e-11;
-/// Change of Pi, relative to the sum of the magnitudes of its terms, below which it may be rounding error: a
-/// learned energy is a difference of much larger numbers.
+/// Change of Pi, relative to the sum of the magnitudes of its terms, below which it may be rounding
+/// error: a learned energy is a difference of much larger numbers.
 pub(crate) const LEVEL: f64 = 1e-9;
 
 pub(crate) struct Minimum {
@@ -48,18 +49,9 @@ pub(crate) struct Failure {
 }
 
 impl Failure {
-    pub const EXHAUSTED: Self = Self {
-        residual: f64::INFINITY,
-        end: DescentEnd::Increments,
-    };
-    pub const STOPPED: Self = Self {
-        residual: f64::INFINITY,
-        end: DescentEnd::Stopped,
-    };
-    pub const NOT_FINITE: Self = Self {
-        residual: f64::INFINITY,
-        end: DescentEnd::NotFinite,
-    };
+    pub const EXHAUSTED: Self = Self { residual: f64::INFINITY, end: DescentEnd::Increments };
+    pub const STOPPED: Self = Self { residual: f64::INFINITY, end: DescentEnd::Stopped };
+    pub const NOT_FINITE: Self = Self { residual: f64::INFINITY, end: DescentEnd::NotFinite };
 }
 
 impl Potential<'_> {
@@ -78,9 +70,7 @@ impl Potential<'_> {
             let scale = scale.get_or_insert_with(|| self.solver.pattern.shift_scale(&tangent));
             effort.factorisations += 1;
             let factor = self.factorise(&tangent, std::mem::take(&mut memory));
-            let stable = factor
-                .as_ref()
-                .filter(|factor| factor.unstable_directions() == 0);
+            let stable = factor.as_ref().filter(|factor| factor.unstable_directions() == 0);
             let next = match stable {
                 Some(_) if stationary => None,
                 Some(factor) => self.step(&state, factor, &mut longest),
@@ -103,11 +93,7 @@ impl Potential<'_> {
                 }
                 None if state.expected.is_some() => state.expected = None,
                 None if stationary || residual <= settings.loose_tolerance() => {
-                    return Ok(Minimum {
-                        state,
-                        tangent,
-                        factor,
-                    });
+                    return Ok(Minimum { state, tangent, factor });
                 }
                 None => {
                     let end = DescentEnd::Stagnated;
@@ -116,10 +102,7 @@ impl Potential<'_> {
             }
             memory = factor.map_or(Vec::new(), |held| held.factor.values);
         }
-        Err(Failure {
-            residual: state.residual,
-            end: DescentEnd::Iterations,
-        })
+        Err(Failure { residual: state.residual, end: DescentEnd::Iterations })
     }
 
     /// The state after a damped Newton step; `None` if no state along it is better, or if the
@@ -141,7 +124,8 @@ impl Potential<'_> {
             if let Some(mut next) = self.moved(state, &motion, fraction) {
                 let fall = state.potential - next.potential;
                 let predicted = -slope * fraction * (1.0 - 0.5 * fraction.min(1.0));
-                // If the change of Pi is lost in rounding, its slope along the step is still accurate.
+                // If the change of Pi is lost in rounding, its slope along the step is still
+                // accurate.
                 let level = fall.abs() <= LEVEL * state.magnitude
                     && dot(&next.gradient, &direction).abs() <= 0.5 * slope.abs();
                 if fall >= SUFFICIENT_FALL * predicted || level {
@@ -162,15 +146,15 @@ impl Potential<'_> {
         None
     }
 
-    /// The factors of the tangent, stored in `memory` of earlier factors, with the border under displacement
-    /// control.
+    /// The factors of the tangent, stored in `memory` of earlier factors, with the border under
+    /// displacement control.
     pub fn factorise(&self, tangent: &[f64], memory: Vec<f64>) -> Option<HeldFactor> {
         let factor = self.solver.pattern.factorise(tangent, memory)?;
         HeldFactor::new(&self.solver.pattern, factor, self.solver.stroke())
     }
 
-    /// H + sigma S, positive definite; `None` if no sigma up to the maximum makes it so. The search begins below
-    /// `shift`, the sigma found last.
+    /// H + sigma S, positive definite; `None` if no sigma up to the maximum makes it so. The search
+    /// begins below `shift`, the sigma found last.
     fn shifted_factor(
         &self,
         tangent: &[f64],
@@ -195,8 +179,9 @@ impl Potential<'_> {
         None
     }
 
-    /// A state of lower energy near a stationary point that is no minimum, along the direction of the most
-    /// negative curvature, found by inverse iteration with the factors of a shifted tangent.
+    /// A state of lower energy near a stationary point that is no minimum, along the direction of
+    /// the most negative curvature, found by inverse iteration with the factors of a shifted
+    /// tangent.
     fn escape(
         &self,
         state: &State,
@@ -212,14 +197,10 @@ impl Potential<'_> {
             }
             direction = factor.solve(&self.solver.pattern, &direction);
             let norm = dot(&direction, &direction).sqrt();
-            direction
-                .iter_mut()
-                .for_each(|component| *component /= norm);
+            direction.iter_mut().for_each(|component| *component /= norm);
         }
         let (product, _) = self.solver.pattern.product(tangent, &direction);
-        let size: f64 = std::iter::zip(&direction, scale)
-            .map(|(d, s)| d * d * s)
-            .sum();
+        let size: f64 = std::iter::zip(&direction, scale).map(|(d, s)| d * d * s).sum();
         if dot(&direction, &product) >= NEGATIVE_CURVATURE * size {
             return None;
         }

@@ -1,14 +1,16 @@
 //! The potential (10) of a configuration at one point of the path, with its first two derivatives.
 //!
-//! Under load control the load factor zeta is given. Under displacement control the stroke c . q of the loads
-//! is prescribed, c being their direction, and zeta is the multiplier with the smallest residual,
+//! Under load control the load factor zeta is given. Under displacement control the stroke c . q of
+//! the loads is prescribed, c being their direction, and zeta is the multiplier with the smallest
+//! residual,
 //!
 //! ```text
 //! min |grad U - zeta f|     over zeta; moments are divided by the size of a panel
 //! ```
 //!
-//! The minimised function is then U alone, because the work of the loads is the same in every configuration with
-//! that stroke. If there are a weight or loads held constant, U contains their work with negative sign.
+//! The minimised function is then U alone, because the work of the loads is the same in every
+//! configuration with that stroke. If there are a weight or loads held constant, U contains their
+//! work with negative sign.
 
 use crate::equilibrium::hinged_sheet::HingedSheet;
 use crate::equilibrium::panel_force::PanelForce;
@@ -34,12 +36,13 @@ pub(crate) struct Potential<'a> {
     pub solver: &'a EquilibriumSolver,
     pub sheet: HingedSheet<'a>,
     pub stage: Stage,
-    /// The load parameter: the part of the weight that is on; then zeta, unless the stroke of the loads is prescribed.
+    /// The load parameter: the part of the weight that is on; then zeta, unless the stroke of the
+    /// loads is prescribed.
     pub at: f64,
     /// Size of a panel, by which moments are divided (mm).
     pub panel_size: f64,
-    /// Lower bound of the force that residuals are relative to (N): if the path passes a state without forces,
-    /// the force of the states before.
+    /// Lower bound of the force that residuals are relative to (N): if the path passes a state
+    /// without forces, the force of the states before.
     pub force: f64,
 }
 
@@ -57,14 +60,16 @@ pub(crate) struct State {
     pub load_factor: f64,
     /// The part of the weight that is on.
     pub weight: f64,
-    /// The minimised function: Pi, or U under displacement control, minus the work of the weight and of the loads held constant.
+    /// The minimised function: Pi, or U under displacement control, minus the work of the weight
+    /// and of the loads held constant.
     pub potential: f64,
     /// Sum of the magnitudes of the terms of `potential`.
     pub magnitude: f64,
     /// Hinge forces predicted by their rates, if they shall replace the actual ones in the part
     /// f . d2(eps) of the tangent.
     pub expected: Option<Vec<[f64; 3]>>,
-    /// d Pi / d q over all degrees of freedom: at the supports, the forces that hold them (N, N, N mm).
+    /// d Pi / d q over all degrees of freedom: at the supports, the forces that hold them (N, N, N
+    /// mm).
     pub unbalanced: Vec<[f64; 3]>,
     /// d Pi / d q over the free degrees of freedom.
     pub gradient: Vec<f64>,
@@ -253,7 +258,8 @@ impl Potential<'_> {
         }
     }
 
-    /// The forces on the panels (F_x, F_y, M) that grow with the load parameter in a state, by their rates.
+    /// The forces on the panels (F_x, F_y, M) that grow with the load parameter in a state, by
+    /// their rates.
     pub fn driving(&self, state: &State) -> Vec<[f64; 3]> {
         let solver = self.solver;
         match (self.stage, &solver.drive) {

@@ -1,8 +1,8 @@
 //! Places on an equilibrium path and the cubic between two of them.
 //!
-//! A path is a curve in (load parameter, configuration, hinge forces). Between two of its points with known rates it is
-//! interpolated by the cubic of Hermite, whose error is of fourth order in the length; the same cubic
-//! extrapolates it.
+//! A path is a curve in (load parameter, configuration, hinge forces). Between two of its points
+//! with known rates it is interpolated by the cubic of Hermite, whose error is of fourth order in
+//! the length; the same cubic extrapolates it.
 
 use crate::sheet::kinematics::Configuration;
 use support::vectors;
@@ -59,12 +59,7 @@ impl Arc {
 
     pub fn place(&self, length: f64) -> PathPoint {
         let [a, b, c, d] = self.weights(length);
-        PathPoint::sum([
-            (a, &self.from),
-            (b, &self.from_rate),
-            (c, &self.to),
-            (d, &self.to_rate),
-        ])
+        PathPoint::sum([(a, &self.from), (b, &self.from_rate), (c, &self.to), (d, &self.to_rate)])
     }
 
     /// The load parameter at a length.
@@ -108,11 +103,7 @@ mod tests {
     use super::*;
 
     fn place(at: f64, x: f64) -> PathPoint {
-        PathPoint {
-            at,
-            configuration: vec![[x, 2.0 * x, 1.0]],
-            forces: vec![[-x, 0.0, 0.0]],
-        }
+        PathPoint { at, configuration: vec![[x, 2.0 * x, 1.0]], forces: vec![[-x, 0.0, 0.0]] }
     }
 
     /// q = s^3 - s, t = s + s^2 from s = 1 to 3, and beyond.

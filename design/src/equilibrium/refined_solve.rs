@@ -1,9 +1,9 @@
 //! Iterative refinement against the true tangent, with its border under displacement control.
 //!
 //! The tangent is factorised without pivoting. Near a singular tangent, and occasionally for an
-//! indefinite one, the factors do not exist or are inaccurate. The factors of H + sigma S are used then, S being
-//! the magnitudes of the diagonal: refinement removes the effect of the shift if the equations have a solution,
-//! and the backward error shows whether they have.
+//! indefinite one, the factors do not exist or are inaccurate. The factors of H + sigma S are used
+//! then, S being the magnitudes of the diagonal: refinement removes the effect of the shift if the
+//! equations have a solution, and the backward error shows whether they have.
 
 use crate::equilibrium::displacement_control::{HeldFactor, Stroke};
 use crate::equilibrium::load_step::StepTangent;
@@ -13,8 +13,8 @@ use crate::equilibrium::tangent::TangentPattern;
 const REFINEMENTS: usize = 20;
 /// Backward error below which no other shift is tried.
 const ENOUGH: f64 = 1e-13;
-/// First shift, its growth factor, and its maximum. A smaller shift is removed by fewer refinement rounds,
-/// but its factors are less accurate.
+/// First shift, its growth factor, and its maximum. A smaller shift is removed by fewer refinement
+/// rounds, but its factors are less accurate.
 const SHIFTS: [f64; 3] = [1e-13, 100.0, 1e-5];
 
 /// The solution of H x + mu c = b, c . x = d.
@@ -47,10 +47,7 @@ pub(crate) fn refined_solve(
         let factor = pattern.factorise(&shifted, Vec::new());
         let factor = factor.and_then(|factor| HeldFactor::new(pattern, factor, stroke));
         let found = factor.as_ref().map(with);
-        best = best
-            .into_iter()
-            .chain(found)
-            .min_by(|a, b| a.error.total_cmp(&b.error));
+        best = best.into_iter().chain(found).min_by(|a, b| a.error.total_cmp(&b.error));
         shift *= growth;
     }
     best
@@ -63,11 +60,7 @@ fn refined(
     stroke: Option<&Stroke>,
     (b, d): (&[f64], f64),
 ) -> Refined {
-    let mut refined = Refined {
-        x: vec![0.0; b.len()],
-        mu: 0.0,
-        error: f64::INFINITY,
-    };
+    let mut refined = Refined { x: vec![0.0; b.len()], mu: 0.0, error: f64::INFINITY };
     let (mut remainder, mut slack) = (b.to_vec(), d);
     for _ in 0..=REFINEMENTS {
         let (dx, dmu) = factor.solve_bordered(pattern, &remainder, slack);
@@ -75,11 +68,7 @@ fn refined(
         let mu = refined.mu + dmu;
         let (mut product, mut bound) = pattern.product(values, &x);
         slack = d;
-        for (i, c) in stroke
-            .iter()
-            .flat_map(|stroke| stroke.direction())
-            .enumerate()
-        {
+        for (i, c) in stroke.iter().flat_map(|stroke| stroke.direction()).enumerate() {
             product[i] += mu * c;
             bound[i] += (mu * c).abs();
             slack -= c * x[i];
@@ -171,8 +160,8 @@ mod tests {
         }
     }
 
-    /// The backward error is of the order of rounding however close the tangent is to singular: the solution is
-    /// exact for a tangent that differs in its last digits.
+    /// The backward error is of the order of rounding however close the tangent is to singular: the
+    /// solution is exact for a tangent that differs in its last digits.
     #[test]
     fn nearly_singular_tangents_keep_their_backward_error() {
         for grid in GRIDS {

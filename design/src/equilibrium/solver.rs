@@ -4,8 +4,9 @@
 //! min over q of  Pi(q) = sum_h W(eps_h(q); g_h) - zeta sum_k (F_k . u_k + M_k phi_k)
 //! ```
 //!
-//! Self-weight in the plane is applied before the loads, with fixed supports and no prescribed displacement; its work is
-//! subtracted. In unloading the work of the forces that held the sheet is subtracted.
+//! Self-weight in the plane is applied before the loads, with fixed supports and no prescribed
+//! displacement; its work is subtracted. In unloading the work of the forces that held the sheet is
+//! subtracted.
 
 use crate::equilibrium::displacement_control::{Stroke, magnitude, work};
 use crate::equilibrium::settings::SolverSettings;
@@ -23,17 +24,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 #[allow(missing_docs, reason = "the message of a variant is its documentation")]
 pub enum EquilibriumError {
     #[error("{what} on panel {panel}: the panels of the sheet are 0..{panels}")]
-    NoSuchPanel {
-        what: &'static str,
-        panel: usize,
-        panels: usize,
-    },
+    NoSuchPanel { what: &'static str, panel: usize, panels: usize },
     #[error("{what} of {value} on panel {panel} is not a finite number")]
-    NotFinite {
-        what: &'static str,
-        panel: usize,
-        value: f64,
-    },
+    NotFinite { what: &'static str, panel: usize, value: f64 },
     #[error("{dof:?} of panel {panel} is supported twice")]
     SupportedTwice { panel: usize, dof: Dof },
     #[error(
@@ -76,7 +69,8 @@ pub struct EquilibriumSolver {
     pub(crate) loads: Box<[[f64; 3]]>,
     /// Weight of a unit of area (N/mm^2), zero without weight.
     pub(crate) weight: [f64; 2],
-    /// The points at which panels are held or pulled; the others have their centroids as reference points.
+    /// The points at which panels are held or pulled; the others have their centroids as reference
+    /// points.
     pub(crate) attachment_points: Box<[AttachmentPoint]>,
     /// Loads held constant from the beginning of the path.
     pub(crate) held: Box<[[f64; 3]]>,
@@ -103,11 +97,7 @@ impl EquilibriumSolver {
         let check = |what, panel, value: f64| {
             let panels = grid.panel_count();
             if panel >= panels {
-                return Err(EquilibriumError::NoSuchPanel {
-                    what,
-                    panel,
-                    panels,
-                });
+                return Err(EquilibriumError::NoSuchPanel { what, panel, panels });
             }
             if !value.is_finite() {
                 return Err(EquilibriumError::NotFinite { what, panel, value });
@@ -144,8 +134,9 @@ impl EquilibriumSolver {
         })
     }
 
-    /// Ends the paths that are followed with [`DescentEnd::Stopped`](crate::equilibrium::load_step::DescentEnd) at the increment
-    /// during which `stop` becomes true.
+    /// Ends the paths that are followed with
+    /// [`DescentEnd::Stopped`](crate::equilibrium::load_step::DescentEnd) at the increment during
+    /// which `stop` becomes true.
     pub(crate) fn stop_by(&mut self, stop: Arc<AtomicBool>) {
         self.stop = stop;
     }
@@ -154,7 +145,8 @@ impl EquilibriumSolver {
         self.stop.load(Ordering::Relaxed)
     }
 
-    /// The same problem with other loads (F_x, F_y, M) on the panels at full load (N, N, N mm); the loads of a stroke give its direction.
+    /// The same problem with other loads (F_x, F_y, M) on the panels at full load (N, N, N mm); the
+    /// loads of a stroke give its direction.
     ///
     /// # Panics
     /// If there is not one load for each panel.
@@ -167,10 +159,7 @@ impl EquilibriumSolver {
             }
         }
         let held = self.supports.iter();
-        if let Some(support) = held
-            .into_iter()
-            .find(|s| loads[s.panel][s.dof.index()] != 0.0)
-        {
+        if let Some(support) = held.into_iter().find(|s| loads[s.panel][s.dof.index()] != 0.0) {
             let Support { panel, dof, .. } = *support;
             return Err(EquilibriumError::LoadOnSupport { panel, dof });
         }
@@ -186,8 +175,9 @@ impl EquilibriumSolver {
         &self.loads
     }
 
-    /// A gradient in the loads, zero in those that are no variables: at the supports, and under displacement control those whose
-    /// magnitude has a kink in the sum of all, at panels without them.
+    /// A gradient in the loads, zero in those that are no variables: at the supports, and under
+    /// displacement control those whose magnitude has a kink in the sum of all, at panels without
+    /// them.
     pub(crate) fn in_loads(&self, gradient: &[[f64; 3]]) -> Vec<[f64; 3]> {
         let mut gradient = self.pattern.spread(&self.pattern.gather(gradient));
         if let Some(stroke) = self.stroke() {
@@ -200,7 +190,8 @@ impl EquilibriumSolver {
         gradient
     }
 
-    /// The components of forces on the panels at the supports; at the free degrees of freedom they are zero.
+    /// The components of forces on the panels at the supports; at the free degrees of freedom they
+    /// are zero.
     pub(crate) fn at_supports(&self, forces: &[[f64; 3]]) -> Vec<[f64; 3]> {
         let mut at_supports = vec![[0.0; 3]; forces.len()];
         for support in &self.supports {
@@ -224,8 +215,9 @@ impl EquilibriumSolver {
         self.drive.as_ref().map(|(stroke, _)| &**stroke)
     }
 
-    /// The displacement of a configuration along the loads, by which a stroke is prescribed: their work over the sum of their
-    /// magnitudes (mm; rad if there are couples alone). `None` without loads.
+    /// The displacement of a configuration along the loads, by which a stroke is prescribed: their
+    /// work over the sum of their magnitudes (mm; rad if there are couples alone). `None` without
+    /// loads.
     pub fn displacement(&self, configuration: &[[f64; 3]]) -> Option<f64> {
         let (size, _) = magnitude(&self.loads)?;
         Some(work(&self.loads, configuration) / size)
@@ -236,8 +228,9 @@ impl EquilibriumSolver {
         self.drive.is_some()
     }
 
-    /// The same supports and loads under displacement control: the load factors follow from the strokes
-    /// i/steps of `stroke` (mm), the work of the full loads divided by the sum of their magnitudes.
+    /// The same supports and loads under displacement control: the load factors follow from the
+    /// strokes i/steps of `stroke` (mm), the work of the full loads divided by the sum of their
+    /// magnitudes.
     pub fn driven(mut self, stroke: f64) -> Result<Self, EquilibriumError> {
         if !stroke.is_finite() {
             return Err(EquilibriumError::Stroke(stroke));
@@ -248,7 +241,8 @@ impl EquilibriumSolver {
         Ok(self)
     }
 
-    /// The same problem for panels that are held or pulled at `points`, to which supports and loads refer.
+    /// The same problem for panels that are held or pulled at `points`, to which supports and loads
+    /// refer.
     pub fn attached_at(mut self, points: Vec<AttachmentPoint>) -> Self {
         self.attachment_points = points.into();
         self
@@ -275,21 +269,17 @@ impl EquilibriumSolver {
 
     /// The number of load steps in which the weight comes on.
     pub fn weight_steps(&self) -> usize {
-        if self.weight == [0.0; 2] {
-            0
-        } else {
-            WEIGHT_STEPS
-        }
+        if self.weight == [0.0; 2] { 0 } else { WEIGHT_STEPS }
     }
 
-    /// An error if the supports leave a sheet free to move as a rigid body and its weight does not hold it.
+    /// An error if the supports leave a sheet free to move as a rigid body and its weight does not
+    /// hold it.
     pub fn check_supports(&self, sheet: &Sheet) -> Result<(), EquilibriumError> {
-        self.start(sheet)
-            .map(|_| ())
-            .ok_or(EquilibriumError::Unsupported)
+        self.start(sheet).map(|_| ()).ok_or(EquilibriumError::Unsupported)
     }
 
-    /// The unloaded sheet: flat, and turned about a nail from which it hangs; `None` if it is free to move.
+    /// The unloaded sheet: flat, and turned about a nail from which it hangs; `None` if it is free
+    /// to move.
     pub(crate) fn start(&self, sheet: &Sheet) -> Option<Configuration> {
         if hold_rigid_body(&self.supports, sheet) {
             return Some(self.flat());

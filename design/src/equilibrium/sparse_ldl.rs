@@ -1,5 +1,5 @@
-//! LDL^T of a sparse symmetric matrix without pivoting, by faer: column by column for few unknowns, otherwise by
-//! supernodes, dense blocks of columns.
+//! LDL^T of a sparse symmetric matrix without pivoting, by faer: column by column for few unknowns,
+//! otherwise by supernodes, dense blocks of columns.
 
 use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
 use faer::linalg::cholesky::ldlt::factor::LdltRegularization;
@@ -15,8 +15,8 @@ use std::cell::RefCell;
 
 /// Number of unknowns from which the supernodal factorisation is faster (measured).
 const SUPERNODAL_FROM: usize = 400;
-/// Maximum fraction of zeros in a supernode that is merged with another, by its number of columns (measured): dense work
-/// costs less than its administration.
+/// Maximum fraction of zeros in a supernode that is merged with another, by its number of columns
+/// (measured): dense work costs less than its administration.
 const ZEROS: [(usize, f64); 3] = [(24, 1.0), (96, 0.3), (usize::MAX, 0.05)];
 
 /// The lower triangle of a sparse symmetric matrix, analysed for its factorisation.
@@ -33,7 +33,8 @@ thread_local! {
     static SCRATCH: RefCell<MemBuffer> = RefCell::new(MemBuffer::new(StackReq::EMPTY));
 }
 
-/// The rank of every row and column in an order of elimination with little fill-in (approximate minimum degree).
+/// The rank of every row and column in an order of elimination with little fill-in (approximate
+/// minimum degree).
 pub(crate) fn elimination_ranks(matrix: &SymbolicSparseColMat<usize>) -> Vec<usize> {
     let (dimension, entries) = (matrix.ncols(), matrix.row_idx().len());
     let (mut order, mut ranks) = (vec![0; dimension], vec![0; dimension]);
@@ -64,9 +65,7 @@ impl SparseLdl {
                 } else {
                     SupernodalThreshold::FORCE_SUPERNODAL
                 },
-                supernodal_params: SymbolicSupernodalParams {
-                    relax: Some(&ZEROS),
-                },
+                supernodal_params: SymbolicSupernodalParams { relax: Some(&ZEROS) },
                 ..Default::default()
             },
         )
@@ -75,11 +74,7 @@ impl SparseLdl {
             cholesky.factorize_numeric_ldlt_scratch::<f64>(Par::Seq, Default::default()),
             cholesky.solve_in_place_scratch::<f64>(1, Par::Seq),
         ]);
-        Self {
-            matrix,
-            cholesky,
-            scratch,
-        }
+        Self { matrix, cholesky, scratch }
     }
 
     /// Where the columns of the matrix start, and the row of each entry.
@@ -102,7 +97,8 @@ impl SparseLdl {
         })
     }
 
-    /// LDL^T of the matrix with the entries `values`, stored in `factor`; `None` if a pivot vanishes.
+    /// LDL^T of the matrix with the entries `values`, stored in `factor`; `None` if a pivot
+    /// vanishes.
     pub fn factorise(&self, values: &[f64], factor: &mut Vec<f64>) -> Option<()> {
         factor.resize(self.factor_entries(), 0.0);
         let matrix = SparseColMatRef::new(self.matrix.as_ref(), values);

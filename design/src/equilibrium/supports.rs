@@ -6,8 +6,8 @@
 use crate::sheet::cut_sheet::Sheet;
 use serde::{Deserialize, Serialize};
 
-/// Lever of the supports about the centre of rotation, relative to the size of the sheet, below which they do not prevent
-/// the rotation.
+/// Lever of the supports about the centre of rotation, relative to the size of the sheet, below
+/// which they do not prevent the rotation.
 const MIN_LEVER: f64 = 1e-6;
 
 /// A degree of freedom of a panel.
@@ -58,7 +58,8 @@ impl Dof {
 pub(crate) fn hold_rigid_body(supports: &[Support], sheet: &Sheet) -> bool {
     let size = sheet.outline.area().sqrt();
     let [x_0, y_0] = sheet.outline.corners[0];
-    // Two translations and the rotation about a corner, which moves a point as far away as the sheet is large by one.
+    // Two translations and the rotation about a corner, which moves a point as far away as the
+    // sheet is large by one.
     let rows = supports.iter().map(|support| {
         let [x, y] = sheet.panels[support.panel].reference;
         match support.dof {

@@ -1,6 +1,6 @@
-//! The sparse symmetric tangent H of (20): assembly from hinges and LDL^T factorisation. The symbolic analysis is
-//! done once per topology and set of supports; free degrees of freedom are numbered in elimination
-//! order.
+//! The sparse symmetric tangent H of (20): assembly from hinges and LDL^T factorisation. The
+//! symbolic analysis is done once per topology and set of supports; free degrees of freedom are
+//! numbered in elimination order.
 
 use crate::equilibrium::sparse_ldl::{SparseLdl, elimination_ranks};
 use crate::pattern::grid::Grid;
@@ -39,10 +39,7 @@ pub struct Factor {
 fn at_hinges(grid: Grid, free: &[Option<usize>]) -> Vec<[Option<usize>; 6]> {
     let numbers = |panels: [usize; 2]| std::array::from_fn(|d| free[3 * panels[d / 3] + d % 3]);
     let sites = hinge_sites(grid);
-    sites
-        .iter()
-        .map(|site| numbers([site.a.0, site.b.0]))
-        .collect()
+    sites.iter().map(|site| numbers([site.a.0, site.b.0])).collect()
 }
 
 /// The sparsity of the lower triangle; it always contains the diagonal, for the shift.
@@ -85,11 +82,7 @@ impl TangentPattern {
                 std::array::from_fn(|i| std::array::from_fn(|j| slot(numbers[i]?, numbers[j]?)))
             })
             .collect();
-        Self {
-            ldl,
-            free: free.into(),
-            slots,
-        }
+        Self { ldl, free: free.into(), slots }
     }
 
     /// The free components of a vector with three components per panel.
@@ -133,21 +126,15 @@ impl TangentPattern {
 
     /// The diagonal of H.
     pub fn diagonal(&self, values: &[f64]) -> Vec<f64> {
-        (self.diagonal_slots().iter())
-            .map(|&slot| values[slot])
-            .collect()
+        (self.diagonal_slots().iter()).map(|&slot| values[slot]).collect()
     }
 
     /// S: the magnitudes of the diagonal of a tangent, all non-zero.
     pub fn shift_scale(&self, values: &[f64]) -> Vec<f64> {
         let mut scale = self.diagonal(values);
-        let max = scale
-            .iter()
-            .fold(0.0_f64, |max, entry| max.max(entry.abs()));
+        let max = scale.iter().fold(0.0_f64, |max, entry| max.max(entry.abs()));
         let min = if max > 0.0 { 1e-12 * max } else { 1.0 };
-        scale
-            .iter_mut()
-            .for_each(|entry| *entry = entry.abs().max(min));
+        scale.iter_mut().for_each(|entry| *entry = entry.abs().max(min));
         scale
     }
 
@@ -194,20 +181,12 @@ impl TangentPattern {
             negative_pivots += usize::from(ratio <= MIN_PIVOT_RATIO);
             pivot_ratio = pivot_ratio.min(ratio);
         }
-        Some(Factor {
-            negative_pivots,
-            pivot_ratio,
-            values: factor,
-        })
+        Some(Factor { negative_pivots, pivot_ratio, values: factor })
     }
 
     /// Estimate of the condition number of H scaled to a unit diagonal, in the 1-norm (Hager 1984).
     pub fn condition(&self, values: &[f64], factor: &Factor) -> f64 {
-        let root: Vec<f64> = self
-            .diagonal(values)
-            .iter()
-            .map(|d| d.abs().sqrt())
-            .collect();
+        let root: Vec<f64> = self.diagonal(values).iter().map(|d| d.abs().sqrt()).collect();
         let n = root.len();
         if n == 0 {
             return 1.0;
@@ -256,12 +235,8 @@ impl TangentPattern {
 mod tests {
     use super::*;
 
-    const GRIDS: [Grid; 4] = [
-        Grid { m: 2, n: 1 },
-        Grid { m: 1, n: 9 },
-        Grid { m: 3, n: 3 },
-        Grid { m: 25, n: 20 },
-    ];
+    const GRIDS: [Grid; 4] =
+        [Grid { m: 2, n: 1 }, Grid { m: 1, n: 9 }, Grid { m: 3, n: 3 }, Grid { m: 25, n: 20 }];
 
     /// Panel 0 clamped, and of some others one or two degrees of freedom supported.
     fn pattern(grid: Grid) -> TangentPattern {
@@ -286,9 +261,8 @@ mod tests {
             let values = positive(&pattern);
             let factor = pattern.factorise(&values, Vec::new()).unwrap();
             assert_eq!(factor.negative_pivots, 0);
-            let rhs: Vec<f64> = (0..pattern.diagonal_slots().len())
-                .map(|i| (i as f64).cos())
-                .collect();
+            let rhs: Vec<f64> =
+                (0..pattern.diagonal_slots().len()).map(|i| (i as f64).cos()).collect();
             let mut solution = rhs.clone();
             pattern.solve(&factor, &mut solution);
             let (product, _) = pattern.product(&values, &solution);

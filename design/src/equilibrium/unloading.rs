@@ -1,8 +1,9 @@
 //! A sheet that is unloaded: from a configuration to the equilibrium without loads.
 //!
-//! The forces that would hold the panels in the configuration are taken off in proportion. The path begins in balance also
-//! where the forces of the hinge law differ from the forces under load. Supports that rest and the weight of the sheet stay;
-//! supports that moved the sheet are removed, too.
+//! The forces that would hold the panels in the configuration are taken off in proportion. The path
+//! begins in balance also where the forces of the hinge law differ from the forces under load.
+//! Supports that rest and the weight of the sheet stay; supports that moved the sheet are removed,
+//! too.
 
 use crate::equilibrium::corrector::Branch;
 use crate::equilibrium::hinged_sheet::HingedSheet;
@@ -23,7 +24,8 @@ const STEPS: usize = 10;
 pub struct ReleasedSheet {
     /// The hinges.
     pub hinges: Vec<ReleasedHinge>,
-    /// The load steps from the deployed sheet to that without loads. Their load factor is the part of the holding forces that is left.
+    /// The load steps from the deployed sheet to that without loads. Their load factor is the part
+    /// of the holding forces that is left.
     pub path: Vec<LoadStep>,
 }
 
@@ -35,8 +37,8 @@ impl ReleasedSheet {
 }
 
 impl EquilibriumSolver {
-    /// The load steps from the configuration `start`, of which the last one is without loads. Their load factor is the part of the holding
-    /// forces that is left.
+    /// The load steps from the configuration `start`, of which the last one is without loads. Their
+    /// load factor is the part of the holding forces that is left.
     pub fn unload(
         &self,
         sheet: HingedSheet,
@@ -48,12 +50,7 @@ impl EquilibriumSolver {
             free.held = holding.into();
         }
         let path = free.path_from(sheet, start).into_iter();
-        Ok(path
-            .map(|step| LoadStep {
-                load_factor: 1.0 - step.load_factor,
-                ..step
-            })
-            .collect())
+        Ok(path.map(|step| LoadStep { load_factor: 1.0 - step.load_factor, ..step }).collect())
     }
 
     /// The same problem without loads, and without the supports that moved the sheet.
@@ -71,7 +68,8 @@ impl EquilibriumSolver {
         }
     }
 
-    /// The forces (F_x, F_y, M) on the free panels that balance a configuration without loads; `None` if its energy is not finite.
+    /// The forces (F_x, F_y, M) on the free panels that balance a configuration without loads;
+    /// `None` if its energy is not finite.
     fn holding(&self, sheet: HingedSheet, configuration: Configuration) -> Option<Vec<[f64; 3]>> {
         let potential = Branch::new(self, sheet, Stage::Actuation).potential(0.0);
         let state = potential.state_up_to(configuration, Order::Forces)?;

@@ -1,5 +1,6 @@
-//! The load steps of a sheet that differs little from another whose path is known, as in successive designs: each state
-//! is corrected from the state of the known path, without increments between the load steps.
+//! The load steps of a sheet that differs little from another whose path is known, as in successive
+//! designs: each state is corrected from the state of the known path, without increments between
+//! the load steps.
 //!
 //! The known state is first carried over by the hinge law linearised about it,
 //!
@@ -7,9 +8,10 @@
 //! f = f_0 + K_0 (eps - eps_0) + C_0 (g - g_0),     g = (w_lig, alpha, rho_f)
 //! ```
 //!
-//! whose equilibrium in the new sheet requires no evaluation of the hinges. Newton's method then corrects it. The states are
-//! the states of a followed path as long as the path has no jump. A jump that appears between two load steps is not noticed:
-//! paths must be followed from the flat sheet now and then.
+//! whose equilibrium in the new sheet requires no evaluation of the hinges. Newton's method then
+//! corrects it. The states are the states of a followed path as long as the path has no jump. A
+//! jump that appears between two load steps is not noticed: paths must be followed from the flat
+//! sheet now and then.
 
 use crate::equilibrium::corrector::Branch;
 use crate::equilibrium::hinged_sheet::HingedSheet;
@@ -22,9 +24,11 @@ use crate::hinge_law::{HingeEnergy, Order, PreparedLaw};
 use hinge::{HingeDeformation, HingeDesign};
 use support::vectors::dot;
 
-/// Maximum distance of an equilibrium from the equilibrium of the linearised law (rad, or panel sizes for hinge translations).
+/// Maximum distance of an equilibrium from the equilibrium of the linearised law (rad, or panel
+/// sizes for hinge translations).
 const NEARBY: f64 = 0.02;
-/// Difference of the stroke of a known state from that at its load parameter, relative to the whole, that rounding may cause.
+/// Difference of the stroke of a known state from that at its load parameter, relative to the
+/// whole, that rounding may cause.
 const ROUNDED: f64 = 1e-9;
 
 /// The equilibrium path of a sheet.
@@ -67,8 +71,9 @@ impl LinearisedLaw<'_> {
 }
 
 impl EquilibriumSolver {
-    /// The load steps of a sheet near the sheet of the path `known`. `None` if the known path is not complete or jumps, or
-    /// if a state is not a stable equilibrium close to the known one: then the path must be followed.
+    /// The load steps of a sheet near the sheet of the path `known`. `None` if the known path is
+    /// not complete or jumps, or if a state is not a stable equilibrium close to the known one:
+    /// then the path must be followed.
     pub fn path_near(&self, sheet: HingedSheet, known: &WarmStart) -> Option<Vec<LoadStep>> {
         if known.steps.len() != self.weight_steps() + self.steps {
             return None;
@@ -83,8 +88,8 @@ impl EquilibriumSolver {
         Some(path)
     }
 
-    /// The [`readings`](Self::readings) of a sheet near another one of which `known` are the readings at the same parameters;
-    /// `None` as for a path.
+    /// The [`readings`](Self::readings) of a sheet near another one of which `known` are the
+    /// readings at the same parameters; `None` as for a path.
     pub fn readings_near(
         &self,
         sheet: HingedSheet,
@@ -94,17 +99,12 @@ impl EquilibriumSolver {
         if known.steps.len() != parameters.len() {
             return None;
         }
-        self.steps_near(
-            sheet,
-            Stage::Actuation,
-            parameters,
-            &known.designs,
-            &known.steps,
-        )
+        self.steps_near(sheet, Stage::Actuation, parameters, &known.designs, &known.steps)
     }
 
-    /// A stable equilibrium at full load next to the last state of a known path: where Newton's method leads from it, or else a descent
-    /// in energy. It need not be on the path from the flat sheet. `None` if there is none.
+    /// A stable equilibrium at full load next to the last state of a known path: where Newton's
+    /// method leads from it, or else a descent in energy. It need not be on the path from the flat
+    /// sheet. `None` if there is none.
     pub(crate) fn full_load_near(&self, sheet: HingedSheet, known: &WarmStart) -> Option<LoadStep> {
         let last = known.steps.last()?;
         let changes = changes(sheet, &known.designs);
@@ -147,11 +147,7 @@ impl EquilibriumSolver {
 fn changes(sheet: HingedSheet, since: &[HingeDesign]) -> Vec<[f64; 3]> {
     let designs = std::iter::zip(sheet.sheet.designs(), since);
     let changes = designs.map(|(to, from)| {
-        [
-            to.w_lig - from.w_lig,
-            to.alpha - from.alpha,
-            to.fillet_ratio - from.fillet_ratio,
-        ]
+        [to.w_lig - from.w_lig, to.alpha - from.alpha, to.fillet_ratio - from.fillet_ratio]
     });
     changes.collect()
 }
@@ -173,7 +169,8 @@ impl Branch<'_> {
         (step.status != Status::Almost).then_some(step)
     }
 
-    /// Moves a known state to the stroke at its load parameter, which loads in another direction change.
+    /// Moves a known state to the stroke at its load parameter, which loads in another direction
+    /// change.
     fn hold_stroke(&self, place: &mut PathPoint) {
         let Some((stroke, full)) = &self.solver.drive else {
             return;
@@ -190,24 +187,18 @@ impl Branch<'_> {
         }
     }
 
-    /// The equilibrium of this sheet with the hinge law linearised about the states of a known load step.
+    /// The equilibrium of this sheet with the hinge law linearised about the states of a known load
+    /// step.
     fn carried_over(
         &mut self,
         at: f64,
         known: &LoadStep,
         changes: &[[f64; 3]],
     ) -> Option<PathPoint> {
-        let law = LinearisedLaw {
-            deformations: &known.deformations,
-            energies: &known.hinges,
-            changes,
-        };
-        let linearised = HingedSheet {
-            law: &law,
-            contact: None,
-            damage_gradient: false,
-            ..self.sheet
-        };
+        let law =
+            LinearisedLaw { deformations: &known.deformations, energies: &known.hinges, changes };
+        let linearised =
+            HingedSheet { law: &law, contact: None, damage_gradient: false, ..self.sheet };
         let mut branch = Branch::new(self.solver, linearised, self.stage);
         let mut start = PathPoint {
             at,

@@ -1,7 +1,8 @@
 //! The weight of the panels, in the plane of the sheet.
 //!
-//! With w the weight of a unit of area (a vector in the plane), A the area of a panel, c its centroid and r its reference
-//! point, the weight has the work w A . (u + R(phi) (c - r)). Its moment about the reference point turns with the panel:
+//! With w the weight of a unit of area (a vector in the plane), A the area of a panel, c its
+//! centroid and r its reference point, the weight has the work w A . (u + R(phi) (c - r)). Its
+//! moment about the reference point turns with the panel:
 //!
 //! ```text
 //! F = w A,     M = (R(phi) (c - r)) x F,     -dM/dphi = (R(phi) (c - r)) . F
@@ -13,8 +14,8 @@ use crate::sheet::cut_sheet::{Panel, Sheet, SheetGradient};
 use crate::sheet::kinematics::Configuration;
 use faer::c64;
 
-/// Distance of the centre of gravity from a nail, relative to the size of the sheet, below which the sheet hangs in no
-/// definite position.
+/// Distance of the centre of gravity from a nail, relative to the size of the sheet, below which
+/// the sheet hangs in no definite position.
 const BALANCED: f64 = 1e-6;
 
 /// The weight of a panel in one of its rotations.
@@ -46,7 +47,8 @@ impl PanelWeight {
     }
 }
 
-/// The weight of every panel in a configuration; `by_area` is the weight of a unit of area (N/mm^2).
+/// The weight of every panel in a configuration; `by_area` is the weight of a unit of area
+/// (N/mm^2).
 pub(crate) fn weights_of_panels<'a>(
     sheet: &'a Sheet,
     by_area: [f64; 2],
@@ -56,7 +58,8 @@ pub(crate) fn weights_of_panels<'a>(
         .map(move |(panel, &motion)| PanelWeight::new(panel, by_area, motion[2]).on(panel, motion))
 }
 
-/// Adds the gradient, with respect to the sheet, of the work of the weight in virtual motions `lambda` of the panels.
+/// Adds the gradient, with respect to the sheet, of the work of the weight in virtual motions
+/// `lambda` of the panels.
 pub(crate) fn add_weight_gradient(
     by_sheet: &mut SheetGradient,
     sheet: &Sheet,
@@ -75,7 +78,8 @@ pub(crate) fn add_weight_gradient(
     }
 }
 
-/// The flat sheet turned about a point until its centre of gravity hangs below it; `None` if that is at the point.
+/// The flat sheet turned about a point until its centre of gravity hangs below it; `None` if that
+/// is at the point.
 pub(crate) fn hung_from(
     sheet: &Sheet,
     point: [f64; 2],
@@ -83,9 +87,7 @@ pub(crate) fn hung_from(
 ) -> Option<Configuration> {
     let panels = &sheet.panels;
     let area: f64 = panels.iter().map(|panel| panel.area).sum();
-    let moment: c64 = (panels.iter())
-        .map(|panel| complex(panel.centroid) * panel.area)
-        .sum();
+    let moment: c64 = (panels.iter()).map(|panel| complex(panel.centroid) * panel.area).sum();
     let (nail, down) = (complex(point), complex(by_area));
     let arm = moment / area - nail;
     if arm.norm() < BALANCED * sheet.outline.area().sqrt() || down.norm() == 0.0 {

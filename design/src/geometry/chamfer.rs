@@ -4,13 +4,14 @@
 //! 1/|P| sum_p min_t |p - t|^2  +  w_cov 1/|T| sum_t min_p |t - p|^2
 //! ```
 //!
-//! The first sum attracts outline points to the closed curve through the samples of the target, where the paper takes the nearest
-//! sample: the difference is at most a quarter of the squared spacing of the samples.
+//! The first sum attracts outline points to the closed curve through the samples of the target,
+//! where the paper takes the nearest sample: the difference is at most a quarter of the squared
+//! spacing of the samples.
 
 use crate::geometry::polygon::nearest_on_outline;
 
-/// The distance (mm^2) with the weight w_cov of the second sum, and its gradient in `points`; neither `points` nor `target` may be
-/// empty.
+/// The distance (mm^2) with the weight w_cov of the second sum, and its gradient in `points`;
+/// neither `points` nor `target` may be empty.
 pub fn chamfer(
     points: &[[f64; 2]],
     target: &[[f64; 2]],
@@ -57,15 +58,16 @@ mod tests {
 
     #[test]
     fn the_distance_of_two_small_sets_by_hand() {
-        // The first point is nearest to an end of the segment; the others are at the distances 0.8 and 0.6 divided by the square
-        // root of 2.
+        // The first point is nearest to an end of the segment; the others are at the distances 0.8
+        // and 0.6 divided by the square root of 2.
         let on_curve = (0.01 + 0.5 * 0.64 + 0.5 * 0.36) / 3.0;
         let coverage = (0.01 + (0.25 + 0.01)) / 2.0;
         let (value, _) = chamfer(&POINTS, &TARGET, 0.5);
         assert_close(value, on_curve + 0.5 * coverage, 1e-15);
     }
 
-    /// The paper measures the first sum to the samples of the target: with many samples it is that to the curve.
+    /// The paper measures the first sum to the samples of the target: with many samples it is that
+    /// to the curve.
     #[test]
     fn the_samples_of_the_paper_are_the_limit_of_many() {
         let circle = |n: usize| -> Vec<[f64; 2]> {

@@ -1,5 +1,5 @@
-//! Points and vectors of the plane as complex numbers: a rotation by phi is a product with e^(i phi),
-//! the scalar product is Re(conj(a) b), the vector product Im(conj(a) b).
+//! Points and vectors of the plane as complex numbers: a rotation by phi is a product with e^(i
+//! phi), the scalar product is Re(conj(a) b), the vector product Im(conj(a) b).
 
 use faer::c64;
 

@@ -1,4 +1,5 @@
-//! Polygons: clipping, distances and intersections of convex ones, counter-clockwise; self-crossings of any.
+//! Polygons: clipping, distances and intersections of convex ones, counter-clockwise;
+//! self-crossings of any.
 
 /// The intersection of two convex polygons.
 pub fn common(polygon: &[[f64; 2]], other: &[[f64; 2]]) -> Vec<[f64; 2]> {
@@ -52,12 +53,11 @@ pub fn distance_to_polygon(point: [f64; 2], polygon: &[[f64; 2]]) -> f64 {
     if !polygon.is_empty() && contains(polygon, point) {
         return 0.0;
     }
-    edges(polygon)
-        .map(|(p, q)| distance_to_segment(point, p, q))
-        .fold(f64::INFINITY, f64::min)
+    edges(polygon).map(|(p, q)| distance_to_segment(point, p, q)).fold(f64::INFINITY, f64::min)
 }
 
-/// Distance from a point, inside or outside, to the outline of a polygon with at least one corner (mm).
+/// Distance from a point, inside or outside, to the outline of a polygon with at least one corner
+/// (mm).
 pub fn distance_to_outline(point: [f64; 2], polygon: &[[f64; 2]]) -> f64 {
     distance(point, nearest_on_outline(point, polygon))
 }
@@ -73,14 +73,12 @@ pub fn mean(points: &[[f64; 2]]) -> [f64; 2] {
     [sum(0), sum(1)].map(|sum| sum / points.len() as f64)
 }
 
-/// The minimum and maximum coordinates of points: the lower left and the upper right corner of their bounding box.
+/// The minimum and maximum coordinates of points: the lower left and the upper right corner of
+/// their bounding box.
 pub fn bounds(points: impl IntoIterator<Item = [f64; 2]>) -> [[f64; 2]; 2] {
     let nothing = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
     points.into_iter().fold(nothing, |[low, high], [x, y]| {
-        [
-            [low[0].min(x), low[1].min(y)],
-            [high[0].max(x), high[1].max(y)],
-        ]
+        [[low[0].min(x), low[1].min(y)], [high[0].max(x), high[1].max(y)]]
     })
 }
 
@@ -105,16 +103,10 @@ pub fn distance_between_segments(s: [[f64; 2]; 2], t: [[f64; 2]; 2]) -> f64 {
 
 /// The point of the segment from `a` to `b` nearest to `point`.
 pub fn nearest_on_segment(point: [f64; 2], a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
-    let (d, e) = (
-        [b[0] - a[0], b[1] - a[1]],
-        [point[0] - a[0], point[1] - a[1]],
-    );
+    let (d, e) = ([b[0] - a[0], b[1] - a[1]], [point[0] - a[0], point[1] - a[1]]);
     let square = d[0] * d[0] + d[1] * d[1];
-    let along = if square > 0.0 {
-        ((d[0] * e[0] + d[1] * e[1]) / square).clamp(0.0, 1.0)
-    } else {
-        0.0
-    };
+    let along =
+        if square > 0.0 { ((d[0] * e[0] + d[1] * e[1]) / square).clamp(0.0, 1.0) } else { 0.0 };
     [a[0] + along * d[0], a[1] + along * d[1]]
 }
 
@@ -136,7 +128,8 @@ pub fn edges(polygon: &[[f64; 2]]) -> impl Iterator<Item = ([f64; 2], [f64; 2])>
 
 /// A common point of two edges of a closed polygon, other than the vertices between neighbours.
 ///
-/// Neighbouring edges are near each other: parts of the outline whose boxes do not overlap are not compared.
+/// Neighbouring edges are near each other: parts of the outline whose boxes do not overlap are not
+/// compared.
 pub fn self_crossing(points: &[[f64; 2]]) -> Option<[f64; 2]> {
     let edges: Vec<Edge> = edges(points).collect();
     let boxes = PartBoxes::of(&edges);
@@ -146,11 +139,12 @@ pub fn self_crossing(points: &[[f64; 2]]) -> Option<[f64; 2]> {
     boxes.first(&shared)
 }
 
-/// The bounding boxes of the parts of an outline: part 1 is all of it, and part k consists of the parts 2 k and 2 k + 1,
-/// down to the single edges.
+/// The bounding boxes of the parts of an outline: part 1 is all of it, and part k consists of the
+/// parts 2 k and 2 k + 1, down to the single edges.
 struct PartBoxes {
     boxes: Vec<[[f64; 2]; 2]>,
-    /// Number of the parts that are single edges, a power of two; those beyond the last edge are empty.
+    /// Number of the parts that are single edges, a power of two; those beyond the last edge are
+    /// empty.
     leaves: usize,
 }
 
@@ -171,12 +165,14 @@ impl PartBoxes {
         Self { boxes, leaves }
     }
 
-    /// What `found` gives for the first pair of edges whose boxes overlap, of those for which it gives anything.
+    /// What `found` gives for the first pair of edges whose boxes overlap, of those for which it
+    /// gives anything.
     fn first(&self, found: &impl Fn(usize, usize) -> Option<[f64; 2]>) -> Option<[f64; 2]> {
         (1..self.leaves).find_map(|part| self.first_pair(2 * part, 2 * part + 1, found))
     }
 
-    /// What `found` gives for the first pair of edges, one of each of two parts of equal size, whose boxes overlap.
+    /// What `found` gives for the first pair of edges, one of each of two parts of equal size,
+    /// whose boxes overlap.
     fn first_pair(
         &self,
         part: usize,
@@ -207,17 +203,14 @@ pub fn side((a, b): Edge, point: [f64; 2]) -> f64 {
     (b[0] - a[0]) * (point[1] - a[1]) - (b[1] - a[1]) * (point[0] - a[0])
 }
 
-/// A common point of two segments whose boxes overlap, unless one of them is on one side of the other.
+/// A common point of two segments whose boxes overlap, unless one of them is on one side of the
+/// other.
 fn shared_point((p, q): Edge, (r, s): Edge) -> Option<[f64; 2]> {
     let (side_p, side_q) = (side((r, s), p), side((r, s), q));
     if side_p * side_q > 0.0 || side((p, q), r) * side((p, q), s) > 0.0 {
         return None;
     }
-    let along = if side_p == side_q {
-        0.0
-    } else {
-        side_p / (side_p - side_q)
-    };
+    let along = if side_p == side_q { 0.0 } else { side_p / (side_p - side_q) };
     Some([0, 1].map(|c| p[c] + along * (q[c] - p[c])))
 }
 

@@ -1,13 +1,15 @@
-//! The rigid motion, with or without a change of scale, that maps one set of labelled points onto another.
+//! The rigid motion, with or without a change of scale, that maps one set of labelled points onto
+//! another.
 //!
-//! In complex numbers it is z -> turn z + shift: |turn| is the scale and arg(turn) the rotation. With p' and m'
-//! relative to their means, sum |m - turn p - shift|^2 is least at
+//! In complex numbers it is z -> turn z + shift: |turn| is the scale and arg(turn) the rotation.
+//! With p' and m' relative to their means, sum |m - turn p - shift|^2 is least at
 //!
 //! ```text
 //! turn = sum conj(p') m' / sum |p'|^2,     shift = mean(m) - turn mean(p),
 //! ```
 //!
-//! the plane case of Umeyama (IEEE Trans. PAMI 13, 1991, 376). At a fixed scale, turn is divided by its magnitude.
+//! the plane case of Umeyama (IEEE Trans. PAMI 13, 1991, 376). At a fixed scale, turn is divided by
+//! its magnitude.
 
 use faer::c64;
 
@@ -58,10 +60,7 @@ impl Similarity {
             Scale::Free => product / square,
         };
         let usable = turn.is_finite() && turn.norm() > 0.0;
-        usable.then(|| Self {
-            turn,
-            shift: to - turn * from,
-        })
+        usable.then(|| Self { turn, shift: to - turn * from })
     }
 
     /// Distance of the image from its prediction, as a length before the motion.
@@ -94,10 +93,8 @@ impl Similarity {
 mod tests {
     use super::*;
 
-    const MOTION: Similarity = Similarity {
-        turn: c64::new(0.6, 1.7),
-        shift: c64::new(-300.0, 40.0),
-    };
+    const MOTION: Similarity =
+        Similarity { turn: c64::new(0.6, 1.7), shift: c64::new(-300.0, 40.0) };
 
     fn pairs(motion: Similarity) -> Vec<Pair> {
         let numbers = (0..60).map(f64::from);

@@ -16,10 +16,8 @@ pub fn smooth_max(values: &[f64], temperature: f64) -> (f64, Vec<f64>) {
         gradient[index] = 1.0;
         return (max, gradient);
     }
-    let mut weights: Vec<f64> = values
-        .iter()
-        .map(|value| ((value - max) / temperature).exp())
-        .collect();
+    let mut weights: Vec<f64> =
+        values.iter().map(|value| ((value - max) / temperature).exp()).collect();
     let total: f64 = weights.iter().sum();
     weights.iter_mut().for_each(|weight| *weight /= total);
     let mean: f64 = std::iter::zip(values, &weights).map(|(x, p)| x * p).sum();

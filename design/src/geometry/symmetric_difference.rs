@@ -1,17 +1,19 @@
-//! The area of the symmetric difference of two closed polygons P and T, and its derivative for a displacement u of the
-//! edges of P,
+//! The area of the symmetric difference of two closed polygons P and T, and its derivative for a
+//! displacement u of the edges of P,
 //!
 //! ```text
 //! A = int |w_P - w_T| dx dy,     dA = int over P of (|w| left of the edge - |w| right of it) (u_x - u_y dx/dy) |dy|
 //! ```
 //!
-//! w_P, w_T: the winding numbers; w = w_P - w_T. For polygons that do not cross themselves A is the area inside one of them
-//! and outside the other. A point that P encloses twice, or clockwise, counts as often as it is enclosed too often. A is a
-//! distance of outlines: symmetric, with the triangle inequality, and zero if they enclose the same.
+//! w_P, w_T: the winding numbers; w = w_P - w_T. For polygons that do not cross themselves A is the
+//! area inside one of them and outside the other. A point that P encloses twice, or clockwise,
+//! counts as often as it is enclosed too often. A is a distance of outlines: symmetric, with the
+//! triangle inequality, and zero if they enclose the same.
 //!
-//! The plane is cut into slabs at the heights of all vertices and crossings. In a slab the edges do not cross, and w is
-//! constant between neighbours: area and derivative are sums over trapezoids. Edges that coincide enclose nothing, in any
-//! order. Heights are measured along an oblique axis: an edge without height would have no derivative.
+//! The plane is cut into slabs at the heights of all vertices and crossings. In a slab the edges do
+//! not cross, and w is constant between neighbours: area and derivative are sums over trapezoids.
+//! Edges that coincide enclose nothing, in any order. Heights are measured along an oblique axis:
+//! an edge without height would have no derivative.
 
 use crate::geometry::plane::{complex, point, turn};
 use crate::geometry::polygon::{area, counter_clockwise, edges, side};
@@ -19,19 +21,12 @@ use crate::geometry::polygon::{area, counter_clockwise, edges, side};
 /// Rotation of the polygons before they are cut into slabs (rad).
 const OBLIQUE: f64 = 0.7;
 
-/// Area of the intersection of two polygons, in either order of their vertices, over the area of their union; 0 if both are
-/// empty.
+/// Area of the intersection of two polygons, in either order of their vertices, over the area of
+/// their union; 0 if both are empty.
 pub fn intersection_over_union(one: &[[f64; 2]], other: &[[f64; 2]]) -> f64 {
     let [one, other] = [one, other].map(counter_clockwise);
-    let (both, apart) = (
-        area(&one) + area(&other),
-        symmetric_difference(&one, &other).0,
-    );
-    if both > 0.0 {
-        (both - apart) / (both + apart)
-    } else {
-        0.0
-    }
+    let (both, apart) = (area(&one) + area(&other), symmetric_difference(&one, &other).0);
+    if both > 0.0 { (both - apart) / (both + apart) } else { 0.0 }
 }
 
 /// A and its gradient in the vertices of P, the `outline`.
@@ -73,12 +68,7 @@ fn oblique_edges(polygon: &[[f64; 2]], inside: i32) -> Vec<Edge> {
             (to, from, inside, [next, i])
         };
         let ends = Some(ends);
-        (low[1] < high[1]).then_some(Edge {
-            low,
-            high,
-            step,
-            ends,
-        })
+        (low[1] < high[1]).then_some(Edge { low, high, step, ends })
     };
     edges(&turned).enumerate().filter_map(edge).collect()
 }
@@ -113,9 +103,7 @@ fn heights(all: &[Edge]) -> Vec<f64> {
     let ends = all.iter().flat_map(|edge| [edge.low[1], edge.high[1]]);
     let mut heights: Vec<f64> = ends.collect();
     for (i, edge) in all.iter().enumerate() {
-        let overlapping = all[i + 1..]
-            .iter()
-            .take_while(|other| other.low[1] < edge.high[1]);
+        let overlapping = all[i + 1..].iter().take_while(|other| other.low[1] < edge.high[1]);
         heights.extend(overlapping.filter_map(|other| edge.crossing(other)));
     }
     heights.sort_by(f64::total_cmp);
@@ -290,7 +278,8 @@ mod tests {
         remainders.assert_orders(1.9..f64::INFINITY);
     }
 
-    /// Edges that lie on edges of the target: the slope is one-sided, and the slope of either side is found.
+    /// Edges that lie on edges of the target: the slope is one-sided, and the slope of either side
+    /// is found.
     #[test]
     fn where_edges_coincide_the_slope_is_that_of_one_side() {
         let unit = square([0.0, 0.0], 1.0);

@@ -38,7 +38,8 @@ pub struct InvalidContact {
 }
 
 impl Contact {
-    /// A barrier with the given stiffness (N mm) between `phi_cut`, where it begins, and `phi_min` (rad).
+    /// A barrier with the given stiffness (N mm) between `phi_cut`, where it begins, and `phi_min`
+    /// (rad).
     pub fn new(stiffness: f64, phi_min: f64, phi_cut: f64) -> Result<Self, InvalidContact> {
         let valid = stiffness > 0.0
             && stiffness.is_finite()
@@ -46,17 +47,9 @@ impl Contact {
             && phi_min < phi_cut
             && phi_cut <= 0.0;
         if !valid {
-            return Err(InvalidContact {
-                stiffness,
-                phi_min,
-                phi_cut,
-            });
+            return Err(InvalidContact { stiffness, phi_min, phi_cut });
         }
-        Ok(Self {
-            stiffness,
-            phi_min,
-            phi_cut,
-        })
+        Ok(Self { stiffness, phi_min, phi_cut })
     }
 
     /// Adds the barrier of both void angles to the energies of the hinges.
@@ -112,13 +105,7 @@ mod tests {
             let allowed = |slope: f64| 1e-6 * (1.0 + slope.abs());
             let (force, stiffness) = ([found.forces[2]], [found.tangent[2][2]]);
             assert_gradient(|x| energy(x[0]).w, &[theta], &force, 1e-6, allowed);
-            assert_gradient(
-                |x| energy(x[0]).forces[2],
-                &[theta],
-                &stiffness,
-                1e-6,
-                allowed,
-            );
+            assert_gradient(|x| energy(x[0]).forces[2], &[theta], &stiffness, 1e-6, allowed);
         }
     }
 

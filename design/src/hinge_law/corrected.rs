@@ -4,16 +4,17 @@
 //! W_c(x) = W(x) + sum_j b_j . (u_j(x) E_j(x) - u_j(0) E_j(0)),      u_j(x) = (x - x_j) / l,      E_j = exp(-|u_j|^2 / 2)
 //! ```
 //!
-//! x = (eta_a, eta_s, theta), x_j are the flat hinge and the states at which the forces were measured, and l are lengths
-//! over which the error of a law changes. The vectors b_j are such that the correction has the measured forces, conjugate
-//! to x, minus the forces of the law: of all energies that have them, this is the smoothest one (the mean of a Gaussian process
-//! with this kernel, whose slopes are observed). Energy and forces of the flat hinge remain zero, and far from all
-//! states, in units of l, the forces of the law remain as they are. The last measurement that is not nearly flat is met
-//! exactly, earlier ones within a noise: finite elements depend on the path, and differences of nearly equal states are
-//! no tangent.
-//! As a function of (a, s, theta) the correction is fixed by the design at which the forces were measured, also for a
-//! design close to it: derivatives in the design are the derivatives of the law alone.
-//! (Solak, Murray-Smith, Leithead, Leith, Rasmussen, "Derivative observations in Gaussian process models of dynamic
+//! x = (eta_a, eta_s, theta), x_j are the flat hinge and the states at which the forces were
+//! measured, and l are lengths over which the error of a law changes. The vectors b_j are such that
+//! the correction has the measured forces, conjugate to x, minus the forces of the law: of all
+//! energies that have them, this is the smoothest one (the mean of a Gaussian process with this
+//! kernel, whose slopes are observed). Energy and forces of the flat hinge remain zero, and far
+//! from all states, in units of l, the forces of the law remain as they are. The last measurement
+//! that is not nearly flat is met exactly, earlier ones within a noise: finite elements depend on
+//! the path, and differences of nearly equal states are no tangent. As a function of (a, s, theta)
+//! the correction is fixed by the design at which the forces were measured, also for a design close
+//! to it: derivatives in the design are the derivatives of the law alone. (Solak, Murray-Smith,
+//! Leithead, Leith, Rasmussen, "Derivative observations in Gaussian process models of dynamic
 //! systems", 2003.)
 
 use crate::hinge_law::law::{
@@ -34,15 +35,16 @@ pub struct CorrectedLaw {
     pub corrections: Vec<Correction>,
 }
 
-/// Lengths l of (eta_a, eta_s, theta (rad)): about a third of the extent of a training domain. The forces of a second round
-/// of finite elements are predicted best with 0.06 to 0.15 and 0.2 to 0.5.
+/// Lengths l of (eta_a, eta_s, theta (rad)): about a third of the extent of a training domain. The
+/// forces of a second round of finite elements are predicted best with 0.06 to 0.15 and 0.2 to 0.5.
 pub const LENGTHS: [f64; 3] = [0.1, 0.1, 0.3];
 
-/// Variance of the noise of all measurements but the last one, relative to the variance of the correction's slopes.
+/// Variance of the noise of all measurements but the last one, relative to the variance of the
+/// correction's slopes.
 const NOISE: f64 = 1e-3;
 
-/// States closer than this to the flat hinge, in units of the lengths, are not corrected: the noise of
-/// their small forces would give a large slope.
+/// States closer than this to the flat hinge, in units of the lengths, are not corrected: the noise
+/// of their small forces would give a large slope.
 const NEARLY_FLAT: f64 = 1e-2;
 
 /// What the forces of a law lack at one state of a hinge.
@@ -75,9 +77,8 @@ impl Correction {
         };
         let missing: Vec<&MissingForces> = missing.iter().filter(bent).collect();
         let flat = [0.0; 3];
-        let states: Vec<[f64; 3]> = (missing.iter().map(|measured| scaled(measured)))
-            .chain([flat])
-            .collect();
+        let states: Vec<[f64; 3]> =
+            (missing.iter().map(|measured| scaled(measured))).chain([flat]).collect();
         let slopes: Vec<f64> = (missing.iter())
             .flat_map(|measured| from_fn::<_, 3, _>(|k| measured.forces[k] * lengths[k]))
             .chain(flat)
@@ -94,11 +95,7 @@ impl Correction {
         let vector = |j: usize| from_fn(|k| solved[3 * j + k]);
         Self {
             lengths,
-            centres: states
-                .iter()
-                .enumerate()
-                .map(|(j, &state)| (state, vector(j)))
-                .collect(),
+            centres: states.iter().enumerate().map(|(j, &state)| (state, vector(j))).collect(),
         }
     }
 
@@ -142,11 +139,7 @@ impl HingeLaw for CorrectedLaw {
     /// # Panics
     /// If the numbers of hinges and of corrections differ.
     fn prepare<'a>(&'a self, designs: &[HingeDesign]) -> Box<dyn PreparedLaw + 'a> {
-        assert_eq!(
-            designs.len(),
-            self.corrections.len(),
-            "one correction per hinge"
-        );
+        assert_eq!(designs.len(), self.corrections.len(), "one correction per hinge");
         Box::new(PreparedCorrected {
             law: self.law.prepare(designs),
             corrections: &self.corrections,
@@ -213,10 +206,7 @@ mod tests {
     }
 
     fn missing() -> MissingForces {
-        MissingForces {
-            state: state(),
-            forces: MISSING,
-        }
+        MissingForces { state: state(), forces: MISSING }
     }
 
     /// The energy of the correction by some measurements.
@@ -266,8 +256,9 @@ mod tests {
         }
     }
 
-    /// A hinge under a dead moment of 11 N mm, by a law whose moment is nearly constant beyond yield; its measured yield moment
-    /// is 5 % larger. The rotations are 0.5 rad by the law and 0.25 rad by the measurements.
+    /// A hinge under a dead moment of 11 N mm, by a law whose moment is nearly constant beyond
+    /// yield; its measured yield moment is 5 % larger. The rotations are 0.5 rad by the law and
+    /// 0.25 rad by the measurements.
     #[test]
     fn a_law_that_is_nearly_flat_beyond_yield_is_balanced_in_a_few_rounds() {
         let moment = |yields: f64, theta: f64| yields * (theta / 0.02).tanh() + 2.0 * theta;
@@ -276,10 +267,7 @@ mod tests {
         let mut theta = 0.5;
         for _ in 0..4 {
             let lacks = moment(10.5, theta) - moment(10.0, theta);
-            missing.push(MissingForces {
-                state: at(theta),
-                forces: [0.0, 0.0, lacks],
-            });
+            missing.push(MissingForces { state: at(theta), forces: [0.0, 0.0, lacks] });
             let [mut below, mut above] = [0.0, 1.0];
             for _ in 0..50 {
                 theta = 0.5 * (below + above);
@@ -291,7 +279,8 @@ mod tests {
         assert!((theta - 0.25).abs() < 1e-3, "{theta}");
     }
 
-    /// The truncation error is h^2 / 6 of the third and fourth derivatives, which are about M / l^3 and M / l^4.
+    /// The truncation error is h^2 / 6 of the third and fourth derivatives, which are about M / l^3
+    /// and M / l^4.
     #[test]
     fn forces_and_tangent_are_the_derivatives_of_the_energy() {
         let at = [0.3, -0.4, 0.3];
@@ -320,13 +309,7 @@ mod tests {
         let found = of(&design());
         let at = |x: &[f64]| of(&HingeConstants::PAPER.hinge(x[0], x[1]));
         let (x, allowed) = ([10.0, 1.3], |slope: f64| 1e-5 * slope.abs());
-        assert_gradient(
-            |x| at(x).w,
-            &x,
-            &found.design.to_array()[..2],
-            1e-4,
-            allowed,
-        );
+        assert_gradient(|x| at(x).w, &x, &found.design.to_array()[..2], 1e-4, allowed);
         for j in 0..3 {
             let mixed = found.mixed[j].to_array();
             assert_gradient(|x| at(x).forces[j], &x, &mixed[..2], 1e-4, allowed);
@@ -335,14 +318,8 @@ mod tests {
 
     #[test]
     fn forces_of_the_law_itself_and_of_a_flat_hinge_correct_nothing() {
-        let own = MissingForces {
-            state: state(),
-            forces: [0.0; 3],
-        };
-        let flat = MissingForces {
-            state: HingeDeformation::default(),
-            forces: MISSING,
-        };
+        let own = MissingForces { state: state(), forces: [0.0; 3] };
+        let flat = MissingForces { state: HingeDeformation::default(), forces: MISSING };
         for missing in [own, flat] {
             let found = correction(&[missing], &state());
             assert_eq!((found.w, found.forces), (0.0, [0.0; 3]));

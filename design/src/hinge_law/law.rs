@@ -1,4 +1,5 @@
-//! The traits of a hinge law, which is prepared for the hinges of one sheet and then evaluated for all of them.
+//! The traits of a hinge law, which is prepared for the hinges of one sheet and then evaluated for
+//! all of them.
 
 pub use ::surrogate::{HingeDamage, HingeEnergy, Order};
 pub use hinge::{DesignGradient, HingeGradient};
@@ -44,13 +45,14 @@ pub trait HingeLaw: Send + Sync {
         None
     }
 
-    /// The law at `thickness` times the thickness and `stress` times the stress at every strain; `None` if
-    /// the law does not determine it, see [`scales`](Self::scales).
+    /// The law at `thickness` times the thickness and `stress` times the stress at every strain;
+    /// `None` if the law does not determine it, see [`scales`](Self::scales).
     fn scaled(&self, _thickness: f64, _stress: f64) -> Option<Arc<dyn HingeLaw>> {
         None
     }
 
-    /// Whether the law determines the law of a sheet of another thickness, and the law of a stronger material.
+    /// Whether the law determines the law of a sheet of another thickness, and the law of a
+    /// stronger material.
     fn scales(&self) -> [bool; 2] {
         [false; 2]
     }
@@ -62,8 +64,8 @@ pub trait PreparedLaw {
     /// infinite; it is never NaN for finite deformations.
     fn energies(&self, deformations: &[HingeDeformation], order: Order) -> Vec<HingeEnergy>;
 
-    /// The predicted damage (12); empty for a law that predicts none. Its gradients are zero unless they are
-    /// requested.
+    /// The predicted damage (12); empty for a law that predicts none. Its gradients are zero unless
+    /// they are requested.
     fn damage(&self, _deformations: &[HingeDeformation], _with_gradient: bool) -> Vec<HingeDamage> {
         Vec::new()
     }

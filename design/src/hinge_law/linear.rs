@@ -14,9 +14,7 @@ pub struct LinearLaw {
 impl LinearLaw {
     /// The same constants at all `hinges` hinges.
     pub fn uniform(stiffness: [f64; 3], hinges: usize) -> Self {
-        Self {
-            stiffness: vec![stiffness; hinges],
-        }
+        Self { stiffness: vec![stiffness; hinges] }
     }
 }
 
@@ -32,9 +30,7 @@ impl HingeLaw for LinearLaw {
     fn scaled(&self, thickness: f64, stress: f64) -> Option<Arc<dyn HingeLaw>> {
         let scaled = |constants: &[f64; 3]| constants.map(|constant| stress * constant);
         (thickness == 1.0).then(|| -> Arc<dyn HingeLaw> {
-            Arc::new(Self {
-                stiffness: self.stiffness.iter().map(scaled).collect(),
-            })
+            Arc::new(Self { stiffness: self.stiffness.iter().map(scaled).collect() })
         })
     }
 

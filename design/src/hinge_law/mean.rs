@@ -1,4 +1,5 @@
-//! The mean of several laws of the same hinges: of the networks of an ensemble, whose errors partly cancel.
+//! The mean of several laws of the same hinges: of the networks of an ensemble, whose errors partly
+//! cancel.
 
 use crate::hinge_law::law::{
     DamageMeasure, HingeDamage, HingeEnergy, HingeLaw, Order, PreparedLaw,
@@ -21,9 +22,7 @@ struct PreparedMean<'a> {
 impl HingeLaw for MeanLaw {
     fn prepare<'a>(&'a self, designs: &[HingeDesign]) -> Box<dyn PreparedLaw + 'a> {
         let laws = self.laws.iter().map(|law| law.prepare(designs));
-        Box::new(PreparedMean {
-            laws: laws.collect(),
-        })
+        Box::new(PreparedMean { laws: laws.collect() })
     }
 
     fn damage_scale(&self, measure: DamageMeasure) -> Option<f64> {
@@ -36,9 +35,7 @@ impl HingeLaw for MeanLaw {
 
     fn scaled(&self, thickness: f64, stress: f64) -> Option<Arc<dyn HingeLaw>> {
         let laws = self.laws.iter().map(|law| law.scaled(thickness, stress));
-        Some(Arc::new(Self {
-            laws: laws.collect::<Option<_>>()?,
-        }))
+        Some(Arc::new(Self { laws: laws.collect::<Option<_>>()? }))
     }
 
     fn scales(&self) -> [bool; 2] {
@@ -85,7 +82,8 @@ impl PreparedLaw for PreparedMean<'_> {
 }
 
 impl PreparedMean<'_> {
-    /// The mean over the laws of their values at every hinge; `add` adds a multiple of the value of one law to a sum.
+    /// The mean over the laws of their values at every hinge; `add` adds a multiple of the value of
+    /// one law to a sum.
     fn mean<T: Clone>(
         &self,
         of: impl Fn(&dyn PreparedLaw) -> Vec<T>,

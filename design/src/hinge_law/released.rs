@@ -1,11 +1,13 @@
-//! Hinges that were deformed and unloaded, each elastic about its residual deformation ([`ReleasedHinge`]).
+//! Hinges that were deformed and unloaded, each elastic about its residual deformation
+//! ([`ReleasedHinge`]).
 
 use crate::hinge_law::law::{HingeEnergy, Order, PreparedLaw};
 use hinge::{HingeDeformation, HingeDesign, ReleasedHinge};
 use std::sync::Arc;
 use surrogate::{ByReleased, ReleasedGradient, Springback};
 
-/// The law of the released hinges of one sheet, in its order. It knows no damage, and does not depend on the designs.
+/// The law of the released hinges of one sheet, in its order. It knows no damage, and does not
+/// depend on the designs.
 #[derive(Clone, Copy, Debug)]
 pub struct ReleasedLaw<'a>(pub &'a [ReleasedHinge]);
 
@@ -21,9 +23,11 @@ impl PreparedLaw for ReleasedLaw<'_> {
     }
 }
 
-/// What becomes of the hinges of a sheet that is unloaded: the learned law, for another thickness or a stronger material.
+/// What becomes of the hinges of a sheet that is unloaded: the learned law, for another thickness
+/// or a stronger material.
 ///
-/// With all lengths in proportion to the thickness, F_a and F_s grow with its square and M_theta with its cube.
+/// With all lengths in proportion to the thickness, F_a and F_s grow with its square and M_theta
+/// with its cube.
 #[derive(Clone, Debug)]
 pub struct Release {
     law: Arc<Springback>,
@@ -37,11 +41,7 @@ impl Release {
     /// The law in a sheet of `scale` times the thickness of its windows.
     pub fn new(law: Springback, scale: f64) -> Self {
         let law = Arc::new(law);
-        Self {
-            law,
-            scale,
-            stress: 1.0,
-        }
+        Self { law, scale, stress: 1.0 }
     }
 
     /// The same at `thickness` times the thickness and `stress` times the stress at every strain.
@@ -53,7 +53,8 @@ impl Release {
         }
     }
 
-    /// The hinges of a sheet that were unloaded from these states, with the forces of its prepared law.
+    /// The hinges of a sheet that were unloaded from these states, with the forces of its prepared
+    /// law.
     pub fn hinges(
         &self,
         law: &dyn PreparedLaw,
@@ -81,7 +82,8 @@ impl Release {
         hinge
     }
 
-    /// The gradient in what [`hinge`](Self::hinge) follows from, of a function with the gradient `by` in the hinge.
+    /// The gradient in what [`hinge`](Self::hinge) follows from, of a function with the gradient
+    /// `by` in the hinge.
     pub(crate) fn pullback(
         &self,
         design: &HingeDesign,

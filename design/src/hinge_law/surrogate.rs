@@ -5,12 +5,13 @@
 //! y(x) = c + (x - c) psi(gamma) / gamma,              psi = 1 + delta z / (1 + z^3)^(1/3),  z = e / delta
 //! ```
 //!
-//! gamma is the gauge of the domain and c its centre. Inside, y = x. Outside, y stays within delta of the
-//! domain, so that the network is not evaluated far from its data. The second term is cubic near the domain and
-//! quadratic far from it, and returns the state to the domain: W_law is twice differentiable and coercive for any
-//! weights. It grows with the energy at the edge, which is several hundred W_s where a wide ligament is pulled: a term
-//! of W_s alone is less than what W(y) loses as y stops, and the sheet snaps outwards there. The cut angle is mapped
-//! to its interval by the same psi.
+//! gamma is the gauge of the domain and c its centre. Inside, y = x. Outside, y stays within delta
+//! of the domain, so that the network is not evaluated far from its data. The second term is cubic
+//! near the domain and quadratic far from it, and returns the state to the domain: W_law is twice
+//! differentiable and coercive for any weights. It grows with the energy at the edge, which is
+//! several hundred W_s where a wide ligament is pulled: a term of W_s alone is less than what W(y)
+//! loses as y stops, and the sheet snaps outwards there. The cut angle is mapped to its interval by
+//! the same psi.
 
 use crate::hinge_law::law::{
     DamageMeasure, DesignGradient, HingeDamage, HingeEnergy, HingeGradient, HingeLaw, Order,
@@ -22,16 +23,18 @@ use std::ops::Deref;
 use std::sync::Arc;
 use surrogate::{Prepared, Surrogate};
 
-/// delta: maximum distance outside the domain at which the network is evaluated, relative to the half-range.
+/// delta: maximum distance outside the domain at which the network is evaluated, relative to the
+/// half-range.
 const BEYOND: f64 = 0.1;
-/// k: the force along a line outwards does not fall if dW/dgamma at the edge is at most 6 (W_s + W), since the second
-/// derivative of e^3 / (e + delta) is at least 0.16 times the second derivative of -psi.
+/// k: the force along a line outwards does not fall if dW/dgamma at the edge is at most 6 (W_s +
+/// W), since the second derivative of e^3 / (e + delta) is at least 0.16 times the second
+/// derivative of -psi.
 const RETURN_STIFFNESS: f64 = 40.0;
 /// Half-range of the cut angle (rad) for weights that were trained on a single one.
 const NARROWEST_ANGLE: f64 = 0.01;
 
-/// The standardised features (13) and the activations of the layers are of order one: a deformation is resolved
-/// to a few of their last digits.
+/// The standardised features (13) and the activations of the layers are of order one: a deformation
+/// is resolved to a few of their last digits.
 const RESOLUTION: f64 = 16.0 * f64::EPSILON;
 
 /// The learned hinge law.
@@ -59,9 +62,7 @@ impl HingeLaw for SurrogateLaw {
 
     fn scaled(&self, thickness: f64, stress: f64) -> Option<Arc<dyn HingeLaw>> {
         let surrogate = self.surrogate.clone().scaled(thickness);
-        Some(Arc::new(Self {
-            surrogate: surrogate.stressed(stress, None),
-        }))
+        Some(Arc::new(Self { surrogate: surrogate.stressed(stress, None) }))
     }
 
     fn scales(&self) -> [bool; 2] {
@@ -97,7 +98,8 @@ impl<S: Deref<Target = Surrogate>> PreparedSurrogate<S> {
         }
     }
 
-    /// The states at which the network is evaluated, and for hinges outside the domain their map from the actual state.
+    /// The states at which the network is evaluated, and for hinges outside the domain their map
+    /// from the actual state.
     fn mapped(
         &self,
         deformations: &[HingeDeformation],
@@ -177,10 +179,7 @@ impl Continuation {
             let centre = Jet::constant(domain.centre()[i]);
             centre + (at[i] - centre) * drawn
         });
-        Self {
-            gauge,
-            mapped: domain.state_jet(design, mapped),
-        }
+        Self { gauge, mapped: domain.state_jet(design, mapped) }
     }
 
     fn mapped(&self) -> HingeDeformation {
@@ -196,7 +195,8 @@ impl Continuation {
         let curvature = |j: usize, k: usize| {
             sum(|i| y[i].gradient[j] * stiffness(i, k) + at.forces[i] * y[i].hessian[j][k])
         };
-        // W(y) as a function of (a, s, theta, w_lig, rho_f), without the network's own dependence on the last two.
+        // W(y) as a function of (a, s, theta, w_lig, rho_f), without the network's own dependence
+        // on the last two.
         let drawn = Jet {
             value: at.w,
             gradient: from_fn(|j| sum(|i| at.forces[i] * y[i].gradient[j])),
@@ -208,10 +208,7 @@ impl Continuation {
         let mixed = |j: usize, g: usize| {
             grown * sum(|i| y[i].gradient[j] * mixed[i][g]) + returning.gradient[j] * by_design[g]
         };
-        let mut energy = HingeEnergy {
-            w: law.value,
-            ..HingeEnergy::default()
-        };
+        let mut energy = HingeEnergy { w: law.value, ..HingeEnergy::default() };
         if order >= Order::Forces {
             energy.forces = from_fn(|j| law.gradient[j]);
         }
@@ -246,11 +243,7 @@ fn sum(of: impl Fn(usize) -> f64) -> f64 {
 fn saturated(gauge: f64) -> [f64; 3] {
     let z = (gauge - 1.0) / BEYOND;
     let root = (1.0 + z * z * z).cbrt();
-    [
-        1.0 + BEYOND * z / root,
-        root.powi(-4),
-        -4.0 * z * z * root.powi(-7) / BEYOND,
-    ]
+    [1.0 + BEYOND * z / root, root.powi(-4), -4.0 * z * z * root.powi(-7) / BEYOND]
 }
 
 /// e^3 / (e + delta) and its first two derivatives at `gauge` > 1.
@@ -361,10 +354,7 @@ mod tests {
         let outside = HingeDeformation::from([9.0, -11.0, 1.4]);
         let at = |order| prepared.energies(&[outside], order)[0];
         let all = at(Order::Design);
-        let mut expected = HingeEnergy {
-            w: all.w,
-            ..HingeEnergy::default()
-        };
+        let mut expected = HingeEnergy { w: all.w, ..HingeEnergy::default() };
         assert_eq!(at(Order::Value), expected);
         expected.forces = all.forces;
         assert_eq!(at(Order::Forces), expected);
@@ -372,8 +362,8 @@ mod tests {
         assert_eq!(at(Order::Tangent), expected);
     }
 
-    /// Along lines from the centre outwards the force that returns a hinge does not fall: no ridge, no second minimum,
-    /// no snap. In the states of the edge of the shipped weights `small`.
+    /// Along lines from the centre outwards the force that returns a hinge does not fall: no ridge,
+    /// no second minimum, no snap. In the states of the edge of the shipped weights `small`.
     #[test]
     fn beyond_the_edge_the_force_does_not_fall() {
         let law = law("../data/pet-0.5mm/small");

@@ -1,4 +1,5 @@
-//! The centroid of the area inside the deployed outline P, which is placed at the origin, and likewise the centroid of the target,
+//! The centroid of the area inside the deployed outline P, which is placed at the origin, and
+//! likewise the centroid of the target,
 //!
 //! ```text
 //! c = 1/(6 A) sum (p_i + p_i+1) (p_i x p_i+1),     A = 1/2 sum p_i x p_i+1
@@ -19,9 +20,7 @@ pub fn of(outline: &[[f64; 2]]) -> [f64; 2] {
 pub(crate) fn pullback(outline: &[[f64; 2]], moved: &[[f64; 2]]) -> Vec<[f64; 2]> {
     let force: c64 = moved.iter().map(|slope| complex(*slope)).sum();
     let relative = std::iter::zip(moved, by_centroid(outline, force));
-    relative
-        .map(|(moved, by_centre)| point(complex(*moved) - by_centre))
-        .collect()
+    relative.map(|(moved, by_centre)| point(complex(*moved) - by_centre)).collect()
 }
 
 /// 2 A and the sum of (p_i + p_i+1) (p_i x p_i+1), relative to a point.
@@ -59,14 +58,8 @@ mod tests {
     use super::*;
     use testkit::derivatives::assert_gradient;
 
-    const L: [[f64; 2]; 6] = [
-        [5.0, 7.0],
-        [8.0, 7.0],
-        [8.0, 8.0],
-        [6.0, 8.0],
-        [6.0, 10.0],
-        [5.0, 10.0],
-    ];
+    const L: [[f64; 2]; 6] =
+        [[5.0, 7.0], [8.0, 7.0], [8.0, 8.0], [6.0, 8.0], [6.0, 10.0], [5.0, 10.0]];
 
     #[test]
     fn the_centroid_of_an_angle_is_that_of_its_two_legs() {
@@ -84,15 +77,11 @@ mod tests {
             let [x, y] = of(points);
             let relative = points.iter().map(|p| [p[0] - x, p[1] - y]);
             let terms = relative.zip(1..);
-            terms
-                .map(|([x, y], k)| f64::from(k) * (x + 2.0 * y * y))
-                .sum()
+            terms.map(|([x, y], k)| f64::from(k) * (x + 2.0 * y * y)).sum()
         };
         let [_, y] = of(&L);
-        let slopes = L
-            .iter()
-            .zip(1..)
-            .map(|(p, k)| [1.0, 4.0 * (p[1] - y)].map(|s| f64::from(k) * s));
+        let slopes =
+            L.iter().zip(1..).map(|(p, k)| [1.0, 4.0 * (p[1] - y)].map(|s| f64::from(k) * s));
         let gradient = pullback(&L, &slopes.collect::<Vec<_>>());
         let found = gradient.as_flattened();
         assert_gradient(value, L.as_flattened(), found, 1e-5, |_| 1e-8);

@@ -1,4 +1,5 @@
-//! The objective and its gradient in the design by the forward chain in reverse: lines 6-7 of Algorithm 1.
+//! The objective and its gradient in the design by the forward chain in reverse: lines 6-7 of
+//! Algorithm 1.
 
 use crate::equilibrium::adjoint::{PathGradient, adjoint};
 use crate::equilibrium::load_step::LoadStep;
@@ -41,7 +42,8 @@ pub(super) struct Gradient {
     pub design: DesignVector,
     /// In the constants of the problem.
     pub sensitivities: Sensitivities,
-    /// [`AdjointSums::virtual_motion`](crate::equilibrium::adjoint::AdjointSums::virtual_motion); empty without equilibrium.
+    /// [`AdjointSums::virtual_motion`](crate::equilibrium::adjoint::AdjointSums::virtual_motion);
+    /// empty without equilibrium.
     pub virtual_motion: Vec<[f64; 3]>,
     /// [`Evaluation::adjoint_residual`].
     pub adjoint_residual: f64,
@@ -53,8 +55,9 @@ impl DesignProblem {
         self.evaluate_near(design, None)
     }
 
-    /// L(theta) and its gradient, with the path corrected from the `known` path of another design if that is near
-    /// enough; otherwise it is followed from the flat sheet, as in [`evaluate`](Self::evaluate).
+    /// L(theta) and its gradient, with the path corrected from the `known` path of another design
+    /// if that is near enough; otherwise it is followed from the flat sheet, as in
+    /// [`evaluate`](Self::evaluate).
     pub fn evaluate_near(
         &self,
         design: &DesignVector,
@@ -95,12 +98,7 @@ impl DesignProblem {
         partials: Partials,
     ) -> Result<Gradient, DesignError> {
         let sheet = &deployment.sheet;
-        let Partials {
-            outline,
-            by_outline,
-            mut by_sheet,
-            ..
-        } = partials;
+        let Partials { outline, by_outline, mut by_sheet, .. } = partials;
         let outline = std::iter::zip(outline, by_outline);
         let by_compared = outline_pullback(sheet, deployment.compared(), outline, &mut by_sheet);
         let (mut by_opening, mut adjoint_residual) = (None, 0.0);
@@ -160,17 +158,12 @@ impl DesignProblem {
             opening: by_opening,
             fit: (design.fit).map(|fit| fit.pullback(&self.outline, partials.by_fit, &by_outline)),
         };
-        Ok(Gradient {
-            design,
-            sensitivities,
-            virtual_motion,
-            adjoint_residual,
-        })
+        Ok(Gradient { design, sensitivities, virtual_motion, adjoint_residual })
     }
 }
 
-/// The gradient, in the configuration that is compared with the target, of a function of the outline points there; its gradient
-/// with respect to the flat sheet is added to `by_sheet`.
+/// The gradient, in the configuration that is compared with the target, of a function of the
+/// outline points there; its gradient with respect to the flat sheet is added to `by_sheet`.
 fn outline_pullback<'a>(
     sheet: &Sheet,
     compared: &LoadStep,
@@ -180,12 +173,8 @@ fn outline_pullback<'a>(
     let mut by_compared = vec![[0.0; 3]; sheet.panels.len()];
     for (&(panel, corner), &gradient) in outline {
         let flat = sheet.panels[panel].corners[corner];
-        let (by_motion, by_flat, by_reference) = deployed_pullback(
-            &sheet.panels[panel],
-            compared.configuration[panel],
-            flat,
-            gradient,
-        );
+        let (by_motion, by_flat, by_reference) =
+            deployed_pullback(&sheet.panels[panel], compared.configuration[panel], flat, gradient);
         (0..3).for_each(|c| by_compared[panel][c] += by_motion[c]);
         add(&mut by_sheet.corners[panel][corner], by_flat);
         add(&mut by_sheet.references[panel], by_reference);

@@ -1,5 +1,5 @@
-//! The forward chain theta -> pattern -> sheet -> equilibria -> objective, and its gradient by the same chain
-//! in reverse: lines 2-7 of Algorithm 1.
+//! The forward chain theta -> pattern -> sheet -> equilibria -> objective, and its gradient by the
+//! same chain in reverse: lines 2-7 of Algorithm 1.
 
 use crate::equilibrium::adjoint::SingularTangent;
 use crate::equilibrium::hinged_sheet::HingedSheet;
@@ -54,11 +54,7 @@ pub enum DesignError {
         residual_in_words(*residual),
         end.map(|end| format!(": {end}")).unwrap_or_default()
     )]
-    NoEquilibrium {
-        reached: f64,
-        residual: f64,
-        end: Option<DescentEnd>,
-    },
+    NoEquilibrium { reached: f64, residual: f64, end: Option<DescentEnd> },
     #[error(
         "no equilibrium was found when the loads are taken off, and objective.target_state = \"released\" is for that: open the sheet less"
     )]
@@ -75,7 +71,8 @@ pub struct Mechanics {
     pub contact: Option<Contact>,
     /// Supports, loads and load steps, with the settings of the equilibrium solver.
     pub solver: EquilibriumSolver,
-    /// What becomes of the hinges when the loads are taken off, if the target is the shape that stays; `None` if it is that under load.
+    /// What becomes of the hinges when the loads are taken off, if the target is the shape that
+    /// stays; `None` if it is that under load.
     pub release: Option<Release>,
 }
 
@@ -130,9 +127,11 @@ pub struct Deployment {
     pub sheet: Sheet,
     /// One entry per load step; a single entry for the ideal deployment.
     pub path: Vec<LoadStep>,
-    /// Whether the path was followed from the flat sheet; `false` if it was corrected from the path of a design near it.
+    /// Whether the path was followed from the flat sheet; `false` if it was corrected from the path
+    /// of a design near it.
     pub followed: bool,
-    /// The sheet after its loads were taken off at the end of the path, if the target is the shape that stays.
+    /// The sheet after its loads were taken off at the end of the path, if the target is the shape
+    /// that stays.
     pub released: Option<ReleasedSheet>,
     /// How the sheet is fitted to its target.
     pub fit: Option<FitVariables>,
@@ -145,7 +144,8 @@ pub struct Sensitivities {
     pub outline: [[f64; 2]; 4],
     /// With respect to (F_x, F_y, M) of each panel at full load; empty without equilibrium.
     pub loads: Vec<[f64; 3]>,
-    /// With respect to (k_a, k_s, k_theta) of each hinge; empty without equilibrium, zero unless the law is (11).
+    /// With respect to (k_a, k_s, k_theta) of each hinge; empty without equilibrium, zero unless
+    /// the law is (11).
     pub constants: Vec<[f64; 3]>,
 }
 
@@ -169,19 +169,12 @@ pub struct Evaluation {
 impl Deployment {
     /// The path, from which the paths of designs near this one can be corrected.
     pub fn warm_start(&self) -> WarmStart {
-        WarmStart {
-            designs: self.sheet.designs(),
-            steps: self.path.clone(),
-        }
+        WarmStart { designs: self.sheet.designs(), steps: self.path.clone() }
     }
 
     /// The load steps of the weight alone; none without weight.
     pub fn weight_steps(&self) -> &[LoadStep] {
-        let partial = self
-            .path
-            .iter()
-            .take_while(|step| step.weight < 1.0)
-            .count();
+        let partial = self.path.iter().take_while(|step| step.weight < 1.0).count();
         match partial {
             0 => &[],
             partial => &self.path[..(partial + 1).min(self.path.len())],
@@ -207,9 +200,7 @@ impl Deployment {
     pub fn at_target_state(&self) -> Result<&LoadStep, DesignError> {
         self.at_full_load()?;
         let compared = self.compared();
-        (compared.status != Status::Diverged)
-            .then_some(compared)
-            .ok_or(DesignError::NotUnloaded)
+        (compared.status != Status::Diverged).then_some(compared).ok_or(DesignError::NotUnloaded)
     }
 
     /// The state after the loads were taken off, if the target is for that.
@@ -232,8 +223,8 @@ impl Deployment {
         corners.iter().map(deployed).collect()
     }
 
-    /// Maximum damage of a hinge along the path; `None` if the hinge law does not predict damage, or if a state of
-    /// the path is outside its training domain.
+    /// Maximum damage of a hinge along the path; `None` if the hinge law does not predict damage,
+    /// or if a state of the path is outside its training domain.
     pub fn damage_max(&self, measure: DamageMeasure, hinge: usize) -> Option<f64> {
         self.path.iter().try_fold(0.0, |maximum: f64, step| {
             let known = measure.known(step.damage.get(hinge)?);
@@ -241,7 +232,8 @@ impl Deployment {
         })
     }
 
-    /// Fraction of the hinge states of the path that lie inside the training domain of the hinge law.
+    /// Fraction of the hinge states of the path that lie inside the training domain of the hinge
+    /// law.
     pub fn share_inside(&self) -> f64 {
         let inside = || self.path.iter().flat_map(|step| &step.inside);
         inside().filter(|inside| **inside).count() as f64 / inside().count() as f64
@@ -263,7 +255,8 @@ impl DesignProblem {
         }
     }
 
-    /// Ends the paths that are followed at the increment during which `stop` becomes true: they have no equilibrium at full load.
+    /// Ends the paths that are followed at the increment during which `stop` becomes true: they
+    /// have no equilibrium at full load.
     pub fn stop_by(&mut self, stop: Arc<AtomicBool>) {
         if let Model::Equilibrium(mechanics) = &mut self.model {
             mechanics.solver.stop_by(stop);
@@ -273,9 +266,8 @@ impl DesignProblem {
     /// Lines 2-4 of Algorithm 1: cut pattern and flat sheet.
     pub fn cut(&self, design: &DesignVector) -> Result<(CutPattern, Sheet), DesignError> {
         let pattern = CutPattern::new(self.grid, self.outline_of(design), &design.pattern)?;
-        let w_lig: Vec<f64> = (design.omega.iter())
-            .map(|&omega| self.widths.width(omega))
-            .collect();
+        let w_lig: Vec<f64> =
+            (design.omega.iter()).map(|&omega| self.widths.width(omega)).collect();
         let sheet = self.sheet(&pattern, &w_lig)?;
         Ok((pattern, sheet))
     }
@@ -288,7 +280,8 @@ impl DesignProblem {
         }
     }
 
-    /// The sheet of a pattern with the given ligament widths (mm), held and pulled where the problem's sheet is.
+    /// The sheet of a pattern with the given ligament widths (mm), held and pulled where the
+    /// problem's sheet is.
     pub(crate) fn sheet(&self, pattern: &CutPattern, w_lig: &[f64]) -> Result<Sheet, SheetError> {
         let sheet = Sheet::new(pattern, w_lig, self.options)?;
         Ok(match self.model.mechanics() {
@@ -302,7 +295,8 @@ impl DesignProblem {
         self.deploy_near(design, None)
     }
 
-    /// The same, with the path corrected from the `known` one of another design if that is near enough.
+    /// The same, with the path corrected from the `known` one of another design if that is near
+    /// enough.
     pub fn deploy_near(
         &self,
         design: &DesignVector,
@@ -311,8 +305,8 @@ impl DesignProblem {
         Ok(self.deploy_prepared(design, false, known)?.0)
     }
 
-    /// The deployment, its damage with or without `gradient`, and the hinge law prepared for its sheet. The path is
-    /// corrected from the `known` one of another design if that is near enough.
+    /// The deployment, its damage with or without `gradient`, and the hinge law prepared for its
+    /// sheet. The path is corrected from the `known` one of another design if that is near enough.
     pub(super) fn deploy_prepared(
         &self,
         design: &DesignVector,
@@ -334,20 +328,12 @@ impl DesignProblem {
                 let law = mechanics.law.prepare(&sheet.designs());
                 let hinged = mechanics.hinged(&sheet, &*law, gradient);
                 let (path, followed) = mechanics.path(hinged, known);
-                path.iter()
-                    .for_each(|step| verbose::note(|| step.to_string()));
+                path.iter().for_each(|step| verbose::note(|| step.to_string()));
                 let released = mechanics.released(&*law, &sheet, &path)?;
                 (path, followed, Some(law), released)
             }
         };
-        let deployment = Deployment {
-            pattern,
-            sheet,
-            path,
-            followed,
-            released,
-            fit: design.fit,
-        };
+        let deployment = Deployment { pattern, sheet, path, followed, released, fit: design.fit };
         Ok((deployment, law))
     }
 
@@ -394,8 +380,8 @@ pub fn converged(step: &LoadStep) -> Result<&LoadStep, DesignError> {
 }
 
 impl Mechanics {
-    /// The mechanics at `thickness` times the thickness and `stress` times the stress at every strain. Its
-    /// weight grows with the thickness; contact is not changed.
+    /// The mechanics at `thickness` times the thickness and `stress` times the stress at every
+    /// strain. Its weight grows with the thickness; contact is not changed.
     pub(crate) fn scaled(&self, thickness: f64, stress: f64) -> Result<Self, DesignError> {
         if !(thickness > 0.0 && stress > 0.0 && thickness.is_finite() && stress.is_finite()) {
             return Err(DesignError::ImpossibleSheet);
@@ -416,8 +402,8 @@ impl Mechanics {
         Ok(similar)
     }
 
-    /// The path of a sheet, corrected from a `known` one that is near enough, or else followed from the flat sheet, and whether it
-    /// was followed.
+    /// The path of a sheet, corrected from a `known` one that is near enough, or else followed from
+    /// the flat sheet, and whether it was followed.
     pub(crate) fn path(
         &self,
         hinged: HingedSheet,
@@ -435,11 +421,6 @@ impl Mechanics {
         law: &'a dyn PreparedLaw,
         damage_gradient: bool,
     ) -> HingedSheet<'a> {
-        HingedSheet {
-            sheet,
-            law,
-            contact: self.contact.as_ref(),
-            damage_gradient,
-        }
+        HingedSheet { sheet, law, contact: self.contact.as_ref(), damage_gradient }
     }
 }

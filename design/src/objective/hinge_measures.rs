@@ -1,5 +1,5 @@
-//! Functionals of the deformation path of the hinges; (17)-(19): means over the hinges of a function of one measure along
-//! the path of a hinge.
+//! Functionals of the deformation path of the hinges; (17)-(19): means over the hinges of a
+//! function of one measure along the path of a hinge.
 
 use crate::equilibrium::load_step::LoadStep;
 use crate::hinge_law::{DamageMeasure, HingeGradient};
@@ -39,8 +39,9 @@ impl HingeMeasure {
         at.path.iter().filter_map(value).collect()
     }
 
-    /// The mean over hinges of a function of the values of the measure along the path, which is given with its slopes in
-    /// these values; the slopes, which contain the weight of the term, are added to `gradient`.
+    /// The mean over hinges of a function of the values of the measure along the path, which is
+    /// given with its slopes in these values; the slopes, which contain the weight of the term, are
+    /// added to `gradient`.
     pub fn mean_over_hinges(
         self,
         at: &Deployed,

@@ -1,5 +1,5 @@
-//! The design objective: the Chamfer distance of the deployed outline to the target, functionals of the deformation paths
-//! of the hinges (16), and penalties.
+//! The design objective: the Chamfer distance of the deployed outline to the target, functionals of
+//! the deformation paths of the hinges (16), and penalties.
 
 use crate::objective::hinge_measures::add_by_states;
 use crate::objective::shape::Shape;
@@ -26,18 +26,15 @@ pub(crate) struct ObjectiveValue {
     /// L of (16).
     pub loss: f64,
     pub terms: TermValues,
-    /// Of the loss; the gradient in the measures of the hinges is contained in that in their states.
+    /// Of the loss; the gradient in the measures of the hinges is contained in that in their
+    /// states.
     pub gradient: TermGradient,
 }
 
 impl Objective {
     /// The Chamfer distance alone.
     pub fn from_shape(shape: Shape) -> Self {
-        Self {
-            shape,
-            functionals: Vec::new(),
-            penalties: Vec::new(),
-        }
+        Self { shape, functionals: Vec::new(), penalties: Vec::new() }
     }
 
     /// The terms of one sheet with their weights, in the order of [`TermValues`].
@@ -47,10 +44,10 @@ impl Objective {
         std::iter::once((&self.shape as &dyn Term, 1.0)).chain(others)
     }
 
-    /// The names of all terms with their units and weights, in the order of the [`TermValues`] of an evaluation.
+    /// The names of all terms with their units and weights, in the order of the [`TermValues`] of
+    /// an evaluation.
     pub fn weights(&self) -> impl Iterator<Item = (&'static str, Option<&'static str>, f64)> {
-        self.terms()
-            .map(|(term, weight)| (term.name(), term.unit(), weight))
+        self.terms().map(|(term, weight)| (term.name(), term.unit(), weight))
     }
 
     /// The names of all terms in words, with their units.
@@ -64,8 +61,7 @@ impl Objective {
 
     /// Whether the gradient of the objective needs the gradient of the damage of the hinges.
     pub(crate) fn needs_damage_gradient(&self) -> bool {
-        self.terms()
-            .any(|(term, weight)| weight != 0.0 && term.needs_damage_gradient())
+        self.terms().any(|(term, weight)| weight != 0.0 && term.needs_damage_gradient())
     }
 
     /// Evaluates a deployed sheet.
@@ -73,29 +69,20 @@ impl Objective {
         let mut gradient = TermGradient::zeros(at);
         let mut terms = TermValues::new();
         let mut value = |term: &dyn Term, weight: f64, counts: bool| {
-            let value = if counts {
-                term.evaluate(at, weight, &mut gradient)
-            } else {
-                0.0
-            };
+            let value = if counts { term.evaluate(at, weight, &mut gradient) } else { 0.0 };
             terms.insert(term.name().to_owned(), value);
             weight * value
         };
         let shape = value(&self.shape, 1.0, true);
         let functionals = self.functionals.iter();
-        let functionals: f64 = functionals
-            .map(|Weighted { weight, term }| value(&**term, *weight, true))
-            .sum();
+        let functionals: f64 =
+            functionals.map(|Weighted { weight, term }| value(&**term, *weight, true)).sum();
         let mut loss = shape + functionals;
         for Weighted { weight, term } in &self.penalties {
             // Without weight a penalty may be infinite: panels may then have any shape.
             loss += value(&**term, *weight, *weight != 0.0);
         }
         add_by_states(at, &mut gradient);
-        ObjectiveValue {
-            loss,
-            terms,
-            gradient,
-        }
+        ObjectiveValue { loss, terms, gradient }
     }
 }

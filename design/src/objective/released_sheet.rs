@@ -1,14 +1,15 @@
 //! A deployed sheet that is unloaded, and the gradient of a function of the shape that stays.
 //!
-//! With g the gradient of the function in the configuration v without loads, H the tangent there, f = K (x - r) the forces of a
-//! released hinge and B its rates,
+//! With g the gradient of the function in the configuration v without loads, H the tangent there, f
+//! = K (x - r) the forces of a released hinge and B its rates,
 //!
 //! ```text
 //! H lambda = g,    y = B lambda,    dL = -sum_h y . df,    df = dK (x - r) - K dr
 //! ```
 //!
-//! r and K follow from the state under load and its forces: what their derivatives lead to is a gradient in the state of
-//! each hinge at full load, with which the adjoint (20) of the path under load begins.
+//! r and K follow from the state under load and its forces: what their derivatives lead to is a
+//! gradient in the state of each hinge at full load, with which the adjoint (20) of the path under
+//! load begins.
 
 use crate::equilibrium::adjoint::{PathGradient, adjoint};
 use crate::equilibrium::load_step::{LoadStep, Status};
@@ -49,8 +50,8 @@ impl Mechanics {
         Ok(ReleasedSheet { hinges, path })
     }
 
-    /// The sheet at the end of a path by its prepared law after it was unloaded, if the target is for the unloaded sheet; `None` too if
-    /// the path has not reached full load.
+    /// The sheet at the end of a path by its prepared law after it was unloaded, if the target is
+    /// for the unloaded sheet; `None` too if the path has not reached full load.
     pub(super) fn released(
         &self,
         law: &dyn PreparedLaw,
@@ -65,8 +66,9 @@ impl Mechanics {
         Ok(Some(self.unload(sheet, step, hinges)?))
     }
 
-    /// The gradient, in the state and the design of every hinge at full load, of a function with the gradient `by_free` in the
-    /// configuration of the released sheet; that in the flat sheet is added to `by_sheet`. With the backward error of the adjoint solve.
+    /// The gradient, in the state and the design of every hinge at full load, of a function with
+    /// the gradient `by_free` in the configuration of the released sheet; that in the flat sheet is
+    /// added to `by_sheet`. With the backward error of the adjoint solve.
     pub(super) fn released_pullback(
         &self,
         law: &dyn PreparedLaw,

@@ -1,19 +1,20 @@
-//! The equilibrium at full load as a function, and the product of its derivative with a vector: for objectives, networks and
-//! optimisers of other programs.
+//! The equilibrium at full load as a function, and the product of its derivative with a vector: for
+//! objectives, networks and optimisers of other programs.
 //!
 //! ```text
 //! (design, loads, thickness, stresses)  ->  (deployed corners, reactions, load factor)
 //! ```
 //!
-//! With lambda of (20) for a function of these outputs and f the forces of the hinge law, all stresses, by a factor e, and the
-//! thickness t change the function by
+//! With lambda of (20) for a function of these outputs and f the forces of the hinge law, all
+//! stresses, by a factor e, and the thickness t change the function by
 //!
 //! ```text
 //! d/dlog e = -sum_h f_h . D eps_h[lambda],    d/dlog t = -sum_h (df_h/dlog t) . D eps_h[lambda] + lambda . (weight)
 //! ```
 //!
-//! A hinge of another thickness is a geometrically similar one, W(a, s, theta, w_lig; t) = t^3 W(a/t, s/t, theta, w_lig/t; 1), so
-//! that Euler's theorem gives df/dlog t from the second derivatives of W.
+//! A hinge of another thickness is a geometrically similar one, W(a, s, theta, w_lig; t) = t^3
+//! W(a/t, s/t, theta, w_lig/t; 1), so that Euler's theorem gives df/dlog t from the second
+//! derivatives of W.
 
 use crate::equilibrium::hinged_sheet::HingedSheet;
 use crate::equilibrium::load_step::LoadStep;
@@ -43,11 +44,7 @@ pub struct Conditions {
 
 impl Default for Conditions {
     fn default() -> Self {
-        Self {
-            loads: None,
-            thickness: 1.0,
-            stress: 1.0,
-        }
+        Self { loads: None, thickness: 1.0, stress: 1.0 }
     }
 }
 
@@ -55,8 +52,8 @@ impl Default for Conditions {
 pub struct Response {
     /// Its path is the last state alone.
     pub deployment: Deployment,
-    /// Forces (F_x, F_y, M) by which the supports hold every panel (N, N, N mm), about the point where it is held; zero where it is
-    /// free.
+    /// Forces (F_x, F_y, M) by which the supports hold every panel (N, N, N mm), about the point
+    /// where it is held; zero where it is free.
     pub reactions: Vec<[f64; 3]>,
 }
 
@@ -88,12 +85,14 @@ pub struct ResponseCotangent {
 pub struct ResponseGradient {
     /// In the design.
     pub design: DesignVector,
-    /// In (F_x, F_y, M) on every panel at full load; zero at the supports, where no load is possible, and under a prescribed stroke in the
-    /// forces on panels without a force: the sum of all magnitudes, which the stroke refers to, has a kink there.
+    /// In (F_x, F_y, M) on every panel at full load; zero at the supports, where no load is
+    /// possible, and under a prescribed stroke in the forces on panels without a force: the sum of
+    /// all magnitudes, which the stroke refers to, has a kink there.
     pub loads: Vec<[f64; 3]>,
     /// In the logarithm of the thickness; `None` if the hinge law does not determine it.
     pub thickness: Option<f64>,
-    /// In the logarithm of all stresses at equal strain; `None` if the hinge law does not determine it.
+    /// In the logarithm of all stresses at equal strain; `None` if the hinge law does not determine
+    /// it.
     pub stress: Option<f64>,
 }
 
@@ -112,8 +111,9 @@ impl DesignProblem {
         })
     }
 
-    /// The equilibrium of a design at full load, corrected from the `known` one of another design or under other conditions if that is
-    /// near enough, or else at the end of the path from the flat sheet.
+    /// The equilibrium of a design at full load, corrected from the `known` one of another design
+    /// or under other conditions if that is near enough, or else at the end of the path from the
+    /// flat sheet.
     pub fn response(
         &self,
         design: &DesignVector,
@@ -122,16 +122,14 @@ impl DesignProblem {
         self.responded(design, |solver, hinged| {
             let near = known.and_then(|known| solver.readings_near(hinged, &FULL_LOAD, known));
             let followed = near.is_none();
-            (
-                near.unwrap_or_else(|| solver.readings(hinged, &FULL_LOAD)),
-                followed,
-            )
+            (near.unwrap_or_else(|| solver.readings(hinged, &FULL_LOAD)), followed)
         })
     }
 
-    /// A draft of the equilibrium of a design at full load, unloaded if the target is the shape that stays, next to the last state of a
-    /// `known` path; without one, or if there is none next to it, at the end of the path from the flat sheet. The path may end on another
-    /// branch than a draft next to another.
+    /// A draft of the equilibrium of a design at full load, unloaded if the target is the shape
+    /// that stays, next to the last state of a `known` path; without one, or if there is none next
+    /// to it, at the end of the path from the flat sheet. The path may end on another branch than a
+    /// draft next to another.
     pub fn draft(
         &self,
         design: &DesignVector,
@@ -157,10 +155,7 @@ impl DesignProblem {
         configuration: &[[f64; 3]],
     ) -> Result<Response, DesignError> {
         self.responded(design, |solver, hinged| {
-            (
-                vec![solver.full_load(hinged, configuration.to_vec())],
-                false,
-            )
+            (vec![solver.full_load(hinged, configuration.to_vec())], false)
         })
     }
 
@@ -175,12 +170,8 @@ impl DesignProblem {
         let law = mechanics.law.prepare(&sheet.designs());
         let hinged = mechanics.hinged(&sheet, &*law, false);
         let (path, followed) = solve(&mechanics.solver, hinged);
-        let state = path
-            .last()
-            .expect("there is one reading, or where the path ends");
-        let reactions = mechanics
-            .solver
-            .reactions(hinged, &converged(state)?.configuration);
+        let state = path.last().expect("there is one reading, or where the path ends");
+        let reactions = mechanics.solver.reactions(hinged, &converged(state)?.configuration);
         drop(law);
         Ok(Response {
             deployment: Deployment {
@@ -195,7 +186,8 @@ impl DesignProblem {
         })
     }
 
-    /// The gradient in the inputs of a response of this problem to `design` of a function with the gradient `by` in its outputs.
+    /// The gradient in the inputs of a response of this problem to `design` of a function with the
+    /// gradient `by` in its outputs.
     pub fn response_pullback(
         &self,
         design: &DesignVector,
@@ -221,12 +213,8 @@ impl DesignProblem {
             by_fit: [0.0; 2],
             by_reactions: of_supports.then_some(reactions),
         };
-        let gradient = self.design_gradient(
-            design,
-            &response.deployment,
-            Some((mechanics, &*law)),
-            partials,
-        )?;
+        let gradient =
+            self.design_gradient(design, &response.deployment, Some((mechanics, &*law)), partials)?;
         let virtual_motion = &gradient.virtual_motion;
         let motions = HingeMotion::all(sheet, &state.configuration);
         let energies = law.energies(&state.deformations, Order::Design);
@@ -257,8 +245,8 @@ impl DesignProblem {
 /// The load parameter of the response.
 const FULL_LOAD: [f64; 1] = [1.0];
 
-/// The derivative of (F_a, F_s, M_theta) in the logarithm of the thickness: with all lengths in proportion F_a and F_s grow with its
-/// square and M_theta with its cube.
+/// The derivative of (F_a, F_s, M_theta) in the logarithm of the thickness: with all lengths in
+/// proportion F_a and F_s grow with its square and M_theta with its cube.
 pub fn by_thickness(energy: &HingeEnergy, at: &HingeDeformation, w_lig: f64) -> [f64; 3] {
     std::array::from_fn(|c| {
         let degree = if c == 2 { 3.0 } else { 2.0 };

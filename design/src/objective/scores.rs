@@ -35,8 +35,9 @@ impl Scores {
 /// Root mean square distance of the deployed outline points P from the curve through the target's
 /// samples (mm).
 ///
-/// It is the square root of the first sum of the Chamfer distance to the curve. The second sum, coverage, also
-/// depends on the spacing of the points P, and stays large for a coarse sheet that matches its target.
+/// It is the square root of the first sum of the Chamfer distance to the curve. The second sum,
+/// coverage, also depends on the spacing of the points P, and stays large for a coarse sheet that
+/// matches its target.
 pub fn outline_error(objective: &Objective, deployment: &Deployment) -> f64 {
     outline_error_at(objective, deployment, deployment.compared())
 }
@@ -53,9 +54,5 @@ pub fn outline_error_at(objective: &Objective, deployment: &Deployment, step: &L
 
 /// A term as text: four digits after the point, or scientific notation if these do not show it.
 pub fn shown(value: f64) -> String {
-    if value != 0.0 && value.abs() < 1e-3 {
-        format!("{value:.2e}")
-    } else {
-        format!("{value:.4}")
-    }
+    if value != 0.0 && value.abs() < 1e-3 { format!("{value:.2e}") } else { format!("{value:.4}") }
 }

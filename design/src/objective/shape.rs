@@ -1,5 +1,5 @@
-//! The shape term of the objective: the Chamfer distance of the deployed outline to the target. Its points P are the panel corners
-//! on the outline that belong to no hinge.
+//! The shape term of the objective: the Chamfer distance of the deployed outline to the target. Its
+//! points P are the panel corners on the outline that belong to no hinge.
 
 use crate::geometry::chamfer::chamfer;
 use crate::geometry::plane::{I, complex, dot, point};
@@ -28,8 +28,8 @@ pub struct Shape {
     pub target: Vec<[f64; 2]>,
     /// w_cov of the distance (dimensionless).
     pub coverage_weight: f64,
-    /// Whether the centroid of the area inside P is translated to the origin, where the centroid of the target should be: not where
-    /// supports hold the sheet.
+    /// Whether the centroid of the area inside P is translated to the origin, where the centroid of
+    /// the target should be: not where supports hold the sheet.
     pub centred: bool,
 }
 
@@ -53,15 +53,11 @@ impl Term for Shape {
 impl Shape {
     /// With the paper's coverage weight 1/2, to the points `target` (mm).
     pub fn new(target: Vec<[f64; 2]>) -> Self {
-        Self {
-            target,
-            coverage_weight: 0.5,
-            centred: false,
-        }
+        Self { target, coverage_weight: 0.5, centred: false }
     }
 
-    /// The points P in the position in which they are compared with the target (mm): centred, and in the size and the rotation of
-    /// a target that is fitted to them.
+    /// The points P in the position in which they are compared with the target (mm): centred, and
+    /// in the size and the rotation of a target that is fitted to them.
     pub fn placed(&self, outline: &[[f64; 2]], fit: Option<FitVariables>) -> Vec<[f64; 2]> {
         let [x, y] = match self.centred {
             true => centre::of(outline),
@@ -72,7 +68,8 @@ impl Shape {
         outline.iter().map(place).collect()
     }
 
-    /// Adds `weight` times the gradient in the points P, and in the fit, from that in the placed points.
+    /// Adds `weight` times the gradient in the points P, and in the fit, from that in the placed
+    /// points.
     pub(crate) fn pullback(
         &self,
         at: &Deployed,
@@ -82,9 +79,8 @@ impl Shape {
         gradient: &mut TermGradient,
     ) {
         let back = turn(at.fit).conj();
-        let turned: Vec<_> = (by_placed.iter())
-            .map(|slope| point(back * complex(*slope)))
-            .collect();
+        let turned: Vec<_> =
+            (by_placed.iter()).map(|slope| point(back * complex(*slope))).collect();
         let by_outline = match self.centred {
             true => centre::pullback(at.outline, &turned),
             false => turned,
@@ -103,9 +99,8 @@ impl Shape {
     }
 }
 
-/// From the sheet to the target as the scene has it: a target of twice the size has a sheet of half the size.
+/// From the sheet to the target as the scene has it: a target of twice the size has a sheet of half
+/// the size.
 fn turn(fit: Option<FitVariables>) -> c64 {
-    fit.map_or(c64::ONE, |fit| {
-        c64::cis(-fit.rotation) * (-fit.ln_size).exp()
-    })
+    fit.map_or(c64::ONE, |fit| c64::cis(-fit.rotation) * (-fit.ln_size).exp())
 }

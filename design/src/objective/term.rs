@@ -1,4 +1,5 @@
-//! What a term of the objective is: a function of a deployed sheet, with its derivatives in what the sheet consists of.
+//! What a term of the objective is: a function of a deployed sheet, with its derivatives in what
+//! the sheet consists of.
 
 use crate::equilibrium::load_step::LoadStep;
 use crate::hinge_law::HingeGradient;
@@ -67,8 +68,8 @@ pub struct Deployed<'a> {
 pub struct TermGradient {
     /// In the deployed positions of P.
     pub by_outline: Vec<[f64; 2]>,
-    /// Of the sum over hinges, of which terms are the mean: in the measures (eta_a, eta_s, D, D_peak) of a hinge at a load
-    /// step.
+    /// Of the sum over hinges, of which terms are the mean: in the measures (eta_a, eta_s, D,
+    /// D_peak) of a hinge at a load step.
     pub by_measures: Vec<Vec<[f64; 4]>>,
     /// In the state and the design of each hinge at each load step.
     pub by_states: Vec<Vec<HingeGradient>>,

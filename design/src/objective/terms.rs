@@ -30,25 +30,27 @@ use serde::{Deserialize, Serialize};
 
 /// w_cov of the Chamfer distance, as in the paper.
 pub const COVERAGE: f64 = 0.5;
-/// Weight of the penalty on holes and clips without room, relative to the Chamfer distance over the area of a panel.
+/// Weight of the penalty on holes and clips without room, relative to the Chamfer distance over the
+/// area of a panel.
 const FASTENINGS: f64 = 10.0;
 
-/// The weights of (16)-(19), relative to the Chamfer distance divided by the mean panel area: at the
-/// weight 1 a functional with the value 1 costs as much as an outline error of one panel size.
+/// The weights of (16)-(19), relative to the Chamfer distance divided by the mean panel area: at
+/// the weight 1 a functional with the value 1 costs as much as an outline error of one panel size.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct ObjectiveConfig {
-    /// The state of the sheet that the target is for: `loaded`, at full load, or `released`, after the loads were taken off, which needs
-    /// `surrogate.springback`.
+    /// The state of the sheet that the target is for: `loaded`, at full load, or `released`, after
+    /// the loads were taken off, which needs `surrogate.springback`.
     pub target_state: TargetState,
-    /// Weight of the area inside the polygon through the compared corners and outside the target, or the reverse, over
-    /// the area of the target.
+    /// Weight of the area inside the polygon through the compared corners and outside the target,
+    /// or the reverse, over the area of the target.
     #[schemars(range(min = 0.0, max = 1e9))]
     pub symmetric_difference: f64,
     /// Weight of (17); needs a learned level.
     #[schemars(range(min = 0.0, max = 1e9))]
     pub damage: f64,
-    /// The damage measure of (17): `mean`, D as in the paper, or `peak`, D_peak, at which 1 means tearing; from 0.9 on a ligament costs more.
+    /// The damage measure of (17): `mean`, D as in the paper, or `peak`, D_peak, at which 1 means
+    /// tearing; from 0.9 on a ligament costs more.
     pub damage_measure: DamageMeasure,
     /// Weight of (18).
     #[schemars(range(min = 0.0, max = 1e9))]
@@ -56,19 +58,20 @@ pub struct ObjectiveConfig {
     /// Weight of (19).
     #[schemars(range(min = 0.0, max = 1e9))]
     pub shear: f64,
-    /// Weight of the panel shape penalty: on panels stretched more than eight to one or with angles below 14 degrees,
-    /// which the outline alone does not prevent, and, with learned hinges, on corners of a panel closer than three
-    /// radii of their windows.
+    /// Weight of the panel shape penalty: on panels stretched more than eight to one or with angles
+    /// below 14 degrees, which the outline alone does not prevent, and, with learned hinges, on
+    /// corners of a panel closer than three radii of their windows.
     #[schemars(range(min = 0.0, max = 1e9))]
     pub panel_shape: f64,
-    /// No panel is thinner anywhere (mm), at most a third of the side of a square panel of the mean area: the minimum
-    /// that the cutter accepts. Distances of corners from the edges of their panel are kept above it by a barrier, which
-    /// begins at twice the value; use it with `method = "lbfgs"`, since Adam can get stuck at it. The panels of the
-    /// start must be wider. 0 sets no limit.
+    /// No panel is thinner anywhere (mm), at most a third of the side of a square panel of the mean
+    /// area: the minimum that the cutter accepts. Distances of corners from the edges of their
+    /// panel are kept above it by a barrier, which begins at twice the value; use it with `method =
+    /// "lbfgs"`, since Adam can get stuck at it. The panels of the start must be wider. 0 sets no
+    /// limit.
     #[schemars(range(min = 0.0))]
     pub min_panel_width: f64,
-    /// Weight of the penalty on states outside the training domain of the hinge law, in squared tenths of its range,
-    /// as a mean over hinges and load steps. Needs a learned level.
+    /// Weight of the penalty on states outside the training domain of the hinge law, in squared
+    /// tenths of its range, as a mean over hinges and load steps. Needs a learned level.
     #[schemars(range(min = 0.0, max = 1e9))]
     pub domain: f64,
 }
@@ -93,7 +96,8 @@ impl ObjectiveConfig {
         let area = setting.mean_panel_area;
         let scale = (setting.law).and_then(|law| law.damage_scale(self.damage_measure));
         let domain = setting.law.and_then(|law| law.domain());
-        // Only a learned hinge has a window. Two window radii and a gap: the windows do not lie on one line.
+        // Only a learned hinge has a window. Two window radii and a gap: the windows do not lie on
+        // one line.
         let min_distance = domain.map_or(0.0, |_| 3.0 * setting.r_win);
         let (minimum, limited) = (self.min_panel_width, f64::from(self.min_panel_width > 0.0));
         // Temperatures are a tenth of typical values.
@@ -131,11 +135,8 @@ impl ObjectiveConfig {
     }
 
     fn shape(&self, setting: &Setting) -> Shape {
-        let mut shape = Shape {
-            target: Vec::new(),
-            coverage_weight: COVERAGE,
-            centred: setting.law.is_none(),
-        };
+        let mut shape =
+            Shape { target: Vec::new(), coverage_weight: COVERAGE, centred: setting.law.is_none() };
         shape.target = shape.placed(setting.target, None);
         shape
     }
@@ -211,10 +212,8 @@ mod tests {
     fn sheet() -> Sheet {
         let outline = Outline::rectangle(200.0, 20.0);
         let pattern = CutPattern::new(GRID, outline, &PatternCoordinates::uniform(GRID)).unwrap();
-        let options = SheetOptions {
-            hinge_point: HingePoint::Corner,
-            process: HingeConstants::PAPER.into(),
-        };
+        let options =
+            SheetOptions { hinge_point: HingePoint::Corner, process: HingeConstants::PAPER.into() };
         Sheet::new(&pattern, &vec![2.0; GRID.hinge_count()], options).unwrap()
     }
 
@@ -233,8 +232,8 @@ mod tests {
         }
     }
 
-    /// The value of a term and its gradient in the outline points, the corners of the panels, and the hinges with their
-    /// states.
+    /// The value of a term and its gradient in the outline points, the corners of the panels, and
+    /// the hinges with their states.
     fn evaluate(term: &dyn Term, x: &[f64]) -> (f64, Vec<f64>) {
         let mut sheet = sheet();
         let (hinges, rest) = x.split_at(PER_HINGE * sheet.hinges.len());
@@ -255,12 +254,7 @@ mod tests {
             step
         };
         let path: Vec<LoadStep> = (0..STEPS).map(step).collect();
-        let at = Deployed {
-            sheet: &sheet,
-            path: &path,
-            outline: outline.as_chunks().0,
-            fit: None,
-        };
+        let at = Deployed { sheet: &sheet, path: &path, outline: outline.as_chunks().0, fit: None };
         let mut gradient = TermGradient::zeros(&at);
         let value = term.evaluate(&at, 1.0, &mut gradient);
         add_by_states(&at, &mut gradient);

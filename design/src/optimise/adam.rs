@@ -22,12 +22,7 @@ pub struct Adam {
 impl Adam {
     /// For `n` unknowns; the first step of every unknown has the length `learning_rate`.
     pub fn new(n: usize, learning_rate: f64) -> Self {
-        Self {
-            learning_rate,
-            step: 0,
-            mean: vec![0.0; n],
-            square: vec![0.0; n],
-        }
+        Self { learning_rate, step: 0, mean: vec![0.0; n], square: vec![0.0; n] }
     }
 
     /// The state before the first step.
@@ -37,11 +32,7 @@ impl Adam {
 
     /// Number of unknowns; zero if the stored moments have different lengths.
     pub fn dimension(&self) -> usize {
-        if self.mean.len() == self.square.len() {
-            self.mean.len()
-        } else {
-            0
-        }
+        if self.mean.len() == self.square.len() { self.mean.len() } else { 0 }
     }
 
     /// The increment of the unknowns for the gradient at the current point.

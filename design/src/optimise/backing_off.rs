@@ -1,5 +1,5 @@
-//! Step halving: a step of the outer loop that leads to a design without objective value, or to one that
-//! the search does not accept, is halved until it leads to an acceptable design.
+//! Step halving: a step of the outer loop that leads to a design without objective value, or to one
+//! that the search does not accept, is halved until it leads to an acceptable design.
 
 use crate::equilibrium::warm_start::WarmStart;
 use crate::objective::design_problem::{DesignProblem, Evaluation};
@@ -16,9 +16,9 @@ pub(crate) struct Setback {
     pub reason: Option<String>,
 }
 
-/// Evaluates the proposal, or else the first point of repeated halving towards `good` that has a finite
-/// loss and that the search accepts; `known` is the path of a design near them. The error states why the last
-/// point had no value, if it had none.
+/// Evaluates the proposal, or else the first point of repeated halving towards `good` that has a
+/// finite loss and that the search accepts; `known` is the path of a design near them. The error
+/// states why the last point had no value, if it had none.
 pub(crate) fn evaluate_or_back_off(
     problem: &DesignProblem,
     search: &Search,
@@ -71,22 +71,12 @@ mod tests {
     const GRID: Grid = Grid { m: 2, n: 2 };
 
     fn problem() -> DesignProblem {
-        let process = HingeConstants {
-            kerf: 0.01,
-            r_win: 0.3,
-            ..HingeConstants::PAPER
-        };
+        let process = HingeConstants { kerf: 0.01, r_win: 0.3, ..HingeConstants::PAPER };
         DesignProblem {
             grid: GRID,
             outline: Outline::rectangle(2.0, 2.0),
-            widths: WidthChart {
-                w_minus: 0.05,
-                w_plus: 0.1,
-            },
-            options: SheetOptions {
-                hinge_point: HingePoint::Corner,
-                process: process.into(),
-            },
+            widths: WidthChart { w_minus: 0.05, w_plus: 0.1 },
+            options: SheetOptions { hinge_point: HingePoint::Corner, process: process.into() },
             model: Model::Ideal { opening: 0.5 },
             objective: Objective::from_shape(Shape::new(vec![[3.0, 3.0]])),
         }

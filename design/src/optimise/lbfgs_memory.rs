@@ -1,5 +1,5 @@
-//! The memory of the L-BFGS method (Liu and Nocedal 1989): an approximation of the inverse Hessian from the
-//! last steps.
+//! The memory of the L-BFGS method (Liu and Nocedal 1989): an approximation of the inverse Hessian
+//! from the last steps.
 
 use serde::{Deserialize, Serialize};
 use std::collections::VecDeque;
@@ -30,11 +30,7 @@ impl Memory {
         let product = dot(&step, &change);
         if product > 0.0 {
             self.pairs.truncate(PAIRS - 1);
-            self.pairs.push_front(Pair {
-                step,
-                change,
-                product,
-            });
+            self.pairs.push_front(Pair { step, change, product });
         }
     }
 

@@ -1,14 +1,15 @@
 //! The outer loop, Algorithm 1: Adam or L-BFGS on theta = (z, ell, omega).
 //!
-//! Every few steps the path of the design is followed from the flat sheet; those between are corrected from that path.
-//! A corrected path can be on another branch than the followed one. The best design is therefore one whose path was
-//! followed: the best of the corrected ones, the candidate, is followed too, unless the next followed design is better. If
-//! its loss is another one, the steps since the followed path before it are discarded; the search continues from the best
-//! followed design, as from a new start, and follows every path.
+//! Every few steps the path of the design is followed from the flat sheet; those between are
+//! corrected from that path. A corrected path can be on another branch than the followed one. The
+//! best design is therefore one whose path was followed: the best of the corrected ones, the
+//! candidate, is followed too, unless the next followed design is better. If its loss is another
+//! one, the steps since the followed path before it are discarded; the search continues from the
+//! best followed design, as from a new start, and follows every path.
 //!
-//! If the sheet of a design has no equilibrium, the step from the last design that had one is halved until
-//! an equilibrium exists. Steps depend only on the problem and the search state, so a search continued from
-//! a saved state follows the trajectory of an uninterrupted one.
+//! If the sheet of a design has no equilibrium, the step from the last design that had one is
+//! halved until an equilibrium exists. Steps depend only on the problem and the search state, so a
+//! search continued from a saved state follows the trajectory of an uninterrupted one.
 
 use crate::equilibrium::warm_start::WarmStart;
 use crate::objective::design_problem::{DesignProblem, Evaluation, Model};
@@ -27,7 +28,8 @@ pub struct StepRecord {
     /// The objective and its terms.
     #[serde(flatten)]
     pub scores: Scores,
-    /// Whether the path was followed from the flat sheet; `false` if it was corrected from the path of an earlier design.
+    /// Whether the path was followed from the flat sheet; `false` if it was corrected from the path
+    /// of an earlier design.
     pub followed: bool,
     /// Number of halvings, including the halvings of a step that was given up.
     pub halvings: u32,
@@ -43,7 +45,8 @@ pub enum Ended {
     Completed,
     /// Stopped on request; the next run continues.
     Stopped,
-    /// No step from the last design lowers the loss by more than rounding: a minimum, or a kink that L-BFGS cannot leave.
+    /// No step from the last design lowers the loss by more than rounding: a minimum, or a kink
+    /// that L-BFGS cannot leave.
     Settled,
     /// No step from the last design, however small, leads to a design with an equilibrium.
     Stuck {
@@ -60,15 +63,18 @@ pub struct SearchState {
     /// The next design that the search evaluates.
     pub(crate) proposal: DesignVector,
     pub(crate) search: Search,
-    /// The design with the minimum loss of those whose path was followed from the flat sheet, also at a pause.
+    /// The design with the minimum loss of those whose path was followed from the flat sheet, also
+    /// at a pause.
     pub best: DesignVector,
-    /// The design with the minimum loss of those whose path was followed, without those at pauses, and its loss: the search
-    /// goes back to it, whether it was paused or not.
+    /// The design with the minimum loss of those whose path was followed, without those at pauses,
+    /// and its loss: the search goes back to it, whether it was paused or not.
     #[serde(rename = "base")]
     best_followed: Scored,
-    /// The design with the minimum loss, below the loss of the best followed one, of the designs whose path was only corrected since.
+    /// The design with the minimum loss, below the loss of the best followed one, of the designs
+    /// whose path was only corrected since.
     candidate: Option<Scored>,
-    /// Whether the followed path of a candidate had another loss: since then every path is followed.
+    /// Whether the followed path of a candidate had another loss: since then every path is
+    /// followed.
     #[serde(rename = "contradicted")]
     branch_mismatch: bool,
     /// Whether the candidate of the present pause has another loss.
@@ -92,12 +98,12 @@ struct Scored {
     step: usize,
 }
 
-/// Relative difference of the losses of a corrected and a followed path on the same branch, unless the tolerance of the
-/// equilibria is larger.
+/// Relative difference of the losses of a corrected and a followed path on the same branch, unless
+/// the tolerance of the equilibria is larger.
 const SAME_BRANCH: f64 = 1e-6;
 
-/// Continues the search from `state` until it has made `steps` steps after the start, until no step lowers
-/// the loss, or until the end of the step during which `stop` becomes true.
+/// Continues the search from `state` until it has made `steps` steps after the start, until no step
+/// lowers the loss, or until the end of the step during which `stop` becomes true.
 ///
 /// `sink` receives the state after every step and may end the search by an error.
 pub fn optimise<E>(
@@ -146,11 +152,7 @@ impl SearchState {
             search: Search::new(method, learning_rate, start.to_flat().len()),
             proposal: start.clone(),
             best: start.clone(),
-            best_followed: Scored {
-                design: start.clone(),
-                loss: evaluation.loss,
-                step: 0,
-            },
+            best_followed: Scored { design: start.clone(), loss: evaluation.loss, step: 0 },
             candidate: None,
             branch_mismatch: false,
             candidate_mismatch: false,
@@ -175,19 +177,15 @@ impl SearchState {
 
     /// Whether the designs of the state have the same dimensions as `start`.
     pub fn fits(&self, start: &DesignVector) -> bool {
-        let designs = [
-            &self.design,
-            &self.proposal,
-            &self.best,
-            &self.best_followed.design,
-        ];
+        let designs = [&self.design, &self.proposal, &self.best, &self.best_followed.design];
         let further = self.candidate.iter().map(|candidate| &candidate.design);
         !self.history.is_empty()
             && (designs.into_iter().chain(further)).all(|design| design.same_shape(start))
             && self.search.fits(start.to_flat().len())
     }
 
-    /// Evaluates the proposal, or the accepted part of that step; the error states why the run ends.
+    /// Evaluates the proposal, or the accepted part of that step; the error states why the run
+    /// ends.
     fn next(
         &mut self,
         problem: &DesignProblem,
@@ -218,13 +216,10 @@ impl SearchState {
         }
     }
 
-    /// Computes the path of the last followed design after a pause of the search; forgets it if the next path must be followed.
+    /// Computes the path of the last followed design after a pause of the search; forgets it if the
+    /// next path must be followed.
     fn know_a_path(&mut self, problem: &DesignProblem) {
-        let recent = self
-            .history
-            .iter()
-            .rev()
-            .take(self.follow_every(problem) - 1);
+        let recent = self.history.iter().rev().take(self.follow_every(problem) - 1);
         match &self.last_followed {
             Some(last) if recent.clone().any(|record| record.followed) => {
                 if self.known.is_none()
@@ -242,8 +237,9 @@ impl SearchState {
         self.branch_mismatch || self.candidate_mismatch
     }
 
-    /// Follows the path of the candidate, which becomes the best followed one if its loss is below that. Returns whether the followed
-    /// loss is another one, so that the search went back to the best followed one.
+    /// Follows the path of the candidate, which becomes the best followed one if its loss is below
+    /// that. Returns whether the followed loss is another one, so that the search went back to the
+    /// best followed one.
     fn confirm(&mut self, problem: &DesignProblem) -> Result<bool, Ended> {
         let Some(candidate) = self.candidate.take() else {
             return Ok(false);
@@ -273,15 +269,12 @@ impl SearchState {
         }
     }
 
-    /// Discards the steps since the followed path before a step and continues from the best followed design, as from a new start.
+    /// Discards the steps since the followed path before a step and continues from the best
+    /// followed design, as from a new start.
     fn go_back(&mut self, problem: &DesignProblem, step: usize) -> Result<(), Ended> {
         let evaluation = problem.evaluate(&self.best_followed.design);
-        let evaluation = evaluation.map_err(|error| Ended::Stuck {
-            reason: error.to_string(),
-        })?;
-        let before = self.history[..step]
-            .iter()
-            .rposition(|record| record.followed);
+        let evaluation = evaluation.map_err(|error| Ended::Stuck { reason: error.to_string() })?;
+        let before = self.history[..step].iter().rposition(|record| record.followed);
         self.history.truncate(before.map_or(1, |last| last + 1));
         self.branch_mismatch = true;
         (self.last_followed, self.known) = (None, None);
@@ -299,11 +292,7 @@ impl SearchState {
         setback: Setback,
     ) {
         let (followed, loss) = (evaluation.deployment.followed, evaluation.loss);
-        let scored = Scored {
-            design: design.clone(),
-            loss,
-            step: self.history.len(),
-        };
+        let scored = Scored { design: design.clone(), loss, step: self.history.len() };
         let least = self.candidate.as_ref().unwrap_or(&self.best_followed).loss;
         match followed {
             true if loss < self.best_followed.loss => {
@@ -359,10 +348,7 @@ impl SearchState {
 impl Scored {
     /// The same design with the loss of its followed path; infinite if there is none.
     fn followed(&self, problem: &DesignProblem) -> Self {
-        Self {
-            loss: problem.loss(&self.design).unwrap_or(f64::INFINITY),
-            ..self.clone()
-        }
+        Self { loss: problem.loss(&self.design).unwrap_or(f64::INFINITY), ..self.clone() }
     }
 
     /// Whether the path of `followed` is on the same branch.

@@ -1,5 +1,5 @@
-//! How the next design is proposed: by Adam, as in Algorithm 1, or by L-BFGS with backtracking, which needs a fraction of
-//! Adam's evaluations on designs with equilibrium.
+//! How the next design is proposed: by Adam, as in Algorithm 1, or by L-BFGS with backtracking,
+//! which needs a fraction of Adam's evaluations on designs with equilibrium.
 
 use crate::optimise::adam::Adam;
 use crate::optimise::lbfgs_memory::{Memory, shortened};
@@ -7,7 +7,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use support::vectors::dot;
 
-/// Armijo constant: the fraction of the decrease predicted by the slope that an L-BFGS step must achieve.
+/// Armijo constant: the fraction of the decrease predicted by the slope that an L-BFGS step must
+/// achieve.
 const ARMIJO: f64 = 1e-4;
 /// Fall of the loss, relative to the loss, below which it is a rounding error of the equilibria.
 const RESOLUTION: f64 = 1e-13;
@@ -59,11 +60,9 @@ impl Search {
     pub(crate) fn new(method: SearchMethod, learning_rate: f64, n: usize) -> Self {
         match method {
             SearchMethod::Adam => Self::Adam(Adam::new(n, learning_rate)),
-            SearchMethod::Lbfgs => Self::Lbfgs(Lbfgs {
-                learning_rate,
-                memory: Memory::default(),
-                from: None,
-            }),
+            SearchMethod::Lbfgs => {
+                Self::Lbfgs(Lbfgs { learning_rate, memory: Memory::default(), from: None })
+            }
         }
     }
 
@@ -71,11 +70,9 @@ impl Search {
     pub(crate) fn restarted(&self) -> Self {
         match self {
             Self::Adam(adam) => Self::Adam(adam.restarted()),
-            Self::Lbfgs(lbfgs) => Self::Lbfgs(Lbfgs {
-                memory: Memory::default(),
-                from: None,
-                ..*lbfgs
-            }),
+            Self::Lbfgs(lbfgs) => {
+                Self::Lbfgs(Lbfgs { memory: Memory::default(), from: None, ..*lbfgs })
+            }
         }
     }
 
@@ -102,12 +99,8 @@ impl Search {
                     let change = less(gradient, &from.gradient);
                     lbfgs.memory.remember(less(x, &from.x), change);
                 }
-                lbfgs.from = Some(Point {
-                    x: x.to_vec(),
-                    loss,
-                    gradient: gradient.to_vec(),
-                    slope: 0.0,
-                });
+                lbfgs.from =
+                    Some(Point { x: x.to_vec(), loss, gradient: gradient.to_vec(), slope: 0.0 });
                 lbfgs.step()
             }
         }
@@ -116,9 +109,7 @@ impl Search {
     /// Whether a step may end at this loss, at this fraction of its full length.
     pub(crate) fn accepts(&self, loss: f64, fraction: f64) -> bool {
         match self {
-            Self::Lbfgs(Lbfgs {
-                from: Some(from), ..
-            }) => {
+            Self::Lbfgs(Lbfgs { from: Some(from), .. }) => {
                 let fall = from.loss - loss;
                 fall > (-ARMIJO * fraction * from.slope).max(RESOLUTION * from.loss.abs())
             }
@@ -126,8 +117,8 @@ impl Search {
         }
     }
 
-    /// Another step from the same point, after no part of the last one was accepted: along the negative gradient;
-    /// `None` if the last step was that already.
+    /// Another step from the same point, after no part of the last one was accepted: along the
+    /// negative gradient; `None` if the last step was that already.
     pub(crate) fn retry(&mut self) -> Option<Vec<f64>> {
         match self {
             Self::Lbfgs(lbfgs) if !lbfgs.memory.is_empty() => {

@@ -27,11 +27,11 @@ impl PatternCoordinates {
         }
     }
 
-    /// r and tau as one vector. They are unique to a pattern, whereas many logits give the same one.
+    /// r and tau as one vector. They are unique to a pattern, whereas many logits give the same
+    /// one.
     pub fn values(&self) -> Vec<f64> {
         let r = self.z.iter().map(|z| logistic(*z));
-        r.chain(self.ell.iter().flat_map(|ell| partial_sums(ell)))
-            .collect()
+        r.chain(self.ell.iter().flat_map(|ell| partial_sums(ell))).collect()
     }
 
     /// Coordinates of the pattern with given [`values`](Self::values).
@@ -42,10 +42,7 @@ impl PatternCoordinates {
             rest = others;
             edge.to_vec()
         });
-        let coordinates = Self {
-            z: Self::z_of(r)?,
-            ell: Self::ell_of(&tau)?,
-        };
+        let coordinates = Self { z: Self::z_of(r)?, ell: Self::ell_of(&tau)? };
         coordinates.check(grid)?;
         Ok(coordinates)
     }
@@ -54,11 +51,7 @@ impl PatternCoordinates {
     pub fn z_of(r: &[f64]) -> Result<Vec<f64>, PatternError> {
         let inside = |r: f64| r > 0.0 && r < 1.0;
         match r.iter().position(|r| !inside(*r)) {
-            Some(index) => Err(PatternError::Interval {
-                name: "r",
-                index,
-                value: r[index],
-            }),
+            Some(index) => Err(PatternError::Interval { name: "r", index, value: r[index] }),
             None => Ok(r.iter().map(|r| logit(*r)).collect()),
         }
     }
@@ -67,16 +60,9 @@ impl PatternCoordinates {
     pub fn ell_of(tau: &[Vec<f64>; 4]) -> Result<[Vec<f64>; 4], PatternError> {
         for tau in tau {
             let widths = intervals(tau);
-            if let Some(index) = widths
-                .iter()
-                .position(|width| *width <= 0.0 || width.is_nan())
-            {
+            if let Some(index) = widths.iter().position(|width| *width <= 0.0 || width.is_nan()) {
                 let index = index.min(tau.len() - 1);
-                return Err(PatternError::Interval {
-                    name: "tau",
-                    index,
-                    value: tau[index],
-                });
+                return Err(PatternError::Interval { name: "tau", index, value: tau[index] });
             }
         }
         let logits = |tau: &Vec<f64>| intervals(tau).iter().map(|width| width.ln()).collect();
@@ -139,9 +125,7 @@ pub fn partial_sums(ell: &[f64]) -> Vec<f64> {
 
 /// The intervals between neighbouring boundary positions: the softmax weights.
 pub fn intervals(tau: &[f64]) -> Vec<f64> {
-    let ends = std::iter::once(0.0)
-        .chain(tau.iter().copied())
-        .chain(std::iter::once(1.0));
+    let ends = std::iter::once(0.0).chain(tau.iter().copied()).chain(std::iter::once(1.0));
     ends.clone().skip(1).zip(ends).map(|(b, a)| b - a).collect()
 }
 
@@ -152,10 +136,6 @@ pub fn partial_sums_pullback(tau: &[f64], gradient: &[f64]) -> Vec<f64> {
     for s in (0..gradient.len()).rev() {
         by_weight[s] = by_weight[s + 1] + gradient[s];
     }
-    let mean: f64 = std::iter::zip(&weights, &by_weight)
-        .map(|(w, g)| w * g)
-        .sum();
-    std::iter::zip(&weights, &by_weight)
-        .map(|(w, g)| w * (g - mean))
-        .collect()
+    let mean: f64 = std::iter::zip(&weights, &by_weight).map(|(w, g)| w * g).sum();
+    std::iter::zip(&weights, &by_weight).map(|(w, g)| w * (g - mean)).collect()
 }

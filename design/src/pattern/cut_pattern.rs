@@ -34,9 +34,7 @@ pub struct Outline {
 impl Outline {
     /// The rectangle with its south-west corner at the origin.
     pub fn rectangle(width: f64, height: f64) -> Self {
-        Self {
-            corners: [[0.0, 0.0], [width, 0.0], [width, height], [0.0, height]],
-        }
+        Self { corners: [[0.0, 0.0], [width, 0.0], [width, height], [0.0, height]] }
     }
 
     /// Area of the outline (mm^2).
@@ -90,9 +88,7 @@ impl CutPattern {
             return Err(PatternError::TooFewPanels { m, n });
         }
         if !outline.is_convex() {
-            return Err(PatternError::Outline {
-                corners: outline.corners,
-            });
+            return Err(PatternError::Outline { corners: outline.corners });
         }
         coordinates.check(grid)?;
         let r: Vec<f64> = coordinates.z.iter().copied().map(logistic).collect();
@@ -114,20 +110,12 @@ impl CutPattern {
         .sp_lu()
         .map_err(|_| PatternError::Singular)?;
         let solution = system.solve(outline_points(grid, &outline, &tau));
-        let points: Vec<[f64; 2]> = (0..grid.point_count())
-            .map(|row| [solution[(row, 0)], solution[(row, 1)]])
-            .collect();
+        let points: Vec<[f64; 2]> =
+            (0..grid.point_count()).map(|row| [solution[(row, 0)], solution[(row, 1)]]).collect();
         if points.iter().flatten().any(|value| !value.is_finite()) {
             return Err(PatternError::Singular);
         }
-        Ok(Self {
-            grid,
-            outline,
-            r,
-            tau,
-            points,
-            system,
-        })
+        Ok(Self { grid, outline, r, tau, points, system })
     }
 
     /// x_ij (mm).
@@ -151,8 +139,8 @@ impl CutPattern {
         .collect()
     }
 
-    /// The gradient in (z, ell) and in the outline's corners of a function with the given gradient in
-    /// [`points`](Self::points).
+    /// The gradient in (z, ell) and in the outline's corners of a function with the given gradient
+    /// in [`points`](Self::points).
     pub fn pullback(&self, points: &[[f64; 2]]) -> (PatternCoordinates, [[f64; 2]; 4]) {
         let adjoint = self
             .system
@@ -181,10 +169,7 @@ impl CutPattern {
                 .collect();
             partial_sums_pullback(&self.tau[edge], &tau)
         });
-        (
-            PatternCoordinates { z, ell },
-            self.outline_pullback(adjoint),
-        )
+        (PatternCoordinates { z, ell }, self.outline_pullback(adjoint))
     }
 
     /// The gradient in the outline's corners, from the adjoint of the cut endpoints.
@@ -213,9 +198,8 @@ impl CutPattern {
 
 /// The matrix of (3)-(4): one row per cut endpoint.
 fn collinearity(grid: Grid, r: &[f64]) -> Vec<Triplet<usize, usize, f64>> {
-    let mut entries: Vec<_> = (0..grid.point_count())
-        .map(|point| Triplet::new(point, point, 1.0))
-        .collect();
+    let mut entries: Vec<_> =
+        (0..grid.point_count()).map(|point| Triplet::new(point, point, 1.0)).collect();
     for ((i, j), &r) in std::iter::zip(grid.interior_vertices(), r) {
         let [a, b] = grid.facing_endpoints(i, j);
         let x = grid.endpoint(i, j, Endpoint::X);
@@ -235,9 +219,7 @@ fn outline_points(grid: Grid, outline: &Outline, tau: &[Vec<f64>; 4]) -> Mat<f64
     let mut points = Mat::zeros(grid.point_count(), 2);
     for (edge, tau) in tau.iter().enumerate() {
         let [start, end] = EDGES[edge].map(|corner| outline.corners[corner]);
-        let positions = std::iter::once(0.0)
-            .chain(tau.iter().copied())
-            .chain(std::iter::once(1.0));
+        let positions = std::iter::once(0.0).chain(tau.iter().copied()).chain(std::iter::once(1.0));
         for (s, tau) in positions.enumerate() {
             let (i, j) = grid.edge_vertex(edge, s);
             for endpoint in [Endpoint::X, Endpoint::XPrime] {

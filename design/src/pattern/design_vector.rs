@@ -33,7 +33,8 @@ impl DesignVector {
         }
     }
 
-    /// All coordinates as one vector: z, ell of the bottom, right, top, left edge, omega, opening, fit.
+    /// All coordinates as one vector: z, ell of the bottom, right, top, left edge, omega, opening,
+    /// fit.
     pub fn to_flat(&self) -> Vec<f64> {
         let fit = self.fit.iter().flat_map(FitVariables::to_flat);
         self.blocks().flatten().copied().chain(fit).collect()

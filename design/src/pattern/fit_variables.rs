@@ -1,5 +1,6 @@
-//! How a sheet and a target that has no place yet are fitted to each other: the size and the rotation of the target, and the corners of
-//! the sheet in the stock that it is cut from. Corner i is
+//! How a sheet and a target that has no place yet are fitted to each other: the size and the
+//! rotation of the target, and the corners of the sheet in the stock that it is cut from. Corner i
+//! is
 //!
 //! ```text
 //! c + sigma(u_i) (s_i - c),     sigma: the logistic function by components,
@@ -33,9 +34,7 @@ impl FitVariables {
     /// The coordinates in the order of [`to_flat`](Self::to_flat).
     pub(crate) fn coordinates_mut(&mut self) -> impl Iterator<Item = &mut f64> {
         let corners = self.corners.as_flattened_mut();
-        [&mut self.ln_size, &mut self.rotation]
-            .into_iter()
-            .chain(corners)
+        [&mut self.ln_size, &mut self.rotation].into_iter().chain(corners)
     }
 
     /// The outline of the sheet in a rectangular stock.
@@ -49,7 +48,8 @@ impl FitVariables {
         }
     }
 
-    /// The gradient in the variables from those in size and rotation of the target and in the corners of the outline.
+    /// The gradient in the variables from those in size and rotation of the target and in the
+    /// corners of the outline.
     pub(crate) fn pullback(
         &self,
         stock: &Outline,
@@ -61,11 +61,7 @@ impl FitVariables {
             let share = logistic(self.corners[i][c]);
             by_outline[i][c] * share * (1.0 - share) * (stock.corners[i][c] - middle[c])
         };
-        Self {
-            ln_size,
-            rotation,
-            corners: std::array::from_fn(|i| [by_u(i, 0), by_u(i, 1)]),
-        }
+        Self { ln_size, rotation, corners: std::array::from_fn(|i| [by_u(i, 0), by_u(i, 1)]) }
     }
 }
 

@@ -12,8 +12,8 @@ pub struct Grid {
     pub n: usize,
 }
 
-/// The two endpoints at a cut: x is on the south side of a horizontal and on the east side of a vertical cut, x' on
-/// the opposite side.
+/// The two endpoints at a cut: x is on the south side of a horizontal and on the east side of a
+/// vertical cut, x' on the opposite side.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Endpoint {
     /// x_ij.
@@ -83,8 +83,7 @@ impl Grid {
 
     pub(crate) fn interior_vertices(&self) -> impl Iterator<Item = (usize, usize)> + use<> {
         let grid = *self;
-        self.vertices()
-            .filter(move |&(i, j)| grid.is_interior(i, j))
+        self.vertices().filter(move |&(i, j)| grid.is_interior(i, j))
     }
 
     /// The vertex at position `s` of an outline edge (0 at its start).
@@ -100,15 +99,9 @@ impl Grid {
     /// The endpoints A and B of the neighbouring cuts that face the interior cut C_ij; (3).
     pub(crate) fn facing_endpoints(&self, i: usize, j: usize) -> [usize; 2] {
         if Self::horizontal(i, j) {
-            [
-                self.endpoint(i - 1, j, Endpoint::X),
-                self.endpoint(i + 1, j, Endpoint::XPrime),
-            ]
+            [self.endpoint(i - 1, j, Endpoint::X), self.endpoint(i + 1, j, Endpoint::XPrime)]
         } else {
-            [
-                self.endpoint(i, j - 1, Endpoint::XPrime),
-                self.endpoint(i, j + 1, Endpoint::X),
-            ]
+            [self.endpoint(i, j - 1, Endpoint::XPrime), self.endpoint(i, j + 1, Endpoint::X)]
         }
     }
 }

@@ -12,25 +12,11 @@ pub enum PatternError {
     )]
     Outline { corners: [[f64; 2]; 4] },
     #[error("{name} has {found} entries; a sheet of {m} x {n} panels needs {expected}")]
-    Count {
-        name: &'static str,
-        found: usize,
-        expected: usize,
-        m: usize,
-        n: usize,
-    },
+    Count { name: &'static str, found: usize, expected: usize, m: usize, n: usize },
     #[error("{name}[{index}] = {value} is not a finite number")]
-    NotFinite {
-        name: &'static str,
-        index: usize,
-        value: f64,
-    },
+    NotFinite { name: &'static str, index: usize, value: f64 },
     #[error("{name}[{index}] = {value} violates 0 < {name} < 1, increasing along each edge")]
-    Interval {
-        name: &'static str,
-        index: usize,
-        value: f64,
-    },
+    Interval { name: &'static str, index: usize, value: f64 },
     #[error(
         "{name}[{index}] is so far from 0 that its chart (5) rounds to a bound: two cuts collide"
     )]

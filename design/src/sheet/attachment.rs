@@ -30,17 +30,15 @@ pub struct Clearance {
 }
 
 impl AttachmentPoint {
-    /// All clearances of its hole and its clip. A hole leaves its radius of material to the edges of its panel; hole and clip
-    /// leave the windows of the hinges of the panel free; a clip is no longer than its edge.
+    /// All clearances of its hole and its clip. A hole leaves its radius of material to the edges
+    /// of its panel; hole and clip leave the windows of the hinges of the panel free; a clip is no
+    /// longer than its edge.
     pub fn clearances(&self, sheet: &Sheet) -> Vec<Clearance> {
         let panel = &sheet.panels[self.panel];
         let hinges = sheet.hinges.iter().enumerate();
         let hinges =
             hinges.filter(|(_, hinge)| [hinge.panel_a(), hinge.panel_b()].contains(&self.panel));
-        let (r_win, half_kerf) = (
-            sheet.options.process.r_win,
-            0.5 * sheet.options.process.kerf,
-        );
+        let (r_win, half_kerf) = (sheet.options.process.r_win, 0.5 * sheet.options.process.kerf);
         let mut clearances = Vec::new();
         let mut add = |obstacle, least| {
             clearances.push(Clearance {
@@ -100,8 +98,8 @@ impl AttachmentPoint {
         }
     }
 
-    /// Adds the gradient of `weight` times the distance to an obstacle, which is positive. A nearest point stays where it is on
-    /// its segment, along which the distance is stationary.
+    /// Adds the gradient of `weight` times the distance to an obstacle, which is positive. A
+    /// nearest point stays where it is on its segment, along which the distance is stationary.
     pub(crate) fn add_distance_gradient(
         &self,
         sheet: &Sheet,
@@ -128,7 +126,8 @@ impl AttachmentPoint {
             Obstacle::ClipToHinge(h) => {
                 add(&mut gradient.tips[h], -away);
                 if let PanelPoint::Middle([p, q]) = self.point {
-                    // A point at a constant length from the middle of the edge, along its direction.
+                    // A point at a constant length from the middle of the edge, along its
+                    // direction.
                     let [start, end] = [p, q].map(|corner| complex(panel.corners[corner]));
                     let edge = end - start;
                     let across = I * edge / edge.norm();

@@ -1,10 +1,10 @@
-//! From cut endpoints to rigid panels and hinges: centroids, cut frames, cut angles, cut tips; and the
-//! exact vector-Jacobian product of this map.
+//! From cut endpoints to rigid panels and hinges: centroids, cut frames, cut angles, cut tips; and
+//! the exact vector-Jacobian product of this map.
 //!
 //! The slit of C_ij is the segment [A, B]. On each of its flanks is one hinge, at x_ij and at
-//! x'_ij. There C_ij (or the outline edge) is the secondary cut, and the neighbouring cut that ends there is the
-//! main cut. With m the unit vector from the corner C along the main cut and
-//! e_sec = (B - A)/L at x, (A - B)/L at x',
+//! x'_ij. There C_ij (or the outline edge) is the secondary cut, and the neighbouring cut that ends
+//! there is the main cut. With m the unit vector from the corner C along the main cut and e_sec =
+//! (B - A)/L at x, (A - B)/L at x',
 //!
 //! ```text
 //! alpha = atan2(-m . e_sec_perp, m . e_sec),     O = C + w_lig / sin(alpha) m        (7)
@@ -116,8 +116,8 @@ pub struct Hinge {
     pub main: [f64; 2],
     /// Material between O and the finished edge of the secondary cut (mm).
     pub w_lig: f64,
-    /// Distance of O from the line of the secondary cut (mm): w_lig plus half the kerf, or w_lig alone if that
-    /// line is the outline of the sheet, which is cut to its finished edge.
+    /// Distance of O from the line of the secondary cut (mm): w_lig plus half the kerf, or w_lig
+    /// alone if that line is the outline of the sheet, which is cut to its finished edge.
     pub set_back: f64,
     /// Angle between the cuts, measured into the material (rad).
     pub alpha: f64,
@@ -146,7 +146,8 @@ pub struct Sheet {
 /// The gradient of a function of the sheet with respect to all quantities of the sheet.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SheetGradient {
-    /// With respect to the corners SW, SE, NE, NW of every panel, at fixed reference, centroid and area.
+    /// With respect to the corners SW, SE, NE, NW of every panel, at fixed reference, centroid and
+    /// area.
     pub corners: Vec<[[f64; 2]; 4]>,
     /// With respect to the reference point of every panel.
     pub references: Vec<[f64; 2]>,
@@ -162,7 +163,8 @@ pub struct SheetGradient {
     pub frame_angles: Vec<f64>,
     /// With respect to alpha, per hinge.
     pub alphas: Vec<f64>,
-    /// With respect to w_lig, per hinge, at a fixed attachment point and a fixed radius of the hole over w_lig.
+    /// With respect to w_lig, per hinge, at a fixed attachment point and a fixed radius of the hole
+    /// over w_lig.
     pub widths: Vec<f64>,
     /// With respect to the radius of the hole over w_lig, per hinge.
     pub holes: Vec<f64>,
@@ -212,11 +214,8 @@ impl Sheet {
             .enumerate()
             .map(|(h, (site, &w_lig))| {
                 let [i, j] = site.vertex;
-                let half_kerf = if grid.is_interior(i, j) {
-                    0.5 * options.process.kerf
-                } else {
-                    0.0
-                };
+                let half_kerf =
+                    if grid.is_interior(i, j) { 0.5 * options.process.kerf } else { 0.0 };
                 let widths = [w_lig, w_lig + half_kerf];
                 Hinge::new(h, site, &pattern.points, widths, options)
             })
@@ -344,17 +343,9 @@ impl Panel {
         if !(area > 0.0 && area.is_finite()) {
             return Err(SheetError::PanelArea { panel, area });
         }
-        let moment: c64 = (0..4)
-            .map(|j| (arms[j] + arms[(j + 1) % 4]) * sectors[j])
-            .sum();
+        let moment: c64 = (0..4).map(|j| (arms[j] + arms[(j + 1) % 4]) * sectors[j]).sum();
         let centroid = point(mean + moment / (6.0 * area));
-        Ok(Self {
-            corners,
-            point: PanelPoint::Centroid,
-            reference: centroid,
-            centroid,
-            area,
-        })
+        Ok(Self { corners, point: PanelPoint::Centroid, reference: centroid, centroid, area })
     }
 
     /// The position of a point of the panel in the flat sheet (mm).
@@ -370,8 +361,7 @@ impl Panel {
 
     /// Centroid-to-corner vectors.
     fn arms(&self) -> [c64; 4] {
-        self.corners
-            .map(|corner| complex(corner) - complex(self.centroid))
+        self.corners.map(|corner| complex(corner) - complex(self.centroid))
     }
 
     /// The gradient in the corners of a function with the given gradient in a point.
@@ -429,10 +419,7 @@ impl Hinge {
         options: SheetOptions,
     ) -> Result<Self, SheetError> {
         if !(w_lig > 0.0 && w_lig.is_finite()) {
-            return Err(SheetError::Width {
-                hinge,
-                value: w_lig,
-            });
+            return Err(SheetError::Width { hinge, value: w_lig });
         }
         let unit = |from: usize, to: usize| {
             let segment = complex(points[to]) - complex(points[from]);

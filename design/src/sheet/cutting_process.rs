@@ -1,4 +1,5 @@
-//! What the cutting tool leaves at every hinge: its hole, the kerf, and the window for which the hinge was measured.
+//! What the cutting tool leaves at every hinge: its hole, the kerf, and the window for which the
+//! hinge was measured.
 
 use hinge::{HingeConstants, HingeDesign};
 use schemars::JsonSchema;
@@ -30,19 +31,22 @@ pub struct CuttingProcess {
 #[derive(Clone, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct ProcessKeys {
-    /// Radius of the hole at the tip of a main cut, as a multiple of w_lig, above 0 and below 1; the paper cuts 0.16. Either
-    /// this or `hole_diameter`.
+    /// Radius of the hole at the tip of a main cut, as a multiple of w_lig, above 0 and below 1;
+    /// the paper cuts 0.16. Either this or `hole_diameter`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     fillet_ratio: Option<f64>,
-    /// Diameter of the hole at the tip of every main cut (mm), above kerf. Either this or `fillet_ratio`.
+    /// Diameter of the hole at the tip of every main cut (mm), above kerf. Either this or
+    /// `fillet_ratio`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     hole_diameter: Option<f64>,
-    /// Width the cutting tool removes along the main cut (mm), above 0 and below the diameter of the hole. It may differ from
-    /// the kerf of the weights: in a film from 0.002 to 0.15 w_lig it changes W by less than 0.5 % and the force by less than 2.5 %, in a
-    /// plate from 0.05 to 0.64 w_lig by less than 0.4 and 3.5 %.
+    /// Width the cutting tool removes along the main cut (mm), above 0 and below the diameter of
+    /// the hole. It may differ from the kerf of the weights: in a film from 0.002 to 0.15 w_lig it
+    /// changes W by less than 0.5 % and the force by less than 2.5 %, in a plate from 0.05 to 0.64
+    /// w_lig by less than 0.4 and 3.5 %.
     kerf: f64,
-    /// Radius of the half-disc of sheet assigned to the hinge (mm), above 2.5 w_lig. For learned hinges it is the radius of the
-    /// weights, times the thickness of the sheet over the thickness in the training.
+    /// Radius of the half-disc of sheet assigned to the hinge (mm), above 2.5 w_lig. For learned
+    /// hinges it is the radius of the weights, times the thickness of the sheet over the thickness
+    /// in the training.
     r_win: f64,
 }
 
@@ -73,12 +77,7 @@ impl From<CuttingProcess> for ProcessKeys {
             Hole::Ratio(ratio) => [Some(ratio), None],
             Hole::Diameter(diameter) => [None, Some(diameter)],
         };
-        Self {
-            fillet_ratio,
-            hole_diameter,
-            kerf,
-            r_win,
-        }
+        Self { fillet_ratio, hole_diameter, kerf, r_win }
     }
 }
 

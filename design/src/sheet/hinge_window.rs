@@ -1,8 +1,8 @@
 //! The window of a hinge: the half-disc of sheet on which its energy was condensed.
 //!
-//! The flat side lies along the finished edge of the secondary cut and is centred at the foot of the perpendicular
-//! from the tip O. Hinge energies are additive only if the windows are disjoint and lie within the two panels
-//! that their hinges join.
+//! The flat side lies along the finished edge of the secondary cut and is centred at the foot of
+//! the perpendicular from the tip O. Hinge energies are additive only if the windows are disjoint
+//! and lie within the two panels that their hinges join.
 
 use crate::geometry::polygon::{clip, common, contains, distance, distance_to_polygon};
 use crate::sheet::cut_sheet::{Hinge, Panel, Sheet};
@@ -11,7 +11,8 @@ use std::f64::consts::PI;
 /// The window of a hinge in the flat sheet.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Window {
-    /// Foot of the perpendicular from O to the edge of the secondary cut: the origin of the hinge frame (mm).
+    /// Foot of the perpendicular from O to the edge of the secondary cut: the origin of the hinge
+    /// frame (mm).
     pub foot: [f64; 2],
     /// Unit vector along the secondary cut.
     pub e_sec: [f64; 2],
@@ -21,31 +22,21 @@ pub struct Window {
 
 /// Points along the arc; the error of the polygon is below 0.03% of the radius.
 const ARC: usize = 64;
-/// Overlap, relative to the radius, up to which windows are disjoint: those on the two flanks of one cut touch.
+/// Overlap, relative to the radius, up to which windows are disjoint: those on the two flanks of
+/// one cut touch.
 const TOUCH: f64 = 1e-6;
 
 impl Window {
     pub(crate) fn new(hinge: &Hinge, r_win: f64) -> Self {
         let [x, y] = hinge.e_sec;
-        let foot = [
-            hinge.tip[0] - hinge.w_lig * y,
-            hinge.tip[1] + hinge.w_lig * x,
-        ];
-        Self {
-            foot,
-            e_sec: hinge.e_sec,
-            radius: r_win,
-        }
+        let foot = [hinge.tip[0] - hinge.w_lig * y, hinge.tip[1] + hinge.w_lig * x];
+        Self { foot, e_sec: hinge.e_sec, radius: r_win }
     }
 
     /// The windows of all hinges of a sheet.
     pub fn of_sheet(sheet: &Sheet) -> Vec<Self> {
         let r_win = sheet.options.process.r_win;
-        sheet
-            .hinges
-            .iter()
-            .map(|hinge| Self::new(hinge, r_win))
-            .collect()
+        sheet.hinges.iter().map(|hinge| Self::new(hinge, r_win)).collect()
     }
 
     /// The point at hinge-frame coordinates (x, y) (mm).
@@ -89,9 +80,7 @@ impl Window {
     /// Whether the arc lies in the two panels, except for its ends on the secondary cut.
     pub fn within(&self, a: &Panel, b: &Panel) -> bool {
         let arc = self.polygon();
-        arc[1..ARC]
-            .iter()
-            .all(|&point| contains(&a.corners, point) || contains(&b.corners, point))
+        arc[1..ARC].iter().all(|&point| contains(&a.corners, point) || contains(&b.corners, point))
     }
 }
 
@@ -102,11 +91,7 @@ mod tests {
 
     fn window(foot: [f64; 2], angle_deg: f64) -> Window {
         let (sin, cos) = f64::to_radians(angle_deg).sin_cos();
-        Window {
-            foot,
-            e_sec: [cos, sin],
-            radius: 100.0,
-        }
+        Window { foot, e_sec: [cos, sin], radius: 100.0 }
     }
 
     #[test]

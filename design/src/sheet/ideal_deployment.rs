@@ -7,8 +7,8 @@
 //! u_l = u_k + (1 - R_k)(c_k - C) - (1 - R_l)(c_l - C)
 //! ```
 //!
-//! Because every void is a parallelogram, the result is the same along every sequence of hinges through the
-//! sheet. Pitches follow (6).
+//! Because every void is a parallelogram, the result is the same along every sequence of hinges
+//! through the sheet. Pitches follow (6).
 
 use crate::geometry::plane::{I, add, complex, dot, turn};
 use crate::sheet::cut_sheet::{Sheet, SheetGradient};
@@ -34,8 +34,8 @@ pub fn ideal_deployment(sheet: &Sheet, theta: f64) -> Configuration {
         .collect()
 }
 
-/// Gradients with respect to the sheet (added to `by_sheet`) and theta (returned) of a function with the
-/// given gradient in the ideal deployment.
+/// Gradients with respect to the sheet (added to `by_sheet`) and theta (returned) of a function
+/// with the given gradient in the ideal deployment.
 pub fn ideal_deployment_pullback(
     sheet: &Sheet,
     theta: f64,
@@ -67,11 +67,7 @@ pub fn ideal_deployment_pullback(
 }
 
 fn rotation(sheet: &Sheet, panel: usize, theta: f64) -> f64 {
-    if is_even(sheet.grid, panel) {
-        -0.5 * theta
-    } else {
-        0.5 * theta
-    }
+    if is_even(sheet.grid, panel) { -0.5 * theta } else { 0.5 * theta }
 }
 
 /// A hinge that connects a panel to its parent in the tree.
@@ -96,11 +92,7 @@ fn spanning_tree(sheet: &Sheet) -> Vec<Link> {
         for &(hinge, child) in &neighbours[parent] {
             if !std::mem::replace(&mut reached[child], true) {
                 queue.push_back(child);
-                links.push(Link {
-                    hinge,
-                    parent,
-                    child,
-                });
+                links.push(Link { hinge, parent, child });
             }
         }
     }

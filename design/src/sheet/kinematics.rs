@@ -1,16 +1,17 @@
 //! The hinge deformation (8) as a function of the motions of its two panels, with first and second
 //! derivatives.
 //!
-//! Let O be the attachment point of the hinge, rho = e^(-i beta)(O - c) its position relative to a panel's
-//! reference point c in the cut frame (beta: the angle of e_sec), phibar and theta the mean and relative
-//! rotation, and Delta = (c_l + u_l) - (c_k + u_k). In complex numbers
+//! Let O be the attachment point of the hinge, rho = e^(-i beta)(O - c) its position relative to a
+//! panel's reference point c in the cut frame (beta: the angle of e_sec), phibar and theta the mean
+//! and relative rotation, and Delta = (c_l + u_l) - (c_k + u_k). In complex numbers
 //!
 //! ```text
 //! a + i s = e^(-i(beta + phibar)) Delta + e^(i theta/2) rho_l - e^(-i theta/2) rho_k
 //! ```
 //!
-//! This depends on only four combinations of the six motions: y = (Delta u_x, Delta u_y, phibar, theta). The sum
-//! is arranged in terms that each vanish in the flat sheet, so that small motions keep their accuracy.
+//! This depends on only four combinations of the six motions: y = (Delta u_x, Delta u_y, phibar,
+//! theta). The sum is arranged in terms that each vanish in the flat sheet, so that small motions
+//! keep their accuracy.
 
 use crate::geometry::plane::{I, complex, cross, dot, point, turn, turn_less_one};
 use crate::geometry::polygon::distance;
@@ -38,13 +39,11 @@ pub fn deployed_corners(sheet: &Sheet, configuration: &[[f64; 3]]) -> Vec<[[f64;
 /// Distance of every panel corner between two configurations (mm).
 pub fn corner_distances(sheet: &Sheet, from: &[[f64; 3]], to: &[[f64; 3]]) -> Vec<f64> {
     let [from, to] = [from, to].map(|configuration| deployed_corners(sheet, configuration));
-    std::iter::zip(from.as_flattened(), to.as_flattened())
-        .map(|(p, q)| distance(*p, *q))
-        .collect()
+    std::iter::zip(from.as_flattened(), to.as_flattened()).map(|(p, q)| distance(*p, *q)).collect()
 }
 
-/// The gradient in (motion, flat point, reference point) of a function with the given gradient in the deployed
-/// position of the point.
+/// The gradient in (motion, flat point, reference point) of a function with the given gradient in
+/// the deployed position of the point.
 pub fn deployed_pullback(
     panel: &Panel,
     motion: [f64; 3],
@@ -55,11 +54,7 @@ pub fn deployed_pullback(
     let spin = turn(motion[2]);
     let arm = spin * (complex(flat) - complex(panel.reference));
     let by_flat = force * spin.conj();
-    (
-        [force.re, force.im, cross(arm, force)],
-        by_flat,
-        force - by_flat,
-    )
+    ([force.re, force.im, cross(arm, force)], by_flat, force - by_flat)
 }
 
 /// The deformation (8) of every hinge.
@@ -68,7 +63,8 @@ pub fn hinge_deformations(sheet: &Sheet, configuration: &[[f64; 3]]) -> Vec<Hing
     motions.iter().map(HingeMotion::deformation).collect()
 }
 
-/// The kinematics of a hinge in one configuration: the terms of (8) from which its derivatives are computed.
+/// The kinematics of a hinge in one configuration: the terms of (8) from which its derivatives are
+/// computed.
 #[derive(Clone, Copy, Debug)]
 pub struct HingeMotion {
     /// Relative rotation (rad).
@@ -115,10 +111,7 @@ impl HingeMotion {
     pub fn new(sheet: &Sheet, hinge: usize, configuration: &[[f64; 3]]) -> Self {
         let hinge = &sheet.hinges[hinge];
         let (a, b) = (hinge.panel_a(), hinge.panel_b());
-        let (c_a, c_b) = (
-            complex(sheet.panels[a].reference),
-            complex(sheet.panels[b].reference),
-        );
+        let (c_a, c_b) = (complex(sheet.panels[a].reference), complex(sheet.panels[b].reference));
         let ([ax, ay, phi_a], [bx, by, phi_b]) = (configuration[a], configuration[b]);
         let (theta, phibar) = (phi_b - phi_a, 0.5 * (phi_a + phi_b));
         let frame = complex(hinge.e_sec).conj();
@@ -127,12 +120,8 @@ impl HingeMotion {
         let attachment = complex(hinge.attachment);
         let (rho_a, rho_b) = (frame * (attachment - c_a), frame * (attachment - c_b));
         let (shift, offset) = (c64::new(bx - ax, by - ay), c_b - c_a);
-        let terms = [
-            mean * shift,
-            frame * turned_back * offset,
-            opened * rho_b,
-            -opened.conj() * rho_a,
-        ];
+        let terms =
+            [mean * shift, frame * turned_back * offset, opened * rho_b, -opened.conj() * rho_a];
         let sizes: f64 = terms.iter().map(|z| z.re.abs() + z.im.abs()).sum();
         Self {
             theta,
@@ -149,11 +138,7 @@ impl HingeMotion {
 
     /// (a, s, theta).
     pub fn deformation(&self) -> HingeDeformation {
-        HingeDeformation {
-            a: self.translation.re,
-            s: self.translation.im,
-            theta: self.theta,
-        }
+        HingeDeformation { a: self.translation.re, s: self.translation.im, theta: self.theta }
     }
 
     /// Rounding errors of a and s (mm) and of theta (rad), which are differences of larger numbers.
@@ -163,15 +148,11 @@ impl HingeMotion {
 
     /// d(a + i s)/dy for y = (Delta u_x, Delta u_y, phibar, theta).
     fn translation_rates(&self) -> [c64; 4] {
-        [
-            self.mean,
-            I * self.mean,
-            -I * self.separation,
-            0.5 * I * (self.arm_a + self.arm_b),
-        ]
+        [self.mean, I * self.mean, -I * self.separation, 0.5 * I * (self.arm_a + self.arm_b)]
     }
 
-    /// The generalised forces on panels A and B, (F_x, F_y, M) each, for a gradient in (a, s, theta).
+    /// The generalised forces on panels A and B, (F_x, F_y, M) each, for a gradient in (a, s,
+    /// theta).
     pub fn forces(&self, gradient: [f64; 3]) -> [f64; 6] {
         let [f_a, f_s, m_theta] = gradient;
         let force = c64::new(f_a, f_s);
@@ -184,16 +165,16 @@ impl HingeMotion {
     /// The rate of (a, s, theta) under a motion of panels A and B.
     pub fn rates(&self, motion: [f64; 6]) -> [f64; 3] {
         let y = relative_motion(motion);
-        let translation: c64 = std::iter::zip(self.translation_rates(), y)
-            .map(|(rate, y)| rate * y)
-            .sum();
+        let translation: c64 =
+            std::iter::zip(self.translation_rates(), y).map(|(rate, y)| rate * y).sum();
         [translation.re, translation.im, y[3]]
     }
 
-    /// The 6 x 6 tangent J^T K J + f . d2(eps), in the motions of panels A and B, of an energy with the stiffness
-    /// K = `tangent` and the forces f.
+    /// The 6 x 6 tangent J^T K J + f . d2(eps), in the motions of panels A and B, of an energy with
+    /// the stiffness K = `tangent` and the forces f.
     pub fn stiffness(&self, tangent: &[[f64; 3]; 3], forces: [f64; 3]) -> [[f64; 6]; 6] {
-        // In z = (Delta u_x, Delta u_y, phi_k, phi_l); the six motions enter with the signs of COPIES.
+        // In z = (Delta u_x, Delta u_y, phi_k, phi_l); the six motions enter with the signs of
+        // COPIES.
         let [x, y, mean, relative] = self.translation_rates();
         let rates = [x, y, 0.5 * mean - relative, 0.5 * mean + relative];
         let mut jacobian = [[0.0; 4], [0.0; 4], [0.0, 0.0, -1.0, 1.0]];
@@ -221,11 +202,7 @@ impl HingeMotion {
         let turned = -0.25 * dot(force, self.separation);
         let opened = -0.25 * dot(force, self.arm_b - self.arm_a);
         for (i, j) in [(2, 2), (2, 3), (3, 2), (3, 3)] {
-            by_z[i][j] += if i == j {
-                turned + opened
-            } else {
-                turned - opened
-            };
+            by_z[i][j] += if i == j { turned + opened } else { turned - opened };
         }
         const COPIES: [(usize, f64); 6] =
             [(0, -1.0), (1, -1.0), (2, 1.0), (0, 1.0), (1, 1.0), (3, 1.0)];
@@ -250,7 +227,8 @@ impl HingeMotion {
         }
     }
 
-    /// The gradient of `forces . rates(motion)` with respect to the flat geometry, at fixed `forces`.
+    /// The gradient of `forces . rates(motion)` with respect to the flat geometry, at fixed
+    /// `forces`.
     pub fn rates_geometry_gradient(
         &self,
         forces: [f64; 3],

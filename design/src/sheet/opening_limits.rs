@@ -7,9 +7,9 @@
 //! lambda(theta) = |d(theta)| / |d(0)|,     lambda_max = (|p| + |q|) / |p + q|     at theta = arg(q / p)
 //! ```
 //!
-//! For the uniform sheet this is (6), with cos(psi) = |p + q| / (|p| + |q|). Every void is a parallelogram
-//! with the angles theta and pi - theta. For any pattern, panels touch at theta = 0 and at
-//! theta = pi and at no angle between.
+//! For the uniform sheet this is (6), with cos(psi) = |p + q| / (|p| + |q|). Every void is a
+//! parallelogram with the angles theta and pi - theta. For any pattern, panels touch at theta = 0
+//! and at theta = pi and at no angle between.
 
 use crate::geometry::plane::{I, complex};
 use crate::sheet::cut_sheet::Sheet;
@@ -56,7 +56,8 @@ impl Span {
         }
     }
 
-    /// The spans from the middle of the west edge to the middle of the east edge, and from south to north.
+    /// The spans from the middle of the west edge to the middle of the east edge, and from south to
+    /// north.
     pub fn of_sheet(sheet: &Sheet) -> [Self; 2] {
         let grid = sheet.grid;
         let (p, q) = (grid.m / 2, grid.n / 2);

@@ -1,5 +1,5 @@
-//! Vectors in the degrees of freedom of the panels: all of them as (x, y, phi) per panel, or the six of the two panels
-//! of a hinge.
+//! Vectors in the degrees of freedom of the panels: all of them as (x, y, phi) per panel, or the
+//! six of the two panels of a hinge.
 
 use crate::sheet::cut_sheet::Hinge;
 

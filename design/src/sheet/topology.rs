@@ -1,4 +1,5 @@
-//! The cut endpoints of each panel and each hinge: the connectivity, which is the same for all designs.
+//! The cut endpoints of each panel and each hinge: the connectivity, which is the same for all
+//! designs.
 
 use crate::pattern::grid::{Endpoint, Grid, NE, NW, SE, SW};
 
@@ -61,11 +62,7 @@ fn hinge_site(grid: Grid, i: usize, j: usize, endpoint: Endpoint) -> Option<Hing
     };
     let [first, second] = corners.map(|corner| panel_with_corner(grid, i, j, corner));
     let (first, second) = (first?, second?);
-    let (a, b) = if is_even(grid, first.0) {
-        (first, second)
-    } else {
-        (second, first)
-    };
+    let (a, b) = if is_even(grid, first.0) { (first, second) } else { (second, first) };
     let [from, to] = slit(grid, i, j);
     Some(HingeSite {
         vertex: [i, j],
@@ -98,18 +95,14 @@ fn slit(grid: Grid, i: usize, j: usize) -> [usize; 2] {
     if grid.is_interior(i, j) {
         return grid.facing_endpoints(i, j);
     }
-    let ends = if Grid::horizontal(i, j) {
-        [(0, j), (grid.m, j)]
-    } else {
-        [(i, 0), (i, grid.n)]
-    };
+    let ends = if Grid::horizontal(i, j) { [(0, j), (grid.m, j)] } else { [(i, 0), (i, grid.n)] };
     ends.map(|(i, j)| grid.endpoint(i, j, Endpoint::X))
 }
 
 /// The far end of the cut that ends at this endpoint of C_ij.
 fn main_end(grid: Grid, i: usize, j: usize, endpoint: Endpoint) -> usize {
-    // South of a horizontal and west of a vertical cut the main cut ends in its B, so its far end is
-    // A; north and east it is the reverse.
+    // South of a horizontal and west of a vertical cut the main cut ends in its B, so its far end
+    // is A; north and east it is the reverse.
     let (i, j, far) = match (Grid::horizontal(i, j), endpoint) {
         (true, Endpoint::X) => (i, j - 1, 0),
         (true, Endpoint::XPrime) => (i, j + 1, 1),

@@ -14,8 +14,8 @@ use serde::Serialize;
 pub struct Validity {
     /// mm^2
     pub least_panel_area: f64,
-    /// Sum of the panel areas minus the outline's area, relative to the latter: the sheet has neither gap nor
-    /// overlap if both this and `overlap` vanish.
+    /// Sum of the panel areas minus the outline's area, relative to the latter: the sheet has
+    /// neither gap nor overlap if both this and `overlap` vanish.
     pub area_error: f64,
     /// Maximum common area of two panels, relative to the mean panel area.
     pub overlap: f64,
@@ -25,11 +25,13 @@ pub struct Validity {
     pub least_hinge_spacing: f64,
     /// mm
     pub r_win: f64,
-    /// Number of hinges closer than 2 r_win, the space of two windows, to another hinge of their panels.
+    /// Number of hinges closer than 2 r_win, the space of two windows, to another hinge of their
+    /// panels.
     pub crowded_hinges: usize,
     /// Minimum and maximum cut angle (deg).
     pub alpha_deg: [f64; 2],
-    /// Range of cut angles that the hinge law was trained on (deg); `None` for a law without training.
+    /// Range of cut angles that the hinge law was trained on (deg); `None` for a law without
+    /// training.
     pub trained_alpha_deg: Option<[f64; 2]>,
     /// Number of hinges whose cut angle or ligament width is outside the training range of the law.
     pub untrained_hinges: usize,
@@ -45,11 +47,7 @@ impl Validity {
         let r_win = sheet.options.process.r_win;
         let untrained = |domain: &TrainingDomain| {
             let trained = |design: &&HingeDesign| domain.has_ligament(design);
-            sheet
-                .designs()
-                .iter()
-                .filter(|design| !trained(design))
-                .count()
+            sheet.designs().iter().filter(|design| !trained(design)).count()
         };
         let flat = vec![[0.0; 3]; sheet.panels.len()];
         Self {
@@ -74,8 +72,8 @@ impl Validity {
 /// [`overlap`] from which panels lie over each other: more than a kerf and rounding leave.
 pub const OVERLAP: f64 = 0.01;
 
-/// The maximum common area of two neighbouring panels in a configuration, relative to the mean panel
-/// area. Panels that do not even share a corner are not compared.
+/// The maximum common area of two neighbouring panels in a configuration, relative to the mean
+/// panel area. Panels that do not even share a corner are not compared.
 pub fn overlap(sheet: &Sheet, configuration: &[[f64; 3]]) -> f64 {
     let mean = sheet.outline.area() / sheet.panels.len() as f64;
     let Grid { m, n } = sheet.grid;

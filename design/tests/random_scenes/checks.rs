@@ -11,7 +11,8 @@ use std::sync::atomic::AtomicBool;
 
 /// Unbalanced force of an equilibrium by the full matrices, relative to the largest force.
 const BALANCED: f64 = 1e-8;
-/// Part of the highest eigenvalue by which the lowest may be negative: rounding of the full matrices.
+/// Part of the highest eigenvalue by which the lowest may be negative: rounding of the full
+/// matrices.
 const ROUNDING: f64 = 1e-12;
 /// Difference of two configurations of the same sheet (rad, or panel sizes).
 const SAME: f64 = 1e-6;
@@ -20,7 +21,8 @@ const SAME_LOSS: f64 = 1e-8;
 /// Sheets up to this number of hinges are searched for a better design, one in four.
 const SEARCHED: usize = 17;
 
-/// What was found at a sheet: its place in the table, its words, and whether it contradicts what the software promises.
+/// What was found at a sheet: its place in the table, its words, and whether it contradicts what
+/// the software promises.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Finding(u8, pub &'static str, pub bool);
 
@@ -46,32 +48,17 @@ impl Finding {
     const SIMILAR_AFTER_JUMP: Self =
         Self(17, "similar sheet deploys otherwise after a jump", false);
     const LOAD_STEPS: Self = Self(18, "another number of load steps, another state", true);
-    const LOAD_STEPS_AFTER_JUMP: Self = Self(
-        19,
-        "another number of load steps, another state after a jump",
-        false,
-    );
-    const OTHER_LOSS: Self = Self(
-        20,
-        "corrected path with the followed states and another loss",
-        true,
-    );
-    const OTHER_ARM: Self = Self(
-        21,
-        "corrected path with other stable states, without a jump",
-        false,
-    );
-    const OTHER_LOSS_AFTER_JUMP: Self = Self(
-        22,
-        "corrected path with another loss, followed path with a jump",
-        false,
-    );
+    const LOAD_STEPS_AFTER_JUMP: Self =
+        Self(19, "another number of load steps, another state after a jump", false);
+    const OTHER_LOSS: Self =
+        Self(20, "corrected path with the followed states and another loss", true);
+    const OTHER_ARM: Self =
+        Self(21, "corrected path with other stable states, without a jump", false);
+    const OTHER_LOSS_AFTER_JUMP: Self =
+        Self(22, "corrected path with another loss, followed path with a jump", false);
     const WORSE_THAN_START: Self = Self(23, "search ends above its start", true);
-    const FALSE_BEST: Self = Self(
-        24,
-        "a step of a search below its best design, and no warning",
-        true,
-    );
+    const FALSE_BEST: Self =
+        Self(24, "a step of a search below its best design, and no warning", true);
 }
 
 /// What was found, and the details of each.
@@ -204,8 +191,8 @@ fn distance(found: &[[f64; 3]], expected: &[[f64; 3]], size: f64) -> f64 {
     apart.fold(0.0, f64::max)
 }
 
-/// The loss of a design close to the drawn one, with its path corrected from the path of the drawn one and followed from the flat
-/// sheet.
+/// The loss of a design close to the drawn one, with its path corrected from the path of the drawn
+/// one and followed from the flat sheet.
 fn corrected(
     drawn: &Drawn,
     problem: &DesignProblem,
@@ -247,7 +234,8 @@ fn corrected(
     }
 }
 
-/// A short search: its best design is not worse than its start and has the loss of its followed path.
+/// A short search: its best design is not worse than its start and has the loss of its followed
+/// path.
 fn searched(
     drawn: &Drawn,
     problem: &DesignProblem,
@@ -274,9 +262,6 @@ fn searched(
         add(Finding::WORSE_THAN_START, details);
     }
     if !state.branch_mismatch() && best > least * (1.0 + SAME_LOSS) {
-        add(
-            Finding::FALSE_BEST,
-            format!("{least}, {best} when followed"),
-        );
+        add(Finding::FALSE_BEST, format!("{least}, {best} when followed"));
     }
 }

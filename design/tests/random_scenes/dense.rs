@@ -1,7 +1,8 @@
-//! Forces and tangent of a sheet from the definitions, with full matrices: the equations of the solver written a second
-//! time, for small sheets.
+//! Forces and tangent of a sheet from the definitions, with full matrices: the equations of the
+//! solver written a second time, for small sheets.
 //!
-//! Let x(O) be the deployed position of the attachment point O on either panel. The hinge deformation (8) is
+//! Let x(O) be the deployed position of the attachment point O on either panel. The hinge
+//! deformation (8) is
 //!
 //! ```text
 //! a + i s = e^(-i(beta + phibar)) (x_B(O) - x_A(O)),     theta = phi_B - phi_A
@@ -24,7 +25,8 @@ pub struct DenseCheck {
     pub residual: f64,
     /// The part of it that the rounding of the deformations can cause.
     pub rounding: f64,
-    /// Lowest eigenvalue of the tangent of the free motions, scaled to a unit diagonal and divided by the highest one.
+    /// Lowest eigenvalue of the tangent of the free motions, scaled to a unit diagonal and divided
+    /// by the highest one.
     pub lowest: f64,
 }
 
@@ -32,7 +34,8 @@ fn complex([x, y]: [f64; 2]) -> c64 {
     c64::new(x, y)
 }
 
-/// The deformation (a, s, theta) of a hinge with its first and second derivatives in the six motions of its panels.
+/// The deformation (a, s, theta) of a hinge with its first and second derivatives in the six
+/// motions of its panels.
 type Deformation = ([f64; 3], [[f64; 6]; 3], [[[f64; 6]; 6]; 3]);
 
 fn deformation(sheet: &Sheet, hinge: usize, configuration: &[[f64; 3]]) -> Deformation {
@@ -85,9 +88,8 @@ impl DenseCheck {
     ) -> Self {
         let panels = sheet.panels.len();
         let hinges = 0..sheet.hinges.len();
-        let motions: Vec<Deformation> = hinges
-            .map(|h| deformation(sheet, h, &step.configuration))
-            .collect();
+        let motions: Vec<Deformation> =
+            hinges.map(|h| deformation(sheet, h, &step.configuration)).collect();
         let deformations: Vec<HingeDeformation> =
             motions.iter().map(|(value, ..)| (*value).into()).collect();
         let mechanics = problem.model.mechanics().unwrap();
@@ -174,20 +176,17 @@ fn extent(sheet: &Sheet, step: &LoadStep) -> f64 {
     flat.chain(moved).map(f64::abs).fold(0.0, f64::max)
 }
 
-/// The lowest eigenvalue of a tangent over the free motions, orthogonal to the stroke if that is held.
+/// The lowest eigenvalue of a tangent over the free motions, orthogonal to the stroke if that is
+/// held.
 fn lowest(stiffness: &Mat<f64>, free: &[usize], stroke: Option<Vec<f64>>) -> f64 {
     let n = free.len();
     let diagonal = free.iter().map(|&d| stiffness[(d, d)].abs());
     let scale = diagonal.map(|k: f64| k.max(f64::MIN_POSITIVE).sqrt().recip());
     let scale: Vec<f64> = scale.collect();
-    let mut scaled = Mat::from_fn(n, n, |i, j| {
-        scale[i] * scale[j] * stiffness[(free[i], free[j])]
-    });
+    let mut scaled = Mat::from_fn(n, n, |i, j| scale[i] * scale[j] * stiffness[(free[i], free[j])]);
     if let Some(stroke) = stroke {
         // A reflection turns the scaled stroke into the first coordinate, which is then left out.
-        let mut normal: Vec<f64> = std::iter::zip(&stroke, &scale)
-            .map(|(c, s)| c * s)
-            .collect();
+        let mut normal: Vec<f64> = std::iter::zip(&stroke, &scale).map(|(c, s)| c * s).collect();
         let norm = |x: &[f64]| x.iter().map(|x| x * x).sum::<f64>().sqrt();
         normal[0] += norm(&normal).copysign(normal[0]);
         let length = norm(&normal);

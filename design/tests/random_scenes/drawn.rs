@@ -1,4 +1,5 @@
-//! A random sheet with its hinges, supports, loads and drive, its mirror image and its similar sheets.
+//! A random sheet with its hinges, supports, loads and drive, its mirror image and its similar
+//! sheets.
 
 use design::equilibrium::settings::SolverSettings;
 use design::equilibrium::solver::EquilibriumSolver;
@@ -38,8 +39,8 @@ pub enum DrawnLaw {
     Learned(usize, f64),
 }
 
-/// Power of ten by which the constants of a linear law differ at most, with the millimetre as unit: constants of sheets, and
-/// extreme ones.
+/// Power of ten by which the constants of a linear law differ at most, with the millimetre as unit:
+/// constants of sheets, and extreme ones.
 const EXPONENTS: [f64; 2] = [2.0, 8.0];
 
 #[derive(Clone, Debug)]
@@ -79,10 +80,7 @@ impl fmt::Display for Drawn {
             (self.contact.is_some(), "contact"),
             (self.stroke.is_some(), "stroke"),
             (self.weight != [0.0; 2], "weight"),
-            (
-                self.supports.iter().any(|support| support.value != 0.0),
-                "moved support",
-            ),
+            (self.supports.iter().any(|support| support.value != 0.0), "moved support"),
         ];
         (kinds.iter().filter(|(has, _)| *has)).try_for_each(|(_, kind)| write!(f, ", {kind}"))
     }
@@ -205,12 +203,10 @@ impl Drawn {
 
     fn law(&self) -> Arc<dyn HingeLaw> {
         match &self.law {
-            DrawnLaw::Linear(stiffness) => Arc::new(LinearLaw {
-                stiffness: stiffness.clone(),
-            }),
-            DrawnLaw::Learned(network, factor) => Arc::new(SurrogateLaw {
-                surrogate: NETWORKS[*network].clone().scaled(*factor),
-            }),
+            DrawnLaw::Linear(stiffness) => Arc::new(LinearLaw { stiffness: stiffness.clone() }),
+            DrawnLaw::Learned(network, factor) => {
+                Arc::new(SurrogateLaw { surrogate: NETWORKS[*network].clone().scaled(*factor) })
+            }
         }
     }
 
@@ -224,9 +220,7 @@ impl Drawn {
             Some(stroke) => solver.driven(stroke).unwrap(),
             None => solver,
         };
-        let contact = self
-            .contact
-            .map(|[k, wall, cut]| Contact::new(k, wall, cut));
+        let contact = self.contact.map(|[k, wall, cut]| Contact::new(k, wall, cut));
         let corners = self.outline.corners;
         let centre = [0, 1].map(|d| 0.25 * corners.iter().map(|corner| corner[d]).sum::<f64>());
         let radii = [0.6, 0.5].map(|ratio| ratio * self.outline.size());
@@ -238,10 +232,7 @@ impl Drawn {
             grid: self.grid,
             outline: self.outline,
             widths: self.chart(),
-            options: SheetOptions {
-                hinge_point: self.hinge_point,
-                process: self.process.into(),
-            },
+            options: SheetOptions { hinge_point: self.hinge_point, process: self.process.into() },
             model: Model::Equilibrium(Box::new(Mechanics {
                 law: self.law(),
                 release: None,
@@ -256,7 +247,8 @@ impl Drawn {
         }
     }
 
-    /// All lengths times `factor`, the thickness of learned hinges included; forces so that the sheet opens alike.
+    /// All lengths times `factor`, the thickness of learned hinges included; forces so that the
+    /// sheet opens alike.
     pub fn similar(&self, factor: f64) -> Self {
         let mut other = self.clone();
         let energy = match &mut other.law {
@@ -291,8 +283,9 @@ impl Drawn {
         other
     }
 
-    /// The image of (x, y) -> (-x, y), and for each of its panels the panel of this sheet. `None` if horizontal cuts
-    /// become vertical, and for learned laws, which have the symmetry by training alone.
+    /// The image of (x, y) -> (-x, y), and for each of its panels the panel of this sheet. `None`
+    /// if horizontal cuts become vertical, and for learned laws, which have the symmetry by
+    /// training alone.
     pub fn mirrored(&self) -> Option<(Self, Vec<usize>)> {
         let Grid { m, n } = self.grid;
         if m % 2 == 1 || matches!(self.law, DrawnLaw::Learned(..)) {
@@ -305,9 +298,8 @@ impl Drawn {
         let reversed = |values: &[f64]| values.iter().rev().copied().collect::<Vec<f64>>();
         let [bottom, right, top, left] = &self.pattern.ell;
         // The sides of every cut are exchanged: r becomes 1 - r.
-        other.pattern.z = (self.pattern.z.chunks(m - 1))
-            .flat_map(|row| row.iter().rev().map(|z| -z))
-            .collect();
+        other.pattern.z =
+            (self.pattern.z.chunks(m - 1)).flat_map(|row| row.iter().rev().map(|z| -z)).collect();
         other.pattern.ell = [reversed(bottom), left.clone(), reversed(top), right.clone()];
         let sites = hinge_sites(self.grid);
         let hinges = sites.iter().map(|site| {

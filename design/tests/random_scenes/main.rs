@@ -1,9 +1,10 @@
-//! Random sheets: sizes, hinge laws, supports, loads, drives, contacts, weight and ratios of stiffness from common to
-//! extreme. Every equilibrium is checked by full matrices written independently of the solver; the mirror image, a sheet of half the size
-//! and other load steps must deploy alike; corrected paths and searches must have the loss of the followed path.
+//! Random sheets: sizes, hinge laws, supports, loads, drives, contacts, weight and ratios of
+//! stiffness from common to extreme. Every equilibrium is checked by full matrices written
+//! independently of the solver; the mirror image, a sheet of half the size and other load steps
+//! must deploy alike; corrected paths and searches must have the loss of the followed path.
 //!
-//! `RUNS=n` draws n sheets instead of the few of every day, `FIRST=k` begins with the seed k, and a table is printed with
-//! `--nocapture`. The findings at a sheet are repeated by `FIRST=k RUNS=1`.
+//! `RUNS=n` draws n sheets instead of the few of every day, `FIRST=k` begins with the seed k, and a
+//! table is printed with `--nocapture`. The findings at a sheet are repeated by `FIRST=k RUNS=1`.
 
 mod checks;
 mod dense;
@@ -19,8 +20,8 @@ use std::time::Instant;
 
 /// The sheets of every day.
 const FEW: u64 = 300;
-/// Sheets whose paths once went to and fro between the same states, ended for want of increments or depended on the
-/// load steps.
+/// Sheets whose paths once went to and fro between the same states, ended for want of increments or
+/// depended on the load steps.
 const KNOWN: [u64; 7] = [832, 904, 1464, 12066, 16370, 16551, 19709];
 /// Time from which a sheet is named (s).
 const LONG: f64 = 20.0;

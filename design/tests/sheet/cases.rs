@@ -5,21 +5,13 @@ use serde::de::DeserializeOwned;
 use serde_json::Value;
 
 /// Hinge constants that a sheet needs besides w_lig and alpha; no case depends on them.
-pub const PROCESS: CuttingProcess = CuttingProcess {
-    hole: Hole::Ratio(0.16),
-    kerf: 0.2,
-    r_win: 100.0,
-};
+pub const PROCESS: CuttingProcess =
+    CuttingProcess { hole: Hole::Ratio(0.16), kerf: 0.2, r_win: 100.0 };
 
-pub const AT_CORNER: SheetOptions = SheetOptions {
-    hinge_point: HingePoint::Corner,
-    process: PROCESS,
-};
+pub const AT_CORNER: SheetOptions =
+    SheetOptions { hinge_point: HingePoint::Corner, process: PROCESS };
 
-pub const AT_TIP: SheetOptions = SheetOptions {
-    hinge_point: HingePoint::CutTip,
-    process: PROCESS,
-};
+pub const AT_TIP: SheetOptions = SheetOptions { hinge_point: HingePoint::CutTip, process: PROCESS };
 
 pub fn case(name: &str) -> Value {
     let path = format!("{}/tests/cases/{name}.json", env!("CARGO_MANIFEST_DIR"));
@@ -32,23 +24,15 @@ pub fn get<T: DeserializeOwned>(value: &Value, key: &str) -> T {
 }
 
 pub fn grid(case: &Value) -> Grid {
-    Grid {
-        m: get(case, "M"),
-        n: get(case, "N"),
-    }
+    Grid { m: get(case, "M"), n: get(case, "N") }
 }
 
 pub fn outline(case: &Value) -> Outline {
-    Outline {
-        corners: get(case, "outline_corners"),
-    }
+    Outline { corners: get(case, "outline_corners") }
 }
 
 pub fn coordinates(case: &Value) -> PatternCoordinates {
-    PatternCoordinates {
-        z: get(case, "z"),
-        ell: get(case, "ell"),
-    }
+    PatternCoordinates { z: get(case, "z"), ell: get(case, "ell") }
 }
 
 pub fn pattern(case: &Value) -> CutPattern {
@@ -74,10 +58,7 @@ fn by_panel(case: &Value, key: &str) -> Vec<(usize, Dof, f64)> {
 
 pub fn supports(case: &Value) -> Vec<Support> {
     let to_support = |(panel, dof, value)| support(panel, dof, value);
-    by_panel(case, "supports")
-        .into_iter()
-        .map(to_support)
-        .collect()
+    by_panel(case, "supports").into_iter().map(to_support).collect()
 }
 
 pub fn loads(case: &Value) -> Vec<Load> {

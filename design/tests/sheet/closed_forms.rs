@@ -34,7 +34,8 @@ fn moments_in_balance_open_any_pattern_ideally() {
                 assert!(deformation.a.abs().max(deformation.s.abs()) < 1e-9);
                 assert_close(deformation.theta, step.load_factor * theta, 1e-9);
             }
-            // An error of the opening by 1e-9 changes the energy of every hinge by M_theta times that.
+            // An error of the opening by 1e-9 changes the energy of every hinge by M_theta times
+            // that.
             let hinges = sheet.hinges.len() as f64;
             let stored = 0.5 * k_theta * (step.load_factor * theta).powi(2);
             let total: f64 = step.energies.iter().sum();

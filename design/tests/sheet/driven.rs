@@ -65,9 +65,10 @@ fn the_stiffness_is_the_slope_of_the_load_over_its_stroke() {
     }
 }
 
-/// Hinges of W = theta^2 (theta - 1)^2 soften beyond 0.21 rad, one after the other. Under displacement control the
-/// path is followed where the load decreases, and the stored energy equals the work of the loads. At 97 % of the stroke
-/// a hinge snaps by 0.14 rad although the stroke is prescribed, and 1.2e-3 N mm are lost.
+/// Hinges of W = theta^2 (theta - 1)^2 soften beyond 0.21 rad, one after the other. Under
+/// displacement control the path is followed where the load decreases, and the stored energy equals
+/// the work of the loads. At 97 % of the stroke a hinge snaps by 0.14 rad although the stroke is
+/// prescribed, and 1.2e-3 N mm are lost.
 #[test]
 fn a_snapping_sheet_is_followed_beyond_its_maximum_load() {
     let sheet = sheet_of("p1_3x3_random");
@@ -91,8 +92,8 @@ fn a_snapping_sheet_is_followed_beyond_its_maximum_load() {
     assert_eq!(jumps, [58]);
 }
 
-/// A spring of 1 N mm/rad with a bump: its moment has maxima of 0.218 and 0.406 N mm. At both loads the sheet jumps, by
-/// less than 0.1 rad.
+/// A spring of 1 N mm/rad with a bump: its moment has maxima of 0.218 and 0.406 N mm. At both loads
+/// the sheet jumps, by less than 0.1 rad.
 #[test]
 fn small_jumps_are_reported() {
     fn bumpy(theta: f64) -> [f64; 3] {

@@ -10,9 +10,7 @@ fn a_clamped_and_pulled_sheet() {
     let [k_a, k_s, k_theta]: [Vec<f64>; 3] = ["k_a", "k_s", "k_theta"].map(|key| get(&case, key));
     let hinges = 0..sheet.hinges.len();
     let stiffness: Vec<[f64; 3]> = hinges.map(|h| [k_a[h], k_s[h], k_theta[h]]).collect();
-    let law = LinearLaw {
-        stiffness: stiffness.clone(),
-    };
+    let law = LinearLaw { stiffness: stiffness.clone() };
     let (supports, loads) = (cases::supports(&case), cases::loads(&case));
     let path = path(&sheet, &law, &supports, &loads, get(&case, "nsteps"));
 

@@ -1,5 +1,5 @@
-//! A term, a hinge law and an actuation that the library does not contain, each in thirty lines at most, and the gradient of all
-//! three together.
+//! A term, a hinge law and an actuation that the library does not contain, each in thirty lines at
+//! most, and the gradient of all three together.
 
 use crate::prelude::*;
 use crate::taylor::{GRID, assert_order_two, problem, start};
@@ -19,11 +19,7 @@ impl Term for Spread {
         let count = at.outline.len() as f64;
         let slopes = at.outline.iter().map(|p| p.map(|x| 2.0 * x / count));
         gradient.add_by_outline(weight, &slopes.collect::<Vec<_>>());
-        at.outline
-            .as_flattened()
-            .iter()
-            .map(|x| x * x / count)
-            .sum()
+        at.outline.as_flattened().iter().map(|x| x * x / count).sum()
     }
 }
 
@@ -35,9 +31,7 @@ const M: f64 = 30.0;
 
 impl HingeLaw for Stiffening {
     fn prepare<'a>(&'a self, designs: &[HingeDesign]) -> Box<dyn PreparedLaw + 'a> {
-        Box::new(Prepared(
-            designs.iter().map(|design| design.w_lig).collect(),
-        ))
+        Box::new(Prepared(designs.iter().map(|design| design.w_lig).collect()))
     }
 }
 
@@ -79,9 +73,6 @@ fn pulled_apart(force: f64) -> EquilibriumSolver {
 #[test]
 fn a_new_term_law_and_actuation_have_an_exact_gradient() {
     let mut problem = problem(mechanics(Stiffening, pulled_apart(1.0)), HingePoint::CutTip);
-    problem
-        .objective
-        .functionals
-        .push(Weighted::new(0.3, Spread));
+    problem.objective.functionals.push(Weighted::new(0.3, Spread));
     assert_order_two(&problem, &start());
 }

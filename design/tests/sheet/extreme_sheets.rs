@@ -20,7 +20,8 @@ fn ten_thousand_panels_find_their_equilibrium() {
     assert!(converged(&path));
 }
 
-/// Cuts that almost collide define a sheet or give an error; the sheet has equilibria or reports that it has not.
+/// Cuts that almost collide define a sheet or give an error; the sheet has equilibria or reports
+/// that it has not.
 #[test]
 fn r_and_tau_close_to_their_limits_make_a_sheet_or_an_error() {
     let mut random = Random::new(31);
@@ -55,8 +56,9 @@ fn r_and_tau_close_to_their_limits_make_a_sheet_or_an_error() {
     assert!(cut > 3 && refused > 3, "{cut} {refused}");
 }
 
-/// The opening moments do work on the mechanism alone: through its dead centre at 90 degrees, where a
-/// uniform sheet is longest, and beyond, where it becomes shorter again; for any ratio of stiffnesses.
+/// The opening moments do work on the mechanism alone: through its dead centre at 90 degrees, where
+/// a uniform sheet is longest, and beyond, where it becomes shorter again; for any ratio of
+/// stiffnesses.
 #[test]
 fn loads_along_the_mechanism_pass_its_dead_centre() {
     let sheet = sheet_of("p0_3x3_uniform");
@@ -92,8 +94,8 @@ fn a_sheet_pulled_past_its_maximum_stretch_stiffens() {
     assert_ratio(loaded[11].configuration[5][0], stroke, 1e-7);
 }
 
-/// A learned energy loses its digits at small deformations and leaves its domain at large ones: neither
-/// leads to a false equilibrium.
+/// A learned energy loses its digits at small deformations and leaves its domain at large ones:
+/// neither leads to a false equilibrium.
 #[test]
 fn a_learned_sheet_has_a_status_under_loads_of_any_size() {
     let outline = Outline::rectangle(SIDE, SIDE);
@@ -137,7 +139,8 @@ fn a_sheet_without_a_finite_energy_has_no_path() {
     assert_finite(&path);
 }
 
-/// Beyond the limit point of the load the tangent under displacement control is indefinite; the gradient is exact.
+/// Beyond the limit point of the load the tangent under displacement control is indefinite; the
+/// gradient is exact.
 #[test]
 fn the_gradient_is_exact_where_the_tangent_is_indefinite() {
     let design = start();

@@ -35,11 +35,7 @@ pub fn spring(k: f64, x: f64) -> [f64; 3] {
 /// k_a a^2/2 + k_s s^2/2 + any function of theta with two derivatives.
 pub fn rotational(turned: fn(f64) -> [f64; 3]) -> impl HingeLaw {
     Uncoupled(move |eps: HingeDeformation| {
-        [
-            spring(100.0, eps.a),
-            spring(100.0, eps.s),
-            turned(eps.theta),
-        ]
+        [spring(100.0, eps.a), spring(100.0, eps.s), turned(eps.theta)]
     })
 }
 
@@ -112,7 +108,8 @@ fn contact_carries_a_load_that_closes_the_sheet() {
     }
 }
 
-/// A learned energy is a small difference of larger numbers: its forces are accurate, its value is not.
+/// A learned energy is a small difference of larger numbers: its forces are accurate, its value is
+/// not.
 #[test]
 fn an_energy_with_few_digits_converges_by_its_forces() {
     let law = rotational(|theta| [(0.5 * theta * theta + 1.0) - 1.0, theta, 1.0]);
@@ -129,11 +126,7 @@ fn an_unstable_flat_sheet_is_left_for_a_minimum() {
     let law = rotational(|theta| {
         let rest: f64 = 0.8 * 0.8;
         let square = theta * theta;
-        [
-            0.25 * square * square - 0.5 * rest * square,
-            theta * (square - rest),
-            3.0 * square - rest,
-        ]
+        [0.25 * square * square - 0.5 * rest * square, theta * (square - rest), 3.0 * square - rest]
     });
     let sheet = sheet_of("p0_3x3_uniform");
     let path = path(&sheet, &law, &clamp(4), &[], 2);
@@ -195,8 +188,8 @@ fn a_sheet_supported_everywhere_stays_at_its_supports() {
     assert_finite(&path);
 }
 
-/// A square and the same square turned by 45 degrees, where panels 1 and 3 have the same height and panels 1 and 4 have
-/// not.
+/// A square and the same square turned by 45 degrees, where panels 1 and 3 have the same height and
+/// panels 1 and 4 have not.
 #[test]
 fn supports_are_judged_by_the_places_of_the_panels() {
     let sheet = |corners| {
@@ -210,10 +203,7 @@ fn supports_are_judged_by_the_places_of_the_panels() {
         let supports = (supports.iter()).map(|&(panel, dof)| support(panel, dof, 0.0));
         let solver = solver(sheet.grid, &supports.collect::<Vec<_>>(), &[], 1);
         let checked = solver.check_supports(sheet);
-        assert!(matches!(
-            checked,
-            Ok(()) | Err(EquilibriumError::Unsupported)
-        ));
+        assert!(matches!(checked, Ok(()) | Err(EquilibriumError::Unsupported)));
         checked.is_ok()
     };
     let two_along_x = |other| [(1, Dof::UX), (other, Dof::UX), (0, Dof::UY)];
@@ -344,8 +334,8 @@ fn shoelace(corners: &[[f64; 2]; 4]) -> f64 {
         .sum()
 }
 
-/// Springs that are soft in rotation and stiff in translation open under a thousandth of the load and lock; there the
-/// path turns by nearly a right angle.
+/// Springs that are soft in rotation and stiff in translation open under a thousandth of the load
+/// and lock; there the path turns by nearly a right angle.
 #[test]
 fn a_path_goes_on_where_hinges_lock() {
     let scene = scene("linear-7x7.toml", |config| {

@@ -1,4 +1,5 @@
-//! The response of an equilibrium to errors of its hinge forces: against equilibria with a law that has them, and in closed form.
+//! The response of an equilibrium to errors of its hinge forces: against equilibria with a law that
+//! has them, and in closed form.
 
 use crate::prelude::*;
 use design::equilibrium::force_response::{ForceResponse, Response};
@@ -19,7 +20,8 @@ fn whole_load(problem: &DesignProblem, deployment: &Deployment) -> f64 {
     curve.points.last().unwrap()[1]
 }
 
-/// Deploys the start design of a scene with the forces of its law changed by `size` times `errors` in the states of `at`.
+/// Deploys the start design of a scene with the forces of its law changed by `size` times `errors`
+/// in the states of `at`.
 fn with_errors(
     scene: &Scene,
     at: &Deployment,
@@ -30,17 +32,13 @@ fn with_errors(
     let states = &at.final_step().deformations;
     let designs = at.sheet.designs();
     let corrections = (0..designs.len()).map(|h| {
-        let missing = MissingForces {
-            state: states[h],
-            forces: errors[h].map(|force| size * force),
-        };
+        let missing =
+            MissingForces { state: states[h], forces: errors[h].map(|force| size * force) };
         Correction::new(&designs[h], &[missing])
     });
     let mechanics = mechanics_of(&mut problem.model);
-    mechanics.law = Arc::new(CorrectedLaw {
-        law: mechanics.law.clone(),
-        corrections: corrections.collect(),
-    });
+    mechanics.law =
+        Arc::new(CorrectedLaw { law: mechanics.law.clone(), corrections: corrections.collect() });
     let deployment = problem.deploy(&scene.start()).unwrap();
     deployment.at_full_load().unwrap();
     (problem, deployment)
@@ -56,7 +54,8 @@ fn response(problem: &DesignProblem, deployment: &Deployment, errors: &[[f64; 3]
     response.to(&errors).unwrap()
 }
 
-/// Orders of the remainders of motions and load. The errors are small: the correction by which the law has them is curved.
+/// Orders of the remainders of motions and load. The errors are small: the correction by which the
+/// law has them is curved.
 fn orders(scene: &Scene) -> [Option<f64>; 2] {
     let problem = scene.problem().unwrap();
     let deployment = problem.deploy(&scene.start()).unwrap();
@@ -118,7 +117,8 @@ fn the_response_is_exact_to_first_order() {
     }
 }
 
-/// All forces stronger by a fraction move no panel under a prescribed stroke, which takes more load by the fraction.
+/// All forces stronger by a fraction move no panel under a prescribed stroke, which takes more load
+/// by the fraction.
 #[test]
 fn a_stiffer_law_moves_nothing_under_a_prescribed_stroke() {
     let scene = film(|_| ());

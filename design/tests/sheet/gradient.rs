@@ -1,5 +1,5 @@
-//! Objective and gradient against an independent implementation with the Chamfer distance of the paper: of all corners on the
-//! outline, to the samples of the target.
+//! Objective and gradient against an independent implementation with the Chamfer distance of the
+//! paper: of all corners on the outline, to the samples of the target.
 
 use crate::cases;
 use crate::prelude::*;
@@ -39,19 +39,10 @@ fn functionals(case: &Value) -> Vec<Weighted> {
     let weight = |name: &str| get(&case["weights"], name);
     let temperature = |name: &str| get(&case["softmax_temperature"], name);
     let [compression, shear] = ["comp", "shear"].map(temperature);
-    let damage = Damage {
-        measure: DamageMeasure::Mean,
-        scale: 1.0,
-        temperature: 0.1,
-    };
+    let damage = Damage { measure: DamageMeasure::Mean, scale: 1.0, temperature: 0.1 };
     vec![
         Weighted::new(weight("damage"), damage),
-        Weighted::new(
-            weight("comp"),
-            Compression {
-                temperature: compression,
-            },
-        ),
+        Weighted::new(weight("comp"), Compression { temperature: compression }),
         Weighted::new(weight("shear"), Shear { temperature: shear }),
     ]
 }

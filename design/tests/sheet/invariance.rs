@@ -1,5 +1,5 @@
-//! Invariances of a sheet: units, orientation, mirror image; and conservation of energy: the hinges store
-//! the work of the loads.
+//! Invariances of a sheet: units, orientation, mirror image; and conservation of energy: the hinges
+//! store the work of the loads.
 
 use crate::cases;
 use crate::prelude::*;
@@ -10,10 +10,7 @@ use std::f64::consts::PI;
 fn on(corners: [[f64; 2]; 4], w_lig: f64, hinge_point: HingePoint, kerf: f64) -> Sheet {
     let coordinates = coordinates(&case("p1_3x3_random"));
     let (grid, outline) = (Grid { m: 3, n: 3 }, Outline { corners });
-    let options = SheetOptions {
-        hinge_point,
-        process: CuttingProcess { kerf, ..PROCESS },
-    };
+    let options = SheetOptions { hinge_point, process: CuttingProcess { kerf, ..PROCESS } };
     cut(grid, outline, &coordinates, w_lig, options)
 }
 
@@ -49,10 +46,7 @@ fn another_unit_of_length_or_force_gives_the_same_shape() {
         assert!(converged(&path));
         let last = path[4].configuration.iter();
         let scaled = last.map(|[x, y, phi]| [x / length, y / length, *phi]);
-        (
-            scaled.collect::<Vec<_>>(),
-            path[4].potential / (force * length),
-        )
+        (scaled.collect::<Vec<_>>(), path[4].potential / (force * length))
     };
     let (expected, potential) = deployed(1.0, 1.0);
     // From metres to millimetres and back, from newtons to kilonewtons and to micronewtons.
@@ -66,10 +60,8 @@ fn another_unit_of_length_or_force_gives_the_same_shape() {
 #[test]
 fn a_scene_rotated_as_a_whole_deploys_alike() {
     let square = Outline::rectangle(300.0, 300.0);
-    let laws: [(&dyn HingeLaw, HingePoint, f64); 2] = [
-        (&springs(), HingePoint::Corner, 12.0),
-        (&tiny(), HingePoint::CutTip, 1.0),
-    ];
+    let laws: [(&dyn HingeLaw, HingePoint, f64); 2] =
+        [(&springs(), HingePoint::Corner, 12.0), (&tiny(), HingePoint::CutTip, 1.0)];
     for (law, hinge_point, force) in laws {
         let deployed = |angle: f64| {
             let corners = square.corners.map(|corner| turned(corner, angle));
@@ -91,8 +83,9 @@ fn a_scene_rotated_as_a_whole_deploys_alike() {
     }
 }
 
-/// (x, y) -> (-x, y) exchanges the sides of every cut: r becomes 1 - r, and the edges left and right are
-/// exchanged. A hinge keeps theta and a, changes the sign of s, and has alpha on the other side.
+/// (x, y) -> (-x, y) exchanges the sides of every cut: r becomes 1 - r, and the edges left and
+/// right are exchanged. A hinge keeps theta and a, changes the sign of s, and has alpha on the
+/// other side.
 #[test]
 fn a_mirrored_sheet_deploys_as_the_mirror_image() {
     let grid = Grid { m: 4, n: 3 };
@@ -104,9 +97,7 @@ fn a_mirrored_sheet_deploys_as_the_mirror_image() {
     let reversed = |values: &[f64]| values.iter().rev().copied().collect::<Vec<f64>>();
     let [bottom, right, top, left] = &drawn.ell;
     let mirrored = PatternCoordinates {
-        z: (drawn.z.chunks(grid.m - 1))
-            .flat_map(|row| row.iter().rev().map(|z| -z))
-            .collect(),
+        z: (drawn.z.chunks(grid.m - 1)).flat_map(|row| row.iter().rev().map(|z| -z)).collect(),
         ell: [reversed(bottom), left.clone(), reversed(top), right.clone()],
     };
     let mut springs = || SPRINGS.map(|k| k * (1.0 + random.number(0.3)));
@@ -134,9 +125,7 @@ fn a_mirrored_sheet_deploys_as_the_mirror_image() {
     let mirrored_stiffness = images.iter().map(|&image| stiffness[image]).collect();
     let deployed = |sheet: &Sheet, stiffness: Vec<[f64; 3]>, [held, loaded]: [usize; 2], side| {
         let forces = std::iter::zip(Dof::ALL, [side * 1.2, 0.4, side * 0.1]);
-        let loads: Vec<Load> = forces
-            .map(|(dof, value)| load(loaded, dof, value))
-            .collect();
+        let loads: Vec<Load> = forces.map(|(dof, value)| load(loaded, dof, value)).collect();
         let law = LinearLaw { stiffness };
         path(sheet, &law, &clamp(held), &loads, 4)
     };
@@ -157,8 +146,8 @@ fn a_mirrored_sheet_deploys_as_the_mirror_image() {
     }
 }
 
-/// Integrated by parts, the work of the loads along the path is zeta f . q at its end minus the integral of
-/// f . q over zeta, computed by Simpson's rule.
+/// Integrated by parts, the work of the loads along the path is zeta f . q at its end minus the
+/// integral of f . q over zeta, computed by Simpson's rule.
 #[test]
 fn hinges_store_the_work_of_the_loads() {
     let square = Outline::rectangle(300.0, 300.0);

@@ -1,5 +1,5 @@
-//! (8) and its derivatives: finite differences, objectivity, and the relation between its two reference
-//! points.
+//! (8) and its derivatives: finite differences, objectivity, and the relation between its two
+//! reference points.
 
 use crate::cases;
 use crate::prelude::*;

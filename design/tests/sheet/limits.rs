@@ -1,4 +1,5 @@
-//! Limits of the ideal deployment and the validity of patterns, for several sizes, outlines, r and tau.
+//! Limits of the ideal deployment and the validity of patterns, for several sizes, outlines, r and
+//! tau.
 
 use crate::cases;
 use crate::prelude::*;
@@ -71,11 +72,7 @@ fn windows_and_cut_angles_are_compared_with_the_hinges() {
     let trained = domain([1.0, 2.0], [0.05, 0.2]);
     let roomy = measured(0.3, &trained);
     assert_eq!((roomy.crowded_hinges, roomy.untrained_hinges), (0, 0));
-    assert_close(
-        roomy.trained_alpha_deg.unwrap()[0],
-        1.0_f64.to_degrees(),
-        1e-12,
-    );
+    assert_close(roomy.trained_alpha_deg.unwrap()[0], 1.0_f64.to_degrees(), 1e-12);
     assert_eq!(measured(0.8, &trained).crowded_hinges, 12);
     for (alpha, w_lig) in [([1.6, 2.0], [0.05, 0.2]), ([1.0, 2.0], [0.2, 0.3])] {
         assert_eq!(measured(0.3, &domain(alpha, w_lig)).untrained_hinges, 12);

@@ -21,12 +21,7 @@ fn linear(seed: u64, steps: usize) -> Vec<LoadStep> {
     let loads = [Dof::UX, Dof::UY].map(|dof| load(pulled, dof, random.number(2.0 * n as f64)));
     let solver = solver(grid, &clamp(grid.panel(0, n / 2)), &loads, steps);
     let contact = contact.then_some(Contact::new(1.0, -0.1, -0.01).unwrap());
-    follow(
-        &solver,
-        &sheet,
-        &uniform([k_a, k_s, 1.0], &sheet),
-        contact.as_ref(),
-    )
+    follow(&solver, &sheet, &uniform([k_a, k_s, 1.0], &sheet), contact.as_ref())
 }
 
 /// The path of a random design of the polyester sheet with learned hinges.
@@ -77,9 +72,7 @@ fn paths_do_not_depend_on_the_number_of_load_steps() {
         jumping += usize::from(path(5).iter().any(|step| step.jumps > 0));
     }
     for seed in [3].into_iter().chain(100..110) {
-        assert_equal_paths(&format!("linear {seed}"), &[5, 1000], |steps| {
-            linear(seed, steps)
-        });
+        assert_equal_paths(&format!("linear {seed}"), &[5, 1000], |steps| linear(seed, steps));
     }
     assert!(jumping > 10, "{jumping} of 290 paths jump");
 }
@@ -92,7 +85,8 @@ fn paths_of_learned_sheets_do_not_depend_on_the_number_of_load_steps() {
     }
 }
 
-/// k_a a^2/2 + k_theta theta^2/2 and a double well in s: a hinge that snaps by 0.3 in shear turns its panels little.
+/// k_a a^2/2 + k_theta theta^2/2 and a double well in s: a hinge that snaps by 0.3 in shear turns
+/// its panels little.
 fn snapping_in_shear() -> impl HingeLaw {
     Uncoupled(|eps: HingeDeformation| {
         let [well, force, stiffness] = snapping(eps.s / 0.3);
@@ -117,8 +111,8 @@ fn a_snap_in_shear_is_reported() {
     assert_equal_paths("shear", &[4, 5, 40, 200], snaps);
 }
 
-/// Hinges a hundred times softer in rotation than the hinges of the scene: the flat sheet turns by most of its opening at
-/// a hundredth of the load.
+/// Hinges a hundred times softer in rotation than the hinges of the scene: the flat sheet turns by
+/// most of its opening at a hundredth of the load.
 #[test]
 fn soft_hinges_have_an_equilibrium_at_full_load() {
     for k_theta in [10.0, 1.0] {
@@ -167,7 +161,8 @@ fn assert_costs_at_most(most: [usize; 3], path: &[LoadStep]) {
     assert!(within, "{found:?} {most:?}");
 }
 
-/// The cost of three paths without jumps, so that a change of it is noticed: of linear hinges, with contact, learned.
+/// The cost of three paths without jumps, so that a change of it is noticed: of linear hinges, with
+/// contact, learned.
 #[test]
 fn a_path_costs_a_bounded_number_of_factorisations() {
     let sheet = sheet_of("p2_4x7_random");

@@ -18,7 +18,8 @@ fn moved(design: &DesignVector, by: f64) -> DesignVector {
     design.with_flat(&flat)
 }
 
-/// Evaluations of the design that differs by `by` from a start: followed, and corrected from the path of the start.
+/// Evaluations of the design that differs by `by` from a start: followed, and corrected from the
+/// path of the start.
 fn both(problem: &DesignProblem, start: &DesignVector, by: f64) -> [Evaluation; 2] {
     let known = problem.evaluate(start).unwrap().deployment.warm_start();
     let near = moved(start, by);
@@ -64,10 +65,7 @@ fn the_effort_falls_with_the_change_of_the_design() {
         assert!(!paths[1].followed, "{by}");
         paths.map(|deployment| {
             let total = |of: fn(&LoadStep) -> usize| deployment.path.iter().map(of).sum::<usize>();
-            [
-                total(|step| step.effort.iterations),
-                total(|step| step.effort.factorisations),
-            ]
+            [total(|step| step.effort.iterations), total(|step| step.effort.factorisations)]
         })
     };
     let [[followed_far, far], [followed, near]] = [0.05, 1e-4].map(effort);

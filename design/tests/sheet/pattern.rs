@@ -46,11 +46,9 @@ fn panels_and_hinges() {
             assert_eq!(hinge.site.endpoint == Endpoint::XPrime, endpoint == "x'");
             assert_eq!(hinge.site.a, corner(["k", "corner_k"]).into());
             assert_eq!(hinge.site.b, corner(["l", "corner_l"]).into());
-            for (found, key) in [
-                (hinge.corner, "position"),
-                (hinge.e_sec, "e_sec"),
-                (hinge.main, "m_hat"),
-            ] {
+            for (found, key) in
+                [(hinge.corner, "position"), (hinge.e_sec, "e_sec"), (hinge.main, "m_hat")]
+            {
                 assert!(difference(&[found], &[get(expected, key)]) < 1e-12, "{key}");
             }
             assert_close(hinge.alpha, get(expected, "alpha"), 1e-12);

@@ -1,4 +1,5 @@
-//! What the tests of this program have in common: the names of the library, and sheets, loads and paths in a line each.
+//! What the tests of this program have in common: the names of the library, and sheets, loads and
+//! paths in a line each.
 
 pub use crate::cases::{AT_CORNER, AT_TIP, PROCESS, case, coordinates, difference, get};
 pub use crate::closed_forms::opening_moments;
@@ -26,9 +27,8 @@ pub use testkit::derivatives::{
 };
 
 /// An outline without parallel edges.
-pub const TAPERED: Outline = Outline {
-    corners: [[0.0, 0.0], [3.2, -0.3], [2.7, 2.9], [-0.4, 3.3]],
-};
+pub const TAPERED: Outline =
+    Outline { corners: [[0.0, 0.0], [3.2, -0.3], [2.7, 2.9], [-0.4, 3.3]] };
 
 pub const fn load(panel: usize, dof: Dof, value: f64) -> Load {
     Load { panel, dof, value }
@@ -53,12 +53,7 @@ pub fn solver(grid: Grid, supports: &[Support], loads: &[Load], steps: usize) ->
 }
 
 pub fn hinged<'a>(sheet: &'a Sheet, law: &'a dyn PreparedLaw) -> HingedSheet<'a> {
-    HingedSheet {
-        sheet,
-        law,
-        contact: None,
-        damage_gradient: false,
-    }
+    HingedSheet { sheet, law, contact: None, damage_gradient: false }
 }
 
 /// The path that a solver follows, with or without contact of the panels.
@@ -69,10 +64,7 @@ pub fn follow(
     contact: Option<&Contact>,
 ) -> Vec<LoadStep> {
     let law = law.prepare(&sheet.designs());
-    solver.path(HingedSheet {
-        contact,
-        ..hinged(sheet, &*law)
-    })
+    solver.path(HingedSheet { contact, ..hinged(sheet, &*law) })
 }
 
 pub fn path(
@@ -82,12 +74,7 @@ pub fn path(
     loads: &[Load],
     steps: usize,
 ) -> Vec<LoadStep> {
-    follow(
-        &solver(sheet.grid, supports, loads, steps),
-        sheet,
-        law,
-        None,
-    )
+    follow(&solver(sheet.grid, supports, loads, steps), sheet, law, None)
 }
 
 pub fn converged(path: &[LoadStep]) -> bool {
@@ -156,11 +143,7 @@ pub fn scene(name: &str, change: impl FnOnce(&mut SceneConfig)) -> Scene {
 
 /// A point at which a panel is held or pulled.
 pub fn attached(panel: usize, point: PanelPoint) -> AttachmentPoint {
-    AttachmentPoint {
-        panel,
-        point,
-        ..AttachmentPoint::default()
-    }
+    AttachmentPoint { panel, point, ..AttachmentPoint::default() }
 }
 
 /// The distance of the centroids of two panels in a configuration.

@@ -4,10 +4,7 @@ use crate::cases;
 use crate::prelude::*;
 use design::sheet::ideal_deployment::ideal_deployment_pullback;
 
-const WIDTHS: WidthChart = WidthChart {
-    w_minus: 0.05,
-    w_plus: 0.25,
-};
+const WIDTHS: WidthChart = WidthChart { w_minus: 0.05, w_plus: 0.25 };
 
 fn start() -> DesignVector {
     let case = case("p1_3x3_random");
@@ -57,11 +54,9 @@ fn gradients_in_the_sheet_are_pulled_back_to_the_design() {
     let given = cases::outline(&case("p1_3x3_random"));
     for hinge_point in [HingePoint::Corner, HingePoint::CutTip] {
         for outline in [given, TAPERED] {
-            // A hole of the same diameter at every hinge has a radius over w_lig that depends on the width.
-            let mut options = SheetOptions {
-                hinge_point,
-                ..AT_TIP
-            };
+            // A hole of the same diameter at every hinge has a radius over w_lig that depends on
+            // the width.
+            let mut options = SheetOptions { hinge_point, ..AT_TIP };
             options.process.hole = Hole::Diameter(0.3);
             // One point of each kind besides the centroid.
             let points = [
@@ -118,10 +113,7 @@ fn weighted(sheet: &Sheet, weights: &SheetGradient) -> f64 {
 
 #[test]
 fn the_ideal_deployment_is_pulled_back_to_the_design_and_the_opening() {
-    let design = DesignVector {
-        opening: Some(0.9),
-        ..start()
-    };
+    let design = DesignVector { opening: Some(0.9), ..start() };
     let given = cases::outline(&case("p1_3x3_random"));
     let weights: Vec<[f64; 3]> = Random::new(8).arrays(9, 1.0);
     let value = |design: &DesignVector| {

@@ -8,8 +8,8 @@ use std::array::from_fn;
 use std::f64::consts::FRAC_PI_2;
 use surrogate::Springback;
 
-/// A law of hinges with about this stiffness in units of (w_lig, w_lig, 1), of which a part of the opening stays, in windows of a
-/// thickness of which the sheet has `scale` times.
+/// A law of hinges with about this stiffness in units of (w_lig, w_lig, 1), of which a part of the
+/// opening stays, in windows of a thickness of which the sheet has `scale` times.
 fn release(stiffness: [f64; 3], scale: f64) -> Release {
     let mut random = Random::new(5);
     let rows: Vec<ReleasedSample> = (0..80)

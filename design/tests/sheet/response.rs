@@ -1,5 +1,5 @@
-//! The equilibrium at full load as a function: its gradient in every input by Taylor remainders, balance of loads, reactions and
-//! weight, and inputs that are refused.
+//! The equilibrium at full load as a function: its gradient in every input by Taylor remainders,
+//! balance of loads, reactions and weight, and inputs that are refused.
 
 use crate::prelude::*;
 use design::equilibrium::load_step::DescentEnd;
@@ -19,10 +19,7 @@ fn loads(problem: &DesignProblem) -> Vec<[f64; 3]> {
 }
 
 fn loaded(loads: Vec<[f64; 3]>) -> Conditions {
-    Conditions {
-        loads: Some(loads),
-        ..Conditions::default()
-    }
+    Conditions { loads: Some(loads), ..Conditions::default() }
 }
 
 fn largest(values: &[f64]) -> f64 {
@@ -232,21 +229,12 @@ fn reactions_balance_loads_and_weight() {
 
 #[test]
 fn what_no_response_is_known_for_is_refused() {
-    let under = |thickness: f64, stress: f64| Conditions {
-        loads: None,
-        thickness,
-        stress,
-    };
+    let under = |thickness: f64, stress: f64| Conditions { loads: None, thickness, stress };
     let (springs, _) = problem("linear-7x7");
     let refused = springs.under(&under(1.1, 1.0));
     assert!(matches!(refused, Err(DesignError::NoSimilarLaw)));
     let (film, design) = problem("pet-3x3");
-    for (thickness, stress) in [
-        (0.0, 1.0),
-        (1.0, -1.0),
-        (f64::NAN, 1.0),
-        (1.0, f64::INFINITY),
-    ] {
+    for (thickness, stress) in [(0.0, 1.0), (1.0, -1.0), (f64::NAN, 1.0), (1.0, f64::INFINITY)] {
         let refused = film.under(&under(thickness, stress));
         assert!(matches!(refused, Err(DesignError::ImpossibleSheet)));
     }
@@ -255,10 +243,7 @@ fn what_no_response_is_known_for_is_refused() {
     let Err(DesignError::Equilibrium(refused)) = film.under(&loaded(on_clamp)) else {
         panic!("a load on a clamp");
     };
-    assert!(matches!(
-        refused,
-        EquilibriumError::LoadOnSupport { panel: 3, .. }
-    ));
+    assert!(matches!(refused, EquilibriumError::LoadOnSupport { panel: 3, .. }));
     let refused = problem("pin-7x7").0.response(&design, None);
     assert!(matches!(refused, Err(DesignError::NoMechanics)));
 }

@@ -1,25 +1,19 @@
-//! The gradient in the constants of the design problem (loads, spring constants, outline) by finite differences.
+//! The gradient in the constants of the design problem (loads, spring constants, outline) by finite
+//! differences.
 
 use crate::prelude::*;
 use crate::taylor::{GRID, problem, start};
 
 /// Forces on panel 5 and a couple on panel 8, then (k_a, k_s, k_theta) of every hinge.
 fn loaded(x: &[f64], stroke: Option<f64>) -> DesignProblem {
-    let loads = [
-        pull(5, x[0]),
-        load(5, Dof::UY, x[1]),
-        load(8, Dof::Phi, x[2]),
-    ];
+    let loads = [pull(5, x[0]), load(5, Dof::UY, x[1]), load(8, Dof::Phi, x[2])];
     let solver = solver(GRID, &clamp(3), &loads, 3);
     let solver = match stroke {
         Some(stroke) => solver.driven(stroke).unwrap(),
         None => solver,
     };
     let stiffness = x[3..].as_chunks().0.to_vec();
-    problem(
-        mechanics(LinearLaw { stiffness }, solver),
-        AT_CORNER.hinge_point,
-    )
+    problem(mechanics(LinearLaw { stiffness }, solver), AT_CORNER.hinge_point)
 }
 
 fn constants() -> Vec<f64> {
@@ -40,9 +34,7 @@ fn loads_and_spring_constants() {
         let relative: Vec<f64> = std::iter::zip(&gradient, &x).map(|(g, x)| g * x).collect();
         let value = |factors: &[f64]| {
             let scaled = std::iter::zip(factors, &x).map(|(factor, x)| factor * x);
-            loaded(&scaled.collect::<Vec<_>>(), stroke)
-                .loss(&start())
-                .unwrap()
+            loaded(&scaled.collect::<Vec<_>>(), stroke).loss(&start()).unwrap()
         };
         let allowed = |_| 1e-6 * evaluation.loss;
         assert_gradient(value, &vec![1.0; x.len()], &relative, 1e-4, allowed);

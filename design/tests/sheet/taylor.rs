@@ -21,8 +21,8 @@ pub fn tiny() -> SurrogateLaw {
     SurrogateLaw { surrogate }
 }
 
-/// Clamped in the middle of the west edge, with a moment at a corner; in the middle of the east edge
-/// pulled, moved, or pulled up to a stroke.
+/// Clamped in the middle of the west edge, with a moment at a corner; in the middle of the east
+/// edge pulled, moved, or pulled up to a stroke.
 pub fn held(law: impl HingeLaw + 'static, moment: f64, east: East) -> Model {
     let mut supports = clamp(3).to_vec();
     let mut loads = vec![load(8, Dof::Phi, moment)];
@@ -39,11 +39,7 @@ pub fn held(law: impl HingeLaw + 'static, moment: f64, east: East) -> Model {
     model
 }
 
-pub const EASTS: [East; 3] = [
-    East::Pulled(12.0),
-    East::Moved(40.0),
-    East::Driven(12.0, 60.0),
-];
+pub const EASTS: [East; 3] = [East::Pulled(12.0), East::Moved(40.0), East::Driven(12.0, 60.0)];
 
 #[derive(Clone, Copy)]
 pub enum East {
@@ -75,27 +71,15 @@ pub fn problem(model: Model, hinge_point: HingePoint) -> DesignProblem {
         scale: law.and_then(|law| law.damage_scale(measure)).unwrap_or(1.0),
         temperature: 0.1,
     };
-    let shape = PanelShape {
-        min_distance: 200.0,
-    };
+    let shape = PanelShape { min_distance: 200.0 };
     DesignProblem {
         grid: GRID,
         outline: Outline::rectangle(SIDE, SIDE),
-        widths: WidthChart {
-            w_minus: 8.0,
-            w_plus: 24.0,
-        },
-        options: SheetOptions {
-            hinge_point,
-            ..AT_TIP
-        },
+        widths: WidthChart { w_minus: 8.0, w_plus: 24.0 },
+        options: SheetOptions { hinge_point, ..AT_TIP },
         model,
         objective: Objective {
-            shape: Shape {
-                target: target.collect(),
-                coverage_weight: 0.5,
-                centred: true,
-            },
+            shape: Shape { target: target.collect(), coverage_weight: 0.5, centred: true },
             functionals: vec![
                 Weighted::new(300.0, damage),
                 Weighted::new(1e4, Compression { temperature: 0.02 }),
@@ -187,11 +171,7 @@ fn a_sheet_and_its_target_are_fitted_to_each_other() {
     let corners = Random::new(17).numbers(8, 0.4);
     let corners = std::array::from_fn(|i| [1.5 + corners[2 * i], 1.5 + corners[2 * i + 1]]);
     let design = DesignVector {
-        fit: Some(FitVariables {
-            ln_size: -0.1,
-            rotation: 0.2,
-            corners,
-        }),
+        fit: Some(FitVariables { ln_size: -0.1, rotation: 0.2, corners }),
         ..start()
     };
     let evaluation = problem.evaluate(&design).unwrap();

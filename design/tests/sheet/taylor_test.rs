@@ -5,9 +5,7 @@ use std::convert::Infallible;
 
 fn orders(gradient: [f64; 2]) -> Vec<f64> {
     let f = |x: &[f64]| Ok::<_, Infallible>(x[0].sin() * x[1].exp());
-    TaylorRemainders::new(f, &[0.3, 0.7], &gradient, &[0.8, -0.6], 1e-3, 4)
-        .unwrap()
-        .orders()
+    TaylorRemainders::new(f, &[0.3, 0.7], &gradient, &[0.8, -0.6], 1e-3, 4).unwrap().orders()
 }
 
 #[test]

@@ -1,4 +1,5 @@
-//! Sheets that are unloaded: what their hinges want without loads, their weight, and supports that moved them.
+//! Sheets that are unloaded: what their hinges want without loads, their weight, and supports that
+//! moved them.
 
 use crate::prelude::*;
 use design::hinge_law::ReleasedLaw;

@@ -24,8 +24,8 @@ fn centre_of_gravity(sheet: &Sheet, configuration: &[[f64; 3]]) -> [f64; 2] {
     })
 }
 
-/// Panel 1 next to a clamped one, joined to it by a stiff pivot with a torsion spring; the others are clamped, too, and not
-/// joined to it.
+/// Panel 1 next to a clamped one, joined to it by a stiff pivot with a torsion spring; the others
+/// are clamped, too, and not joined to it.
 struct Pendulum {
     sheet: Sheet,
     law: LinearLaw,
@@ -50,16 +50,15 @@ fn pendulum(points: &[AttachmentPoint]) -> Pendulum {
     };
     let pivot = sheet.hinges.iter().find(|hinge| joins(hinge)).unwrap();
     Pendulum {
-        law: LinearLaw {
-            stiffness: sheet.hinges.iter().map(of_hinge).collect(),
-        },
+        law: LinearLaw { stiffness: sheet.hinges.iter().map(of_hinge).collect() },
         pivot: pivot.attachment,
         supports: [0, 2, 3].into_iter().flat_map(clamp).collect(),
         sheet: sheet.attached_at(points),
     }
 }
 
-/// The angle at which a torsion spring balances a force at the end of a lever: k phi = (R(phi) arm) x F.
+/// The angle at which a torsion spring balances a force at the end of a lever: k phi = (R(phi) arm)
+/// x F.
 fn balance([a_x, a_y]: [f64; 2], [f_x, f_y]: [f64; 2]) -> f64 {
     let excess = |phi: f64| {
         let (sin, cos) = phi.sin_cos();
@@ -69,11 +68,7 @@ fn balance([a_x, a_y]: [f64; 2], [f_x, f_y]: [f64; 2]) -> f64 {
     let (mut low, mut high) = (-1.5_f64, 1.5_f64);
     for _ in 0..80 {
         let middle = 0.5 * (low + high);
-        let end = if excess(middle) > 0.0 {
-            &mut low
-        } else {
-            &mut high
-        };
+        let end = if excess(middle) > 0.0 { &mut low } else { &mut high };
         *end = middle;
     }
     low
@@ -158,8 +153,8 @@ fn the_reference_point_of_a_panel_is_a_convention() {
     assert!(difference(&corners[0], &corners[1]) < 1e-9);
 }
 
-/// Stored energy = work of the weight and of the loads, along the load steps of the loads; and the potential that a step
-/// states is the stored energy without the work of weight and loads.
+/// Stored energy = work of the weight and of the loads, along the load steps of the loads; and the
+/// potential that a step states is the stored energy without the work of weight and loads.
 #[test]
 fn the_work_of_weight_and_loads_is_stored() {
     let by_area = [0.05, -0.2];

@@ -1,6 +1,7 @@
 //! CalculiX as a solver of windows: mesh, input deck, process, samples.
 //!
-//! An attempt is successful if its run is ([`DeckRun`]) and the internal energy agrees with the work of the reactions.
+//! An attempt is successful if its run is ([`DeckRun`]) and the internal energy agrees with the
+//! work of the reactions.
 
 use crate::calculix::ccx::Ccx;
 use crate::calculix::dat::{Frame, Layout, read_dat};
@@ -27,8 +28,9 @@ pub struct CalculiX {
     pub gmsh: Gmsh,
     /// Solves the mesh.
     pub ccx: Ccx,
-    /// Whether the displacements of all nodes of a window are printed, for [`fields`](Self::fields); if not, only the displacements of the
-    /// lower face are printed, which are a small part of the output.
+    /// Whether the displacements of all nodes of a window are printed, for
+    /// [`fields`](Self::fields); if not, only the displacements of the lower face are printed,
+    /// which are a small part of the output.
     pub print_all: bool,
 }
 
@@ -43,15 +45,12 @@ pub fn reached(folder: &Path) -> f64 {
 impl CalculiX {
     /// Finds both programs by their environment variables or on PATH.
     pub fn find() -> Result<Self, ToolError> {
-        Ok(Self {
-            gmsh: Gmsh::find()?,
-            ccx: Ccx::find()?,
-            print_all: false,
-        })
+        Ok(Self { gmsh: Gmsh::find()?, ccx: Ccx::find()?, print_all: false })
     }
 
-    /// The undeformed window with the fields of the last converged increment of an attempt in `folder`, which must have
-    /// printed the displacements of all nodes; `None` if no increment converged.
+    /// The undeformed window with the fields of the last converged increment of an attempt in
+    /// `folder`, which must have printed the displacements of all nodes; `None` if no increment
+    /// converged.
     pub fn fields(
         &self,
         solve: &WindowSolve,
@@ -65,10 +64,7 @@ impl CalculiX {
 
     /// The versions of the programs.
     pub fn versions(&self) -> ToolVersions {
-        ToolVersions {
-            gmsh: self.gmsh.0.version.clone(),
-            ccx: self.ccx.0.version.clone(),
-        }
+        ToolVersions { gmsh: self.gmsh.0.version.clone(), ccx: self.ccx.0.version.clone() }
     }
 
     fn model<'a>(&self, solve: &'a WindowSolve, mesh: &'a WindowMesh) -> WindowModel<'a> {
@@ -131,11 +127,7 @@ impl WindowModel<'_> {
         let run = DeckRun::new(ccx, &deck(self), folder, JOB, limit, stop)?;
         let costs = run.costs();
         let (samples, stopped) = self.outcome(run);
-        Ok(Solution {
-            samples,
-            stopped,
-            ..costs
-        })
+        Ok(Solution { samples, stopped, ..costs })
     }
 
     /// The printed increments of an attempt in `folder`.

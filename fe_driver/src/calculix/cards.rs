@@ -1,5 +1,5 @@
-//! Cards of CalculiX input decks that windows and sheets have in common. Nodes and elements count from 0 here and from 1 in
-//! a deck.
+//! Cards of CalculiX input decks that windows and sheets have in common. Nodes and elements count
+//! from 0 here and from 1 in a deck.
 
 use crate::solve::step_control::StepControl;
 use hinge::SheetMaterial;
@@ -32,18 +32,13 @@ pub(crate) fn write_element(d: &mut String, element: usize, nodes: &[usize]) -> 
 /// A set of nodes (NSET) or elements (ELSET).
 pub(crate) fn write_set(d: &mut String, kind: &str, name: &str, members: &[usize]) -> fmt::Result {
     writeln!(d, "*{kind},{kind}={name}")?;
-    members
-        .iter()
-        .try_for_each(|member| writeln!(d, "{},", member + 1))
+    members.iter().try_for_each(|member| writeln!(d, "{},", member + 1))
 }
 
 /// The material SHEET with its elastic and plastic law.
 pub(crate) fn write_material(d: &mut String, material: &SheetMaterial) -> fmt::Result {
     let (young, poisson) = (real(material.young), real(material.poisson));
-    writeln!(
-        d,
-        "*MATERIAL,NAME=SHEET\n*ELASTIC\n{young},{poisson}\n*PLASTIC"
-    )?;
+    writeln!(d, "*MATERIAL,NAME=SHEET\n*ELASTIC\n{young},{poisson}\n*PLASTIC")?;
     material
         .plastic
         .iter()
@@ -61,9 +56,7 @@ pub(crate) fn write_amplitude(
         .map(|[time, value]| format!("{},{}", real(time), real(value)))
         .collect();
     // A line has at most 4 pairs.
-    pairs
-        .chunks(4)
-        .try_for_each(|line| writeln!(d, "{}", line.join(",")))
+    pairs.chunks(4).try_for_each(|line| writeln!(d, "{}", line.join(",")))
 }
 
 /// The increments of a step of the given duration, and its tolerances.
@@ -72,10 +65,7 @@ pub(crate) fn write_increments(d: &mut String, step: &StepControl, duration: f64
         [step.initial, step.least, step.greatest].map(|part| real(duration * part));
     let (residual, correction) = (real(step.residual), real(step.correction));
     writeln!(d, "{initial},{},{least},{greatest}", real(duration))?;
-    writeln!(
-        d,
-        "*CONTROLS,PARAMETERS=FIELD\n{residual},{correction},,,0.04"
-    )
+    writeln!(d, "*CONTROLS,PARAMETERS=FIELD\n{residual},{correction},,,0.04")
 }
 
 #[cfg(test)]

@@ -58,10 +58,7 @@ impl Ccx {
         let run = self.0.run(&["-i", job], folder, &log, limit, stop)?;
         let bytes = output_file(&log).unwrap_or_default();
         let text = String::from_utf8_lossy(&bytes);
-        Ok(CcxRun {
-            finished: run.status.success() && text.contains(END_MARKER),
-            run,
-        })
+        Ok(CcxRun { finished: run.status.success() && text.contains(END_MARKER), run })
     }
 }
 
@@ -76,10 +73,7 @@ mod tests {
             ("\nThis is Version 2.23\n", Some("2.23")),
             ("This is Version DEVELOPMENT\n", Some("DEVELOPMENT")),
             ("This is Version \n", None),
-            (
-                "ccx: error while loading shared libraries: libspooles.so.2.2",
-                None,
-            ),
+            ("ccx: error while loading shared libraries: libspooles.so.2.2", None),
             ("", None),
         ] {
             assert_eq!((CCX.version_in)(printed), version, "{printed}");

@@ -75,14 +75,8 @@ const HEADINGS: [(&str, Block); 7] = [
     ("total force (fx,fy,fz) for set", Block::TotalForce),
     ("forces (fx,fy,fz) for set", Block::Reactions),
     ("displacements (vx,vy,vz) for set", Block::Displacements),
-    (
-        "equivalent plastic strain (elem, integ.pnt.,pe)for set",
-        Block::PlasticStrain,
-    ),
-    (
-        "stresses (elem, integ.pnt.,sxx,syy,szz,sxy,sxz,syz) for set",
-        Block::Stress,
-    ),
+    ("equivalent plastic strain (elem, integ.pnt.,pe)for set", Block::PlasticStrain),
+    ("stresses (elem, integ.pnt.,sxx,syy,szz,sxy,sxz,syz) for set", Block::Stress),
 ];
 
 /// The printed output of one increment of some kind of problem.
@@ -121,10 +115,7 @@ pub(crate) fn read_printed<F: Printed>(
     let mut frames: Vec<F> = Vec::new();
     let mut block = None;
     for (number, line) in text.lines().enumerate() {
-        let line_error = |what| DatError::Line {
-            line: number + 1,
-            what,
-        };
+        let line_error = |what| DatError::Line { line: number + 1, what };
         let line = line.trim();
         if line.is_empty() {
             continue;
@@ -156,9 +147,7 @@ pub(crate) fn read_printed<F: Printed>(
         frames.pop();
     }
     match frames.iter().find(|frame| !frame.is_complete(layout)) {
-        Some(frame) => Err(DatError::Incomplete {
-            lambda: frame.time(),
-        }),
+        Some(frame) => Err(DatError::Incomplete { lambda: frame.time() }),
         None => Ok(frames),
     }
 }
@@ -167,10 +156,7 @@ impl Printed for Frame {
     type Layout = Layout;
 
     fn begin(lambda: f64) -> Self {
-        Self {
-            lambda,
-            ..Self::default()
-        }
+        Self { lambda, ..Self::default() }
     }
 
     fn time(&self) -> f64 {
@@ -224,10 +210,7 @@ impl Printed for Frame {
 /// A node, counted from 0, and the values at it.
 pub(crate) fn at_node<const N: usize>(fields: &[&str]) -> Option<(usize, [f64; N])> {
     let (node, values) = fields.split_first()?;
-    Some((
-        node.parse::<usize>().ok()?.checked_sub(1)?,
-        numbers(values)?,
-    ))
+    Some((node.parse::<usize>().ok()?.checked_sub(1)?, numbers(values)?))
 }
 
 /// The values of a row, which must belong to Gauss point `index`, counted over all elements.
@@ -269,20 +252,13 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    const LAYOUT: Layout = Layout {
-        nodes: 1000,
-        arc_nodes: 2,
-        displaced_nodes: 1,
-        elements: 1,
-        points: 8,
-    };
+    const LAYOUT: Layout =
+        Layout { nodes: 1000, arc_nodes: 2, displaced_nodes: 1, elements: 1, points: 8 };
 
     /// The output of one increment, as ccx writes it.
     fn printed(lambda: f64) -> String {
         let points = |values: &str| -> String {
-            (1..=8)
-                .map(|point| format!("         1   {point}{values}\n"))
-                .collect()
+            (1..=8).map(|point| format!("         1   {point}{values}\n")).collect()
         };
         format!(
             "\n forces (fx,fy,fz) for set ARCB and time  {lambda:.7E}\n\n\
@@ -319,16 +295,10 @@ mod tests {
     #[test]
     fn frames_are_read_in_order() {
         let frames = read_dat(two_increments().as_bytes(), LAYOUT).unwrap();
-        assert_eq!(
-            frames.iter().map(|f| f.lambda).collect::<Vec<_>>(),
-            [0.5, 1.0]
-        );
+        assert_eq!(frames.iter().map(|f| f.lambda).collect::<Vec<_>>(), [0.5, 1.0]);
         let frame = &frames[1];
         assert_eq!(frame.energy, 42.5);
-        assert_eq!(
-            frame.reactions,
-            [(3, [1.0, -2.0, 3.0]), (6, [4.0, 5.0, 6.0])]
-        );
+        assert_eq!(frame.reactions, [(3, [1.0, -2.0, 3.0]), (6, [4.0, 5.0, 6.0])]);
         assert_eq!(frame.displacements, [[0.1, 0.2, -0.3]]);
         assert_eq!(frame.peeq, [0.015; 8]);
         assert_eq!(frame.stress[7], [1.0, 2.0, 3.0, 4.0, 5.0, 6.0]);

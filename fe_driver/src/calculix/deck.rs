@@ -1,8 +1,9 @@
 //! The CalculiX input deck of one window solve.
 //!
-//! Arc B is driven along its path ([`DrivenArc`]). A path that turns back has a second step from there on: an increment ends where the
-//! hinge is unloaded, which would otherwise not reach that state. All output is printed in every increment, because CalculiX accumulates the
-//! total internal energy between *printed* increments and it would otherwise be wrong.
+//! Arc B is driven along its path ([`DrivenArc`]). A path that turns back has a second step from
+//! there on: an increment ends where the hinge is unloaded, which would otherwise not reach that
+//! state. All output is printed in every increment, because CalculiX accumulates the total internal
+//! energy between *printed* increments and it would otherwise be wrong.
 
 use crate::calculix::cards::{
     write_element, write_increments, write_material, write_nodes, write_set,
@@ -58,12 +59,11 @@ fn write_deck(d: &mut String, model: &WindowModel) -> fmt::Result {
     let Some(turn) = turn else {
         return Ok(());
     };
-    // Boundary conditions and output stay as in the step before. Unloading needs no shorter increments than a whole path.
+    // Boundary conditions and output stay as in the step before. Unloading needs no shorter
+    // increments than a whole path.
     let duration = 1.0 - turn;
-    let unloading = StepControl {
-        greatest: (model.step.greatest / duration).min(1.0),
-        ..*model.step
-    };
+    let unloading =
+        StepControl { greatest: (model.step.greatest / duration).min(1.0), ..*model.step };
     write_step(d, &unloading, duration)?;
     writeln!(d, "*END STEP")
 }

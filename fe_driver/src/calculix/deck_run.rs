@@ -1,7 +1,7 @@
 //! A deck worked on by CalculiX: its output, and why it ended before its end.
 //!
-//! A run is successful if the exit status is zero, the log contains the end marker, the output contains every converged
-//! increment of the .sta file, and it ends at lambda = 1.
+//! A run is successful if the exit status is zero, the log contains the end marker, the output
+//! contains every converged increment of the .sta file, and it ends at lambda = 1.
 
 use crate::calculix::ccx::{Ccx, CcxRun};
 use crate::calculix::sta::{Increment, read_sta};
@@ -14,12 +14,14 @@ use std::time::Duration;
 use support::file_error::FileError;
 use support::program::{ToolError, output_file, remove_stale, tail};
 
-/// The word with which CalculiX begins its message on a problem that it cannot solve, at the end of its log.
+/// The word with which CalculiX begins its message on a problem that it cannot solve, at the end of
+/// its log.
 const ERROR: &str = "*ERROR";
 
 /// What CalculiX has made of a deck.
 pub(crate) struct DeckRun {
-    /// The process; an error if it was terminated, after which the increments that converged are valid.
+    /// The process; an error if it was terminated, after which the increments that converged are
+    /// valid.
     run: Result<CcxRun, ToolError>,
     /// The increments in the .sta file.
     increments: Vec<Increment>,
@@ -76,7 +78,8 @@ impl DeckRun {
         }
     }
 
-    /// An error if the output does not have the converged increments of the .sta file; `times` are those in the output.
+    /// An error if the output does not have the converged increments of the .sta file; `times` are
+    /// those in the output.
     pub fn check_increments(&self, times: impl Iterator<Item = f64>) -> Result<(), SolveError> {
         match skipped(times, &self.increments) {
             Some(lambda) => Err(SolveError::Skipped { lambda }),
@@ -109,11 +112,11 @@ pub(crate) fn time_reached(folder: &Path, job: &str) -> f64 {
     increments.last().map_or(0.0, |increment| increment.lambda)
 }
 
-/// The first increment at which the output and the converged increments of the .sta file disagree: it is missing
-/// in the output, or it was printed although it did not converge.
+/// The first increment at which the output and the converged increments of the .sta file disagree:
+/// it is missing in the output, or it was printed although it did not converge.
 ///
-/// A solver that was terminated may not have written all increments to both files: only those in both are
-/// compared. Increments missing at the end are detected by the last lambda.
+/// A solver that was terminated may not have written all increments to both files: only those in
+/// both are compared. Increments missing at the end are detected by the last lambda.
 fn skipped(times: impl Iterator<Item = f64>, increments: &[Increment]) -> Option<f64> {
     let converged = increments.iter().filter(|increment| increment.converged);
     let mut pairs = times.zip(converged).map(|(time, a)| (time, a.lambda));
@@ -134,11 +137,8 @@ mod tests {
     #[test]
     fn a_missing_or_surplus_increment_is_found() {
         let status = [(0.0, false), (0.25, true), (0.333333, true), (1.0, true)];
-        let increments = status.map(|(lambda, converged)| Increment {
-            lambda,
-            iterations: 3,
-            converged,
-        });
+        let increments =
+            status.map(|(lambda, converged)| Increment { lambda, iterations: 3, converged });
         let skipped = |printed: &[f64]| skipped(printed.iter().copied(), &increments);
         assert_eq!(skipped(&[0.25, 1.0 / 3.0, 1.0]), None);
         assert_eq!(skipped(&[0.25, 1.0 / 3.0]), None);

@@ -1,14 +1,16 @@
-//! An arc of nodes that moves with a rigid panel: of a window, or where a part of a sheet is joined to the rest.
+//! An arc of nodes that moves with a rigid panel: of a window, or where a part of a sheet is joined
+//! to the rest.
 //!
-//! Two control nodes without elements carry the four amplitudes of the motion ([`PanelMotion`]); linear constraint equations
-//! couple the arc to them.
+//! Two control nodes without elements carry the four amplitudes of the motion ([`PanelMotion`]);
+//! linear constraint equations couple the arc to them.
 
 use crate::calculix::cards::{real, write_amplitude};
 use crate::calculix::panel_motion::PanelMotion;
 use std::fmt::{self, Write};
 
-/// Number of intervals of the amplitude tables. Between entries the motion is linear: the chord shortens the lever arm of
-/// an arc by r dtheta^2 / 8. Intervals of 0.1 deg keep the energy error of a window below 3e-4.
+/// Number of intervals of the amplitude tables. Between entries the motion is linear: the chord
+/// shortens the lever arm of an arc by r dtheta^2 / 8. Intervals of 0.1 deg keep the energy error
+/// of a window below 3e-4.
 pub(crate) const AMPLITUDE_INTERVALS: usize = 720;
 
 /// An arc with the nodes that drive it.
@@ -83,23 +85,13 @@ mod tests {
 
     #[test]
     fn amplitudes_start_at_zero_and_end_at_the_end_of_the_path() {
-        let end = HingeDeformation {
-            a: -1.0,
-            s: 2.0,
-            theta: 1.2,
-        };
+        let end = HingeDeformation { a: -1.0, s: 2.0, theta: 1.2 };
         let mut text = String::new();
         let path = DeformationPath::straight(end);
-        let arc = DrivenArc {
-            nodes: &[],
-            about: [0.0; 2],
-            drivers: [1, 2],
-            amplitudes: "Q",
-        };
+        let arc = DrivenArc { nodes: &[], about: [0.0; 2], drivers: [1, 2], amplitudes: "Q" };
         let lambdas: Vec<f64> = even_lambdas().collect();
         let motion = |lambda| PanelMotion::new(&path.at(lambda));
-        arc.write_amplitudes(&mut text, &lambdas, 1.0, motion)
-            .unwrap();
+        arc.write_amplitudes(&mut text, &lambdas, 1.0, motion).unwrap();
         let tables: Vec<Vec<f64>> = text
             .split("*AMPLITUDE,NAME=Q")
             .skip(1)

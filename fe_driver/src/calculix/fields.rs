@@ -1,7 +1,7 @@
 //! Displacement, plastic strain and stress of a solved window as a VTK grid.
 //!
-//! CalculiX prints strain and stress at the Gauss points. A cell of the grid has their means by volume, and the maximum
-//! of the plastic strain; nothing is extrapolated to the nodes.
+//! CalculiX prints strain and stress at the Gauss points. A cell of the grid has their means by
+//! volume, and the maximum of the plastic strain; nothing is extrapolated to the nodes.
 
 use crate::calculix::dat::Frame;
 use crate::calculix::model::WindowModel;
@@ -12,17 +12,14 @@ use support::vtk::{Field, UnstructuredGrid};
 const VTK_ORDER: [usize; 6] = [0, 1, 2, 3, 5, 4];
 
 impl WindowModel<'_> {
-    /// The undeformed window with the fields of an increment that printed the displacements of all nodes.
+    /// The undeformed window with the fields of an increment that printed the displacements of all
+    /// nodes.
     pub(crate) fn grid(&self, frame: &Frame) -> UnstructuredGrid {
         let points = self.mesh.recipe.element().gauss_points();
         let strains = || frame.peeq.chunks(points);
         let volumes = || self.mesh.gauss_volumes.iter();
         let mean = |values: &dyn Fn(usize) -> f64, volumes: &[f64]| {
-            let sum: f64 = volumes
-                .iter()
-                .enumerate()
-                .map(|(i, volume)| values(i) * volume)
-                .sum();
+            let sum: f64 = volumes.iter().enumerate().map(|(i, volume)| values(i) * volume).sum();
             sum / volumes.iter().sum::<f64>()
         };
         let plastic: Vec<f64> = std::iter::zip(strains(), volumes())

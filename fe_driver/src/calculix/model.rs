@@ -16,7 +16,8 @@ pub struct WindowModel<'a> {
     pub material: &'a SheetMaterial,
     /// The increments of the solve.
     pub step: &'a StepControl,
-    /// Whether the displacements of all nodes are printed, for [`CalculiX::fields`](crate::CalculiX::fields); if not,
-    /// only the displacements of the lower face are printed, which are a small part of the output.
+    /// Whether the displacements of all nodes are printed, for
+    /// [`CalculiX::fields`](crate::CalculiX::fields); if not, only the displacements of the lower
+    /// face are printed, which are a small part of the output.
     pub print_all: bool,
 }

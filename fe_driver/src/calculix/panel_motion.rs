@@ -1,8 +1,8 @@
 //! The prescribed motion of arc B along a path.
 //!
-//! Panel A is fixed. Panel B rotates by theta about O, and O on B moves by du = R(theta/2) (a, s), so
-//! that (a, s, theta) are measured in the mean frame of (8). A point of arc B at the position (X, Y) relative to O
-//! therefore moves by
+//! Panel A is fixed. Panel B rotates by theta about O, and O on B moves by du = R(theta/2) (a, s),
+//! so that (a, s, theta) are measured in the mean frame of (8). A point of arc B at the position
+//! (X, Y) relative to O therefore moves by
 //!
 //! u_x = X q1 - Y q2 + q3,   u_y = Y q1 + X q2 + q4,   q = (cos theta - 1, sin theta, du_x, du_y),
 //!
@@ -36,8 +36,8 @@ impl PanelMotion {
     }
 
     /// (F_a, F_s, M_theta) from the resultant `force` (N) on panel B and its `moment` (N mm) about
-    /// the current position of O on B. They are the gradient of the work with respect to (a, s, theta); M_theta has
-    /// a contribution of the force because du rotates with theta/2.
+    /// the current position of O on B. They are the gradient of the work with respect to (a, s,
+    /// theta); M_theta has a contribution of the force because du rotates with theta/2.
     pub fn forces(&self, force: [f64; 2], moment: f64) -> HingeForces {
         let [f_a, f_s] = rotated(force, -0.5 * self.theta);
         HingeForces {
@@ -62,10 +62,7 @@ mod tests {
     /// The displaced position of a point at `x` relative to O.
     fn moved(deformation: [f64; 3], x: [f64; 2]) -> [f64; 2] {
         let [q1, q2, q3, q4] = PanelMotion::new(&deformation.into()).amplitudes();
-        [
-            x[0] + x[0] * q1 - x[1] * q2 + q3,
-            x[1] + x[1] * q1 + x[0] * q2 + q4,
-        ]
+        [x[0] + x[0] * q1 - x[1] * q2 + q3, x[1] + x[1] * q1 + x[0] * q2 + q4]
     }
 
     proptest! {

@@ -7,8 +7,8 @@ use hinge::{HingeDeformation, HingeDesign, HingeForces, HingeSample, SheetMateri
 use mesher::WindowMesh;
 use std::f64::consts::PI;
 
-/// D_peak is the mean over the most strained part of the window whose volume is this fraction of the ligament's
-/// half-disc volume.
+/// D_peak is the mean over the most strained part of the window whose volume is this fraction of
+/// the ligament's half-disc volume.
 const PEAK_FRACTION: f64 = 0.01;
 
 /// One sample per frame, in the order of the frames.
@@ -50,8 +50,8 @@ pub(crate) fn samples(model: &WindowModel, frames: &[Frame]) -> Vec<HingeSample>
         .collect()
 }
 
-/// The forces conjugate to (a, s, theta), from the resultant of the reactions on arc B and their moment about the
-/// current position of O on panel B.
+/// The forces conjugate to (a, s, theta), from the resultant of the reactions on arc B and their
+/// moment about the current position of O on panel B.
 fn arc_forces(
     mesh: &WindowMesh,
     deformation: &HingeDeformation,
@@ -94,7 +94,8 @@ fn elastic_energy(mesh: &WindowMesh, material: &SheetMaterial, stress: &[[f64; 6
         .sum()
 }
 
-/// Damage measures of a hinge from its accumulated plastic strain; see the fields of [`HingeSample`].
+/// Damage measures of a hinge from its accumulated plastic strain; see the fields of
+/// [`HingeSample`].
 pub(crate) struct Damage {
     plastic_integral: f64,
     pub d: f64,
@@ -121,8 +122,8 @@ impl Damage {
     }
 }
 
-/// The mean strain over the first `volume` of `points`, each (strain, volume). Only the required part of the
-/// last point's volume is counted.
+/// The mean strain over the first `volume` of `points`, each (strain, volume). Only the required
+/// part of the last point's volume is counted.
 fn mean_of_first(points: &[(f64, f64)], volume: f64) -> f64 {
     let mut left = volume;
     let mut sum = 0.0;
@@ -154,16 +155,8 @@ mod tests {
     #[test]
     fn the_trapezoid_is_exact_for_a_linear_force() {
         let state = |x: f64| {
-            let forces = HingeForces {
-                f_a: 3.0 * x,
-                f_s: 2.0 * x,
-                m_theta: 7.0 * x,
-            };
-            let deformation = HingeDeformation {
-                a: x,
-                s: 2.0 * x,
-                theta: 0.5 * x,
-            };
+            let forces = HingeForces { f_a: 3.0 * x, f_s: 2.0 * x, m_theta: 7.0 * x };
+            let deformation = HingeDeformation { a: x, s: 2.0 * x, theta: 0.5 * x };
             (deformation, forces)
         };
         let work = trapezoid(state(0.0), state(0.3)) + trapezoid(state(0.3), state(1.0));

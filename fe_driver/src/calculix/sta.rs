@@ -1,8 +1,8 @@
 //! Reader of CalculiX .sta files: one line per attempted increment.
 //!
-//! The file contains the progress of the solver in a machine-readable form: the lambda reached, the number of
-//! iterations, and the increments that the output must contain. Reading never fails: a line that is not an
-//! attempt, or that was truncated, is skipped.
+//! The file contains the progress of the solver in a machine-readable form: the lambda reached, the
+//! number of iterations, and the increments that the output must contain. Reading never fails: a
+//! line that is not an attempt, or that was truncated, is skipped.
 
 /// One attempted increment.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,19 +22,11 @@ pub fn read_sta(bytes: &[u8]) -> Vec<Increment> {
     text.lines().filter_map(attempt).collect()
 }
 
-/// Parses STEP INC ATT ITRS TOT-TIME STEP-TIME INC-TIME; a U after ATT means that the attempt diverged.
+/// Parses STEP INC ATT ITRS TOT-TIME STEP-TIME INC-TIME; a U after ATT means that the attempt
+/// diverged.
 fn attempt(line: &str) -> Option<Increment> {
     let fields: Vec<_> = line.split_whitespace().collect();
-    let [
-        step,
-        increment,
-        attempt,
-        iterations,
-        lambda,
-        in_step,
-        length,
-    ] = fields[..]
-    else {
+    let [step, increment, attempt, iterations, lambda, in_step, length] = fields[..] else {
         return None;
     };
     let number = attempt.trim_end_matches('U');
@@ -66,18 +58,10 @@ mod tests {
 
     #[test]
     fn attempts_are_read_with_their_outcome() {
-        let attempt = |lambda, iterations, converged| Increment {
-            lambda,
-            iterations,
-            converged,
-        };
+        let attempt = |lambda, iterations, converged| Increment { lambda, iterations, converged };
         assert_eq!(
             read_sta(STATUS.as_bytes()),
-            [
-                attempt(0.0, 4, false),
-                attempt(0.00125, 4, true),
-                attempt(0.0025, 3, true)
-            ]
+            [attempt(0.0, 4, false), attempt(0.00125, 4, true), attempt(0.0025, 3, true)]
         );
         assert_eq!(read_sta(b""), []);
     }

@@ -1,4 +1,5 @@
-//! The script by which a cluster's scheduler runs a campaign: an array of shards, then the collection.
+//! The script by which a cluster's scheduler runs a campaign: an array of shards, then the
+//! collection.
 //!
 //! A template is the script with `@key@` in place of what differs between campaigns.
 
@@ -38,20 +39,18 @@ pub enum ScriptError {
     #[error(
         "{what} {path:?}: a script cannot state this name, because of {reason}: rename it, or choose another with --folder"
     )]
-    Name {
-        what: &'static str,
-        path: PathBuf,
-        reason: &'static str,
-    },
+    Name { what: &'static str, path: PathBuf, reason: &'static str },
 }
 
 impl ArrayScript {
-    /// The last part of the time limit, in which no solve is started (s): a tenth, at most 10 minutes.
+    /// The last part of the time limit, in which no solve is started (s): a tenth, at most 10
+    /// minutes.
     fn reserve(&self) -> u64 {
         (6 * self.minutes).min(600)
     }
 
-    /// The time before the limit at which running solves are stopped (s): a tenth of the limit, at most a minute.
+    /// The time before the limit at which running solves are stopped (s): a tenth of the limit, at
+    /// most a minute.
     fn grace(&self) -> u64 {
         (6 * self.minutes).min(60)
     }
@@ -77,16 +76,14 @@ impl ArrayScript {
             ("minutes", minutes.to_string()),
             ("hms", format!("{:02}:{:02}:00", minutes / 60, minutes % 60)),
             ("grace", self.grace().to_string()),
-            (
-                "run",
-                command("run") + &format!(" --jobs {cores} --time-limit {limit}"),
-            ),
+            ("run", command("run") + &format!(" --jobs {cores} --time-limit {limit}")),
             ("collect", command("collect") + " --replace"),
         ]
     }
 
-    /// Refuses names that a line of a script cannot hold. The log folder stands in a line that the scheduler reads, not the
-    /// shell: there is no quoting that all schedulers read alike, and Slurm replaces `%`.
+    /// Refuses names that a line of a script cannot hold. The log folder stands in a line that the
+    /// scheduler reads, not the shell: there is no quoting that all schedulers read alike, and
+    /// Slurm replaces `%`.
     fn check_names(&self) -> Result<(), ScriptError> {
         let names = [
             ("the program", &self.program, ""),
@@ -144,11 +141,11 @@ fn unfit(path: &Path, further: &str) -> Option<&'static str> {
     if name.contains(['\'', '"', '`', '\\']) {
         return Some("a quote or a backslash");
     }
-    name.contains(|c| further.contains(c))
-        .then_some("a `%` or a `$`")
+    name.contains(|c| further.contains(c)).then_some("a `%` or a `$`")
 }
 
-/// The path as an operand of a command: a relative one that begins with a dash would be read as an option.
+/// The path as an operand of a command: a relative one that begins with a dash would be read as an
+/// option.
 fn operand(path: &Path) -> String {
     let name = path.to_string_lossy();
     let begin = if name.starts_with('-') { "./" } else { "" };
@@ -201,14 +198,13 @@ mod tests {
 
     #[test]
     fn paths_are_words_of_the_shell() {
-        let echo = script(60)
-            .fill("printf '%s|' @here@ '@name@' @shards@")
-            .unwrap();
+        let echo = script(60).fill("printf '%s|' @here@ '@name@' @shards@").unwrap();
         let output = Command::new("sh").args(["-c", &echo]).output().unwrap();
         assert_eq!(output.stdout, b"/home/a b/$it|film-one|32|");
     }
 
-    /// Names that a shell or a scheduler could take for more than a name; the second half is refused.
+    /// Names that a shell or a scheduler could take for more than a name; the second half is
+    /// refused.
     const HOSTILE: [&str; 32] = [
         "a b",
         " blank",
@@ -246,7 +242,8 @@ mod tests {
     /// Number of hostile names that a script can state.
     const STATED: usize = 22;
 
-    /// The arguments that kirigami receives from a filled template, which `bash` runs with the argument `role`.
+    /// The arguments that kirigami receives from a filled template, which `bash` runs with the
+    /// argument `role`.
     fn words(script: &ArrayScript, template: &str, role: &str) -> Vec<String> {
         let text = script.fill(template).unwrap();
         let recorded = script.here.join("recorded");
@@ -331,23 +328,14 @@ mod tests {
     fn a_short_limit_keeps_most_of_its_time() {
         for (minutes, expected) in [(1, "0.9 6"), (10, "9 60"), (240, "230 60")] {
             let text = script(minutes).fill("@run@ @grace@").unwrap();
-            assert!(
-                text.ends_with(&format!("--time-limit {expected}")),
-                "{text}"
-            );
+            assert!(text.ends_with(&format!("--time-limit {expected}")), "{text}");
         }
     }
 
     #[test]
     fn a_word_that_is_no_key_is_named_and_other_at_signs_remain() {
-        assert_eq!(
-            script(1).fill("B:TERM@@grace@ a@B@ @").unwrap(),
-            "B:TERM@6 a@B@ @"
-        );
+        assert_eq!(script(1).fill("B:TERM@@grace@ a@B@ @").unwrap(), "B:TERM@6 a@B@ @");
         let message = script(1).fill("@nodes@").unwrap_err().to_string();
-        assert!(
-            message.contains("`@nodes@`") && message.contains("@shards@"),
-            "{message}"
-        );
+        assert!(message.contains("`@nodes@`") && message.contains("@shards@"), "{message}");
     }
 }

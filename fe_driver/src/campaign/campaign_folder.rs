@@ -1,11 +1,13 @@
 //! The folder of a campaign.
 //!
-//! `campaign.json` contains the name of the campaign, the versions of gmsh and ccx, and the ids of its jobs as last
-//! run. `jobs/` is the store of their solves. `hosts/<host>/` contains what only the runs on one host write: the append-only
-//! history `events-<i>-of-<n>.jsonl` of each shard, which is also its lock file.
+//! `campaign.json` contains the name of the campaign, the versions of gmsh and ccx, and the ids of
+//! its jobs as last run. `jobs/` is the store of their solves. `hosts/<host>/` contains what only
+//! the runs on one host write: the append-only history `events-<i>-of-<n>.jsonl` of each shard,
+//! which is also its lock file.
 //!
-//! Hosts may share the folder, also on a file system whose locks do not work across hosts: locks only prevent that
-//! two runs on one host do the same work. Runs on different hosts may solve the same job twice; it is counted once.
+//! Hosts may share the folder, also on a file system whose locks do not work across hosts: locks
+//! only prevent that two runs on one host do the same work. Runs on different hosts may solve the
+//! same job twice; it is counted once.
 
 use crate::campaign::definition::CampaignError;
 use crate::campaign::history::{History, history_name, overlaps};
@@ -72,15 +74,16 @@ impl CampaignFolder {
         }
     }
 
-    /// Writes `index` to the folder and locks one shard of it on this host until the returned history is dropped.
+    /// Writes `index` to the folder and locks one shard of it on this host until the returned
+    /// history is dropped.
     ///
-    /// It is an error if a shard that may overlap with this one is locked on this host, or if this is a part of a
-    /// campaign whose other parts are solved with other versions of gmsh and ccx.
+    /// It is an error if a shard that may overlap with this one is locked on this host, or if this
+    /// is a part of a campaign whose other parts are solved with other versions of gmsh and ccx.
     pub fn enter(&self, shard: Shard, index: &Index) -> Result<History, CampaignError> {
         let home = self.0.join("hosts").join(host());
         whole_file::create_folder(&home).map_err(FileError::at(&home))?;
-        // Shards that start at the same time enter one after the other. Otherwise each would find the lock of the
-        // other.
+        // Shards that start at the same time enter one after the other. Otherwise each would find
+        // the lock of the other.
         let door = home.join("lock");
         let _held = lock_file::hold(&door).map_err(FileError::at(&door))?;
         self.belongs_to(&index.name)?;
@@ -96,8 +99,8 @@ impl CampaignFolder {
         History::open(&home.join(history_name(shard)))
     }
 
-    /// Rejects versions of gmsh and ccx other than those with which the campaign was last run. Only the rows of one
-    /// pair of versions are collected.
+    /// Rejects versions of gmsh and ccx other than those with which the campaign was last run. Only
+    /// the rows of one pair of versions are collected.
     fn refuse_other_versions(&self, index: &Index) -> Result<(), CampaignError> {
         let known = read_json::<Index>(&self.index_path())?.and_then(|known| known.tools);
         match (known, &index.tools) {

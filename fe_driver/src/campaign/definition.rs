@@ -1,7 +1,9 @@
-//! The definition of a campaign: a material, meshes and boxes of rays, from which the list of jobs follows.
+//! The definition of a campaign: a material, meshes and boxes of rays, from which the list of jobs
+//! follows.
 //!
-//! The jobs are the rays on the mesh `tier`, the first rays of every box on the mesh `finer_tier` again, and the rays of the spot
-//! check on the finer of the two, on which weights are tested. The spot check is drawn in the region that the rays cover.
+//! The jobs are the rays on the mesh `tier`, the first rays of every box on the mesh `finer_tier`
+//! again, and the rays of the spot check on the finer of the two, on which weights are tested. The
+//! spot check is drawn in the region that the rays cover.
 
 use crate::campaign::extra_rays::{ExtraRaysError, read_extra_rays};
 use crate::campaign::sampling::RayBox;
@@ -35,21 +37,24 @@ pub struct Campaign {
     pub tier: Tier,
     /// Finer mesh, of the rays that `finer` counts and of the spot check.
     pub finer_tier: Option<Tier>,
-    /// Number of rays of the spot check, each with four random states, on which weights are tested. 0 for none.
+    /// Number of rays of the spot check, each with four random states, on which weights are tested.
+    /// 0 for none.
     #[serde(default)]
     #[schemars(range(max = 10_000))]
     pub spot_rays: usize,
-    /// TOML files of the trainings that `kirigami train` makes of the campaign, relative to this file.
+    /// TOML files of the trainings that `kirigami train` makes of the campaign, relative to this
+    /// file.
     #[serde(default)]
     pub training: Vec<PathBuf>,
-    /// Weights of another material, relative to this file, from which trainings of networks of the same sizes begin, by
-    /// `configs/training/fine-tuning.toml`; the others begin at random.
+    /// Weights of another material, relative to this file, from which trainings of networks of the
+    /// same sizes begin, by `configs/training/fine-tuning.toml`; the others begin at random.
     #[serde(default)]
     pub pretrained: Vec<PathBuf>,
     /// Time limit of one solve.
     #[serde(skip)]
     pub time_limit: Duration,
-    /// CSV file of rays in addition to the sampled ones, relative to this file; written by `kirigami campaign extend`.
+    /// CSV file of rays in addition to the sampled ones, relative to this file; written by
+    /// `kirigami campaign extend`.
     extra_rays: Option<PathBuf>,
     /// Rays in addition to the rays of the boxes, and solved after them.
     #[serde(skip)]
@@ -81,11 +86,7 @@ pub enum CampaignError {
         "{folder} contains the campaign `{found}`, not `{requested}`: choose another folder",
         folder = .folder.display()
     )]
-    OtherCampaign {
-        folder: PathBuf,
-        found: String,
-        requested: String,
-    },
+    OtherCampaign { folder: PathBuf, found: String, requested: String },
     #[error(
         "the campaign has changed since it was run in {folder} ({changes}): run it again first",
         folder = .folder.display()
@@ -172,13 +173,11 @@ impl Campaign {
         ))
     }
 
-    /// The defect of the narrowest or the widest hinge of a box, with the smallest hole; all others lie between them.
+    /// The defect of the narrowest or the widest hinge of a box, with the smallest hole; all others
+    /// lie between them.
     fn impossible_design(&self) -> Option<InvalidDesign> {
         let defect = |rays: &RayBox| {
-            let constants = HingeConstants {
-                fillet_ratio: rays.fillet_ratio[0],
-                ..self.design
-            };
+            let constants = HingeConstants { fillet_ratio: rays.fillet_ratio[0], ..self.design };
             rays.w_lig.into_iter().find_map(|w_lig| {
                 let design = constants.hinge(w_lig, rays.alpha_deg[0].to_radians());
                 design.validate().err()
@@ -190,10 +189,7 @@ impl Campaign {
     /// Reads a campaign, its material and its further rays.
     pub fn load(path: &Path) -> Result<Self, CampaignError> {
         let mut campaign: Self = toml_file::read(path)?;
-        let invalid = |reason| CampaignError::Invalid {
-            path: path.to_owned(),
-            reason,
-        };
+        let invalid = |reason| CampaignError::Invalid { path: path.to_owned(), reason };
         if let Some(reason) = campaign.defect() {
             return Err(invalid(reason));
         }
@@ -237,8 +233,9 @@ impl Campaign {
         first
     }
 
-    /// The states that the rays pass through if they are solved to their ends. They do not depend on the number of rays, so
-    /// that the spot check remains the same when the campaign is enlarged. `None` if no ray passes through a state.
+    /// The states that the rays pass through if they are solved to their ends. They do not depend
+    /// on the number of rays, so that the spot check remains the same when the campaign is
+    /// enlarged. `None` if no ray passes through a state.
     pub fn region(&self) -> Option<TrainingDomain> {
         const RAYS: usize = 1500;
         const STATES: u32 = 10;
@@ -255,11 +252,7 @@ impl Campaign {
 
     /// The states of its region.
     pub fn drawn<'a>(&'a self, region: &'a TrainingDomain) -> DrawnStates<'a> {
-        DrawnStates {
-            domain: region,
-            constants: &self.design,
-            regime: self.tier.regime(),
-        }
+        DrawnStates { domain: region, constants: &self.design, regime: self.tier.regime() }
     }
 
     /// The paths of the spot check.
@@ -283,12 +276,7 @@ impl Campaign {
         let finer = self.boxes.iter().flat_map(|rays| of_box(rays, rays.finer));
         let spot = self.spot_paths().into_iter().map(|path| path.hinge);
         let all = [
-            (
-                JobPart::Ray,
-                rays.chain(self.further.iter().copied())
-                    .map(driven)
-                    .collect(),
-            ),
+            (JobPart::Ray, rays.chain(self.further.iter().copied()).map(driven).collect()),
             (JobPart::Finer, finer.map(driven).collect()),
             (JobPart::SpotCheck, spot.collect::<Vec<_>>()),
         ];
@@ -323,25 +311,19 @@ pub(crate) mod tests {
     use crate::solve::problem::Solve;
 
     fn shipped(name: &str) -> PathBuf {
-        Path::new(env!("CARGO_MANIFEST_DIR"))
-            .join("../configs/campaigns")
-            .join(name)
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("../configs/campaigns").join(name)
     }
 
     fn versions() -> ToolVersions {
-        ToolVersions {
-            gmsh: "4.8.4".into(),
-            ccx: "2.20".into(),
-        }
+        ToolVersions { gmsh: "4.8.4".into(), ccx: "2.20".into() }
     }
 
     #[test]
     fn the_shipped_campaigns_are_read() {
         let files = std::fs::read_dir(shipped("")).unwrap();
         let files = files.map(|file| file.unwrap().path());
-        let files: Vec<_> = files
-            .filter(|file| file.extension().is_some_and(|it| it == "toml"))
-            .collect();
+        let files: Vec<_> =
+            files.filter(|file| file.extension().is_some_and(|it| it == "toml")).collect();
         assert!(files.len() > 5);
         for file in files {
             let campaign = Campaign::load(&file).unwrap();
@@ -356,10 +338,7 @@ pub(crate) mod tests {
             ids.sort_unstable();
             ids.dedup();
             assert_eq!((ids.len(), campaign.size()), (jobs.len(), jobs.len()));
-            assert!(
-                jobs.iter()
-                    .all(|(_, job)| job.problem.hinge.design.validate().is_ok())
-            );
+            assert!(jobs.iter().all(|(_, job)| job.problem.hinge.design.validate().is_ok()));
             let named = campaign.training.iter().chain(&campaign.pretrained);
             assert!(named.into_iter().all(|file| file.is_file()));
         }
@@ -370,11 +349,7 @@ pub(crate) mod tests {
     /// Two boxes and a further ray, three rays on a finer mesh, and a spot check of two.
     pub fn of_two_boxes() -> Campaign {
         let mut campaign = Campaign::load(&shipped("demo.toml")).unwrap();
-        let first = RayBox {
-            count: 5,
-            finer: 2,
-            ..campaign.boxes[0]
-        };
+        let first = RayBox { count: 5, finer: 2, ..campaign.boxes[0] };
         let second = RayBox {
             count: 3,
             seed: 2,
@@ -410,11 +385,7 @@ pub(crate) mod tests {
         let finer = (JobPart::Finer, Tier::Small, 3);
         assert_eq!(
             parts(&jobs),
-            [
-                (JobPart::Ray, Tier::Tiny, 9),
-                finer,
-                (JobPart::SpotCheck, Tier::Small, 2)
-            ]
+            [(JobPart::Ray, Tier::Tiny, 9), finer, (JobPart::SpotCheck, Tier::Small, 2)]
         );
         let all = hinges(&jobs);
         assert_eq!(all[9..12], [all[0], all[1], all[5]]);
@@ -423,10 +394,7 @@ pub(crate) mod tests {
 
         let region = campaign.region().unwrap();
         let spot = campaign.spot_paths();
-        assert_eq!(
-            spot.iter().map(|path| &path.hinge).collect::<Vec<_>>(),
-            all[12..]
-        );
+        assert_eq!(spot.iter().map(|path| &path.hinge).collect::<Vec<_>>(), all[12..]);
         for path in &spot {
             assert_eq!(path.fractions.len(), STATES_PER_RAY);
             let mut states = path.fractions.iter().map(|at| path.hinge.path.at(*at));
@@ -442,10 +410,7 @@ pub(crate) mod tests {
         assert_eq!(larger.spot_paths(), spot);
         assert_eq!(
             parts(&larger.jobs(&versions())),
-            [
-                (JobPart::Ray, Tier::Tiny, 53),
-                (JobPart::SpotCheck, Tier::Tiny, 2)
-            ]
+            [(JobPart::Ray, Tier::Tiny, 53), (JobPart::SpotCheck, Tier::Tiny, 2)]
         );
     }
 
@@ -470,15 +435,9 @@ pub(crate) mod tests {
             |campaign: &Campaign, tools: &ToolVersions| campaign.solves(tools).next().unwrap();
         let job = first(&campaign, &versions());
         assert_eq!(job.id(), job.clone().id());
-        let newer = ToolVersions {
-            ccx: "2.21".into(),
-            ..versions()
-        };
+        let newer = ToolVersions { ccx: "2.21".into(), ..versions() };
         assert_ne!(first(&campaign, &newer).id(), job.id());
-        assert_eq!(
-            first(&campaign, &newer).differences(&job),
-            ["tool versions"]
-        );
+        assert_eq!(first(&campaign, &newer).differences(&job), ["tool versions"]);
         campaign.material.plastic[1][0] += 1e-9;
         campaign.tier = Tier::Small;
         let other = first(&campaign, &versions());
@@ -505,10 +464,7 @@ pub(crate) mod tests {
     #[test]
     fn errors_name_the_file_and_the_rule() {
         let none = message(&[("count = 40", "count = 0")]);
-        assert!(
-            none.contains("mine.toml: [[rays]] violates 1 <= count"),
-            "{none}"
-        );
+        assert!(none.contains("mine.toml: [[rays]] violates 1 <= count"), "{none}");
         assert!(message(&[("kerf =", "kerv =")]).contains("did you mean `kerf`"));
         assert!(message(&[("r_win = 100.0", "r_win = 50.0")]).contains("r_win > 2.5 w_lig"));
         assert!(message(&[("tier = \"tiny\"", "tier = \"huge\"")]).contains("huge"));
@@ -521,11 +477,7 @@ pub(crate) mod tests {
         let finer = ("seed = 1", "seed = 1\nfiner = 41");
         let lone = message(&[finer]);
         assert!(lone.contains("mine.toml: finer needs finer_tier"), "{lone}");
-        for (tier, finer) in [
-            ("tiny", "tiny"),
-            ("small", "tiny"),
-            ("tiny", "plate-reference"),
-        ] {
+        for (tier, finer) in [("tiny", "tiny"), ("small", "tiny"), ("tiny", "plate-reference")] {
             let tiers = format!("tier = \"{tier}\"\nfiner_tier = \"{finer}\"");
             let message = message(&[("tier = \"tiny\"", &tiers)]);
             let expected =

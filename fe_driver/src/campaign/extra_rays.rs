@@ -1,8 +1,10 @@
-//! Rays that a campaign solves in addition to the rays of its box, at states that designs reach outside the data.
+//! Rays that a campaign solves in addition to the rays of its box, at states that designs reach
+//! outside the data.
 //!
-//! They are in a CSV file with the columns `w_lig` (mm), `alpha_deg`, `eta_a`, `eta_s`, `theta_deg`, one ray per row, and `fillet_ratio`
-//! where hinges have other holes than the hole of the campaign's `[design]`. The campaign's key `extra_rays` is the path of the file.
-//! Lines that start with `#` are comments.
+//! They are in a CSV file with the columns `w_lig` (mm), `alpha_deg`, `eta_a`, `eta_s`,
+//! `theta_deg`, one ray per row, and `fillet_ratio` where hinges have other holes than the hole of
+//! the campaign's `[design]`. The campaign's key `extra_rays` is the path of the file. Lines that
+//! start with `#` are comments.
 
 use crate::solve::hinge_path::Ray;
 use hinge::{HingeConstants, HingeDeformation};
@@ -22,27 +24,13 @@ pub enum ExtraRaysError {
         "{path} has other columns, or in another order: rays are appended below `{header}`",
         path = .path.display(), header = .header.join(",")
     )]
-    Order {
-        path: PathBuf,
-        header: &'static [&'static str],
-    },
+    Order { path: PathBuf, header: &'static [&'static str] },
     #[error("{path}, ray {row}: {reason}", path = .path.display())]
-    Ray {
-        path: PathBuf,
-        row: usize,
-        reason: String,
-    },
+    Ray { path: PathBuf, row: usize, reason: String },
 }
 
 /// The columns in the order in which rays are appended.
-const COLUMNS: [&str; 6] = [
-    "w_lig",
-    "alpha_deg",
-    "eta_a",
-    "eta_s",
-    "theta_deg",
-    "fillet_ratio",
-];
+const COLUMNS: [&str; 6] = ["w_lig", "alpha_deg", "eta_a", "eta_s", "theta_deg", "fillet_ratio"];
 
 /// One row of the file: a hinge and the end of its ray. Its fields are in the order of [`COLUMNS`].
 #[derive(Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -64,11 +52,7 @@ pub fn read_extra_rays(path: &Path, common: &HingeConstants) -> Result<Vec<Ray>,
     for (i, (_, row)) in rows.into_iter().enumerate() {
         let ray = row.ray(common);
         if let Some(reason) = row.defect(&ray) {
-            return Err(ExtraRaysError::Ray {
-                path: path.to_owned(),
-                row: i + 1,
-                reason,
-            });
+            return Err(ExtraRaysError::Ray { path: path.to_owned(), row: i + 1, reason });
         }
         // A ray that occurs twice is one job.
         if !rays.contains(&ray) {
@@ -89,17 +73,12 @@ pub struct Added {
     pub refused: usize,
 }
 
-/// Appends rays to the file, which is created if it does not exist. If the hinges of all rays have the same hole, the rays belong to a
-/// campaign with this hole; otherwise, and in a file with that column, `fillet_ratio` is written too.
+/// Appends rays to the file, which is created if it does not exist. If the hinges of all rays have
+/// the same hole, the rays belong to a campaign with this hole; otherwise, and in a file with that
+/// column, `fillet_ratio` is written too.
 pub fn add_extra_rays(path: &Path, rays: &[Ray]) -> Result<Added, ExtraRaysError> {
-    let (header, rows) = if path.exists() {
-        csv_table::read(path)?
-    } else {
-        Default::default()
-    };
-    let several = rays
-        .iter()
-        .any(|ray| ray.design.fillet_ratio != rays[0].design.fillet_ratio);
+    let (header, rows) = if path.exists() { csv_table::read(path)? } else { Default::default() };
+    let several = rays.iter().any(|ray| ray.design.fillet_ratio != rays[0].design.fillet_ratio);
     let with_holes = several || header.iter().any(|column| column == COLUMNS[5]);
     let columns = &COLUMNS[..if with_holes { 6 } else { 5 }];
     if !header.is_empty() && !header.iter().eq(columns.iter().copied()) {
@@ -108,9 +87,8 @@ pub fn add_extra_rays(path: &Path, rays: &[Ray]) -> Result<Added, ExtraRaysError
     }
     let mut rows: Vec<Row> = rows.into_iter().map(|(_, row)| row).collect();
     let mut count = Added::default();
-    let mut writer = csv::WriterBuilder::new()
-        .has_headers(header.is_empty())
-        .from_writer(Vec::new());
+    let mut writer =
+        csv::WriterBuilder::new().has_headers(header.is_empty()).from_writer(Vec::new());
     for ray in rays {
         let row = Row::from_ray(ray, with_holes);
         if row.defect(ray).is_some() {
@@ -137,7 +115,8 @@ pub fn add_extra_rays(path: &Path, rays: &[Ray]) -> Result<Added, ExtraRaysError
 }
 
 impl Row {
-    /// The row of a ray. Numbers are rounded to four decimals, which is accurate enough and keeps the file readable.
+    /// The row of a ray. Numbers are rounded to four decimals, which is accurate enough and keeps
+    /// the file readable.
     fn from_ray(ray: &Ray, with_hole: bool) -> Self {
         let ray = acute(*ray);
         let [eta_a, eta_s] = ray.end.eta(ray.design.w_lig);
@@ -187,11 +166,7 @@ impl Row {
 
 /// The ray or its mirror image, whichever has the acute cut angle.
 fn acute(ray: Ray) -> Ray {
-    if ray.design.alpha > FRAC_PI_2 {
-        ray.mirrored()
-    } else {
-        ray
-    }
+    if ray.design.alpha > FRAC_PI_2 { ray.mirrored() } else { ray }
 }
 
 #[cfg(test)]
@@ -213,20 +188,14 @@ mod tests {
         let path = folder.path().join("rays.csv");
         let added = add_extra_rays(&path, &[ray(80.0), ray(100.0)]).unwrap();
         assert_eq!((added.added, added.known, added.refused), (2, 0, 0));
-        let text = format!(
-            "# of a design\n{}# by hand",
-            std::fs::read_to_string(&path).unwrap()
-        );
+        let text = format!("# of a design\n{}# by hand", std::fs::read_to_string(&path).unwrap());
         std::fs::write(&path, text).unwrap();
         let mut closing = ray(60.0);
         closing.end.theta = -0.6;
         let added = add_extra_rays(&path, &[ray(80.0), ray(70.0), closing]).unwrap();
         assert_eq!((added.added, added.known, added.refused), (1, 1, 1));
         let text = std::fs::read_to_string(&path).unwrap();
-        assert!(
-            text.contains("# of a design") && text.contains("# by hand"),
-            "{text}"
-        );
+        assert!(text.contains("# of a design") && text.contains("# by hand"), "{text}");
         let rays = read_extra_rays(&path, &COMMON).unwrap();
         assert_eq!(rays.len(), 3);
         assert!((rays[0].design.w_lig - 17.1235).abs() < 1e-12);
@@ -251,10 +220,7 @@ mod tests {
         let without = folder.path().join("one.csv");
         add_extra_rays(&without, &[ray(80.0)]).unwrap();
         let error = add_extra_rays(&without, &[ray(60.0), wide]).unwrap_err();
-        assert!(
-            error.to_string().contains("theta_deg,fillet_ratio"),
-            "{error}"
-        );
+        assert!(error.to_string().contains("theta_deg,fillet_ratio"), "{error}");
         assert_eq!(holes(&without), [0.16]);
     }
 

@@ -6,8 +6,8 @@ use crate::solve::solved::Solved;
 use std::path::Path;
 use support::file_error::FileError;
 
-/// The solves of the campaign in `folder` that are closed and have samples, in the order of their ids, as in a
-/// database.
+/// The solves of the campaign in `folder` that are closed and have samples, in the order of their
+/// ids, as in a database.
 ///
 /// Stale jobs are omitted. Neither gmsh nor ccx needs to be installed.
 pub fn finished_windows(

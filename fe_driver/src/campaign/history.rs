@@ -16,17 +16,9 @@ use support::shard::Shard;
 #[derive(Clone, Copy, Debug, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum Event<'a> {
-    Started {
-        attempt: AttemptKind,
-    },
-    Disturbed {
-        attempt: AttemptKind,
-        reason: &'a str,
-    },
-    Ended {
-        attempt: AttemptKind,
-        record: &'a SolveRecord,
-    },
+    Started { attempt: AttemptKind },
+    Disturbed { attempt: AttemptKind, reason: &'a str },
+    Ended { attempt: AttemptKind, record: &'a SolveRecord },
     Reopened,
     Restored,
 }
@@ -40,7 +32,8 @@ struct Line<'a> {
     event: Event<'a>,
 }
 
-/// The open history of a shard. The shard stays locked until this value is dropped or the process exits.
+/// The open history of a shard. The shard stays locked until this value is dropped or the process
+/// exits.
 #[derive(Debug)]
 pub(crate) struct History {
     path: PathBuf,
@@ -65,15 +58,13 @@ impl History {
         let mut line =
             serde_json::to_vec(&Line { time, job, event }).map_err(FileError::at(&self.path))?;
         line.push(b'\n');
-        self.file
-            .write_all(&line)
-            .map_err(FileError::at(&self.path))
+        self.file.write_all(&line).map_err(FileError::at(&self.path))
     }
 }
 
 impl Drop for History {
-    /// Unlocks the shard immediately. Without the explicit unlock, a solver process between fork and exec would share
-    /// the open file and keep the lock.
+    /// Unlocks the shard immediately. Without the explicit unlock, a solver process between fork
+    /// and exec would share the open file and keep the lock.
     fn drop(&mut self) {
         // An error means that the file is no longer locked.
         let _ = self.file.unlock();
@@ -88,8 +79,8 @@ pub(crate) fn history_name(shard: Shard) -> String {
     format!("{HISTORY}{}.jsonl", shard.to_string().replace('/', "-of-"))
 }
 
-/// Whether a file is the history of a shard that may overlap with this one: of this shard itself, or of a division into
-/// another number of shards.
+/// Whether a file is the history of a shard that may overlap with this one: of this shard itself,
+/// or of a division into another number of shards.
 pub(crate) fn overlaps(shard: Shard, file_name: &str) -> bool {
     let own = history_name(shard);
     // The end of the names of all shards of the same division.

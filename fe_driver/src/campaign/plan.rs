@@ -23,8 +23,8 @@ pub struct Plan {
     pub reasons: BTreeMap<String, usize>,
     /// Jobs in the folder that no longer belong to the campaign; they are kept.
     pub stale: usize,
-    /// Estimated time of one worker (s), from the jobs of each mesh whose time is known ([`Tally::timed`]); if there is none, the time of
-    /// as many jobs of the polyester film.
+    /// Estimated time of one worker (s), from the jobs of each mesh whose time is known
+    /// ([`Tally::timed`]); if there is none, the time of as many jobs of the polyester film.
     pub seconds: f64,
     /// Memory of one worker (MB) for the largest mesh.
     pub memory_mb: f64,
@@ -65,9 +65,7 @@ pub fn plan(
     let tiers = || to_run.iter();
     Ok(Plan {
         seconds: tiers().map(|tier| tally.seconds_a_job(*tier)).sum(),
-        memory_mb: tiers()
-            .map(|tier| tier.usual_memory_mb())
-            .fold(0.0, f64::max),
+        memory_mb: tiers().map(|tier| tier.usual_memory_mb()).fold(0.0, f64::max),
         disk_mb: JOB_MB * to_run.len() as f64,
         tally,
         reasons,
@@ -75,17 +73,14 @@ pub fn plan(
     })
 }
 
-/// Enters the jobs of the campaign in `folder` before any of them is solved, so that every shard finds the same jobs
-/// and the same versions of gmsh and ccx.
+/// Enters the jobs of the campaign in `folder` before any of them is solved, so that every shard
+/// finds the same jobs and the same versions of gmsh and ccx.
 pub fn prepare(
     campaign: &Campaign,
     folder: &Path,
     versions: &ToolVersions,
 ) -> Result<(), CampaignError> {
-    let index = Index::new(
-        &campaign.name,
-        &campaign.solves(versions).collect::<Vec<_>>(),
-    );
+    let index = Index::new(&campaign.name, &campaign.solves(versions).collect::<Vec<_>>());
     CampaignFolder(folder.to_owned()).enter(Shard::WHOLE, &index)?;
     Ok(())
 }
@@ -93,11 +88,7 @@ pub fn prepare(
 /// The inputs of the jobs in the folder whose ids are not in `requested`.
 fn stale(store: &SolveStore, requested: &HashSet<String>) -> Result<Stale, CampaignError> {
     let mut stale = Stale::default();
-    for id in store
-        .ids()?
-        .into_iter()
-        .filter(|id| !requested.contains(id))
-    {
+    for id in store.ids()?.into_iter().filter(|id| !requested.contains(id)) {
         // A damaged job of another campaign is ignored.
         if let Ok(Some(solve)) = or_damage(store.solve(&id).solve::<WindowSolve>())? {
             stale.count += 1;

@@ -44,8 +44,8 @@ pub struct Restored {
 
 /// Recreates the folders of jobs that `campaign` finished in another place or earlier.
 ///
-/// The id of a job is a hash of all inputs of its result. Jobs of another campaign are omitted; it is an error if
-/// all jobs are of another campaign.
+/// The id of a job is a hash of all inputs of its result. Jobs of another campaign are omitted; it
+/// is an error if all jobs are of another campaign.
 pub fn restore(
     campaign: &Campaign,
     folder: &Path,
@@ -81,10 +81,7 @@ pub fn restore(
             continue;
         };
         let home = store.solve(&window.id);
-        if home
-            .ended::<WindowSolve>()?
-            .is_some_and(|record| record.is_closed())
-        {
+        if home.ended::<WindowSolve>()?.is_some_and(|record| record.is_closed()) {
             restored.there += 1;
             continue;
         }

@@ -8,9 +8,11 @@ use crate::solve::window_solve::WindowSolve;
 use std::path::Path;
 use support::shard::Shard;
 
-/// Reopens the closed jobs in `folder` that failed, or only those with one kind of failure, and returns their number.
+/// Reopens the closed jobs in `folder` that failed, or only those with one kind of failure, and
+/// returns their number.
 ///
-/// The next run starts their ladder of attempts again. Existing samples are kept until an attempt reaches a larger lambda.
+/// The next run starts their ladder of attempts again. Existing samples are kept until an attempt
+/// reaches a larger lambda.
 pub fn retry(folder: &Path, only: Option<FailureKind>) -> Result<usize, CampaignError> {
     let folder = CampaignFolder(folder.to_owned());
     let (index, store) = (folder.index()?, folder.store());

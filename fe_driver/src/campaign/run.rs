@@ -33,15 +33,16 @@ pub struct Progress {
     pub tally: Tally,
     /// Estimated remaining time (s), from the rate of this run; `None` before it has closed a job.
     pub seconds_left: Option<f64>,
-    /// The open jobs whose attempts in this run were ended by the machine, each with the last reason.
+    /// The open jobs whose attempts in this run were ended by the machine, each with the last
+    /// reason.
     pub disturbed: BTreeMap<String, String>,
 }
 
 /// Runs the open jobs of `campaign` in `folder`, and the failed jobs that have an attempt left.
 /// `progress` is called at the start and after each event.
 ///
-/// When `stop` becomes true, the solves in flight are terminated and the run returns its progress. The
-/// next run continues from there.
+/// When `stop` becomes true, the solves in flight are terminated and the run returns its progress.
+/// The next run continues from there.
 pub fn run(
     campaign: &Campaign,
     folder: &Path,
@@ -63,11 +64,7 @@ pub fn run(
     let store = folder.store();
     let jobs: Vec<Job> = (index.jobs.into_iter().zip(solves).enumerate())
         .filter(|(place, _)| options.shard.holds(*place))
-        .map(|(_, (id, solve))| Job {
-            folder: store.solve(&id),
-            id,
-            solve,
-        })
+        .map(|(_, (id, solve))| Job { folder: store.solve(&id), id, solve })
         .collect();
     let mut ledger = Ledger::new(history, &jobs)?;
     progress(&ledger.progress());
@@ -111,10 +108,7 @@ impl<'a> Ledger<'a> {
             SolveEvent::Found(record) => self.records[place] = record,
             SolveEvent::Started(attempt) => self.history.note(id, Event::Started { attempt })?,
             SolveEvent::Disturbed(attempt, reason) => {
-                let event = Event::Disturbed {
-                    attempt,
-                    reason: &reason,
-                };
+                let event = Event::Disturbed { attempt, reason: &reason };
                 self.history.note(id, event)?;
                 self.disturbed.insert(id.clone(), reason);
             }

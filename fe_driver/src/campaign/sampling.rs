@@ -1,24 +1,25 @@
 //! Sampling of the rays of a campaign: a seeded Latin hypercube, block by block.
 //!
-//! Rays are sampled in blocks of 40. Each block is a separate Latin hypercube over (log w_lig, alpha, and the
-//! end of the ray), and 5 of its rays are pure rotations. Therefore any prefix is a usable database, and a larger
-//! campaign with the same seed begins with the smaller one.
+//! Rays are sampled in blocks of 40. Each block is a separate Latin hypercube over (log w_lig,
+//! alpha, and the end of the ray), and 5 of its rays are pure rotations. Therefore any prefix is a
+//! usable database, and a larger campaign with the same seed begins with the smaller one.
 //!
-//! The ends of the rays fill one region of (eta_a, eta_s, theta) at every ligament width. Compression
-//! and rotation always have their full range, because the ligament relieves them by buckling. Tension and shear
-//! stretch a ligament in its plane and store energy in proportion to w_lig^2, whereas a rotation stores energy in
-//! proportion to w_lig. Tension and shear stay inside a half-ellipse that grows with the rotation,
+//! The ends of the rays fill one region of (eta_a, eta_s, theta) at every ligament width.
+//! Compression and rotation always have their full range, because the ligament relieves them by
+//! buckling. Tension and shear stretch a ligament in its plane and store energy in proportion to
+//! w_lig^2, whereas a rotation stores energy in proportion to w_lig. Tension and shear stay inside
+//! a half-ellipse that grows with the rotation,
 //!
 //! ```text
 //! (eta_a / (A rho))^2 + (eta_s / S)^2 / rho <= 1      for eta_a >= 0,
 //! rho = rho_0 + (1 - rho_0) min(1, theta / theta_full),   rho_0 = min(1, w_full / w_lig),
 //! ```
 //!
-//! with A and S the maximum tension and shear. A compressed ligament may additionally be sheared as long as it
-//! is slack, that is, while the distance of its ends is at most the original one: (1 + eta_a)^2 + eta_s^2 <= 1.
-//! A ligament of a plate turns freely about its middle: eta_a is measured from its axial opening there, 0.5 theta + 0.16 theta^2.
-//! For the paper's film and w_full = 8 mm no ray end stores more than about 500 N mm, five times the energy of a
-//! deployed hinge.
+//! with A and S the maximum tension and shear. A compressed ligament may additionally be sheared as
+//! long as it is slack, that is, while the distance of its ends is at most the original one: (1 +
+//! eta_a)^2 + eta_s^2 <= 1. A ligament of a plate turns freely about its middle: eta_a is measured
+//! from its axial opening there, 0.5 theta + 0.16 theta^2. For the paper's film and w_full = 8 mm
+//! no ray end stores more than about 500 N mm, five times the energy of a deployed hinge.
 
 use crate::solve::hinge_path::Ray;
 use hinge::{HingeConstants, HingeDeformation, NetLigament, Regime};
@@ -32,8 +33,8 @@ use serde::{Deserialize, Serialize};
 const BLOCK: usize = 40;
 /// Every ray whose index is a multiple of this number is a pure rotation.
 const ROTATION_EVERY: usize = 8;
-/// Fraction of the other rays that end in tension; compared to compression, its range is narrower and its forces
-/// are larger.
+/// Fraction of the other rays that end in tension; compared to compression, its range is narrower
+/// and its forces are larger.
 const TENSION_SHARE: f64 = 0.4;
 /// Maximum number of rays; a larger number is a typing error.
 const MAX_COUNT: usize = 1_000_000;
@@ -48,29 +49,33 @@ pub struct RayBox {
     pub count: usize,
     /// Seed of the rays; more rays with the same seed begin with the fewer ones.
     pub seed: u64,
-    /// Number of the rays, its first ones, that are solved on `finer_tier` too. `train` corrects the others by them.
+    /// Number of the rays, its first ones, that are solved on `finer_tier` too. `train` corrects
+    /// the others by them.
     #[serde(default)]
     pub finer: usize,
     /// Minimum and maximum ligament width (mm), 0.5 to 500, sampled uniformly in its logarithm.
     pub w_lig: [f64; 2],
-    /// Minimum and maximum cut angle (deg), above 0 and at most 90, because mirroring gives the rest.
+    /// Minimum and maximum cut angle (deg), above 0 and at most 90, because mirroring gives the
+    /// rest.
     pub alpha_deg: [f64; 2],
-    /// Minimum and maximum radius of the hole, over w_lig. Rays end where the hinge with the hole of `[design]` and the same
-    /// net ligament would.
+    /// Minimum and maximum radius of the hole, over w_lig. Rays end where the hinge with the hole
+    /// of `[design]` and the same net ligament would.
     pub fillet_ratio: [f64; 2],
-    /// Maximum compression (negative) and maximum tension at the end of a ray, over w_lig; above -1 and below 1. For a plate
-    /// they are measured from the free turn of its ligament, 0.5 theta + 0.16 theta^2 (rad), at which pure rotations end.
+    /// Maximum compression (negative) and maximum tension at the end of a ray, over w_lig; above -1
+    /// and below 1. For a plate they are measured from the free turn of its ligament, 0.5 theta +
+    /// 0.16 theta^2 (rad), at which pure rotations end.
     pub eta_a: [f64; 2],
     /// Maximum shear of either sign at the end of a ray, over w_lig; at least 0 and below 1.
     pub eta_s: f64,
-    /// Minimum and maximum rotation at the end of a ray (deg), -30 to 120; negative closes the cut. Pure rotations end
-    /// at the maximum.
+    /// Minimum and maximum rotation at the end of a ray (deg), -30 to 120; negative closes the cut.
+    /// Pure rotations end at the maximum.
     pub theta_deg: [f64; 2],
     /// Median rotation at the end of the rays (deg), inside `theta_deg`, pure rotations excluded.
     pub median_deg: f64,
     /// Rotation above which tension and shear have their full range at any width (deg), 1 to 180.
     pub full_range_deg: f64,
-    /// Ligament width up to which tension and shear have their full range at any rotation (mm), at least 0.
+    /// Ligament width up to which tension and shear have their full range at any rotation (mm), at
+    /// least 0.
     pub full_range_w_lig: f64,
 }
 
@@ -127,10 +132,7 @@ impl RayBox {
         let theta = theta_deg.to_radians();
         let eta_a = theta * (first + second * theta.abs()) + eta_a;
         let end = HingeDeformation::from_eta(eta_a, eta_s, theta, w_lig);
-        Ray {
-            design,
-            end: ligament.actual(&end),
-        }
+        Ray { design, end: ligament.actual(&end) }
     }
 
     /// The quantile of the rotation (degrees): the fraction `share` of the rays ends below it.
@@ -143,7 +145,8 @@ impl RayBox {
         }
     }
 
-    /// rho: the fraction of the range of tension and shear at a width (mm) and a rotation (degrees).
+    /// rho: the fraction of the range of tension and shear at a width (mm) and a rotation
+    /// (degrees).
     fn range(&self, w_lig: f64, theta: f64) -> f64 {
         let flat = (self.full_range_w_lig / w_lig).min(1.0);
         (flat + (1.0 - flat) * theta / self.full_range_deg).clamp(0.0, 1.0)
@@ -152,15 +155,9 @@ impl RayBox {
     /// The first inequality that the box violates; `None` if it is valid.
     pub(crate) fn defect(&self) -> Option<String> {
         let rules = [
-            (
-                (1..=MAX_COUNT).contains(&self.count),
-                "1 <= count <= 1000000",
-            ),
+            ((1..=MAX_COUNT).contains(&self.count), "1 <= count <= 1000000"),
             (self.finer <= self.count, "finer <= count"),
-            (
-                0.0 < self.w_lig[0] && self.w_lig[0] <= self.w_lig[1],
-                "0 < w_lig[0] <= w_lig[1]",
-            ),
+            (0.0 < self.w_lig[0] && self.w_lig[0] <= self.w_lig[1], "0 < w_lig[0] <= w_lig[1]"),
             (
                 0.0 < self.alpha_deg[0]
                     && self.alpha_deg[0] <= self.alpha_deg[1]
@@ -173,10 +170,7 @@ impl RayBox {
                     && self.fillet_ratio[1] < 1.0,
                 "0 < fillet_ratio[0] <= fillet_ratio[1] < 1",
             ),
-            (
-                self.alpha_deg[1] >= 5.0,
-                "alpha_deg[1] >= 5: angles are in degrees, not radians",
-            ),
+            (self.alpha_deg[1] >= 5.0, "alpha_deg[1] >= 5: angles are in degrees, not radians"),
             (
                 self.theta_deg[1] >= 2.5,
                 "theta_deg[1] >= 2.5: rotations are in degrees, not radians",
@@ -204,14 +198,12 @@ impl RayBox {
                 "1 <= full_range_deg <= 180 (degrees, not radians)",
             ),
         ];
-        rules
-            .iter()
-            .find(|(holds, _)| !holds)
-            .map(|(_, rule)| format!("[[rays]] violates {rule}"))
+        rules.iter().find(|(holds, _)| !holds).map(|(_, rule)| format!("[[rays]] violates {rule}"))
     }
 }
 
-/// One block of points in the unit cube; each coordinate has exactly one value in each interval of length 1/BLOCK.
+/// One block of points in the unit cube; each coordinate has exactly one value in each interval of
+/// length 1/BLOCK.
 fn latin_hypercube(random: &mut ChaCha8Rng) -> Vec<[f64; DIMENSIONS]> {
     let mut points = vec![[0.0; DIMENSIONS]; BLOCK];
     for dimension in 0..DIMENSIONS {
@@ -248,10 +240,8 @@ mod tests {
     fn a_block_is_a_latin_hypercube() {
         let points = latin_hypercube(&mut ChaCha8Rng::seed_from_u64(3));
         for dimension in 0..DIMENSIONS {
-            let mut strata: Vec<_> = points
-                .iter()
-                .map(|point| (point[dimension] * BLOCK as f64) as usize)
-                .collect();
+            let mut strata: Vec<_> =
+                points.iter().map(|point| (point[dimension] * BLOCK as f64) as usize).collect();
             strata.sort_unstable();
             assert!(strata.into_iter().eq(0..BLOCK));
         }
@@ -283,13 +273,11 @@ mod tests {
             assert_eq!(i % 8 == 0, eta_a == 0.0 && eta_s == 0.0 && theta > 74.9);
         }
         let share = |is: &dyn Fn([f64; 2], f64) -> bool| {
-            let met = rays
-                .iter()
-                .filter(|ray| is(ray.end.eta(ray.design.w_lig), ray.end.theta));
+            let met = rays.iter().filter(|ray| is(ray.end.eta(ray.design.w_lig), ray.end.theta));
             met.count() as f64 / rays.len() as f64
         };
-        // 7/8 of the rays are not pure rotations: 1/2 of these end below 25 deg, 4/10 in tension. One in
-        // twelve of the rays below 25 deg closes the cut.
+        // 7/8 of the rays are not pure rotations: 1/2 of these end below 25 deg, 4/10 in tension.
+        // One in twelve of the rays below 25 deg closes the cut.
         assert!((share(&|_, theta| theta < 25f64.to_radians()) - 0.44).abs() < 0.03);
         assert!((share(&|[eta_a, _], _| eta_a > 0.0) - 0.35).abs() < 0.03);
         assert!((share(&|_, theta| theta < 0.0) - 0.07).abs() < 0.03);
@@ -302,10 +290,7 @@ mod tests {
             [Regime::Plate, Regime::Film].map(|regime| BOX.rays(&COMMON, regime, 80));
         let pairs = std::iter::zip(plate, film);
         for (plate, film) in pairs {
-            assert_eq!(
-                (plate.design, plate.end.theta),
-                (film.design, film.end.theta)
-            );
+            assert_eq!((plate.design, plate.end.theta), (film.design, film.end.theta));
             let theta = plate.end.theta;
             let free = 0.5 * theta + 0.16 * theta * theta.abs();
             let [plate, film] = [plate, film].map(|ray| ray.end.eta(ray.design.w_lig));
@@ -314,38 +299,32 @@ mod tests {
         }
     }
 
-    /// Sampling the hole changes no other coordinate of a ray, in the measures of the hinge with the same net ligament.
+    /// Sampling the hole changes no other coordinate of a ray, in the measures of the hinge with
+    /// the same net ligament.
     #[test]
     fn the_hole_is_sampled_over_its_range() {
         let range = [0.03, 0.4];
-        let sampled = RayBox {
-            fillet_ratio: range,
-            ..BOX
-        };
+        let sampled = RayBox { fillet_ratio: range, ..BOX };
         let rays = sampled.rays(&COMMON, Regime::Film, 80);
         for (ray, plain) in std::iter::zip(&rays, BOX.rays(&COMMON, Regime::Film, 80)) {
             assert_eq!(ray.design.w_lig, plain.design.w_lig);
             assert_eq!(ray.design.alpha, plain.design.alpha);
             assert_eq!(ray.end.theta, plain.end.theta);
             let ligament = NetLigament::new(&ray.design, COMMON.fillet_ratio);
-            let [eta_a, eta_s] = ligament
-                .deformation(&ray.end)
-                .eta(ligament.design(&ray.design).w_lig);
+            let [eta_a, eta_s] =
+                ligament.deformation(&ray.end).eta(ligament.design(&ray.design).w_lig);
             assert!(eta_a > -0.81 && eta_a < 0.26 && eta_s.abs() < 0.41);
             ray.design.validate().unwrap();
         }
         let holes = || rays.iter().map(|ray| ray.design.fillet_ratio);
         assert!(holes().all(|hole| (range[0]..=range[1]).contains(&hole)));
         assert!(holes().any(|hole| hole < 0.04) && holes().any(|hole| hole > 0.39));
-        let turned = RayBox {
-            fillet_ratio: [0.4, 0.03],
-            ..BOX
-        };
+        let turned = RayBox { fillet_ratio: [0.4, 0.03], ..BOX };
         assert!(turned.defect().unwrap().contains("fillet_ratio[0] <="));
     }
 
-    /// Every octant of the states of deployed hinges contains rays, including compressed states with small
-    /// rotation and large shear.
+    /// Every octant of the states of deployed hinges contains rays, including compressed states
+    /// with small rotation and large shear.
     #[test]
     fn every_prefix_covers_the_states_of_deployed_hinges() {
         let rays = BOX.rays(&COMMON, Regime::Film, 80);
@@ -372,20 +351,11 @@ mod tests {
     #[test]
     fn violated_inequalities_are_named() {
         assert_eq!(BOX.defect(), None);
-        let radians = RayBox {
-            full_range_deg: 0.5,
-            ..BOX
-        };
+        let radians = RayBox { full_range_deg: 0.5, ..BOX };
         assert!(radians.defect().unwrap().contains("not radians"));
-        let wide = RayBox {
-            alpha_deg: [45.0, 120.0],
-            ..BOX
-        };
+        let wide = RayBox { alpha_deg: [45.0, 120.0], ..BOX };
         assert!(wide.defect().unwrap().contains("mirroring"));
-        let nan = RayBox {
-            eta_s: f64::NAN,
-            ..BOX
-        };
+        let nan = RayBox { eta_s: f64::NAN, ..BOX };
         assert!(nan.defect().unwrap().contains("eta_s"));
     }
 }

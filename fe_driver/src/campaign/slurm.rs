@@ -1,4 +1,5 @@
-//! Slurm: submits the array of a campaign with the job that collects it, and reports the states of both.
+//! Slurm: submits the array of a campaign with the job that collects it, and reports the states of
+//! both.
 
 use crate::record_file::{read_json, write_json};
 use serde::{Deserialize, Serialize};
@@ -16,15 +17,9 @@ use support::{lock_file, verbose, whole_file};
 #[allow(missing_docs, reason = "the message of a variant is its documentation")]
 pub enum SlurmError {
     #[error("cannot start {program}: {source}; is Slurm installed on this host?")]
-    NotFound {
-        program: &'static str,
-        source: std::io::Error,
-    },
+    NotFound { program: &'static str, source: std::io::Error },
     #[error("{program} failed: {message}")]
-    Refused {
-        program: &'static str,
-        message: String,
-    },
+    Refused { program: &'static str, message: String },
     #[error(
         "{tasks} tasks: {message}; the site allows fewer than its MaxArraySize (`scontrol show config`): choose a smaller --shards"
     )]
@@ -48,10 +43,7 @@ pub enum SlurmError {
         "array {array} is submitted, but not the job that collects the database: {source}. Run `kirigami campaign \
          collect` when the array has ended, or cancel it with `scancel {array}`"
     )]
-    NotCollected {
-        array: String,
-        source: Box<SlurmError>,
-    },
+    NotCollected { array: String, source: Box<SlurmError> },
     #[error(transparent)]
     File(#[from] FileError),
 }
@@ -72,7 +64,8 @@ pub struct Submission {
 pub struct ArrayStates {
     /// Id of the array.
     pub array: String,
-    /// Number of tasks in each state, in Slurm's words; tasks that Slurm no longer knows are "unknown".
+    /// Number of tasks in each state, in Slurm's words; tasks that Slurm no longer knows are
+    /// "unknown".
     pub tasks: BTreeMap<String, usize>,
     /// Id of the job that collects the database; `None` if it was not submitted.
     pub collect: Option<String>,
@@ -112,11 +105,7 @@ fn has_ended(state: &str) -> bool {
 
 impl fmt::Display for ArrayStates {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        let tasks: Vec<_> = self
-            .tasks
-            .iter()
-            .map(|(state, n)| format!("{n} {state}"))
-            .collect();
+        let tasks: Vec<_> = self.tasks.iter().map(|(state, n)| format!("{n} {state}")).collect();
         write!(f, "Slurm array {}: {}; ", self.array, tasks.join(", "))?;
         match &self.collect {
             Some(job) => write!(f, "job {job} to collect: {}", self.collect_state),
@@ -134,11 +123,11 @@ fn record_path(campaign_folder: &Path) -> PathBuf {
     slurm_folder(campaign_folder).join("submission.json")
 }
 
-/// Writes the script to the folder of the campaign and submits it twice: as an array of `tasks` tasks, and as the job
-/// that collects the database when all tasks have ended, in any state.
+/// Writes the script to the folder of the campaign and submits it twice: as an array of `tasks`
+/// tasks, and as the job that collects the database when all tasks have ended, in any state.
 ///
-/// It is an error if the last submission has not ended, or if Slurm does not say so; if a job of an unrecorded submission
-/// has not ended; and while another process submits the same campaign.
+/// It is an error if the last submission has not ended, or if Slurm does not say so; if a job of an
+/// unrecorded submission has not ended; and while another process submits the same campaign.
 pub fn submit_array(
     campaign_folder: &Path,
     script: &str,
@@ -171,11 +160,7 @@ pub fn submit_array(
         }
         error => error,
     })?;
-    let mut submission = Submission {
-        array,
-        tasks,
-        collect: None,
-    };
+    let mut submission = Submission { array, tasks, collect: None };
     // The array is recorded before anything else can fail: otherwise it would be submitted twice.
     write_json(&record_path(campaign_folder), &submission)?;
     let after = format!("--dependency=afterany:{}", submission.array);
@@ -209,10 +194,7 @@ fn refuse_unrecorded(script: &Path) -> Result<(), SlurmError> {
     };
     let mut jobs = queue.lines().filter(runs_script).filter_map(state);
     match jobs.find(|(_, state)| !has_ended(state)) {
-        Some((job, _)) => Err(SlurmError::Unrecorded {
-            job,
-            script: script.to_owned(),
-        }),
+        Some((job, _)) => Err(SlurmError::Unrecorded { job, script: script.to_owned() }),
         None => Ok(()),
     }
 }
@@ -223,14 +205,8 @@ pub fn array_states(campaign_folder: &Path) -> Result<Option<ArrayStates>, Slurm
     let Some(submission) = read_json::<Submission>(&record)? else {
         return Ok(None);
     };
-    let Submission {
-        array,
-        tasks,
-        collect,
-    } = submission;
-    let jobs: Vec<&str> = std::iter::once(array.as_str())
-        .chain(collect.as_deref())
-        .collect();
+    let Submission { array, tasks, collect } = submission;
+    let jobs: Vec<&str> = std::iter::once(array.as_str()).chain(collect.as_deref()).collect();
     let Some(known) = known_states(&jobs) else {
         return Err(SlurmError::Silent { array, record });
     };
@@ -247,19 +223,14 @@ pub fn array_states(campaign_folder: &Path) -> Result<Option<ArrayStates>, Slurm
     }))
 }
 
-/// The states of jobs and tasks by their ids. A state in the queue, which forgets jobs minutes after their end, takes precedence over a
-/// state in the accounting, which not every site keeps, and which learns of jobs late. `None` if the queue does not answer and the
-/// accounting knows none of the jobs.
+/// The states of jobs and tasks by their ids. A state in the queue, which forgets jobs minutes
+/// after their end, takes precedence over a state in the accounting, which not every site keeps,
+/// and which learns of jobs late. `None` if the queue does not answer and the accounting knows none
+/// of the jobs.
 fn known_states(jobs: &[&str]) -> Option<BTreeMap<String, String>> {
     let jobs = format!("--jobs={}", jobs.join(","));
     let mut squeue = Command::new("squeue");
-    squeue.args([
-        "--noheader",
-        "--array",
-        "--states=all",
-        "--format=%i|%T",
-        &jobs,
-    ]);
+    squeue.args(["--noheader", "--array", "--states=all", "--format=%i|%T", &jobs]);
     let mut sacct = Command::new("sacct");
     sacct.args([
         "--noheader",
@@ -295,9 +266,7 @@ fn state(line: &str) -> Option<(String, String)> {
 /// What a program of Slurm prints.
 fn output(program: &'static str, command: &mut Command) -> Result<String, SlurmError> {
     verbose::note(|| format!("running {command:?}"));
-    let output = command
-        .output()
-        .map_err(|source| SlurmError::NotFound { program, source })?;
+    let output = command.output().map_err(|source| SlurmError::NotFound { program, source })?;
     if !output.status.success() {
         let message = String::from_utf8_lossy(&output.stderr).trim().to_owned();
         return Err(SlurmError::Refused { program, message });

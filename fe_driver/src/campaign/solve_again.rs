@@ -1,5 +1,5 @@
-//! Solves some finished jobs of a campaign again. A difference shows that a solver or a machine is not deterministic, or
-//! that hosts of a cluster differ although their versions agree.
+//! Solves some finished jobs of a campaign again. A difference shows that a solver or a machine is
+//! not deterministic, or that hosts of a cluster differ although their versions agree.
 
 use crate::campaign::campaign_folder::CampaignFolder;
 use crate::campaign::definition::{Campaign, CampaignError};
@@ -36,19 +36,14 @@ impl Difference {
     /// The difference between the samples of two solves; `None` if there is none.
     fn between(before: &[HingeSample], now: &[HingeSample]) -> Option<Self> {
         let pairs = || before.iter().zip(now);
-        let scale = before
-            .iter()
-            .map(|sample| sample.w.abs())
-            .fold(0.0, f64::max);
+        let scale = before.iter().map(|sample| sample.w.abs()).fold(0.0, f64::max);
         let w = pairs().map(|(a, b)| (a.w - b.w).abs()).fold(0.0, f64::max);
-        (before != now).then(|| Self {
-            samples: [before.len(), now.len()],
-            w: w / scale,
-        })
+        (before != now).then(|| Self { samples: [before.len(), now.len()], w: w / scale })
     }
 }
 
-/// Whether the samples come from a complete first attempt. A restored job may have been solved by a later attempt.
+/// Whether the samples come from a complete first attempt. A restored job may have been solved by a
+/// later attempt.
 fn is_of_first_attempt(window: &Solved) -> bool {
     let record = &window.record;
     record.failure.is_none()
@@ -57,8 +52,9 @@ fn is_of_first_attempt(window: &Solved) -> bool {
         && record.tier == window.solve.problem.tier
 }
 
-/// Solves every `every`-th job of `folder` again, among those that were complete here at the first attempt, and compares the
-/// samples. Nothing in the folder is changed. `progress` receives the numbers of jobs done and of all.
+/// Solves every `every`-th job of `folder` again, among those that were complete here at the first
+/// attempt, and compares the samples. Nothing in the folder is changed. `progress` receives the
+/// numbers of jobs done and of all.
 ///
 /// Returns early, with the jobs done so far, when `stop` becomes true.
 pub fn solve_again(

@@ -1,16 +1,18 @@
 //! States drawn uniformly inside a domain, on random rays.
 //!
-//! The training domain contains the flat state, and in its coordinates the straight line from there to a state inside, which the rays of
-//! the training follow. Draw a state x uniformly inside it; x fixes a
-//! direction with the density of uniform states. With R the distance to the boundary along it and u uniform in
-//! (0, 1), the state at the distance R u^(1/3) is again uniform. Several states can therefore lie on one ray.
+//! The training domain contains the flat state, and in its coordinates the straight line from there
+//! to a state inside, which the rays of the training follow. Draw a state x uniformly inside it; x
+//! fixes a direction with the density of uniform states. With R the distance to the boundary along
+//! it and u uniform in (0, 1), the state at the distance R u^(1/3) is again uniform. Several states
+//! can therefore lie on one ray.
 
 use crate::solve::hinge_path::{HingePath, Ray};
 use hinge::{HingeConstants, Regime, TrainingDomain};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-/// A hinge driven along a path, and the fractions of the path at which weights are compared with it.
+/// A hinge driven along a path, and the fractions of the path at which weights are compared with
+/// it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SpotPath {
     /// The hinge and its path.
@@ -47,10 +49,8 @@ pub fn random_paths(drawn: DrawnStates, count: usize, each: usize, seed: u64) ->
 fn random_path(drawn: DrawnStates, states: usize, random: &mut ChaCha8Rng) -> SpotPath {
     let domain = drawn.domain;
     let mut between = |[from, to]: [f64; 2]| from + (to - from) * random.random::<f64>();
-    let mut design = drawn.constants.hinge(
-        between(domain.w_lig.map(f64::ln)).exp(),
-        between(domain.alpha),
-    );
+    let mut design =
+        drawn.constants.hinge(between(domain.w_lig.map(f64::ln)).exp(), between(domain.alpha));
     if let Some(holes) = domain.holes {
         design.fillet_ratio = between(holes);
     }

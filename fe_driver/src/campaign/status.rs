@@ -31,15 +31,18 @@ pub struct Tally {
     pub rows: usize,
     /// Kinds of the last failure of partial, failed and retried jobs.
     pub failures: BTreeMap<FailureKind, usize>,
-    /// The jobs whose samples were solved on another tier than the tier of the campaign, by their ids.
+    /// The jobs whose samples were solved on another tier than the tier of the campaign, by their
+    /// ids.
     pub other_tiers: BTreeMap<String, Tier>,
     /// Solver CPU time over all attempts (s).
     pub cpu_seconds: f64,
     /// Wall time of one worker over all attempts (s); restored jobs have none.
     pub wall_seconds: f64,
-    /// Closed jobs that were solved in this folder, not restored. Only these jobs count in the throughput.
+    /// Closed jobs that were solved in this folder, not restored. Only these jobs count in the
+    /// throughput.
     pub solved_here: usize,
-    /// Closed jobs whose time is known: the wall time of those solved here, the CPU time of restored ones.
+    /// Closed jobs whose time is known: the wall time of those solved here, the CPU time of
+    /// restored ones.
     pub timed: usize,
     /// Seconds and number of the timed jobs of each tier.
     #[serde(skip)]
@@ -95,11 +98,8 @@ impl Tally {
         }
         self.cpu_seconds += record.cpu_seconds;
         self.wall_seconds += record.wall_seconds;
-        let seconds = if record.is_solved_here() {
-            record.wall_seconds
-        } else {
-            record.cpu_seconds
-        };
+        let seconds =
+            if record.is_solved_here() { record.wall_seconds } else { record.cpu_seconds };
         if seconds > 0.0 {
             let (all, jobs) = self.timed_by_tier.entry(tier).or_default();
             *all += seconds;
@@ -125,7 +125,8 @@ impl Tally {
         self.open + self.retry
     }
 
-    /// Time of one worker per job on a tier (s): the mean over the jobs whose time is known, otherwise the time for the polyester film.
+    /// Time of one worker per job on a tier (s): the mean over the jobs whose time is known,
+    /// otherwise the time for the polyester film.
     pub(crate) fn seconds_a_job(&self, tier: Tier) -> f64 {
         match self.timed_by_tier.get(&tier) {
             Some((seconds, jobs @ 1..)) => seconds / *jobs as f64,
@@ -154,8 +155,8 @@ pub struct Throughput {
     pub samples_per_hour: f64,
     /// Solver CPU time over all attempts, per sample (s).
     pub cpu_seconds_per_sample: f64,
-    /// Fraction of the wall time in which the solver did not compute: gmsh, reading and writing, waiting for
-    /// a processor.
+    /// Fraction of the wall time in which the solver did not compute: gmsh, reading and writing,
+    /// waiting for a processor.
     pub overhead: f64,
 }
 
@@ -170,8 +171,8 @@ pub struct Status {
     pub throughput: Option<Throughput>,
 }
 
-/// What each job in a folder is for, by its id; an error if `campaign` was last run there with settings other than its current
-/// ones.
+/// What each job in a folder is for, by its id; an error if `campaign` was last run there with
+/// settings other than its current ones.
 ///
 /// Tool versions are taken from the folder: neither gmsh nor ccx needs to be installed.
 pub fn known_parts(
@@ -187,11 +188,7 @@ pub fn known_parts(
         return Ok(HashMap::new());
     };
     let jobs = campaign.jobs(&known.tools);
-    if jobs
-        .iter()
-        .map(|(_, solve)| solve.id())
-        .eq(ids.iter().cloned())
-    {
+    if jobs.iter().map(|(_, solve)| solve.id()).eq(ids.iter().cloned()) {
         let parts = jobs.into_iter().map(|(part, _)| part);
         return Ok(ids.into_iter().zip(parts).collect());
     }
@@ -215,11 +212,7 @@ pub fn status(folder: &Path) -> Result<Status, CampaignError> {
     for id in jobs {
         tally.add_state(&id, &store.solve(&id).state()?);
     }
-    Ok(Status {
-        name,
-        throughput: tally.throughput(),
-        tally,
-    })
+    Ok(Status { name, throughput: tally.throughput(), tally })
 }
 
 #[cfg(test)]
@@ -251,11 +244,7 @@ mod tests {
 
     fn job() -> Job {
         let solve = solve_on(Tier::Default);
-        Job {
-            id: solve.id(),
-            solve,
-            folder: SolveFolder("none".into()),
-        }
+        Job { id: solve.id(), solve, folder: SolveFolder("none".into()) }
     }
 
     /// Restored jobs have no wall time, but their CPU time is the CPU time for this material.
@@ -265,10 +254,7 @@ mod tests {
         assert_eq!(seconds(&tally(&[None])), Tier::Default.usual_cpu_seconds());
         let restored = tally(&[solved(60.0, 0.0), solved(80.0, 0.0), None]);
         assert_eq!((restored.timed, seconds(&restored)), (2, 70.0));
-        assert_eq!(
-            restored.seconds_a_job(Tier::Fine),
-            Tier::Fine.usual_cpu_seconds()
-        );
+        assert_eq!(restored.seconds_a_job(Tier::Fine), Tier::Fine.usual_cpu_seconds());
         assert_eq!((restored.solved_here, restored.throughput()), (0, None));
         let mixed = tally(&[solved(60.0, 0.0), solved(75.0, 80.0), None]);
         assert_eq!((mixed.timed, seconds(&mixed)), (2, 70.0));
@@ -291,20 +277,9 @@ mod tests {
         // Nothing is known of jobs without a file.
         prepare(&campaign, folder.path(), &solver.versions()).unwrap();
         assert_eq!(known(&campaign).unwrap(), HashMap::new());
-        let options = RunOptions {
-            shard: Shard::WHOLE,
-            workers: 1,
-            time_limit: None,
-        };
+        let options = RunOptions { shard: Shard::WHOLE, workers: 1, time_limit: None };
         let stop = AtomicBool::new(false);
-        let progress = run(
-            &campaign,
-            folder.path(),
-            &solver,
-            &options,
-            &stop,
-            &mut |_| {},
-        );
+        let progress = run(&campaign, folder.path(), &solver, &options, &stop, &mut |_| {});
         assert_eq!(progress.unwrap().tally.complete, campaign.size());
 
         let parts = known(&campaign).unwrap();

@@ -1,7 +1,8 @@
 //! The rigid motion in space that points follow best, in the mean of squares.
 //!
-//! The rotation is the quaternion that is the eigenvector of the largest eigenvalue of a symmetric 4 x 4 matrix (B. K. P.
-//! Horn, J. Opt. Soc. Am. A 4, 629, 1987). It is defined for points of one plane, too, if they are not on one line.
+//! The rotation is the quaternion that is the eigenvector of the largest eigenvalue of a symmetric
+//! 4 x 4 matrix (B. K. P. Horn, J. Opt. Soc. Am. A 4, 629, 1987). It is defined for points of one
+//! plane, too, if they are not on one line.
 
 use faer::Side;
 use faer::mat::Mat;
@@ -29,15 +30,11 @@ impl RigidMotion {
                 }
             }
         }
-        Self {
-            from,
-            to,
-            rotation: rotation(s),
-        }
+        Self { from, to, rotation: rotation(s) }
     }
 
-    /// The displacement of a point relative to the rigid body: the position of the point less its position on the body,
-    /// in the frame of the body.
+    /// The displacement of a point relative to the rigid body: the position of the point less its
+    /// position on the body, in the frame of the body.
     pub fn left(&self, before: [f64; 3], after: [f64; 3]) -> [f64; 3] {
         let r = &self.rotation;
         std::array::from_fn(|i| {
@@ -52,7 +49,8 @@ fn mean(points: &[[f64; 3]]) -> [f64; 3] {
     std::array::from_fn(|i| points.iter().map(|point| point[i]).sum::<f64>() / count)
 }
 
-/// The rotation R that maximises the trace of R s, for s the sum of the products of coordinates before and after.
+/// The rotation R that maximises the trace of R s, for s the sum of the products of coordinates
+/// before and after.
 fn rotation(s: [[f64; 3]; 3]) -> [[f64; 3]; 3] {
     let trace = s[0][0] + s[1][1] + s[2][2];
     let twist = [s[1][2] - s[2][1], s[2][0] - s[0][2], s[0][1] - s[1][0]];
@@ -71,21 +69,9 @@ fn rotation(s: [[f64; 3]; 3]) -> [[f64; 3]; 3] {
     // Eigenvalues increase.
     let [w, x, y, z] = [0, 1, 2, 3].map(|i| eigen.U()[(i, 3)]);
     [
-        [
-            w * w + x * x - y * y - z * z,
-            2.0 * (x * y - w * z),
-            2.0 * (x * z + w * y),
-        ],
-        [
-            2.0 * (x * y + w * z),
-            w * w - x * x + y * y - z * z,
-            2.0 * (y * z - w * x),
-        ],
-        [
-            2.0 * (x * z - w * y),
-            2.0 * (y * z + w * x),
-            w * w - x * x - y * y + z * z,
-        ],
+        [w * w + x * x - y * y - z * z, 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)],
+        [2.0 * (x * y + w * z), w * w - x * x + y * y - z * z, 2.0 * (y * z - w * x)],
+        [2.0 * (x * z - w * y), 2.0 * (y * z + w * x), w * w - x * x - y * y + z * z],
     ]
 }
 
@@ -101,21 +87,9 @@ mod tests {
         let (sin, cos) = angle.sin_cos();
         let rest = 1.0 - cos;
         [
-            [
-                cos + x * x * rest,
-                x * y * rest - z * sin,
-                x * z * rest + y * sin,
-            ],
-            [
-                y * x * rest + z * sin,
-                cos + y * y * rest,
-                y * z * rest - x * sin,
-            ],
-            [
-                z * x * rest - y * sin,
-                z * y * rest + x * sin,
-                cos + z * z * rest,
-            ],
+            [cos + x * x * rest, x * y * rest - z * sin, x * z * rest + y * sin],
+            [y * x * rest + z * sin, cos + y * y * rest, y * z * rest - x * sin],
+            [z * x * rest - y * sin, z * y * rest + x * sin, cos + z * z * rest],
         ]
     }
 
@@ -145,19 +119,9 @@ mod tests {
 
     #[test]
     fn bending_is_left_along_the_normal() {
-        let before = [
-            [0.0, 0.0, 0.0],
-            [2.0, 0.0, 0.0],
-            [2.0, 2.0, 0.0],
-            [0.0, 2.0, 0.0],
-        ];
+        let before = [[0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [2.0, 2.0, 0.0], [0.0, 2.0, 0.0]];
         // Warped: two opposite corners up, the others down, in a plane that has turned upright.
-        let after = [
-            [0.0, -0.1, 0.0],
-            [2.0, 0.1, 0.0],
-            [2.0, -0.1, 2.0],
-            [0.0, 0.1, 2.0],
-        ];
+        let after = [[0.0, -0.1, 0.0], [2.0, 0.1, 0.0], [2.0, -0.1, 2.0], [0.0, 0.1, 2.0]];
         let found = RigidMotion::fitted(&before, &after);
         for (p, q) in std::iter::zip(before, after) {
             let left = found.left(p, q);

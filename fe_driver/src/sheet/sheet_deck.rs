@@ -1,8 +1,8 @@
 //! The CalculiX input deck of a whole sheet.
 //!
-//! A prescribed stroke is one linear constraint on the displacements of all loaded nodes; the displacement of a control node
-//! without elements is the stroke. All output is printed in every increment, because CalculiX accumulates the total
-//! internal energy between *printed* increments.
+//! A prescribed stroke is one linear constraint on the displacements of all loaded nodes; the
+//! displacement of a control node without elements is the stroke. All output is printed in every
+//! increment, because CalculiX accumulates the total internal energy between *printed* increments.
 
 use crate::calculix::cards::{
     real, write_amplitude, write_element, write_increments, write_material, write_nodes, write_set,
@@ -17,10 +17,11 @@ use std::fmt::{self, Write};
 
 /// Stiffness of the table below a node (N/mm).
 const TABLE_STIFFNESS: f64 = 0.2;
-/// Distance of the other ends of the springs that are the table (mm): so large that they stay upright.
+/// Distance of the other ends of the springs that are the table (mm): so large that they stay
+/// upright.
 const TABLE_DEPTH: f64 = 1e5;
-/// Height of a node at which the table releases it (mm). Exactly zero would let the first iteration take the open
-/// branch.
+/// Height of a node at which the table releases it (mm). Exactly zero would let the first iteration
+/// take the open branch.
 const TABLE_KINK: f64 = 1e-5;
 /// Numerical damping of the dynamic steps, near the most that the method has.
 const DAMPING: f64 = -0.3;
@@ -47,8 +48,7 @@ impl SheetModel<'_> {
     /// The deck.
     pub fn deck(&self) -> String {
         let mut text = String::new();
-        self.write(&mut text)
-            .expect("writing to a string cannot fail");
+        self.write(&mut text).expect("writing to a string cannot fail");
         text
     }
 
@@ -62,8 +62,8 @@ impl SheetModel<'_> {
         self.mesh.nodes.len()
     }
 
-    /// The two nodes that drive a rim, counted from 0: their first two displacements are (cos phi - 1, sin phi) and
-    /// (u_x, u_y).
+    /// The two nodes that drive a rim, counted from 0: their first two displacements are (cos phi -
+    /// 1, sin phi) and (u_x, u_y).
     fn drivers(&self, rim: usize) -> [usize; 2] {
         let first = self.control() + 1 + 2 * rim;
         [first, first + 1]
@@ -129,26 +129,17 @@ impl SheetModel<'_> {
             let elements = 0..mesh.elements.len();
             elements.filter(|e| wanted(mesh.part(*e))).collect()
         };
-        write_set(
-            d,
-            "ELSET",
-            "PANELS",
-            &of(&|part| matches!(part, Part::Panel(_))),
-        )?;
-        write_set(
-            d,
-            "ELSET",
-            "WINDOWS",
-            &of(&|part| matches!(part, Part::Window(_))),
-        )?;
+        write_set(d, "ELSET", "PANELS", &of(&|part| matches!(part, Part::Panel(_))))?;
+        write_set(d, "ELSET", "WINDOWS", &of(&|part| matches!(part, Part::Window(_))))?;
         (0..self.problem.shape.windows.len()).try_for_each(|hinge| {
             let elements = of(&|part| part == Part::Window(hinge));
             write_set(d, "ELSET", &hinge_set(hinge), &elements)
         })
     }
 
-    /// Contact of the flanks of every cut, without friction, as stiff as a strip of the material as deep as the sheet is thick. Panels on
-    /// ligaments that fold pass each other in space: they have none.
+    /// Contact of the flanks of every cut, without friction, as stiff as a strip of the material as
+    /// deep as the sheet is thick. Panels on ligaments that fold pass each other in space: they
+    /// have none.
     fn write_contact(&self, d: &mut String) -> fmt::Result {
         let shape = &self.problem.shape;
         let stiffness = real(self.problem.material.young / shape.thickness);
@@ -183,8 +174,8 @@ impl SheetModel<'_> {
         let held = self.nodes.held.concat();
         let mut first = self.mesh.elements.len();
         let supported = match self.nodes.on_table.as_slice() {
-            // CalculiX 2.20 crashes in a dynamic step if the elements are few and their numbers small. A spring with a large
-            // number at a node that does not move has no other effect.
+            // CalculiX 2.20 crashes in a dynamic step if the elements are few and their numbers
+            // small. A spring with a large number at a node that does not move has no other effect.
             [] if self.problem.dynamic => {
                 first += self.mesh.nodes.len();
                 held.get(..1).unwrap_or_default()
@@ -199,13 +190,7 @@ impl SheetModel<'_> {
         for (i, node) in supported.iter().enumerate() {
             let [x, y, z] = self.mesh.nodes[*node];
             let number = ground + i + 1;
-            writeln!(
-                d,
-                "{number},{},{},{}",
-                real(x),
-                real(y),
-                real(z - TABLE_DEPTH)
-            )?;
+            writeln!(d, "{number},{},{},{}", real(x), real(y), real(z - TABLE_DEPTH))?;
         }
         writeln!(d, "*ELEMENT,TYPE=SPRINGA,ELSET=TABLE")?;
         for (i, node) in supported.iter().enumerate() {
@@ -223,7 +208,8 @@ impl SheetModel<'_> {
         writeln!(d, "*BOUNDARY\nGROUND,1,3,0.")
     }
 
-    /// The loaded degrees of freedom of nodes, counted from 1, with the direction of the stroke in them.
+    /// The loaded degrees of freedom of nodes, counted from 1, with the direction of the stroke in
+    /// them.
     fn loaded(&self) -> Vec<(usize, usize, f64)> {
         let total = self.problem.total_load();
         let pulled = std::iter::zip(&self.nodes.pulled, &self.problem.pulled);
@@ -315,11 +301,7 @@ impl SheetModel<'_> {
         if let Some(stroke) = self.problem.stroke {
             let control = self.control() + 1;
             writeln!(d, "*BOUNDARY\n{control},2,3,0.")?;
-            writeln!(
-                d,
-                "*BOUNDARY,AMPLITUDE=LOADS\n{control},1,1,{}",
-                real(stroke)
-            )?;
+            writeln!(d, "*BOUNDARY,AMPLITUDE=LOADS\n{control},1,1,{}", real(stroke))?;
         }
         Ok(())
     }

@@ -7,8 +7,8 @@ use std::collections::BTreeSet;
 
 /// Largest distance of a node from the line on which a panel is held (mm).
 const ON_LINE: f64 = 1e-6;
-/// Distance of a window's points from its origin, over w_lig, from which a table supports them. Nearer ones are the
-/// ligament, which folds.
+/// Distance of a window's points from its origin, over w_lig, from which a table supports them.
+/// Nearer ones are the ligament, which folds.
 const SUPPORTED: f64 = 1.45;
 
 /// Nodes of a sheet problem; they count from 0.
@@ -49,13 +49,7 @@ impl SheetNodes {
             panels.flat_map(|panel| mesh.plane_nodes(Part::Panel(panel)))
         };
         let unless_fixed = |nodes: BTreeSet<usize>| nodes.difference(&fixed).copied().collect();
-        let mut found = Self {
-            held,
-            pulled,
-            rims,
-            flat: Vec::new(),
-            on_table: Vec::new(),
-        };
+        let mut found = Self { held, pulled, rims, flat: Vec::new(), on_table: Vec::new() };
         match problem.keeping {
             Keeping::HeldFlat => {
                 let plane: BTreeSet<usize> = panels().collect();

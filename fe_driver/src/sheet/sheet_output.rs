@@ -23,7 +23,8 @@ pub(crate) struct SheetLayout {
 pub(crate) struct SheetFrame {
     /// Time of the step.
     pub time: f64,
-    /// Displacements of the nodes in the middle of the thickness (mm), in the order of the plane nodes.
+    /// Displacements of the nodes in the middle of the thickness (mm), in the order of the plane
+    /// nodes.
     pub displacements: Vec<[f64; 3]>,
     /// Forces on the loaded nodes (N), in the order of the loads.
     pub pulls: Vec<Option<[f64; 3]>>,
@@ -70,10 +71,7 @@ impl Printed for SheetFrame {
     type Layout = SheetLayout;
 
     fn begin(time: f64) -> Self {
-        Self {
-            time,
-            ..Self::default()
-        }
+        Self { time, ..Self::default() }
     }
 
     fn time(&self) -> f64 {

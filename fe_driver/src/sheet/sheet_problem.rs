@@ -1,7 +1,8 @@
-//! A whole sheet with its supports and loads, and everything that determines the result of its solve.
+//! A whole sheet with its supports and loads, and everything that determines the result of its
+//! solve.
 //!
-//! The path leads from the flat sheet, lambda = 0, to full load or the full stroke, lambda = 1. How the weight comes on
-//! depends on what keeps the panels in their plane ([`SheetProblem::history`]).
+//! The path leads from the flat sheet, lambda = 0, to full load or the full stroke, lambda = 1. How
+//! the weight comes on depends on what keeps the panels in their plane ([`SheetProblem::history`]).
 
 use crate::sheet::invalid_sheet_problem::InvalidSheetProblem;
 use crate::solve::step_control::StepControl;
@@ -10,8 +11,8 @@ use hinge::SheetMaterial;
 use mesher::{SheetShape, Side, Tier};
 use serde::{Deserialize, Serialize};
 
-/// Version of the geometry, the input deck and the evaluation of sheets. It is increased when a change of the code changes
-/// results; solves of an older version are then stale.
+/// Version of the geometry, the input deck and the evaluation of sheets. It is increased when a
+/// change of the code changes results; solves of an older version are then stale.
 const RECIPE_VERSION: u32 = 2;
 
 /// What keeps the panels in their plane.
@@ -60,7 +61,8 @@ pub struct Pulled {
     pub force: [f64; 2],
 }
 
-/// The arc of a window on a panel that is not a part of the sheet, and the motion of that panel in the plane.
+/// The arc of a window on a panel that is not a part of the sheet, and the motion of that panel in
+/// the plane.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct DrivenRim {
     /// Index of the window.
@@ -69,7 +71,8 @@ pub struct DrivenRim {
     pub side: Side,
     /// The point of the panel that its motion refers to, in the flat sheet (mm).
     pub about: [f64; 2],
-    /// (lambda, u_x, u_y, phi), with lambda increasing from 0 to 1 and straight lines between (mm, rad).
+    /// (lambda, u_x, u_y, phi), with lambda increasing from 0 to 1 and straight lines between (mm,
+    /// rad).
     pub path: Vec<[f64; 4]>,
 }
 
@@ -91,8 +94,8 @@ pub struct SheetProblem {
     /// Where a part of a sheet is joined to the rest; none in a whole sheet.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub rims: Vec<DrivenRim>,
-    /// The stroke at the end of the path (mm) if it is prescribed: the work of the full loads over the sum of their
-    /// magnitudes. Without it the loads grow.
+    /// The stroke at the end of the path (mm) if it is prescribed: the work of the full loads over
+    /// the sum of their magnitudes. Without it the loads grow.
     pub stroke: Option<f64>,
     /// Unit vector along gravity; `None` without weight.
     pub down: Option<[f64; 3]>,
@@ -100,7 +103,8 @@ pub struct SheetProblem {
     pub step: StepControl,
     /// Whether the flanks of cuts touch; otherwise they pass through each other.
     pub contact: bool,
-    /// Whether inertia carries the sheet over a snap that has no static path; the path then takes ten seconds.
+    /// Whether inertia carries the sheet over a snap that has no static path; the path then takes
+    /// ten seconds.
     pub dynamic: bool,
 }
 
@@ -115,10 +119,12 @@ pub struct SheetSolve {
     pub recipe_version: u32,
 }
 
-/// Duration of a dynamic path (s): long against the periods of a sheet of paper size, so that it moves nearly at rest.
+/// Duration of a dynamic path (s): long against the periods of a sheet of paper size, so that it
+/// moves nearly at rest.
 pub(crate) const SECONDS: f64 = 10.0;
 
-/// When the weight comes on, and the loads after it: (lambda, fraction) with straight lines between.
+/// When the weight comes on, and the loads after it: (lambda, fraction) with straight lines
+/// between.
 #[derive(Clone, Debug, PartialEq)]
 pub struct History {
     /// Of the weight.
@@ -133,9 +139,10 @@ const WEIGHT_FIRST: f64 = 0.1;
 const TABLE_FIRST: f64 = 0.02;
 
 impl SheetProblem {
-    /// When weight and loads come on. Before the loads on a sheet whose panels are held flat, as in the model. On a table at
-    /// once, because only the weight holds the panels down. On a sheet that nothing keeps in its plane together with the loads:
-    /// alone it would buckle the sheet between its grips.
+    /// When weight and loads come on. Before the loads on a sheet whose panels are held flat, as in
+    /// the model. On a table at once, because only the weight holds the panels down. On a sheet
+    /// that nothing keeps in its plane together with the loads: alone it would buckle the sheet
+    /// between its grips.
     pub fn history(&self) -> History {
         let even = || vec![[0.0, 0.0], [1.0, 1.0]];
         let first = |part: f64| History {
@@ -144,15 +151,11 @@ impl SheetProblem {
         };
         match (self.keeping, self.down) {
             (Keeping::Table, _) if self.dynamic => first(TABLE_FIRST),
-            (Keeping::Table, _) => History {
-                weight: vec![[0.0, 1.0], [1.0, 1.0]],
-                loads: even(),
-            },
+            (Keeping::Table, _) => History { weight: vec![[0.0, 1.0], [1.0, 1.0]], loads: even() },
             (Keeping::HeldFlat, Some(_)) => first(WEIGHT_FIRST),
-            (Keeping::HeldFlat, None) | (Keeping::Nothing, _) => History {
-                weight: even(),
-                loads: even(),
-            },
+            (Keeping::HeldFlat, None) | (Keeping::Nothing, _) => {
+                History { weight: even(), loads: even() }
+            }
         }
     }
 
@@ -190,7 +193,8 @@ impl SheetProblem {
                 Keeping::HeldFlat => 0.004,
                 Keeping::Table | Keeping::Nothing => 0.001,
             },
-            // A panel that snaps on a table has no static path beyond: shorter increments do not find one.
+            // A panel that snaps on a table has no static path beyond: shorter increments do not
+            // find one.
             least: match keeping {
                 Keeping::Table => 1e-5,
                 Keeping::HeldFlat | Keeping::Nothing => 1e-6,
@@ -220,16 +224,12 @@ impl History {
         interpolated(&self.loads, lambda)
     }
 
-    /// The lambda at which a fraction of the loads is on, or of the weight if that comes on before them.
+    /// The lambda at which a fraction of the loads is on, or of the weight if that comes on before
+    /// them.
     pub fn lambda_of(&self, weight: f64, loads: f64) -> f64 {
-        let table = if weight < 1.0 {
-            &self.weight
-        } else {
-            &self.loads
-        };
-        let inverse: Vec<[f64; 2]> = (table.iter())
-            .map(|[lambda, fraction]| [*fraction, *lambda])
-            .collect();
+        let table = if weight < 1.0 { &self.weight } else { &self.loads };
+        let inverse: Vec<[f64; 2]> =
+            (table.iter()).map(|[lambda, fraction]| [*fraction, *lambda]).collect();
         // Of the lambdas at which nothing is on, the last.
         let from = inverse.iter().rposition(|[fraction, _]| *fraction == 0.0);
         let wanted = if weight < 1.0 { weight } else { loads };
@@ -240,10 +240,7 @@ impl History {
 /// The value at `x` of a table of (x, value), with straight lines between.
 pub(crate) fn interpolated(table: &[[f64; 2]], x: f64) -> f64 {
     let after = table.partition_point(|[at, _]| *at < x);
-    let (from, to) = (
-        table[after.saturating_sub(1)],
-        table[after.min(table.len() - 1)],
-    );
+    let (from, to) = (table[after.saturating_sub(1)], table[after.min(table.len() - 1)]);
     if to[0] > from[0] {
         from[1] + (x - from[0]) / (to[0] - from[0]) * (to[1] - from[1])
     } else {
@@ -254,11 +251,7 @@ pub(crate) fn interpolated(table: &[[f64; 2]], x: f64) -> f64 {
 impl SheetSolve {
     /// The solve of a problem with programs of these versions.
     pub fn new(problem: SheetProblem, tools: &ToolVersions) -> Self {
-        Self {
-            problem,
-            tools: tools.clone(),
-            recipe_version: RECIPE_VERSION,
-        }
+        Self { problem, tools: tools.clone(), recipe_version: RECIPE_VERSION }
     }
 }
 

@@ -23,10 +23,7 @@ pub(crate) fn states(model: &SheetModel, frames: &[SheetFrame]) -> SheetStates {
         }
     }
     SheetStates {
-        states: frames
-            .iter()
-            .map(|frame| model.state(frame, &panels, &windows))
-            .collect(),
+        states: frames.iter().map(|frame| model.state(frame, &panels, &windows)).collect(),
         surface: frames.last().map(|frame| model.surface(frame)),
         unknowns: FREEDOMS * model.mesh.nodes.len(),
     }
@@ -65,15 +62,8 @@ impl SheetModel<'_> {
             lambda,
             fraction: problem.history().load_fraction(lambda),
             stroke,
-            load_factor: if total > 0.0 {
-                load / square / total
-            } else {
-                0.0
-            },
-            panels: panels
-                .iter()
-                .map(|nodes| self.panel(frame, nodes))
-                .collect(),
+            load_factor: if total > 0.0 { load / square / total } else { 0.0 },
+            panels: panels.iter().map(|nodes| self.panel(frame, nodes)).collect(),
             hinges: (windows.iter().enumerate())
                 .map(|(hinge, elements)| self.hinge(frame, hinge, elements))
                 .collect(),
@@ -91,10 +81,8 @@ impl SheetModel<'_> {
     }
 
     fn panel(&self, frame: &SheetFrame, nodes: &[usize]) -> PanelState {
-        let (before, after): (Vec<_>, Vec<_>) = nodes
-            .iter()
-            .map(|node| self.position(frame, *node).into())
-            .unzip();
+        let (before, after): (Vec<_>, Vec<_>) =
+            nodes.iter().map(|node| self.position(frame, *node).into()).unzip();
         let motion = RigidMotion::fitted(&before, &after);
         let bending = std::iter::zip(&before, &after)
             .map(|(p, q)| motion.left(*p, *q)[2].abs())
@@ -122,11 +110,7 @@ impl SheetModel<'_> {
         let design = &shape.windows[hinge].design;
         let material = &self.problem.material;
         let damage = Damage::new(points.collect(), design, shape.thickness, material);
-        HingeState {
-            energy: energy(frame, hinge),
-            d: damage.d,
-            d_peak: damage.d_peak,
-        }
+        HingeState { energy: energy(frame, hinge), d: damage.d, d_peak: damage.d_peak }
     }
 
     fn surface(&self, frame: &SheetFrame) -> SheetSurface {

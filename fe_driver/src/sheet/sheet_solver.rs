@@ -95,16 +95,10 @@ impl Solver<SheetSolve> for CalculiX {
         problem.validate()?;
         let mesh = problem.shape.mesh(work, &self.gmsh, limit, stop)?;
         let nodes = SheetNodes::new(problem, &mesh)?;
-        let model = SheetModel {
-            problem,
-            mesh: &mesh,
-            nodes: &nodes,
-        };
+        let model = SheetModel { problem, mesh: &mesh, nodes: &nodes };
         let run = DeckRun::new(&self.ccx, &model.deck(), work, JOB, limit, stop)?;
-        let mut solution: Solution<SheetSolve> = Solution {
-            elements: mesh.elements.len(),
-            ..run.costs()
-        };
+        let mut solution: Solution<SheetSolve> =
+            Solution { elements: mesh.elements.len(), ..run.costs() };
         let frames: Result<Vec<SheetFrame>, _> =
             read_printed(&run.output, &SheetLayout::new(&model));
         solution.stopped = match frames {

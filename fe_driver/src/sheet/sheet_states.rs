@@ -1,5 +1,5 @@
-//! What is kept of a sheet solve: the motion of every panel and the energy of every hinge at each increment, and the surface
-//! at the last one.
+//! What is kept of a sheet solve: the motion of every panel and the energy of every hinge at each
+//! increment, and the surface at the last one.
 
 use crate::solve::problem::SolvedPath;
 use serde::{Deserialize, Serialize};
@@ -36,11 +36,13 @@ pub struct SheetState {
     pub panel_energy: f64,
     /// Kinetic energy (N mm); zero on a static path.
     pub kinetic_energy: f64,
-    /// Resultant of the reactions of the supports (N), without the weight of what they hold themselves.
+    /// Resultant of the reactions of the supports (N), without the weight of what they hold
+    /// themselves.
     pub support_force: [f64; 3],
 }
 
-/// A panel: the rigid motion in space that its nodes outside of the windows follow best, and what is left of theirs.
+/// A panel: the rigid motion in space that its nodes outside of the windows follow best, and what
+/// is left of theirs.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct PanelState {
     /// Mean position of its nodes in the flat sheet (mm).
@@ -75,7 +77,8 @@ pub struct SheetSurface {
     pub displacements: Vec<[f64; 3]>,
     /// Corners of each face, counter-clockwise.
     pub faces: Vec<Vec<usize>>,
-    /// The index of the panel of each face, or the number of panels plus the index of the window of the face.
+    /// The index of the panel of each face, or the number of panels plus the index of the window of
+    /// the face.
     pub parts: Vec<usize>,
     /// Largest plastic strain of the elements of each face; 0 in panels.
     pub plastic_strain: Vec<f64>,
@@ -90,9 +93,8 @@ impl SheetState {
     /// Lowest and highest z of the panels (mm).
     pub fn z(&self) -> [f64; 2] {
         let nothing = [f64::INFINITY, f64::NEG_INFINITY];
-        (self.panels.iter()).fold(nothing, |[low, high], panel| {
-            [low.min(panel.z[0]), high.max(panel.z[1])]
-        })
+        (self.panels.iter())
+            .fold(nothing, |[low, high], panel| [low.min(panel.z[0]), high.max(panel.z[1])])
     }
 
     /// Internal energy of windows and panels (N mm).
@@ -158,10 +160,7 @@ impl SheetSurface {
             cell_data: vec![
                 Field::scalar("part", self.parts.iter().map(|part| *part as f64)),
                 Field::scalar("tilt (deg)", self.tilts_deg()),
-                Field::scalar(
-                    "plastic strain, maximum",
-                    self.plastic_strain.iter().copied(),
-                ),
+                Field::scalar("plastic strain, maximum", self.plastic_strain.iter().copied()),
             ],
         }
     }
@@ -201,11 +200,8 @@ mod tests {
     #[test]
     fn tilt_and_turn_are_those_of_the_rotation() {
         let (tilt, turn) = (0.3_f64, 0.7_f64);
-        let about_x = [
-            [1.0, 0.0, 0.0],
-            [0.0, tilt.cos(), -tilt.sin()],
-            [0.0, tilt.sin(), tilt.cos()],
-        ];
+        let about_x =
+            [[1.0, 0.0, 0.0], [0.0, tilt.cos(), -tilt.sin()], [0.0, tilt.sin(), tilt.cos()]];
         let panel = PanelState {
             rotation: about_x,
             centre: [1.0, 2.0, 0.0],

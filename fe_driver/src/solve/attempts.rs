@@ -1,9 +1,10 @@
 //! Works through a list of solves: workers make the attempts, and one thread hears of them.
 //!
-//! A solve is done when its `result.json` exists. A run can therefore be killed at any time; at most the attempts in
-//! flight are lost. A missing tool or a full disk ends the run immediately, because every other solve would fail too.
-//! What the machine does to an attempt, as a kill, decides nothing of a result: the same attempt is made again, a few times,
-//! and the solve then stays open.
+//! A solve is done when its `result.json` exists. A run can therefore be killed at any time; at
+//! most the attempts in flight are lost. A missing tool or a full disk ends the run immediately,
+//! because every other solve would fail too. What the machine does to an attempt, as a kill,
+//! decides nothing of a result: the same attempt is made again, a few times, and the solve then
+//! stays open.
 
 use crate::solve::failure::Cause;
 use crate::solve::ladder::AttemptKind;
@@ -26,21 +27,14 @@ pub enum SolveListError {
     #[error(transparent)]
     Thread(#[from] NoThread),
     #[error("the run was stopped by an error at job {job}: {source}")]
-    Halted {
-        job: String,
-        source: Box<SolveError>,
-    },
+    Halted { job: String, source: Box<SolveError> },
     #[error("stopped with {left} solves left")]
     Stopped { left: usize },
     #[error(
         "{left} solves are open: the machine ended each of their attempts, the last of {job} because {reason}; what is \
          solved is kept, and the same command continues"
     )]
-    Disturbed {
-        left: usize,
-        job: String,
-        reason: String,
-    },
+    Disturbed { left: usize, job: String, reason: String },
 }
 
 /// Number of times that an attempt is made which the machine ends.
@@ -67,7 +61,8 @@ pub(crate) struct Workers<'a, S: Solve = WindowSolve> {
 
 /// What happened to a solve of a list.
 pub(crate) enum SolveEvent {
-    /// Its record when a worker takes it up; another process may have changed it since the list was made.
+    /// Its record when a worker takes it up; another process may have changed it since the list was
+    /// made.
     Found(Option<SolveRecord>),
     Started(AttemptKind),
     /// The machine ended it, for this reason.
@@ -84,10 +79,11 @@ enum Outcome {
 }
 
 impl<S: Solve> Workers<'_, S> {
-    /// Makes the attempts that are left at every job, each until it is closed. `note` hears of every event at a job, by
-    /// its place in the list.
+    /// Makes the attempts that are left at every job, each until it is closed. `note` hears of
+    /// every event at a job, by its place in the list.
     ///
-    /// When `stop` becomes true, the attempts in flight are terminated and not counted. A later run continues from there.
+    /// When `stop` becomes true, the attempts in flight are terminated and not counted. A later run
+    /// continues from there.
     pub fn work_through(
         &self,
         jobs: &[Job<S>],
@@ -100,10 +96,7 @@ impl<S: Solve> Workers<'_, S> {
                 reports.send((place, Err(error)));
             }
         };
-        work_through(jobs.len(), self.count, stop, &work, &mut |(
-            place,
-            event,
-        )| {
+        work_through(jobs.len(), self.count, stop, &work, &mut |(place, event)| {
             Ok(note(place, event?)?)
         })
     }
@@ -149,8 +142,9 @@ impl<S: Solve> Workers<'_, S> {
 
     /// Makes one attempt at a job and records its result, unless the machine ended it or a request.
     ///
-    /// The samples of the attempt that reached the largest lambda are kept. If another process has recorded an attempt in the meantime,
-    /// its record is returned, and the record of this attempt is dropped.
+    /// The samples of the attempt that reached the largest lambda are kept. If another process has
+    /// recorded an attempt in the meantime, its record is returned, and the record of this attempt
+    /// is dropped.
     fn attempt(
         &self,
         job: &Job<S>,
@@ -228,7 +222,5 @@ impl SolveRecord {
 
 /// Seconds since 1970.
 pub(crate) fn now() -> u64 {
-    SystemTime::now()
-        .duration_since(UNIX_EPOCH)
-        .map_or(0, |since| since.as_secs())
+    SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_secs())
 }

@@ -1,13 +1,14 @@
 //! The deformation path of a window solve: (a, s, theta) as a function of lambda in [0, 1].
 //!
-//! The database consists of rays (section 2.4): straight rays for films; the rays of plates bend like the free turn of a ligament. Paths
-//! recorded from deployed sheets measure the error of ignoring the loading path (section 5.2). All are piecewise linear and start at the
-//! undeformed state.
+//! The database consists of rays (section 2.4): straight rays for films; the rays of plates bend
+//! like the free turn of a ligament. Paths recorded from deployed sheets measure the error of
+//! ignoring the loading path (section 5.2). All are piecewise linear and start at the undeformed
+//! state.
 //!
 //! A recorded path is a CSV file with the columns `eta_a`, `eta_s`, `theta_deg`, one state per row.
-//! Lines that start with `#` are comments. An optional column `lambda`, which increases to 1, gives the position of
-//! each state along the path; without it the states are equally spaced in lambda. The undeformed state may be
-//! omitted: every path starts there.
+//! Lines that start with `#` are comments. An optional column `lambda`, which increases to 1, gives
+//! the position of each state along the path; without it the states are equally spaced in lambda.
+//! The undeformed state may be omitted: every path starts there.
 
 use hinge::{HingeDeformation, Regime};
 use serde::{Deserialize, Serialize};
@@ -25,7 +26,8 @@ pub struct DeformationPath {
 
 type Knot = (f64, HingeDeformation);
 
-/// Number of straight pieces of a ray that bends: the free turn of 60 degrees is met within 0.0004 w_lig.
+/// Number of straight pieces of a ray that bends: the free turn of 60 degrees is met within 0.0004
+/// w_lig.
 const PIECES: u32 = 10;
 
 impl From<DeformationPath> for Vec<Knot> {
@@ -52,11 +54,7 @@ pub enum PathError {
     #[error(transparent)]
     Read(#[from] FileError),
     #[error("{path}:{line}: {what}", path = .path.display())]
-    Row {
-        path: PathBuf,
-        line: u64,
-        what: &'static str,
-    },
+    Row { path: PathBuf, line: u64, what: &'static str },
     #[error("{path}: no row has a deformed state; add at least one", path = .path.display())]
     Empty { path: PathBuf },
 }
@@ -74,15 +72,14 @@ struct Row {
 impl DeformationPath {
     /// The straight ray to `end`.
     pub fn straight(end: HingeDeformation) -> Self {
-        Self {
-            knots: vec![(0.0, HingeDeformation::default()), (1.0, end)],
-        }
+        Self { knots: vec![(0.0, HingeDeformation::default()), (1.0, end)] }
     }
 
-    /// The ray to `end` of a ligament of the width `w_lig` (mm): eta_s and theta grow in proportion, and so does the distance of eta_a
-    /// from the free turn of the regime. With lambda it reaches every state between as the ray to that state does. Sheets of plates take
-    /// such paths: the forces at their end differ from the forces of paths recorded in sheets by half as much as the forces of straight
-    /// rays do.
+    /// The ray to `end` of a ligament of the width `w_lig` (mm): eta_s and theta grow in
+    /// proportion, and so does the distance of eta_a from the free turn of the regime. With lambda
+    /// it reaches every state between as the ray to that state does. Sheets of plates take such
+    /// paths: the forces at their end differ from the forces of paths recorded in sheets by half as
+    /// much as the forces of straight rays do.
     pub fn ray(end: HingeDeformation, regime: Regime, w_lig: f64) -> Self {
         let [_, curvature] = regime.free_opening();
         if curvature == 0.0 {
@@ -92,10 +89,7 @@ impl DeformationPath {
         let state = |i: u32| {
             let lambda = f64::from(i) / f64::from(PIECES);
             let straight = end.at(lambda);
-            HingeDeformation {
-                a: straight.a - bend * lambda * (1.0 - lambda),
-                ..straight
-            }
+            HingeDeformation { a: straight.a - bend * lambda * (1.0 - lambda), ..straight }
         };
         let states: Vec<_> = (1..=PIECES).map(state).collect();
         Self::through(&states).expect("there are states")
@@ -130,9 +124,7 @@ impl DeformationPath {
             knots.push((lambda, state));
         }
         match knots.len() {
-            1 => Err(PathError::Empty {
-                path: path.to_owned(),
-            }),
+            1 => Err(PathError::Empty { path: path.to_owned() }),
             _ => Ok(Self { knots }),
         }
     }
@@ -142,14 +134,12 @@ impl DeformationPath {
         self.knots.iter().map(|(lambda, _)| *lambda)
     }
 
-    /// The end of the longest part of the path before it turns back: from there on the hinge is unloaded. `None` if it never turns back, by
-    /// more than a right angle where each component is relative to its largest value on the path.
+    /// The end of the longest part of the path before it turns back: from there on the hinge is
+    /// unloaded. `None` if it never turns back, by more than a right angle where each component is
+    /// relative to its largest value on the path.
     pub fn turn(&self) -> Option<f64> {
         let largest: [f64; 3] = std::array::from_fn(|c| {
-            let values = self
-                .knots
-                .iter()
-                .map(|(_, state)| state.to_array()[c].abs());
+            let values = self.knots.iter().map(|(_, state)| state.to_array()[c].abs());
             values.fold(f64::MIN_POSITIVE, f64::max)
         });
         let leg = |i: usize| -> [f64; 3] {
@@ -176,11 +166,7 @@ impl DeformationPath {
         let after = self.knots.partition_point(|(at, _)| *at < lambda);
         let (from, to) = (after.saturating_sub(1), after.min(self.knots.len() - 1));
         let ((l0, x), (l1, y)) = (self.knots[from], self.knots[to]);
-        let share = if l1 > l0 {
-            (lambda - l0) / (l1 - l0)
-        } else {
-            1.0
-        };
+        let share = if l1 > l0 { (lambda - l0) / (l1 - l0) } else { 1.0 };
         let (x, y) = (x.to_array(), y.to_array());
         std::array::from_fn(|i| x[i] + share * (y[i] - x[i])).into()
     }
@@ -206,7 +192,8 @@ impl Row {
 mod tests {
     use super::*;
 
-    /// A ray of a plate bends like the free turn, and passes through every state as the ray to that state.
+    /// A ray of a plate bends like the free turn, and passes through every state as the ray to that
+    /// state.
     #[test]
     fn a_ray_of_a_plate_bends_like_the_free_turn() {
         let free = |theta: f64| theta * (0.5 + 0.16 * theta.abs());
@@ -249,12 +236,7 @@ mod tests {
         };
         assert_eq!(through(&[[-0.1, 0.0, 40.0]]), None);
         assert_eq!(through(&[[-0.1, 0.0, 20.0], [-0.3, 0.1, 40.0]]), None);
-        let released = [
-            [-0.1, 0.0, 20.0],
-            [-0.2, 0.0, 40.0],
-            [-0.2, 0.1, 20.0],
-            [0.0, 0.0, 10.0],
-        ];
+        let released = [[-0.1, 0.0, 20.0], [-0.2, 0.0, 40.0], [-0.2, 0.1, 20.0], [0.0, 0.0, 10.0]];
         assert_eq!(through(&released), Some(0.5));
         // The weight of a sheet turned the hinge the other way before.
         let weighed = [

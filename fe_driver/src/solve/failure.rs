@@ -1,4 +1,5 @@
-//! Why an attempt failed: the message of the solver on the problem, or what happened on the machine.
+//! Why an attempt failed: the message of the solver on the problem, or what happened on the
+//! machine.
 
 use crate::solve::solve_error::SolveError;
 use mesher::MeshError;
@@ -6,7 +7,8 @@ use serde::{Deserialize, Serialize};
 use strum::VariantNames;
 use support::program::ToolError;
 
-/// Why a solve has no samples, or only samples of a part of its path. Records and tables use its name.
+/// Why a solve has no samples, or only samples of a part of its path. Records and tables use its
+/// name.
 #[derive(
     Clone,
     Copy,
@@ -47,7 +49,8 @@ pub enum FailureKind {
 pub enum Cause {
     /// The problem, as far as its solver says: the next step of the ladder may help.
     Problem(FailureKind),
-    /// The machine: the solver was killed, or its output is damaged or missing. The same attempt may succeed.
+    /// The machine: the solver was killed, or its output is damaged or missing. The same attempt
+    /// may succeed.
     Machine,
     /// What would end every other attempt too: a missing tool, a full disk, a stop request.
     Run,
@@ -128,7 +131,8 @@ impl Cause {
 }
 
 impl FailureKind {
-    /// Whether the mechanics of the solve caused the failure: another run of the same attempts ends there again.
+    /// Whether the mechanics of the solve caused the failure: another run of the same attempts ends
+    /// there again.
     pub(crate) fn is_repeatable(self) -> bool {
         matches!(self, Self::Diverged | Self::EnergyImbalance)
     }
@@ -141,15 +145,8 @@ mod tests {
     #[test]
     fn only_what_the_solver_says_is_a_failure_of_the_problem() {
         let stopped = ToolError::Stopped { name: "ccx" };
-        let missing = ToolError::NotFound {
-            kind: &crate::CCX,
-            program: None,
-        };
-        let killed = ToolError::Killed {
-            name: "ccx",
-            signal: 9,
-            cpu_seconds: None,
-        };
+        let missing = ToolError::NotFound { kind: &crate::CCX, program: None };
+        let killed = ToolError::Killed { name: "ccx", signal: 9, cpu_seconds: None };
         for (error, expected) in [
             (stopped.into(), Cause::Run),
             (missing.into(), Cause::Run),
@@ -158,10 +155,7 @@ mod tests {
                 diverged("*ERROR: increment size smaller than minimum"),
                 Cause::Problem(FailureKind::Diverged),
             ),
-            (
-                diverged("*ERROR in u_malloc: error allocating memory"),
-                Cause::Machine,
-            ),
+            (diverged("*ERROR in u_malloc: error allocating memory"), Cause::Machine),
             (diverged("No space left on device"), Cause::Run),
             (SolveError::Truncated { lambda: 0.5 }, Cause::Machine),
         ] {
@@ -170,9 +164,6 @@ mod tests {
     }
 
     fn diverged(tail: &str) -> SolveError {
-        SolveError::Diverged {
-            lambda: 0.5,
-            tail: tail.to_owned(),
-        }
+        SolveError::Diverged { lambda: 0.5, tail: tail.to_owned() }
     }
 }

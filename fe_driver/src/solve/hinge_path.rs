@@ -23,10 +23,7 @@ impl Ray {
 
     /// The ray of the mirrored design; see [`HingeDeformation::mirrored`].
     pub fn mirrored(&self) -> Self {
-        Self {
-            design: self.design.mirrored(),
-            end: self.end.mirrored(),
-        }
+        Self { design: self.design.mirrored(), end: self.end.mirrored() }
     }
 }
 
@@ -45,10 +42,7 @@ pub struct HingePath {
 #[serde(untagged)]
 enum InFile {
     Ray(Ray),
-    Path {
-        design: HingeDesign,
-        path: DeformationPath,
-    },
+    Path { design: HingeDesign, path: DeformationPath },
 }
 
 impl From<InFile> for HingePath {
@@ -82,10 +76,8 @@ mod tests {
         let [middle, end] =
             [0.2, 0.6].map(|theta| HingeDeformation::from_eta(-0.1, 0.3 * theta, theta, 18.0));
         let ray = Ray { design, end }.driven(Regime::Film);
-        let bent = HingePath {
-            path: DeformationPath::through(&[middle, end]).unwrap(),
-            ..ray.clone()
-        };
+        let bent =
+            HingePath { path: DeformationPath::through(&[middle, end]).unwrap(), ..ray.clone() };
         let text = serde_json::to_string(&ray).unwrap();
         assert_eq!(text, serde_json::to_string(&Ray { design, end }).unwrap());
         for hinge in [ray, bent] {

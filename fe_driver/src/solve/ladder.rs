@@ -2,8 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-/// The attempts in their order, each made after an earlier one has failed by the mechanics or the mesh of the problem. Which of
-/// them are made is for each kind of problem to say.
+/// The attempts in their order, each made after an earlier one has failed by the mechanics or the
+/// mesh of the problem. Which of them are made is for each kind of problem to say.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, strum::Display)]
 #[serde(rename_all = "kebab-case")]
 #[strum(serialize_all = "kebab-case")]

@@ -1,4 +1,5 @@
-//! What a kind of finite-element problem must state, so that it can be solved, attempted again and kept.
+//! What a kind of finite-element problem must state, so that it can be solved, attempted again and
+//! kept.
 
 use crate::record_file::short_hash;
 use crate::solve::failure::FailureKind;
@@ -9,7 +10,8 @@ use serde::de::DeserializeOwned;
 use std::fmt::Debug;
 use std::io;
 
-/// A finite-element problem with everything that determines its result: two problems of one id have the same result.
+/// A finite-element problem with everything that determines its result: two problems of one id have
+/// the same result.
 pub trait Solve: Clone + Debug + PartialEq + Send + Sync + Serialize + DeserializeOwned {
     /// What is kept of its converged increments.
     type Samples: SolvedPath;
@@ -25,8 +27,8 @@ pub trait Solve: Clone + Debug + PartialEq + Send + Sync + Serialize + Deseriali
     /// The problem in a line, for a person.
     fn description(&self) -> String;
 
-    /// The attempt after `attempt`, which `failure` ended; `None` if there is none left. `lambda` is the furthest that any
-    /// attempt has reached.
+    /// The attempt after `attempt`, which `failure` ended; `None` if there is none left. `lambda`
+    /// is the furthest that any attempt has reached.
     fn next_attempt(
         &self,
         attempt: AttemptKind,
@@ -57,6 +59,7 @@ pub trait SolvedPath: Clone + Debug + Default + PartialEq + Send {
     /// The contents of the file, from which every number is read back exactly.
     fn to_bytes(&self) -> io::Result<Vec<u8>>;
 
-    /// Reads the contents of the file; an error of the kind [`io::ErrorKind::InvalidData`] if they are damaged.
+    /// Reads the contents of the file; an error of the kind [`io::ErrorKind::InvalidData`] if they
+    /// are damaged.
     fn from_bytes(bytes: &[u8]) -> io::Result<Self>;
 }

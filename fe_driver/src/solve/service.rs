@@ -1,4 +1,5 @@
-//! Lists of solves whose results are needed at once: a replay, a spot check, a round of an equilibrium, a study.
+//! Lists of solves whose results are needed at once: a replay, a spot check, a round of an
+//! equilibrium, a study.
 
 use crate::solve::attempts::{Job, SolveEvent, SolveListError, Workers};
 use crate::solve::problem::Solve;
@@ -11,7 +12,8 @@ use std::collections::HashMap;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
-/// Solves lists of problems of one kind and keeps every result in a store: what is in the store is not solved again.
+/// Solves lists of problems of one kind and keeps every result in a store: what is in the store is
+/// not solved again.
 pub struct SolveService<'a, S: Solve = WindowSolve> {
     /// What solves them.
     pub solver: Box<dyn Solver<S> + 'a>,
@@ -33,15 +35,15 @@ impl<S: Solve> SolveService<'_, S> {
         self.solver.versions()
     }
 
-    /// The results of `solves`, in the same order; equal solves are made once. A solve that fails is a result too, after
-    /// all attempts of the ladder.
+    /// The results of `solves`, in the same order; equal solves are made once. A solve that fails
+    /// is a result too, after all attempts of the ladder.
     ///
-    /// A result of an earlier list is read from the store. A failure that the mechanics did not cause, as a time limit, is
-    /// tried again.
+    /// A result of an earlier list is read from the store. A failure that the mechanics did not
+    /// cause, as a time limit, is tried again.
     ///
     /// # Errors
-    /// [`SolveListError::Stopped`] if `stop` becomes true before the last solve is done, [`SolveListError::Disturbed`] if the
-    /// machine ended every attempt at one of them.
+    /// [`SolveListError::Stopped`] if `stop` becomes true before the last solve is done,
+    /// [`SolveListError::Disturbed`] if the machine ended every attempt at one of them.
     pub fn solve(&self, solves: &[S]) -> Result<Vec<Solved<S>>, SolveListError> {
         let mut places = HashMap::new();
         let mut jobs: Vec<Job<S>> = Vec::new();
@@ -91,9 +93,7 @@ impl<S: Solve> SolveService<'_, S> {
                 _ => SolveListError::Stopped { left },
             });
         }
-        Ok((order.into_iter())
-            .filter_map(|place| solved[place].clone())
-            .collect())
+        Ok((order.into_iter()).filter_map(|place| solved[place].clone()).collect())
     }
 }
 
@@ -145,26 +145,18 @@ mod tests {
     #[test]
     fn a_window_that_fails_is_named_and_the_others_are_kept() {
         let folder = tempfile::tempdir().unwrap();
-        let diverges = FakeSolver::new(STIFFNESS, |solve| {
-            is_second(solve).then_some(Fault::Diverges(0.35))
-        });
+        let diverges =
+            FakeSolver::new(STIFFNESS, |solve| is_second(solve).then_some(Fault::Diverges(0.35)));
         let windows = solve(&diverges, &folder).unwrap();
-        let complete: Vec<bool> = windows
-            .iter()
-            .map(|window| window.complete().is_ok())
-            .collect();
+        let complete: Vec<bool> = windows.iter().map(|window| window.complete().is_ok()).collect();
         assert_eq!(complete, [true, false, true]);
         assert_eq!(windows[0].samples.len(), 10);
-        // As requested, with shorter increments, on a finer mesh; the increments that converged are kept.
+        // As requested, with shorter increments, on a finer mesh; the increments that converged are
+        // kept.
         let failed = windows[1].complete().unwrap_err();
         assert_eq!((failed.attempts, windows[1].samples.len()), (3, 3));
         let message = failed.to_string();
-        for part in [
-            "w_lig 18.00 mm",
-            "22.92 deg",
-            "diverged at lambda = 0.35",
-            &windows[1].id,
-        ] {
+        for part in ["w_lig 18.00 mm", "22.92 deg", "diverged at lambda = 0.35", &windows[1].id] {
             assert!(message.contains(part), "{message}");
         }
         assert!(failed.work.is_dir() && !windows[0].work.exists());
@@ -185,10 +177,7 @@ mod tests {
             solve(&healthy(), &tempfile::tempdir().unwrap()).unwrap(),
         ) {
             assert_eq!(window.samples, expected.samples);
-            assert_eq!(
-                (window.record.attempts, window.record.cpu_seconds),
-                (2, 2.0)
-            );
+            assert_eq!((window.record.attempts, window.record.cpu_seconds), (2, 2.0));
             assert_eq!(window.record.failure, None);
         }
     }
@@ -204,10 +193,7 @@ mod tests {
             ..service(&hangs, &folder, &stop)
         };
         let error = stopped.solve(&solves()).unwrap_err();
-        assert!(
-            matches!(error, SolveListError::Stopped { left: 2 }),
-            "{error}"
-        );
+        assert!(matches!(error, SolveListError::Stopped { left: 2 }), "{error}");
         let rest = healthy();
         assert_eq!(solve(&rest, &folder).unwrap().len(), 3);
         assert_eq!(rest.attempts(), 2);
@@ -230,10 +216,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let killed = FakeSolver::new(STIFFNESS, |solve| is_second(solve).then_some(Fault::Killed));
         let error = solve(&killed, &folder).unwrap_err();
-        assert!(
-            matches!(error, SolveListError::Disturbed { left: 1, .. }),
-            "{error}"
-        );
+        assert!(matches!(error, SolveListError::Disturbed { left: 1, .. }), "{error}");
         assert!(error.to_string().contains("signal 9"), "{error}");
         // Each of the two others once.
         assert_eq!(killed.attempts(), 2 + 3);
@@ -250,9 +233,7 @@ mod tests {
     #[test]
     fn a_missing_solver_halts_the_list_and_what_is_done_is_kept() {
         let folder = tempfile::tempdir().unwrap();
-        let lost = FakeSolver::new(STIFFNESS, |solve| {
-            is_second(solve).then_some(Fault::Missing)
-        });
+        let lost = FakeSolver::new(STIFFNESS, |solve| is_second(solve).then_some(Fault::Missing));
         let error = solve(&lost, &folder).unwrap_err();
         assert!(matches!(error, SolveListError::Halted { .. }), "{error}");
         assert!(error.to_string().contains("not found"), "{error}");
@@ -273,10 +254,7 @@ mod tests {
         let rows = service.store.solve(&windows[0].id).0.join("rows.csv");
         std::fs::write(rows, "edited").unwrap();
         let again = service.solve(&twice).unwrap();
-        assert_eq!(
-            (&again[0].samples, solver.attempts()),
-            (&windows[0].samples, 3)
-        );
+        assert_eq!((&again[0].samples, solver.attempts()), (&windows[0].samples, 3));
     }
 
     /// Another kind of problem: a bar that is stretched in steps.
@@ -378,10 +356,7 @@ mod tests {
             stop: &stop,
             progress: Box::new(|_, _| {}),
         };
-        let [needs_more, fails] = [3, 1].map(|steps| Bar {
-            stiffness: 0.3,
-            steps,
-        });
+        let [needs_more, fails] = [3, 1].map(|steps| Bar { stiffness: 0.3, steps });
         let list = [needs_more.clone(), fails];
         let solved = bars.solve(&list).unwrap();
         assert_eq!(solved[0].complete().unwrap().len(), 6);

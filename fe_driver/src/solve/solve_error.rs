@@ -47,8 +47,8 @@ pub enum SolveError {
     File(#[from] FileError),
 }
 
-/// Maximum |W - work| / W accepted at the end of a complete path. A partial path is not checked; its samples contain
-/// the residual.
+/// Maximum |W - work| / W accepted at the end of a complete path. A partial path is not checked;
+/// its samples contain the residual.
 pub(crate) const MAX_ENERGY_RESIDUAL: f64 = 0.01;
 
 impl SolveError {

@@ -1,10 +1,11 @@
 //! The store of solves on disk: one folder a solve, whole or open.
 //!
-//! The folder of a solve is `<first two digits of its id>/<id>/`, so that no folder has 10^5 entries. It contains `job.json` (all inputs
-//! of the result; its hash is the id), the file of the samples (`rows.csv` for a window) and `result.json`. `result.json` is written last:
-//! a solve without it is not done. These files are written atomically. Every process works in a folder of its own,
-//! `work-<host>-<process>`. The deck and the log of the last attempt that failed remain in `work`; the decks and logs of other attempts do
-//! not: the deck follows from `job.json`.
+//! The folder of a solve is `<first two digits of its id>/<id>/`, so that no folder has 10^5
+//! entries. It contains `job.json` (all inputs of the result; its hash is the id), the file of the
+//! samples (`rows.csv` for a window) and `result.json`. `result.json` is written last: a solve
+//! without it is not done. These files are written atomically. Every process works in a folder of
+//! its own, `work-<host>-<process>`. The deck and the log of the last attempt that failed remain in
+//! `work`; the decks and logs of other attempts do not: the deck follows from `job.json`.
 
 use crate::record_file::{entries, or_damage, read_json, write_json};
 use crate::solve::failure::FailureKind;
@@ -47,7 +48,8 @@ pub struct SolveRecord {
     pub cpu_seconds: f64,
     /// Wall time over all attempts (s).
     pub wall_seconds: f64,
-    /// Wall time of the solver over all attempts that it ended by itself (s), a part of `wall_seconds`.
+    /// Wall time of the solver over all attempts that it ended by itself (s), a part of
+    /// `wall_seconds`.
     pub solver_seconds: f64,
     /// Maximum resident memory of the solver (MiB), if the operating system reports it.
     pub peak_memory_mib: Option<f64>,
@@ -82,8 +84,8 @@ pub(crate) enum SolveState<S: Solve = WindowSolve> {
     Open { started: bool },
     /// An attempt has ended.
     Ended(Box<(S, SolveRecord)>),
-    /// The files of the folder are damaged or inconsistent, with the reason. The solve counts as open: the next run
-    /// solves it again.
+    /// The files of the folder are damaged or inconsistent, with the reason. The solve counts as
+    /// open: the next run solves it again.
     Damaged(String),
 }
 
@@ -127,8 +129,8 @@ fn folders(folder: &Path) -> Result<Vec<String>, FileError> {
 pub struct SolveFolder(pub PathBuf);
 
 impl SolveFolder {
-    /// The state of the solve. The consistency of its files is checked: the name of the folder must be the hash of
-    /// `job.json`, and `result.json` contains the hash of the file of the samples.
+    /// The state of the solve. The consistency of its files is checked: the name of the folder must
+    /// be the hash of `job.json`, and `result.json` contains the hash of the file of the samples.
     pub(crate) fn state<S: Solve>(&self) -> Result<SolveState<S>, FileError> {
         let damaged = |reason: &str| Ok(SolveState::Damaged(reason.to_owned()));
         let solve = match or_damage(self.solve::<S>())? {
@@ -143,9 +145,7 @@ impl SolveFolder {
             return damaged("job.json has changed: its hash is not the name of its folder");
         }
         match (solve, record) {
-            (solve, None) => Ok(SolveState::Open {
-                started: solve.is_some(),
-            }),
+            (solve, None) => Ok(SolveState::Open { started: solve.is_some() }),
             (None, Some(_)) => damaged("job.json is missing"),
             (Some(solve), Some(record)) => {
                 let name = S::Samples::FILE;
@@ -165,8 +165,8 @@ impl SolveFolder {
         read_json(&self.0.join("job.json"))
     }
 
-    /// Reads the record of the solve; `None` before the first attempt has ended. It is an error if it is the record of
-    /// another solve.
+    /// Reads the record of the solve; `None` before the first attempt has ended. It is an error if
+    /// it is the record of another solve.
     pub fn record(&self) -> Result<Option<SolveRecord>, FileError> {
         let path = self.0.join(RECORD);
         match read_json::<Named<SolveRecord>>(&path)? {
@@ -224,7 +224,8 @@ impl SolveFolder {
         write_json(&self.0.join(RECORD), &Named { job, record })
     }
 
-    /// The record of the solve if its files are consistent; `None` if no attempt has ended, or if the files are damaged.
+    /// The record of the solve if its files are consistent; `None` if no attempt has ended, or if
+    /// the files are damaged.
     pub(crate) fn ended<S: Solve>(&self) -> Result<Option<SolveRecord>, FileError> {
         Ok(match self.state::<S>()? {
             SolveState::Ended(ended) => Some(ended.1),
@@ -232,8 +233,9 @@ impl SolveFolder {
         })
     }
 
-    /// Starts the ladder of a closed solve again if it failed in one of the ways that `may` accepts; returns whether it did.
-    /// Its samples are kept until an attempt reaches a larger lambda.
+    /// Starts the ladder of a closed solve again if it failed in one of the ways that `may`
+    /// accepts; returns whether it did. Its samples are kept until an attempt reaches a larger
+    /// lambda.
     pub(crate) fn reopen<S: Solve>(
         &self,
         may: impl Fn(FailureKind) -> bool,
@@ -254,13 +256,15 @@ impl SolveFolder {
         self.0.join(WORK)
     }
 
-    /// The work folder of attempts of this process; another one may try the same solve at the same time.
+    /// The work folder of attempts of this process; another one may try the same solve at the same
+    /// time.
     pub fn work_here(&self) -> PathBuf {
         let process = std::process::id();
         self.0.join(format!("{}{process}", work_prefix()))
     }
 
-    /// Creates an empty work folder for an attempt, after removing those that killed processes of this host have left.
+    /// Creates an empty work folder for an attempt, after removing those that killed processes of
+    /// this host have left.
     pub(crate) fn fresh_work(&self) -> Result<PathBuf, FileError> {
         for entry in entries(&self.0)? {
             let name = entry.file_name().to_string_lossy().into_owned();
@@ -283,7 +287,8 @@ impl SolveFolder {
         let (from, to) = (self.work_here(), self.work());
         remove_folder(&to)?;
         match std::fs::rename(&from, &to) {
-            // Another process has just kept the deck and the log of its own attempt at the same solve.
+            // Another process has just kept the deck and the log of its own attempt at the same
+            // solve.
             Err(error) if error.kind() == io::ErrorKind::DirectoryNotEmpty => remove_folder(&from),
             renamed => renamed.map_err(FileError::at(&to)),
         }
@@ -349,9 +354,6 @@ mod tests {
         let path = folder.0.join("result.json");
         std::fs::write(&path, "{\"failure\": nu").unwrap();
         let message = folder.record().unwrap_err().to_string();
-        assert!(
-            message.contains("result.json") && message.contains("delete it"),
-            "{message}"
-        );
+        assert!(message.contains("result.json") && message.contains("delete it"), "{message}");
     }
 }

@@ -51,13 +51,7 @@ impl SolveFolder {
             0 => S::Samples::default(),
             _ => self.samples::<S>(&record)?,
         };
-        Ok(Some(Solved {
-            id: solve.id(),
-            solve,
-            record,
-            samples,
-            work: self.work(),
-        }))
+        Ok(Some(Solved { id: solve.id(), solve, record, samples, work: self.work() }))
     }
 }
 

@@ -13,11 +13,12 @@ pub trait Solver<S: Solve = WindowSolve>: Sync {
     /// The versions that are a part of the identity of its solves.
     fn versions(&self) -> ToolVersions;
 
-    /// Makes one attempt at a solve in the folder `work`, where its inputs, its log and its output remain.
+    /// Makes one attempt at a solve in the folder `work`, where its inputs, its log and its output
+    /// remain.
     ///
-    /// It is terminated after `limit`, and soon after `stop` becomes true. If the path stops early, at the time limit
-    /// or by a signal, its converged increments are returned. An error means that nothing was solved, or that the attempt
-    /// was stopped on request.
+    /// It is terminated after `limit`, and soon after `stop` becomes true. If the path stops early,
+    /// at the time limit or by a signal, its converged increments are returned. An error means that
+    /// nothing was solved, or that the attempt was stopped on request.
     fn attempt(
         &self,
         solve: &S,

@@ -34,26 +34,17 @@ impl Default for StepControl {
 }
 
 impl StepControl {
-    /// The usual increments. A plate does not buckle: longer increments change its energy by 0.1 %, and a path has 22 of
-    /// them in place of 33.
+    /// The usual increments. A plate does not buckle: longer increments change its energy by 0.1 %,
+    /// and a path has 22 of them in place of 33.
     pub fn usual(regime: Regime) -> Self {
         match regime {
             Regime::Film => Self::default(),
-            Regime::Plate => Self {
-                initial: 0.02,
-                greatest: 0.05,
-                ..Self::default()
-            },
+            Regime::Plate => Self { initial: 0.02, greatest: 0.05, ..Self::default() },
         }
     }
 
     /// Settings for a ray that stopped early: shorter increments, and more of them.
     pub fn patient() -> Self {
-        Self {
-            least: 1e-6,
-            greatest: 0.02,
-            max_increments: 1000,
-            ..Self::default()
-        }
+        Self { least: 1e-6, greatest: 0.02, max_increments: 1000, ..Self::default() }
     }
 }

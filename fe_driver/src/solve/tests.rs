@@ -34,10 +34,7 @@ pub fn solve_to(theta: f64) -> WindowSolve {
 /// The solve of a ray on the mesh of a tier.
 pub fn solve_on(tier: Tier) -> WindowSolve {
     let solve = solve_to(0.5);
-    let problem = WindowProblem {
-        tier,
-        ..solve.problem
-    };
+    let problem = WindowProblem { tier, ..solve.problem };
     WindowSolve::new(problem, &solve.tools)
 }
 
@@ -67,17 +64,12 @@ fn the_forces_are_the_gradient_of_the_energy() {
 fn the_identity_depends_on_every_input() {
     let solve = solve_to(0.5);
     assert_eq!(solve.id(), solve_to(0.5).id());
-    let newer = |gmsh: &str, ccx: &str| ToolVersions {
-        gmsh: gmsh.to_owned(),
-        ccx: ccx.to_owned(),
-    };
+    let newer = |gmsh: &str, ccx: &str| ToolVersions { gmsh: gmsh.to_owned(), ccx: ccx.to_owned() };
     let mut others = vec![solve_to(0.6), solve_on(Tier::Tiny)];
-    others.extend(
-        [newer("none", "faker"), newer("other", "fake")].map(|tools| {
-            let problem = solve.problem.clone();
-            WindowSolve::new(problem, &tools)
-        }),
-    );
+    others.extend([newer("none", "faker"), newer("other", "fake")].map(|tools| {
+        let problem = solve.problem.clone();
+        WindowSolve::new(problem, &tools)
+    }));
     let vary = |change: &dyn Fn(&mut WindowSolve)| {
         let mut other = solve.clone();
         change(&mut other);

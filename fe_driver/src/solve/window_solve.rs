@@ -11,8 +11,8 @@ use hinge::{HingeSample, SheetMaterial};
 use mesher::{MeshRecipe, Tier};
 use serde::{Deserialize, Serialize};
 
-/// Version of the geometry, the input deck and the evaluation. It is increased when a change of the code changes
-/// results; solves of an older version are then stale.
+/// Version of the geometry, the input deck and the evaluation. It is increased when a change of the
+/// code changes results; solves of an older version are then stale.
 ///
 /// 2: D_peak is the mean over the most strained 1 % of the ligament.
 const RECIPE_VERSION: u32 = 2;
@@ -72,7 +72,8 @@ impl WindowSolve {
         }
     }
 
-    /// Hash of the settings that all solves of a campaign share, except the material: mesh, increments, programs.
+    /// Hash of the settings that all solves of a campaign share, except the material: mesh,
+    /// increments, programs.
     pub fn settings_hash(&self) -> String {
         let WindowProblem { tier, step, .. } = &self.problem;
         short_hash(&(tier, &self.mesh, step, &self.tools, self.recipe_version))
@@ -86,10 +87,7 @@ impl WindowSolve {
             ("mesh tier", a.tier != b.tier || self.mesh != other.mesh),
             ("step control", a.step != b.step),
             ("tool versions", self.tools != other.tools),
-            (
-                "recipe version",
-                self.recipe_version != other.recipe_version,
-            ),
+            ("recipe version", self.recipe_version != other.recipe_version),
         ];
         let different = settings.into_iter().filter(|(_, differs)| *differs);
         different.map(|(name, _)| name).collect()
@@ -125,7 +123,8 @@ impl Solve for WindowSolve {
         )
     }
 
-    /// A solve with a mesh or increments of its own, as a study of them has, is never solved with others.
+    /// A solve with a mesh or increments of its own, as a study of them has, is never solved with
+    /// others.
     fn next_attempt(
         &self,
         attempt: AttemptKind,
@@ -152,10 +151,7 @@ impl Solve for WindowSolve {
 
     fn attempted(&self, attempt: AttemptKind) -> Self {
         let mut solve = self.clone();
-        if matches!(
-            attempt,
-            AttemptKind::ShorterIncrements | AttemptKind::FinerTier
-        ) {
+        if matches!(attempt, AttemptKind::ShorterIncrements | AttemptKind::FinerTier) {
             solve.problem.step = StepControl::patient();
         }
         if attempt == AttemptKind::FinerTier {

@@ -22,16 +22,9 @@ fn an_interrupted_campaign_is_resumed_to_the_same_rows() {
 
     // Stopped as soon as one job is closed, with another in flight.
     let stop = AtomicBool::new(false);
-    let progress = run(
-        &campaign,
-        parts.path(),
-        &tools,
-        &TWO_WORKERS,
-        &stop,
-        &mut |progress| {
-            stop.store(progress.tally.closed() > 0, Ordering::Relaxed);
-        },
-    );
+    let progress = run(&campaign, parts.path(), &tools, &TWO_WORKERS, &stop, &mut |progress| {
+        stop.store(progress.tally.closed() > 0, Ordering::Relaxed);
+    });
     let closed = progress.unwrap().tally.closed();
     assert!((1..3).contains(&closed), "{closed}");
     let versions = tools.versions();
@@ -44,10 +37,7 @@ fn an_interrupted_campaign_is_resumed_to_the_same_rows() {
     let resumed = jobs(parts.path());
     assert_eq!(resumed.len(), 3);
     for (a, b) in resumed.iter().zip(jobs(whole.path())) {
-        assert_eq!(
-            (&a.id, &a.samples, a.record.failure),
-            (&b.id, &b.samples, None)
-        );
+        assert_eq!((&a.id, &a.samples, a.record.failure), (&b.id, &b.samples, None));
         assert_eq!(a.samples.last().unwrap().lambda, 1.0);
     }
     // What was finished was not run again.
@@ -55,10 +45,7 @@ fn an_interrupted_campaign_is_resumed_to_the_same_rows() {
 
     let status = status(parts.path()).unwrap();
     assert_eq!((status.name.as_str(), status.tally.complete), ("demo", 3));
-    assert_eq!(
-        status.tally.rows,
-        resumed.iter().map(|job| job.samples.len()).sum::<usize>()
-    );
+    assert_eq!(status.tally.rows, resumed.iter().map(|job| job.samples.len()).sum::<usize>());
     // A successful job keeps no deck, no log and no output.
     let folder = job_folder(parts.path(), &resumed[0].id);
     let mut names: Vec<_> = folder
@@ -89,16 +76,14 @@ const GIVES_UP: &str = "echo '1 1 1U 4 0. 0. 0.005' > window.sta; echo '*ERROR: 
 fn a_failing_solver_is_retried_and_counted() {
     let folder = tempfile::tempdir().unwrap();
     let program = fake_ccx(folder.path(), &format!("{GIVES_UP}; exit 201"));
-    let tools = CalculiX {
-        ccx: Ccx::at(&program).unwrap(),
-        ..CalculiX::find().unwrap()
-    };
+    let tools = CalculiX { ccx: Ccx::at(&program).unwrap(), ..CalculiX::find().unwrap() };
     run_to_end(&campaign(1), folder.path(), &tools);
     let status = status(folder.path()).unwrap();
     assert_eq!(status.tally.failed, 1);
     assert_eq!(status.tally.failures[&FailureKind::Diverged], 1);
     assert!(jobs(folder.path()).is_empty());
-    // Three attempts: as requested, with shorter increments, on a finer mesh; each has a start and an end event.
+    // Three attempts: as requested, with shorter increments, on a finer mesh; each has a start and
+    // an end event.
     let events = std::fs::read_to_string(history(folder.path(), "events-1-of-1.jsonl")).unwrap();
     assert_eq!(events.lines().count(), 6);
     assert!(events.lines().next_back().unwrap().contains("finer-tier"));
@@ -108,16 +93,10 @@ fn a_failing_solver_is_retried_and_counted() {
 fn a_missing_solver_stops_the_run_immediately() {
     let folder = tempfile::tempdir().unwrap();
     let program = fake_ccx(folder.path(), "");
-    let tools = CalculiX {
-        ccx: Ccx::at(&program).unwrap(),
-        ..CalculiX::find().unwrap()
-    };
+    let tools = CalculiX { ccx: Ccx::at(&program).unwrap(), ..CalculiX::find().unwrap() };
     std::fs::remove_file(&program).unwrap();
     let error = run_with(&TWO_WORKERS, &campaign(5), folder.path(), &tools).unwrap_err();
-    assert!(
-        matches!(error, CampaignError::Solve(SolveListError::Halted { .. })),
-        "{error}"
-    );
+    assert!(matches!(error, CampaignError::Solve(SolveListError::Halted { .. })), "{error}");
     assert_eq!(status(folder.path()).unwrap().tally.open, 5);
 }
 

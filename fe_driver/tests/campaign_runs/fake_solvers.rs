@@ -1,5 +1,5 @@
-//! Solvers that crash, hang, report false success or truncate their output: the errors are typed, and no process
-//! remains.
+//! Solvers that crash, hang, report false success or truncate their output: the errors are typed,
+//! and no process remains.
 
 use crate::common::problem;
 use fe_driver::{CalculiX, Cause, Ccx, FailureKind, Solution, SolveError, Solver, WindowSolve};
@@ -33,16 +33,11 @@ fn failure(body: &str) -> (SolveError, Cause) {
 fn the_error_of_a_failed_solver_quotes_the_end_of_its_log() {
     let words = "echo '*ERROR: increment size smaller than minimum'; exit 201";
     let attempted = format!("echo '1 1 1U 4 0. 0. 0.005' > window.sta; {words}");
-    for (body, expected) in [
-        (words, FailureKind::NotStarted),
-        (&attempted, FailureKind::Diverged),
-    ] {
+    for (body, expected) in [(words, FailureKind::NotStarted), (&attempted, FailureKind::Diverged)]
+    {
         let (error, cause) = failure(body);
         assert_eq!(cause, Cause::Problem(expected));
-        assert!(
-            error.to_string().contains("smaller than minimum"),
-            "{error}"
-        );
+        assert!(error.to_string().contains("smaller than minimum"), "{error}");
     }
 }
 
@@ -79,10 +74,7 @@ fn a_hanging_solver_is_terminated_with_its_children() {
     // Long enough for gmsh, which has the same limit, on a busy machine.
     let limit = Duration::from_secs(3);
     let stopped = solve(body, folder.path(), limit).unwrap().stopped;
-    assert!(matches!(
-        stopped,
-        Some(SolveError::Solver(ToolError::TimedOut { .. }))
-    ));
+    assert!(matches!(stopped, Some(SolveError::Solver(ToolError::TimedOut { .. }))));
     let child = std::fs::read_to_string(folder.path().join("child")).unwrap();
     let stat = Path::new("/proc").join(child.trim()).join("stat");
     let running = || std::fs::read_to_string(&stat).is_ok_and(|stat| !stat.contains(") Z"));
@@ -98,12 +90,7 @@ fn output_of_an_earlier_solve_is_not_taken_for_a_result() {
     let folder = tempfile::tempdir().unwrap();
     let limit = Duration::from_secs(120);
     let real = Ccx::find().unwrap().0.program;
-    solve(
-        &format!("exec {} \"$@\"", real.display()),
-        folder.path(),
-        limit,
-    )
-    .unwrap();
+    solve(&format!("exec {} \"$@\"", real.display()), folder.path(), limit).unwrap();
     let again = solve("echo 'Job finished'", folder.path(), limit).unwrap();
     assert!(again.samples.is_empty());
     assert!(matches!(again.stopped, Some(SolveError::Truncated { .. })));

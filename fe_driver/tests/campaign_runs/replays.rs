@@ -1,5 +1,5 @@
-//! Campaigns whose solver replays recorded output, which takes almost no time: all ways to run them, and all
-//! kinds of solver failure, transient and persistent.
+//! Campaigns whose solver replays recorded output, which takes almost no time: all ways to run
+//! them, and all kinds of solver failure, transient and persistent.
 
 use crate::common::{TWO_WORKERS, campaign, history, job_folder, jobs, run_with};
 use fe_driver::{
@@ -33,17 +33,9 @@ static RECORDING: LazyLock<Recording> = LazyLock::new(|| {
     );
     let folder = tempfile::tempdir().unwrap();
     let ccx = Ccx::at(&fake_ccx(folder.path(), &recorder)).unwrap();
-    let tally = run_with(
-        &TWO_WORKERS,
-        &campaign(RAYS),
-        folder.path(),
-        &CalculiX { ccx, ..tools },
-    );
+    let tally = run_with(&TWO_WORKERS, &campaign(RAYS), folder.path(), &CalculiX { ccx, ..tools });
     assert_eq!(tally.unwrap().complete, RAYS);
-    Recording {
-        outputs,
-        jobs: jobs(folder.path()),
-    }
+    Recording { outputs, jobs: jobs(folder.path()) }
 });
 
 /// Sets $id to the job's id; ccx runs in jobs/<2 digits>/<id>/work-<host>-<process>.
@@ -56,10 +48,7 @@ fn replaying(folder: &Path, fault: &str) -> CalculiX {
         "{JOB_ID}; output={outputs}/$id.dat; cp {outputs}/$id.sta window.sta\n{fault}\n\
          echo 'Job finished'; exec cp $output window.dat"
     );
-    CalculiX {
-        ccx: Ccx::at(&fake_ccx(folder, &body)).unwrap(),
-        ..CalculiX::find().unwrap()
-    }
+    CalculiX { ccx: Ccx::at(&fake_ccx(folder, &body)).unwrap(), ..CalculiX::find().unwrap() }
 }
 
 fn run_whole(campaign: &Campaign, folder: &Path, tools: &CalculiX) -> Tally {
@@ -97,7 +86,8 @@ fn in_database(windows: &[Solved]) -> Vec<CollectedWindow> {
 /// What the machine does to a solver, as scripts: nothing of it is said of the problem.
 const FAULTS: [&str; 7] = [
     "rm window.sta; exit 127",
-    // An increment in the middle is missing, from its first heading to the first heading of the next increment.
+    // An increment in the middle is missing, from its first heading to the first heading of the
+    // next increment.
     "awk '/forces .fx/ { n++ } n != 3' $output > window.dat; echo 'Job finished'; exit 0",
     "kill -9 $$",
     "head -c 150000 $output > window.dat; kill -9 $$",
@@ -123,16 +113,8 @@ fn a_transient_fault_does_not_change_the_results() {
         let tools = replaying(folder.path(), &twice(script));
         let tally = run_whole(&campaign, folder.path(), &tools);
         assert_eq!(tally.complete, RAYS, "{script}");
-        assert_eq!(
-            timeless(&jobs(folder.path())),
-            timeless(&RECORDING.jobs),
-            "{script}"
-        );
-        assert_eq!(
-            left_running(folder.path()),
-            Vec::<PathBuf>::new(),
-            "{script}"
-        );
+        assert_eq!(timeless(&jobs(folder.path())), timeless(&RECORDING.jobs), "{script}");
+        assert_eq!(left_running(folder.path()), Vec::<PathBuf>::new(), "{script}");
     }
 }
 
@@ -154,11 +136,7 @@ fn a_persistent_fault_of_the_machine_leaves_jobs_open() {
         let mended = replaying(folder.path(), "");
         let tally = run_whole(&campaign(RAYS), folder.path(), &mended);
         assert_eq!(tally.complete, RAYS);
-        assert_eq!(
-            timeless(&jobs(folder.path())),
-            timeless(&RECORDING.jobs),
-            "{script}"
-        );
+        assert_eq!(timeless(&jobs(folder.path())), timeless(&RECORDING.jobs), "{script}");
     }
 }
 
@@ -217,18 +195,12 @@ fn a_full_disk_stops_the_run_without_losing_jobs() {
     let tools = replaying(folder.path(), full);
     for _ in 0..2 {
         let error = run_with(&TWO_WORKERS, &campaign(RAYS), folder.path(), &tools).unwrap_err();
-        assert!(
-            matches!(error, CampaignError::Solve(SolveListError::Halted { .. })),
-            "{error}"
-        );
+        assert!(matches!(error, CampaignError::Solve(SolveListError::Halted { .. })), "{error}");
         assert!(error.to_string().contains("No space left"), "{error}");
         assert_eq!(status(folder.path()).unwrap().tally.open, RAYS);
     }
     let tools = replaying(folder.path(), "");
-    assert_eq!(
-        run_whole(&campaign(RAYS), folder.path(), &tools).complete,
-        RAYS
-    );
+    assert_eq!(run_whole(&campaign(RAYS), folder.path(), &tools).complete, RAYS);
     assert_eq!(timeless(&jobs(folder.path())), timeless(&RECORDING.jobs));
 }
 
@@ -240,20 +212,14 @@ fn cpu_time_of_a_timed_out_solve_is_counted() {
     let tools = replaying(folder.path(), "while true; do :; done");
     let tally = run_whole(&campaign, folder.path(), &tools);
     assert_eq!(tally.failures[&FailureKind::TimedOut], 1);
-    assert!(
-        0.0 < tally.cpu_seconds && tally.cpu_seconds < tally.wall_seconds,
-        "{tally:?}"
-    );
+    assert!(0.0 < tally.cpu_seconds && tally.cpu_seconds < tally.wall_seconds, "{tally:?}");
 }
 
 #[test]
 fn shards_run_in_parallel_and_complete_the_campaign() {
     let folder = tempfile::tempdir().unwrap();
     let (folder, tools) = (folder.path(), replaying(folder.path(), "sleep 0.2"));
-    let shard = |text: &str| RunOptions {
-        shard: text.parse().unwrap(),
-        ..TWO_WORKERS
-    };
+    let shard = |text: &str| RunOptions { shard: text.parse().unwrap(), ..TWO_WORKERS };
     std::thread::scope(|scope| {
         let run = |text| run_with(&shard(text), &campaign(RAYS), folder, &tools);
         let first = scope.spawn(move || run("1/2"));
@@ -274,10 +240,7 @@ fn shards_run_in_parallel_and_complete_the_campaign() {
     assert_eq!(timeless(&jobs(folder)), timeless(&RECORDING.jobs));
     // A later run finds all jobs done.
     assert_eq!(run_whole(&campaign(RAYS), folder, &tools).complete, RAYS);
-    assert_eq!(
-        std::fs::read(history(folder, "events-1-of-1.jsonl")).unwrap(),
-        b""
-    );
+    assert_eq!(std::fs::read(history(folder, "events-1-of-1.jsonl")).unwrap(), b"");
 }
 
 #[test]
@@ -305,11 +268,7 @@ fn collected_jobs_are_not_solved_again() {
     collected[1].solved_tier = collected[1].solved_tier.finer().unwrap();
     collected[1].samples.pop();
     let restored = |windows: &[_]| restore(&campaign(RAYS), folder, windows).unwrap();
-    let expected = |written, there, foreign| Restored {
-        written,
-        there,
-        foreign,
-    };
+    let expected = |written, there, foreign| Restored { written, there, foreign };
     assert_eq!(restored(&collected[..2]), expected(2, 0, 0));
     assert_eq!(in_database(&jobs(folder)), collected[..2]);
     let mut foreign = collected[0].clone();
@@ -351,8 +310,8 @@ fn a_restored_ray_is_not_solved_again_to_compare() {
     assert_eq!(chosen(restored.path()), 0);
 }
 
-/// Every file of a job, damaged or deleted, makes the job open; nothing of it reaches the database, and the next run
-/// repairs it.
+/// Every file of a job, damaged or deleted, makes the job open; nothing of it reaches the database,
+/// and the next run repairs it.
 #[test]
 fn a_damaged_job_is_open_and_is_solved_again() {
     let replay = tempfile::tempdir().unwrap();
@@ -389,10 +348,7 @@ fn a_damaged_job_is_open_and_is_solved_again() {
         assert_eq!((tally.damaged, tally.open), (1, 1), "damage {i}");
         let planned = plan(&campaign(RAYS), folder, &tools.versions()).unwrap();
         let reasons: Vec<&String> = planned.reasons.keys().collect();
-        assert!(
-            reasons.len() == 1 && reasons[0].starts_with("damaged: "),
-            "{reasons:?}"
-        );
+        assert!(reasons.len() == 1 && reasons[0].starts_with("damaged: "), "{reasons:?}");
         assert_eq!(jobs(folder).len(), RAYS - 1, "damage {i}");
         assert_eq!(run_whole(&campaign(RAYS), folder, &tools).complete, RAYS);
         assert_eq!(timeless(&jobs(folder)), whole, "damage {i}");

@@ -1,7 +1,8 @@
-//! A deterministic solver without a program: a hinge of known stiffness, and failures on request. For tests.
+//! A deterministic solver without a program: a hinge of known stiffness, and failures on request.
+//! For tests.
 //!
-//! W = (k_a a^2 + k_s s^2 + k_theta theta^2) / 2, D = theta^2 / 100, D_peak = 10 D, in ten equal increments. Nothing is
-//! written to the folder of an attempt.
+//! W = (k_a a^2 + k_s s^2 + k_theta theta^2) / 2, D = theta^2 / 100, D_peak = 10 D, in ten equal
+//! increments. Nothing is written to the folder of an attempt.
 #![allow(dead_code)] // every test program uses only a part
 
 use fe_driver::{Solution, SolveError, Solver, ToolVersions, WindowSolve};
@@ -38,13 +39,10 @@ pub struct FakeSolver<F> {
 }
 
 impl<F: Fn(&WindowSolve) -> Option<Fault>> FakeSolver<F> {
-    /// Hinges with the stiffness (k_a, k_s) (N/mm) and k_theta (N mm/rad); `fault` is asked at every attempt.
+    /// Hinges with the stiffness (k_a, k_s) (N/mm) and k_theta (N mm/rad); `fault` is asked at
+    /// every attempt.
     pub fn new(stiffness: [f64; 3], fault: F) -> Self {
-        Self {
-            stiffness,
-            fault,
-            attempts: AtomicUsize::new(0),
-        }
+        Self { stiffness, fault, attempts: AtomicUsize::new(0) }
     }
 
     /// Number of attempts so far.
@@ -102,19 +100,11 @@ impl<F: Fn(&WindowSolve) -> Option<Fault> + Sync> Solver for FakeSolver<F> {
                     }
                     std::thread::sleep(Duration::from_millis(1));
                 }
-                let timed_out = ToolError::TimedOut {
-                    name: "fake",
-                    limit,
-                    cpu_seconds: None,
-                };
+                let timed_out = ToolError::TimedOut { name: "fake", limit, cpu_seconds: None };
                 (0.0, Some(timed_out.into()))
             }
             Some(Fault::Killed) => {
-                let killed = ToolError::Killed {
-                    name: "fake",
-                    signal: 9,
-                    cpu_seconds: None,
-                };
+                let killed = ToolError::Killed { name: "fake", signal: 9, cpu_seconds: None };
                 return Err(killed.into());
             }
             Some(Fault::Missing) => {
@@ -126,9 +116,7 @@ impl<F: Fn(&WindowSolve) -> Option<Fault> + Sync> Solver for FakeSolver<F> {
         let samples = lambdas.take_while(|lambda| *lambda <= end);
         let path = &solve.problem.hinge.path;
         Ok(Solution {
-            samples: samples
-                .map(|lambda| self.sample(lambda, path.at(lambda)))
-                .collect(),
+            samples: samples.map(|lambda| self.sample(lambda, path.at(lambda))).collect(),
             stopped,
             elements: 1,
             cpu_seconds: Some(1.0),

@@ -42,10 +42,7 @@ pub fn campaign(count: usize) -> Campaign {
 }
 
 pub fn jobs(folder: &Path) -> Vec<Solved> {
-    finished_windows(folder)
-        .unwrap()
-        .collect::<Result<_, _>>()
-        .unwrap()
+    finished_windows(folder).unwrap().collect::<Result<_, _>>().unwrap()
 }
 
 /// The folder of a job.
@@ -55,18 +52,13 @@ pub fn job_folder(folder: &Path, id: &str) -> PathBuf {
 
 /// The history of a shard that ran on this host; the path does not exist before that.
 pub fn history(folder: &Path, name: &str) -> PathBuf {
-    let hosts = std::fs::read_dir(folder.join("hosts"))
-        .into_iter()
-        .flatten();
+    let hosts = std::fs::read_dir(folder.join("hosts")).into_iter().flatten();
     let host = hosts.map(|entry| entry.unwrap().path()).next();
     host.unwrap_or_default().join(name)
 }
 
-pub const TWO_WORKERS: RunOptions = RunOptions {
-    shard: Shard::WHOLE,
-    workers: 2,
-    time_limit: None,
-};
+pub const TWO_WORKERS: RunOptions =
+    RunOptions { shard: Shard::WHOLE, workers: 2, time_limit: None };
 
 /// A run without a stop request.
 pub fn run_with(

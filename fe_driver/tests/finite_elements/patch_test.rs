@@ -1,5 +1,6 @@
-//! The patch test of the node order and the extrusion: for a linear displacement prescribed on the boundary
-//! of a real window mesh, the displacement must be linear inside, with the exact uniform stress everywhere.
+//! The patch test of the node order and the extrusion: for a linear displacement prescribed on the
+//! boundary of a real window mesh, the displacement must be linear inside, with the exact uniform
+//! stress everywhere.
 
 use crate::common::{design, film, rows, solved};
 use fe_driver::{DeformationPath, StepControl, WindowModel, deck};
@@ -11,11 +12,7 @@ use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
 /// A small general displacement gradient.
-const G: [[f64; 3]; 3] = [
-    [1e-3, 4e-4, 2e-4],
-    [-2e-4, -5e-4, 3e-4],
-    [1e-4, -3e-4, 7e-4],
-];
+const G: [[f64; 3]; 3] = [[1e-3, 4e-4, 2e-4], [-2e-4, -5e-4, 3e-4], [1e-4, -3e-4, 7e-4]];
 
 fn displacement(x: &[f64; 3]) -> [f64; 3] {
     [0, 1, 2].map(|i| (0..3).map(|j| G[i][j] * x[j]).sum())
@@ -39,16 +36,7 @@ fn faces_of(kind: ElementKind) -> Vec<Vec<usize>> {
     let upper = [n..2 * n, 3 * n..4 * n].into_iter().flatten().collect();
     let side = |i: usize| {
         let j = (i + 1) % n;
-        vec![
-            i,
-            j,
-            n + j,
-            n + i,
-            2 * n + i,
-            4 * n + j,
-            3 * n + i,
-            4 * n + i,
-        ]
+        vec![i, j, n + j, n + i, 2 * n + i, 4 * n + j, 3 * n + i, 4 * n + i]
     };
     [lower, upper].into_iter().chain((0..n).map(side)).collect()
 }
@@ -82,20 +70,12 @@ fn patch_test(tier: Tier) {
     let folder = tempfile::tempdir().unwrap();
     let material = film();
     let gmsh = Gmsh::find().unwrap();
-    let mesh = WindowShape {
-        design: &design(60.0),
-        thickness: 0.5,
-        recipe: &tier.recipe(),
-    }
-    .mesh(
-        folder.path(),
-        &gmsh,
-        Duration::from_secs(60),
-        &AtomicBool::new(false),
-    )
-    .unwrap();
+    let mesh = WindowShape { design: &design(60.0), thickness: 0.5, recipe: &tier.recipe() }
+        .mesh(folder.path(), &gmsh, Duration::from_secs(60), &AtomicBool::new(false))
+        .unwrap();
 
-    // Nodes and elements are the same as in the usual deck; the material and the load are specific to this test.
+    // Nodes and elements are the same as in the usual deck; the material and the load are specific
+    // to this test.
     let text = deck(&WindowModel {
         mesh: &mesh,
         path: &DeformationPath::straight(HingeDeformation::default()),
@@ -106,22 +86,14 @@ fn patch_test(tier: Tier) {
     let mut text = text[..text.find("*MATERIAL").unwrap()].to_owned();
     let (young, poisson) = (material.young, material.poisson);
     writeln!(text, "*MATERIAL,NAME=M\n*ELASTIC\n{young},{poisson}").unwrap();
-    writeln!(
-        text,
-        "*SOLID SECTION,ELSET=EALL,MATERIAL=M\n*STEP\n*STATIC\n*BOUNDARY"
-    )
-    .unwrap();
+    writeln!(text, "*SOLID SECTION,ELSET=EALL,MATERIAL=M\n*STEP\n*STATIC\n*BOUNDARY").unwrap();
     let surface = surface(&mesh);
     for node in &surface {
         for (i, u) in displacement(&mesh.nodes[*node]).into_iter().enumerate() {
             writeln!(text, "{},{},{},{u:.12e}", node + 1, i + 1, i + 1).unwrap();
         }
     }
-    writeln!(
-        text,
-        "*NODE PRINT,NSET=NALL\nU\n*EL PRINT,ELSET=EALL\nS\n*END STEP"
-    )
-    .unwrap();
+    writeln!(text, "*NODE PRINT,NSET=NALL\nU\n*EL PRINT,ELSET=EALL\nS\n*END STEP").unwrap();
     let dat = solved(&text);
     let (displacements, stresses) = dat.split_once("stresses").unwrap();
     let mut inside = 0;

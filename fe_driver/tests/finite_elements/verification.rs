@@ -1,5 +1,5 @@
-//! CalculiX with the generated decks, compared with closed-form solutions: the bar, the cantilever, the plate strip,
-//! and rigid motions of a whole window.
+//! CalculiX with the generated decks, compared with closed-form solutions: the bar, the cantilever,
+//! the plate strip, and rigid motions of a whole window.
 
 use crate::common::{design, film, problem, rows, solved};
 use fe_driver::{DeformationPath, StepControl, WindowModel, deck};
@@ -89,32 +89,17 @@ fn material_block(material: &SheetMaterial) -> String {
 fn window() -> WindowMesh {
     let folder = tempfile::tempdir().unwrap();
     let (gmsh, recipe) = (Gmsh::find().unwrap(), Tier::Tiny.recipe());
-    WindowShape {
-        design: &design(60.0),
-        thickness: 0.5,
-        recipe: &recipe,
-    }
-    .mesh(
-        folder.path(),
-        &gmsh,
-        Duration::from_secs(60),
-        &AtomicBool::new(false),
-    )
-    .unwrap()
+    WindowShape { design: &design(60.0), thickness: 0.5, recipe: &recipe }
+        .mesh(folder.path(), &gmsh, Duration::from_secs(60), &AtomicBool::new(false))
+        .unwrap()
 }
 
 fn window_deck(mesh: &WindowMesh, path: &DeformationPath, material: &SheetMaterial) -> String {
-    deck(&WindowModel {
-        mesh,
-        path,
-        material,
-        step: &StepControl::default(),
-        print_all: false,
-    })
+    deck(&WindowModel { mesh, path, material, step: &StepControl::default(), print_all: false })
 }
 
-/// Reference: the hardening table. A bar stretched to a true strain of 0.5 has the tabulated true stress
-/// at its plastic strain, both in the drop after the yield peak and during hardening.
+/// Reference: the hardening table. A bar stretched to a true strain of 0.5 has the tabulated true
+/// stress at its plastic strain, both in the drop after the yield peak and during hardening.
 #[test]
 fn a_bar_in_tension_follows_the_tabulated_curve() {
     let film = film();
@@ -146,15 +131,16 @@ fn a_bar_in_tension_follows_the_tabulated_curve() {
         assert!(stress[3..].iter().all(|s| s.abs() < 0.1), "{stress:?}");
     }
     assert!(plastic > 100, "{plastic}");
-    // The sum of elastic and plastic strain is the total strain; CalculiX gives 1.5 to 2 % more plastic strain.
+    // The sum of elastic and plastic strain is the total strain; CalculiX gives 1.5 to 2 % more
+    // plastic strain.
     let last = strains.last().unwrap()[2];
     let expected = 0.5 - tabulated(last) / film.young;
     assert!((last / expected - 1.0).abs() < 0.025, "{last} {expected}");
 }
 
 /// Reference: beam theory, P = 3 E I delta / L^3, and thin-plate theory for a strip without lateral
-/// contraction, where E is replaced by E / (1 - nu^2). The strip has two layers of bricks and is 40 times as long
-/// as thick.
+/// contraction, where E is replaced by E / (1 - nu^2). The strip has two layers of bricks and is 40
+/// times as long as thick.
 #[test]
 fn a_cantilever_and_a_plate_strip_bend_as_theory_says() {
     let film = film();
@@ -184,8 +170,8 @@ fn a_cantilever_and_a_plate_strip_bend_as_theory_says() {
     }
 }
 
-/// The deck of a window in which panel A also rotates about O, by `beta` (rad) at the end. If the path of panel B
-/// includes the same rotation, it is superposed on both panels.
+/// The deck of a window in which panel A also rotates about O, by `beta` (rad) at the end. If the
+/// path of panel B includes the same rotation, it is superposed on both panels.
 fn with_panel_a_turned(mesh: &WindowMesh, path: &DeformationPath, beta: f64) -> String {
     let text = window_deck(mesh, path, &film());
     let turner = mesh.nodes.len() + 3;
@@ -208,8 +194,11 @@ fn with_panel_a_turned(mesh: &WindowMesh, path: &DeformationPath, beta: f64) -> 
     }
     let driven = "*BOUNDARY\nARCA,3,3,0.\nTURNER,3,3,0.\n*BOUNDARY,AMPLITUDE=A0\nTURNER,1,1,1.\n\
          *BOUNDARY,AMPLITUDE=A1\nTURNER,2,2,1.\n*BOUNDARY\n";
-    text.replacen("*STEP", &format!("{added}*STEP"), 1)
-        .replacen("*BOUNDARY\nARCA,1,3,0.\n", driven, 1)
+    text.replacen("*STEP", &format!("{added}*STEP"), 1).replacen(
+        "*BOUNDARY\nARCA,1,3,0.\n",
+        driven,
+        1,
+    )
 }
 
 /// The energy and the resultant force on panel B of each printed increment.
@@ -226,21 +215,14 @@ fn energies_and_forces(dat: &str, mesh: &WindowMesh) -> Vec<(f64, [f64; 2])> {
         .collect()
 }
 
-/// Reference: a rigid motion causes no strain. The energy that remains, some 1e-6 N mm, is due to the chords of the
-/// amplitude tables; a hinge rotated to 45 deg stores 90 N mm.
+/// Reference: a rigid motion causes no strain. The energy that remains, some 1e-6 N mm, is due to
+/// the chords of the amplitude tables; a hinge rotated to 45 deg stores 90 N mm.
 #[test]
 fn a_window_that_is_rotated_as_a_whole_stores_no_energy() {
     let mesh = window();
     let beta = 60.0_f64.to_radians();
-    let end = HingeDeformation {
-        theta: beta,
-        ..HingeDeformation::default()
-    };
-    let dat = solved(&with_panel_a_turned(
-        &mesh,
-        &DeformationPath::straight(end),
-        beta,
-    ));
+    let end = HingeDeformation { theta: beta, ..HingeDeformation::default() };
+    let dat = solved(&with_panel_a_turned(&mesh, &DeformationPath::straight(end), beta));
     let increments = energies_and_forces(&dat, &mesh);
     assert!(increments.len() > 10);
     for (energy, force) in increments {
@@ -249,16 +231,16 @@ fn a_window_that_is_rotated_as_a_whole_stores_no_energy() {
     }
 }
 
-/// Reference: material frame indifference. The same (a, s, theta) with a superposed rotation of the whole hinge by
-/// beta gives the same energy, and forces rotated by beta.
+/// Reference: material frame indifference. The same (a, s, theta) with a superposed rotation of the
+/// whole hinge by beta gives the same energy, and forces rotated by beta.
 #[test]
 fn a_superposed_rotation_changes_neither_energy_nor_corotated_forces() {
     let mesh = window();
     let beta = 40.0_f64.to_radians();
     let end = problem(60.0, [-0.1, 0.1], 30.0).hinge.path.at(1.0);
     let still = DeformationPath::straight(end);
-    // The motion of B in the fixed frame: the rotation is theta + beta, and du is rotated by beta, which is
-    // R(beta / 2) (a, s) in the mean frame of a fixed panel A.
+    // The motion of B in the fixed frame: the rotation is theta + beta, and du is rotated by beta,
+    // which is R(beta / 2) (a, s) in the mean frame of a fixed panel A.
     let file = tempfile::NamedTempFile::new().unwrap();
     let mut text = "eta_a,eta_s,theta_deg\n".to_owned();
     for k in 1..=720 {
@@ -276,13 +258,7 @@ fn a_superposed_rotation_changes_neither_energy_nor_corotated_forces() {
     let (same, found) = last(&with_panel_a_turned(&mesh, &turned, beta));
     assert!((same - energy).abs() < 2e-3 * energy, "{same} {energy}");
     let (sin, cos) = beta.sin_cos();
-    let expected = [
-        cos * force[0] - sin * force[1],
-        sin * force[0] + cos * force[1],
-    ];
+    let expected = [cos * force[0] - sin * force[1], sin * force[0] + cos * force[1]];
     let error = (found[0] - expected[0]).hypot(found[1] - expected[1]);
-    assert!(
-        error < 0.01 * force[0].hypot(force[1]),
-        "{found:?} {expected:?}"
-    );
+    assert!(error < 0.01 * force[0].hypot(force[1]), "{found:?} {expected:?}");
 }

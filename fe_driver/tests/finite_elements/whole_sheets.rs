@@ -1,4 +1,5 @@
-//! Sheets solved as a whole with gmsh and CalculiX: two panels and one hinge, compared with the window of that hinge.
+//! Sheets solved as a whole with gmsh and CalculiX: two panels and one hinge, compared with the
+//! window of that hinge.
 
 use crate::common::film;
 use fe_driver::{
@@ -29,14 +30,11 @@ fn design() -> HingeDesign {
 }
 
 fn thin() -> SheetMaterial {
-    SheetMaterial {
-        thickness: 0.1,
-        ..film()
-    }
+    SheetMaterial { thickness: 0.1, ..film() }
 }
 
-/// Two panels side by side, joined at the upper edge. The left one is clamped, the right one is pulled to the right by
-/// a point below the hinge, which opens the cut.
+/// Two panels side by side, joined at the upper edge. The left one is clamped, the right one is
+/// pulled to the right by a point below the hinge, which opens the cut.
 fn problem(keeping: Keeping, stroke: f64) -> SheetProblem {
     let PlaneRecipe::Structured(plane) = Tier::Tiny.recipe().plane else {
         panic!("the tier has a structured mesh");
@@ -55,10 +53,7 @@ fn problem(keeping: Keeping, stroke: f64) -> SheetProblem {
             panels: vec![panel(0.0, left), pulled],
             windows: vec![PlacedWindow {
                 design: design(),
-                frame: Frame {
-                    origin: [WIDTH, HEIGHT],
-                    e_x: [1.0, 0.0],
-                },
+                frame: Frame { origin: [WIDTH, HEIGHT], e_x: [1.0, 0.0] },
                 panels: [Some((0, 2)), Some((1, 3))],
                 bump: 1.0,
             }],
@@ -69,16 +64,8 @@ fn problem(keeping: Keeping, stroke: f64) -> SheetProblem {
         tier: Tier::Tiny,
         material: thin(),
         keeping,
-        held: vec![Held {
-            panel: 0,
-            place: Place::Panel,
-            motion: [Some(0.0); 2],
-        }],
-        pulled: vec![Pulled {
-            panel: 1,
-            at,
-            force: [2.0, 0.0],
-        }],
+        held: vec![Held { panel: 0, place: Place::Panel, motion: [Some(0.0); 2] }],
+        pulled: vec![Pulled { panel: 1, at, force: [2.0, 0.0] }],
         rims: Vec::new(),
         stroke: Some(stroke),
         down: None,
@@ -93,9 +80,7 @@ fn attempt(problem: &SheetProblem) -> Solution<SheetSolve> {
     let solve = SheetSolve::new(problem.clone(), &calculix.versions());
     let folder = tempfile::tempdir().unwrap();
     let stop = AtomicBool::new(false);
-    calculix
-        .attempt(&solve, folder.path(), LIMIT, &stop)
-        .unwrap()
+    calculix.attempt(&solve, folder.path(), LIMIT, &stop).unwrap()
 }
 
 fn solved(problem: &SheetProblem) -> SheetStates {
@@ -111,19 +96,15 @@ fn deformation(state: &SheetState) -> HingeDeformation {
     let [alpha, beta] = [0, 1].map(|panel| state.panels[panel].turn());
     let (sin, cos) = (-0.5 * (alpha + beta)).sin_cos();
     let [x, y] = [b[0] - a[0], b[1] - a[1]];
-    HingeDeformation {
-        a: cos * x - sin * y,
-        s: sin * x + cos * y,
-        theta: beta - alpha,
-    }
+    HingeDeformation { a: cos * x - sin * y, s: sin * x + cos * y, theta: beta - alpha }
 }
 
 fn total_energy(state: &SheetState) -> f64 {
     state.panel_energy + state.hinges[0].energy
 }
 
-/// The sheet is its window: on the path that the hinge has in the sheet, the window stores the same energy. And the work of
-/// the load is the energy of the sheet.
+/// The sheet is its window: on the path that the hinge has in the sheet, the window stores the same
+/// energy. And the work of the load is the energy of the sheet.
 #[test]
 fn a_hinge_of_a_sheet_held_flat_is_its_window() {
     let sheet = solved(&problem(Keeping::HeldFlat, 8.0));
@@ -131,11 +112,7 @@ fn a_hinge_of_a_sheet_held_flat_is_its_window() {
     assert_eq!((end.lambda, end.fraction), (1.0, 1.0));
     assert!((end.stroke - 8.0).abs() < 1e-6, "{}", end.stroke);
     assert!(end.panels.iter().all(|panel| panel.tilt() < 1e-9));
-    assert!(
-        end.panel_energy < 0.01 * total_energy(end),
-        "{}",
-        end.panel_energy
-    );
+    assert!(end.panel_energy < 0.01 * total_energy(end), "{}", end.panel_energy);
 
     let (mut work, mut before) = (0.0, [0.0; 2]);
     for state in &sheet.states {
@@ -150,15 +127,10 @@ fn a_hinge_of_a_sheet_held_flat_is_its_window() {
 
     let states: Vec<HingeDeformation> = sheet.states.iter().map(deformation).collect();
     let path = DeformationPath::through(&states).unwrap();
-    let hinge = HingePath {
-        design: design(),
-        path,
-    };
+    let hinge = HingePath { design: design(), path };
     let calculix = CalculiX::find().unwrap();
-    let mut window = WindowSolve::new(
-        WindowProblem::new(hinge, &thin(), Tier::Tiny),
-        &calculix.versions(),
-    );
+    let mut window =
+        WindowSolve::new(WindowProblem::new(hinge, &thin(), Tier::Tiny), &calculix.versions());
     window.mesh.layers = 2;
     let folder = tempfile::tempdir().unwrap();
     let stop = AtomicBool::new(false);
@@ -196,7 +168,8 @@ fn a_free_film_tilts() {
     assert!((end.load_factor / other.load_factor - 1.0).abs() < 1e-4);
 }
 
-/// A sheet on a table sinks by its weight over the stiffness of the table's springs, and the table carries its weight.
+/// A sheet on a table sinks by its weight over the stiffness of the table's springs, and the table
+/// carries its weight.
 #[test]
 fn a_table_carries_the_sheet() {
     let mut lying = problem(Keeping::Table, 0.05);
@@ -212,14 +185,11 @@ fn weight_in_the_plane_comes_on_before_the_stroke() {
     let mut heavy = problem(Keeping::HeldFlat, 1.0);
     heavy.down = Some([0.0, -1.0, 0.0]);
     let sheet = solved(&heavy);
-    let first = sheet
-        .states
-        .iter()
-        .find(|state| state.lambda < 0.1)
-        .unwrap();
+    let first = sheet.states.iter().find(|state| state.lambda < 0.1).unwrap();
     assert_eq!(first.fraction, 0.0);
     assert!(first.stroke.abs() < 1e-9);
-    // The pulled panel and the window hang from the nodes of the clamped panel; no other force is upright.
+    // The pulled panel and the window hang from the nodes of the clamped panel; no other force is
+    // upright.
     let end = sheet.states.last().unwrap();
     let by_area = thin().weight_by_area();
     let panel = by_area * WIDTH * HEIGHT;
@@ -228,8 +198,8 @@ fn weight_in_the_plane_comes_on_before_the_stroke() {
     assert!((panel..panel + window).contains(&up), "{up} {panel}");
 }
 
-/// A plate of 3 mm whose pulled panel is pushed against the clamped one: about the ligament, and without contact the far ends of
-/// the flanks would pass each other.
+/// A plate of 3 mm whose pulled panel is pushed against the clamped one: about the ligament, and
+/// without contact the far ends of the flanks would pass each other.
 #[test]
 fn the_flanks_of_a_cut_that_is_pushed_shut_touch() {
     let mut shut = problem(Keeping::HeldFlat, 0.0);
@@ -271,10 +241,7 @@ fn a_sheet_is_solved_once_and_a_snap_is_followed_with_inertia() {
     assert_eq!(again[0].record.attempts, 1);
 
     let next = |attempt, failure| solve.next_attempt(attempt, failure, 0.3);
-    assert_eq!(
-        next(AttemptKind::Requested, FailureKind::Diverged),
-        Some(AttemptKind::Dynamic)
-    );
+    assert_eq!(next(AttemptKind::Requested, FailureKind::Diverged), Some(AttemptKind::Dynamic));
     assert_eq!(next(AttemptKind::Dynamic, FailureKind::Diverged), None);
     assert_eq!(next(AttemptKind::Requested, FailureKind::TimedOut), None);
     let dynamic = solve.attempted(AttemptKind::Dynamic).problem;

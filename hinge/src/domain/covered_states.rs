@@ -10,12 +10,14 @@ use support::vectors::dot;
 pub(super) const MOST_WIDTHS: usize = 5;
 /// Number of states per stored width: about a hundred rays.
 const STATES_A_WIDTH: usize = 4000;
-/// A state contributes to a stored width if their distance is at most this fraction of the step between widths.
+/// A state contributes to a stored width if their distance is at most this fraction of the step
+/// between widths.
 const REACH: f64 = 0.75;
 /// Minimum support and minimum half-range, so that a domain of one state has a non-zero size.
 const LEAST_SIZE: f64 = 0.01;
-/// A mean path counts if the range of eta_a about it is at most this fraction of the whole range: a sixth in plates, which turn
-/// freely along it. Thin ligaments buckle at any eta_a: about their mean path the domain would be a tenth larger.
+/// A mean path counts if the range of eta_a about it is at most this fraction of the whole range: a
+/// sixth in plates, which turn freely along it. Thin ligaments buckle at any eta_a: about their
+/// mean path the domain would be a tenth larger.
 const NARROWED: f64 = 0.5;
 /// Maximum gamma of the flat state, where W and its gradient vanish for any weights.
 const FLAT: f64 = 0.98;
@@ -108,19 +110,14 @@ impl TrainingDomain {
     }
 }
 
-/// c_1 and c_2 of the parabola eta_a = c_1 theta + c_2 theta^2 by least squares; zero if the states do not determine it.
+/// c_1 and c_2 of the parabola eta_a = c_1 theta + c_2 theta^2 by least squares; zero if the states
+/// do not determine it.
 fn mean_path(coordinates: impl Iterator<Item = [f64; 3]>) -> [f64; 2] {
     // Sums of theta^2, theta^3, theta^4, eta_a theta and eta_a theta^2.
     let [second, third, fourth, first_moment, second_moment] =
         coordinates.fold([0.0; 5], |sums: [f64; 5], [eta_a, _, theta]| {
             let square = theta * theta;
-            let terms = [
-                square,
-                square * theta,
-                square * square,
-                eta_a * theta,
-                eta_a * square,
-            ];
+            let terms = [square, square * theta, square * square, eta_a * theta, eta_a * square];
             from_fn(|i| sums[i] + terms[i])
         });
     let determinant = second * fourth - third * third;
@@ -135,8 +132,7 @@ fn mean_path(coordinates: impl Iterator<Item = [f64; 3]>) -> [f64; 2] {
 
 /// The smallest interval that holds every value.
 fn interval(values: impl Iterator<Item = f64>) -> [f64; 2] {
-    values.fold(
-        [f64::INFINITY, f64::NEG_INFINITY],
-        |[minimum, maximum], x| [x.min(minimum), x.max(maximum)],
-    )
+    values.fold([f64::INFINITY, f64::NEG_INFINITY], |[minimum, maximum], x| {
+        [x.min(minimum), x.max(maximum)]
+    })
 }

@@ -2,7 +2,8 @@
 
 /// Number of directions m.
 pub(super) const DIRECTIONS: usize = 26;
-/// p of the gauge: corners where three planes meet are rounded by 5 % of their distance from the centre.
+/// p of the gauge: corners where three planes meet are rounded by 5 % of their distance from the
+/// centre.
 pub(super) const EXPONENT: f64 = 24.0;
 
 /// The directions m.
@@ -12,11 +13,7 @@ pub(super) const DIRECTION: [[f64; 3]; DIRECTIONS] = {
     while m < DIRECTIONS {
         // The zero vector, number 13 of 27, is not a direction.
         let k = if m < 13 { m } else { m + 1 };
-        directions[m] = [
-            (k % 3) as f64 - 1.0,
-            (k / 3 % 3) as f64 - 1.0,
-            (k / 9) as f64 - 1.0,
-        ];
+        directions[m] = [(k % 3) as f64 - 1.0, (k / 3 % 3) as f64 - 1.0, (k / 9) as f64 - 1.0];
         m += 1;
     }
     directions

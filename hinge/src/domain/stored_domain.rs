@@ -28,15 +28,7 @@ impl TryFrom<Stored> for TrainingDomain {
     type Error = InvalidDomain;
 
     fn try_from(stored: Stored) -> Result<Self, InvalidDomain> {
-        let Stored {
-            w_lig,
-            alpha,
-            holes,
-            mean_path,
-            centre,
-            half_range,
-            supports,
-        } = stored;
+        let Stored { w_lig, alpha, holes, mean_path, centre, half_range, supports } = stored;
         let is_interval =
             |[minimum, maximum]: [f64; 2]| minimum <= maximum && (maximum - minimum).is_finite();
         let is_positive = |x: &f64| *x > 0.0 && x.is_finite();
@@ -45,31 +37,17 @@ impl TryFrom<Stored> for TrainingDomain {
             ("half_range > 0", half_range.iter().all(is_positive)),
             ("supports has at least one row", !supports.is_empty()),
             ("supports > 0", supports.iter().flatten().all(is_positive)),
-            (
-                "0 < minimum <= maximum for w_lig",
-                is_interval(w_lig) && w_lig[0] > 0.0,
-            ),
+            ("0 < minimum <= maximum for w_lig", is_interval(w_lig) && w_lig[0] > 0.0),
             ("minimum <= maximum for alpha", is_interval(alpha)),
             (
                 "0 <= minimum < maximum < 1 for holes",
                 holes.is_none_or(|[least, most]| 0.0 <= least && least < most && most < 1.0),
             ),
-            (
-                "mean_path is finite",
-                mean_path.iter().all(|c| c.is_finite()),
-            ),
+            ("mean_path is finite", mean_path.iter().all(|c| c.is_finite())),
         ];
         match rules.into_iter().find(|(_, holds)| !holds) {
             Some((rule, _)) => Err(InvalidDomain(rule)),
-            None => Ok(Self {
-                w_lig,
-                alpha,
-                holes,
-                mean_path,
-                centre,
-                half_range,
-                supports,
-            }),
+            None => Ok(Self { w_lig, alpha, holes, mean_path, centre, half_range, supports }),
         }
     }
 }

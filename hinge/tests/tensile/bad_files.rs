@@ -21,9 +21,7 @@ fn message_with(text: &str, options: &RecordOptions) -> String {
 /// The record of a Voce law with other units.
 fn record(header: &str, strain_unit: f64, stress_unit: f64) -> String {
     let rows = VOCE.record_to(0.08, 2000).into_iter();
-    let rows: Vec<[f64; 2]> = rows
-        .map(|[e, s]| [e / strain_unit, s / stress_unit])
-        .collect();
+    let rows: Vec<[f64; 2]> = rows.map(|[e, s]| [e / strain_unit, s / stress_unit]).collect();
     csv(header, &rows)
 }
 
@@ -34,70 +32,29 @@ fn the_message_says_what_to_do() {
     let reversed: Vec<[f64; 2]> = VOCE.record(2000).into_iter().rev().collect();
     let elastic: Vec<[f64; 2]> = VOCE.record(2000).into_iter().take(20).collect();
     let cases: Vec<(&str, String, &[&str])> = vec![
-        (
-            "empty",
-            String::new(),
-            &["no rows of numbers", "save the curve"],
-        ),
-        (
-            "header alone",
-            format!("{HEADER}\n"),
-            &["no rows of numbers"],
-        ),
-        (
-            "one column",
-            "Stress (MPa)\n1\n2\n3\n".into(),
-            &["one column", "needs two"],
-        ),
+        ("empty", String::new(), &["no rows of numbers", "save the curve"]),
+        ("header alone", format!("{HEADER}\n"), &["no rows of numbers"]),
+        ("one column", "Stress (MPa)\n1\n2\n3\n".into(), &["one column", "needs two"]),
         (
             "text in a cell",
             good.replacen(third, "abc,12", 1),
-            &[
-                ":4: `abc` in column 1 `Tensile strain (1)`",
-                "correct the cell",
-            ],
+            &[":4: `abc` in column 1 `Tensile strain (1)`", "correct the cell"],
         ),
-        (
-            "a missing cell",
-            good.replacen(third, "0.001,", 1),
-            &[":4: `` in column 2"],
-        ),
-        (
-            "not a number",
-            good.replacen(third, "0.001,NaN", 1),
-            &[":4: `NaN` in column 2"],
-        ),
-        (
-            "no names",
-            csv("", &VOCE.record(100)),
-            &["--columns strain=1,stress=2"],
-        ),
+        ("a missing cell", good.replacen(third, "0.001,", 1), &[":4: `` in column 2"]),
+        ("not a number", good.replacen(third, "0.001,NaN", 1), &[":4: `NaN` in column 2"]),
+        ("no names", csv("", &VOCE.record(100)), &["--columns strain=1,stress=2"]),
         (
             "two strains",
             "Strain 1 (%),Strain 2 (%),Stress (MPa)\n0,0,0\n1,1,1\n".into(),
-            &[
-                "columns 1 `Strain 1 (%)` and 2 `Strain 2 (%)`",
-                "--columns strain=NUMBER",
-            ],
+            &["columns 1 `Strain 1 (%)` and 2 `Strain 2 (%)`", "--columns strain=NUMBER"],
         ),
         (
             "a force and an extension",
             record("Extension (mm),Force (N)", 1.0, 1.0),
-            &[
-                "contains a force and a length change",
-                "give --width, --thickness, --gauge-length",
-            ],
+            &["contains a force and a length change", "give --width, --thickness, --gauge-length"],
         ),
-        (
-            "an extension",
-            record("Extension (mm),Stress (MPa)", 1.0, 1.0),
-            &["give --gauge-length"],
-        ),
-        (
-            "Pa without unit",
-            record("Strain (1),Stress", 1.0, 1e-6),
-            &["--units stress=Pa"],
-        ),
+        ("an extension", record("Extension (mm),Stress (MPa)", 1.0, 1.0), &["give --gauge-length"]),
+        ("Pa without unit", record("Strain (1),Stress", 1.0, 1e-6), &["--units stress=Pa"]),
         (
             "GPa read as MPa",
             record("Strain (1),Stress (MPa)", 1.0, 1e4),
@@ -128,21 +85,13 @@ fn the_message_says_what_to_do() {
             csv(HEADER, &reversed),
             &[":3: from here on the strain falls", "sort the rows"],
         ),
-        (
-            "elastic",
-            csv(HEADER, &elastic),
-            &["before a plastic strain of 0.2 %"],
-        ),
+        ("elastic", csv(HEADER, &elastic), &["before a plastic strain of 0.2 %"]),
         (
             "decimal commas between commas",
             "Strain (%),Stress (MPa)\n0,0,0,0\n0,1,2,5\n".into(),
             &["decimal sign", "semicolons"],
         ),
-        (
-            "no load",
-            "Strain (%),Stress (MPa)\n0,0\n1,0\n2,0\n3,0\n".into(),
-            &["no linear part"],
-        ),
+        ("no load", "Strain (%),Stress (MPa)\n0,0\n1,0\n2,0\n3,0\n".into(), &["no linear part"]),
         (
             "a table",
             "true_stress_mpa,plastic_strain\n10,0\n20,1\n".into(),
@@ -165,9 +114,7 @@ fn specimens_of_two_kinds_are_named() {
         let path = write(folder.path(), name, &csv(HEADER, &law.record(6000)));
         (path, RecordOptions::default())
     });
-    let message = MaterialFit::new(&records, &OPTIONS)
-        .unwrap_err()
-        .to_string();
+    let message = MaterialFit::new(&records, &OPTIONS).unwrap_err().to_string();
     assert!(
         message.contains("film.csv have a draw plateau") && message.contains("metal.csv have none"),
         "{message}"
@@ -197,9 +144,6 @@ fn the_messages_for_force_and_extension_name_their_own_options() {
         for option in expected {
             assert!(message.contains(option), "{message}");
         }
-        assert!(
-            !message.contains("strain=") && !message.contains("stress="),
-            "{message}"
-        );
+        assert!(!message.contains("strain=") && !message.contains("stress="), "{message}");
     }
 }

@@ -1,4 +1,5 @@
-//! Tensile tests of known laws, with the disturbances of a testing machine: the fitted law is the law of the record.
+//! Tensile tests of known laws, with the disturbances of a testing machine: the fitted law is the
+//! law of the record.
 
 mod bad_files;
 mod mutations;
@@ -14,10 +15,7 @@ use tensile::{
 };
 
 const OPTIONS: FitOptions = FitOptions {
-    specimen: SpecimenOptions {
-        young: None,
-        draw_ratio: None,
-    },
+    specimen: SpecimenOptions { young: None, draw_ratio: None },
     fracture_strain: None,
     rows: 40,
 };
@@ -38,10 +36,7 @@ fn fit(files: &[PathBuf], options: &FitOptions) -> MaterialFit {
 }
 
 fn fit_with(files: &[PathBuf], options: &FitOptions, record: &RecordOptions) -> MaterialFit {
-    let records: Vec<_> = files
-        .iter()
-        .map(|path| (path.clone(), record.clone()))
-        .collect();
+    let records: Vec<_> = files.iter().map(|path| (path.clone(), record.clone())).collect();
     MaterialFit::new(&records, options).unwrap()
 }
 
@@ -51,13 +46,10 @@ fn fit_text(text: &str, options: &FitOptions) -> MaterialFit {
     fit(&[write(folder.path(), "test.csv", text)], options)
 }
 
-/// Maximum relative deviation of the table from the law over plastic strains above 0.1 %, between its rows too.
+/// Maximum relative deviation of the table from the law over plastic strains above 0.1 %, between
+/// its rows too.
 fn table_error(fit: &MaterialFit, law: &Law, to: f64) -> f64 {
-    let table: Vec<[f64; 2]> = fit
-        .table
-        .iter()
-        .map(|row| [row.strain, row.stress])
-        .collect();
+    let table: Vec<[f64; 2]> = fit.table.iter().map(|row| [row.strain, row.stress]).collect();
     let strains = (1..=200).map(|i| 1e-3 + (to - 1e-3) * f64::from(i) / 200.0);
     strains
         .map(|strain| (at(&table, strain) / (law.stress)(strain) - 1.0).abs())
@@ -75,23 +67,17 @@ fn agrees(fit: &MaterialFit, law: &Law, case: &str, [young, yields, hardening]: 
     let end = fit.table.last().unwrap().strain.min(law.end);
     let error = table_error(fit, law, end);
     assert!(error < hardening, "{name}, {case}: hardening {error:.4}");
-    assert!(
-        (end / law.end - 1.0).abs() < 0.02,
-        "{name}, {case}: ends at {end}"
-    );
+    assert!((end / law.end - 1.0).abs() < 0.02, "{name}, {case}: ends at {end}");
     assert_eq!(fit.table[0].strain, 0.0);
     let rising = |pair: &[tensile::HardeningRow]| {
         pair[1].strain > pair[0].strain && pair[1].stress >= pair[0].stress
     };
-    assert!(
-        fit.table.windows(2).all(rising),
-        "{name}, {case}: {:?}",
-        fit.table
-    );
+    assert!(fit.table.windows(2).all(rising), "{name}, {case}: {:?}", fit.table);
 }
 
 const METALS: [Law; 3] = [LINEAR, VOCE, RAMBERG_OSGOOD];
-/// The line follows the bend of the Ramberg-Osgood law by 1 %; the table stays within 0.1 % of the curve.
+/// The line follows the bend of the Ramberg-Osgood law by 1 %; the table stays within 0.1 % of the
+/// curve.
 const EXACT: [f64; 3] = [0.015, 0.005, 0.005];
 
 #[test]
@@ -110,7 +96,8 @@ fn clean_curves_give_their_law() {
     }
 }
 
-/// A standard deviation of 0.3 % of the yield stress, and of the elastic strain at yield, in 2000 rows.
+/// A standard deviation of 0.3 % of the yield stress, and of the elastic strain at yield, in 2000
+/// rows.
 #[test]
 fn noise_and_jitter_are_averaged() {
     for law in METALS {
@@ -120,10 +107,7 @@ fn noise_and_jitter_are_averaged() {
             .record(2000)
             .into_iter()
             .map(|[strain, stress]| {
-                [
-                    strain + scale / law.young * noise.normal(),
-                    stress + scale * noise.normal(),
-                ]
+                [strain + scale / law.young * noise.normal(), stress + scale * noise.normal()]
             })
             .collect();
         let fit = fit_text(&csv(HEADER, &rows), &OPTIONS);
@@ -136,11 +120,8 @@ fn noise_and_jitter_are_averaged() {
 fn toe_and_slack_are_compensated() {
     for law in METALS {
         let yield_strain = law.offset_yield() / law.young;
-        for (slack, toe) in [
-            (0.003, 0.0),
-            (0.0, 0.15 * yield_strain),
-            (0.003, 0.15 * yield_strain),
-        ] {
+        for (slack, toe) in [(0.003, 0.0), (0.0, 0.15 * yield_strain), (0.003, 0.15 * yield_strain)]
+        {
             // s = E x^2 / (4 toe) up to x = 2 toe, where the line s = E (x - toe) begins.
             let shifted = law.record(8000).into_iter().map(|[strain, stress]| {
                 let soft = match strain < toe {
@@ -149,9 +130,8 @@ fn toe_and_slack_are_compensated() {
                 };
                 [slack + soft, stress]
             });
-            let mut rows: Vec<[f64; 2]> = (0..100)
-                .map(|i| [slack * f64::from(i) / 100.0, 0.0])
-                .collect();
+            let mut rows: Vec<[f64; 2]> =
+                (0..100).map(|i| [slack * f64::from(i) / 100.0, 0.0]).collect();
             rows.extend(shifted);
             let fit = fit_text(&csv(HEADER, &rows), &OPTIONS);
             let case = format!("slack {slack}, toe {toe:.5}");
@@ -181,10 +161,7 @@ fn unloading_loops_are_removed() {
                     back.map(|share| [strain - (1.0 - share) * stress / law.young, share * stress]);
                 let hysteresis = 0.02 * stress;
                 let reloading = forth.map(|share| {
-                    [
-                        strain - (1.0 - share) * stress / law.young,
-                        share * stress - hysteresis,
-                    ]
+                    [strain - (1.0 - share) * stress / law.young, share * stress - hysteresis]
                 });
                 rows.extend(unloading.skip(1).chain(reloading));
             }
@@ -202,10 +179,8 @@ fn the_format_of_a_file_does_not_change_its_law() {
     let law = VOCE;
     let record = law.record(3000);
     let with = |header: &str, row: &dyn Fn(f64, f64) -> String| {
-        let rows: Vec<String> = record
-            .iter()
-            .map(|[strain, stress]| row(*strain, *stress))
-            .collect();
+        let rows: Vec<String> =
+            record.iter().map(|[strain, stress]| row(*strain, *stress)).collect();
         format!("{header}\n{}\n", rows.join("\n"))
     };
     let comma = |text: String| text.replace('.', ",");
@@ -216,44 +191,20 @@ fn the_format_of_a_file_does_not_change_its_law() {
         ..RecordOptions::default()
     };
     let named = RecordOptions {
-        columns: vec![
-            (Quantity::Stress, "3".into()),
-            (Quantity::Strain, "epsilon_y".into()),
-        ],
-        units: vec![
-            (Quantity::Stress, "GPa".into()),
-            (Quantity::Strain, "%".into()),
-        ],
+        columns: vec![(Quantity::Stress, "3".into()), (Quantity::Strain, "epsilon_y".into())],
+        units: vec![(Quantity::Stress, "GPa".into()), (Quantity::Strain, "%".into())],
         ..RecordOptions::default()
     };
     let none = RecordOptions::default();
     let cases: [(&str, String, &RecordOptions); 8] = [
-        (
-            "per cent",
-            with("Strain (%),Stress (MPa)", &|e, s| {
-                format!("{},{s}", 100.0 * e)
-            }),
-            &none,
-        ),
-        (
-            "swapped columns",
-            with("Stress [N/mm^2]\tStrain", &|e, s| format!("{s}\t{e}")),
-            &none,
-        ),
+        ("per cent", with("Strain (%),Stress (MPa)", &|e, s| format!("{},{s}", 100.0 * e)), &none),
+        ("swapped columns", with("Stress [N/mm^2]\tStrain", &|e, s| format!("{s}\t{e}")), &none),
         (
             "decimal commas",
-            with("Dehnung [%];Spannung [MPa]", &|e, s| {
-                comma(format!("{};{s}", 100.0 * e))
-            }),
+            with("Dehnung [%];Spannung [MPa]", &|e, s| comma(format!("{};{s}", 100.0 * e))),
             &none,
         ),
-        (
-            "psi",
-            with("stress_psi,strain", &|e, s| {
-                format!("{},{e}", s / 6.894_757_29e-3)
-            }),
-            &none,
-        ),
+        ("psi", with("stress_psi,strain", &|e, s| format!("{},{e}", s / 6.894_757_29e-3)), &none),
         (
             "true",
             with("True strain,True stress (MPa)", &|e, s| {
@@ -278,20 +229,14 @@ fn the_format_of_a_file_does_not_change_its_law() {
         ),
         (
             "given columns and units",
-            with("t,epsilon_y,q,q", &|e, s| {
-                format!("0,{},{},1", 100.0 * e, s / 1000.0)
-            }),
+            with("t,epsilon_y,q,q", &|e, s| format!("0,{},{},1", 100.0 * e, s / 1000.0)),
             &named,
         ),
     ];
     let folder = tempfile::tempdir().unwrap();
     let reference = fit_text(&csv(HEADER, &record), &OPTIONS);
     for (case, text, options) in cases {
-        let fit = fit_with(
-            &[write(folder.path(), "test.csv", &text)],
-            &OPTIONS,
-            options,
-        );
+        let fit = fit_with(&[write(folder.path(), "test.csv", &text)], &OPTIONS, options);
         agrees(&fit, &law, case, EXACT);
         // A curve given as true values is not searched for a neck, and has none.
         let [found, expected] = [&fit, &reference].map(|fit| fit.table.last().unwrap().stress);
@@ -311,15 +256,8 @@ fn a_film_that_draws_gives_its_local_law() {
             .collect();
         let fit = fit_text(&csv(HEADER, &rows), &OPTIONS);
         let found = fit.specimens[0].draw.unwrap();
-        assert!(
-            (fit.young.mean / FILM.young - 1.0).abs() < 0.03,
-            "{case}: {}",
-            fit.young.mean
-        );
-        assert!(
-            (found.upper_yield / plateau.upper_yield - 1.0).abs() < 0.01,
-            "{case}: {found:?}"
-        );
+        assert!((fit.young.mean / FILM.young - 1.0).abs() < 0.03, "{case}: {}", fit.young.mean);
+        assert!((found.upper_yield / plateau.upper_yield - 1.0).abs() < 0.01, "{case}: {found:?}");
         assert!(
             (found.plateau / plateau.stress - 1.0).abs() < tolerance,
             "{case}: {found:?} {plateau:?}"
@@ -332,11 +270,7 @@ fn a_film_that_draws_gives_its_local_law() {
         // In the neck the curve is constructed from the work alone; outside it is measured.
         let drawn = fit.table.iter().filter(|row| row.origin == Origin::Drawn);
         assert!(drawn.count() > 3);
-        let table: Vec<[f64; 2]> = fit
-            .table
-            .iter()
-            .map(|row| [row.strain, row.stress])
-            .collect();
+        let table: Vec<[f64; 2]> = fit.table.iter().map(|row| [row.strain, row.stress]).collect();
         let natural = plateau.ratio.ln();
         for i in 1..=100 {
             let strain = 1.3 * f64::from(i) / 100.0;
@@ -344,11 +278,10 @@ fn a_film_that_draws_gives_its_local_law() {
             let allowed = if strain < natural { 0.12 } else { 0.02 };
             assert!(error.abs() < allowed, "{case}: {error:+.3} at {strain}");
         }
-        // The plastic work up to the natural draw ratio is the plastic work of the law: Maxwell's rule, and the elastic part.
+        // The plastic work up to the natural draw ratio is the plastic work of the law: Maxwell's
+        // rule, and the elastic part.
         let work = |stress: &dyn Fn(f64) -> f64| -> f64 {
-            (0..10_000)
-                .map(|i| stress(natural * (f64::from(i) + 0.5) / 1e4) * natural / 1e4)
-                .sum()
+            (0..10_000).map(|i| stress(natural * (f64::from(i) + 0.5) / 1e4) * natural / 1e4).sum()
         };
         let error = work(&|strain| at(&table, strain)) / work(&FILM.stress) - 1.0;
         assert!(error.abs() < 0.01, "{case}: work {error:+.4}");
@@ -358,20 +291,12 @@ fn a_film_that_draws_gives_its_local_law() {
 #[test]
 fn a_film_that_breaks_while_drawing_needs_its_draw_ratio() {
     let folder = tempfile::tempdir().unwrap();
-    let rows: Vec<[f64; 2]> = FILM
-        .record(6000)
-        .into_iter()
-        .take_while(|row| row[0] < 1.0)
-        .collect();
+    let rows: Vec<[f64; 2]> =
+        FILM.record(6000).into_iter().take_while(|row| row[0] < 1.0).collect();
     let path = write(folder.path(), "film.csv", &csv(HEADER, &rows));
     let records = [(path, RecordOptions::default())];
-    let message = MaterialFit::new(&records, &OPTIONS)
-        .unwrap_err()
-        .to_string();
-    assert!(
-        message.contains("film.csv draws at") && message.contains("--draw-ratio"),
-        "{message}"
-    );
+    let message = MaterialFit::new(&records, &OPTIONS).unwrap_err().to_string();
+    assert!(message.contains("film.csv draws at") && message.contains("--draw-ratio"), "{message}");
     let mut options = OPTIONS;
     let plateau = FILM.plateau();
     options.specimen.draw_ratio = Some(plateau.ratio);
@@ -379,10 +304,7 @@ fn a_film_that_breaks_while_drawing_needs_its_draw_ratio() {
     assert_eq!(fit.fracture_source, FractureSource::DrawRatio);
     let last = fit.table.last().unwrap();
     let expected = plateau.stress * plateau.ratio;
-    assert!(
-        (last.stress / expected - 1.0).abs() < 0.01,
-        "{last:?} {expected}"
-    );
+    assert!((last.stress / expected - 1.0).abs() < 0.01, "{last:?} {expected}");
 }
 
 #[test]
@@ -393,8 +315,7 @@ fn a_metal_that_necks_is_measured_to_its_maximum_force() {
     // The neck makes the force fall faster than the uniform curve; the specimen breaks.
     let top = rows.iter().map(|row| row[1]).fold(0.0, f64::max);
     let start = rows.iter().find(|row| row[1] >= top).unwrap()[0];
-    rows.iter_mut()
-        .for_each(|row| row[1] -= 3000.0 * (row[0] - start).max(0.0).powi(2));
+    rows.iter_mut().for_each(|row| row[1] -= 3000.0 * (row[0] - start).max(0.0).powi(2));
     let broken = rows[rows.len() - 1][0];
     rows.extend([[broken + 1e-4, 30.0], [broken + 2e-4, 0.5]]);
     let text = csv(HEADER, &rows);
@@ -406,16 +327,10 @@ fn a_metal_that_necks_is_measured_to_its_maximum_force() {
     assert!((last.strain - necking).abs() < 0.01, "{last:?} {necking}");
     assert!(table_error(&fit, &VOCE, last.strain) < 0.005);
 
-    let given = FitOptions {
-        fracture_strain: Some(0.8),
-        ..OPTIONS
-    };
+    let given = FitOptions { fracture_strain: Some(0.8), ..OPTIONS };
     let fit = fit_text(&text, &given);
     let last = fit.table.last().unwrap();
-    assert_eq!(
-        (last.strain, last.origin, fit.fracture_strain),
-        (0.8, Origin::Extrapolated, 0.8)
-    );
+    assert_eq!((last.strain, last.origin, fit.fracture_strain), (0.8, Origin::Extrapolated, 0.8));
     // Considere's tangent is above the law that saturates.
     assert!(last.stress > 1.2 * (VOCE.stress)(0.8), "{last:?}");
 }
@@ -479,8 +394,8 @@ fn a_given_modulus_does_not_change_the_strain_of_an_extensometer() {
     );
 }
 
-/// A metal whose first rows are steeper, because the specimen straightens: its line is that between a tenth and half of the yield
-/// stress.
+/// A metal whose first rows are steeper, because the specimen straightens: its line is that between
+/// a tenth and half of the yield stress.
 #[test]
 fn steep_first_rows_of_a_metal_are_not_its_modulus() {
     let rows: Vec<[f64; 2]> = (LINEAR.record(8000).into_iter())
@@ -488,10 +403,7 @@ fn steep_first_rows_of_a_metal_are_not_its_modulus() {
         .collect();
     let fit = fit_text(&csv(HEADER, &rows), &OPTIONS);
     let linear = &fit.specimens[0].linear;
-    assert!(
-        (linear.young / LINEAR.young - 1.0).abs() < 0.01,
-        "{linear:?}"
-    );
+    assert!((linear.young / LINEAR.young - 1.0).abs() < 0.01, "{linear:?}");
     assert!(linear.error < 0.001 * linear.young, "{linear:?}");
 }
 
@@ -512,31 +424,17 @@ fn the_material_file_is_read_and_its_table_is_the_law() {
         let text = material_file(&fit, &facts());
         let path = write(folder.path(), "material.toml", &text);
         let read = SheetMaterial::load(&path).unwrap();
-        assert_eq!(
-            read,
-            SheetMaterial::fitted(&fit, &facts()).unwrap(),
-            "{text}"
-        );
+        assert_eq!(read, SheetMaterial::fitted(&fit, &facts()).unwrap(), "{text}");
         // Comments are no part of the law.
         let bare: Vec<&str> = text.lines().filter(|line| !line.starts_with('#')).collect();
         let path = write(folder.path(), "bare.toml", &bare.join("\n"));
-        assert_eq!(
-            SheetMaterial::load(&path).unwrap().law_hash(),
-            read.law_hash()
-        );
+        assert_eq!(SheetMaterial::load(&path).unwrap().law_hash(), read.law_hash());
         // The same curve as a file of true values and as the table itself.
         let table: Vec<[f64; 2]> = read.plastic.clone();
-        write(
-            folder.path(),
-            "table.csv",
-            &csv("true_stress_mpa,plastic_strain", &table),
-        );
+        write(folder.path(), "table.csv", &csv("true_stress_mpa,plastic_strain", &table));
         let (head, _) = text.split_once("plastic = [").unwrap();
-        let path = write(
-            folder.path(),
-            "named.toml",
-            &format!("{head}tensile_csv = \"table.csv\"\n"),
-        );
+        let path =
+            write(folder.path(), "named.toml", &format!("{head}tensile_csv = \"table.csv\"\n"));
         assert_eq!(SheetMaterial::load(&path).unwrap(), read);
     }
 }

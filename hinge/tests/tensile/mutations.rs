@@ -1,4 +1,5 @@
-//! Files with random changes: never a panic, and never a number in the material file that is not finite.
+//! Files with random changes: never a panic, and never a number in the material file that is not
+//! finite.
 
 use super::{FILM, HEADER, OPTIONS, VOCE, csv, facts, write};
 use crate::synthetic::Noise;
@@ -11,10 +12,7 @@ fn mutated(text: &str, random: &mut Noise) -> Vec<u8> {
     let mut bytes = text.as_bytes().to_vec();
     for _ in 0..1 + below(3) {
         let at = below(bytes.len());
-        let line = bytes[at..]
-            .iter()
-            .position(|b| *b == b'\n')
-            .map_or(bytes.len(), |i| at + i);
+        let line = bytes[at..].iter().position(|b| *b == b'\n').map_or(bytes.len(), |i| at + i);
         match below(9) {
             0 => bytes[at] = below(256) as u8,
             1 => bytes[at] = b"0123456789.,;-+eE\t\n\" "[below(21)],
@@ -61,8 +59,5 @@ fn mutated_files_are_refused_or_give_a_valid_material() {
             }
         }
     }
-    assert!(
-        fitted > 100 && refused > 100,
-        "{fitted} fitted, {refused} refused"
-    );
+    assert!(fitted > 100 && refused > 100, "{fitted} fitted, {refused} refused");
 }

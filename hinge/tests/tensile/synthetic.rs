@@ -37,7 +37,8 @@ pub const RAMBERG_OSGOOD: Law = Law {
     end: 0.08,
 };
 
-/// sigma = 44 + 8 (L^2 - 1 / L) with L = exp(eps_p); Haward and Thackray. It necks at the yield and draws.
+/// sigma = 44 + 8 (L^2 - 1 / L) with L = exp(eps_p); Haward and Thackray. It necks at the yield and
+/// draws.
 pub const FILM: Law = Law {
     name: "cold drawing",
     young: 3000.0,
@@ -76,7 +77,8 @@ impl Law {
         curve
     }
 
-    /// Stress and draw ratio of the running neck by Maxwell's rule: equal areas of the local curve above and below.
+    /// Stress and draw ratio of the running neck by Maxwell's rule: equal areas of the local curve
+    /// above and below.
     pub fn plateau(&self) -> Plateau {
         let curve = self.uniform();
         let (top, upper_yield) = (0..curve.len() / 4)
@@ -86,13 +88,9 @@ impl Law {
         let end = |level: f64| curve.iter().rposition(|row| row[1] <= level).unwrap();
         let excess = |level: f64| -> f64 {
             let rows = curve[top..=end(level)].windows(2);
-            rows.map(|p| (0.5 * (p[0][1] + p[1][1]) - level) * (p[1][0] - p[0][0]))
-                .sum()
+            rows.map(|p| (0.5 * (p[0][1] + p[1][1]) - level) * (p[1][0] - p[0][0])).sum()
         };
-        let least = curve[top..]
-            .iter()
-            .map(|row| row[1])
-            .fold(f64::INFINITY, f64::min);
+        let least = curve[top..].iter().map(|row| row[1]).fold(f64::INFINITY, f64::min);
         let [mut low, mut high] = [least, upper_yield];
         for _ in 0..60 {
             let middle = 0.5 * (low + high);
@@ -101,14 +99,11 @@ impl Law {
                 false => high = middle,
             }
         }
-        Plateau {
-            stress: low,
-            ratio: 1.0 + curve[end(low)][0],
-            upper_yield,
-        }
+        Plateau { stress: low, ratio: 1.0 + curve[end(low)][0], upper_yield }
     }
 
-    /// The record of a specimen: rows [nominal strain, nominal stress] at a constant rate of the strain.
+    /// The record of a specimen: rows [nominal strain, nominal stress] at a constant rate of the
+    /// strain.
     pub fn record(&self, rows: usize) -> Vec<[f64; 2]> {
         self.record_to(self.end, rows)
     }
@@ -117,11 +112,7 @@ impl Law {
     pub fn record_to(&self, end: f64, rows: usize) -> Vec<[f64; 2]> {
         let mut curve = Law { end, ..*self }.uniform();
         if self.name == FILM.name {
-            let Plateau {
-                stress,
-                ratio,
-                upper_yield,
-            } = self.plateau();
+            let Plateau { stress, ratio, upper_yield } = self.plateau();
             let top = curve.iter().position(|row| row[1] >= upper_yield).unwrap();
             let fallen = curve[top][0] + 0.05;
             for row in curve[top..].iter_mut().filter(|row| 1.0 + row[0] < ratio) {
@@ -151,9 +142,7 @@ impl Law {
 
 /// Linear interpolation of [x, y] rows with increasing x.
 pub fn at(curve: &[[f64; 2]], x: f64) -> f64 {
-    let after = curve
-        .partition_point(|row| row[0] < x)
-        .clamp(1, curve.len() - 1);
+    let after = curve.partition_point(|row| row[0] < x).clamp(1, curve.len() - 1);
     let ([x0, y0], [x1, y1]) = (curve[after - 1], curve[after]);
     y0 + (y1 - y0) * (x - x0) / (x1 - x0)
 }

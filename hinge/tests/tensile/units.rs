@@ -1,10 +1,12 @@
-//! One curve in every unit gives one law; a unit that is not known, or stated nowhere, is never passed over in silence.
+//! One curve in every unit gives one law; a unit that is not known, or stated nowhere, is never
+//! passed over in silence.
 
 use super::{OPTIONS, fit_with, write};
 use crate::synthetic::Law;
 use tensile::{MaterialFit, Quantity, RecordOptions, TensileError};
 
-/// sigma = 30.164 + 15 (1 - exp(-eps_p / 0.03)), of a specimen of 10 x 0.5 mm with a gauge length of 50 mm.
+/// sigma = 30.164 + 15 (1 - exp(-eps_p / 0.03)), of a specimen of 10 x 0.5 mm with a gauge length
+/// of 50 mm.
 const POLYMER: Law = Law {
     name: "polymer",
     young: 2500.0,
@@ -12,12 +14,8 @@ const POLYMER: Law = Law {
     end: 0.08,
 };
 const YIELD: f64 = 30.57;
-const STEEL: Law = Law {
-    name: "steel",
-    young: 200e3,
-    stress: |plastic| 300.0 + 500.0 * plastic,
-    end: 0.08,
-};
+const STEEL: Law =
+    Law { name: "steel", young: 200e3, stress: |plastic| 300.0 + 500.0 * plastic, end: 0.08 };
 const AREA: f64 = 5.0;
 const LENGTH: f64 = 50.0;
 const LBF: f64 = 4.448_221_615_260_5;
@@ -31,7 +29,8 @@ fn specimen() -> RecordOptions {
     }
 }
 
-/// Rows of deformation and load in units of `deformation` and `load`, between a time and an empty column.
+/// Rows of deformation and load in units of `deformation` and `load`, between a time and an empty
+/// column.
 fn text(law: &Law, header: &str, deformation: f64, load: f64) -> String {
     let mut text = format!("{header}\n");
     for (time, [strain, stress]) in law.record(600).into_iter().enumerate() {
@@ -138,20 +137,13 @@ fn a_row_of_units_is_the_row_most_of_which_are_units() {
     }
     // The units of columns without names, which the options choose.
     let chosen = RecordOptions {
-        columns: vec![
-            (Quantity::Extension, "2".into()),
-            (Quantity::Force, "3".into()),
-        ],
+        columns: vec![(Quantity::Extension, "2".into()), (Quantity::Force, "3".into())],
         ..specimen()
     };
     let header = "\"S235\"\nsec,mm,kN,";
     let steel = text(&STEEL, header, 1.0 / LENGTH, 1e3 / AREA);
     let fit = read(&steel, &chosen).unwrap();
-    assert!(
-        (fit.young.mean / STEEL.young - 1.0).abs() < 0.01,
-        "{:?}",
-        fit.young
-    );
+    assert!((fit.young.mean / STEEL.young - 1.0).abs() < 0.01, "{:?}", fit.young);
 }
 
 #[test]
@@ -179,15 +171,9 @@ fn an_unknown_unit_of_a_column_that_is_read_is_an_error() {
         assert!(message.contains(known), "{header}: {message}");
     }
     // The options decide, and a column that is not read may have any unit.
-    let stated = RecordOptions {
-        units: vec![(Quantity::Force, "N".into())],
-        ..specimen()
-    };
+    let stated = RecordOptions { units: vec![(Quantity::Force, "N".into())], ..specimen() };
     is_polymer(&rows("Time (s),Stroke (mm),Load (Cell 1),"), &stated);
-    is_polymer(
-        &rows("Time (moons),Stroke (mm),Load (N),Energy (ergs)"),
-        &specimen(),
-    );
+    is_polymer(&rows("Time (moons),Stroke (mm),Load (N),Energy (ergs)"), &specimen());
     let both = text(&POLYMER, "Load (tons),Strain (1),Stress (MPa),", 1.0, 1.0);
     is_polymer(&both, &RecordOptions::default());
 }
@@ -197,32 +183,18 @@ fn the_record_says_how_each_column_was_read() {
     let folder = tempfile::tempdir().unwrap();
     let header = "Time,Strain 1,engineering_stress,";
     let path = write(folder.path(), "test.csv", &text(&POLYMER, header, 1.0, 1.0));
-    let ksi = RecordOptions {
-        units: vec![(Quantity::Stress, "ksi".into())],
-        ..RecordOptions::default()
-    };
+    let ksi =
+        RecordOptions { units: vec![(Quantity::Stress, "ksi".into())], ..RecordOptions::default() };
     for (options, unit, factor, words) in [
-        (
-            RecordOptions::default(),
-            None,
-            1.0,
-            "no unit stated: taken as MPa",
-        ),
+        (RecordOptions::default(), None, 1.0, "no unit stated: taken as MPa"),
         (ksi, Some("ksi"), 6.894_757_293_168_361, "in ksi"),
     ] {
         let fit = fit_with(std::slice::from_ref(&path), &OPTIONS, &options);
         let [load, deformation] = &fit.specimens[0].read_as;
         assert_eq!((load.quantity, load.number), (Quantity::Stress, 3));
         assert_eq!(load.unit.as_deref(), unit);
-        assert!(
-            (load.factor / factor - 1.0).abs() < 1e-14,
-            "{}",
-            load.factor
-        );
-        assert_eq!(
-            load.to_string(),
-            format!("stress from column 3 `engineering_stress`, {words}")
-        );
+        assert!((load.factor / factor - 1.0).abs() < 1e-14, "{}", load.factor);
+        assert_eq!(load.to_string(), format!("stress from column 3 `engineering_stress`, {words}"));
         assert!((fit.young.mean / factor / POLYMER.young - 1.0).abs() < 0.01);
         // The number of a specimen is no unit.
         assert_eq!(deformation.quantity, Quantity::Strain);
@@ -230,7 +202,8 @@ fn the_record_says_how_each_column_was_read() {
     }
 }
 
-/// 1,234 N is not 1.234 N: separators of thousands are read where the file tells them from a decimal sign, and else refused.
+/// 1,234 N is not 1.234 N: separators of thousands are read where the file tells them from a
+/// decimal sign, and else refused.
 #[test]
 fn separators_of_thousands_are_read_or_refused() {
     let rows = |header: &str, row: &dyn Fn(f64, f64) -> String| {
@@ -242,50 +215,34 @@ fn separators_of_thousands_are_read_or_refused() {
         n if n < 999.5 => format!("{n:.0}"),
         n => format!("{}{sign}{:03.0}", (n / 1e3).floor(), (n % 1e3).floor()),
     };
-    let wide = RecordOptions {
-        width: Some(20.0),
-        thickness: Some(5.0),
-        ..specimen()
-    };
+    let wide = RecordOptions { width: Some(20.0), thickness: Some(5.0), ..specimen() };
     let comma = |sign: &str| {
         rows("Weg (mm);Kraft (N)", &|x, f| {
             let way = format!("{x:.5}").replace('.', ",");
             format!("{way};{},5", grouped(f, sign))
         })
     };
-    let states = rows("Extension (mm),Load (N)", &|x, f| {
-        format!("\"{x:.5}\",\"{}.5\"", grouped(f, ","))
-    });
-    let swiss = rows("Weg (mm);Kraft (N)", &|x, f| {
-        format!("{x:.5};{}.5", grouped(f, "'"))
-    });
+    let states =
+        rows("Extension (mm),Load (N)", &|x, f| format!("\"{x:.5}\",\"{}.5\"", grouped(f, ",")));
+    let swiss = rows("Weg (mm);Kraft (N)", &|x, f| format!("{x:.5};{}.5", grouped(f, "'")));
     for text in [states, swiss, comma("."), comma("\u{202f}")] {
         is_polymer(&text, &wide);
     }
     for (case, text) in [
         (
             "whole numbers, comma",
-            rows("Weg (um);Kraft (N)", &|x, f| {
-                format!("{:.0};{}", 1e3 * x, grouped(f, ","))
-            }),
+            rows("Weg (um);Kraft (N)", &|x, f| format!("{:.0};{}", 1e3 * x, grouped(f, ","))),
         ),
         (
             "whole numbers, point",
-            rows("Weg (um);Kraft (N)", &|x, f| {
-                format!("{:.0};{}", 1e3 * x, grouped(f, "."))
-            }),
+            rows("Weg (um);Kraft (N)", &|x, f| format!("{:.0};{}", 1e3 * x, grouped(f, "."))),
         ),
     ] {
         let message = message(&text, &wide);
-        assert!(
-            message.contains("separators of thousands"),
-            "{case}: {message}"
-        );
+        assert!(message.contains("separators of thousands"), "{case}: {message}");
     }
     // Other separators are found between such numbers: an error too.
-    let unquoted = rows("Extension (mm),Load (N)", &|x, f| {
-        format!("{x:.5},{}", grouped(f, ","))
-    });
+    let unquoted = rows("Extension (mm),Load (N)", &|x, f| format!("{x:.5},{}", grouped(f, ",")));
     message(&unquoted, &wide);
 }
 
@@ -301,10 +258,7 @@ fn records_in_other_languages_state_the_dimensions_of_their_specimens() {
             "Probenbreite (mm),10,\nProbendicke (mm),0.5\nMesslänge (mm),50",
             "Zeit (s),Weg (mm),Kraft (N),",
         ),
-        (
-            "Ancho,10\nEspesor,0.5\nLongitud inicial,50",
-            "Tiempo (s),Alargamiento (mm),Fuerza (N),",
-        ),
+        ("Ancho,10\nEspesor,0.5\nLongitud inicial,50", "Tiempo (s),Alargamiento (mm),Fuerza (N),"),
         (
             "Larghezza: 10 mm\nSpessore: 500 um\nLunghezza iniziale = 50",
             "Tempo (s),Corsa (mm),Forza (N),",
@@ -319,10 +273,7 @@ fn records_in_other_languages_state_the_dimensions_of_their_specimens() {
         let expected = [("width", 10.0), ("thickness", 0.5), ("gauge-length", 50.0)];
         assert_eq!(stated, expected, "{above}");
         // An option decides.
-        let wide = RecordOptions {
-            width: Some(20.0),
-            ..RecordOptions::default()
-        };
+        let wide = RecordOptions { width: Some(20.0), ..RecordOptions::default() };
         let fit = read(&text, &wide).unwrap();
         assert!((fit.young.mean / (0.5 * POLYMER.young) - 1.0).abs() < 0.01);
     }
@@ -330,10 +281,7 @@ fn records_in_other_languages_state_the_dimensions_of_their_specimens() {
 
 #[test]
 fn specimens_of_one_file_are_evaluated_one_by_one() {
-    let second = Law {
-        young: 2600.0,
-        ..POLYMER
-    };
+    let second = Law { young: 2600.0, ..POLYMER };
     let [one, two] = [&POLYMER, &second].map(|law| {
         let header = "Specimen,,,\nTime (s),Strain (1),Stress (MPa),";
         text(law, header, 1.0, 1.0)
@@ -347,11 +295,7 @@ fn specimens_of_one_file_are_evaluated_one_by_one() {
         };
         assert!(second.path.ends_with("test.csv (specimen 2)"));
         for (specimen, young) in [(first, 2500.0), (second, 2600.0)] {
-            assert!(
-                (specimen.young / young - 1.0).abs() < 0.01,
-                "{}",
-                specimen.young
-            );
+            assert!((specimen.young / young - 1.0).abs() < 0.01, "{}", specimen.young);
         }
     }
 }
@@ -359,12 +303,7 @@ fn specimens_of_one_file_are_evaluated_one_by_one() {
 #[test]
 fn the_documentation_lists_the_known_units() {
     let page = include_str!("../../../docs/MATERIALS.md");
-    for quantity in [
-        Quantity::Force,
-        Quantity::Stress,
-        Quantity::Extension,
-        Quantity::Strain,
-    ] {
+    for quantity in [Quantity::Force, Quantity::Stress, Quantity::Extension, Quantity::Strain] {
         let row = format!("\n| {quantity} | ");
         let (_, row) = page.split_once(&row).unwrap();
         let units = format!("| {} |", quantity.units());

@@ -1,4 +1,5 @@
-//! The mesh of a sheet: the structured mesh of every window, and one surface a panel between windows and edges.
+//! The mesh of a sheet: the structured mesh of every window, and one surface a panel between
+//! windows and edges.
 
 use super::Script;
 use super::structured::{self, Rim};
@@ -16,7 +17,8 @@ const LEAST: f64 = 0.02;
 /// Largest size of a panel's elements over the size at its edges.
 const COARSEST: f64 = 1.1;
 
-/// The script of a sheet. Its faces are named after the panels, 1 and those after it, and then after the windows.
+/// The script of a sheet. Its faces are named after the panels, 1 and those after it, and then
+/// after the windows.
 pub(crate) fn sheet_script(shape: &SheetShape) -> Result<String, InvalidSheet> {
     let mut geo = Script::default();
     let size = COARSEST * shape.element_size;
@@ -73,18 +75,15 @@ impl PanelOutline<'_> {
     /// Adds the panel as one surface, and returns its number.
     fn add(&self, geo: &mut Script) -> Result<i32, InvalidSheet> {
         let panel = &self.shape.panels[self.panel];
-        // Where the outline reaches and leaves each corner, counter-clockwise: one point, or the ends of an arc, which is
-        // passed clockwise.
+        // Where the outline reaches and leaves each corner, counter-clockwise: one point, or the
+        // ends of an arc, which is passed clockwise.
         let mut ends = Vec::with_capacity(4);
         for (corner, arc) in self.rims.iter().enumerate() {
             ends.push(match arc {
                 Some(arc) => {
                     self.check_arc(corner, arc)?;
                     let last = arc.rim.points.len() - 1;
-                    [
-                        (arc.rim.points[last], arc.ends[1]),
-                        (arc.rim.points[0], arc.ends[0]),
-                    ]
+                    [(arc.rim.points[last], arc.ends[1]), (arc.rim.points[0], arc.ends[0])]
                 }
                 None => [(geo.point(panel.corners[corner]), panel.corners[corner]); 2],
             });
@@ -110,7 +109,8 @@ impl PanelOutline<'_> {
         Ok(surface)
     }
 
-    /// Adds the straight edge from a corner to the next, divided at the marks that lie on it, which are removed.
+    /// Adds the straight edge from a corner to the next, divided at the marks that lie on it, which
+    /// are removed.
     fn edge(
         &self,
         geo: &mut Script,

@@ -1,19 +1,22 @@
 //! The structured mesh: transfinite, recombined patches, one patch per column.
 //!
-//! Block 1 is an O-grid from the hole to a half-disc a little larger, of radius 1.5 w_lig for most holes. A small hole has
-//! a collar of rings in between. Block 2 continues from the arcs of block 1 to the window's arcs. Columns are numbered counter-clockwise about O, from the kerf face on B
-//! over the free edge to the kerf face on A. One patch per side instead of one per column would fold
-//! elements at small alpha.
+//! Block 1 is an O-grid from the hole to a half-disc a little larger, of radius 1.5 w_lig for most
+//! holes. A small hole has a collar of rings in between. Block 2 continues from the arcs of block 1
+//! to the window's arcs. Columns are numbered counter-clockwise about O, from the kerf face on B
+//! over the free edge to the kerf face on A. One patch per side instead of one per column would
+//! fold elements at small alpha.
 
 use super::Script;
 use crate::tier::Structured;
 use crate::window::{Side, Window, polar_angle};
 use std::f64::consts::PI;
 
-/// Radius of block 1 over w_lig. It is only slightly larger than the hole, so that the rings of block 2 begin where
-/// the panels still bend. With 2.2, an oblique hinge in compression is 8 % too stiff.
+/// Radius of block 1 over w_lig. It is only slightly larger than the hole, so that the rings of
+/// block 2 begin where the panels still bend. With 2.2, an oblique hinge in compression is 8 % too
+/// stiff.
 const INNER_RADIUS: f64 = 1.5;
-/// Block 1 reaches a diameter of the hole and this, over w_lig, beyond the tip: closer to a large hole elements fold.
+/// Block 1 reaches a diameter of the hole and this, over w_lig, beyond the tip: closer to a large
+/// hole elements fold.
 const ROOM: f64 = 0.17;
 /// Radius over w_lig of the circle that block 1 begins at where the hole is smaller.
 const COLLAR: f64 = 0.08;
@@ -21,8 +24,8 @@ const COLLAR: f64 = 0.08;
 const COLLAR_GROWTH: f64 = 2.0;
 /// The least growth of a collar, as a part of a doubling of the radius.
 const THINNEST_RING: f64 = 0.5;
-/// Weight of the true polar angle, relative to equal angles, in the spacing of columns at a hole up to [`LARGE_HOLE`].
-/// It grows to 1 at twice that: columns oblique to a large hole fold.
+/// Weight of the true polar angle, relative to equal angles, in the spacing of columns at a hole up
+/// to [`LARGE_HOLE`]. It grows to 1 at twice that: columns oblique to a large hole fold.
 const ANGLE_BLEND: f64 = 0.5;
 /// A large hole over w_lig.
 const LARGE_HOLE: f64 = 0.2;
@@ -152,7 +155,8 @@ fn inner_radius(fillet_ratio: f64) -> f64 {
     INNER_RADIUS.max(1.0 + 2.0 * fillet_ratio + ROOM)
 }
 
-/// Radius of the circle about the tip that block 1 begins at (mm): the hole, or the rim of its collar.
+/// Radius of the circle about the tip that block 1 begins at (mm): the hole, or the rim of its
+/// collar.
 fn inner_circle(window: &Window) -> f64 {
     match collar_rings(window) {
         0 => window.0.fillet_radius(),
@@ -160,24 +164,18 @@ fn inner_circle(window: &Window) -> f64 {
     }
 }
 
-/// Number of rings of the collar. A hole that is little smaller than the collar's rim has none: its ring would be of slivers.
+/// Number of rings of the collar. A hole that is little smaller than the collar's rim has none: its
+/// ring would be of slivers.
 fn collar_rings(window: &Window) -> i32 {
     let doublings = (COLLAR / window.0.fillet_ratio).ln() / COLLAR_GROWTH.ln();
-    if doublings < THINNEST_RING {
-        0
-    } else {
-        doublings.ceil() as i32
-    }
+    if doublings < THINNEST_RING { 0 } else { doublings.ceil() as i32 }
 }
 
-/// Radii of the circles from the hole to the beginning of block 1 (mm), in constant ratio: the hole's alone if it has no
-/// collar.
+/// Radii of the circles from the hole to the beginning of block 1 (mm), in constant ratio: the
+/// hole's alone if it has no collar.
 fn collar_radii(window: &Window) -> Vec<f64> {
-    let (hole, last, rings) = (
-        window.0.fillet_radius(),
-        inner_circle(window),
-        collar_rings(window),
-    );
+    let (hole, last, rings) =
+        (window.0.fillet_radius(), inner_circle(window), collar_rings(window));
     let growth = (last / hole).powf(1.0 / f64::from(rings.max(1)));
     (0..=rings).map(|ring| hole * growth.powi(ring)).collect()
 }
@@ -208,7 +206,8 @@ fn panel_arc(window: &Window, side: Side, radius: f64, columns: usize) -> Vec<[f
         [radius * angle.cos(), radius * angle.sin()]
     };
     let mut points: Vec<_> = (0..=columns).map(at).collect();
-    // The end points are set exactly, so that the free edge is straight and the kerf faces are flat.
+    // The end points are set exactly, so that the free edge is straight and the kerf faces are
+    // flat.
     let (free, cut) = match side {
         Side::B => (columns, 0),
         Side::A => (0, columns),
@@ -218,8 +217,8 @@ fn panel_arc(window: &Window, side: Side, radius: f64, columns: usize) -> Vec<[f
     points
 }
 
-/// Corners of the columns on the circle of radius `rho` (mm) about the tip: a blend of the directions of `outer` and equal
-/// angles.
+/// Corners of the columns on the circle of radius `rho` (mm) about the tip: a blend of the
+/// directions of `outer` and equal angles.
 fn circle_points(window: &Window, outer: &[[f64; 2]], rho: f64) -> Vec<[f64; 2]> {
     let (tip, mouth) = (window.0.tip(), window.mouth_half_angle(rho));
     let from = -window.0.alpha + mouth;
@@ -258,13 +257,11 @@ fn edge_grading(recipe: &Structured, inner_radius: f64) -> f64 {
 
 /// q of 1 + q + ... + q^(n-1) = `total`, for `total` >= n.
 fn growth_ratio(total: f64, n: usize) -> f64 {
-    bisect(1.0, total.max(1.0), |q| {
-        (0..n).map(|i| q.powi(i as i32)).sum::<f64>() - total
-    })
+    bisect(1.0, total.max(1.0), |q| (0..n).map(|i| q.powi(i as i32)).sum::<f64>() - total)
 }
 
-/// The root of an increasing function in [low, high], to machine precision; an end of the interval if there is no
-/// root.
+/// The root of an increasing function in [low, high], to machine precision; an end of the interval
+/// if there is no root.
 fn bisect(mut low: f64, mut high: f64, f: impl Fn(f64) -> f64) -> f64 {
     loop {
         let middle = 0.5 * (low + high);

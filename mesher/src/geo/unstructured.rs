@@ -1,7 +1,8 @@
 //! The unstructured mesh: free triangles that grow with the distance d from O.
 //!
-//! Their size is tip_size w_lig (1 + (d / (1.5 w_lig))^2), at most rim_size r_win. It is nearly uniform
-//! across the ligament, which folds along its whole width, and coarse in the panels, which only bend.
+//! Their size is tip_size w_lig (1 + (d / (1.5 w_lig))^2), at most rim_size r_win. It is nearly
+//! uniform across the ligament, which folds along its whole width, and coarse in the panels, which
+//! only bend.
 
 use super::Script;
 use crate::msh::Boundary;
@@ -14,7 +15,8 @@ pub(super) fn add(geo: &mut Script, window: &Window, recipe: &Unstructured) {
     let centre = geo.point([0.0, 0.0]);
     let tip = geo.point(window.0.tip());
     let [hole_b, hole_a] = [Side::B, Side::A].map(|side| geo.point(window.kerf_at_hole(side)));
-    // An arc in gmsh must be shorter than a half circle: the hole consists of two arcs that meet opposite the cut.
+    // An arc in gmsh must be shorter than a half circle: the hole consists of two arcs that meet
+    // opposite the cut.
     let [x, y] = window.0.main_cut();
     let crown = geo.point([-rho * x, -w - rho * y]);
     let [cut_b, cut_a] = [Side::B, Side::A].map(|side| geo.point(window.kerf_at_radius(side, r)));

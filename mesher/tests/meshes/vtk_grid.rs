@@ -1,5 +1,5 @@
-//! The VTK grid of a window, evaluated with VTK's cells: their parametric coordinates as in vtkQuadraticHexahedron and
-//! vtkQuadraticWedge, and the polynomials that they interpolate.
+//! The VTK grid of a window, evaluated with VTK's cells: their parametric coordinates as in
+//! vtkQuadraticHexahedron and vtkQuadraticWedge, and the polynomials that they interpolate.
 
 use hinge::HingeConstants;
 use mesher::{Gmsh, Tier, WindowMesh, WindowShape, vtk_grid};
@@ -7,7 +7,8 @@ use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 use support::vtk::CellKind;
 
-/// A cell of VTK: parametric coordinates of the nodes, exponents of the monomials, and an integration rule.
+/// A cell of VTK: parametric coordinates of the nodes, exponents of the monomials, and an
+/// integration rule.
 struct VtkCell {
     nodes: Vec<[f64; 3]>,
     monomials: Vec<[i32; 3]>,
@@ -18,17 +19,9 @@ fn corners_and_middles(lower: &[[f64; 2]]) -> Vec<[f64; 3]> {
     let at = |t: f64| lower.iter().map(move |[r, s]| [*r, *s, t]);
     let middles = |t: f64| {
         let next = lower.iter().cycle().skip(1);
-        lower
-            .iter()
-            .zip(next)
-            .map(move |([r, s], [r2, s2])| [0.5 * (r + r2), 0.5 * (s + s2), t])
+        lower.iter().zip(next).map(move |([r, s], [r2, s2])| [0.5 * (r + r2), 0.5 * (s + s2), t])
     };
-    at(0.0)
-        .chain(at(1.0))
-        .chain(middles(0.0))
-        .chain(middles(1.0))
-        .chain(at(0.5))
-        .collect()
+    at(0.0).chain(at(1.0)).chain(middles(0.0)).chain(middles(1.0)).chain(at(0.5)).collect()
 }
 
 fn hexahedron() -> VtkCell {
@@ -55,11 +48,7 @@ fn wedge() -> VtkCell {
     let linear = plane.iter().flat_map(|&[r, s]| [[r, s, 0], [r, s, 1]]);
     let quadratic = plane[..3].iter().map(|&[r, s]| [r, s, 2]);
     let level = 0.5 * 0.6_f64.sqrt();
-    let levels = [
-        (0.5 - level, 5.0 / 18.0),
-        (0.5, 8.0 / 18.0),
-        (0.5 + level, 5.0 / 18.0),
-    ];
+    let levels = [(0.5 - level, 5.0 / 18.0), (0.5, 8.0 / 18.0), (0.5 + level, 5.0 / 18.0)];
     let (one, two) = (1.0 / 6.0, 2.0 / 3.0);
     VtkCell {
         nodes: corners_and_middles(&[[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]),
@@ -77,13 +66,9 @@ fn wedge() -> VtkCell {
 fn solved(mut a: Vec<Vec<f64>>, mut b: Vec<[f64; 3]>) -> Vec<[f64; 3]> {
     let n = a.len();
     for column in 0..n {
-        let pivot = (column..n)
-            .max_by(|&i, &j| a[i][column].abs().total_cmp(&a[j][column].abs()))
-            .unwrap();
-        assert!(
-            a[pivot][column].abs() > 1e-9,
-            "the nodes do not determine the polynomials"
-        );
+        let pivot =
+            (column..n).max_by(|&i, &j| a[i][column].abs().total_cmp(&a[j][column].abs())).unwrap();
+        assert!(a[pivot][column].abs() > 1e-9, "the nodes do not determine the polynomials");
         a.swap(column, pivot);
         b.swap(column, pivot);
         let (pivots, values) = (a[column].clone(), b[column]);
@@ -102,10 +87,8 @@ impl VtkCell {
     /// Determinants of the Jacobian at the points of the rule, times their weights.
     fn volumes(&self, positions: Vec<[f64; 3]>) -> Vec<f64> {
         let value = |[p, q, w]: [i32; 3], [r, s, t]: [f64; 3]| r.powi(p) * s.powi(q) * t.powi(w);
-        let rows = self
-            .nodes
-            .iter()
-            .map(|at| self.monomials.iter().map(|m| value(*m, *at)).collect());
+        let rows =
+            self.nodes.iter().map(|at| self.monomials.iter().map(|m| value(*m, *at)).collect());
         let coefficients = solved(rows.collect(), positions);
         let volume = |(at, weight): &([f64; 3], f64)| {
             let mut j = [[0.0; 3]; 3];
@@ -129,13 +112,9 @@ fn mesh(tier: Tier) -> WindowMesh {
     let scratch = tempfile::tempdir().unwrap();
     let (limit, stop) = (Duration::from_secs(60), AtomicBool::new(false));
     let gmsh = Gmsh::find().unwrap();
-    WindowShape {
-        design: &design,
-        thickness: 0.5,
-        recipe: &tier.recipe(),
-    }
-    .mesh(scratch.path(), &gmsh, limit, &stop)
-    .unwrap()
+    WindowShape { design: &design, thickness: 0.5, recipe: &tier.recipe() }
+        .mesh(scratch.path(), &gmsh, limit, &stop)
+        .unwrap()
 }
 
 /// A wrong order of the nodes would give negative Jacobians or another volume.

@@ -22,28 +22,20 @@ fn mesh(w_lig: f64, alpha_deg: f64, tier: Tier) -> WindowMesh {
 fn mesh_of(design: HingeDesign, tier: Tier) -> WindowMesh {
     let scratch = tempfile::tempdir().unwrap();
     let gmsh = Gmsh::find().unwrap();
-    WindowShape {
-        design: &design,
-        thickness: 0.5,
-        recipe: &tier.recipe(),
-    }
-    .mesh(
-        scratch.path(),
-        &gmsh,
-        Duration::from_secs(60),
-        &AtomicBool::new(false),
-    )
-    .unwrap_or_else(|e| panic!("{design:?}, {tier}: {e}"))
+    WindowShape { design: &design, thickness: 0.5, recipe: &tier.recipe() }
+        .mesh(scratch.path(), &gmsh, Duration::from_secs(60), &AtomicBool::new(false))
+        .unwrap_or_else(|e| panic!("{design:?}, {tier}: {e}"))
 }
 
-/// Difference in area of a circular segment and the segment of the parabola through the ends and the middle of its
-/// arc.
+/// Difference in area of a circular segment and the segment of the parabola through the ends and
+/// the middle of its arc.
 fn parabola_deficit(radius: f64, angle: f64) -> f64 {
     let half = 0.5 * angle;
     radius * radius * (0.5 * (angle - angle.sin()) - 4.0 / 3.0 * half.sin() * (1.0 - half.cos()))
 }
 
-/// The area that the quadratic edges of `mesh` enclose: the exact area, corrected for the parabolas on the arcs.
+/// The area that the quadratic edges of `mesh` enclose: the exact area, corrected for the parabolas
+/// on the arcs.
 fn area_inside_parabolas(mesh: &WindowMesh) -> f64 {
     let edges = mesh.plane.edges.iter();
     let lost = edges.map(|(boundary, [from, to, _])| {
@@ -78,10 +70,7 @@ fn every_tier_covers_the_window_without_folded_elements() {
             let mesh = mesh(w, alpha, tier);
             let quality = mesh.quality().unwrap();
             assert!(bricks.is_none_or(|bricks| mesh.elements.len() == bricks));
-            assert!(
-                quality.jacobian_ratio > 0.1,
-                "{tier} {w} {alpha}: {quality:?}"
-            );
+            assert!(quality.jacobian_ratio > 0.1, "{tier} {w} {alpha}: {quality:?}");
             let expected = area_inside_parabolas(&mesh);
             let error = (quality.area - expected).abs() / expected;
             assert!(error < 1e-9, "{tier} {w} {alpha}: {error:e}, {quality:?}");
@@ -94,10 +83,7 @@ fn holes_of_2_to_40_percent_of_the_ligament_are_meshed() {
     // At 0.079 a collar would be a ring of slivers.
     for fillet_ratio in [0.02, 0.039, 0.05, 0.058, 0.079, 0.3, 0.4] {
         for (tier, alpha) in Tier::all().flat_map(|tier| [60.0, 90.0].map(|alpha| (tier, alpha))) {
-            let design = HingeDesign {
-                fillet_ratio,
-                ..design(12.0, alpha)
-            };
+            let design = HingeDesign { fillet_ratio, ..design(12.0, alpha) };
             let quality = mesh_of(design, tier).quality().unwrap();
             let ratio = quality.jacobian_ratio;
             assert!(ratio > 0.1, "{tier} {fillet_ratio} {alpha}: {quality:?}");
@@ -116,10 +102,7 @@ fn arcs_are_flat_and_lie_on_the_rim_and_on_their_panel() {
             let [x, y, z] = mesh.nodes[*node];
             assert!((x.hypot(y) - 100.0).abs() < 1e-9);
             let level = 4.0 * (z / 0.5 + 0.5);
-            assert!(
-                (level - level.round()).abs() < 1e-9,
-                "the rim is not flat: {z}"
-            );
+            assert!((level - level.round()).abs() < 1e-9, "the rim is not flat: {z}");
             let across = sign * (x * normal[0] + (y + 18.0) * normal[1]);
             assert!(across >= 0.1 - 1e-9, "{across}");
         }
@@ -131,11 +114,7 @@ fn the_bump_is_one_thickness_at_the_origin() {
     let mesh = mesh(18.0, 90.0, Tier::Default);
     let top = mesh.nodes.iter().map(|p| p[2]).fold(f64::MIN, f64::max);
     assert!((top - 0.75).abs() < 1e-12, "{top}");
-    let bottom = mesh
-        .bottom
-        .iter()
-        .map(|n| mesh.nodes[*n][2])
-        .fold(f64::MAX, f64::min);
+    let bottom = mesh.bottom.iter().map(|n| mesh.nodes[*n][2]).fold(f64::MAX, f64::min);
     assert!((bottom + 0.25).abs() < 1e-12, "{bottom}");
 }
 
@@ -158,10 +137,7 @@ fn a_defective_mesh_is_rejected() {
     let mut folded = good.clone();
     folded.gauss_volumes[7][3] = -1e-9;
     let defect = folded.quality().unwrap_err();
-    assert!(
-        matches!(defect, MeshDefect::Folded { element: 7, .. }),
-        "{defect}"
-    );
+    assert!(matches!(defect, MeshDefect::Folded { element: 7, .. }), "{defect}");
 
     let mut sliver = good.clone();
     let (from, to) = (sliver.plane.faces[5][0], sliver.plane.faces[5][1]);
@@ -194,18 +170,9 @@ fn with_fake_gmsh(body: &str) -> MeshError {
         assert_eq!(error.kind(), ErrorKind::ExecutableFileBusy, "{error}");
     }
     let gmsh = Gmsh::at(&path).unwrap();
-    WindowShape {
-        design: &design(18.0, 90.0),
-        thickness: 0.5,
-        recipe: &Tier::Tiny.recipe(),
-    }
-    .mesh(
-        scratch.path(),
-        &gmsh,
-        Duration::from_secs(2),
-        &AtomicBool::new(false),
-    )
-    .unwrap_err()
+    WindowShape { design: &design(18.0, 90.0), thickness: 0.5, recipe: &Tier::Tiny.recipe() }
+        .mesh(scratch.path(), &gmsh, Duration::from_secs(2), &AtomicBool::new(false))
+        .unwrap_err()
 }
 
 #[test]
@@ -214,15 +181,9 @@ fn a_gmsh_that_fails_or_writes_no_mesh_is_reported() {
     assert!(matches!(failed, MeshError::Gmsh(ToolError::Failed { .. })));
     assert!(failed.to_string().contains("no licence"), "{failed}");
     let hanging = with_fake_gmsh("sleep 1000");
-    assert!(
-        matches!(hanging, MeshError::Gmsh(ToolError::TimedOut { .. })),
-        "{hanging}"
-    );
+    assert!(matches!(hanging, MeshError::Gmsh(ToolError::TimedOut { .. })), "{hanging}");
     assert!(matches!(with_fake_gmsh("exit 0"), MeshError::Read(_)));
-    assert!(matches!(
-        with_fake_gmsh("head -c 900 /dev/zero > window.msh"),
-        MeshError::Read(_)
-    ));
+    assert!(matches!(with_fake_gmsh("head -c 900 /dev/zero > window.msh"), MeshError::Read(_)));
 }
 
 #[test]
@@ -244,12 +205,7 @@ fn the_picture_shows_every_element_and_the_named_boundaries() {
 fn a_design_that_cannot_be_cut_is_rejected_before_gmsh_runs() {
     let design = design(0.018, 57.3);
     let scratch = tempfile::tempdir().unwrap();
-    let error = WindowShape {
-        design: &design,
-        thickness: 0.5,
-        recipe: &Tier::Tiny.recipe(),
-    }
-    .mesh(
+    let error = WindowShape { design: &design, thickness: 0.5, recipe: &Tier::Tiny.recipe() }.mesh(
         scratch.path(),
         &Gmsh::find().unwrap(),
         Duration::from_secs(60),

@@ -1,4 +1,5 @@
-//! Where panels are held and pulled: holes for nails and hooks, which are cut, and marks, which are not.
+//! Where panels are held and pulled: holes for nails and hooks, which are cut, and marks, which are
+//! not.
 
 use crate::cut_file::cut_drawing::{CutDrawing, Layer};
 use crate::cut_file::fabrication_error::FabricationError;
@@ -61,11 +62,7 @@ impl PlacedAttachment {
 
 /// What keeps an attachment from being made.
 fn without_room(name: String, short: Clearance) -> FabricationError {
-    let Clearance {
-        obstacle,
-        distance,
-        least,
-    } = short;
+    let Clearance { obstacle, distance, least } = short;
     let (part, what) = match obstacle {
         Obstacle::Ends(_) => {
             let (width, room) = (least, distance);
@@ -75,11 +72,5 @@ fn without_room(name: String, short: Clearance) -> FabricationError {
         Obstacle::HoleToHinge(h) => ("centre of the hole", format!("the tip of hinge {h}")),
         Obstacle::ClipToHinge(h) => ("clip", format!("the tip of hinge {h}")),
     };
-    FabricationError::TooNear {
-        part,
-        name,
-        what,
-        distance,
-        least,
-    }
+    FabricationError::TooNear { part, name, what, distance, least }
 }

@@ -4,7 +4,8 @@ use crate::display::{Colour, Shape, Style, Text};
 use design::geometry::polygon::{area, mean};
 use serde::{Deserialize, Serialize};
 
-/// The tool or the purpose of a shape, in the order of cutting: what is cut later holds what is cut before.
+/// The tool or the purpose of a shape, in the order of cutting: what is cut later holds what is cut
+/// before.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Layer {
     /// The drilled ends of the slits.
@@ -29,7 +30,8 @@ pub enum Layer {
     Errors,
 }
 
-/// All layers in the order of cutting: their names in DXF and SVG, red, green and blue, and the AutoCAD colour index.
+/// All layers in the order of cutting: their names in DXF and SVG, red, green and blue, and the
+/// AutoCAD colour index.
 const LAYERS: [(Layer, &str, Colour, u8); 10] = [
     (Layer::Holes, "HOLES", [0, 0, 255], 5),
     (Layer::AttachmentHoles, "ATTACHMENT_HOLES", [0, 128, 128], 4),

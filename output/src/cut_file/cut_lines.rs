@@ -1,20 +1,21 @@
 //! The paths of the cutting tool, from the simulated geometry.
 //!
-//! A slit runs between the tips O of the hinges at its ends, so that each hinge keeps its ligament w_lig;
-//! a slit that is open on the outline starts there. Each slit ends in a hole of radius rho_f w_lig, which is drilled
-//! about O.
+//! A slit runs between the tips O of the hinges at its ends, so that each hinge keeps its ligament
+//! w_lig; a slit that is open on the outline starts there. Each slit ends in a hole of radius rho_f
+//! w_lig, which is drilled about O.
 //!
-//! **Ligament.** w_lig is the material between O and the finished edge of the secondary cut, as in the window:
-//! the distance of O from the line of that cut is larger by half a kerf. The hole reduces the ligament by its radius,
-//! so that a caliper next to the hole reads (1 - rho_f) w_lig, [`CutLines::caliper`].
+//! **Ligament.** w_lig is the material between O and the finished edge of the secondary cut, as in
+//! the window: the distance of O from the line of that cut is larger by half a kerf. The hole
+//! reduces the ligament by its radius, so that a caliper next to the hole reads (1 - rho_f) w_lig,
+//! [`CutLines::caliper`].
 //!
-//! **Kerf.** A slit is one pass of the tool along its line and removes the kerf, half on each flank:
-//! the tool's kerf is the design kerf w_c of (7). Holes and outline are closed paths, offset by half
-//! the kerf (holes inwards, the outline outwards), so that the finished hole and sheet have their
-//! nominal size.
+//! **Kerf.** A slit is one pass of the tool along its line and removes the kerf, half on each
+//! flank: the tool's kerf is the design kerf w_c of (7). Holes and outline are closed paths, offset
+//! by half the kerf (holes inwards, the outline outwards), so that the finished hole and sheet have
+//! their nominal size.
 //!
-//! **Over-run.** A slit that is open on the outline is cut beyond the finished edge, so that no web is left between
-//! the two cuts.
+//! **Over-run.** A slit that is open on the outline is cut beyond the finished edge, so that no web
+//! is left between the two cuts.
 
 use crate::cut_file::attachments::PlacedAttachment;
 use crate::cut_file::cut_drawing::{CutDrawing, Layer};
@@ -78,8 +79,9 @@ impl CutLines {
         Self::new(pattern, sheet, scene.config.cutting, &attachments)
     }
 
-    /// The cuts of `sheet`, which must come from `pattern`, held and pulled at `attachments`. They are checked to leave every ligament as
-    /// wide as in the model, to cut every edge of a panel, and to meet nowhere, so that the sheet stays in one piece.
+    /// The cuts of `sheet`, which must come from `pattern`, held and pulled at `attachments`. They
+    /// are checked to leave every ligament as wide as in the model, to cut every edge of a panel,
+    /// and to meet nowhere, so that the sheet stays in one piece.
     pub fn new(
         pattern: &CutPattern,
         sheet: &Sheet,
@@ -90,10 +92,7 @@ impl CutLines {
         let holes: Vec<Hole> = sheet
             .hinges
             .iter()
-            .map(|hinge| Hole {
-                centre: hinge.tip,
-                radius: process.hole_radius(hinge.w_lig),
-            })
+            .map(|hinge| Hole { centre: hinge.tip, radius: process.hole_radius(hinge.w_lig) })
             .collect();
         for (hinge, hole) in holes.iter().enumerate() {
             if 2.0 * hole.radius <= process.kerf {
@@ -119,23 +118,17 @@ impl CutLines {
         Ok(cuts)
     }
 
-    /// The ligaments at the ends of a cut shorten it: every ligament must still end at its secondary cut, and every edge of a
-    /// panel must be cut somewhere.
+    /// The ligaments at the ends of a cut shorten it: every ligament must still end at its
+    /// secondary cut, and every edge of a panel must be cut somewhere.
     fn reach_what_they_cut(&self, sheet: &Sheet) -> Result<(), FabricationError> {
         for (hinge, modelled) in sheet.hinges.iter().enumerate() {
             let (width, modelled) = (self.clearance(hinge), modelled.w_lig);
             if width > modelled + ROUNDING {
-                return Err(FabricationError::CutEndsBeforeLigament {
-                    hinge,
-                    width,
-                    modelled,
-                });
+                return Err(FabricationError::CutEndsBeforeLigament { hinge, width, modelled });
             }
         }
         let slits = self.slits.iter().map(|slit| slit.ends);
-        let lines: Vec<_> = slits
-            .chain(edges(&self.outline).map(|(p, q)| [p, q]))
-            .collect();
+        let lines: Vec<_> = slits.chain(edges(&self.outline).map(|(p, q)| [p, q])).collect();
         for (panel, of) in sheet.panels.iter().enumerate() {
             let is_cut = |edge: [[f64; 2]; 2]| lines.iter().any(|line| carries(line, edge));
             if !edges(&of.corners).all(|(p, q)| is_cut([p, q])) {
@@ -177,7 +170,8 @@ impl CutLines {
         drawing
     }
 
-    /// The path of the tool along a slit: with the over-run at an end that is open on the outline (mm).
+    /// The path of the tool along a slit: with the over-run at an end that is open on the outline
+    /// (mm).
     pub fn tool_slit(&self, slit: &Slit) -> [[f64; 2]; 2] {
         let [from, to] = slit.ends;
         match slit.hinges[1] {
@@ -190,7 +184,8 @@ impl CutLines {
         }
     }
 
-    /// Width of a ligament as measured by a caliper, from the edge of its hole to the secondary cut (mm).
+    /// Width of a ligament as measured by a caliper, from the edge of its hole to the secondary cut
+    /// (mm).
     pub fn caliper(&self, hinge: usize) -> f64 {
         self.clearance(hinge) - self.holes[hinge].radius
     }
@@ -217,17 +212,14 @@ impl CutLines {
             let (a, b) = (outward(k + 3), outward(k));
             let shift = off / (1.0 + a[0] * b[0] + a[1] * b[1]);
             let corner = self.outline[k];
-            [
-                corner[0] + shift * (a[0] + b[0]),
-                corner[1] + shift * (a[1] + b[1]),
-            ]
+            [corner[0] + shift * (a[0] + b[0]), corner[1] + shift * (a[1] + b[1])]
         })
     }
 
     /// Material between the tip O of a hinge and the nearest cut other than its own (mm).
     ///
-    /// It is w_lig for a valid hinge, and less if another cut is closer than the secondary cut. Half the kerf of
-    /// a slit lies on this side of its line.
+    /// It is w_lig for a valid hinge, and less if another cut is closer than the secondary cut.
+    /// Half the kerf of a slit lies on this side of its line.
     pub fn clearance(&self, hinge: usize) -> f64 {
         let tip = self.holes[hinge].centre;
         let to_slits = self
@@ -243,8 +235,7 @@ impl CutLines {
 /// Whether an edge lies along a line, at least in part.
 fn carries(line: &[[f64; 2]; 2], edge: [[f64; 2]; 2]) -> bool {
     let [a, b] = *line;
-    edge.iter()
-        .all(|end| (side((a, b), *end) / distance(a, b)).abs() < ROUNDING)
+    edge.iter().all(|end| (side((a, b), *end) / distance(a, b)).abs() < ROUNDING)
         && distance_between_segments(*line, edge) < ROUNDING
 }
 
@@ -255,11 +246,8 @@ fn slits(
     holes: &[Hole],
 ) -> Result<Vec<Slit>, FabricationError> {
     let sites = hinge_sites(sheet.grid);
-    let at_corner: BTreeMap<usize, usize> = sites
-        .iter()
-        .enumerate()
-        .map(|(hinge, site)| (site.corner, hinge))
-        .collect();
+    let at_corner: BTreeMap<usize, usize> =
+        sites.iter().enumerate().map(|(hinge, site)| (site.corner, hinge)).collect();
     let mut slits = Vec::new();
     for (hinge, site) in sites.iter().enumerate() {
         let other = at_corner
@@ -275,16 +263,9 @@ fn slits(
         let length = main[0] * (end[0] - tip[0]) + main[1] * (end[1] - tip[1]);
         let drilled = holes[hinge].radius + other.map_or(0.0, |other| holes[other].radius);
         if length <= drilled {
-            return Err(FabricationError::SlitVanishes {
-                hinge,
-                length,
-                drilled,
-            });
+            return Err(FabricationError::SlitVanishes { hinge, length, drilled });
         }
-        slits.push(Slit {
-            ends: [tip, end],
-            hinges: [Some(hinge), other],
-        });
+        slits.push(Slit { ends: [tip, end], hinges: [Some(hinge), other] });
     }
     Ok(slits)
 }

@@ -5,7 +5,8 @@ use crate::cut_file::totals::{Totals, holes_by_diameter};
 use design::geometry::polygon::distance;
 use design::sheet::cut_sheet::Sheet;
 
-/// One row a hinge: its hole, its ligament as designed and as measured by a caliper next to the hole, and its panels.
+/// One row a hinge: its hole, its ligament as designed and as measured by a caliper next to the
+/// hole, and its panels.
 pub fn cut_list(sheet: &Sheet, cuts: &CutLines) -> String {
     let mut text = "hinge,hole_diameter_mm,w_lig_mm,caliper_mm,panel_a,panel_b\n".to_owned();
     for (h, (hinge, hole)) in std::iter::zip(&sheet.hinges, &cuts.holes).enumerate() {
@@ -16,7 +17,8 @@ pub fn cut_list(sheet: &Sheet, cuts: &CutLines) -> String {
     text
 }
 
-/// One row an attachment: what holds or pulls which panel, where in the flat sheet, its hole and its clip.
+/// One row an attachment: what holds or pulls which panel, where in the flat sheet, its hole and
+/// its clip.
 pub fn attachment_list(cuts: &CutLines) -> String {
     let mut text = "attachment,panel,x_mm,y_mm,hole_diameter_mm,clip_width_mm\n".to_owned();
     let or_nothing = |size: Option<f64>| size.map_or(String::new(), |size| format!("{size:.3}"));

@@ -1,20 +1,22 @@
 //! The order of cutting: holes before slits, the outline last, so that the sheet holds what is cut.
 //!
-//! Within a layer the tool moves on to the nearest cut, which it begins at the nearer end. The tour is then shortened
-//! by 2-opt: a run of cuts is cut backwards wherever this reduces the travel between the cuts.
+//! Within a layer the tool moves on to the nearest cut, which it begins at the nearer end. The tour
+//! is then shortened by 2-opt: a run of cuts is cut backwards wherever this reduces the travel
+//! between the cuts.
 
 use crate::cut_file::cut_drawing::{CutDrawing, Layer};
 use crate::display::Shape;
 use design::geometry::polygon::distance;
 
-/// Maximum number of cuts in a run that is reversed: it bounds the time of a sweep over large sheets.
+/// Maximum number of cuts in a run that is reversed: it bounds the time of a sweep over large
+/// sheets.
 const RUN: usize = 1000;
 /// Reduction of the travel that is not rounding (mm).
 const GAIN: f64 = 1e-6;
 
 impl CutDrawing {
-    /// The shapes in cutting order, from a tool at `home`. The travel within a layer is at most the travel in the
-    /// present order.
+    /// The shapes in cutting order, from a tool at `home`. The travel within a layer is at most the
+    /// travel in the present order.
     pub fn in_cutting_order(&self, home: [f64; 2]) -> Self {
         let mut at = home;
         let mut ordered = Self::default();
@@ -27,14 +29,13 @@ impl CutDrawing {
             if let Some(last) = shapes.last() {
                 at = last.ends()[1];
             }
-            ordered
-                .shapes
-                .extend(shapes.into_iter().map(|shape| (layer, shape)));
+            ordered.shapes.extend(shapes.into_iter().map(|shape| (layer, shape)));
         }
         ordered
     }
 
-    /// Length of the moves between the cuts, from a tool at `home` to the beginning of the last cut (mm).
+    /// Length of the moves between the cuts, from a tool at `home` to the beginning of the last cut
+    /// (mm).
     pub fn idle_travel(&self, home: [f64; 2]) -> f64 {
         let mut at = home;
         let moves = self.cuts().map(|shape| {
@@ -81,11 +82,7 @@ type Leg = (usize, [[f64; 2]; 2]);
 fn tour(shapes: &[Shape], from: [f64; 2]) -> Vec<Shape> {
     let given: Vec<Leg> = shapes.iter().map(Shape::ends).enumerate().collect();
     let nearest = nearest_neighbours(&given, from);
-    let mut tour = if travel(&nearest, from) < travel(&given, from) {
-        nearest
-    } else {
-        given
-    };
+    let mut tour = if travel(&nearest, from) < travel(&given, from) { nearest } else { given };
     two_opt(&mut tour, from);
     let legs = tour.into_iter();
     legs.map(|(i, ends)| shapes[i].along(ends)).collect()
@@ -105,11 +102,7 @@ fn nearest_neighbours(legs: &[Leg], from: [f64; 2]) -> Vec<Leg> {
         let to = |leg: &Leg| distance(at, leg.1[0]).min(distance(at, leg.1[1]));
         let nearest = (0..left.len()).min_by(|&i, &j| to(&left[i]).total_cmp(&to(&left[j])));
         let (i, [a, b]) = left.swap_remove(nearest.unwrap_or_default());
-        let ends = if distance(at, b) < distance(at, a) {
-            [b, a]
-        } else {
-            [a, b]
-        };
+        let ends = if distance(at, b) < distance(at, a) { [b, a] } else { [a, b] };
         at = ends[1];
         tour.push((i, ends));
     }

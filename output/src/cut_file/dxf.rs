@@ -1,7 +1,8 @@
 //! DXF R2000 (AC1015) in millimetres, one layer per tool.
 //!
-//! A DXF file is a list of pairs, a group code and a value, in the sections HEADER, TABLES, BLOCKS, ENTITIES and OBJECTS.
-//! Every object has a hexadecimal handle and names its owner's. Reference: Autodesk, DXF Reference (AutoCAD 2000).
+//! A DXF file is a list of pairs, a group code and a value, in the sections HEADER, TABLES, BLOCKS,
+//! ENTITIES and OBJECTS. Every object has a hexadecimal handle and names its owner's. Reference:
+//! Autodesk, DXF Reference (AutoCAD 2000).
 
 use crate::cut_file::cut_drawing::{CutDrawing, Layer};
 use crate::display::{Anchor, Shape, Text};
@@ -111,9 +112,7 @@ impl Pairs {
 
         let layers: Vec<_> = drawing.layers().collect();
         let table = self.table("LAYER", 1 + layers.len());
-        let layers = layers
-            .into_iter()
-            .map(|layer| (layer.name(), drawing.pen(layer).1));
+        let layers = layers.into_iter().map(|layer| (layer.name(), drawing.pen(layer).1));
         for (name, colour) in [("0", 7)].into_iter().chain(layers) {
             self.record("LAYER", table, "AcDbLayerTableRecord", name);
             self.pair(62, colour);
@@ -258,16 +257,15 @@ impl Pairs {
     }
 }
 
-/// A text of a file in the code page ANSI_1252, with the other characters as `\U+` and four hexadecimal digits.
+/// A text of a file in the code page ANSI_1252, with the other characters as `\U+` and four
+/// hexadecimal digits.
 fn escaped(text: &str) -> String {
     let mut units = [0; 2];
     let escape = |c: char| {
         if c.is_ascii() {
             c.to_string()
         } else {
-            (c.encode_utf16(&mut units).iter())
-                .map(|unit| format!("\\U+{unit:04X}"))
-                .collect()
+            (c.encode_utf16(&mut units).iter()).map(|unit| format!("\\U+{unit:04X}")).collect()
         }
     };
     text.chars().map(escape).collect()

@@ -8,20 +8,12 @@ pub enum FabricationError {
         "the slit at hinge {hinge} would be {length:.3} mm long, but the holes at its ends take \
          {drilled:.3} mm: narrow the ligament or lengthen the cut"
     )]
-    SlitVanishes {
-        hinge: usize,
-        length: f64,
-        drilled: f64,
-    },
+    SlitVanishes { hinge: usize, length: f64, drilled: f64 },
     #[error(
         "the hole of hinge {hinge} is {diameter:.3} mm wide, which must exceed the kerf of {kerf} mm: \
          increase the ligament width or the fillet ratio"
     )]
-    HoleTooSmall {
-        hinge: usize,
-        diameter: f64,
-        kerf: f64,
-    },
+    HoleTooSmall { hinge: usize, diameter: f64, kerf: f64 },
     #[error(
         "the slits are {slit} mm wide, which must exceed the kerf of the tool, {tool_kerf} mm: increase process.kerf of the scene, \
          the width of the slits, or use a machine that cuts lines"
@@ -37,11 +29,7 @@ pub enum FabricationError {
          apart (objective.panel_shape) or narrow the ligaments",
         .hinges[0], .hinges[1]
     )]
-    CutsMeet {
-        hinges: [usize; 2],
-        gap: f64,
-        least: f64,
-    },
+    CutsMeet { hinges: [usize; 2], gap: f64, least: f64 },
     #[error(
         "the hole of hinge {hinge} leaves {gap:.3} mm to the outline, less than the kerf of {least} mm: move the cut \
          (objective.panel_shape) or reduce the fillet ratio"
@@ -51,13 +39,7 @@ pub enum FabricationError {
         "the {part} of {name} is {distance:.1} mm from {what}, and needs {least:.1} mm: move its `at` away from there, or make \
          it smaller"
     )]
-    TooNear {
-        part: &'static str,
-        name: String,
-        what: String,
-        distance: f64,
-        least: f64,
-    },
+    TooNear { part: &'static str, name: String, what: String, distance: f64, least: f64 },
     #[error("the clip of {name} is {width} mm wide, its edge {room:.1} mm: use a narrower clip")]
     ClipTooWide { name: String, width: f64, room: f64 },
     #[error(
@@ -65,11 +47,7 @@ pub enum FabricationError {
          the model: narrow the ligaments at the ends of that cut, or keep the panels larger (objective.panel_shape, \
          objective.min_panel_width)"
     )]
-    CutEndsBeforeLigament {
-        hinge: usize,
-        width: f64,
-        modelled: f64,
-    },
+    CutEndsBeforeLigament { hinge: usize, width: f64, modelled: f64 },
     #[error(
         "an edge of panel {panel} is not cut: the ligaments at its ends are longer than the edge: narrow them, or keep the \
          panels larger (objective.panel_shape, objective.min_panel_width)"

@@ -1,7 +1,8 @@
-//! Closed contours around what is removed from a sheet: a slit of the kerf's width with the holes at its ends.
+//! Closed contours around what is removed from a sheet: a slit of the kerf's width with the holes
+//! at its ends.
 //!
-//! A slit between two hinges is one contour. One that is open on the outline is a notch of the outline, which thereby stays
-//! one contour.
+//! A slit between two hinges is one contour. One that is open on the outline is a notch of the
+//! outline, which thereby stays one contour.
 
 use crate::cut_file::cut_lines::{CutLines, Slit};
 use design::geometry::polygon::{distance, edges, side};
@@ -17,8 +18,9 @@ pub struct Contours {
 }
 
 impl CutLines {
-    /// The contours that a tool of the given kerf (mm) follows with its centre, half of that from the finished edges; with 0 the finished
-    /// edges themselves. The kerf must be smaller than the kerf of the slits.
+    /// The contours that a tool of the given kerf (mm) follows with its centre, half of that from
+    /// the finished edges; with 0 the finished edges themselves. The kerf must be smaller than the
+    /// kerf of the slits.
     pub fn contours(&self, tool_kerf: f64) -> Contours {
         let inset = 0.5 * tool_kerf;
         let end = |slit: &Slit, which: usize| {
@@ -37,10 +39,7 @@ impl CutLines {
             .filter(|slit| slit.hinges[1].is_none())
             .filter_map(|slit| end(slit, 0))
             .collect();
-        Contours {
-            inner: inner.collect(),
-            outer: notched(&self.outline_at(inset), &open),
-        }
+        Contours { inner: inner.collect(), outer: notched(&self.outline_at(inset), &open) }
     }
 }
 
@@ -60,23 +59,20 @@ impl End {
         [dy.atan2(dx), (self.half_width / self.radius).asin()]
     }
 
-    /// The arc on the hole from one flank of the slit around its back to the other, counter-clockwise.
+    /// The arc on the hole from one flank of the slit around its back to the other,
+    /// counter-clockwise.
     fn around(&self) -> [Vertex; 3] {
         let [along, half] = self.mouth();
         let bulge = (0.25 * (PI - half)).tan();
-        [
-            (along + half, bulge),
-            (along + PI, bulge),
-            (along - half, 0.0),
-        ]
-        .map(|(angle, bulge)| {
+        [(along + half, bulge), (along + PI, bulge), (along - half, 0.0)].map(|(angle, bulge)| {
             let (sin, cos) = angle.sin_cos();
             let [x, y] = self.at;
             ([x + self.radius * cos, y + self.radius * sin], bulge)
         })
     }
 
-    /// Where the flanks cross the line through `p` and `q`, in the order of a walk around the sheet.
+    /// Where the flanks cross the line through `p` and `q`, in the order of a walk around the
+    /// sheet.
     fn on_edge(&self, [p, q]: [[f64; 2]; 2]) -> [[f64; 2]; 2] {
         let [angle, _] = self.mouth();
         let (sin, cos) = angle.sin_cos();
@@ -105,13 +101,7 @@ fn notched(outline: &[[f64; 2]; 4], open: &[End]) -> Vec<Vertex> {
         let [first, second] = end.on_edge(sides[at]);
         // Into the sheet, clockwise around the hole, and out.
         let [(from, bulge), (back, _), (to, _)] = end.around();
-        let notch = [
-            (first, 0.0),
-            (to, -bulge),
-            (back, -bulge),
-            (from, 0.0),
-            (second, 0.0),
-        ];
+        let notch = [(first, 0.0), (to, -bulge), (back, -bulge), (from, 0.0), (second, 0.0)];
         notches[at].push((distance(sides[at][0], first), notch));
     }
     let mut contour = Vec::new();
@@ -130,12 +120,7 @@ mod tests {
     use scene::drawing::bulged::flattened;
 
     fn end(at: [f64; 2], towards: [f64; 2]) -> End {
-        End {
-            at,
-            towards,
-            radius: 1.5,
-            half_width: 0.4,
-        }
+        End { at, towards, radius: 1.5, half_width: 0.4 }
     }
 
     /// Area of a hole with the beginning of its slit, up to the distance `length` from its centre.

@@ -1,12 +1,13 @@
 //! The gaps between cuts.
 //!
-//! Two cuts leave at least the kerf between them, and so do holes and outline. A slit then meets the outline at most once and no other
-//! cut, so that the sheet stays in one piece.
+//! Two cuts leave at least the kerf between them, and so do holes and outline. A slit then meets
+//! the outline at most once and no other cut, so that the sheet stays in one piece.
 
 use crate::cut_file::fabrication_error::FabricationError;
 use design::geometry::polygon::{distance_between_segments, distance_to_outline};
 
-/// A cut with the width of the tool: the points nearer than `radius` to the segment `ends`, which is a point for a hole.
+/// A cut with the width of the tool: the points nearer than `radius` to the segment `ends`, which
+/// is a point for a hole.
 pub(super) struct Cut {
     pub ends: [[f64; 2]; 2],
     pub radius: f64,
@@ -58,26 +59,15 @@ mod tests {
     fn a_slit_through_another_and_a_hole_at_the_outline_are_refused() {
         let outline = [[0.0, 0.0], [9.0, 0.0], [9.0, 9.0], [0.0, 9.0]];
         let of = |ends| {
-            let cut = |ends: [[f64; 2]; 2], hinge| Cut {
-                ends,
-                radius: 0.1,
-                hinges: vec![hinge],
-            };
-            check(
-                vec![cut([[1.0, 5.0], [8.0, 5.0]], 0), cut(ends, 1)],
-                &outline,
-                0.2,
-            )
+            let cut = |ends: [[f64; 2]; 2], hinge| Cut { ends, radius: 0.1, hinges: vec![hinge] };
+            check(vec![cut([[1.0, 5.0], [8.0, 5.0]], 0), cut(ends, 1)], &outline, 0.2)
         };
         assert!(of([[1.0, 6.0], [8.0, 5.5]]).is_ok());
         let met = of([[5.0, 8.0], [5.0, 1.0]]);
         let meet = matches!(met, Err(FabricationError::CutsMeet { gap, .. }) if gap < 0.0);
         assert!(meet, "{met:?}");
         let at_edge = of([[5.0, 8.9]; 2]);
-        let meet = matches!(
-            at_edge,
-            Err(FabricationError::CutMeetsOutline { hinge: 1, .. })
-        );
+        let meet = matches!(at_edge, Err(FabricationError::CutMeetsOutline { hinge: 1, .. }));
         assert!(meet, "{at_edge:?}");
     }
 }

@@ -38,7 +38,8 @@ pub struct Machine {
     cuts: Cuts,
     /// Width that the tool removes and the paths allow for (mm); `None`: the kerf of the scene.
     tool_kerf: Option<f64>,
-    /// Length by which an open slit is cut beyond the outline (mm); `None`: the length of the scene.
+    /// Length by which an open slit is cut beyond the outline (mm); `None`: the length of the
+    /// scene.
     over_run: Option<f64>,
     /// Diameter of the smallest hole that the tool cuts (mm).
     #[serde(default)]
@@ -116,7 +117,8 @@ impl Machines {
 }
 
 impl Service {
-    /// The smallest features that it cuts in a sheet of the given thickness, and the size of its largest sheet (mm).
+    /// The smallest features that it cuts in a sheet of the given thickness, and the size of its
+    /// largest sheet (mm).
     pub fn limits(&self, thickness: f64) -> Features {
         let limit = |mm: f64, thicknesses: f64| mm.max(thicknesses * thickness);
         Features {
@@ -139,18 +141,8 @@ impl Service {
                 "process.hole_diameter (or fillet_ratio), ligament.range",
             ),
             ("slits of", features.slot, least.slot, "process.kerf"),
-            (
-                "ligaments of",
-                features.bridge,
-                least.bridge,
-                "ligament.range",
-            ),
-            (
-                "holes to the edge of",
-                features.edge,
-                least.edge,
-                "ligament.range",
-            ),
+            ("ligaments of", features.bridge, least.bridge, "ligament.range"),
+            ("holes to the edge of", features.edge, least.edge, "ligament.range"),
         ]
         .into_iter()
         .filter(|(_, found, least, _)| found < least)
@@ -166,7 +158,8 @@ impl Service {
 }
 
 impl Machine {
-    /// The drawing of a sheet for this machine, in cutting order; an error if the paths do not exist.
+    /// The drawing of a sheet for this machine, in cutting order; an error if the paths do not
+    /// exist.
     pub fn drawing(&self, cuts: &CutLines) -> Result<CutDrawing, FabricationError> {
         let mut drawing = self.paths(cuts)?.in_cutting_order(cuts.outline[0]);
         if self.marks {
@@ -176,7 +169,8 @@ impl Machine {
         Ok(drawing)
     }
 
-    /// The paths in a sheet and the marks on it, in the order of the pattern; an error if they do not exist.
+    /// The paths in a sheet and the marks on it, in the order of the pattern; an error if they do
+    /// not exist.
     fn paths(&self, cuts: &CutLines) -> Result<CutDrawing, FabricationError> {
         let kerf = self.tool_kerf.unwrap_or(match self.cuts {
             Cuts::Lines => cuts.kerf,
@@ -273,19 +267,13 @@ impl CutLines {
         let to_edge = |centre: [f64; 2]| distance_to_outline(centre, &self.outline);
         let attached = (self.attachments.iter())
             .filter_map(|attachment| Some((attachment.at, 0.5 * attachment.hole?)));
-        let holes: Vec<([f64; 2], f64)> = (self.holes.iter())
-            .map(|hole| (hole.centre, hole.radius))
-            .chain(attached)
-            .collect();
+        let holes: Vec<([f64; 2], f64)> =
+            (self.holes.iter()).map(|hole| (hole.centre, hole.radius)).chain(attached).collect();
         Features {
             hole: least(&mut holes.iter().map(|(_, radius)| 2.0 * radius)),
             slot: self.kerf,
             bridge: least(&mut (0..self.holes.len()).map(|hinge| self.caliper(hinge))),
-            edge: least(
-                &mut holes
-                    .iter()
-                    .map(|(centre, radius)| to_edge(*centre) - radius),
-            ),
+            edge: least(&mut holes.iter().map(|(centre, radius)| to_edge(*centre) - radius)),
             size: [0, 1].map(|axis| high[axis] - low[axis]),
         }
     }
@@ -311,20 +299,10 @@ mod tests {
     fn every_service_names_its_source_and_refuses_what_is_too_small() {
         let machines = Machines::shipped();
         assert!(machines.service.len() >= 5);
-        let coarse = Features {
-            hole: 10.0,
-            slot: 10.0,
-            bridge: 10.0,
-            edge: 10.0,
-            size: [100.0, 50.0],
-        };
-        let fine = Features {
-            hole: 0.5,
-            slot: 0.1,
-            bridge: 0.4,
-            edge: 0.4,
-            size: [5000.0, 5000.0],
-        };
+        let coarse =
+            Features { hole: 10.0, slot: 10.0, bridge: 10.0, edge: 10.0, size: [100.0, 50.0] };
+        let fine =
+            Features { hole: 0.5, slot: 0.1, bridge: 0.4, edge: 0.4, size: [5000.0, 5000.0] };
         for service in &machines.service {
             assert!(service.source.contains('/'), "{}", service.name);
             assert_eq!(service.refusals(&coarse, 3.0), [""; 0]);

@@ -1,7 +1,7 @@
 //! Numbers of panels and hinges, clear of all cuts.
 //!
-//! A panel is convex and no slit enters it: a text inside of it is clear of all slits. A hinge's number is inside one of
-//! its two panels, as near to its hole as the cuts allow.
+//! A panel is convex and no slit enters it: a text inside of it is clear of all slits. A hinge's
+//! number is inside one of its two panels, as near to its hole as the cuts allow.
 
 use crate::cut_file::cut_lines::CutLines;
 use crate::display::{Text, rectangle};
@@ -23,12 +23,11 @@ const DISTANCES: [f64; 8] = [1.2, 1.6, 2.0, 2.5, 3.0, 4.0, 5.5, 7.0];
 /// A number that has no room is tried again at smaller heights.
 const HEIGHTS: [f64; 6] = [1.0, 0.7, 0.5, 0.35, 0.25, 0.15];
 
-/// The number `P<k>` of every panel in its middle and the number of every hinge next to its hole: panels first, row by
-/// row.
+/// The number `P<k>` of every panel in its middle and the number of every hinge next to its hole:
+/// panels first, row by row.
 pub(super) fn numbers(cuts: &CutLines, sheet: &Sheet) -> (Vec<Text>, Vec<Text>) {
-    let mut panels: Vec<Taken> = (0..sheet.panels.len())
-        .map(|k| Taken::new(cuts, sheet, k))
-        .collect();
+    let mut panels: Vec<Taken> =
+        (0..sheet.panels.len()).map(|k| Taken::new(cuts, sheet, k)).collect();
     let of_panels = std::iter::zip(0.., &sheet.panels).map(|(k, panel)| {
         let height = f64::min(PANEL_HEIGHT * panel.area.sqrt(), MAX_HEIGHT);
         let at = |height| Text::centred(panel.centroid, height, format!("P{k}"));
@@ -45,9 +44,7 @@ pub(super) fn numbers(cuts: &CutLines, sheet: &Sheet) -> (Vec<Text>, Vec<Text>) 
             let room = sides.map(|k| PANEL_HEIGHT * sheet.panels[k].area.sqrt());
             let height = f64::max(HINGE_HEIGHT * hinge.w_lig, MIN_HEIGHT).min(room[0].min(room[1]));
             let places = DISTANCES.iter().flat_map(move |d| {
-                DIRECTIONS_DEG
-                    .iter()
-                    .flat_map(move |deg| sides.map(|k| (*d, *deg, k)))
+                DIRECTIONS_DEG.iter().flat_map(move |deg| sides.map(|k| (*d, *deg, k)))
             });
             places.map(move |(d, deg, k)| (scale * height, d, deg, k))
         });
@@ -59,10 +56,7 @@ pub(super) fn numbers(cuts: &CutLines, sheet: &Sheet) -> (Vec<Text>, Vec<Text>) 
             let (tip, middle) = (hinge.tip, sheet.panels[k].centroid);
             let side = x * (middle[1] - tip[1]) - y * (middle[0] - tip[0]);
             let [u, v] = [-y, x].map(|n| n * side.signum());
-            let at = [
-                tip[0] + reach * (cos * x + sin * u),
-                tip[1] + reach * (cos * y + sin * v),
-            ];
+            let at = [tip[0] + reach * (cos * x + sin * u), tip[1] + reach * (cos * y + sin * v)];
             (k, Text::centred(at, height, number.to_string()))
         });
         let (k, text) = widest(candidates, |(k, text)| panels[*k].clearance(text));
@@ -98,8 +92,8 @@ impl Taken {
         }
     }
 
-    /// Distance of a text from all that it has to keep clear of, at most [`CLEAR`] of its height; negative if it meets
-    /// something.
+    /// Distance of a text from all that it has to keep clear of, at most [`CLEAR`] of its height;
+    /// negative if it meets something.
     fn clearance(&self, text: &Text) -> f64 {
         let [low, high] = text.corners();
         let box_corners = rectangle([low, high]);
@@ -115,10 +109,7 @@ impl Taken {
                 f64::hypot(along[0].max(0.0), along[1].max(0.0))
             }
         };
-        let to_holes = self
-            .holes
-            .iter()
-            .map(|(centre, radius)| gap([*centre; 2]) - radius);
+        let to_holes = self.holes.iter().map(|(centre, radius)| gap([*centre; 2]) - radius);
         let to_texts = self.texts.iter().map(|corners| gap(*corners));
         let all = to_edges.chain(to_holes).chain(to_texts);
         all.fold(CLEAR * text.height, f64::min) / text.height

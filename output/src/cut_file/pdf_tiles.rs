@@ -1,7 +1,8 @@
-//! A drawing as PDF at 1:1, for hand cutting and desktop cutters: an overview, then one page a tile.
+//! A drawing as PDF at 1:1, for hand cutting and desktop cutters: an overview, then one page a
+//! tile.
 //!
-//! Neighbouring tiles print the same strip. A dashed line in its middle with two crosses is at the same place of the
-//! sheet on both: trim one of them there, lay it on the other, cross on cross.
+//! Neighbouring tiles print the same strip. A dashed line in its middle with two crosses is at the
+//! same place of the sheet on both: trim one of them there, lay it on the other, cross on cross.
 
 use crate::cut_file::cut_drawing::CutDrawing;
 use crate::cut_file::tiling::{BORDER, FOOTER, OVERLAP, Tiling, cell_name};
@@ -56,10 +57,7 @@ fn tile(tiling: &Tiling, row: usize, column: usize, title: &str) -> Content {
     content.x_object(DRAWING);
     content.restore_state();
 
-    let inner = [
-        frame[0].map(|x| x + 0.5 * OVERLAP),
-        frame[1].map(|x| x - 0.5 * OVERLAP),
-    ];
+    let inner = [frame[0].map(|x| x + 0.5 * OVERLAP), frame[1].map(|x| x - 0.5 * OVERLAP)];
     // Neighbours at the left, at the right, below and above.
     let sides = [
         (column > 0, 0, inner[0][0]),
@@ -72,10 +70,7 @@ fn tile(tiling: &Tiling, row: usize, column: usize, title: &str) -> Content {
         trim_line(&mut marks, frame, axis, at);
     }
     draw(&mut content, marks.styled());
-    let name = format!(
-        "{}    {rows} rows x {columns} columns",
-        cell_name(row, column)
-    );
+    let name = format!("{}    {rows} rows x {columns} columns", cell_name(row, column));
     footer(&mut content, tiling, &name, title);
     content
 }
@@ -117,10 +112,7 @@ fn overview(drawing: &CutDrawing, tiling: &Tiling, title: &str, notes: &[String]
         canvas.add(black, Text::line([BORDER, y], SMALL, note));
     }
     let (low, high) = (tiling.tile(rows - 1, 0)[0], tiling.tile(0, columns - 1)[1]);
-    let room = [
-        tiling.page[0] - 2.0 * BORDER,
-        y - 2.0 * SMALL - BORDER - FOOTER,
-    ];
+    let room = [tiling.page[0] - 2.0 * BORDER, y - 2.0 * SMALL - BORDER - FOOTER];
     let scale = f64::min(room[0] / (high[0] - low[0]), room[1] / (high[1] - low[1]));
     let origin = [BORDER - scale * low[0], BORDER + FOOTER - scale * low[1]];
     let on_page = |[x, y]: [f64; 2]| [origin[0] + scale * x, origin[1] + scale * y];

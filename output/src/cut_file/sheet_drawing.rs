@@ -1,4 +1,5 @@
-//! The drawing of a whole sheet: its cuts in cutting order, numbers, scale, instructions and registration marks.
+//! The drawing of a whole sheet: its cuts in cutting order, numbers, scale, instructions and
+//! registration marks.
 
 use crate::cut_file::cut_drawing::{CutDrawing, Layer};
 use crate::cut_file::cut_lines::CutLines;
@@ -63,12 +64,7 @@ impl SheetDrawing {
             ),
             format!("{totals}."),
         ];
-        Self {
-            numbered,
-            notes,
-            totals,
-            over_run: cuts.cutting.over_run,
-        }
+        Self { numbered, notes, totals, over_run: cuts.cutting.over_run }
     }
 
     /// The drawing of a cut file: with scale, instructions and registration marks.
@@ -80,7 +76,8 @@ impl SheetDrawing {
     }
 }
 
-/// Three crosses in circles, at all corners of the bounding box but one, so that a turned sheet is noticed.
+/// Three crosses in circles, at all corners of the bounding box but one, so that a turned sheet is
+/// noticed.
 pub(super) fn registration_marks(drawing: &mut CutDrawing, over_run: f64) {
     let [low, high] = Shape::extent(drawing.on(Layer::Outline));
     let size = f64::max(high[0] - low[0], high[1] - low[1]);
@@ -97,13 +94,12 @@ pub(super) fn registration_marks(drawing: &mut CutDrawing, over_run: f64) {
     }
 }
 
-/// The height of lines of text of which the longest is at most as wide as the cuts of a drawing (mm).
+/// The height of lines of text of which the longest is at most as wide as the cuts of a drawing
+/// (mm).
 fn text_height(drawing: &CutDrawing, lines: &[String]) -> f64 {
     let [left, right] = Shape::extent(drawing.cuts()).map(|corner| corner[0]);
     let width = right - left;
-    let widths = lines
-        .iter()
-        .map(|line| Text::line([0.0; 2], 1.0, line).size()[0]);
+    let widths = lines.iter().map(|line| Text::line([0.0; 2], 1.0, line).size()[0]);
     let longest = widths.fold(0.0, f64::max);
     f64::min(NOTE_HEIGHT * width, width / longest).max(MIN_NOTE_HEIGHT)
 }
@@ -136,23 +132,19 @@ pub(super) fn note(drawing: &mut CutDrawing, lines: &[String]) {
 /// The first line of the mark of files that were written although the design has errors.
 pub const FORCED: &str = "FORCED, NOT TO BE CUT: the design has errors";
 
-/// Writes the errors of a design above its drawing, on a layer of their own, which is not cut. Without errors the drawing
-/// stays as it is.
+/// Writes the errors of a design above its drawing, on a layer of their own, which is not cut.
+/// Without errors the drawing stays as it is.
 pub fn mark_errors(drawing: &mut CutDrawing, errors: &[String]) {
     if errors.is_empty() {
         return;
     }
-    let lines: Vec<String> = std::iter::once(FORCED.to_owned())
-        .chain(errors.iter().cloned())
-        .collect();
+    let lines: Vec<String> =
+        std::iter::once(FORCED.to_owned()).chain(errors.iter().cloned()).collect();
     let height = text_height(drawing, &lines);
     let left = Shape::extent(drawing.cuts())[0][0];
     let top = drawing.bounds()[1][1];
     for (i, line) in lines.iter().rev().enumerate() {
         let y = top + 2.0 * height * (i + 1) as f64;
-        drawing.add(
-            Layer::Errors,
-            Shape::Text(Text::line([left, y], height, line)),
-        );
+        drawing.add(Layer::Errors, Shape::Text(Text::line([left, y], height, line)));
     }
 }

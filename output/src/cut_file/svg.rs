@@ -1,4 +1,5 @@
-//! SVG at 1:1, one user unit per millimetre from the upper left corner of the page, one group per layer.
+//! SVG at 1:1, one user unit per millimetre from the upper left corner of the page, one group per
+//! layer.
 
 use crate::cut_file::cut_drawing::CutDrawing;
 use crate::display::{document, group};

@@ -39,18 +39,10 @@ impl Tiling {
                 let length = columns_rows[axis] as f64 * (window[axis] - OVERLAP) + OVERLAP;
                 0.5 * (low[axis] + high[axis] - length)
             });
-            Self {
-                page,
-                counts: [columns_rows[1], columns_rows[0]],
-                origin,
-            }
+            Self { page, counts: [columns_rows[1], columns_rows[0]], origin }
         });
         let [portrait, landscape] = tilings;
-        let tiling = if landscape.pages() < portrait.pages() {
-            landscape
-        } else {
-            portrait
-        };
+        let tiling = if landscape.pages() < portrait.pages() { landscape } else { portrait };
         let (pages, limit) = (tiling.pages(), MAX_PAGES);
         if pages > limit {
             Err(FabricationError::TooManyPages { pages, limit })
@@ -93,16 +85,12 @@ pub(super) fn cell_name(row: usize, column: usize) -> String {
 mod tests {
     use super::*;
 
-    /// Every point of the drawing is on a tile, neighbours share the overlap, and no page is superfluous.
+    /// Every point of the drawing is on a tile, neighbours share the overlap, and no page is
+    /// superfluous.
     #[test]
     fn the_tiles_cover_the_drawing_with_the_overlap() {
         for paper in [Paper::A4, Paper::A3, Paper::Letter] {
-            let sizes = [
-                [50.0, 30.0],
-                [190.0, 261.0],
-                [300.0, 200.0],
-                [2800.0, 1234.5],
-            ];
+            let sizes = [[50.0, 30.0], [190.0, 261.0], [300.0, 200.0], [2800.0, 1234.5]];
             for [width, height] in sizes {
                 let [low, high] = [[-7.0, 3.0], [width - 7.0, height + 3.0]];
                 let tiling = Tiling::new(paper, [low, high]).unwrap();

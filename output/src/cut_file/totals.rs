@@ -24,7 +24,8 @@ pub struct Totals {
 }
 
 impl Totals {
-    /// The totals of a drawing from a tool at `home`; `unordered` is the drawing in the order of the pattern.
+    /// The totals of a drawing from a tool at `home`; `unordered` is the drawing in the order of
+    /// the pattern.
     pub fn new(ordered: &CutDrawing, unordered: &CutDrawing, home: [f64; 2]) -> Self {
         Self {
             pierces: ordered.cuts().count(),

@@ -45,12 +45,7 @@ impl Canvas {
 
     /// Text in a font of the given size (mm).
     pub fn text(&mut self, at: [f64; 2], size: f64, anchor: Anchor, style: Style, text: &str) {
-        let text = Text {
-            at,
-            anchor,
-            height: CAPITALS * size,
-            text: text.to_owned(),
-        };
+        let text = Text { at, anchor, height: CAPITALS * size, text: text.to_owned() };
         self.add(style, text);
     }
 
@@ -62,12 +57,12 @@ impl Canvas {
         self.shapes.iter().map(|(style, shape)| (*style, shape))
     }
 
-    /// The SVG of the rectangle from `low` to `high` (mm), `width` wide in an SVG unit such as `mm` or `px`.
+    /// The SVG of the rectangle from `low` to `high` (mm), `width` wide in an SVG unit such as `mm`
+    /// or `px`.
     pub fn svg(&self, corners: [[f64; 2]; 2], width: f64, unit: &str) -> String {
         let elements = self.shapes.iter();
-        let body: String = elements
-            .map(|(style, shape)| element(shape, &attributes(style, shape)))
-            .collect();
+        let body: String =
+            elements.map(|(style, shape)| element(shape, &attributes(style, shape))).collect();
         document(corners, width, unit, &body)
     }
 }
@@ -95,11 +90,8 @@ pub(crate) fn group<'a>(
     width: f64,
     shapes: impl Iterator<Item = &'a Shape>,
 ) -> String {
-    let line = format!(
-        "fill=\"none\" stroke=\"{}\" stroke-width=\"{}\"",
-        hex(colour),
-        number(width)
-    );
+    let line =
+        format!("fill=\"none\" stroke=\"{}\" stroke-width=\"{}\"", hex(colour), number(width));
     let text = format!("fill=\"{}\" stroke=\"none\"", hex(colour));
     let elements = shapes.map(|shape| match shape {
         Shape::Text(_) => element(shape, &text),
@@ -112,9 +104,8 @@ pub(crate) fn group<'a>(
 fn element(shape: &Shape, attributes: &str) -> String {
     let points = |points: &[[f64; 2]]| {
         let points = points.iter();
-        let pairs: Vec<String> = points
-            .map(|[x, y]| format!("{},{}", number(*x), number(-y)))
-            .collect();
+        let pairs: Vec<String> =
+            points.map(|[x, y]| format!("{},{}", number(*x), number(-y))).collect();
         pairs.join(" ")
     };
     let element = match shape {
@@ -193,10 +184,7 @@ fn attributes(style: &Style, shape: &Shape) -> String {
         add("stroke-opacity", &number(style.stroke_opacity));
     }
     // A closed line has ends only if it is dashed. Lines thinner than a pixel would show them.
-    let closed = matches!(
-        shape,
-        Shape::Polygon(_) | Shape::Contour(_) | Shape::Circle { .. }
-    );
+    let closed = matches!(shape, Shape::Polygon(_) | Shape::Contour(_) | Shape::Circle { .. });
     if style.round {
         if !closed || style.dash.is_some() {
             add("stroke-linecap", "round");
@@ -204,10 +192,7 @@ fn attributes(style: &Style, shape: &Shape) -> String {
         add("stroke-linejoin", "round");
     }
     if let Some([dash, gap]) = style.dash {
-        add(
-            "stroke-dasharray",
-            &format!("{} {}", number(dash), number(gap)),
-        );
+        add("stroke-dasharray", &format!("{} {}", number(dash), number(gap)));
     }
     if style.bold {
         add("font-weight", "bold");
@@ -243,9 +228,7 @@ fn escaped(text: &str) -> String {
 
 /// Text of an element of HTML or SVG.
 pub(crate) fn text_of_element(text: &str) -> String {
-    text.replace('&', "&amp;")
-        .replace('<', "&lt;")
-        .replace('>', "&gt;")
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }
 
 #[cfg(test)]

@@ -1,4 +1,5 @@
-//! Pages of PDF in mm, in Helvetica, which every reader has. Styles are colours, widths and dashes: no opacity, no halo.
+//! Pages of PDF in mm, in Helvetica, which every reader has. Styles are colours, widths and dashes:
+//! no opacity, no halo.
 
 use crate::display::shape::{Anchor, Shape, Text};
 use crate::display::style::{Colour, Style};
@@ -7,7 +8,8 @@ use scene::drawing::bulged::flattened;
 
 /// Points per mm.
 const POINTS: f64 = 72.0 / 25.4;
-/// Height of the capitals of Helvetica relative to the size of the font, and widths of digits and of other characters.
+/// Height of the capitals of Helvetica relative to the size of the font, and widths of digits and
+/// of other characters.
 const CAPITALS: f64 = 0.718;
 const DIGIT: f64 = 0.556;
 const LETTER: f64 = 0.6;
@@ -40,9 +42,8 @@ pub(crate) fn file(size: [f64; 2], form: &Form, pages: Vec<Content>) -> Vec<u8> 
     object.bbox(Rect::new(low[0], low[1], high[0], high[1]));
     object.resources().fonts().pair(FONT, font);
     object.finish();
-    let pages: Vec<(Ref, Ref, Content)> = (pages.into_iter())
-        .map(|page| (next(), next(), page))
-        .collect();
+    let pages: Vec<(Ref, Ref, Content)> =
+        (pages.into_iter()).map(|page| (next(), next(), page)).collect();
     let kids = pages.iter().map(|(id, ..)| *id);
     file.pages(tree).count(pages.len() as i32).kids(kids);
     let [width, height] = size.map(|x| (x * POINTS) as f32);

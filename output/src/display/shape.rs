@@ -50,29 +50,19 @@ pub enum Anchor {
     Centre,
 }
 
-/// Width of a character relative to the height of the capitals: an upper bound for digits of DejaVu Sans, of Helvetica
-/// and of the stroke font of DXF readers.
+/// Width of a character relative to the height of the capitals: an upper bound for digits of DejaVu
+/// Sans, of Helvetica and of the stroke font of DXF readers.
 const CHARACTER: f64 = 0.9;
 
 impl Text {
     /// A text that begins at the point `at`.
     pub fn line(at: [f64; 2], height: f64, text: &str) -> Self {
-        Self {
-            at,
-            anchor: Anchor::Start,
-            height,
-            text: text.to_owned(),
-        }
+        Self { at, anchor: Anchor::Start, height, text: text.to_owned() }
     }
 
     /// A text around the point `at`.
     pub fn centred(at: [f64; 2], height: f64, text: String) -> Self {
-        Self {
-            at,
-            anchor: Anchor::Centre,
-            height,
-            text,
-        }
+        Self { at, anchor: Anchor::Centre, height, text }
     }
 
     /// The anchor's place on the baseline (mm).
@@ -102,7 +92,8 @@ impl Text {
 }
 
 impl Shape {
-    /// Where a tool begins and ends. A hole begins and ends at its centre, where the tool pierces the material.
+    /// Where a tool begins and ends. A hole begins and ends at its centre, where the tool pierces
+    /// the material.
     pub fn ends(&self) -> [[f64; 2]; 2] {
         let at = |point: Option<&[f64; 2]>| point.copied().unwrap_or_default();
         match self {
@@ -119,10 +110,9 @@ impl Shape {
     pub fn length(&self) -> f64 {
         match self {
             Self::Line([from, to]) => distance(*from, *to),
-            Self::Polyline(points) => points
-                .windows(2)
-                .map(|ends| distance(ends[0], ends[1]))
-                .sum(),
+            Self::Polyline(points) => {
+                points.windows(2).map(|ends| distance(ends[0], ends[1])).sum()
+            }
             Self::Circle { radius, .. } => TAU * radius,
             Self::Polygon(corners) => edges(corners).map(|(p, q)| distance(p, q)).sum(),
             Self::Contour(vertices) => Self::Polygon(flattened(vertices, true)).length(),

@@ -36,19 +36,12 @@ impl Style {
 
     /// An area or a text in one colour.
     pub fn fill(colour: Colour) -> Self {
-        Self {
-            fill: Some(colour),
-            ..Self::NOTHING
-        }
+        Self { fill: Some(colour), ..Self::NOTHING }
     }
 
     /// A line of the given width (mm).
     pub fn stroke(colour: Colour, width: f64) -> Self {
-        Self {
-            stroke: Some(colour),
-            width,
-            ..Self::NOTHING
-        }
+        Self { stroke: Some(colour), width, ..Self::NOTHING }
     }
 
     /// With round ends and corners of lines.

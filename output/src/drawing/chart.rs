@@ -11,8 +11,8 @@ pub(super) struct Chart {
 }
 
 impl Chart {
-    /// Draws the frame, the ticks and the names of the axes of a chart between the corners `low` and `high` of the
-    /// page (mm). `ticks` selects the axes that have ticks.
+    /// Draws the frame, the ticks and the names of the axes of a chart between the corners `low`
+    /// and `high` of the page (mm). `ticks` selects the axes that have ticks.
     pub fn new(
         sketch: &mut Sketch,
         [low, high]: [[f64; 2]; 2],
@@ -33,13 +33,7 @@ impl Chart {
                 let [x, y] = chart.at(place);
                 let shifted = |[dx, dy]: [f64; 2]| [x + dx * u, y + dy * u];
                 sketch.canvas.line([x, y], shifted(end), axis);
-                sketch.text(
-                    shifted(label),
-                    12.0 * u,
-                    Anchor::Middle,
-                    muted,
-                    &trimmed(value, 3),
-                );
+                sketch.text(shifted(label), 12.0 * u, Anchor::Middle, muted, &trimmed(value, 3));
             }
         }
         let ink = Style::fill(INK);

@@ -24,15 +24,8 @@ pub fn deployed(scene: &Scene, deployment: &Deployment) -> String {
     let state = State::new(scene, &deployment.sheet, deployment.compared());
     let openings_deg = &state.openings_deg;
     let mean = openings_deg.iter().sum::<f64>() / openings_deg.len() as f64;
-    let max = openings_deg
-        .iter()
-        .copied()
-        .fold(f64::NEG_INFINITY, f64::max);
-    let actuation = if scene.hinge.carries_load() {
-        ". Panels in the plane"
-    } else {
-        ""
-    };
+    let max = openings_deg.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let actuation = if scene.hinge.carries_load() { ". Panels in the plane" } else { "" };
     let subtitle = format!(
         "{}: mean hinge opening {mean:.1}\u{b0}, maximum {max:.1}\u{b0}{actuation}. Target dashed",
         match deployment.released {
@@ -44,8 +37,8 @@ pub fn deployed(scene: &Scene, deployment: &Deployment) -> String {
     state.drawn(state.extent(), &subtitle, &scale)
 }
 
-/// The frames of the deployment of a run: at most `most` states from the flat sheet to the last one, and without its loads if the
-/// target is for that, on the same page and in the same colours.
+/// The frames of the deployment of a run: at most `most` states from the flat sheet to the last
+/// one, and without its loads if the target is for that, on the same page and in the same colours.
 pub fn deployment_frames(scene: &Scene, designed: &Designed, most: usize) -> Vec<String> {
     let deployment = &designed.best.deployment;
     let before = states_before(&designed.problem, deployment);
@@ -53,31 +46,20 @@ pub fn deployment_frames(scene: &Scene, designed: &Designed, most: usize) -> Vec
     let all: Vec<&LoadStep> = loaded.chain(deployment.unloaded()).collect();
     let steps = before.len() + deployment.path.len();
     let index = kept(all.len(), most);
-    let states: Vec<State> = (index.iter())
-        .map(|&i| State::new(scene, &deployment.sheet, all[i]))
-        .collect();
+    let states: Vec<State> =
+        (index.iter()).map(|&i| State::new(scene, &deployment.sheet, all[i])).collect();
     let extent: Vec<[f64; 2]> = states.iter().flat_map(State::extent).collect();
-    let openings = states
-        .iter()
-        .flat_map(|state| state.openings_deg.iter().copied());
+    let openings = states.iter().flat_map(|state| state.openings_deg.iter().copied());
     let scale = ColourScale::covering(openings);
     let frame = |(&i, state): (&usize, &State)| {
         let place = if i == steps {
             UNLOADED.to_lowercase()
         } else if scene.hinge.carries_load() {
-            format!(
-                "load step {i} of {}, load factor {:.2}",
-                steps - 1,
-                all[i].load_factor
-            )
+            format!("load step {i} of {}, load factor {:.2}", steps - 1, all[i].load_factor)
         } else {
             format!("opening {:.1}\u{b0}", state.openings_deg[0])
         };
-        state.drawn(
-            extent.clone(),
-            &format!("Deployment: {place}. Target dashed"),
-            &scale,
-        )
+        state.drawn(extent.clone(), &format!("Deployment: {place}. Target dashed"), &scale)
     };
     std::iter::zip(&index, &states).map(frame).collect()
 }
@@ -98,10 +80,7 @@ impl<'a> State<'a> {
             sheet,
             step,
             configuration: placed(scene, sheet, &step.configuration),
-            openings_deg: deformations
-                .iter()
-                .map(|eps| eps.theta.to_degrees())
-                .collect(),
+            openings_deg: deformations.iter().map(|eps| eps.theta.to_degrees()).collect(),
         }
     }
 

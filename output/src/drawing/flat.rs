@@ -10,10 +10,7 @@ use design::sheet::topology::is_even;
 /// The flat sheet with its cuts.
 pub fn flat(title: &str, sheet: &Sheet, cuts: &CutLines) -> String {
     let widths = sheet.hinges.iter().map(|hinge| hinge.w_lig);
-    let (min, max) = (
-        widths.clone().fold(f64::INFINITY, f64::min),
-        widths.fold(0.0, f64::max),
-    );
+    let (min, max) = (widths.clone().fold(f64::INFINITY, f64::min), widths.fold(0.0, f64::max));
     let subtitle = format!(
         "Flat cut pattern: {} \u{d7} {} panels, {} hinges, ligaments {min:.1} to {max:.1} mm",
         sheet.grid.m,
@@ -42,14 +39,10 @@ fn panels(sketch: &mut Sketch, sheet: &Sheet) {
 }
 
 fn windows(sketch: &mut Sketch, sheet: &Sheet) {
-    let style = Style::stroke(TEAL, 0.8 * sketch.unit)
-        .filled(TEAL)
-        .opacity(0.12, 0.45);
+    let style = Style::stroke(TEAL, 0.8 * sketch.unit).filled(TEAL).opacity(0.12, 0.45);
     for (hinge, window) in sheet.hinges.iter().zip(Window::of_sheet(sheet)) {
         for panel in [hinge.panel_a(), hinge.panel_b()] {
-            sketch
-                .canvas
-                .polygon(&window.inside(&sheet.panels[panel]), style);
+            sketch.canvas.polygon(&window.inside(&sheet.panels[panel]), style);
         }
     }
 }
@@ -86,7 +79,8 @@ fn ligaments(sketch: &mut Sketch, sheet: &Sheet) {
     }
 }
 
-/// The middle of the number of a hinge, on panel B next to the main cut, at the distance `reach` from the hinge (mm).
+/// The middle of the number of a hinge, on panel B next to the main cut, at the distance `reach`
+/// from the hinge (mm).
 fn number_place(hinge: &Hinge, window: &Window, reach: f64) -> [f64; 2] {
     let along = hinge.alpha / 2.0;
     window.point(reach * along.cos(), -reach * along.sin())

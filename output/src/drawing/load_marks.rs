@@ -1,5 +1,5 @@
-//! Supports and loads in a state of the path: a symbol on every supported panel, an arrow along every force, a curved
-//! arrow in the sense of every couple.
+//! Supports and loads in a state of the path: a symbol on every supported panel, an arrow along
+//! every force, a curved arrow in the sense of every couple.
 
 use crate::report::rounded;
 use design::equilibrium::load_step::LoadStep;
@@ -23,7 +23,8 @@ pub(crate) enum Mark {
 
 /// Half the size of the symbol of a support, in units of the picture, as the lengths below.
 const SUPPORT: f64 = 9.0;
-/// Length of the arrow of the largest force, the length that no arrow is below, and length and half width of a head.
+/// Length of the arrow of the largest force, the length that no arrow is below, and length and half
+/// width of a head.
 const LONGEST: f64 = 68.0;
 const SHORTEST: f64 = 24.0;
 const HEAD: [f64; 2] = [18.0, 8.0];
@@ -50,16 +51,9 @@ impl PanelLoad {
             sums[load.panel][load.dof.index()] += step.load_factor * load.value;
         }
         let most = |of: fn(&[f64; 3]) -> f64| sums.iter().map(of).fold(0.0, f64::max);
-        let (force, couple) = (
-            most(|[x, y, _]| x.hypot(*y)),
-            most(|[.., moment]| moment.abs()),
-        );
+        let (force, couple) = (most(|[x, y, _]| x.hypot(*y)), most(|[.., moment]| moment.abs()));
         let kept = |value: f64, size: f64, largest: f64| {
-            if size > NEGLIGIBLE * largest {
-                value
-            } else {
-                0.0
-            }
+            if size > NEGLIGIBLE * largest { value } else { 0.0 }
         };
         (sums.iter().enumerate())
             .map(|(k, &[x, y, moment])| Self {
@@ -87,7 +81,8 @@ pub(super) fn extent(scene: &Scene, sheet: &Sheet, step: &LoadStep) -> Vec<[f64;
         .collect()
 }
 
-/// The marks of a state; `unit` is the unit of the picture (mm). Of equal loads the first has a label.
+/// The marks of a state; `unit` is the unit of the picture (mm). Of equal loads the first has a
+/// label.
 pub(crate) fn marks(scene: &Scene, sheet: &Sheet, step: &LoadStep, unit: f64) -> Vec<Mark> {
     let mut marks = supports(scene, sheet, step, unit);
     let loads = PanelLoad::on_panels(scene, sheet, step);
@@ -155,13 +150,6 @@ fn curved_arrow([x, y]: [f64; 2], sense: f64, unit: f64) -> [Mark; 2] {
     let length = HEAD[0] / RADIUS;
     let arc = (0..=24).map(|i| from + f64::from(i) / 24.0 * (to - length - from));
     let neck = to - length;
-    let head = [
-        at(RADIUS, to + 0.1),
-        at(RADIUS - HEAD[1], neck),
-        at(RADIUS + HEAD[1], neck),
-    ];
-    [
-        Mark::Shaft(arc.map(|angle| at(RADIUS, angle)).collect()),
-        Mark::Head(head.to_vec()),
-    ]
+    let head = [at(RADIUS, to + 0.1), at(RADIUS - HEAD[1], neck), at(RADIUS + HEAD[1], neck)];
+    [Mark::Shaft(arc.map(|angle| at(RADIUS, angle)).collect()), Mark::Head(head.to_vec())]
 }

@@ -1,5 +1,6 @@
-//! A measured sheet and its prediction, after Fig. 10 (d)-(h) of the paper: outlines superposed with magnified
-//! residuals, hinge openings measured against predicted, errors of the panel centres against the floor.
+//! A measured sheet and its prediction, after Fig. 10 (d)-(h) of the paper: outlines superposed
+//! with magnified residuals, hinge openings measured against predicted, errors of the panel centres
+//! against the floor.
 
 use crate::display::{Anchor, Style};
 use crate::drawing::chart::Chart;
@@ -38,10 +39,7 @@ pub fn measured(sheet: &Sheet, fit: &Fit, report: &MeasurementReport) -> String 
     let best = &report.best;
     let rms = best.corners.as_ref().or(best.centres.as_ref());
     let rms = rms.map_or(String::new(), |rms| {
-        format!(
-            "; rms {:.2} mm, {:.2} % of the sheet",
-            rms.rms, rms.rms_percent
-        )
+        format!("; rms {:.2} mm, {:.2} % of the sheet", rms.rms, rms.rms_percent)
     });
     let state = match report.load_factor_error {
         Some(_) => format!("at load factor {:.3}", best.load_factor),
@@ -59,26 +57,14 @@ pub fn measured(sheet: &Sheet, fit: &Fit, report: &MeasurementReport) -> String 
     }
     outlines(sketch, sheet, fit);
     residuals(sketch, fit, factor, panel_size);
-    openings(
-        sketch,
-        [[left, top - 1.05 * side], [left + side, top - 0.05 * side]],
-        report,
-    );
-    centres(
-        sketch,
-        [[left, top - 2.55 * side], [left + side, top - 1.55 * side]],
-        report,
-    );
+    openings(sketch, [[left, top - 1.05 * side], [left + side, top - 0.05 * side]], report);
+    centres(sketch, [[left, top - 2.55 * side], [left + side, top - 1.55 * side]], report);
     page.finish()
 }
 
 /// The largest magnification at which no residual of the fit is longer than a part of a panel.
 fn magnification(fit: &Fit, panel_size: f64) -> f64 {
-    let longest = fit
-        .points
-        .iter()
-        .map(FittedPoint::distance)
-        .fold(0.0, f64::max);
+    let longest = fit.points.iter().map(FittedPoint::distance).fold(0.0, f64::max);
     let fits = |factor: &&f64| *factor * longest <= LONGEST * panel_size;
     *MAGNIFICATIONS.iter().rev().find(fits).unwrap_or(&1.0)
 }
@@ -118,7 +104,8 @@ fn residual(point: &FittedPoint, factor: f64) -> [[f64; 2]; 2] {
     [[x, y], [x + factor * dx, y + factor * dy]]
 }
 
-/// Draws the openings measured against predicted, with two standard errors and the line of agreement.
+/// Draws the openings measured against predicted, with two standard errors and the line of
+/// agreement.
 fn openings(sketch: &mut Sketch, corners: [[f64; 2]; 2], report: &MeasurementReport) {
     let bar = |opening: &MeasuredOpening| {
         [-2.0, 2.0].map(|k| opening.measured_deg + k * opening.error_deg)
@@ -127,9 +114,8 @@ fn openings(sketch: &mut Sketch, corners: [[f64; 2]; 2], report: &MeasurementRep
         .openings
         .iter()
         .flat_map(|opening| [bar(opening)[0], bar(opening)[1], opening.predicted_deg]);
-    let [low, high] = values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| {
-        [low.min(x), high.max(x)]
-    });
+    let [low, high] =
+        values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)]);
     if low > high {
         return;
     }
@@ -138,23 +124,15 @@ fn openings(sketch: &mut Sketch, corners: [[f64; 2]; 2], report: &MeasurementRep
     let names = ["predicted opening (deg)", "measured opening (deg)"];
     let chart = Chart::new(sketch, corners, [range; 2], names, [true; 2]);
     let line = sketch.dashed(MUTED, 1.0, 4.0);
-    sketch
-        .canvas
-        .line(chart.at([range[0]; 2]), chart.at([range[1]; 2]), line);
+    sketch.canvas.line(chart.at([range[0]; 2]), chart.at([range[1]; 2]), line);
     let (stroke, dot) = (sketch.stroke(TEAL, 1.0), Style::fill(TEAL));
     // Many openings are drawn as small dots.
-    let radius = if report.openings.len() > 100 {
-        1.6
-    } else {
-        3.0
-    } * sketch.unit;
+    let radius = if report.openings.len() > 100 { 1.6 } else { 3.0 } * sketch.unit;
     for opening in &report.openings {
         let predicted = opening.predicted_deg;
         let [from, to] = bar(opening).map(|measured| chart.at([predicted, measured]));
         sketch.canvas.line(from, to, stroke);
-        sketch
-            .canvas
-            .circle(chart.at([predicted, opening.measured_deg]), radius, dot);
+        sketch.canvas.circle(chart.at([predicted, opening.measured_deg]), radius, dot);
     }
 }
 
@@ -164,30 +142,13 @@ fn centres(sketch: &mut Sketch, corners: [[f64; 2]; 2], report: &MeasurementRepo
     if panels.is_empty() {
         return;
     }
-    let closed = report
-        .closed
-        .as_ref()
-        .and_then(|closed| closed.floor.centres.as_ref());
+    let closed = report.closed.as_ref().and_then(|closed| closed.floor.centres.as_ref());
     let floor = closed.map(|centres| centres.rms);
-    let highest = panels
-        .iter()
-        .map(|panel| panel.distance())
-        .chain(floor)
-        .fold(1e-6, f64::max);
+    let highest = panels.iter().map(|panel| panel.distance()).chain(floor).fold(1e-6, f64::max);
     let ranges = [[0.0, panels.len() as f64], [0.0, 1.08 * highest]];
-    let name = if floor.is_some() {
-        "panel; floor dashed"
-    } else {
-        "panel"
-    };
+    let name = if floor.is_some() { "panel; floor dashed" } else { "panel" };
     let names = [name, "error of the panel centre (mm)"];
-    let chart = Chart::new(
-        sketch,
-        corners,
-        ranges,
-        names,
-        [panels.len() > NUMBERED, true],
-    );
+    let chart = Chart::new(sketch, corners, ranges, names, [panels.len() > NUMBERED, true]);
     let muted = Style::fill(MUTED);
     for (place, panel) in panels.iter().enumerate() {
         let above = floor.is_some_and(|floor| panel.distance() > floor);
@@ -208,10 +169,6 @@ fn centres(sketch: &mut Sketch, corners: [[f64; 2]; 2], report: &MeasurementRepo
     }
     if let Some(floor) = floor {
         let line = sketch.dashed(INK, 1.2, 4.0);
-        sketch.canvas.line(
-            chart.at([0.0, floor]),
-            chart.at([ranges[0][1], floor]),
-            line,
-        );
+        sketch.canvas.line(chart.at([0.0, floor]), chart.at([ranges[0][1], floor]), line);
     }
 }

@@ -1,4 +1,5 @@
-//! Common parts of the pictures: the page with its title and scale bar, the colours, the colour scale.
+//! Common parts of the pictures: the page with its title and scale bar, the colours, the colour
+//! scale.
 
 use crate::display::{Anchor, Canvas, Colour, Style, rectangle, trimmed};
 use design::geometry::polygon::bounds;
@@ -17,13 +18,15 @@ pub const PANELS: [Colour; 2] = [[234, 240, 246], [246, 240, 228]];
 /// Width of a picture on a screen (px).
 const WIDTH_PX: f64 = 1400.0;
 
-/// Mean width of a character of DejaVu Sans Bold and DejaVu Sans, relative to the height of the font, at its upper end.
+/// Mean width of a character of DejaVu Sans Bold and DejaVu Sans, relative to the height of the
+/// font, at its upper end.
 const BOLD_WIDTH: f64 = 0.72;
 const PLAIN_WIDTH: f64 = 0.62;
 /// Height below which a text is cut off instead of becoming smaller.
 const SMALLEST: f64 = 12.0;
 
-/// A text that is at most `wide`, and its height: smaller than `size` if it is long, and cut off if it is very long.
+/// A text that is at most `wide`, and its height: smaller than `size` if it is long, and cut off if
+/// it is very long.
 fn fitted(text: &str, size: f64, character: f64, wide: f64) -> (f64, String) {
     let count = text.chars().count();
     let fits = wide / (character * count.max(1) as f64);
@@ -98,23 +101,12 @@ impl Page {
         let top = page_high[1];
         let wide = (page_high[0] - left) / unit - 20.0;
         let (size, title) = fitted(title, 24.0, BOLD_WIDTH, wide);
-        canvas.text(
-            [left, top - 44.0 * unit],
-            size * unit,
-            Anchor::Start,
-            ink,
-            &title,
-        );
+        canvas.text([left, top - 44.0 * unit], size * unit, Anchor::Start, ink, &title);
         let muted = Style::fill(MUTED);
         let below = [left, top - 70.0 * unit];
         let (size, subtitle) = fitted(subtitle, 15.0, PLAIN_WIDTH, wide);
         canvas.text(below, size * unit, Anchor::Start, muted, &subtitle);
-        let mut page = Self {
-            sketch: Sketch { canvas, unit },
-            low,
-            high,
-            corners,
-        };
+        let mut page = Self { sketch: Sketch { canvas, unit }, low, high, corners };
         page.scale_bar([left, page_low[1] + 32.0 * unit]);
         page
     }
@@ -130,18 +122,12 @@ impl Page {
         let stroke = self.sketch.stroke(INK, 1.6);
         self.sketch.canvas.line(at, [end, at[1]], stroke);
         for x in [at[0], end] {
-            self.sketch
-                .canvas
-                .line([x, at[1] - height], [x, at[1] + height], stroke);
+            self.sketch.canvas.line([x, at[1] - height], [x, at[1] + height], stroke);
         }
         let text = format!("{length} mm");
-        let at = [
-            end + 12.0 * self.sketch.unit,
-            at[1] - 5.0 * self.sketch.unit,
-        ];
+        let at = [end + 12.0 * self.sketch.unit, at[1] - 5.0 * self.sketch.unit];
         let muted = Style::fill(MUTED);
-        self.sketch
-            .text(at, 15.0 * self.sketch.unit, Anchor::Start, muted, &text);
+        self.sketch.text(at, 15.0 * self.sketch.unit, Anchor::Start, muted, &text);
     }
 
     /// Draws the colours of `scale` from bottom to top at the right edge, with its ticks.
@@ -159,9 +145,7 @@ impl Page {
             // Neighbouring bands overlap slightly so that no seam is visible.
             let y1 = at((f1 + 0.3 / BANDS as f64).min(1.0));
             let band = rectangle([[x0, at(f0)], [x1, y1]]);
-            self.sketch
-                .canvas
-                .polygon(&band, Style::fill(viridis((f0 + f1) / 2.0)));
+            self.sketch.canvas.polygon(&band, Style::fill(viridis((f0 + f1) / 2.0)));
         }
         let muted = Style::fill(MUTED);
         for tick in 0..=scale.steps() {
@@ -174,8 +158,7 @@ impl Page {
             self.sketch.text(at, 14.0 * u, Anchor::Start, muted, &text);
         }
         let above = [(x0 + x1) / 2.0, at(1.0) + 16.0 * u];
-        self.sketch
-            .text(above, 14.0 * u, Anchor::Middle, muted, name);
+        self.sketch.text(above, 14.0 * u, Anchor::Middle, muted, name);
     }
 }
 
@@ -193,11 +176,7 @@ impl ColourScale {
         let min = values.clone().into_iter().fold(0.0, f64::min);
         let max = values.into_iter().fold(0.0, f64::max);
         let step = round_below(f64::max(max - min, 1e-3) / 4.0);
-        Self {
-            low: step * (min / step).floor(),
-            high: step * (max / step).ceil().max(1.0),
-            step,
-        }
+        Self { low: step * (min / step).floor(), high: step * (max / step).ceil().max(1.0), step }
     }
 
     fn steps(&self) -> usize {

@@ -10,7 +10,8 @@ use design::sheet::validity::overlap;
 use serde_json::json;
 use support::table::Table;
 
-/// Lists the sheet with the same opening angle `theta` (rad) at every hinge; panel 0 keeps its centroid.
+/// Lists the sheet with the same opening angle `theta` (rad) at every hinge; panel 0 keeps its
+/// centroid.
 pub fn deployment(
     problem: &DesignProblem,
     design: &DesignVector,
@@ -36,7 +37,8 @@ pub fn deployment(
         "panel_corners": panel_corners,
         // (a, s, theta) of every hinge (mm, mm, rad).
         "hinge_deformation": deformations.iter().map(|eps| eps.to_array()).collect::<Vec<_>>(),
-        // (panel, corner) on the outline, counter-clockwise from the south-west, and their deployed positions (mm).
+        // (panel, corner) on the outline, counter-clockwise from the south-west, and their deployed
+        // positions (mm).
         "outline_panel_corner": outline,
         "outline_vertices": outline.iter().map(|&(k, c)| panel_corners[k][c]).collect::<Vec<_>>(),
         // The outline corners that belong to no hinge.
@@ -45,29 +47,20 @@ pub fn deployment(
         "contact_deg": [touching, closed],
         // Maximum overlap of two panels, relative to the mean panel area.
         "overlap": overlap,
-        // lambda of (6), and distances of panels as functions of the opening, across the columns and across the rows.
+        // lambda of (6), and distances of panels as functions of the opening, across the columns
+        // and across the rows.
         "stretch": stretch,
         "spans": spans,
     });
     let mut table = Table::new(["", "", ""]).left(&[0, 2]);
     let contact = format!("contact at {touching} and {closed}");
-    table.row([
-        "opening, deg",
-        &format!("{:.2}", theta.to_degrees()),
-        &contact,
-    ]);
+    table.row(["opening, deg", &format!("{:.2}", theta.to_degrees()), &contact]);
     table.row(["overlap", &format!("{overlap:.1e}"), "of a panel"]);
-    for (i, name) in ["lambda across columns", "lambda across rows"]
-        .into_iter()
-        .enumerate()
-    {
+    for (i, name) in ["lambda across columns", "lambda across rows"].into_iter().enumerate() {
         let (stretch, span) = (stretch[i], spans[i]);
         let (theta, most) = (span.theta_max.to_degrees(), span.lambda_max);
         let most = format!("at most {most:.4}, at {theta:.1} deg");
         table.row([name, &format!("{stretch:.4}"), &most]);
     }
-    Ok(Listing {
-        numbers,
-        document: table.into(),
-    })
+    Ok(Listing { numbers, document: table.into() })
 }

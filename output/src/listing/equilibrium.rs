@@ -27,7 +27,8 @@ const HEAD: [&str; 12] = [
     "opening\ndeg",
 ];
 
-/// Follows the equilibrium path of a design and lists its load steps in their order; an error if the model has no equilibrium.
+/// Follows the equilibrium path of a design and lists its load steps in their order; an error if
+/// the model has no equilibrium.
 pub fn equilibrium(problem: &DesignProblem, design: &DesignVector) -> Result<Listing, DesignError> {
     let mechanics = problem.model.mechanics().ok_or(DesignError::NoMechanics)?;
     let Deployment { sheet, path, .. } = problem.deploy(design)?;
@@ -37,10 +38,7 @@ pub fn equilibrium(problem: &DesignProblem, design: &DesignVector) -> Result<Lis
     let (steps, rows): (Vec<Value>, Vec<_>) = path.iter().map(list).unzip();
     let mut table = Table::new(HEAD);
     rows.into_iter().for_each(|row| table.row(row));
-    Ok(Listing {
-        numbers: json!({ "steps": steps }),
-        document: table.into(),
-    })
+    Ok(Listing { numbers: json!({ "steps": steps }), document: table.into() })
 }
 
 /// A load step in numbers and as a row.
@@ -57,28 +55,30 @@ fn list(
     let (stored, total) = (sum(&of_law), sum(&all));
     let spring = |c: usize| -> f64 {
         let hinges = std::iter::zip(&of_law, &deformations);
-        hinges
-            .map(|(energy, eps)| 0.5 * energy.forces[c] * eps[c])
-            .sum()
+        hinges.map(|(energy, eps)| 0.5 * energy.forces[c] * eps[c]).sum()
     };
     let numbers = json!({
         // zeta, and the part of the weight of a hanging sheet that is on; 1 once the loads act.
         "load_factor": step.load_factor,
         "weight": step.weight,
         "status": step.status,
-        // Maximum unbalanced force, relative to the maximum force, and the part of it that rounding can cause.
+        // Maximum unbalanced force, relative to the maximum force, and the part of it that rounding
+        // can cause.
         "residual": step.residual,
         "rounding": step.rounding,
-        // Newton iterations over all increments; factorisations, and increments accepted and rejected since the step before.
+        // Newton iterations over all increments; factorisations, and increments accepted and
+        // rejected since the step before.
         "iterations": step.effort.iterations,
         "effort": step.effort,
-        // Pivots of the tangent that are not positive; 0 in a state that is stable under dead loads.
+        // Pivots of the tangent that are not positive; 0 in a state that is stable under dead
+        // loads.
         "negative_pivots": step.negative_pivots,
         // Of the tangent scaled to a unit diagonal; null if it could not be factorised.
         "condition": condition,
         // Pi of (10) (N mm).
         "Pi": step.potential,
-        // U of (10), its parts, and the energies of the springs k_a, k_s and k_theta of (11), null for other laws (N mm).
+        // U of (10), its parts, and the energies of the springs k_a, k_s and k_theta of (11), null
+        // for other laws (N mm).
         "energy": {
             "total": total,
             "law": stored,
@@ -88,7 +88,8 @@ fn list(
         // Motion (u_x, u_y, phi) and deployed corners SW, SE, NE, NW of every panel (mm, rad).
         "q": step.configuration,
         "panel_corners": deployed_corners(hinged.sheet, &step.configuration),
-        // (a, s, theta) (mm, mm, rad), (F_a, F_s, M_theta) (N, N, N mm) and energy (N mm) of every hinge, with contact.
+        // (a, s, theta) (mm, mm, rad), (F_a, F_s, M_theta) (N, N, N mm) and energy (N mm) of every
+        // hinge, with contact.
         "hinge_deformation": deformations,
         "hinge_force": all.iter().map(|energy| energy.forces).collect::<Vec<_>>(),
         "hinge_energy": all.iter().map(|energy| energy.w).collect::<Vec<_>>(),

@@ -11,7 +11,8 @@ use scene::placement::deployed_outline;
 use serde_json::json;
 use support::table::Table;
 
-/// Lists L of (16), its terms and its gradient in (z, ell, omega) of a design of a scene and its problem.
+/// Lists L of (16), its terms and its gradient in (z, ell, omega) of a design of a scene and its
+/// problem.
 pub fn gradient(
     scene: &Scene,
     problem: &DesignProblem,
@@ -22,9 +23,7 @@ pub fn gradient(
     let outline = deployed_outline(scene, &found.deployment);
     let common = intersection_over_union(&outline, &scene.target.points);
     let weights = problem.objective.weights();
-    let weights: TermValues = weights
-        .map(|(name, _, weight)| (name.to_owned(), weight))
-        .collect();
+    let weights: TermValues = weights.map(|(name, _, weight)| (name.to_owned(), weight)).collect();
     let gradient = &found.gradient;
     let numbers = json!({
         // L of (16) (mm^2), its unweighted terms, and their weights.
@@ -59,8 +58,5 @@ pub fn gradient(
     ] {
         table.row([name.to_owned(), number(value), String::new()]);
     }
-    Ok(Listing {
-        numbers,
-        document: table.into(),
-    })
+    Ok(Listing { numbers, document: table.into() })
 }

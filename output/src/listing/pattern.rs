@@ -33,7 +33,8 @@ pub fn pattern(problem: &DesignProblem, design: &DesignVector) -> Result<Listing
         // x_ij and x'_ij of every vertex, row by row (mm).
         "points_x": vertices().map(|(i, j)| pattern.x(i, j)).collect::<Vec<_>>(),
         "points_xp": vertices().map(|(i, j)| pattern.x_prime(i, j)).collect::<Vec<_>>(),
-        // Corners SW, SE, NE, NW (mm), area (mm^2) and reference point of the rotation (mm) of every panel.
+        // Corners SW, SE, NE, NW (mm), area (mm^2) and reference point of the rotation (mm) of
+        // every panel.
         "panel_corners": panels().map(|panel| panel.corners).collect::<Vec<_>>(),
         "panel_area": panels().map(|panel| panel.area).collect::<Vec<_>>(),
         "panel_centroid": panels().map(|panel| panel.centroid).collect::<Vec<_>>(),
@@ -48,12 +49,7 @@ pub fn pattern(problem: &DesignProblem, design: &DesignVector) -> Result<Listing
     });
     Ok(Listing {
         numbers,
-        document: document(
-            [pattern.grid.m, pattern.grid.n],
-            sheet.hinges.len(),
-            &validity,
-            &spans,
-        ),
+        document: document([pattern.grid.m, pattern.grid.n], sheet.hinges.len(), &validity, &spans),
     })
 }
 
@@ -110,23 +106,14 @@ fn document([m, n]: [usize; 2], hinges: usize, validity: &Validity, spans: &[Spa
         ("area error", format!("{area_error:.1e}"), ""),
         ("overlap", format!("{overlap:.1e}"), "of a panel"),
         ("min. void side", format!("{least_void_side:.4}"), "mm"),
-        (
-            "min. hinge spacing",
-            format!("{least_hinge_spacing:.4}"),
-            &windows,
-        ),
-        (
-            "cut angles",
-            format!("{min:.1}"),
-            &format!("to {max:.1} deg{trained}"),
-        ),
+        ("min. hinge spacing", format!("{least_hinge_spacing:.4}"), &windows),
+        ("cut angles", format!("{min:.1}"), &format!("to {max:.1} deg{trained}")),
     ] {
         table.row([name, &value, note]);
     }
-    for (name, span) in std::iter::zip(
-        ["lambda_max across columns", "lambda_max across rows"],
-        spans,
-    ) {
+    for (name, span) in
+        std::iter::zip(["lambda_max across columns", "lambda_max across rows"], spans)
+    {
         let at = format!("at {:.1} deg", span.theta_max.to_degrees());
         table.row([name, &format!("{:.4}", span.lambda_max), &at]);
     }

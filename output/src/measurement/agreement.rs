@@ -56,14 +56,9 @@ pub struct OpeningSpread {
 impl Agreement {
     pub(super) fn new(sheet: &Sheet, fit: &Fit) -> Self {
         let panels = MeasuredPanel::all(sheet, fit);
-        let corners = fit
-            .points
-            .iter()
-            .filter(|point| point.mark.corner.is_some());
+        let corners = fit.points.iter().filter(|point| point.mark.corner.is_some());
         let corners = corners.map(|point| (point.mark.to_string(), point.distance()));
-        let centres = panels
-            .iter()
-            .map(|panel| (format!("P{}", panel.panel), panel.distance()));
+        let centres = panels.iter().map(|panel| (format!("P{}", panel.panel), panel.distance()));
         let size = sheet.outline.size();
         Self {
             load_factor: fit.shape.load_factor,

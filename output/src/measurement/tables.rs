@@ -11,14 +11,13 @@ use support::table::{Cell, Columns, Table};
 const LISTED: usize = 12;
 
 impl MeasurementReport {
-    /// Measured and predicted position of every point at the best state, in the frame of the design (mm).
+    /// Measured and predicted position of every point at the best state, in the frame of the design
+    /// (mm).
     pub fn residuals_csv(&self) -> String {
         let length = |value: f64| format!("{value:.4}");
         Columns::new()
             .column("panel", |point: &FittedPoint| point.mark.panel)
-            .column("corner", |point| {
-                Cell::known(point.mark.corner.map(Cell::text), "")
-            })
+            .column("corner", |point| Cell::known(point.mark.corner.map(Cell::text), ""))
             .column("measured_x_mm", move |point| length(point.measured[0]))
             .column("measured_y_mm", move |point| length(point.measured[1]))
             .column("predicted_x_mm", move |point| length(point.predicted[0]))
@@ -39,12 +38,8 @@ impl MeasurementReport {
             .column("panel_b", |opening| opening.panels[1])
             .column("measured_deg", move |opening| degrees(opening.measured_deg))
             .column("error_deg", move |opening| degrees(opening.error_deg))
-            .column("predicted_deg", move |opening| {
-                degrees(opening.predicted_deg)
-            })
-            .column("difference_deg", move |opening| {
-                degrees(opening.difference_deg())
-            })
+            .column("predicted_deg", move |opening| degrees(opening.predicted_deg))
+            .column("difference_deg", move |opening| degrees(opening.difference_deg()))
             .table(&self.openings)
             .csv()
     }
@@ -54,10 +49,7 @@ impl MeasurementReport {
         let mut page = Document::default();
         page.heading(1, format!("{}: measured against predicted", self.title));
         page.text("predicted with panels in the plane and without friction");
-        page.text(format!(
-            "{} points; sheet of {:.1} mm",
-            self.points, self.sheet_size
-        ));
+        page.text(format!("{} points; sheet of {:.1} mm", self.points, self.sheet_size));
         // In mm of the design, also if the points are in pixels.
         let [x, y] = self.motion.origin.map(|x| x / self.motion.scale);
         page.text(format!(
@@ -65,9 +57,7 @@ impl MeasurementReport {
             self.motion.rotation_deg, self.motion.scale
         ));
         if let Some(scatter) = self.scatter {
-            page.text(format!(
-                "scatter of one coordinate about rigid panels: {scatter:.2} mm"
-            ));
+            page.text(format!("scatter of one coordinate about rigid panels: {scatter:.2} mm"));
         }
         page.table(self.agreement());
         if self.load_factor_error.is_none() {
@@ -100,17 +90,13 @@ impl MeasurementReport {
             table.row([name, &full, &best]);
         };
         type Part = fn(&Agreement) -> Option<&Spread>;
-        let parts: [(&str, Part); 2] = [
-            ("corners", |of| of.corners.as_ref()),
-            ("panel centres", |of| of.centres.as_ref()),
-        ];
+        let parts: [(&str, Part); 2] =
+            [("corners", |of| of.corners.as_ref()), ("panel centres", |of| of.centres.as_ref())];
         for (name, part) in parts {
             let [rms, percent, maximum] = ["rms (mm)", "rms (% of the sheet)", "maximum (mm)"]
                 .map(|quantity| format!("{name}, {quantity}"));
             row(&rms, &|of| Some(format!("{:.2}", part(of)?.rms)));
-            row(&percent, &|of| {
-                Some(format!("{:.3}", part(of)?.rms_percent))
-            });
+            row(&percent, &|of| Some(format!("{:.3}", part(of)?.rms_percent)));
             row(&maximum, &|of| Some(format!("{:.2}", part(of)?.max)));
             row("  at", &|of| Some(part(of)?.max_at.clone()));
         }
@@ -122,16 +108,10 @@ impl MeasurementReport {
         ];
         for (name, value) in degrees {
             let name = format!("openings, {name} (deg)");
-            row(&name, &|of| {
-                Some(format!("{:.2}", value(of.openings.as_ref()?)))
-            });
+            row(&name, &|of| Some(format!("{:.2}", value(of.openings.as_ref()?))));
         }
-        row("openings, worst (deg)", &|of| {
-            Some(format!("{:+.2}", of.openings.as_ref()?.max_deg))
-        });
-        row("  at", &|of| {
-            Some(format!("hinge {}", of.openings.as_ref()?.max_hinge))
-        });
+        row("openings, worst (deg)", &|of| Some(format!("{:+.2}", of.openings.as_ref()?.max_deg)));
+        row("  at", &|of| Some(format!("hinge {}", of.openings.as_ref()?.max_hinge)));
         table
     }
 
@@ -146,17 +126,11 @@ impl MeasurementReport {
         page.text("hinges that differ most, opening in deg (all of them are in openings.csv):");
         let columns = Columns::new()
             .column("hinge", |opening: &MeasuredOpening| opening.hinge)
-            .column("panels", |opening| {
-                format!("P{} P{}", opening.panels[0], opening.panels[1])
-            })
+            .column("panels", |opening| format!("P{} P{}", opening.panels[0], opening.panels[1]))
             .column("measured", |opening| format!("{:.2}", opening.measured_deg))
             .column("+-", |opening| format!("{:.2}", opening.error_deg))
-            .column("predicted", |opening| {
-                format!("{:.2}", opening.predicted_deg)
-            })
-            .column("difference", |opening| {
-                format!("{:+.2}", opening.difference_deg())
-            });
+            .column("predicted", |opening| format!("{:.2}", opening.predicted_deg))
+            .column("difference", |opening| format!("{:+.2}", opening.difference_deg()));
         page.table(columns.table(worst));
     }
 }
@@ -164,9 +138,7 @@ impl MeasurementReport {
 impl Closed {
     fn add_to(&self, page: &mut Document) {
         let rms = |spread: &Option<Spread>| {
-            spread
-                .as_ref()
-                .map_or("-".to_owned(), |spread| format!("{:.2} mm", spread.rms))
+            spread.as_ref().map_or("-".to_owned(), |spread| format!("{:.2} mm", spread.rms))
         };
         page.text(format!(
             "closed sheet, the floor of the measurement: corners {}, panel centres {} rms",

@@ -44,22 +44,12 @@ impl Budget {
         let by_posture = weight.left_out();
         let released = (target_state == TargetState::Released).then_some(UNDER_LOAD);
         let left_out = by_posture.into_iter().chain(released);
-        Self {
-            errors,
-            not_modelled: left_out.chain(NEVER_MODELLED).collect(),
-            dead_loads,
-        }
+        Self { errors, not_modelled: left_out.chain(NEVER_MODELLED).collect(), dead_loads }
     }
 
     /// One row a cause, and the sum.
     pub fn table(&self) -> Table {
-        let head = [
-            "cause",
-            "corners, rms\nmm",
-            "maximum\nmm",
-            "load\n%",
-            "from",
-        ];
+        let head = ["cause", "corners, rms\nmm", "maximum\nmm", "load\n%", "from"];
         let mut table = Table::new(head).left(&[0, 4]);
         for part in &self.errors.contributions {
             let [rms, maximum, load] = self.cells(part.effect.as_ref());
@@ -68,10 +58,7 @@ impl Budget {
         }
         let [rms, maximum, load] = self.cells(Some(&self.errors.total));
         let [name, squares] = if self.errors.total.at_least {
-            [
-                "at least",
-                "root of the sum of the squares of what is known",
-            ]
+            ["at least", "root of the sum of the squares of what is known"]
         } else {
             ["in all", "root of the sum of the squares"]
         };

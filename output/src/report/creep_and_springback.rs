@@ -29,7 +29,8 @@ pub struct Released {
     pub stays: ResidualShape,
     /// Errors of the law at hinges that it has not seen; `None` if they were not measured.
     pub law: Option<SpringbackErrors>,
-    /// The moments of hinges that were opened too far and brought back, over the reported moments; `None` if that is not known.
+    /// The moments of hinges that were opened too far and brought back, over the reported moments;
+    /// `None` if that is not known.
     pub after_overshoot: Option<f64>,
 }
 

@@ -1,13 +1,14 @@
-//! Disagreement of further networks of the same training on the path of a design, an estimate of the error of the
-//! learned law.
+//! Disagreement of further networks of the same training on the path of a design, an estimate of
+//! the error of the learned law.
 //!
 //! ```text
 //! sigma_X = (mean over states of the variance of X over the networks)^(1/2) / (mean of X^2)^(1/2)
 //! ```
 //!
-//! over the states inside the training domain, for X = W, (w_lig F_a, w_lig F_s, M_theta) and D_peak. It does not
-//! contain errors that all networks have in common, such as the error of the window's mesh.
-//! (Lakshminarayanan et al., "Simple and scalable predictive uncertainty estimation", 2017.)
+//! over the states inside the training domain, for X = W, (w_lig F_a, w_lig F_s, M_theta) and
+//! D_peak. It does not contain errors that all networks have in common, such as the error of the
+//! window's mesh. (Lakshminarayanan et al., "Simple and scalable predictive uncertainty
+//! estimation", 2017.)
 
 use design::objective::design_problem::Deployment;
 use hinge::HingeDeformation;
@@ -35,8 +36,8 @@ struct Spread {
 }
 
 impl Estimate {
-    /// The estimate for a path computed with the first of `networks`; `None` for a single network, or if no state is
-    /// inside the training domain.
+    /// The estimate for a path computed with the first of `networks`; `None` for a single network,
+    /// or if no state is inside the training domain.
     pub fn new(networks: &[Surrogate], deployment: &Deployment) -> Option<Self> {
         let [mut energy, mut forces, mut peak] = [(); 3].map(|()| Spread::default());
         let mut peak_known = true;
@@ -61,8 +62,8 @@ impl Estimate {
     }
 }
 
-/// sigma of the forces of every hinge at every load step, relative to the root mean square of the forces over the
-/// path; NaN outside the training domain. `None` for a single network.
+/// sigma of the forces of every hinge at every load step, relative to the root mean square of the
+/// forces over the path; NaN outside the training domain. `None` for a single network.
 pub(crate) fn force_spreads(
     networks: &[Surrogate],
     deployment: &Deployment,
@@ -83,11 +84,7 @@ pub(crate) fn force_spreads(
             count += 1;
             forces.variances.sqrt()
         };
-        deviations.push(
-            std::iter::zip(&step.inside, predictions)
-                .map(of_hinge)
-                .collect(),
-        );
+        deviations.push(std::iter::zip(&step.inside, predictions).map(of_hinge).collect());
     }
     let scale = (squares / f64::from(count.max(1))).sqrt();
     let relative = deviations.iter_mut().flatten();
@@ -95,16 +92,14 @@ pub(crate) fn force_spreads(
     Some(deviations)
 }
 
-/// At every load step and hinge: (W, w_lig F_a, w_lig F_s, M_theta, D_peak), each with one value for each network.
+/// At every load step and hinge: (W, w_lig F_a, w_lig F_s, M_theta, D_peak), each with one value
+/// for each network.
 fn predictions(
     networks: &[Surrogate],
     deployment: &Deployment,
 ) -> impl Iterator<Item = Vec<[Vec<f64>; 5]>> {
     let designs = deployment.sheet.designs();
-    let prepared: Vec<_> = networks
-        .iter()
-        .map(|network| network.prepare(&designs))
-        .collect();
+    let prepared: Vec<_> = networks.iter().map(|network| network.prepare(&designs)).collect();
     deployment.path.iter().map(move |step| {
         let states: &[HingeDeformation] = &step.deformations;
         let mut predictions = vec![<[Vec<f64>; 5]>::default(); designs.len()];

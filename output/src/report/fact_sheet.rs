@@ -1,4 +1,5 @@
-//! The facts of a run: what the sheet is made of, how far it opens under which load, what the hinge law rests on.
+//! The facts of a run: what the sheet is made of, how far it opens under which load, what the hinge
+//! law rests on.
 
 use crate::report::creep_and_springback::CreepAndSpringback;
 use crate::report::hinge_row::HingeRow;
@@ -48,11 +49,13 @@ pub struct FactSheet {
     pub target_state: TargetState,
     /// Extent of the sheet in that state along x and y with all panels in the plane (mm).
     pub deployed_size: [f64; 2],
-    /// Load and stroke at the end of the path; `None` without equilibrium, or if nothing moves the sheet.
+    /// Load and stroke at the end of the path; `None` without equilibrium, or if nothing moves the
+    /// sheet.
     pub reached: Option<Reached>,
     /// Minimum of Gamma (21) over the hinges; `None` for a sheet that does not lie on a surface.
     pub gamma_min: Option<f64>,
-    /// Fraction of the hinge states of the path that are inside the training domain of the hinge law.
+    /// Fraction of the hinge states of the path that are inside the training domain of the hinge
+    /// law.
     pub share_inside: f64,
     /// The weights that the hinge law reads.
     pub weights: Option<WeightFacts>,
@@ -79,12 +82,13 @@ pub struct Reached {
     pub load: f64,
     /// Units of displacement and load.
     pub units: [&'static str; 2],
-    /// The maximum of the load along the path; `None` under dead loads, whose maximum is the load at the end.
+    /// The maximum of the load along the path; `None` under dead loads, whose maximum is the load
+    /// at the end.
     pub peak: Option<LoadPeak>,
     /// The maxima and minima of the load on the way; empty under dead loads, or if the sheet jumps.
     pub limit_points: Vec<LimitPoint>,
-    /// Increment of the load for an increment of the displacement; `None` if supports move the sheet, or if the
-    /// tangent is singular.
+    /// Increment of the load for an increment of the displacement; `None` if supports move the
+    /// sheet, or if the tangent is singular.
     pub stiffness: Option<f64>,
 }
 
@@ -101,7 +105,8 @@ pub struct WeightFacts {
     pub training_rays: Option<usize>,
     /// Number of rows, not used in training, on which the errors were measured.
     pub test_rows: usize,
-    /// Relative root mean square errors (%): W, F_a, F_s, M_theta, D and, if it is predicted, D_peak.
+    /// Relative root mean square errors (%): W, F_a, F_s, M_theta, D and, if it is predicted,
+    /// D_peak.
     pub errors_percent: Vec<f64>,
     /// The spot check of the weights, if there was one.
     pub spot_check: Option<SpotCheckFacts>,
@@ -146,9 +151,7 @@ impl FactSheet {
             target_state: scene.config.objective.target_state,
             deployed_size: extent(corners.into_iter().flatten()),
             reached,
-            gamma_min: (hinges.iter())
-                .filter_map(|row| row.gamma)
-                .min_by(f64::total_cmp),
+            gamma_min: (hinges.iter()).filter_map(|row| row.gamma).min_by(f64::total_cmp),
             share_inside: deployment.share_inside(),
             weights: WeightFacts::new(scene),
             scene_hash: scene.hash(),
@@ -169,10 +172,7 @@ impl FactSheet {
         let [columns, rows] = self.panels;
         let short = |hash: &str| hash.chars().take(16).collect::<String>();
         let mut facts = vec![
-            (
-                "material",
-                format!("{}, {} mm thick", self.material, rounded(self.thickness, 4)),
-            ),
+            ("material", format!("{}, {} mm thick", self.material, rounded(self.thickness, 4))),
             ("mass", format!("{} kg, uncut", rounded(self.mass_kg, 4))),
             ("panels", format!("{columns} x {rows}")),
             ("flat size", size(self.flat_size)),
@@ -192,24 +192,13 @@ impl FactSheet {
             facts.extend(reached.rows());
         }
         if self.carries_load {
-            facts.extend(
-                self.attachments
-                    .iter()
-                    .map(|text| ("attachment", text.clone())),
-            );
+            facts.extend(self.attachments.iter().map(|text| ("attachment", text.clone())));
             facts.extend(self.self_weight.rows());
         }
-        facts.extend(
-            self.creep_and_springback
-                .iter()
-                .flat_map(CreepAndSpringback::rows),
-        );
+        facts.extend(self.creep_and_springback.iter().flat_map(CreepAndSpringback::rows));
         if let Some(gamma) = self.gamma_min {
             let gamma = rounded(gamma, 4);
-            facts.push((
-                "minimum Gamma",
-                format!("{gamma}, for a sheet that lies on a surface"),
-            ));
+            facts.push(("minimum Gamma", format!("{gamma}, for a sheet that lies on a surface")));
         }
         if let Some(weights) = &self.weights {
             let inside = rounded(100.0 * self.share_inside, 4);
@@ -233,9 +222,7 @@ impl Reached {
         let curve = ActuationCurve::new(mechanics, deployment)?;
         let [displacement, load] = *curve.points.last()?;
         let last = deployment.final_step();
-        let by_loads = last
-            .stiffness(&mechanics.solver)
-            .filter(|_| curve.mover == Mover::Loads);
+        let by_loads = last.stiffness(&mechanics.solver).filter(|_| curve.mover == Mover::Loads);
         let resolved = (curve.is_prescribed(mechanics))
             .then(|| ActuationCurve::resolved(mechanics, &deployment.sheet))
             .flatten();
@@ -266,11 +253,7 @@ impl Reached {
 
     fn rows(&self) -> Vec<(&'static str, String)> {
         let [length, force] = self.units;
-        let end = if self.ended_early {
-            ", where the path ends early"
-        } else {
-            ""
-        };
+        let end = if self.ended_early { ", where the path ends early" } else { "" };
         let mut rows = vec![(
             "load reached",
             format!(
@@ -318,10 +301,7 @@ impl Reached {
             let end = rounded(self.displacement, 4);
             parts.push(format!("{from} to {end} {length}"));
         }
-        format!(
-            "a dead load holds the sheet at strokes of {}",
-            parts.join(", ")
-        )
+        format!("a dead load holds the sheet at strokes of {}", parts.join(", "))
     }
 }
 
@@ -349,13 +329,9 @@ impl WeightFacts {
     }
 
     fn rows(&self) -> Vec<(&'static str, String)> {
-        let rays = self
-            .training_rays
-            .map_or("an unknown number of".to_owned(), |rays| rays.to_string());
-        let trained = format!(
-            "{}, trained on {rays} rays of the mesh `{}`",
-            self.file, self.tier
-        );
+        let rays =
+            self.training_rays.map_or("an unknown number of".to_owned(), |rays| rays.to_string());
+        let trained = format!("{}, trained on {rays} rays of the mesh `{}`", self.file, self.tier);
         let test_errors = errors(&self.errors_percent, self.test_rows, "unseen");
         let mut rows = vec![("weights", trained), ("test errors", test_errors)];
         if let Some(check) = &self.spot_check {
@@ -389,9 +365,7 @@ fn attachments(scene: &Scene, deployment: &Deployment) -> Vec<String> {
         let panel = &deployment.sheet.panels[attachment.panel];
         let [x, y] = panel.position(attachment.point).map(|x| rounded(x, 5));
         let size = |what: &str, size: Option<f64>| {
-            size.map_or(String::new(), |size| {
-                format!(", {what} {} mm", rounded(size, 4))
-            })
+            size.map_or(String::new(), |size| format!(", {what} {} mm", rounded(size, 4)))
         };
         let (hole, clip) = (size("hole", attachment.hole), size("clip", attachment.clip));
         format!("{}, at ({x}, {y}) mm{hole}{clip}", attachment.name)
@@ -401,11 +375,8 @@ fn attachments(scene: &Scene, deployment: &Deployment) -> Vec<String> {
 
 /// What moves the sheet, and what its displacement means.
 fn stroke_of(scene: &Scene, curve: &ActuationCurve) -> String {
-    let [way, load] = if curve.translational {
-        ["displacement", "force"]
-    } else {
-        ["rotation", "couple"]
-    };
+    let [way, load] =
+        if curve.translational { ["displacement", "force"] } else { ["rotation", "couple"] };
     if curve.mover == Mover::Supports {
         return format!("{way} of the moved supports");
     }

@@ -29,19 +29,21 @@ pub struct HingeRow {
     pub eta_a: f64,
     /// s / w_lig in the last state of the path.
     pub eta_s: f64,
-    /// Maximum along the path of D, the mean damage of the ligament; `None` if it is not known: the hinge law
-    /// does not predict it, or a state of the path is outside its training domain.
+    /// Maximum along the path of D, the mean damage of the ligament; `None` if it is not known: the
+    /// hinge law does not predict it, or a state of the path is outside its training domain.
     pub damage: Option<f64>,
     /// Maximum along the path of D_peak; at 1 the ligament tears.
     pub damage_peak: Option<f64>,
     /// Whether every state of the path is inside the training domain of the hinge law.
     pub inside: bool,
-    /// Maximum distance of the path from the ray to its end, in ligament widths; see [`path_separation()`].
+    /// Maximum distance of the path from the ray to its end, in ligament widths; see
+    /// [`path_separation()`].
     pub path_separation: f64,
-    /// Minimum along the path of the distance of the flanks of the cut where they come nearest (mm): see
-    /// [`flank_gap`](scene::analysis::flanks::flank_gap).
+    /// Minimum along the path of the distance of the flanks of the cut where they come nearest
+    /// (mm): see [`flank_gap`](scene::analysis::flanks::flank_gap).
     pub flank_gap: f64,
-    /// (21), with the shortest edge of the two panels; `None` for a sheet that does not lie on a surface.
+    /// (21), with the shortest edge of the two panels; `None` for a sheet that does not lie on a
+    /// surface.
     pub gamma: Option<f64>,
 }
 
@@ -49,9 +51,7 @@ impl HingeRow {
     pub(crate) fn all(scene: &Scene, deployment: &Deployment) -> Vec<Self> {
         let hinges = 0..deployment.sheet.hinges.len();
         let designs = deployment.sheet.designs();
-        hinges
-            .map(|h| Self::new(scene, deployment, &designs, h))
-            .collect()
+        hinges.map(|h| Self::new(scene, deployment, &designs, h)).collect()
     }
 
     fn new(scene: &Scene, deployment: &Deployment, designs: &[HingeDesign], h: usize) -> Self {
@@ -61,9 +61,7 @@ impl HingeRow {
         let [eta_a, eta_s] = last.eta(hinge.w_lig);
         let regime = scene.material.regime(hinge.w_lig);
         let curvature = scene.surrogate().map_or(0.0, Surrogate::ray_curvature);
-        let states: Vec<_> = (deployment.path.iter())
-            .map(|step| step.deformations[h])
-            .collect();
+        let states: Vec<_> = (deployment.path.iter()).map(|step| step.deformations[h]).collect();
         Self {
             hinge: h,
             panels: [hinge.panel_a(), hinge.panel_b()],
@@ -76,10 +74,8 @@ impl HingeRow {
             damage_peak: deployment.damage_max(DamageMeasure::Peak, h),
             inside: deployment.path.iter().all(|step| step.inside[h]),
             path_separation: path_separation(hinge.w_lig, curvature, &states),
-            flank_gap: (states
-                .iter()
-                .map(|state| flank_gap(&designs[h], state, regime)))
-            .fold(f64::INFINITY, f64::min),
+            flank_gap: (states.iter().map(|state| flank_gap(&designs[h], state, regime)))
+                .fold(f64::INFINITY, f64::min),
             gamma: (scene.config.posture)
                 .is_none_or(|posture| posture.kind == Posture::Lying)
                 .then(|| gamma(&scene.material, hinge.w_lig, shortest_edge(sheet, hinge))),

@@ -1,6 +1,7 @@
 //! Numbers as text.
 
-/// A number with the given number of significant digits: in full between 1e-3 and 1e6, with an exponent otherwise.
+/// A number with the given number of significant digits: in full between 1e-3 and 1e6, with an
+/// exponent otherwise.
 pub(crate) fn rounded(value: f64, digits: usize) -> String {
     let exponential = format!("{value:.*e}", digits - 1);
     let Some((_, exponent)) = exponential.split_once('e') else {

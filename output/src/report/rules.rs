@@ -25,27 +25,29 @@ use support::severity::Severity;
 
 /// Weight or friction over load from which a sheet opens otherwise than without it.
 const HEAVY: f64 = 0.05;
-/// Ratio of the mass of hung weights to the mass of the sheet from which the weights are probably given in another
-/// unit.
+/// Ratio of the mass of hung weights to the mass of the sheet from which the weights are probably
+/// given in another unit.
 const HUNG: f64 = 50.0;
 /// Mean opening of the hinges (rad) that is rounding.
 const SHUT: f64 = -1e-6;
-/// Distance of the outline from the target over the longer side of the flat sheet from which it is a note, a warning and an error.
+/// Distance of the outline from the target over the longer side of the flat sheet from which it is
+/// a note, a warning and an error.
 const MISSED: [f64; 3] = [0.01, 0.03, 0.2];
-/// Kerf over ligament width for which another kerf than the kerf of the weights was measured, in a film (data/pet-0.5mm) and in a plate
-/// (data/polypropylene-3mm).
+/// Kerf over ligament width for which another kerf than the kerf of the weights was measured, in a
+/// film (data/pet-0.5mm) and in a plate (data/polypropylene-3mm).
 const MEASURED_KERF_OF_FILM: [f64; 2] = [0.002, 0.15];
 const MEASURED_KERF_OF_PLATE: [f64; 2] = [0.05, 0.64];
 /// Relative difference of two kerfs that is rounding.
 const SAME_KERF: f64 = 1e-6;
 /// Relative error of a force (%) above which a law is inaccurate.
 const INACCURATE: f64 = 10.0;
-/// Separation of a path from its ray, in ligament widths: in a film W differs by less than 1 % up to there (docs/TRIED.md), in a plate
-/// the forces by less than 10 % (docs/results/plates).
+/// Separation of a path from its ray, in ligament widths: in a film W differs by less than 1 % up
+/// to there (docs/TRIED.md), in a plate the forces by less than 10 % (docs/results/plates).
 const SAFE_SEPARATION_OF_FILM: f64 = 0.15;
 const SAFE_SEPARATION_OF_PLATE: f64 = 0.03;
 const SAFE_SEPARATION_OF_BENT_RAYS: f64 = 0.06;
-/// Ligament width over thickness from which the corners of a film that nothing holds are more than 5 % of the sheet off (docs/results/flatness).
+/// Ligament width over thickness from which the corners of a film that nothing holds are more than
+/// 5 % of the sheet off (docs/results/flatness).
 const FALLS: f64 = 2.6;
 /// Rounding of lengths (mm).
 const ROUNDING: f64 = 1e-6;
@@ -72,8 +74,8 @@ pub(super) struct RunContext<'a> {
 
 type Rule = fn(&RuleInput) -> Option<Warning>;
 
-/// First how well a run meets its target, then those about its design, then those about the run as a whole: what its model leaves
-/// out, how accurate its weights are.
+/// First how well a run meets its target, then those about its design, then those about the run as
+/// a whole: what its model leaves out, how accurate its weights are.
 const RULES: [Rule; 25] = [
     missed,
     panels_overlap,
@@ -133,14 +135,11 @@ impl RuleInput<'_> {
 
 /// A warning about the hinges, if there are any.
 fn about(concern: Concern, hinges: Vec<usize>, message: String) -> Option<Warning> {
-    (!hinges.is_empty()).then(|| Warning {
-        hinges,
-        ..concern.of_sheet(message)
-    })
+    (!hinges.is_empty()).then(|| Warning { hinges, ..concern.of_sheet(message) })
 }
 
-/// Panels cannot lie over each other, whatever the hinge law. On the way the edges of closed cuts, which are softer in the model than in
-/// the sheet, may let them by a little.
+/// Panels cannot lie over each other, whatever the hinge law. On the way the edges of closed cuts,
+/// which are softer in the model than in the sheet, may let them by a little.
 fn panels_overlap(input: &RuleInput) -> Option<Warning> {
     let deployment = input.deployment;
     let of = |step: &LoadStep| overlap(&deployment.sheet, &step.configuration);
@@ -203,11 +202,7 @@ fn windows_leave_panels(input: &RuleInput) -> Option<Warning> {
     });
     let r_win = sheet.options.process.r_win;
     let message = format!("panels are too small for the {r_win} mm windows of their hinges");
-    about(
-        Concern::WindowsLeavePanels,
-        leaving.map(|(h, _)| h).collect(),
-        message,
-    )
+    about(Concern::WindowsLeavePanels, leaving.map(|(h, _)| h).collect(), message)
 }
 
 fn cutting(input: &RuleInput) -> Option<Warning> {
@@ -218,11 +213,7 @@ fn cutting(input: &RuleInput) -> Option<Warning> {
     let hinges = input.deployment.sheet.hinges.iter().enumerate();
     let close = hinges.filter(|(h, hinge)| cuts.clearance(*h) < hinge.w_lig - ROUNDING);
     let message = "another cut is closer to the tip than w_lig".into();
-    about(
-        Concern::CutsTooClose,
-        close.map(|(h, _)| h).collect(),
-        message,
-    )
+    about(Concern::CutsTooClose, close.map(|(h, _)| h).collect(), message)
 }
 
 /// The cuts of a sheet are within the stock that it is cut from.
@@ -298,11 +289,8 @@ fn flanks_touch(input: &RuleInput) -> Option<Warning> {
 
 fn tearing(input: &RuleInput) -> Option<Warning> {
     // The mean reaches 1 later than the peak; weights without D_peak predict the mean only.
-    let torn = input.hinges_where(|row| {
-        row.damage_peak
-            .or(row.damage)
-            .is_some_and(|damage| damage >= 1.0)
-    });
+    let torn = input
+        .hinges_where(|row| row.damage_peak.or(row.damage).is_some_and(|damage| damage >= 1.0));
     let tears = |damage: &HingeDamage| {
         let peak = DamageMeasure::Peak.known(damage);
         peak.unwrap_or(damage.d) >= 1.0
@@ -339,21 +327,14 @@ fn path(input: &RuleInput) -> Option<Warning> {
             (true, false) => format!("{} of the weight", rounded(step.weight, 2)),
             (false, _) => format!("load factor {:.3}", step.load_factor),
         };
-        let peaks = if by_weight || !dead {
-            ""
-        } else {
-            "the load peaks and "
-        };
+        let peaks = if by_weight || !dead { "" } else { "the load peaks and " };
         found.extend(departure(step, peaks, &before, &place));
         before = place;
     }
     if found.is_empty() {
         return None;
     }
-    let message = format!(
-        "the equilibrium path is not smooth and stable: {}",
-        found.join(", ")
-    );
+    let message = format!("the equilibrium path is not smooth and stable: {}", found.join(", "));
     let mut warning = Concern::Path.of_sheet(message);
     if input.deployment.final_step().status == Status::Diverged {
         warning.severity = Severity::Error;
@@ -369,10 +350,7 @@ fn departure(step: &LoadStep, peaks: &str, before: &str, place: &str) -> Option<
         Status::LimitPoint => format!("{peaks}the sheet jumps between {before} and {place}"),
         Status::Diverged => {
             let end = step.descent_end.map(|end| format!(": {end}"));
-            format!(
-                "no equilibrium was found beyond {place}{}",
-                end.unwrap_or_default()
-            )
+            format!("no equilibrium was found beyond {place}{}", end.unwrap_or_default())
         }
     })
 }
@@ -443,12 +421,7 @@ fn leaves_plane(input: &RuleInput) -> Option<Warning> {
 fn plate_leaves_plane(kept: &str, stability: Option<Stability>) -> Warning {
     let concern = Concern::LeavesPlane;
     let advice = "hold it flat, such as between two boards, take narrower ligaments, or pull more panels; `kirigami verify --sheet` solves it";
-    let Some(Stability {
-        margin,
-        tilt,
-        leaves_at,
-    }) = stability
-    else {
+    let Some(Stability { margin, tilt, leaves_at }) = stability else {
         return concern.of_sheet(format!(
             "{kept}, and whether they stay is not known: that needs a hinge law, and a clip or clamp that holds a panel"
         ));
@@ -481,9 +454,7 @@ fn plate_leaves_plane(kept: &str, stability: Option<Stability>) -> Warning {
 fn film_leaves_plane(input: &RuleInput, posture: Posture, kept: &str, widest: f64) -> Warning {
     let (sheet, material) = (&input.deployment.sheet, &input.scene.material);
     let r_win = sheet.options.process.r_win;
-    let on_table = (posture == Posture::Lying)
-        .then(|| error_on_table(material, r_win))
-        .flatten();
+    let on_table = (posture == Posture::Lying).then(|| error_on_table(material, r_win)).flatten();
     let off = match on_table {
         Some(error) => format!(
             "the corners are expected {} mm (root mean square) from where the report has them, {} % of the sheet, where hinges open by 26 deg",
@@ -501,14 +472,7 @@ fn film_leaves_plane(input: &RuleInput, posture: Posture, kept: &str, widest: f6
         Some(error) => Flatness::of(error, 0.0) == Flatness::Falls,
         None => widest > FALLS * material.thickness,
     };
-    Warning {
-        severity: if falls {
-            Severity::Error
-        } else {
-            warning.severity
-        },
-        ..warning
-    }
+    Warning { severity: if falls { Severity::Error } else { warning.severity }, ..warning }
 }
 
 /// A weight that acts in the plane of the sheet but not in the model.
@@ -517,9 +481,7 @@ fn weightless(input: &RuleInput) -> Option<Warning> {
     let weight = &input.run.as_ref()?.facts.self_weight;
     let left_out =
         !weight.is_modelled && matches!(weight.posture?, Posture::Hanging | Posture::Free);
-    let ratio = weight
-        .over_load
-        .filter(|ratio| left_out && *ratio > HEAVY)?;
+    let ratio = weight.over_load.filter(|ratio| left_out && *ratio > HEAVY)?;
     Some(Concern::Weight.of_sheet(format!(
         "the weight of the sheet is {} and not modelled: if it hangs, set posture.kind = \"hanging\" with `down`",
         of_the_load(ratio)
@@ -555,19 +517,10 @@ fn load_peak(input: &RuleInput) -> Option<Warning> {
     let peak = reached.peak?;
     let carried = peak.dead_load_reaches?;
     let [length, force] = reached.units;
-    let [maximum, at, last, end, carried] = [
-        peak.load,
-        peak.displacement,
-        reached.load,
-        reached.displacement,
-        carried,
-    ]
-    .map(|value| rounded(value, 4));
-    let such = if force == "N" {
-        ", such as a hung weight,"
-    } else {
-        ""
-    };
+    let [maximum, at, last, end, carried] =
+        [peak.load, peak.displacement, reached.load, reached.displacement, carried]
+            .map(|value| rounded(value, 4));
+    let such = if force == "N" { ", such as a hung weight," } else { "" };
     let consequence = if reached.load * reached.displacement > 0.0 {
         format!(
             "a dead load of {last} {force}{such} does not open this sheet: it moves it by {carried} {length} and not by {end} {length}"
@@ -582,8 +535,8 @@ fn load_peak(input: &RuleInput) -> Option<Warning> {
     )))
 }
 
-/// Weights whose forces are off by more than a tenth at their spot check, or at unseen rays, some of which leave the training
-/// domain, if they have none.
+/// Weights whose forces are off by more than a tenth at their spot check, or at unseen rays, some
+/// of which leave the training domain, if they have none.
 fn inaccurate(input: &RuleInput) -> Option<Warning> {
     let weights = input.run.as_ref()?.facts.weights.as_ref()?;
     let card = input.scene.weights()?.card();
@@ -631,10 +584,7 @@ fn missed(input: &RuleInput) -> Option<Warning> {
     } else {
         Severity::Note
     };
-    Some(Warning {
-        severity,
-        ..Concern::TargetMissed.of_sheet(miss(error, facts.flat_size))
-    })
+    Some(Warning { severity, ..Concern::TargetMissed.of_sheet(miss(error, facts.flat_size)) })
 }
 
 /// A learned law has the kerf of its training; the effect of another one was measured in a range.
@@ -644,10 +594,7 @@ fn kerf(input: &RuleInput) -> Option<Warning> {
     if (kerf / known - 1.0).abs() < SAME_KERF {
         return None;
     }
-    let regime = input
-        .scene
-        .material
-        .regime(input.scene.config.ligament.start);
+    let regime = input.scene.material.regime(input.scene.config.ligament.start);
     let [least, most] = match regime {
         Regime::Film => MEASURED_KERF_OF_FILM,
         Regime::Plate => MEASURED_KERF_OF_PLATE,

@@ -1,4 +1,5 @@
-//! The weight of a sheet compared with its load, and what follows from how the sheet is held out of its plane.
+//! The weight of a sheet compared with its load, and what follows from how the sheet is held out of
+//! its plane.
 
 use crate::report::numbers::rounded;
 use scene::analysis::localisation::elasto_gravity_length;
@@ -12,11 +13,13 @@ pub struct SelfWeight {
     pub posture: Option<Posture>,
     /// Weight (N).
     pub weight: f64,
-    /// Weight over the load at the end of the path; `None` if that is zero or no force, or without equilibrium.
+    /// Weight over the load at the end of the path; `None` if that is zero or no force, or without
+    /// equilibrium.
     pub over_load: Option<f64>,
     /// Whether the weight acts in the model.
     pub is_modelled: bool,
-    /// Mass of the weights that hang from the sheet over the mass of the sheet; `None` if no weight hangs from it.
+    /// Mass of the weights that hang from the sheet over the mass of the sheet; `None` if no weight
+    /// hangs from it.
     pub hung: Option<f64>,
     /// Friction and bending of a sheet that lies on a surface.
     pub lying: Option<Lying>,
@@ -27,7 +30,8 @@ pub struct SelfWeight {
 pub struct Lying {
     /// Friction while all panels slide (N), with the coefficient [`FRICTION`].
     pub friction: f64,
-    /// The length l_eg at which the weight of a plate bends it as much as its stiffness resists (mm).
+    /// The length l_eg at which the weight of a plate bends it as much as its stiffness resists
+    /// (mm).
     pub bending_length: f64,
     /// The radius of the windows of hinges (mm).
     pub window: f64,
@@ -40,10 +44,8 @@ impl SelfWeight {
         let load = load.map(f64::abs).filter(|load| *load > 0.0);
         // Under a prescribed stroke a mass is a direction only.
         let dead = scene.config.drive.is_none();
-        let hung: f64 = (scene.config.loads.iter())
-            .filter(|_| dead)
-            .filter_map(|load| load.mass_g)
-            .sum();
+        let hung: f64 =
+            (scene.config.loads.iter()).filter(|_| dead).filter_map(|load| load.mass_g).sum();
         Self {
             posture: scene.config.posture.map(|posture| posture.kind),
             weight,
@@ -54,7 +56,8 @@ impl SelfWeight {
         }
     }
 
-    /// Effects in the plane that are not modelled for the out-of-plane restraint; `None` if there are none, and if the scene states no restraint.
+    /// Effects in the plane that are not modelled for the out-of-plane restraint; `None` if there
+    /// are none, and if the scene states no restraint.
     pub(super) fn left_out(&self) -> Option<&'static str> {
         match self.posture? {
             Posture::HeldFlat => Some(
@@ -68,11 +71,7 @@ impl SelfWeight {
 
     /// Names and values.
     pub(super) fn rows(&self) -> Vec<(&'static str, String)> {
-        let modelled = if self.is_modelled {
-            "modelled"
-        } else {
-            "not modelled"
-        };
+        let modelled = if self.is_modelled { "modelled" } else { "not modelled" };
         let weight = self.beside_load(self.weight);
         let mut rows = vec![("weight", format!("{weight}; {modelled}"))];
         if let Some(lying) = &self.lying {
@@ -126,14 +125,7 @@ mod tests {
     use super::*;
 
     fn weight(weight: f64, over_load: Option<f64>) -> SelfWeight {
-        SelfWeight {
-            posture: None,
-            weight,
-            over_load,
-            is_modelled: false,
-            hung: None,
-            lying: None,
-        }
+        SelfWeight { posture: None, weight, over_load, is_modelled: false, hung: None, lying: None }
     }
 
     #[test]
@@ -144,10 +136,7 @@ mod tests {
         assert_eq!(film.beside_load(0.02553), "0.0255 N, 4.9 % of the load");
         // The bell: 161 kg and 28 N.
         let bell = weight(1579.0, Some(56.4)).rows();
-        assert!(
-            bell[0].1.contains("56 times the load; not modelled"),
-            "{bell:?}"
-        );
+        assert!(bell[0].1.contains("56 times the load; not modelled"), "{bell:?}");
     }
 
     #[test]

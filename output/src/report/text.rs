@@ -33,12 +33,7 @@ impl Report {
     /// The report as parts for people.
     pub fn document(&self) -> Document {
         let mut page = Document::default();
-        let mut head = format!(
-            "{}: level {}\n{}",
-            self.title,
-            self.facts.level,
-            self.miss()
-        );
+        let mut head = format!("{}: level {}\n{}", self.title, self.facts.level, self.miss());
         if let Some(text) = self.about_cut_files() {
             head += "\n";
             head += text;
@@ -67,13 +62,12 @@ impl Report {
         page
     }
 
-    /// The facts of the run, the spread of the ensemble and the number of warnings, as names and values with units.
+    /// The facts of the run, the spread of the ensemble and the number of warnings, as names and
+    /// values with units.
     pub fn fact_rows(&self) -> Vec<(&'static str, String)> {
         let mut rows = self.facts.rows();
         let hashes = rows.iter().position(|(name, _)| name.starts_with("hash"));
-        let mut further: Vec<_> = (self.climb().into_iter())
-            .map(|line| ("ladder", line))
-            .collect();
+        let mut further: Vec<_> = (self.climb().into_iter()).map(|line| ("ladder", line)).collect();
         if let Some(estimate) = &self.estimate {
             let percent = |x: f64| format!("{:.1} %", 100.0 * x);
             let text = format!(
@@ -141,9 +135,8 @@ impl Report {
         let mut columns = hinge_columns();
         let lies = self.facts.gamma_min.is_some();
         if lies {
-            columns = columns.column("Gamma", |row| {
-                row.gamma.map_or("-".to_owned(), |gamma| rounded(gamma, 3))
-            });
+            columns = columns
+                .column("Gamma", |row| row.gamma.map_or("-".to_owned(), |gamma| rounded(gamma, 3)));
         }
         page.table(columns.table(listed));
         let gamma = if lies { GAMMA } else { "" };
@@ -159,9 +152,7 @@ fn hinge_columns() -> Columns<'static, HingeRow> {
     };
     Columns::new()
         .column("hinge", |row: &HingeRow| row.hinge)
-        .column("panels", |row| {
-            format!("{}-{}", row.panels[0], row.panels[1])
-        })
+        .column("panels", |row| format!("{}-{}", row.panels[0], row.panels[1]))
         .column("w_lig\nmm", |row| Cell::fixed(row.w_lig, 2))
         .column("alpha\ndeg", |row| Cell::fixed(row.alpha_deg, 1))
         .column("theta\ndeg", |row| Cell::fixed(row.theta_deg, 1))
@@ -180,10 +171,7 @@ fn level_row(levels: &Levels) -> (&'static str, String) {
         Some(format!("`{}` {}", level.level, rounded(corners, 2)))
     });
     let others: Vec<String> = others.collect();
-    let text = format!(
-        "largest difference of a corner to `{finest}`, mm: {}",
-        others.join(", ")
-    );
+    let text = format!("largest difference of a corner to `{finest}`, mm: {}", others.join(", "));
     ("levels", text)
 }
 

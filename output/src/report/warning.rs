@@ -33,7 +33,8 @@ pub enum Concern {
     KerfUnknown,
     /// The path leaves the training domain of the hinge law.
     StatesOutsideDomain,
-    /// The path departs so far from the straight ray to its end that energy and forces depend on it.
+    /// The path departs so far from the straight ray to its end that energy and forces depend on
+    /// it.
     PathDependence,
     /// The flanks of a cut are pushed into each other: contact between them is not modelled.
     FlanksTouch,
@@ -55,16 +56,18 @@ pub enum Concern {
     TargetCrosses,
     /// The target outline is open in its drawing.
     TargetOpen,
-    /// The outline is further from the target than 1 % of the sheet (a warning from 3 %, an error from 20 %), or than twice what the
-    /// model does not know of its corners.
+    /// The outline is further from the target than 1 % of the sheet (a warning from 3 %, an error
+    /// from 20 %), or than twice what the model does not know of its corners.
     TargetMissed,
     /// Effects that are not modelled for the given out-of-plane restraint.
     NotModelled,
-    /// Whether the panels of a sheet that is not held flat stay in the plane, and what follows if not.
+    /// Whether the panels of a sheet that is not held flat stay in the plane, and what follows if
+    /// not.
     LeavesPlane,
     /// What finite elements of the whole sheet found.
     WholeSheet,
-    /// The weight of the sheet acts in its plane, is more than a twentieth of the load and not modelled.
+    /// The weight of the sheet acts in its plane, is more than a twentieth of the load and not
+    /// modelled.
     Weight,
     /// Friction is more than a twentieth of the load.
     Friction,
@@ -74,8 +77,8 @@ pub enum Concern {
     PointOutside,
     /// The load has a maximum on the path: a dead load of the final size does not open the sheet.
     LoadPeak,
-    /// The weights state errors above 10 % in a force at their spot check, else at unseen rays, or a spot check that mostly lies
-    /// outside their domain.
+    /// The weights state errors above 10 % in a force at their spot check, else at unseen rays, or
+    /// a spot check that mostly lies outside their domain.
     WeakWeights,
 }
 
@@ -113,12 +116,7 @@ impl Concern {
     }
 
     pub(super) fn of_sheet(self, message: String) -> Warning {
-        Warning {
-            concern: self,
-            severity: self.severity(),
-            hinges: Vec::new(),
-            message,
-        }
+        Warning { concern: self, severity: self.severity(), hinges: Vec::new(), message }
     }
 }
 
@@ -126,12 +124,7 @@ impl fmt::Display for Warning {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         const NAMED: usize = 12;
         write!(f, "{}: {}", self.severity, self.message)?;
-        let named: Vec<String> = self
-            .hinges
-            .iter()
-            .take(NAMED)
-            .map(usize::to_string)
-            .collect();
+        let named: Vec<String> = self.hinges.iter().take(NAMED).map(usize::to_string).collect();
         match self.hinges.len() {
             0 => Ok(()),
             1 => write!(f, " (hinge {})", named[0]),

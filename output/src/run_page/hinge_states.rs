@@ -12,8 +12,9 @@ use scene::placement::placed;
 use serde::Serialize;
 use surrogate::Surrogate;
 
-/// Maximum number of numbers in the states: 4 bytes each, and a third more in base64, are 4 MB. Of a longer path or
-/// a larger sheet every second, third, ... state is left out, but never the flat and the last one.
+/// Maximum number of numbers in the states: 4 bytes each, and a third more in base64, are 4 MB. Of
+/// a longer path or a larger sheet every second, third, ... state is left out, but never the flat
+/// and the last one.
 const MOST_NUMBERS: usize = 750_000;
 /// Numbers of a panel and of a hinge in a state.
 const OF_PANEL: usize = 3;
@@ -31,7 +32,8 @@ pub(super) struct HingeStates {
     /// Number of load steps in which the weight comes on, before the steps of the loads.
     weight_steps: usize,
     status: Vec<Status>,
-    /// (displacement, load) of what moves the sheet, for all states of the path; `None` before the whole weight is on.
+    /// (displacement, load) of what moves the sheet, for all states of the path; `None` before the
+    /// whole weight is on.
     #[serde(skip_serializing_if = "Option::is_none")]
     curve: Option<Vec<Option<[f64; 2]>>>,
     /// (u_x, u_y, phi) of the panels (mm, mm, rad).
@@ -111,11 +113,7 @@ impl HingeStates {
             inside: by_hinge(&|i, h| f64::from(u8::from(all[i].inside[h]))),
             energy: mechanics.map(|_| {
                 by_hinge(&|i, h| {
-                    if i < steps {
-                        all[i].energies[h]
-                    } else {
-                        f64::NAN
-                    }
+                    if i < steps { all[i].energies[h] } else { f64::NAN }
                 })
             }),
             forces,
@@ -134,7 +132,8 @@ impl HingeStates {
     }
 }
 
-/// (F_a, F_s, M_theta) of every hinge and (F_x, F_y, M) of every support of the scene in states, of which some are `unloaded`.
+/// (F_a, F_s, M_theta) of every hinge and (F_x, F_y, M) of every support of the scene in states, of
+/// which some are `unloaded`.
 fn forces_and_reactions<'a>(
     scene: &Scene,
     mechanics: &Mechanics,
@@ -151,22 +150,18 @@ fn forces_and_reactions<'a>(
         let hinged = mechanics.hinged(&deployment.sheet, law, false);
         let energies = hinged.energies(&state.deformations, Order::Forces);
         forces.extend(energies.iter().flat_map(|energy| energy.forces));
-        let on_panels = mechanics
-            .solver
-            .holding_forces(hinged, state.weight, &state.configuration);
+        let on_panels = mechanics.solver.holding_forces(hinged, state.weight, &state.configuration);
         reactions.extend(supports.iter().flat_map(|support| {
             let held = std::iter::zip(support.motion, on_panels[support.panel]);
             held.map(|(motion, force)| motion.map_or(0.0, |_| force))
         }));
     }
-    (
-        forces.into_iter().collect(),
-        reactions.into_iter().collect(),
-    )
+    (forces.into_iter().collect(), reactions.into_iter().collect())
 }
 
-/// The damage of every hinge in every state: zero in the states before the path, NaN from the state in which the hinge
-/// is first outside the training domain, and without loads that at their end; `None` if the law predicts none.
+/// The damage of every hinge in every state: zero in the states before the path, NaN from the state
+/// in which the hinge is first outside the training domain, and without loads that at their end;
+/// `None` if the law predicts none.
 fn known_damage(
     deployment: &Deployment,
     before: usize,

@@ -111,10 +111,7 @@ impl<'a> PageData<'a> {
     pub fn new(scene: &'a Scene, designed: &'a Designed, report: &'a Report) -> Self {
         let deployment = &designed.best.deployment;
         let reached = report.facts.reached.as_ref();
-        let worst = report
-            .hinges
-            .iter()
-            .min_by(|one, other| worst_first(one, other));
+        let worst = report.hinges.iter().min_by(|one, other| worst_first(one, other));
         Self {
             title: &report.title,
             about_cut_files: report.about_cut_files(),
@@ -172,9 +169,7 @@ impl<'a> SheetData<'a> {
             states: HingeStates::new(scene, problem, deployment, networks),
             actuation: scene.actuation(),
             outline: sheet.outline.corners,
-            target: (kept(target.len(), MOST_POINTS).into_iter())
-                .flat_map(|i| target[i])
-                .collect(),
+            target: (kept(target.len(), MOST_POINTS).into_iter()).flat_map(|i| target[i]).collect(),
             domain: scene.surrogate().map(|surrogate| surrogate.domain()),
         }
     }
@@ -182,10 +177,7 @@ impl<'a> SheetData<'a> {
 
 /// The keys of the scene as TOML.
 fn scene_text(scene: &Scene) -> String {
-    let mut text = scene
-        .config
-        .to_toml()
-        .unwrap_or_else(|error| error.to_string());
+    let mut text = scene.config.to_toml().unwrap_or_else(|error| error.to_string());
     if text.len() > MOST_TEXT {
         text.truncate(text.floor_char_boundary(MOST_TEXT));
         text += "\n# ... the scene file contains the rest\n";
@@ -236,10 +228,7 @@ impl Hinges {
             w_lig: rows.iter().map(|row| row.w_lig).collect(),
             alpha_deg: rows.iter().map(|row| row.alpha_deg).collect(),
             fillet_ratio: sheet.designs().iter().map(|g| g.fillet_ratio).collect(),
-            gamma: rows
-                .iter()
-                .map(|row| row.gamma.unwrap_or(f64::NAN))
-                .collect(),
+            gamma: rows.iter().map(|row| row.gamma.unwrap_or(f64::NAN)).collect(),
             damage: rows.iter().map(|row| known(row.damage)).collect(),
             damage_peak: rows.iter().map(|row| known(row.damage_peak)).collect(),
             r_win: sheet.options.process.r_win,

@@ -32,10 +32,7 @@ fn middle() -> ([f64; 2], f64) {
 fn a_hole_is_cut_and_listed() {
     let ([x, y], _) = middle();
     let at = [x - 3.0, y + 2.0];
-    let hooked = AttachmentPoint {
-        hole: Some(6.0),
-        ..attachment(PanelPoint::Fixed(at))
-    };
+    let hooked = AttachmentPoint { hole: Some(6.0), ..attachment(PanelPoint::Fixed(at)) };
     let cuts = cuts(hooked).unwrap();
     let drawing = cuts.drawing();
     let holes: Vec<&Shape> = drawing.on(Layer::AttachmentHoles).collect();
@@ -67,10 +64,7 @@ fn a_clip_lies_on_its_edge_and_is_not_cut() {
     assert!(!Layer::Attachments.is_cut() && Layer::AttachmentHoles.is_cut());
     for (width, expected) in [(2.1 * half, "wide"), (1.5 * half, "from the tip")] {
         let error = cuts(clip(width)).unwrap_err().to_string();
-        assert!(
-            error.starts_with("the clip of load, panel [1,1] is"),
-            "{error}"
-        );
+        assert!(error.starts_with("the clip of load, panel [1,1] is"), "{error}");
         assert!(error.contains(expected), "{error}");
     }
 }
@@ -79,10 +73,7 @@ fn a_clip_lies_on_its_edge_and_is_not_cut() {
 fn a_hole_near_an_edge_or_a_hinge_is_refused() {
     let ([x, y], half) = middle();
     let hole = |at: [f64; 2], diameter: f64| {
-        let hooked = AttachmentPoint {
-            hole: Some(diameter),
-            ..attachment(PanelPoint::Fixed(at))
-        };
+        let hooked = AttachmentPoint { hole: Some(diameter), ..attachment(PanelPoint::Fixed(at)) };
         cuts(hooked).map(|_| ()).map_err(|error| error.to_string())
     };
     // A radius of material is left at the distance of a diameter, and half a kerf, from the cut.

@@ -1,4 +1,5 @@
-//! DXF, SVG and PDF read back by other libraries: the sheet that they describe is the one that was simulated.
+//! DXF, SVG and PDF read back by other libraries: the sheet that they describe is the one that was
+//! simulated.
 
 use super::*;
 use design::geometry::polygon::{distance_to_segment, edges};
@@ -9,7 +10,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 use std::process::Command;
 
-/// What a file says: ends of the lines, centre and radius of the circles, corners of the outline (mm).
+/// What a file says: ends of the lines, centre and radius of the circles, corners of the outline
+/// (mm).
 #[derive(Default)]
 pub(super) struct Read {
     pub(super) slits: Vec<[[f64; 2]; 2]>,
@@ -70,10 +72,7 @@ pub(super) struct DxfContents {
 /// Reads a DXF by ezdxf. Debian's package serves Debian's Python, whichever other is first on PATH.
 pub(super) fn read_dxf(path: &Path) -> DxfContents {
     let script = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/fabrication/read_dxf.py");
-    let output = Command::new("/usr/bin/python3")
-        .args([Path::new(script), path])
-        .output()
-        .unwrap();
+    let output = Command::new("/usr/bin/python3").args([Path::new(script), path]).output().unwrap();
     let errors = String::from_utf8_lossy(&output.stderr);
     assert!(output.status.success(), "{errors}");
     serde_json::from_slice(&output.stdout).unwrap()
@@ -258,9 +257,7 @@ fn the_tiles_are_true_to_scale() {
     for ((row, column), page) in tiles.zip(&pages) {
         let transforms = page.lines().filter(|line| line.ends_with(" cm"));
         let transforms: Vec<Vec<f64>> = transforms.map(numbers).collect();
-        let [.., scale, shift] = &transforms[..] else {
-            panic!("{page}")
-        };
+        let [.., scale, shift] = &transforms[..] else { panic!("{page}") };
         assert_close(scale[0], 72.0 / 25.4, 1e-6);
         assert_eq!(scale[0], scale[3]);
         assert_eq!(shift[..4], [1.0, 0.0, 0.0, 1.0]);
@@ -271,7 +268,8 @@ fn the_tiles_are_true_to_scale() {
     }
 }
 
-/// What the tool of each machine leaves, measured in its files: the outline of the slots and the paths of a tool.
+/// What the tool of each machine leaves, measured in its files: the outline of the slots and the
+/// paths of a tool.
 #[test]
 fn the_files_of_every_machine_leave_the_solved_ligaments() {
     let folder = tempfile::tempdir().unwrap();
@@ -290,7 +288,8 @@ fn the_files_of_every_machine_leave_the_solved_ligaments() {
             match &*machine.name {
                 "laser-service" => contours_leave_the_ligaments(&file, &cuts),
                 "lightburn" | "ponoko" => {
-                    // A path of the tool half a kerf inside the hole, and slits half a kerf from their flanks.
+                    // A path of the tool half a kerf inside the hole, and slits half a kerf from
+                    // their flanks.
                     for (_, centre, radius) in &file.circles {
                         let mut holes = cuts.holes.iter();
                         let hole = holes.find(|hole| length([hole.centre, *centre]) < 1e-9);
@@ -326,11 +325,7 @@ fn cuts_and_marks_have_the_colours_of_the_machine() {
     let (_, cuts, _) = irregular_sheets().next().unwrap();
     for (machine, strokes, indices) in [
         ("ponoko", &["#0000ff"; 3][..], &["5"; 3][..]),
-        (
-            "lightburn",
-            &["#0000ff", "#ff0000", "#000000"][..],
-            &["5", "1", "7"][..],
-        ),
+        ("lightburn", &["#0000ff", "#ff0000", "#000000"][..], &["5", "1", "7"][..]),
     ] {
         let drawing = named(machine).drawing(&cuts).unwrap();
         let file = svg(&drawing);
@@ -340,15 +335,7 @@ fn cuts_and_marks_have_the_colours_of_the_machine() {
         let file = dxf(&drawing);
         let layers = file.split("AcDbLayerTableRecord").skip(2);
         let found: Vec<&str> = layers
-            .map(|record| {
-                record
-                    .split(" 62\n")
-                    .nth(1)
-                    .unwrap()
-                    .lines()
-                    .next()
-                    .unwrap()
-            })
+            .map(|record| record.split(" 62\n").nth(1).unwrap().lines().next().unwrap())
             .collect();
         assert_eq!(found, indices, "{machine}");
     }

@@ -1,5 +1,6 @@
-//! The cut lines of the uniform 3 x 3 sheet against numbers computed by hand, and the cut lines of irregular sheets
-//! against the rule that no cut enters a ligament; cutting order, numbers of random sheets; the files, read back.
+//! The cut lines of the uniform 3 x 3 sheet against numbers computed by hand, and the cut lines of
+//! irregular sheets against the rule that no cut enters a ligament; cutting order, numbers of
+//! random sheets; the files, read back.
 //!
 //! The uniform sheet of 400 mm panels and 18 mm ligaments, with its four interior slits:
 //!
@@ -41,10 +42,8 @@ fn least(values: impl Iterator<Item = f64>) -> f64 {
 fn sheet(grid: Grid, coordinates: &PatternCoordinates, w_lig: f64) -> (CutPattern, Sheet) {
     let [width, height] = [grid.m, grid.n].map(|panels| 400.0 * panels as f64);
     let pattern = CutPattern::new(grid, Outline::rectangle(width, height), coordinates).unwrap();
-    let options = SheetOptions {
-        hinge_point: HingePoint::CutTip,
-        process: HingeConstants::PAPER.into(),
-    };
+    let options =
+        SheetOptions { hinge_point: HingePoint::CutTip, process: HingeConstants::PAPER.into() };
     let widths = vec![w_lig; grid.hinge_count()];
     let sheet = Sheet::new(&pattern, &widths, options).unwrap();
     (pattern, sheet)
@@ -219,8 +218,8 @@ fn ligaments_that_leave_no_slit_are_refused() {
     assert!(matches!(of(0.6), FabricationError::HoleTooSmall { .. }));
 }
 
-/// The ligament at the end of a cut shortens it: in sheets of short panels a cut may end before the ligament opposite it, or
-/// leave an edge of a panel whole.
+/// The ligament at the end of a cut shortens it: in sheets of short panels a cut may end before the
+/// ligament opposite it, or leave an edge of a panel whole.
 #[test]
 fn cuts_that_are_too_short_for_their_ligaments_and_panels_are_refused() {
     let grid = Grid { m: 4, n: 4 };
@@ -228,11 +227,7 @@ fn cuts_that_are_too_short_for_their_ligaments_and_panels_are_refused() {
     for seed in 0..300 {
         let (pattern, sheet) = sheet(grid, &drawn(grid, seed, 2.0), 25.0);
         match CutLines::new(&pattern, &sheet, CuttingConfig::default(), &[]) {
-            Err(FabricationError::CutEndsBeforeLigament {
-                hinge: h,
-                width,
-                modelled,
-            }) => {
+            Err(FabricationError::CutEndsBeforeLigament { hinge: h, width, modelled }) => {
                 assert!(width > modelled && modelled == sheet.hinges[h].w_lig);
                 refused[0] += 1;
             }

@@ -77,7 +77,8 @@ proptest! {
     }
 }
 
-/// The shortest way past six cuts on a line is known: without 2-opt, the tool would return for the first.
+/// The shortest way past six cuts on a line is known: without 2-opt, the tool would return for the
+/// first.
 #[test]
 fn cuts_on_a_line_are_cut_from_one_end_to_the_other() {
     let mut drawing = CutDrawing::default();

@@ -27,9 +27,9 @@ fn an_exact_measurement_is_recovered_with_its_pose_scale_and_load() {
     }
 }
 
-/// With n points of Gaussian errors sigma and u fitted unknowns, the sum of squares over sigma^2 has the chi-squared
-/// distribution of 2 n - u degrees of freedom, whose standard deviation is sqrt(2 (2 n - u)). Four of them are
-/// exceeded by one of 16 000 measurements.
+/// With n points of Gaussian errors sigma and u fitted unknowns, the sum of squares over sigma^2
+/// has the chi-squared distribution of 2 n - u degrees of freedom, whose standard deviation is
+/// sqrt(2 (2 n - u)). Four of them are exceeded by one of 16 000 measurements.
 #[test]
 fn gaussian_errors_give_the_rms_of_the_chi_distribution() {
     let (problem, deployment) = deployed();
@@ -52,8 +52,8 @@ fn gaussian_errors_give_the_rms_of_the_chi_distribution() {
     }
 }
 
-/// Normalised by the standard error that each fit states, the squared errors of the load factor have a mean of 1
-/// with a standard deviation of sqrt(2 / 40).
+/// Normalised by the standard error that each fit states, the squared errors of the load factor
+/// have a mean of 1 with a standard deviation of sqrt(2 / 40).
 #[test]
 fn the_load_factor_is_found_with_the_standard_error_that_is_stated() {
     let (problem, deployment) = deployed();
@@ -71,8 +71,9 @@ fn the_load_factor_is_found_with_the_standard_error_that_is_stated() {
     assert!((sum / 40.0 - 1.0).abs() < allowed, "{sum}");
 }
 
-/// The stated errors of the openings are the errors that the noise causes: their normalised squares have a mean of 1.
-/// The 85 openings of a sheet share panels; four standard deviations of 50 independent ones are 0.8.
+/// The stated errors of the openings are the errors that the noise causes: their normalised squares
+/// have a mean of 1. The 85 openings of a sheet share panels; four standard deviations of 50
+/// independent ones are 0.8.
 #[test]
 fn the_openings_have_the_standard_error_that_is_stated() {
     let (problem, deployment) = deployed();

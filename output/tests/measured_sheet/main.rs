@@ -25,28 +25,18 @@ const GRID: Grid = Grid { m: 5, n: 10 };
 /// Position on the path of the synthetic measurements: between the load steps 5 and 6.
 const POSITION: f64 = 5.4;
 
-/// A sheet of 50 panels of 100 mm, held at the left and pulled to the right, with a pattern that is not uniform.
+/// A sheet of 50 panels of 100 mm, held at the left and pulled to the right, with a pattern that is
+/// not uniform.
 fn deployed() -> (DesignProblem, Deployment) {
-    let clamp = Dof::ALL.map(|dof| Support {
-        panel: GRID.panel(0, 4),
-        dof,
-        value: 0.0,
-    });
-    let pull = Load {
-        panel: GRID.panel(4, 5),
-        dof: Dof::UX,
-        value: 4.0,
-    };
+    let clamp = Dof::ALL.map(|dof| Support { panel: GRID.panel(0, 4), dof, value: 0.0 });
+    let pull = Load { panel: GRID.panel(4, 5), dof: Dof::UX, value: 4.0 };
     let settings = SolverSettings::default();
     let solver = EquilibriumSolver::new(GRID, &clamp, &[pull], 8, settings).unwrap();
     let law = LinearLaw::uniform([400.0, 250.0, 300.0], GRID.hinge_count());
     let problem = DesignProblem {
         grid: GRID,
         outline: Outline::rectangle(500.0, 1000.0),
-        widths: WidthChart {
-            w_minus: 5.0,
-            w_plus: 15.0,
-        },
+        widths: WidthChart { w_minus: 5.0, w_plus: 15.0 },
         options: SheetOptions {
             hinge_point: HingePoint::Corner,
             process: HingeConstants::PAPER.into(),
@@ -76,10 +66,7 @@ fn measured(path: &ShapePath, position: f64, corners: bool, scale: f64) -> Vec<M
         .map(|mark| {
             let [x, y] = mark.deployed(path.sheet, &configuration);
             let position = [cos * x - sin * y, sin * x + cos * y].map(|x| scale * x);
-            MeasuredPoint {
-                mark,
-                position: [position[0] + 3000.0, position[1] - 250.0],
-            }
+            MeasuredPoint { mark, position: [position[0] + 3000.0, position[1] - 250.0] }
         })
         .collect()
 }

@@ -42,13 +42,9 @@ fn one_panel_determines_no_load_factor() {
     assert!(points.iter().all(|point| point.mark.panel == panel));
     let found = MeasuredSheet::new(&path, &points, Scale::Given).unwrap();
     assert_eq!(found.load_factor_error, None);
-    let page = MeasurementReport::new("one panel", path.sheet, &found, None, &[])
-        .document()
-        .to_string();
-    for text in [
-        "not determined",
-        "note: the points do not determine the load factor",
-    ] {
+    let page =
+        MeasurementReport::new("one panel", path.sheet, &found, None, &[]).document().to_string();
+    for text in ["not determined", "note: the points do not determine the load factor"] {
         assert!(page.contains(text), "{page}");
     }
     let shift = page.lines().find(|line| line.starts_with("removed: shift"));

@@ -29,11 +29,7 @@ fn the_work_along_the_curve_is_the_stored_energy() {
     let turned = "kind = \"clamp\"\nrotation_deg = -15.0";
     for (actuation, mover, translational) in [
         (format!("{load}force = [2.0, 0.0]"), Mover::Loads, true),
-        (
-            format!("{load}force = [1.0, 0.0]\n{corner}"),
-            Mover::Loads,
-            true,
-        ),
+        (format!("{load}force = [1.0, 0.0]\n{corner}"), Mover::Loads, true),
         (format!("{load}couple = -300.0"), Mover::Loads, false),
         (format!("{support}{moved}"), Mover::Supports, true),
         (format!("{support}{turned}"), Mover::Supports, false),
@@ -66,9 +62,7 @@ fn loads_and_reactions_balance() {
     let step = &deployment.path[100];
     let law = mechanics.law.prepare(&sheet.designs());
     let hinged = mechanics.hinged(sheet, &*law, false);
-    let forces = mechanics
-        .solver
-        .holding_forces(hinged, step.weight, &step.configuration);
+    let forces = mechanics.solver.holding_forces(hinged, step.weight, &step.configuration);
     let (mut sum, mut moment) = ([0.0; 2], 0.0);
     for (k, ([x, y, m], [u_x, u_y, _])) in std::iter::zip(&forces, &step.configuration).enumerate()
     {

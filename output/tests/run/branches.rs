@@ -6,7 +6,8 @@ use design::optimise::outer_loop::Ended;
 use scene::design_run::design_of_run;
 use support::severity::Severity;
 
-/// The scene linear-7x7 from a random start, with 40 steps of an optimiser that follows every tenth path.
+/// The scene linear-7x7 from a random start, with 40 steps of an optimiser that follows every tenth
+/// path.
 fn circle(folder: &Path, (method, noise, seed): (&str, f64, u64)) -> Scene {
     shipped("linear-7x7", |config| {
         config.optimiser.method = serde_json::from_str(&format!("\"{method}\"")).unwrap();
@@ -31,7 +32,8 @@ fn a_search_keeps_a_design_whose_path_was_followed() {
         let designed = run(&scene, None).unwrap();
         assert!(designed.branch_mismatch, "{start:?}");
         assert!(designed.best.loss < 0.5 * designed.start.loss, "{start:?}");
-        // The design in the run folder has the loss that the report states, and no step found a lower one.
+        // The design in the run folder has the loss that the report states, and no step found a
+        // lower one.
         let stored = design_of_run(&scene).unwrap().unwrap();
         let problem = scene.problem().unwrap();
         assert_eq!(problem.loss(&stored).unwrap(), designed.best.loss);
@@ -47,7 +49,8 @@ fn a_search_keeps_a_design_whose_path_was_followed() {
     }
 }
 
-/// After a contradiction the search is one that follows every path, from the best design that was followed before.
+/// After a contradiction the search is one that follows every path, from the best design that was
+/// followed before.
 #[test]
 fn every_path_is_followed_after_a_contradiction() {
     let folder = tempfile::tempdir().unwrap();
@@ -87,7 +90,8 @@ fn a_search_without_a_contradiction_is_not_noted() {
     assert!(found(&run.report, Concern::OtherBranch).is_empty());
 }
 
-/// A search that is stopped between two followed paths returns the best design so far, not the last followed one.
+/// A search that is stopped between two followed paths returns the best design so far, not the last
+/// followed one.
 #[test]
 fn a_stopped_search_returns_its_best_design() {
     let folder = tempfile::tempdir().unwrap();

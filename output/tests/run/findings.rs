@@ -1,4 +1,5 @@
-//! Findings about a run as a whole: what the model leaves out, the load of a driven path, weights that are inaccurate.
+//! Findings about a run as a whole: what the model leaves out, the load of a driven path, weights
+//! that are inaccurate.
 
 use super::learned::{brittle, learned, weights};
 use super::*;
@@ -33,8 +34,8 @@ const WEIGHT: f64 = 1.2 * 1.2 * 0.5e-3 * 1390.0 * 9.81;
 
 const SHORT: (&str, &str) = ("steps = 6", "steps = 1");
 
-/// Finite elements of the whole sheet replace the expectation for their posture, and their findings are the report's; they are of one
-/// design.
+/// Finite elements of the whole sheet replace the expectation for their posture, and their findings
+/// are the report's; they are of one design.
 #[test]
 fn a_whole_sheet_by_finite_elements_is_in_the_report() {
     let run = finished(&[], &[FREE, SHORT]);
@@ -48,10 +49,7 @@ fn a_whole_sheet_by_finite_elements_is_in_the_report() {
         findings: vec![Severity::Error.finding(message.clone())],
     };
     let again = |support, design| {
-        let checks = DesignChecks {
-            levels: None,
-            whole_sheet: Some(sheet(support)),
-        };
+        let checks = DesignChecks { levels: None, whole_sheet: Some(sheet(support)) };
         checks.write(&run.scene.output(), design).unwrap();
         write_results(&run.scene, &run.designed, false).unwrap()
     };
@@ -62,10 +60,7 @@ fn a_whole_sheet_by_finite_elements_is_in_the_report() {
     assert_eq!(finding.severity, Severity::Error);
     assert_says(&finding.message, &message);
     assert!(!report.cut_file);
-    assert_says(
-        &run.file("report.txt"),
-        "tilt by up to 7 deg; corners 1.5 mm (rms), 4 mm at most",
-    );
+    assert_says(&run.file("report.txt"), "tilt by up to 7 deg; corners 1.5 mm (rms), 4 mm at most");
     // Held in another way it may stay flat: the expectation is stated too.
     let held = again(Posture::HeldFlat, best);
     assert_eq!(one(&held, Concern::LeavesPlane), &expected);
@@ -99,7 +94,8 @@ fn a_learned_law_states_what_is_not_modelled() {
         assert_says(&text, "9.82 N, 491 % of the load");
         // Gamma is of a sheet that lies.
         assert_eq!(text.contains("minimum Gamma"), posture == LYING, "{text}");
-        // Ligaments of this film are 36 times as wide as it is thick; on a floor its weight keeps it nearly flat.
+        // Ligaments of this film are 36 times as wide as it is thick; on a floor its weight keeps
+        // it nearly flat.
         let expected = match posture {
             HANGING | FREE => Some(Severity::Error),
             LYING => Some(Severity::Warning),
@@ -134,10 +130,7 @@ fn friction_is_a_warning_beside_a_small_load() {
     let shares = ["147 % of the load", "150 % of the load"];
     let stated = shares.iter().any(|share| message.contains(share));
     assert!(stated, "{message}");
-    assert_says(
-        &heavy.document().to_string(),
-        "clamp, panel P3 (column 1, row 2), at (",
-    );
+    assert_says(&heavy.document().to_string(), "clamp, panel P3 (column 1, row 2), at (");
     // At 4.9 % of the load it is none.
     let light = report(&[], &[LYING, ("[2.0, 0.0]", "[60.5, 0.0]"), SHORT]);
     assert!(found(&light, Concern::Friction).is_empty());
@@ -193,7 +186,8 @@ fn a_sheet_on_pins_has_no_equilibria_to_list() {
 /// A scene of these tests.
 const STEEL_FILM: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/run/steel-film");
 
-/// The steel sheet buckles at a small stroke, between two load steps of its scene: there the load is largest.
+/// The steel sheet buckles at a small stroke, between two load steps of its scene: there the load
+/// is largest.
 #[test]
 fn the_largest_load_of_a_driven_path_and_weak_weights_are_stated() {
     let steel = Finished::shipped(STEEL_FILM, |_| ());
@@ -220,10 +214,7 @@ fn the_largest_load_of_a_driven_path_and_weak_weights_are_stated() {
 
     let warning = one(report, Concern::LoadPeak);
     assert_eq!(warning.severity, Severity::Warning);
-    assert_says(
-        &warning.message,
-        "such as a hung weight, does not open this sheet",
-    );
+    assert_says(&warning.message, "such as a hung weight, does not open this sheet");
     assert_says(&report.document().to_string(), "largest load");
     // The page draws the largest load between the load steps.
     let peak = serde_json::to_string(&[peak.displacement, peak.load]).unwrap();
@@ -295,7 +286,8 @@ fn panels_that_lie_over_each_other_are_an_error() {
     }
 }
 
-/// The forces on the way decide: in a pulled plate they hold the panels in the plane, in a pushed one they tip them.
+/// The forces on the way decide: in a pulled plate they hold the panels in the plane, in a pushed
+/// one they tip them.
 #[test]
 fn a_plate_stays_in_its_plane_if_it_is_pulled_and_leaves_it_if_it_is_pushed() {
     let plate = |outwards: f64| {

@@ -1,5 +1,5 @@
-//! Runs with a learned hinge law of random weights: weights of another hinge are refused, every term of
-//! the objective counts, and the report shows the training domain.
+//! Runs with a learned hinge law of random weights: weights of another hinge are refused, every
+//! term of the objective counts, and the report shows the training domain.
 
 use super::*;
 use design::objective::design_problem::Deployment;
@@ -61,7 +61,8 @@ fn weights_of_another_hinge_or_material_are_refused() {
     }
 }
 
-/// The same scene at a fifth of every length, with a twenty-fifth of every force, deploys to the same shape.
+/// The same scene at a fifth of every length, with a twenty-fifth of every force, deploys to the
+/// same shape.
 #[test]
 fn a_similar_sheet_of_another_thickness_deploys_to_a_similar_shape() {
     const FACTOR: f64 = 0.2;
@@ -215,15 +216,13 @@ fn the_report_states_how_far_the_networks_of_an_ensemble_disagree() {
     let run = Finished::within(folder, &scene);
     let report = &run.report;
     let estimate = report.estimate.as_ref().unwrap();
-    // Energies and forces with the factors 1 and 1.21: a deviation of 0.21 / sqrt(2) about a mean of 1.105.
+    // Energies and forces with the factors 1 and 1.21: a deviation of 0.21 / sqrt(2) about a mean
+    // of 1.105.
     let expected = 0.21 / 2f64.sqrt() / 1.105;
     assert_eq!((estimate.networks, estimate.damage_peak), (2, None));
     assert_close(estimate.energy, expected, 1e-9);
     assert_close(estimate.forces, expected, 1e-9);
-    assert_says(
-        &report.document().to_string(),
-        "2 networks; standard deviation",
-    );
+    assert_says(&report.document().to_string(), "2 networks; standard deviation");
     let table = report.budget.as_ref().unwrap().table();
     let budget: Vec<_> = table.rows().collect();
     let row = |cause: &str| budget.iter().find(|row| row[0] == cause).unwrap();
@@ -244,10 +243,7 @@ fn the_report_states_how_far_the_networks_of_an_ensemble_disagree() {
     assert!(text.contains("not in the budget: ") && text.contains("creep"));
     // Neither creep nor springback of the film is known.
     assert_says(&text, "the material file has no figure ([creep])");
-    assert_says(
-        &text,
-        "names no law of released hinges (surrogate.springback)",
-    );
+    assert_says(&text, "names no law of released hinges (surrogate.springback)");
 }
 
 fn warned(report: &Report, concern: Concern) -> Vec<usize> {

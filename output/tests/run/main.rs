@@ -1,4 +1,5 @@
-//! Whole runs of small scenes: the outer loop, the learned hinge law, the files and the page of a run.
+//! Whole runs of small scenes: the outer loop, the learned hinge law, the files and the page of a
+//! run.
 
 mod actuation_curve;
 mod branches;
@@ -141,12 +142,7 @@ impl Finished {
     fn of(folder: TempDir, scene: Scene) -> Self {
         let designed = run(&scene, None).unwrap();
         let report = write_results(&scene, &designed, false).unwrap();
-        Self {
-            folder,
-            scene,
-            designed,
-            report,
-        }
+        Self { folder, scene, designed, report }
     }
 
     /// The text of a file in the run folder.

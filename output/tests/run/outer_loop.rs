@@ -1,5 +1,5 @@
-//! The outer loop on a linear 3 x 3 sheet: the loss decreases, a resumed run follows the same trajectory, and
-//! designs without objective value do not end the run.
+//! The outer loop on a linear 3 x 3 sheet: the loss decreases, a resumed run follows the same
+//! trajectory, and designs without objective value do not end the run.
 
 use super::*;
 use design::optimise::outer_loop::{Ended, StepRecord};
@@ -22,7 +22,8 @@ fn the_loss_falls_and_the_best_design_is_returned() {
     assert_eq!(losses[0], designed.start.loss);
     assert!(designed.best.loss < 0.8 * losses[0]);
     let minimum = losses.into_iter().fold(f64::MAX, f64::min);
-    // The last evaluation follows the path, the search may have corrected it: both to the tolerance of 1e-10.
+    // The last evaluation follows the path, the search may have corrected it: both to the tolerance
+    // of 1e-10.
     assert_close(minimum / designed.best.loss, 1.0, 1e-9);
 }
 

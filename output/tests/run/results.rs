@@ -25,15 +25,13 @@ const SMALL: [(&str, &str); 4] = [
 
 #[test]
 fn a_sound_design_writes_all_files_and_only_its_miss_is_a_warning() {
-    // The design of this seed opens without a jump. Its outline is 98 mm from the circle, 8 % of its side.
+    // The design of this seed opens without a jump. Its outline is 98 mm from the circle, 8 % of
+    // its side.
     let run = finished(&[("seed = 3", "seed = 12")]);
     let report = &run.report;
     let warnings = report.warnings.iter();
     let found = warnings.map(|warning| (warning.concern, warning.severity));
-    assert_eq!(
-        found.collect::<Vec<_>>(),
-        [(Concern::TargetMissed, Severity::Warning)]
-    );
+    assert_eq!(found.collect::<Vec<_>>(), [(Concern::TargetMissed, Severity::Warning)]);
     assert_eq!((report.steps, report.hinges.len()), (25, 12));
     assert!(report.after.loss < report.before.loss);
     assert!(report.after.outline_error < report.before.outline_error);
@@ -70,12 +68,10 @@ fn the_pictures_show_every_panel_hinge_and_slit() {
 fn panels_too_small_for_their_windows_are_named() {
     let report =
         finished(&[&SMALL[..], &[("start_noise = 0.05", "start_noise = 0.0")]].concat()).report;
-    // Panels of about 130 mm: windows of 100 mm lie inside them but overlap the windows of the next hinge.
+    // Panels of about 130 mm: windows of 100 mm lie inside them but overlap the windows of the next
+    // hinge.
     one(&report, Concern::WindowsOverlap);
-    assert_says(
-        &report.document().to_string(),
-        "windows of 100 mm radius overlap",
-    );
+    assert_says(&report.document().to_string(), "windows of 100 mm radius overlap");
 }
 
 #[test]
@@ -99,17 +95,14 @@ fn ligaments_wider_than_their_slits_cannot_be_cut_and_the_report_says_so() {
     let report = &run.report;
     assert_eq!(one(report, Concern::CannotBeCut).hinges, [0; 0]);
     assert!(!report.cut_file && !run.scene.output().join("cut.dxf").exists());
-    let first = format!(
-        "Test sheet: level linear\n{}\nNO CUT FILE\n\n- error: ",
-        report.miss()
-    );
+    let first = format!("Test sheet: level linear\n{}\nNO CUT FILE\n\n- error: ", report.miss());
     let text = run.file("report.txt");
     assert!(text.starts_with(&first), "{text}");
     assert!(run.scene.output().join("deployed.svg").exists());
 }
 
-/// Ligaments that translate by more than their width are an error: no cut file is written unless it is forced, and the
-/// cut file of an earlier design is removed.
+/// Ligaments that translate by more than their width are an error: no cut file is written unless it
+/// is forced, and the cut file of an earlier design is removed.
 #[test]
 fn a_load_far_too_large_leaves_no_cut_file_unless_it_is_forced() {
     let run = finished(&[("force = [2.0, 0.0]", "force = [3e4, 0.0]"), QUICK]);
@@ -128,7 +121,8 @@ fn a_load_far_too_large_leaves_no_cut_file_unless_it_is_forced() {
     }
 }
 
-/// The table of the page is the table of the program: one line for successive files of the same contents.
+/// The table of the page is the table of the program: one line for successive files of the same
+/// contents.
 #[test]
 fn the_page_of_a_run_lists_its_files() {
     let mut lines: Vec<(String, &str)> = Vec::new();

@@ -61,9 +61,9 @@ fn assert_equals_report(data: &Value, report: &Report) {
 fn the_page_needs_no_other_file_and_agrees_with_the_report() {
     let run = Finished::new(SCENE);
     let ((page, data), report) = (page(&run), &run.report);
-    for reference in [
-        "http:", "https:", "//www", "src=", "href=", "url(", "@import", "{{", "}}\n</",
-    ] {
+    for reference in
+        ["http:", "https:", "//www", "src=", "href=", "url(", "@import", "{{", "}}\n</"]
+    {
         assert!(!page.contains(reference), "{reference}");
     }
     assert!(page.starts_with("<!DOCTYPE html>") && page.trim_end().ends_with("</html>"));
@@ -144,9 +144,7 @@ fn damage_is_not_known_once_a_hinge_has_left_the_domain() {
 
 #[test]
 fn a_sheet_on_pins_shows_its_opening_and_nothing_else() {
-    let run = Finished::new(&with(
-        &[&ON_PINS[..], &[("steps = 25", "steps = 3")]].concat(),
-    ));
+    let run = Finished::new(&with(&[&ON_PINS[..], &[("steps = 25", "steps = 3")]].concat()));
     let ((_, data), report) = (page(&run), &run.report);
     let states = &data["states"];
     let of_hinges = ["energy", "forces", "damage", "damage_peak", "spread"];
@@ -178,7 +176,8 @@ fn no_title_ends_the_element_that_holds_it() {
     assert!(page.contains("<title>&lt;/script&gt;"));
 }
 
-/// 3600 panels and 7080 hinges at 21 openings: states are left out, but neither the flat nor the last one.
+/// 3600 panels and 7080 hinges at 21 openings: states are left out, but neither the flat nor the
+/// last one.
 #[test]
 fn the_page_of_a_large_sheet_stays_below_five_megabytes() {
     let large = [

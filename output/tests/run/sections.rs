@@ -56,12 +56,7 @@ fn a_start_is_given_by_values() {
          w_lig = [12.0, 13.0, 14.0, 15.0, 16.0, 17.0, 18.0, 19.0, 20.0, 21.0, 22.0, 23.0]\n[process]",
     );
     let logits = [0.3_f64, 0.5, 0.6, 0.9].map(|r| (r / (1.0 - r)).ln());
-    let ell = [
-        [0.2, 0.4, 0.4],
-        [0.3, 0.4, 0.3],
-        [0.5, 0.1, 0.4],
-        [0.1, 0.1, 0.8],
-    ];
+    let ell = [[0.2, 0.4, 0.4], [0.3, 0.4, 0.3], [0.5, 0.1, 0.4], [0.1, 0.1, 0.8]];
     let ell = ell.as_flattened().iter().map(|length: &f64| length.ln());
     let pattern = &values.pattern;
     let found = pattern.z.iter().chain(pattern.ell.iter().flatten());

@@ -5,12 +5,12 @@
 //! displacement  zeta D                   load  R . U / D              moved by supports, by U of total magnitude D
 //! ```
 //!
-//! In both cases the area below the curve is the work done on the sheet; for one force it is the displacement of
-//! its panel along the force. F and D are sums of the magnitudes of forces or translations, or, if there are none, of
-//! couples or rotations.
+//! In both cases the area below the curve is the work done on the sheet; for one force it is the
+//! displacement of its panel along the force. F and D are sums of the magnitudes of forces or
+//! translations, or, if there are none, of couples or rotations.
 //!
-//! Where a stroke or a motion is prescribed, the load may have a maximum on the way. A dead load, such as a hung weight,
-//! opens the sheet only as far as the first state that carries it.
+//! Where a stroke or a motion is prescribed, the load may have a maximum on the way. A dead load,
+//! such as a hung weight, opens the sheet only as far as the first state that carries it.
 
 use design::equilibrium::displacement_control::{magnitude, work};
 use design::equilibrium::load_step::LoadStep;
@@ -34,10 +34,11 @@ pub enum Mover {
 pub struct ActuationCurve {
     /// What moves the sheet.
     pub mover: Mover,
-    /// Whether forces or translations move it; otherwise displacements are angles and loads are couples.
+    /// Whether forces or translations move it; otherwise displacements are angles and loads are
+    /// couples.
     pub translational: bool,
-    /// (displacement from the flat sheet, load) of the flat sheet, or of the sheet under its weight, and of every load step:
-    /// mm and N, or rad and N mm.
+    /// (displacement from the flat sheet, load) of the flat sheet, or of the sheet under its
+    /// weight, and of every load step: mm and N, or rad and N mm.
     pub points: Vec<[f64; 2]>,
 }
 
@@ -47,7 +48,8 @@ impl ActuationCurve {
         mechanics.solver.is_driven() || self.mover == Mover::Supports
     }
 
-    /// The curve through the load steps of a deployment by `mechanics`; `None` if nothing moves the sheet.
+    /// The curve through the load steps of a deployment by `mechanics`; `None` if nothing moves the
+    /// sheet.
     pub fn new(mechanics: &Mechanics, deployment: &Deployment) -> Option<Self> {
         let weighed = deployment.weight_steps();
         let loaded = &deployment.path[weighed.len()..];
@@ -59,17 +61,16 @@ impl ActuationCurve {
         Self::through(mechanics, &deployment.sheet, &before, states)
     }
 
-    /// The curve through the load steps and the increments of the path, and through states close together about the maximum
-    /// of the load and where the load of the end is first reached. The path is followed twice more.
+    /// The curve through the load steps and the increments of the path, and through states close
+    /// together about the maximum of the load and where the load of the end is first reached. The
+    /// path is followed twice more.
     pub fn resolved(mechanics: &Mechanics, sheet: &Sheet) -> Option<Self> {
         let law = mechanics.law.prepare(&sheet.designs());
         let hinged = mechanics.hinged(sheet, &*law, false);
         let solver = &mechanics.solver;
         let before = solver.before_loads(hinged);
         let increments = solver.increments(hinged);
-        let states = increments
-            .iter()
-            .map(|end| (end.load_factor, &*end.configuration));
+        let states = increments.iter().map(|end| (end.load_factor, &*end.configuration));
         let coarse = Self::through(mechanics, sheet, &before, states)?.forwards();
         let (top, reached) = (highest(&coarse), first_reached(&coarse));
         let mut readings = Vec::new();
@@ -90,8 +91,8 @@ impl ActuationCurve {
         Self::through(mechanics, sheet, &before, steps.iter().map(load_and_state))
     }
 
-    /// The curve through the load factors and configurations of states, beginning `before` the loads; `None` if nothing
-    /// moves the sheet.
+    /// The curve through the load factors and configurations of states, beginning `before` the
+    /// loads; `None` if nothing moves the sheet.
     pub(crate) fn through<'a>(
         mechanics: &Mechanics,
         sheet: &Sheet,
@@ -113,11 +114,7 @@ impl ActuationCurve {
             }
         };
         let before = std::iter::once((*load_factor, &start[..]));
-        Some(Self {
-            mover,
-            translational,
-            points: before.chain(states).map(point).collect(),
-        })
+        Some(Self { mover, translational, points: before.chain(states).map(point).collect() })
     }
 
     /// The maximum of the load, in the direction of the displacement.
@@ -137,8 +134,8 @@ impl ActuationCurve {
         }
     }
 
-    /// The maxima and minima of the load on the way, in turn: there a dead load would make the sheet jump. Changes of the load
-    /// below a thousandth of its maximum do not count.
+    /// The maxima and minima of the load on the way, in turn: there a dead load would make the
+    /// sheet jump. Changes of the load below a thousandth of its maximum do not count.
     pub fn limit_points(&self) -> Vec<LimitPoint> {
         let (points, sense) = (self.forwards(), self.sense());
         let least = self.least();
@@ -181,9 +178,7 @@ impl ActuationCurve {
     fn forwards(&self) -> Vec<[f64; 2]> {
         let sense = self.sense();
         let points = self.points.iter();
-        points
-            .map(|point| point.map(|value| sense * value))
-            .collect()
+        points.map(|point| point.map(|value| sense * value)).collect()
     }
 
     fn sense(&self) -> f64 {
@@ -193,11 +188,7 @@ impl ActuationCurve {
 
     /// Units of displacement and load.
     pub fn units(&self) -> [&'static str; 2] {
-        if self.translational {
-            ["mm", "N"]
-        } else {
-            ["rad", "N mm"]
-        }
+        if self.translational { ["mm", "N"] } else { ["rad", "N mm"] }
     }
 }
 
@@ -208,8 +199,9 @@ pub struct LoadPeak {
     pub displacement: f64,
     /// Maximum load: N or N mm.
     pub load: f64,
-    /// The displacement at which the path first carries the load of its end, if it exceeds that load before its end: a
-    /// dead load of that size moves the sheet no further. 0 if the sheet must be held back at the end.
+    /// The displacement at which the path first carries the load of its end, if it exceeds that
+    /// load before its end: a dead load of that size moves the sheet no further. 0 if the sheet
+    /// must be held back at the end.
     pub dead_load_reaches: Option<f64>,
 }
 
@@ -236,7 +228,8 @@ fn highest(points: &[[f64; 2]]) -> usize {
     (0..points.len()).max_by(by_load).unwrap_or(0)
 }
 
-/// The index of the first interval in which the load of the end is reached; `None` if that is not positive.
+/// The index of the first interval in which the load of the end is reached; `None` if that is not
+/// positive.
 fn first_reached(points: &[[f64; 2]]) -> Option<usize> {
     let [_, last] = *points.last()?;
     let reaches = |pair: &[[f64; 2]]| pair[1][1] >= last;
@@ -289,11 +282,7 @@ mod tests {
     #[test]
     fn a_load_that_increases_has_its_maximum_at_the_end() {
         let peak = curve(|x| x * x, 2.0).peak();
-        let expected = LoadPeak {
-            displacement: 2.0,
-            load: 4.0,
-            dead_load_reaches: None,
-        };
+        let expected = LoadPeak { displacement: 2.0, load: 4.0, dead_load_reaches: None };
         assert_eq!(peak, expected);
         // Nor does a dead load stop at a maximum below the load at the end.
         let rises = curve(|x| x + 0.9 * (3.0 * x).sin(), 6.9).peak();

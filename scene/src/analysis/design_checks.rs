@@ -1,4 +1,5 @@
-//! What was measured of the design of a run after its search. The folder of the run keeps it, and its report states it.
+//! What was measured of the design of a run after its search. The folder of the run keeps it, and
+//! its report states it.
 
 use crate::Posture;
 use crate::analysis::levels::Levels;
@@ -30,7 +31,8 @@ pub struct WholeSheet {
     pub support: Posture,
     /// Largest tilt of a panel on the path (deg).
     pub tilt_deg: f64,
-    /// Distance of the panel corners in space at the end of the path (mm): root mean square and maximum.
+    /// Distance of the panel corners in space at the end of the path (mm): root mean square and
+    /// maximum.
     pub corners: [f64; 2],
     /// Load there (N), by the hinge law and by finite elements.
     pub load: Option<[f64; 2]>,
@@ -46,7 +48,8 @@ struct Kept {
 }
 
 impl DesignChecks {
-    /// The checks of a design in the folder of its run; empty if there are none, or if those there are of an earlier design.
+    /// The checks of a design in the folder of its run; empty if there are none, or if those there
+    /// are of an earlier design.
     pub fn read(folder: &Path, design: &DesignVector) -> Result<Self, FileError> {
         let path = folder.join(CHECKS_FILE);
         let text = match regular_file::read(&path) {
@@ -55,20 +58,13 @@ impl DesignChecks {
         };
         let kept = sealed_json::from_slice::<Kept>(&text).map_err(io::Error::other);
         let kept = kept.map_err(FileError::at(&path))?;
-        Ok(if kept.design == *design {
-            kept.checks
-        } else {
-            Self::default()
-        })
+        Ok(if kept.design == *design { kept.checks } else { Self::default() })
     }
 
     /// Writes the checks of a design to the folder of its run.
     pub fn write(self, folder: &Path, design: &DesignVector) -> Result<(), FileError> {
         let path = folder.join(CHECKS_FILE);
-        let kept = Kept {
-            design: design.clone(),
-            checks: self,
-        };
+        let kept = Kept { design: design.clone(), checks: self };
         let text = sealed_json::to_vec(&kept).map_err(FileError::at(&path))?;
         whole_file::write(&path, &text).map_err(FileError::at(&path))
     }

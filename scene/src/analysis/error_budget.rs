@@ -1,4 +1,5 @@
-//! The error budget of a deployed sheet: by how much each cause of errors moves its panel corners and changes its load.
+//! The error budget of a deployed sheet: by how much each cause of errors moves its panel corners
+//! and changes its load.
 //!
 //! To first order an error of the hinge forces moves the sheet by [`ForceResponse`].
 //! A cause gives the standard deviations of these forces ([`ForceErrors`]), from what was measured:
@@ -14,8 +15,8 @@
 //! | thickness | by similarity, of its tolerance | common | the scene |
 //! | tilt | none: heights of the corners, by the bumps of ligaments | | docs/results/flatness |
 //!
-//! Finite elements of all hinges of the sheet replace the first two and the loading path. What they leave is the movement of the
-//! panels in their last round.
+//! Finite elements of all hinges of the sheet replace the first two and the loading path. What they
+//! leave is the movement of the panels in their last round.
 //!
 //! What is not measured is not known: the sum of the others is a lower bound.
 
@@ -35,22 +36,26 @@ use strum::VariantArray;
 use support::statistics::rms_and_maximum;
 use surrogate::{SpotCheck, Surrogate};
 
-/// Ligament width over thickness, and the relative change of M_theta in a pure rotation if the imperfection has two thicknesses
-/// instead of one: the larger of two cut angles (docs/results/window, polyester film of 0.5 mm).
+/// Ligament width over thickness, and the relative change of M_theta in a pure rotation if the
+/// imperfection has two thicknesses instead of one: the larger of two cut angles
+/// (docs/results/window, polyester film of 0.5 mm).
 const FILM_IMPERFECTION: [[f64; 2]; 3] = [[10.0, 0.0970], [36.0, 0.0247], [50.0, 0.0161]];
-/// The same if it has 0.1 instead of 0.02 thicknesses (docs/results/window, polypropylene plate of 3 mm).
+/// The same if it has 0.1 instead of 0.02 thicknesses (docs/results/window, polypropylene plate of
+/// 3 mm).
 const PLATE_IMPERFECTION: [[f64; 2]; 3] = [[1.0 / 3.0, 0.0127], [2.0 / 3.0, 0.0081], [1.0, 0.0075]];
-/// The fraction by which the forces differ at a separation of the path from its ray of one ligament width; they do in proportion to it. Film:
-/// the law through all detours (docs/TRIED.md, polyester film of 0.5 mm). Plate, and a law of bent rays: root mean square over fourteen paths
-/// in plates (docs/results/plates, polypropylene of 3 mm).
+/// The fraction by which the forces differ at a separation of the path from its ray of one ligament
+/// width; they do in proportion to it. Film: the law through all detours (docs/TRIED.md, polyester
+/// film of 0.5 mm). Plate, and a law of bent rays: root mean square over fourteen paths in plates
+/// (docs/results/plates, polypropylene of 3 mm).
 const DETOUR_OF_FILM: f64 = 0.05 / 0.17;
 const DETOUR_OF_PLATE: f64 = 6.2;
 const DETOUR_OF_BENT_RAYS: f64 = 3.6;
 /// The largest fraction that was found in plates, and with bent rays.
 const MOST_DETOUR_OF_PLATE: f64 = 0.63;
 const MOST_DETOUR_OF_BENT_RAYS: f64 = 0.4;
-/// Yield strain of that film. The forces of a material that yields at a smaller one depend more on the path: the forces of steel, at a
-/// thirteenth of it, by some fifty times (docs/results/metals). Materials below half of it are not covered.
+/// Yield strain of that film. The forces of a material that yields at a smaller one depend more on
+/// the path: the forces of steel, at a thirteenth of it, by some fifty times (docs/results/metals).
+/// Materials below half of it are not covered.
 const DETOUR_YIELD: f64 = 0.0146;
 /// Number of hinges above which no budget is made: it takes three solves a hinge and more.
 const MOST_HINGES: usize = 2000;
@@ -145,17 +150,18 @@ impl Cause {
         self.into()
     }
 
-    /// Whether finite elements of the hinges of a sheet see its errors: they have the imperfection, the material, the kerf and the
-    /// thickness of the scene.
+    /// Whether finite elements of the hinges of a sheet see its errors: they have the imperfection,
+    /// the material, the kerf and the thickness of the scene.
     pub fn is_seen_by_elements(self) -> bool {
         matches!(self, Self::Network | Self::WindowMesh | Self::LoadingPath)
     }
 }
 
 impl ErrorBudget {
-    /// The budget of a deployed design of a scene with a learned hinge law; `None` for another law, if full load is not reached,
-    /// if the tangent there is singular, or for more than 2000 hinges. `residual` is the largest movement of a panel corner in
-    /// the last balance with finite elements (mm), if the design was balanced with them.
+    /// The budget of a deployed design of a scene with a learned hinge law; `None` for another law,
+    /// if full load is not reached, if the tangent there is singular, or for more than 2000 hinges.
+    /// `residual` is the largest movement of a panel corner in the last balance with finite
+    /// elements (mm), if the design was balanced with them.
     pub fn new(
         scene: &Scene,
         problem: &DesignProblem,
@@ -171,11 +177,8 @@ impl ErrorBudget {
         }
         let designs = sheet.designs();
         let law = mechanics.law.prepare(&designs);
-        let response = ForceResponse::new(
-            &mechanics.solver,
-            mechanics.hinged(sheet, &*law, false),
-            last,
-        )?;
+        let response =
+            ForceResponse::new(&mechanics.solver, mechanics.hinged(sheet, &*law, false), last)?;
         let deployed = Deployed {
             scene,
             deployment,
@@ -183,10 +186,8 @@ impl ErrorBudget {
             designs,
         };
         let [_, load] = *ActuationCurve::new(mechanics, deployment)?.points.last()?;
-        let mut budget = Self {
-            contributions: Vec::new(),
-            total: Effect::none(sheet.panels.len()),
-        };
+        let mut budget =
+            Self { contributions: Vec::new(), total: Effect::none(sheet.panels.len()) };
         let replaced = |cause: &Cause| residual.is_some() && cause.is_seen_by_elements();
         for &cause in Cause::VARIANTS.iter().filter(|cause| !replaced(cause)) {
             let Some(known) = deployed.errors(cause) else {
@@ -199,19 +200,12 @@ impl ErrorBudget {
                 }
                 Err(reason) => (reason, None),
             };
-            budget.contributions.push(Contribution {
-                cause,
-                source,
-                effect,
-            });
+            budget.contributions.push(Contribution { cause, source, effect });
         }
         if let Some(heights) = heights(scene, problem, deployment) {
             let (source, effect) = match heights {
                 Ok(corners) => {
-                    let deviations = Deviations {
-                        corners,
-                        load: None,
-                    };
+                    let deviations = Deviations { corners, load: None };
                     let source = format!(
                         "heights of the corners, if all ligaments have a bump of {} thicknesses on the same side (docs/results/flatness)",
                         Regime::Plate.bump()
@@ -220,17 +214,11 @@ impl ErrorBudget {
                 }
                 Err(reason) => (reason.to_owned(), None),
             };
-            budget.contributions.push(Contribution {
-                cause: Cause::Tilt,
-                source,
-                effect,
-            });
+            budget.contributions.push(Contribution { cause: Cause::Tilt, source, effect });
         }
         if let Some(residual) = residual {
-            let deviations = Deviations {
-                corners: vec![residual; 4 * sheet.panels.len()],
-                load: None,
-            };
+            let deviations =
+                Deviations { corners: vec![residual; 4 * sheet.panels.len()], load: None };
             budget.contributions.push(Contribution {
                 cause: Cause::Balance,
                 source: "largest movement in the last balance with finite elements of every hinge, which replace networks, mesh and path".into(),
@@ -241,7 +229,8 @@ impl ErrorBudget {
         Some(budget)
     }
 
-    /// The root of the sum of the squares of the contributions whose causes `count`; a lower bound if one is not known.
+    /// The root of the sum of the squares of the contributions whose causes `count`; a lower bound
+    /// if one is not known.
     pub fn sum(&self, count: impl Fn(Cause) -> bool) -> Effect {
         let counted = || self.contributions.iter().filter(|part| count(part.cause));
         let effects = counted().filter_map(|part| part.effect.as_ref());
@@ -253,7 +242,8 @@ impl ErrorBudget {
     }
 }
 
-/// How far the corners of a deployed sheet are from the plane (mm), or why that is not known; `None` if the panels are held flat.
+/// How far the corners of a deployed sheet are from the plane (mm), or why that is not known;
+/// `None` if the panels are held flat.
 fn heights(
     scene: &Scene,
     problem: &DesignProblem,
@@ -278,12 +268,7 @@ fn heights(
 
 impl Effect {
     fn none(panels: usize) -> Self {
-        Self {
-            corners: [0.0; 2],
-            load: None,
-            at_least: false,
-            by_corner: vec![0.0; 4 * panels],
-        }
+        Self { corners: [0.0; 2], load: None, at_least: false, by_corner: vec![0.0; 4 * panels] }
     }
 
     fn new(deviations: Deviations, load: f64) -> Self {
@@ -339,16 +324,13 @@ impl Deployed<'_> {
         hinges.map(norm).collect()
     }
 
-    /// The spot check of the weights, if its mesh and the errors of its forces are known; an error outside the training domain,
-    /// where no check was made.
+    /// The spot check of the weights, if its mesh and the errors of its forces are known; an error
+    /// outside the training domain, where no check was made.
     fn spot_check(&self) -> Result<(&SpotCheck, &str, [f64; 3]), String> {
         if self.deployment.final_step().inside.contains(&false) {
             return Err("hinges are outside the training domain".into());
         }
-        let check = self
-            .scene
-            .surrogate()
-            .and_then(|weights| weights.card().spot_check.as_ref());
+        let check = self.scene.surrogate().and_then(|weights| weights.card().spot_check.as_ref());
         let known = check.and_then(|check| Some((check, check.tier.as_deref()?, check.forces?)));
         known.ok_or_else(|| "no spot check on the card: `surrogate test --record`".into())
     }
@@ -356,19 +338,17 @@ impl Deployed<'_> {
     /// The errors of the weights at their spot check, with the source.
     fn checked(&self) -> Known {
         let (check, tier, forces) = self.spot_check()?;
-        let sizes: Vec<[f64; 3]> = (self.norms().into_iter())
-            .map(|norm| forces.map(|error| error * norm))
-            .collect();
+        let sizes: Vec<[f64; 3]> =
+            (self.norms().into_iter()).map(|norm| forces.map(|error| error * norm)).collect();
         let states = &self.deployment.final_step().deformations;
         let [f_a, s, m] = forces.map(|error| 100.0 * error);
-        let source = format!(
-            "{f_a:.1}, {s:.1}, {m:.1} % of the force, {} states on `{tier}`",
-            check.inside
-        );
+        let source =
+            format!("{f_a:.1}, {s:.1}, {m:.1} % of the force, {} states on `{tier}`", check.inside);
         Ok((ForceErrors::alike(&sizes, &self.designs, states), source))
     }
 
-    /// Whether the states of the spot check have another mesh than the training rays, so that its errors contain the error of the mesh.
+    /// Whether the states of the spot check have another mesh than the training rays, so that its
+    /// errors contain the error of the mesh.
     fn is_checked_on_finer_mesh(&self) -> bool {
         let trained = self.scene.surrogate().map(|weights| &weights.card().tier);
         let checked = self.spot_check().ok().map(|(_, tier, _)| tier);
@@ -387,10 +367,7 @@ impl Deployed<'_> {
                 energies.iter().map(|energy| energy.forces).collect()
             });
             modes = ForceErrors::spread(&forces.collect::<Vec<_>>()).modes;
-            sources.push(format!(
-                "spread of {} networks in these states",
-                networks.len()
-            ));
+            sources.push(format!("spread of {} networks in these states", networks.len()));
         }
         let on_finer_mesh = self.is_checked_on_finer_mesh();
         if !on_finer_mesh && let Ok((errors, source)) = self.checked() {
@@ -408,9 +385,7 @@ impl Deployed<'_> {
         if self.is_checked_on_finer_mesh() {
             self.checked()
         } else {
-            Err(format!(
-                "the weights were not checked on a finer mesh than `{tier}`"
-            ))
+            Err(format!("the weights were not checked on a finer mesh than `{tier}`"))
         }
     }
 
@@ -514,9 +489,7 @@ impl Deployed<'_> {
 
 /// Between the points [x, y] of a table, linear in the logarithms; `None` outside.
 pub(crate) fn interpolated(table: &[[f64; 2]], x: f64) -> Option<f64> {
-    let pair = table
-        .windows(2)
-        .find(|pair| (pair[0][0]..=pair[1][0]).contains(&x))?;
+    let pair = table.windows(2).find(|pair| (pair[0][0]..=pair[1][0]).contains(&x))?;
     let [[x0, y0], [x1, y1]] = [pair[0], pair[1]];
     let part = (x / x0).ln() / (x1 / x0).ln();
     Some(y0 * (y1 / y0).powf(part))

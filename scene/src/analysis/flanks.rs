@@ -1,18 +1,22 @@
-//! Whether the flanks of the main cut of a hinge are pushed into each other, where windows have no contact.
+//! Whether the flanks of the main cut of a hinge are pushed into each other, where windows have no
+//! contact.
 //!
-//! Flanks of rigid panels are apart, normal to the cut in the mean frame, at the distance l from the tip O along the cut, by
+//! Flanks of rigid panels are apart, normal to the cut in the mean frame, at the distance l from
+//! the tip O along the cut, by
 //!
 //! ```text
 //! gap(l) = w_c + a sin(alpha) + s cos(alpha) + 2 l sin(theta / 2)
 //! ```
 //!
-//! In a plate they stay in the plane: the least gap counts, at the hole or at the rim of the window. The panels of a film tilt
-//! out of the plane as the ligament folds, which draws the flanks apart at the hole: in solved windows they touch only where
-//! they do at the rim, which moves with the rigid panel (docs/TRIED.md).
+//! In a plate they stay in the plane: the least gap counts, at the hole or at the rim of the
+//! window. The panels of a film tilt out of the plane as the ligament folds, which draws the flanks
+//! apart at the hole: in solved windows they touch only where they do at the rim, which moves with
+//! the rigid panel (docs/TRIED.md).
 
 use hinge::{HingeDeformation, HingeDesign, Regime};
 
-/// Distance of the flanks where they come nearest (mm); negative where they are pushed into each other.
+/// Distance of the flanks where they come nearest (mm); negative where they are pushed into each
+/// other.
 pub fn flank_gap(design: &HingeDesign, state: &HingeDeformation, regime: Regime) -> f64 {
     let rim = gap_at_rim(design, state);
     match regime {
@@ -67,9 +71,7 @@ mod tests {
     #[test]
     fn a_hinge_that_turns_about_its_tip_opens_its_hole_and_the_mirror_image_has_the_same_gap() {
         let turned = gap_at_hole(&design(FRAC_PI_2), &[0.0, 0.0, PI].into());
-        let HingeConstants {
-            kerf, fillet_ratio, ..
-        } = HingeConstants::PAPER;
+        let HingeConstants { kerf, fillet_ratio, .. } = HingeConstants::PAPER;
         assert!((turned - kerf - 2.0 * 10.0 * fillet_ratio).abs() < 1e-12);
         let [left, right] = [(0.8, 0.3), (PI - 0.8, -0.3)]
             .map(|(alpha, s)| gap_at_hole(&design(alpha), &[-0.5, s, 0.4].into()));

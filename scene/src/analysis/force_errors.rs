@@ -1,8 +1,9 @@
 //! Errors of the hinge forces of a sheet that have one cause, and how they move the sheet.
 //!
-//! An error is a sum of modes, independent of each other and each with the standard deviation one: one mode if it is common to
-//! all hinges, one a hinge if hinges err independently. The sheet responds to each mode ([`ForceResponse`]), and the squares of the
-//! responses add up to the variance.
+//! An error is a sum of modes, independent of each other and each with the standard deviation one:
+//! one mode if it is common to all hinges, one a hinge if hinges err independently. The sheet
+//! responds to each mode ([`ForceResponse`]), and the squares of the responses add up to the
+//! variance.
 
 use design::equilibrium::force_response::{ForceResponse, Response};
 use design::equilibrium::load_step::LoadStep;
@@ -16,8 +17,8 @@ use std::f64::consts::PI;
 /// (F_a, F_s, M_theta) at some hinges, with their indices (N, N, N mm).
 pub type Mode = Vec<(usize, [f64; 3])>;
 
-/// Lengths of (log w_lig, alpha) over which the error of a learned law changes, as [`LENGTHS`] are of the state: about a third of the
-/// extent of a training domain.
+/// Lengths of (log w_lig, alpha) over which the error of a learned law changes, as [`LENGTHS`] are
+/// of the state: about a third of the extent of a training domain.
 const DESIGN_LENGTHS: [f64; 2] = [0.5, 0.5];
 /// Variance that is left out of alike errors, relative to the variance of a hinge.
 const LEFT_OUT: f64 = 1e-3;
@@ -41,33 +42,27 @@ pub struct Deviations {
 impl ForceErrors {
     /// One error of all hinges, along `forces`.
     pub fn common(forces: &[[f64; 3]]) -> Self {
-        Self {
-            modes: vec![forces.iter().copied().enumerate().collect()],
-        }
+        Self { modes: vec![forces.iter().copied().enumerate().collect()] }
     }
 
     /// Independent errors of the hinges, along the force of each.
     pub fn along(forces: &[[f64; 3]]) -> Self {
         let hinges = forces.iter().copied().enumerate();
-        Self {
-            modes: hinges.map(|hinge| vec![hinge]).collect(),
-        }
+        Self { modes: hinges.map(|hinge| vec![hinge]).collect() }
     }
 
-    /// Independent errors of the hinges in any direction: of the given root mean squares of the norm of
-    /// (F_a, F_s, M_theta / w_lig) (N).
+    /// Independent errors of the hinges in any direction: of the given root mean squares of the
+    /// norm of (F_a, F_s, M_theta / w_lig) (N).
     pub fn isotropic(sizes: &[f64], designs: &[HingeDesign]) -> Self {
         let of_hinge = |(h, size): (usize, &f64)| {
             let each = size / 3f64.sqrt();
             (0..3).map(move |i| vec![(h, component(i, each, &designs[h]))])
         };
-        Self {
-            modes: sizes.iter().enumerate().flat_map(of_hinge).collect(),
-        }
+        Self { modes: sizes.iter().enumerate().flat_map(of_hinge).collect() }
     }
 
-    /// The deviations of several networks from their mean, of which the sample covariance is the estimate; each with one force a
-    /// hinge.
+    /// The deviations of several networks from their mean, of which the sample covariance is the
+    /// estimate; each with one force a hinge.
     pub fn spread(networks: &[Vec<[f64; 3]>]) -> Self {
         let hinges = networks.first().map_or(0, Vec::len);
         let count = networks.len() as f64;
@@ -79,21 +74,18 @@ impl ForceErrors {
                 |h: usize| from_fn(|i| (forces[h][i] - means[h][i]) / (count - 1.0).sqrt());
             (0..hinges).map(|h| (h, deviation(h))).collect()
         };
-        Self {
-            modes: networks.iter().map(mode).collect(),
-        }
+        Self { modes: networks.iter().map(mode).collect() }
     }
 
-    /// Errors with the standard deviations `sizes` (N) of (F_a, F_s, M_theta / w_lig) at each hinge that are alike at hinges of
-    /// like design and state: a Gaussian process over both, with the mirror symmetry of hinges.
+    /// Errors with the standard deviations `sizes` (N) of (F_a, F_s, M_theta / w_lig) at each hinge
+    /// that are alike at hinges of like design and state: a Gaussian process over both, with the
+    /// mirror symmetry of hinges.
     pub fn alike(sizes: &[[f64; 3]], designs: &[HingeDesign], states: &[HingeDeformation]) -> Self {
         let places: Vec<Place> = std::iter::zip(designs, states).map(Place::new).collect();
         let mut modes = Vec::new();
         // F_a and M_theta of the mirror image are the same, F_s has the other sign.
         for (parity, components) in [(1.0, &[0, 2][..]), (-1.0, &[1][..])] {
-            let columns = factor(places.len(), |h, k| {
-                places[h].correlation(&places[k], parity)
-            });
+            let columns = factor(places.len(), |h, k| places[h].correlation(&places[k], parity));
             for &i in components {
                 modes.extend(columns.iter().map(|column| {
                     let hinges = column.iter().enumerate();
@@ -106,7 +98,8 @@ impl ForceErrors {
         Self { modes }
     }
 
-    /// The standard deviations of a sheet at a load step whose response is given; `None` if its tangent is singular.
+    /// The standard deviations of a sheet at a load step whose response is given; `None` if its
+    /// tangent is singular.
     pub fn deviations(
         &self,
         response: &ForceResponse,
@@ -140,7 +133,8 @@ fn component(i: usize, size: f64, design: &HingeDesign) -> [f64; 3] {
     force
 }
 
-/// The corners of all panels: the panel, and its arm from the reference point of the panel in the deployed sheet (mm).
+/// The corners of all panels: the panel, and its arm from the reference point of the panel in the
+/// deployed sheet (mm).
 fn corner_arms(sheet: &Sheet, step: &LoadStep) -> Vec<(usize, [f64; 2])> {
     let corners = deployed_corners(sheet, &step.configuration);
     let panels = corners.iter().enumerate().flat_map(|(k, corners)| {
@@ -163,21 +157,13 @@ impl Place {
         let ([a, s, theta], [width, angle]) = (LENGTHS, DESIGN_LENGTHS);
         let log_width = design.w_lig.ln() / width;
         let at = |eta_s: f64, alpha: f64| {
-            [
-                eta_a / a,
-                eta_s / s,
-                state.theta / theta,
-                log_width,
-                alpha / angle,
-            ]
+            [eta_a / a, eta_s / s, state.theta / theta, log_width, alpha / angle]
         };
-        Self {
-            own: at(eta_s, design.alpha),
-            mirrored: at(-eta_s, PI - design.alpha),
-        }
+        Self { own: at(eta_s, design.alpha), mirrored: at(-eta_s, PI - design.alpha) }
     }
 
-    /// The correlation of the errors of two hinges in a quantity that has the sign `parity` in the mirror image.
+    /// The correlation of the errors of two hinges in a quantity that has the sign `parity` in the
+    /// mirror image.
     fn correlation(&self, other: &Self, parity: f64) -> f64 {
         let near = |x: &[f64; 5], y: &[f64; 5]| {
             let squares = std::iter::zip(x, y).map(|(x, y)| (x - y).powi(2));

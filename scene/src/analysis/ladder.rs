@@ -1,8 +1,9 @@
 //! A design of the required accuracy, at the cheapest level that reaches it.
 //!
-//! The search runs at the cheapest learned level. The difference of the design it finds to the next finer level estimates the error of
-//! the level. If it is larger than required, the search goes on at the finer level from that design, and so on; otherwise the finer
-//! level evaluates the design, and the run reports that evaluation.
+//! The search runs at the cheapest learned level. The difference of the design it finds to the next
+//! finer level estimates the error of the level. If it is larger than required, the search goes on
+//! at the finer level from that design, and so on; otherwise the finer level evaluates the design,
+//! and the run reports that evaluation.
 
 use crate::analysis::error_budget::{Cause, ErrorBudget};
 use crate::analysis::level_difference::{AtLevel, LevelError};
@@ -44,11 +45,13 @@ impl From<SceneError> for ClimbError {
     }
 }
 
-/// The smallest difference that can be required, over the size of the sheet: a hundred times the residual of an equilibrium.
+/// The smallest difference that can be required, over the size of the sheet: a hundred times the
+/// residual of an equilibrium.
 const LEAST: f64 = 1e-8;
 
-/// Designs a scene to within `asked` (mm) of its panel corners. The searches below the last level are runs in folders of its run
-/// folder, with the names of their levels. A search that is stopped ends the ladder: its design is the one that is returned.
+/// Designs a scene to within `asked` (mm) of its panel corners. The searches below the last level
+/// are runs in folders of its run folder, with the names of their levels. A search that is stopped
+/// ends the ladder: its design is the one that is returned.
 pub fn climb(
     scene: &Scene,
     asked: f64,
@@ -76,18 +79,12 @@ pub fn climb(
         search.config.output = scene.config.output.join(level.name());
         let designed = inverse_design(&search, stop, &mut |state| progress(level, state))?;
         if designed.ended == Ended::Stopped {
-            return Ok(Climbed {
-                scene: search,
-                designed,
-            });
+            return Ok(Climbed { scene: search, designed });
         }
         let next = search.at_level(finer)?;
         let at_finer = AtLevel::new(&next, &designed.design)?;
-        let own = AtLevel {
-            level,
-            deployment: designed.best.deployment,
-            problem: designed.problem,
-        };
+        let own =
+            AtLevel { level, deployment: designed.best.deployment, problem: designed.problem };
         let rung = own.rung(&designed.history, &at_finer, asked);
         let mut config = next.starting_at(&designed.design);
         config.output.clone_from(&scene.config.output);
@@ -103,13 +100,11 @@ pub fn climb(
     }
     let level = at.config.level;
     let designed = design_after(rungs, &at, stop, &mut |state| progress(level, state))?;
-    Ok(Climbed {
-        scene: at,
-        designed,
-    })
+    Ok(Climbed { scene: at, designed })
 }
 
-/// The error of the panel corners by the mesh of the windows (mm, the largest), which no level lowers; `None` if it is not known.
+/// The error of the panel corners by the mesh of the windows (mm, the largest), which no level
+/// lowers; `None` if it is not known.
 fn mesh_error(scene: &Scene, at_finer: &AtLevel) -> Option<f64> {
     let budget = ErrorBudget::new(scene, &at_finer.problem, &at_finer.deployment, None)?;
     let mesh = budget.contributions.into_iter();

@@ -1,4 +1,5 @@
-//! By how much a sheet at one level differs from the same sheet at a finer one: the estimate of the error of the coarser level.
+//! By how much a sheet at one level differs from the same sheet at a finer one: the estimate of the
+//! error of the coarser level.
 
 use crate::analysis::actuation_curve::ActuationCurve;
 use crate::{Level, LevelDifference, Rung, Scene, SceneError};
@@ -43,14 +44,11 @@ impl AtLevel {
             Ok(deployment)
         };
         let deployment = deployed().map_err(|source| LevelError::Design { level, source })?;
-        Ok(Self {
-            level,
-            problem,
-            deployment,
-        })
+        Ok(Self { level, problem, deployment })
     }
 
-    /// What is kept of a search that ended at this design, compared with a finer level and with the difference `asked` for (mm).
+    /// What is kept of a search that ended at this design, compared with a finer level and with the
+    /// difference `asked` for (mm).
     pub fn rung(&self, history: &[StepRecord], finer: &Self, asked: f64) -> Rung {
         Rung {
             level: self.level,

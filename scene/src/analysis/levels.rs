@@ -44,7 +44,8 @@ pub struct Levels {
     pub others: Vec<Contribution>,
 }
 
-/// Measures every level that a scene has networks for, and those below. `progress` is called with each before it is measured.
+/// Measures every level that a scene has networks for, and those below. `progress` is called with
+/// each before it is measured.
 pub fn levels(
     scene: &Scene,
     design: &DesignVector,
@@ -52,9 +53,7 @@ pub fn levels(
     progress: &mut dyn FnMut(Level),
 ) -> Result<Levels, LevelError> {
     let scenes = Level::ALL.into_iter();
-    let scenes: Vec<Scene> = scenes
-        .filter_map(|level| scene.at_level(level).ok())
-        .collect();
+    let scenes: Vec<Scene> = scenes.filter_map(|level| scene.at_level(level).ok()).collect();
     let finest = scenes.last().unwrap_or(scene);
     progress(finest.config.level);
     let reference = AtLevel::new(finest, design)?;
@@ -64,9 +63,7 @@ pub fn levels(
         progress(level);
         let mut design = design.clone();
         if level == Level::Pin {
-            design
-                .opening
-                .get_or_insert(reference.deployment.final_step().mean_opening());
+            design.opening.get_or_insert(reference.deployment.final_step().mean_opening());
         }
         let step = seconds(scene, stop).ok();
         let own;
@@ -115,9 +112,7 @@ fn seconds(scene: &Scene, stop: &AtomicBool) -> Result<f64, LevelError> {
     let (method, rate) = (optimiser.method, optimiser.learning_rate);
     let mut search = SearchState::new(&problem, start, &evaluation, method, rate);
     let last = TIMED.min(steps(scene)) - 1;
-    let searched = optimise(&problem, &mut search, last, stop, &mut |_| {
-        Ok::<_, Infallible>(())
-    });
+    let searched = optimise(&problem, &mut search, last, stop, &mut |_| Ok::<_, Infallible>(()));
     let Ok(_) = searched;
     Ok(begin.elapsed().as_secs_f64() / search.history.len() as f64)
 }

@@ -1,12 +1,14 @@
-//! Whether the weight of its panels can hold a sheet down that lies on a surface: Gamma and L* of (21)-(22).
+//! Whether the weight of its panels can hold a sheet down that lies on a surface: Gamma and L* of
+//! (21)-(22).
 //!
-//! The moment of gravity on a panel of edge L, p L^3 / 2 with p = rho g t, presses the panel down against the moment
-//! E t^4 / (12 w_lig) of the folded ligament. Their ratio is
+//! The moment of gravity on a panel of edge L, p L^3 / 2 with p = rho g t, presses the panel down
+//! against the moment E t^4 / (12 w_lig) of the folded ligament. Their ratio is
 //!
 //!   Gamma = 6 p L^3 w_lig / (E t^4) = (L / L*)^3,   L* = (E t^3 / (6 rho g w_lig))^(1/3).
 //!
-//! For Gamma > 1 the paper expects that buckling stays in the ligaments. The prefactor is of order one, so L* is an order of
-//! magnitude and not a sharp limit: by finite elements of whole sheets, panels lift off a table also where Gamma is above
+//! For Gamma > 1 the paper expects that buckling stays in the ligaments. The prefactor is of order
+//! one, so L* is an order of magnitude and not a sharp limit: by finite elements of whole sheets,
+//! panels lift off a table also where Gamma is above
 //! 10. Gamma does not apply to a sheet that hangs or stands.
 
 use hinge::SheetMaterial;
@@ -17,12 +19,13 @@ pub fn critical_edge(material: &SheetMaterial, w_lig: f64) -> f64 {
     (bending / (6.0 * material.weight_by_area() * w_lig)).cbrt()
 }
 
-/// The elasto-gravity length (mm), at which the weight of a plate bends it as much as its stiffness resists:
+/// The elasto-gravity length (mm), at which the weight of a plate bends it as much as its stiffness
+/// resists:
 ///
 ///   l_eg = (E t^3 / (12 (1 - nu^2) rho g t))^(1/3).
 ///
-/// By finite elements of four sheets on a table, the corners are off by about 1 % of the sheet for each l_eg in the
-/// radius of a window.
+/// By finite elements of four sheets on a table, the corners are off by about 1 % of the sheet for
+/// each l_eg in the radius of a window.
 pub fn elasto_gravity_length(material: &SheetMaterial) -> f64 {
     let plate =
         material.young * material.thickness.powi(3) / (12.0 * (1.0 - material.poisson.powi(2)));
@@ -43,12 +46,7 @@ mod tests {
         let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
         let film = root.join("../configs/materials/pet-0.5mm.toml");
         let film = SheetMaterial::load(&film).unwrap();
-        SheetMaterial {
-            thickness,
-            young,
-            density_kg_m3,
-            ..film
-        }
+        SheetMaterial { thickness, young, density_kg_m3, ..film }
     }
 
     #[test]

@@ -1,4 +1,5 @@
-//! What a material means for the ligaments and panels of an intended sheet, before windows are solved.
+//! What a material means for the ligaments and panels of an intended sheet, before windows are
+//! solved.
 //!
 //! Estimates for a ligament of width w in a sheet of thickness t (sections 4.2 and 5.1):
 //!
@@ -53,7 +54,8 @@ pub struct MaterialCheck {
     pub yield_strain: f64,
     /// Estimates at the minimum and the maximum ligament width.
     pub ligaments: Vec<LigamentEstimate>,
-    /// The most severe first. A note is a fact, a warning is to be checked before hours are spent, an error excludes the use.
+    /// The most severe first. A note is a fact, a warning is to be checked before hours are spent,
+    /// an error excludes the use.
     pub verdicts: Vec<Finding>,
 }
 
@@ -86,10 +88,11 @@ const fn usual_opening(regime: Regime) -> f64 {
 
 /// Densities below this (kg/m^3) are densities of plastics and papers.
 const LIGHTEST_METAL: f64 = 1700.0;
-/// Maximum of Young's modulus over density of plastics without fibres and of papers (MPa m^3/kg); paper has up to 12.
+/// Maximum of Young's modulus over density of plastics without fibres and of papers (MPa m^3/kg);
+/// paper has up to 12.
 const STIFFEST_PLASTIC: f64 = 12.0;
-/// Slope of a softening table over Young's modulus at which coarse meshes still converge: the drop of the polyester film
-/// from 44 to 33.6 MPa over a strain of 0.05.
+/// Slope of a softening table over Young's modulus at which coarse meshes still converge: the drop
+/// of the polyester film from 44 to 33.6 MPa over a strain of 0.05.
 const STEEPEST_DROP: f64 = 0.07;
 
 impl MaterialCheck {
@@ -157,12 +160,7 @@ fn yield_strain(material: &SheetMaterial) -> f64 {
 
 /// Yield, hardening, softening, and the end of the table.
 fn law(material: &SheetMaterial) -> Vec<Finding> {
-    let SheetMaterial {
-        plastic,
-        young,
-        fracture_strain,
-        ..
-    } = material;
+    let SheetMaterial { plastic, young, fracture_strain, .. } = material;
     let [yields, _] = plastic[0];
     let [stress, strain] = plastic[plastic.len() - 1];
     let hardens = match plastic.len() {
@@ -179,9 +177,7 @@ fn law(material: &SheetMaterial) -> Vec<Finding> {
         format!("the material yields at {yields} MPa, a strain of {percent:.2} %, and {hardens}");
     let mut verdicts = vec![Severity::Note.finding(yields)];
     let slope = |pair: &[[f64; 2]]| (pair[1][0] - pair[0][0]) / (pair[1][1] - pair[0][1]);
-    let drop = plastic
-        .windows(2)
-        .min_by(|a, b| slope(a).total_cmp(&slope(b)));
+    let drop = plastic.windows(2).min_by(|a, b| slope(a).total_cmp(&slope(b)));
     if let Some(&[[from, start], [to, end]]) =
         drop.and_then(|pair| <&[[f64; 2]; 2]>::try_from(pair).ok())
         && to < from
@@ -248,9 +244,7 @@ fn slenderness(ligaments: &[LigamentEstimate]) -> Option<Finding> {
     });
     let found: Vec<String> = outside
         .map(|ligament| {
-            let LigamentEstimate {
-                w_lig, slenderness, ..
-            } = ligament;
+            let LigamentEstimate { w_lig, slenderness, .. } = ligament;
             format!("{w_lig} mm is {slenderness:.1} thicknesses")
         })
         .collect();
@@ -317,10 +311,7 @@ mod tests {
         SheetMaterial::load(&film).unwrap()
     }
 
-    const PAPER: Intended = Intended {
-        w_lig: [18.0, 18.0],
-        lying_pitch: Some(406.4),
-    };
+    const PAPER: Intended = Intended { w_lig: [18.0, 18.0], lying_pitch: Some(406.4) };
 
     fn check(change: impl Fn(&mut SheetMaterial), intended: Intended) -> MaterialCheck {
         let mut material = film();
@@ -340,9 +331,7 @@ mod tests {
         let mut verdicts = check.verdicts.iter();
         let notes = verdicts.all(|found| found.severity == Severity::Note);
         assert!(notes, "{check:?}");
-        let [ligament] = check.ligaments[..] else {
-            panic!("{check:?}")
-        };
+        let [ligament] = check.ligaments[..] else { panic!("{check:?}") };
         // Of Table 2.
         assert!((ligament.critical_edge / 10.0 - 6.3).abs() < 0.05);
         assert!((250.0..350.0).contains(&ligament.gamma.unwrap()));
@@ -355,51 +344,20 @@ mod tests {
     #[test]
     fn every_limit_has_its_verdict() {
         let lying_pitch = Some(50.0);
-        let small = Intended {
-            lying_pitch,
-            ..PAPER
-        };
+        let small = Intended { lying_pitch, ..PAPER };
         let w_lig = [3.0, 30.0];
         let narrow = Intended { w_lig, ..PAPER };
         let with = |change: fn(&mut SheetMaterial)| check(change, PAPER);
         let soft = check(|material| material.plastic[0][0] = 30.0, narrow);
         for (check, severity, text) in [
-            (
-                &with(|it| it.fracture_strain = 0.03),
-                Severity::Error,
-                "tears",
-            ),
-            (
-                &with(|it| it.fracture_strain = 0.2),
-                Severity::Warning,
-                "may tear",
-            ),
-            (
-                &with(|it| it.young = 30e3),
-                Severity::Warning,
-                "22 MPa for each kg/m^3",
-            ),
-            (
-                &with(|it| it.plastic[1][1] = 0.02),
-                Severity::Warning,
-                "coarse meshes diverge",
-            ),
-            (
-                &check(|_| {}, small),
-                Severity::Warning,
-                "does not hold the panels down",
-            ),
-            (
-                &soft,
-                Severity::Warning,
-                "3 mm is 6.0 thicknesses, of 30 mm is 60.0",
-            ),
+            (&with(|it| it.fracture_strain = 0.03), Severity::Error, "tears"),
+            (&with(|it| it.fracture_strain = 0.2), Severity::Warning, "may tear"),
+            (&with(|it| it.young = 30e3), Severity::Warning, "22 MPa for each kg/m^3"),
+            (&with(|it| it.plastic[1][1] = 0.02), Severity::Warning, "coarse meshes diverge"),
+            (&check(|_| {}, small), Severity::Warning, "does not hold the panels down"),
+            (&soft, Severity::Warning, "3 mm is 6.0 thicknesses, of 30 mm is 60.0"),
             (&soft, Severity::Warning, "before they buckle"),
-            (
-                &with(|it| it.fracture_strain = 3.0),
-                Severity::Note,
-                "constant at 200 MPa",
-            ),
+            (&with(|it| it.fracture_strain = 3.0), Severity::Note, "constant at 200 MPa"),
         ] {
             assert!(says(check, severity, text), "{text}: {check:?}");
         }
@@ -408,16 +366,12 @@ mod tests {
     #[test]
     fn the_ligament_of_a_plate_is_checked_as_one() {
         let w_lig = [0.15, 0.475];
-        let intended = Intended {
-            w_lig,
-            lying_pitch: None,
-        };
+        let intended = Intended { w_lig, lying_pitch: None };
         let check = check(|material| material.fracture_strain = 1.7, intended);
-        let [ligament, _] = check.ligaments[..] else {
-            panic!("{check:?}")
-        };
+        let [ligament, _] = check.ligaments[..] else { panic!("{check:?}") };
         assert_eq!((ligament.buckles_at_deg, ligament.gamma), (None, None));
-        // The fracture strain 1.7 and the yield strain 44 / 3000 over 1.7 and over 0.4 for each rad.
+        // The fracture strain 1.7 and the yield strain 44 / 3000 over 1.7 and over 0.4 for each
+        // rad.
         assert!((ligament.tears_at_deg[0] - 57.7901).abs() < 1e-4);
         assert_eq!(ligament.tears_at_deg[1], 180.0);
         let notes = check.verdicts.iter().map(|found| found.severity);

@@ -1,8 +1,8 @@
 //! Motions of the panels and openings of the hinges of a measured sheet.
 //!
-//! A panel with at least two measured marks has a measured rigid motion. The residuals of these motions, with
-//! 2 n - 3 degrees of freedom for n marks, give the standard deviation of one coordinate for any prediction: the
-//! errors of the measurement, and the bending of the panels.
+//! A panel with at least two measured marks has a measured rigid motion. The residuals of these
+//! motions, with 2 n - 3 degrees of freedom for n marks, give the standard deviation of one
+//! coordinate for any prediction: the errors of the measurement, and the bending of the panels.
 
 use crate::analysis::path_fit::Fit;
 use design::geometry::plane::{complex, point};
@@ -64,9 +64,8 @@ impl MeasuredPanel {
             let motion = Similarity::least_squares(marks, Scale::Given).filter(|_| marks.len() > 1);
             let by_motion = || motion.map(|motion| point(motion.of(reference)));
             let [x, y, _] = fit.shape.configuration[panel];
-            let residuals = motion.map_or(0.0, |motion| {
-                marks.iter().map(|pair| motion.residual(pair).powi(2)).sum()
-            });
+            let residuals = motion
+                .map_or(0.0, |motion| marks.iter().map(|pair| motion.residual(pair).powi(2)).sum());
             let mean = marks.iter().map(|[flat, _]| flat).sum::<faer::c64>() / marks.len() as f64;
             Some(Self {
                 panel,
@@ -93,7 +92,8 @@ impl MeasuredOpening {
     }
 }
 
-/// Standard deviation of one measured coordinate about rigid panels (mm); `None` without a panel of two marks.
+/// Standard deviation of one measured coordinate about rigid panels (mm); `None` without a panel of
+/// two marks.
 pub fn scatter(panels: &[MeasuredPanel]) -> Option<f64> {
     let sum =
         |of: fn(&(f64, f64)) -> f64| panels.iter().map(|panel| of(&panel.misfit)).sum::<f64>();
@@ -128,8 +128,9 @@ pub fn openings(sheet: &Sheet, fit: &Fit, panels: &[MeasuredPanel]) -> Vec<Measu
     measured.collect()
 }
 
-/// Motion of a panel between a measurement of the closed and one of the deployed sheet in the same frame, less its
-/// predicted motion (mm): the slip of a support. `None` if the panel is not measured in both.
+/// Motion of a panel between a measurement of the closed and one of the deployed sheet in the same
+/// frame, less its predicted motion (mm): the slip of a support. `None` if the panel is not
+/// measured in both.
 pub fn slip(sheet: &Sheet, closed: &Fit, deployed: &Fit, panel: usize) -> Option<[f64; 2]> {
     let seen = |fit: &Fit| {
         let panels = MeasuredPanel::all(sheet, fit);

@@ -45,8 +45,7 @@ impl Mark {
     /// Its position in the flat sheet (mm).
     pub fn flat(self, sheet: &Sheet) -> [f64; 2] {
         let panel = &sheet.panels[self.panel];
-        self.corner
-            .map_or(panel.centroid, |corner| panel.corners[corner])
+        self.corner.map_or(panel.centroid, |corner| panel.corners[corner])
     }
 
     /// Its position in a deployed sheet (mm).

@@ -13,8 +13,8 @@ pub struct MeasuredSheet {
     pub best: Fit,
     /// The last state of the path, with the motion that fits it to the same points.
     pub full: Fit,
-    /// Standard error of the load factor of `best`, if the errors of the points are independent; `None` if the
-    /// points do not determine the load factor.
+    /// Standard error of the load factor of `best`, if the errors of the points are independent;
+    /// `None` if the points do not determine the load factor.
     pub load_factor_error: Option<f64>,
 }
 
@@ -36,28 +36,21 @@ pub enum MeasurementError {
 }
 
 impl MeasuredSheet {
-    /// Compares the points, finite ones of different marks of the sheet, with the path; see the head of this file.
+    /// Compares the points, finite ones of different marks of the sheet, with the path; see the
+    /// head of this file.
     pub fn new(
         path: &ShapePath,
         points: &[MeasuredPoint],
         scale: Scale,
     ) -> Result<Self, MeasurementError> {
         check(path, points, scale)?;
-        let problem = Problem {
-            path,
-            points,
-            scale,
-        };
+        let problem = Problem { path, points, scale };
         let best = problem.fit(problem.best_position());
         let full = problem.fit(path.end());
         let (Some(best), Some(full)) = (best, full) else {
             return Err(MeasurementError::Coincide);
         };
-        Ok(Self {
-            load_factor_error: problem.load_factor_error(&best),
-            best,
-            full,
-        })
+        Ok(Self { load_factor_error: problem.load_factor_error(&best), best, full })
     }
 }
 

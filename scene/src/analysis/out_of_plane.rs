@@ -1,26 +1,31 @@
 //! Whether the panels of a plate stay in their plane along the path of its loads.
 //!
-//! Rigid panels may rise by z and tilt by (w_x, w_y) about the points at which they are held or pulled. A ligament joins the
-//! heights of its panels at its middle, bends about the line across it and twists about the line along it, with the stiffnesses
+//! Rigid panels may rise by z and tilt by (w_x, w_y) about the points at which they are held or
+//! pulled. A ligament joins the heights of its panels at its middle, bends about the line across it
+//! and twists about the line along it, with the stiffnesses
 //!
 //! ```text
 //! k_bend = c K_aa t^2 / 12,      k_twist = J / (t w^3 / 12) k_theta / 3,      k_theta = M / theta,
 //! ```
 //!
-//! with K_aa the stiffness along the ligament by the hinge law, J of the torsion of a rectangle w x t, M the moment about the
-//! middle, k_theta at most its value in the flat sheet, and c a factor from finite elements of whole sheets (docs/results/flatness).
-//! Moments M in the plane turn with the ligament: by the mean tilt w of its panels, M changes by M w x e_z. Forces f act at an arm that
-//! tilts with each panel. The margin of a state is the smallest factor of these forces and moments at which the flat sheet is not
-//! stable. In an equilibrium without couples their stiffness is symmetric; its symmetric part is taken.
+//! with K_aa the stiffness along the ligament by the hinge law, J of the torsion of a rectangle w x
+//! t, M the moment about the middle, k_theta at most its value in the flat sheet, and c a factor
+//! from finite elements of whole sheets (docs/results/flatness). Moments M in the plane turn with
+//! the ligament: by the mean tilt w of its panels, M changes by M w x e_z. Forces f act at an arm
+//! that tilts with each panel. The margin of a state is the smallest factor of these forces and
+//! moments at which the flat sheet is not stable. In an equilibrium without couples their stiffness
+//! is symmetric; its symmetric part is taken.
 //!
-//! Ligaments as cut have a bump, here all of them on one side: their middles are higher by h and slope by h / w_lig towards
-//! the secondary cut, so that forces and moments lift and tilt the panels before they are unstable. From a state to the next the motions q grow by
+//! Ligaments as cut have a bump, here all of them on one side: their middles are higher by h and
+//! slope by h / w_lig towards the secondary cut, so that forces and moments lift and tilt the
+//! panels before they are unstable. From a state to the next the motions q grow by
 //!
 //! ```text
 //! (K + G) dq = dp - dG q,
 //! ```
 //!
-//! with the stiffness K of the ligaments, the stiffness G by the forces in the plane, and the moments p by the bumps.
+//! with the stiffness K of the ligaments, the stiffness G by the forces in the plane, and the
+//! moments p by the bumps.
 
 use crate::{Scene, SupportKind};
 use design::equilibrium::load_step::LoadStep;
@@ -56,9 +61,11 @@ type Block = [[f64; 6]; 6];
 pub struct Stability {
     /// The least margin.
     pub margin: f64,
-    /// The largest tilt of a panel (rad) by the bumps of its ligaments; `None` if a margin is 1 or less.
+    /// The largest tilt of a panel (rad) by the bumps of its ligaments; `None` if a margin is 1 or
+    /// less.
     pub tilt: Option<f64>,
-    /// Mean opening of the hinges (rad) at which the margin first falls below 1; `None` if it does not.
+    /// Mean opening of the hinges (rad) at which the margin first falls below 1; `None` if it does
+    /// not.
     pub leaves_at: Option<f64>,
 }
 
@@ -97,7 +104,8 @@ impl Stability {
 pub struct OutOfPlane {
     /// The factor of its forces at which it leaves the plane, at most [`MOST`].
     pub margin: f64,
-    /// (z, w_x, w_y) of every panel (mm, rad) by the bumps of its ligaments; `None` if the margin is 1 or less.
+    /// (z, w_x, w_y) of every panel (mm, rad) by the bumps of its ligaments; `None` if the margin
+    /// is 1 or less.
     pub motions: Option<Vec<[f64; 3]>>,
 }
 
@@ -125,9 +133,9 @@ impl OutOfPlane {
     }
 }
 
-/// Every load step of a deployed plate; `None` for a sheet on pins, for a film, and for a sheet whose supports leave it
-/// free to move out of the plane. Clips and clamps of supports hold a panel against rising and tilting, other supports one of its points;
-/// what pulls a panel holds nothing.
+/// Every load step of a deployed plate; `None` for a sheet on pins, for a film, and for a sheet
+/// whose supports leave it free to move out of the plane. Clips and clamps of supports hold a panel
+/// against rising and tilting, other supports one of its points; what pulls a panel holds nothing.
 pub fn out_of_plane(
     scene: &Scene,
     problem: &DesignProblem,
@@ -222,23 +230,15 @@ fn moved(
     let factor = pattern.factorise(&stiffness.collect::<Vec<_>>(), Vec::new())?;
     let unbalanced = |state: &OfForces| {
         let (by_tilt, _) = pattern.product(&state.geometric, &motions);
-        std::iter::zip(&state.loads, by_tilt)
-            .map(|(load, by_tilt)| load - by_tilt)
-            .collect()
+        std::iter::zip(&state.loads, by_tilt).map(|(load, by_tilt)| load - by_tilt).collect()
     };
     let mut change: Vec<f64> = unbalanced(now);
     if let Some(before) = before {
         let before: Vec<f64> = unbalanced(before);
-        change
-            .iter_mut()
-            .zip(before)
-            .for_each(|(change, before)| *change -= before);
+        change.iter_mut().zip(before).for_each(|(change, before)| *change -= before);
     }
     pattern.solve(&factor, &mut change);
-    motions
-        .iter_mut()
-        .zip(change)
-        .for_each(|(motion, change)| *motion += change);
+    motions.iter_mut().zip(change).for_each(|(motion, change)| *motion += change);
     Some(motions)
 }
 
@@ -247,7 +247,8 @@ fn symmetric(block: Block) -> Block {
     from_fn(|i| from_fn(|j| 0.5 * (block[i][j] + block[j][i])))
 }
 
-/// The smallest multiple of `geometric` at which its sum with `elastic` is not positive definite, from [`LEAST_MARGIN`] to [`MOST`]; `None` if `elastic` is not.
+/// The smallest multiple of `geometric` at which its sum with `elastic` is not positive definite,
+/// from [`LEAST_MARGIN`] to [`MOST`]; `None` if `elastic` is not.
 fn margin(pattern: &TangentPattern, elastic: &[f64], geometric: &[f64]) -> Option<f64> {
     let is_stable = |multiple: f64| {
         let sum = std::iter::zip(elastic, geometric).map(|(e, g)| e + multiple * g);
@@ -283,17 +284,15 @@ struct Stiffness {
 }
 
 impl Stiffness {
-    /// From the tangents of the hinge law in the flat sheet and in a state, and the `secant` stiffness of the rotation there (N mm).
+    /// From the tangents of the hinge law in the flat sheet and in a state, and the `secant`
+    /// stiffness of the rotation there (N mm).
     fn new([flat, state]: [&[[f64; 3]; 3]; 2], secant: f64, w_lig: f64, thickness: f64) -> Self {
         let axial = state[0][0].max(LEAST * flat[0][0]);
         // About the middle, where a rotation causes no axial force.
         let elastic = flat[2][2] - flat[0][2].powi(2) / flat[0][0];
-        // A hinge that forces turn against its moment, or that has not turned, has the stiffness of the flat sheet.
-        let rotation = if secant > 0.0 {
-            secant.clamp(LEAST * elastic, elastic)
-        } else {
-            elastic
-        };
+        // A hinge that forces turn against its moment, or that has not turned, has the stiffness of
+        // the flat sheet.
+        let rotation = if secant > 0.0 { secant.clamp(LEAST * elastic, elastic) } else { elastic };
         let (least, most) = (w_lig.min(thickness), w_lig.max(thickness));
         let slender = least / most;
         let torsion = most * least.powi(3) / 3.0 * (1.0 - 0.63 * slender + 0.052 * slender.powi(5));
@@ -419,7 +418,8 @@ mod tests {
         (scene, deployment)
     }
 
-    /// A panel that a force pushes towards its hinge with a clamped panel tips over it at the load of a rigid bar on a spring.
+    /// A panel that a force pushes towards its hinge with a clamped panel tips over it at the load
+    /// of a rigid bar on a spring.
     #[test]
     fn a_pushed_panel_tips_over_at_the_load_of_a_bar_on_a_spring() {
         let (load, arm, bend) = (3.0, 40.0, 500.0);
@@ -430,15 +430,9 @@ mod tests {
             force: -load * along,
             moment: 0.0,
         };
-        let stiffness = Stiffness {
-            height: 1e6,
-            bend,
-            twist: 0.1 * bend,
-        };
-        let pattern = TangentPattern::new(
-            Grid { m: 2, n: 1 },
-            &[true, true, true, false, false, false],
-        );
+        let stiffness = Stiffness { height: 1e6, bend, twist: 0.1 * bend };
+        let pattern =
+            TangentPattern::new(Grid { m: 2, n: 1 }, &[true, true, true, false, false, false]);
         let [elastic, geometric] = [ligament.elastic(&stiffness), ligament.geometric()]
             .map(|block| pattern.assemble(std::iter::once(block)));
         let found = margin(&pattern, &elastic, &geometric).unwrap();
@@ -452,15 +446,14 @@ mod tests {
         assert_eq!(margin(&free, &loose, &loose), None);
     }
 
-    /// A pulled panel tilts by the moment of the force at the height of the bump, less the more it is pulled, in one load step as in two.
+    /// A pulled panel tilts by the moment of the force at the height of the bump, less the more it
+    /// is pulled, in one load step as in two.
     #[test]
     fn a_bump_tilts_a_pulled_panel() {
         let (load, arm, bend, w_lig, thickness) = (3.0, 40.0, 500.0, 2.0, 3.0);
         let along = turn(0.4);
-        let pattern = TangentPattern::new(
-            Grid { m: 2, n: 1 },
-            &[true, true, true, false, false, false],
-        );
+        let pattern =
+            TangentPattern::new(Grid { m: 2, n: 1 }, &[true, true, true, false, false, false]);
         let of = |share: f64| {
             let ligament = Ligament {
                 along,
@@ -468,30 +461,19 @@ mod tests {
                 force: share * load * along,
                 moment: 0.0,
             };
-            let stiffness = Stiffness {
-                height: 1e9,
-                bend,
-                twist: bend,
-            };
+            let stiffness = Stiffness { height: 1e9, bend, twist: bend };
             let [_, [x, y]] = ligament.moments_of_bump(w_lig, thickness);
             let [elastic, geometric] = [ligament.elastic(&stiffness), ligament.geometric()]
                 .map(|block| pattern.assemble(std::iter::once(block)));
-            OfForces {
-                elastic,
-                geometric,
-                loads: pattern.gather(&[[0.0; 3], [0.0, x, y]]),
-            }
+            OfForces { elastic, geometric, loads: pattern.gather(&[[0.0; 3], [0.0, x, y]]) }
         };
         let none = vec![0.0; 3];
         let half = of(0.5);
         let at_half = moved(&pattern, None, &half, none.clone()).unwrap();
-        for motions in [
-            moved(&pattern, Some(&half), &of(1.0), at_half),
-            moved(&pattern, None, &of(1.0), none),
-        ] {
-            let [_, [z, x, y]] = pattern.spread(&motions.unwrap())[..] else {
-                unreachable!()
-            };
+        for motions in
+            [moved(&pattern, Some(&half), &of(1.0), at_half), moved(&pattern, None, &of(1.0), none)]
+        {
+            let [_, [z, x, y]] = pattern.spread(&motions.unwrap())[..] else { unreachable!() };
             let height = Regime::Plate.bump() * thickness * f64::exp(-0.25);
             let tilt = load * height / (bend + load * arm);
             assert_close(x.hypot(y), tilt, 1e-6);
@@ -532,16 +514,12 @@ mod tests {
             .collect();
         let free = (0..turning.len()).filter(|panel| !held.contains(panel));
         for panel in free {
-            assert!(
-                turning[panel].abs() < 1e-6 * size,
-                "{panel}: {}",
-                turning[panel]
-            );
+            assert!(turning[panel].abs() < 1e-6 * size, "{panel}: {}", turning[panel]);
         }
     }
 
-    /// By finite elements panels of the design tilt by 0.28 deg and its corners are 0.20 mm out of the plane, root mean square
-    /// (docs/results/plates).
+    /// By finite elements panels of the design tilt by 0.28 deg and its corners are 0.20 mm out of
+    /// the plane, root mean square (docs/results/plates).
     #[test]
     fn the_a4_plate_stays_nearly_in_its_plane_and_a_film_has_no_margin() {
         let (scene, deployment) = deployed_scene("a4-plate.toml");

@@ -1,14 +1,14 @@
 //! The state of a path and the rigid motion that fit measured points.
 //!
-//! A mark m of the sheet, a corner or the centre of a panel, lies at p_m(x) if the sheet is at the position x of its
-//! path. Its measurement is
+//! A mark m of the sheet, a corner or the centre of a panel, lies at p_m(x) if the sheet is at the
+//! position x of its path. Its measurement is
 //!
 //! ```text
 //! z_m = turn p_m(x) + shift + error,
 //! ```
 //!
-//! with one unknown rigid motion, and one unknown scale if requested. x and the motion have the least sum of squared
-//! errors over all points. Residuals are in the frame of the design, in mm.
+//! with one unknown rigid motion, and one unknown scale if requested. x and the motion have the
+//! least sum of squared errors over all points. Residuals are in the frame of the design, in mm.
 
 use crate::analysis::measured_points::{FittedPoint, MeasuredPoint};
 use crate::analysis::shape_path::{PathShape, ShapePath};
@@ -17,7 +17,8 @@ use design::geometry::similarity::{Pair, Scale, Similarity};
 
 /// Minimum number of points: four points are eight numbers, for at most five unknowns.
 pub const MIN_POINTS: usize = 4;
-/// Movement of the points per load step below which they do not move, relative to the size of the sheet.
+/// Movement of the points per load step below which they do not move, relative to the size of the
+/// sheet.
 const LEAST_SPEED: f64 = 1e-6;
 
 /// A state of the path with the motion that moves it onto the measured points.
@@ -56,8 +57,8 @@ impl Problem<'_> {
         self.points.iter().map(pair).collect()
     }
 
-    /// The position on the path with the least sum of squares: the best load step, then a golden-section search between
-    /// its neighbours.
+    /// The position on the path with the least sum of squares: the best load step, then a
+    /// golden-section search between its neighbours.
     pub(crate) fn best_position(&self) -> f64 {
         let misfit = |position: f64| {
             let pairs = self.pairs(position);
@@ -69,11 +70,7 @@ impl Problem<'_> {
             .map(|step| (step, misfit(step)))
             .min_by(|a, b| a.1.total_cmp(&b.1))
             .map_or(0.0, |(step, _)| step);
-        golden_minimum(
-            (best - 1.0).max(0.0),
-            (best + 1.0).min(self.path.end()),
-            misfit,
-        )
+        golden_minimum((best - 1.0).max(0.0), (best + 1.0).min(self.path.end()), misfit)
     }
 
     /// The points and their predictions at a position of the path; `None` if the points coincide.
@@ -95,9 +92,10 @@ impl Problem<'_> {
         })
     }
 
-    /// Gauss-Newton: the variance of the position x is sigma^2 / |dp/dx|^2, with the part of dp/dx that is no rigid
-    /// motion (and no change of scale) of the points. `None` if there is no such part, as for the corners of one panel, or
-    /// if the standard error of x exceeds the length of the whole path.
+    /// Gauss-Newton: the variance of the position x is sigma^2 / |dp/dx|^2, with the part of dp/dx
+    /// that is no rigid motion (and no change of scale) of the points. `None` if there is no such
+    /// part, as for the corners of one panel, or if the standard error of x exceeds the length of
+    /// the whole path.
     pub(crate) fn load_factor_error(&self, fit: &Fit) -> Option<f64> {
         /// Difference of two positions, in load steps.
         const STEP: f64 = 1e-3;
@@ -107,9 +105,8 @@ impl Problem<'_> {
         let sigma = (squares(&pairs, fit.motion) / free).sqrt();
         let step = if position + STEP <= end { STEP } else { -STEP };
         let ahead = self.pairs(position + step);
-        let change: Vec<Pair> = std::iter::zip(&pairs, &ahead)
-            .map(|(here, there)| [here[0], there[0]])
-            .collect();
+        let change: Vec<Pair> =
+            std::iter::zip(&pairs, &ahead).map(|(here, there)| [here[0], there[0]]).collect();
         let rigid = Similarity::least_squares(&change, self.scale)?;
         let speed = squares(&change, rigid).sqrt() / STEP;
         if speed <= LEAST_SPEED * self.path.sheet.outline.size() || sigma / speed > end {

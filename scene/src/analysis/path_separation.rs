@@ -1,14 +1,14 @@
-//! How far the path of a hinge departs from the ray to its end, along which the hinge law was measured (section 5.2): a straight ray, or
-//! one that bends like the free turn of a ligament.
+//! How far the path of a hinge departs from the ray to its end, along which the hinge law was
+//! measured (section 5.2): a straight ray, or one that bends like the free turn of a ligament.
 
 use hinge::HingeDeformation;
 
-/// Maximum distance between the path of a hinge, from the undeformed state through `states`, and the ray to its end, at equal fractions
-/// of their lengths, in ligament widths.
+/// Maximum distance between the path of a hinge, from the undeformed state through `states`, and
+/// the ray to its end, at equal fractions of their lengths, in ligament widths.
 ///
-/// It is Euclidean in (eta_a, eta_s, theta), with eta_a from the bend of the ray, which has the given
-/// [curvature](surrogate::Surrogate::ray_curvature): a rotation by one radian moves a point at the distance of one ligament width from O by
-/// one ligament width.
+/// It is Euclidean in (eta_a, eta_s, theta), with eta_a from the bend of the ray, which has the
+/// given [curvature](surrogate::Surrogate::ray_curvature): a rotation by one radian moves a point
+/// at the distance of one ligament width from O by one ligament width.
 pub fn path_separation(w_lig: f64, curvature: f64, states: &[HingeDeformation]) -> f64 {
     let place = |state: &HingeDeformation| {
         let [eta_a, eta_s] = state.eta(w_lig);

@@ -1,6 +1,7 @@
 //! The shapes of a sheet from flat to full load, interpolated between load steps.
 //!
-//! Between two load steps the motions (u, phi) of the panels are linear in the position on the path.
+//! Between two load steps the motions (u, phi) of the panels are linear in the position on the
+//! path.
 
 use design::equilibrium::load_step::Status;
 use design::objective::design_problem::{Deployment, DesignProblem, Model};
@@ -30,8 +31,8 @@ pub struct ShapePath<'a> {
 }
 
 impl<'a> ShapePath<'a> {
-    /// The flat sheet and the load steps of a deployment that converged; for an ideal deployment, equal steps of the
-    /// opening angle.
+    /// The flat sheet and the load steps of a deployment that converged; for an ideal deployment,
+    /// equal steps of the opening angle.
     pub fn new(problem: &DesignProblem, deployment: &'a Deployment) -> Self {
         let sheet = &deployment.sheet;
         let mut path = Self::flat(sheet);
@@ -42,10 +43,7 @@ impl<'a> ShapePath<'a> {
                 path.shapes.extend((1..=IDEAL_STATES).map(|i| {
                     let load_factor = f64::from(i) / f64::from(IDEAL_STATES);
                     let configuration = ideal_deployment(sheet, load_factor * theta);
-                    PathShape {
-                        load_factor,
-                        configuration,
-                    }
+                    PathShape { load_factor, configuration }
                 }));
             }
             Model::Equilibrium(_) => {
@@ -62,14 +60,9 @@ impl<'a> ShapePath<'a> {
 
     /// The flat sheet alone.
     pub fn flat(sheet: &'a Sheet) -> Self {
-        let flat = PathShape {
-            load_factor: 0.0,
-            configuration: vec![[0.0; 3]; sheet.panels.len()],
-        };
-        Self {
-            sheet,
-            shapes: vec![flat],
-        }
+        let flat =
+            PathShape { load_factor: 0.0, configuration: vec![[0.0; 3]; sheet.panels.len()] };
+        Self { sheet, shapes: vec![flat] }
     }
 
     /// The position of the last shape; the flat sheet is at 0.

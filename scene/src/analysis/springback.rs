@@ -1,5 +1,5 @@
-//! A deployed sheet that is unloaded: its equilibrium without loads, with hinges that are elastic about their residual
-//! deformations.
+//! A deployed sheet that is unloaded: its equilibrium without loads, with hinges that are elastic
+//! about their residual deformations.
 
 use crate::analysis::actuation_curve::{ActuationCurve, Mover};
 use crate::{Scene, SpringbackMismatch};
@@ -40,7 +40,8 @@ pub struct ResidualShape {
     pub rotations: Vec<[f64; 2]>,
     /// Rotation at which every hinge by itself would be without forces (rad).
     pub rest_rotations: Vec<f64>,
-    /// Displacement along the loads, under load and without, in `displacement_unit`; `None` if supports moved the sheet.
+    /// Displacement along the loads, under load and without, in `displacement_unit`; `None` if
+    /// supports moved the sheet.
     pub displacement: Option<[f64; 2]>,
     /// mm, or rad if couples move the sheet.
     pub displacement_unit: &'static str,
@@ -72,11 +73,7 @@ impl ResidualShape {
         let rotations = std::iter::zip(&loaded.deformations, &free.deformations);
         Ok(Self {
             rotations: rotations.map(|(on, off)| [on.theta, off.theta]).collect(),
-            rest_rotations: released
-                .hinges
-                .iter()
-                .map(|hinge| hinge.rest.theta)
-                .collect(),
+            rest_rotations: released.hinges.iter().map(|hinge| hinge.rest.theta).collect(),
             displacement_unit: match &curve {
                 Some(curve) if !curve.translational => "rad",
                 _ => "mm",
@@ -102,7 +99,8 @@ impl ResidualShape {
     }
 }
 
-/// The hinges of a deployed sheet of a scene and its problem after they were unloaded, with the forces of the problem's hinge law.
+/// The hinges of a deployed sheet of a scene and its problem after they were unloaded, with the
+/// forces of the problem's hinge law.
 ///
 /// # Errors
 /// As [`Scene::check_springback`], or if the sheet has no equilibrium at full load.
@@ -140,7 +138,8 @@ pub fn unload(
 /// As [`unload`], where the law of released hinges is known to hold.
 ///
 /// # Errors
-/// As [`unload`], if hinges are outside the training domain at full load, or if the sheet would open further without its loads.
+/// As [`unload`], if hinges are outside the training domain at full load, or if the sheet would
+/// open further without its loads.
 pub fn unload_in_domain(
     scene: &Scene,
     problem: &DesignProblem,
@@ -162,9 +161,9 @@ pub fn unload_in_domain(
 /// By how much a person opens a sheet too far, in parts of its opening.
 pub const TOO_FAR: f64 = 0.15;
 
-/// The work rate M theta of the hinges of a sheet that was opened [too far](TOO_FAR) and brought back, over the work rate of
-/// a sheet that was not: how firmly it holds. `None` if a hinge leaves the training domain on the way, or if the sheet does not
-/// open at its last load step.
+/// The work rate M theta of the hinges of a sheet that was opened [too far](TOO_FAR) and brought
+/// back, over the work rate of a sheet that was not: how firmly it holds. `None` if a hinge leaves
+/// the training domain on the way, or if the sheet does not open at its last load step.
 pub fn moment_after_overshoot(
     scene: &Scene,
     problem: &DesignProblem,
@@ -197,9 +196,7 @@ pub fn moment_after_overshoot(
     let holds = |law: &dyn PreparedLaw| -> f64 {
         let energies = law.energies(&last.deformations, Order::Forces);
         let hinges = std::iter::zip(&energies, &last.deformations);
-        hinges
-            .map(|(energy, state)| energy.forces[2] * state.theta)
-            .sum()
+        hinges.map(|(energy, state)| energy.forces[2] * state.theta).sum()
     };
     let share = holds(&ReleasedLaw(&hinges)) / holds(&*prepared);
     share.is_finite().then_some(share)

@@ -1,5 +1,6 @@
-//! Polylines of straight lines and arcs, as DXF has them: a vertex with its bulge, the tangent of a quarter of the angle of the arc to the
-//! next vertex, positive counter-clockwise; 0 for a straight line.
+//! Polylines of straight lines and arcs, as DXF has them: a vertex with its bulge, the tangent of a
+//! quarter of the angle of the arc to the next vertex, positive counter-clockwise; 0 for a straight
+//! line.
 
 use design::geometry::plane::{I, complex, point};
 use faer::c64;

@@ -6,10 +6,12 @@ use design::geometry::polygon;
 pub(super) const WELD: f64 = 1e-6;
 /// Largest coordinate over the size of an outline from which its rounding shows.
 const TOO_FAR: f64 = 1000.0;
-/// Maximum number of points of an outline, 3000 curves: the worst one of them is checked for crossings in seconds.
+/// Maximum number of points of an outline, 3000 curves: the worst one of them is checked for
+/// crossings in seconds.
 pub(super) const MOST_POINTS: usize = 100_000;
 
-/// Why a file has no outline; lengths and coordinates are in the page of an SVG file (px), or in a DXF file (mm if it states its unit).
+/// Why a file has no outline; lengths and coordinates are in the page of an SVG file (px), or in a
+/// DXF file (mm if it states its unit).
 #[derive(Debug, thiserror::Error)]
 #[allow(missing_docs, reason = "the message of a variant is its documentation")]
 pub enum DrawingError {
@@ -38,11 +40,7 @@ pub enum DrawingError {
     )]
     Several { found: usize, listed: String },
     #[error("there is no contour {number}: the drawing has {found}, by size {listed}")]
-    NoSuch {
-        number: usize,
-        found: usize,
-        listed: String,
-    },
+    NoSuch { number: usize, found: usize, listed: String },
     #[error("lines branch at ({x}, {y}): delete those that are not part of the outline")]
     Branch { x: f64, y: f64 },
     #[error(
@@ -138,10 +136,9 @@ impl Contour {
         let [x0, y0] = self.points[0];
         let near_zero: Vec<_> = self.points.iter().map(|[x, y]| [x - x0, y - y0]).collect();
         match polygon::self_crossing(&near_zero) {
-            Some([x, y]) => Err(DrawingError::SelfCrossing {
-                x: rounded(x + x0),
-                y: rounded(y + y0),
-            }),
+            Some([x, y]) => {
+                Err(DrawingError::SelfCrossing { x: rounded(x + x0), y: rounded(y + y0) })
+            }
             None => Ok(gap),
         }
     }

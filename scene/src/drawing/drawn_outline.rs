@@ -1,7 +1,8 @@
-//! The outline in a drawing, an SVG file (also compressed, SVGZ) or a DXF file: one of its contours, closed and free of crossings.
+//! The outline in a drawing, an SVG file (also compressed, SVGZ) or a DXF file: one of its
+//! contours, closed and free of crossings.
 //!
-//! Contours that are drawn twice, for the fill and for the stroke, count once, and open ones whose ends meet are joined. If several remain
-//! the outline is named by its number, the largest first.
+//! Contours that are drawn twice, for the fill and for the stroke, count once, and open ones whose
+//! ends meet are joined. If several remain the outline is named by its number, the largest first.
 
 use crate::drawing::contour::{Contour, DrawingError, rounded};
 use crate::drawing::{dxf_contours, svg_path};
@@ -29,7 +30,8 @@ pub(crate) struct Outline {
     pub has_unit: bool,
 }
 
-/// The file of a drawing and the number of its outline that stands behind it, as in `drawing.svg#2`.
+/// The file of a drawing and the number of its outline that stands behind it, as in
+/// `drawing.svg#2`.
 pub fn numbered(name: &Path) -> (PathBuf, Option<usize>) {
     let split = |name: &str| {
         let (file, number) = name.rsplit_once('#')?;
@@ -86,34 +88,22 @@ fn outline(
         }
         (Some(number), _) if number == 0 || number > found => {
             let listed = listed(&contours);
-            return Err(DrawingError::NoSuch {
-                number,
-                found,
-                listed,
-            });
+            return Err(DrawingError::NoSuch { number, found, listed });
         }
         (Some(number), _) => number - 1,
     };
     let gap = contours[chosen].check()?;
-    Ok(Outline {
-        vertices: contours.swap_remove(chosen).points,
-        gap,
-        has_unit,
-    })
+    Ok(Outline { vertices: contours.swap_remove(chosen).points, gap, has_unit })
 }
 
 /// Sizes and places of the largest contours.
 fn listed(contours: &[Contour]) -> String {
-    let words = contours
-        .iter()
-        .take(LISTED)
-        .enumerate()
-        .map(|(i, contour)| {
-            let [width, height] = contour.size().map(rounded);
-            let [x, y] = polygon::bounds(contour.points.iter().copied())[0].map(rounded);
-            let open = if contour.closed { "" } else { " (open)" };
-            format!("#{} {width} x {height} at ({x}, {y}){open}", i + 1)
-        });
+    let words = contours.iter().take(LISTED).enumerate().map(|(i, contour)| {
+        let [width, height] = contour.size().map(rounded);
+        let [x, y] = polygon::bounds(contour.points.iter().copied())[0].map(rounded);
+        let open = if contour.closed { "" } else { " (open)" };
+        format!("#{} {width} x {height} at ({x}, {y}){open}", i + 1)
+    });
     words.collect::<Vec<_>>().join(", ")
 }
 
@@ -300,10 +290,7 @@ mod tests {
             ("4", &spline, PI),
         ] {
             let found = area(&dxf(unit, entities));
-            assert!(
-                (found / expected - 1.0).abs() < 1e-3,
-                "{entities}: {found} {expected}"
-            );
+            assert!((found / expected - 1.0).abs() < 1e-3, "{entities}: {found} {expected}");
         }
         assert!(!of_text(&dxf("0", rounded), None).unwrap().has_unit);
     }
@@ -312,23 +299,14 @@ mod tests {
     fn what_a_dxf_file_holds_else_is_refused_by_its_name() {
         let circle = "0 CIRCLE 10 9 20 9 40 2";
         for (text, part) in [
-            (
-                dxf("4", &format!("{circle} 0 INSERT 2 PART 10 0 20 0")),
-                "INSERT",
-            ),
+            (dxf("4", &format!("{circle} 0 INSERT 2 PART 10 0 20 0")), "INSERT"),
             (
                 dxf("4", &format!("{circle} {}", circle.replace("9", "3"))),
                 "2 contours, by size #1 4 x 4 at (7, 7)",
             ),
             (dxf("4", "0 LINE 10 0 20 0 11 9 21 0"), "2 different points"),
-            (
-                dxf("4", "0 ARC 10 0 20 0 40 5 50 0 51 180"),
-                "ends open at (-5, 0), 10 from",
-            ),
-            (
-                dxf("4", "0 CIRCLE 10 9 20 nine 40 2"),
-                "`nine` is no number",
-            ),
+            (dxf("4", "0 ARC 10 0 20 0 40 5 50 0 51 180"), "ends open at (-5, 0), 10 from"),
+            (dxf("4", "0 CIRCLE 10 9 20 nine 40 2"), "`nine` is no number"),
             (dxf("4", circle).replace("EOF", "LINE"), "without EOF"),
             (dxf("4", "0 SPLINE 71 3 11 0 21 0"), "SPLINE without"),
             (dxf("4", ""), "no visible path"),

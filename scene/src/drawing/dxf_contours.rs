@@ -1,7 +1,9 @@
-//! The lines in the model space of a DXF file as contours; arcs and splines are approximated by segments.
+//! The lines in the model space of a DXF file as contours; arcs and splines are approximated by
+//! segments.
 //!
-//! A DXF file is a list of pairs of lines, a group code and a value; code 0 begins a record. Read are LINE, ARC, CIRCLE, ELLIPSE, SPLINE,
-//! LWPOLYLINE and POLYLINE on layers that are shown. Reference: Autodesk, DXF Reference (AutoCAD 2000).
+//! A DXF file is a list of pairs of lines, a group code and a value; code 0 begins a record. Read
+//! are LINE, ARC, CIRCLE, ELLIPSE, SPLINE, LWPOLYLINE and POLYLINE on layers that are shown.
+//! Reference: Autodesk, DXF Reference (AutoCAD 2000).
 
 use crate::drawing::bulged::{Vertex, arc, flattened};
 use crate::drawing::contour::{Contour, DrawingError, WELD};
@@ -13,13 +15,7 @@ use std::f64::consts::TAU;
 /// Number of segments of a spline between two knots.
 const SPLINE_SEGMENTS: usize = 32;
 /// Values of `$INSUNITS` with their length (mm): inch, foot, mm, cm, m.
-const UNITS: [(&str, f64); 5] = [
-    ("1", 25.4),
-    ("2", 304.8),
-    ("4", 1.0),
-    ("5", 10.0),
-    ("6", 1000.0),
-];
+const UNITS: [(&str, f64); 5] = [("1", 25.4), ("2", 304.8), ("4", 1.0), ("5", 10.0), ("6", 1000.0)];
 /// Entities that are no part of an outline.
 const NOTES: [&str; 14] = [
     "TEXT",
@@ -66,10 +62,7 @@ impl<'a> Record<'a> {
 
     fn points(&self, code: u16) -> Vec<[f64; 2]> {
         let ordinates = self.numbers(code + 10);
-        self.numbers(code)
-            .zip(ordinates)
-            .map(<[f64; 2]>::from)
-            .collect()
+        self.numbers(code).zip(ordinates).map(<[f64; 2]>::from).collect()
     }
 
     /// The first point of a code.
@@ -78,7 +71,8 @@ impl<'a> Record<'a> {
     }
 }
 
-/// The contours of a DXF text, and whether they are in mm: in the unit of the file if it states none.
+/// The contours of a DXF text, and whether they are in mm: in the unit of the file if it states
+/// none.
 pub(super) fn read(text: &str) -> Result<(Vec<Contour>, bool), DrawingError> {
     let records = records(text)?;
     let mut section = "";
@@ -108,9 +102,7 @@ pub(super) fn read(text: &str) -> Result<(Vec<Contour>, bool), DrawingError> {
             _ => {}
         }
     }
-    let all = contours
-        .iter()
-        .flat_map(|(points, _)| points.iter().copied());
+    let all = contours.iter().flat_map(|(points, _)| points.iter().copied());
     let [low, high] = polygon::bounds(all);
     let scale = unit.unwrap_or(1.0);
     let rounding = WELD * scale * f64::max(high[0] - low[0], high[1] - low[1]);
@@ -138,10 +130,7 @@ fn records(text: &str) -> Result<Vec<Record<'_>>, DrawingError> {
             return refused(2 * i + 2, format!("`{value}` is no number"));
         }
         if group == 0 {
-            records.push(Record {
-                kind: value,
-                pairs: Vec::new(),
-            });
+            records.push(Record { kind: value, pairs: Vec::new() });
         } else if let Some(record) = records.last_mut() {
             record.pairs.push((group, value));
         }
@@ -158,7 +147,8 @@ fn records(text: &str) -> Result<Vec<Record<'_>>, DrawingError> {
 /// Points, and whether they are closed.
 type Points = (Vec<[f64; 2]>, bool);
 
-/// The points of an entity, and whether they are closed; `None` if it is a note. `further` are the records after it.
+/// The points of an entity, and whether they are closed; `None` if it is a note. `further` are the
+/// records after it.
 fn contour(entity: &Record, further: &[Record]) -> Result<Option<Points>, DrawingError> {
     let centre = entity.at(10);
     // Arcs and polylines that are seen from below are mirrored.
@@ -197,9 +187,7 @@ fn contour(entity: &Record, further: &[Record]) -> Result<Option<Points>, Drawin
         "POLYLINE" if !entity.flag(70, 16 | 64) => {
             let vertices = further.iter().take_while(|it| it.kind == "VERTEX");
             let vertices = vertices.filter(|vertex| !vertex.flag(70, 16));
-            let vertices: Vec<_> = vertices
-                .map(|it| (point(it.at(10)), it.number(42)))
-                .collect();
+            let vertices: Vec<_> = vertices.map(|it| (point(it.at(10)), it.number(42))).collect();
             let closed = entity.flag(70, 1);
             (flattened(&vertices, closed), closed)
         }

@@ -1,21 +1,20 @@
-//! Moves a drawing whose coordinates are far from zero to the origin, before usvg rounds them to 24 bits: a map in metres of a
-//! national grid has its outline at 5 600 000, where these bits end at half a metre.
+//! Moves a drawing whose coordinates are far from zero to the origin, before usvg rounds them to 24
+//! bits: a map in metres of a national grid has its outline at 5 600 000, where these bits end at
+//! half a metre.
 
 use design::geometry::polygon;
 use std::fmt::Write;
 use svgtypes::{PointsParser, SimplePathSegment, SimplifyingPathParser};
 use usvg::roxmltree::{Document, Node, ParsingOptions};
 
-/// Largest coordinate over the size of an outline from which it is moved: nearer ones keep a millionth of their size.
+/// Largest coordinate over the size of an outline from which it is moved: nearer ones keep a
+/// millionth of their size.
 const FAR: f64 = 8.0;
 
-/// The text of a drawing with all its paths, polygons and polylines moved to the returned origin; `None` if no outline is far from
-/// zero or the text is no SVG.
+/// The text of a drawing with all its paths, polygons and polylines moved to the returned origin;
+/// `None` if no outline is far from zero or the text is no SVG.
 pub(super) fn moved(svg: &str) -> Option<(String, [f64; 2])> {
-    let options = ParsingOptions {
-        allow_dtd: true,
-        ..ParsingOptions::default()
-    };
+    let options = ParsingOptions { allow_dtd: true, ..ParsingOptions::default() };
     let document = Document::parse_with_options(svg, options).ok()?;
     let outlines: Vec<_> = document.descendants().filter_map(Outline::of).collect();
     let origin = outlines.iter().find_map(Outline::far_start)?;
@@ -58,15 +57,9 @@ impl Outline {
             segments.map_while(Result::ok).collect()
         } else {
             let points = PointsParser::from(data.value());
-            points
-                .map(|(x, y)| SimplePathSegment::LineTo { x, y })
-                .collect()
+            points.map(|(x, y)| SimplePathSegment::LineTo { x, y }).collect()
         };
-        Some(Self {
-            is_path,
-            segments,
-            written: data.range_value(),
-        })
+        Some(Self { is_path, segments, written: data.range_value() })
     }
 
     /// Its first point, if it is far from zero.
@@ -88,14 +81,7 @@ impl Outline {
                 MoveTo { x, y } => ("M", vec![[x, y]]),
                 LineTo { x, y } => ("L", vec![[x, y]]),
                 Quadratic { x1, y1, x, y } => ("Q", vec![[x1, y1], [x, y]]),
-                CurveTo {
-                    x1,
-                    y1,
-                    x2,
-                    y2,
-                    x,
-                    y,
-                } => ("C", vec![[x1, y1], [x2, y2], [x, y]]),
+                CurveTo { x1, y1, x2, y2, x, y } => ("C", vec![[x1, y1], [x2, y2], [x, y]]),
                 ClosePath => ("Z", Vec::new()),
             };
             if self.is_path {

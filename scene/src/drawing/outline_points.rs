@@ -1,18 +1,14 @@
-//! The vertices of an outline in a text with one point a line. Lines above the first point name the outline or its columns: without
-//! names the columns are x and y, behind a number that counts the lines or before a constant.
+//! The vertices of an outline in a text with one point a line. Lines above the first point name the
+//! outline or its columns: without names the columns are x and y, behind a number that counts the
+//! lines or before a constant.
 
 use std::path::{Path, PathBuf};
 use support::file_error::FileError;
 use support::text_table::{TextRow, TextTable};
 
 /// Units behind the names of columns, with their length (mm).
-const UNITS: [(&str, f64); 5] = [
-    ("mm", 1.0),
-    ("cm", 10.0),
-    ("m", 1000.0),
-    ("in", 25.4),
-    ("inch", 25.4),
-];
+const UNITS: [(&str, f64); 5] =
+    [("mm", 1.0), ("cm", 10.0), ("m", 1000.0), ("in", 25.4), ("inch", 25.4)];
 
 /// Why a text is no outline.
 #[derive(Debug, thiserror::Error)]
@@ -21,11 +17,7 @@ pub enum PointsError {
     #[error("cannot read the target outline {0}")]
     Read(#[from] FileError),
     #[error("{path}:{line}: {what}", path = .path.display())]
-    Line {
-        path: PathBuf,
-        line: u64,
-        what: String,
-    },
+    Line { path: PathBuf, line: u64, what: String },
 }
 
 /// Where x and y stand in a line, and the length of their unit (mm).
@@ -37,11 +29,7 @@ struct Columns {
 /// The points in a file (mm), in its order.
 pub(crate) fn read(path: &Path) -> Result<Vec<[f64; 2]>, PointsError> {
     let table = TextTable::read(path)?;
-    points(&table).map_err(|(line, what)| PointsError::Line {
-        path: path.to_owned(),
-        line,
-        what,
-    })
+    points(&table).map_err(|(line, what)| PointsError::Line { path: path.to_owned(), line, what })
 }
 
 /// The points of a table (mm); an error has the number of its line.
@@ -85,10 +73,7 @@ fn points(table: &TextTable) -> Result<Vec<[f64; 2]>, (u64, String)> {
         let written = text.escape_debug();
         let alike = row.cells.len() == first.cells.len();
         (x.zip(y).filter(|_| alike).map(<[f64; 2]>::from)).ok_or_else(|| {
-            (
-                row.line,
-                format!("`{written}` is no point: write x and y in mm, as in `12.5, 40`"),
-            )
+            (row.line, format!("`{written}` is no point: write x and y in mm, as in `12.5, 40`"))
         })
     };
     below.iter().map(point).collect()
@@ -99,36 +84,25 @@ fn named(head: &[String]) -> Result<Columns, String> {
     let parts = |cell: &String| -> Vec<String> {
         let letters = cell.to_lowercase();
         let words = letters.split(|c: char| !c.is_alphanumeric());
-        words
-            .filter(|word| !word.is_empty())
-            .map(str::to_owned)
-            .collect()
+        words.filter(|word| !word.is_empty()).map(str::to_owned).collect()
     };
     let parts: Vec<Vec<String>> = head.iter().map(parts).collect();
-    let place = |name: &str| {
-        parts
-            .iter()
-            .position(|words| words.first().is_some_and(|it| it == name))
-    };
+    let place =
+        |name: &str| parts.iter().position(|words| words.first().is_some_and(|it| it == name));
     let (Some(x), Some(y)) = (place("x"), place("y")) else {
         let head = head.join(", ");
-        return Err(format!(
-            "`{head}` names no columns x and y: correct it, or write # before it"
-        ));
+        return Err(format!("`{head}` names no columns x and y: correct it, or write # before it"));
     };
     let unit = |place: usize| match parts[place].get(1) {
         None => Ok(1.0),
-        Some(unit) => (UNITS.iter().find(|(name, _)| name == unit))
-            .map(|(_, length)| *length)
-            .ok_or_else(|| {
-                format!("`{unit}` is no unit of points that is known: use mm, cm, m or in")
-            }),
+        Some(unit) => {
+            (UNITS.iter().find(|(name, _)| name == unit)).map(|(_, length)| *length).ok_or_else(
+                || format!("`{unit}` is no unit of points that is known: use mm, cm, m or in"),
+            )
+        }
     };
     match (unit(x)?, unit(y)?) {
-        (of_x, of_y) if of_x == of_y => Ok(Columns {
-            places: [x, y],
-            unit: of_x,
-        }),
+        (of_x, of_y) if of_x == of_y => Ok(Columns { places: [x, y], unit: of_x }),
         _ => Err("x and y have different units".into()),
     }
 }

@@ -1,7 +1,8 @@
 //! The visible paths of an SVG file as contours; Bezier curves are approximated by segments.
 //!
 //! usvg reads the document: it converts rect, circle, ellipse and polygon to paths and arcs to
-//! cubic curves, and it resolves styles, `<use>` and transforms. A clip may surround a path, and hides nothing of it.
+//! cubic curves, and it resolves styles, `<use>` and transforms. A clip may surround a path, and
+//! hides nothing of it.
 
 use crate::drawing::contour::{Contour, DrawingError, WELD};
 use crate::drawing::near_origin;
@@ -11,7 +12,8 @@ use usvg::{ClipPath, Group, ImageHrefResolver, Node, Options, Path, Transform, T
 
 /// Number of segments of a flattened curve.
 const SEGMENTS: usize = 32;
-/// How far a path may reach out of a clip around it, over the length of an edge of the clip: rounding.
+/// How far a path may reach out of a clip around it, over the length of an edge of the clip:
+/// rounding.
 const FRAME: f64 = 1e-5;
 /// Removes the background colour of the root element and markers, which usvg would draw as paths.
 const OUTLINES_ALONE: &str = "svg { background-color: none !important } \
@@ -42,9 +44,7 @@ pub(super) fn contours(svg: &str) -> Result<Vec<Contour>, DrawingError> {
     let of_path = |path: &Path| -> Vec<Contour> {
         let (transform, filled) = (path.abs_transform(), is_filled(path));
         let parts = subpaths(path).into_iter();
-        parts
-            .map(|part| part.contour(transform, origin, filled))
-            .collect()
+        parts.map(|part| part.contour(transform, origin, filled)).collect()
     };
     Ok(paths.into_iter().flat_map(of_path).collect())
 }
@@ -84,7 +84,8 @@ fn add_visible<'a>(group: &'a Group, paths: &mut Vec<&'a Path>) -> Result<(), Dr
     }
 }
 
-/// Whether a clip is one convex path around paths, so that it hides nothing of them, as the frame of an artboard.
+/// Whether a clip is one convex path around paths, so that it hides nothing of them, as the frame
+/// of an artboard.
 fn surrounds(clip: &ClipPath, transform: Transform, paths: &[&Path]) -> bool {
     let [Node::Path(frame)] = clip.root().children() else {
         return false;
@@ -104,10 +105,7 @@ fn surrounds(clip: &ClipPath, transform: Transform, paths: &[&Path]) -> bool {
         })
     };
     let is_convex = clip.clip_path().is_none() && frame.iter().all(inside);
-    is_convex
-        && paths
-            .iter()
-            .all(|path| placed(path, path.abs_transform()).iter().all(inside))
+    is_convex && paths.iter().all(|path| placed(path, path.abs_transform()).iter().all(inside))
 }
 
 /// A part of a path between two moves.
@@ -116,16 +114,14 @@ struct Subpath {
     closed: bool,
 }
 
-/// The parts of a path, before its transform, from the origin of the moved drawing. A move that draws nothing is none.
+/// The parts of a path, before its transform, from the origin of the moved drawing. A move that
+/// draws nothing is none.
 fn subpaths(path: &Path) -> Vec<Subpath> {
     let mut parts: Vec<Subpath> = Vec::new();
     for segment in path.data().segments() {
         if let PathSegment::MoveTo(to) = segment {
             let points = vec![pair(to)];
-            parts.push(Subpath {
-                points,
-                closed: false,
-            });
+            parts.push(Subpath { points, closed: false });
         }
         let Some(Subpath { points, closed }) = parts.last_mut() else {
             continue;
@@ -143,7 +139,8 @@ fn subpaths(path: &Path) -> Vec<Subpath> {
 }
 
 impl Subpath {
-    /// It on the page. Coordinates are rounded to 24 bits before the transform, from the origin of the moved drawing.
+    /// It on the page. Coordinates are rounded to 24 bits before the transform, from the origin of
+    /// the moved drawing.
     fn contour(self, transform: Transform, origin: [f64; 2], filled: bool) -> Contour {
         let largest = self.points.as_flattened().iter().map(|c| c.abs());
         let largest = largest.fold(0.0, f64::max);
@@ -200,9 +197,7 @@ mod tests {
 
     /// The outline of a document with this content.
     fn drawn(content: &str) -> Result<Vec<[f64; 2]>, DrawingError> {
-        vertices(&format!(
-            "<svg xmlns=\"http://www.w3.org/2000/svg\">{content}</svg>"
-        ))
+        vertices(&format!("<svg xmlns=\"http://www.w3.org/2000/svg\">{content}</svg>"))
     }
 
     fn of(data: &str) -> Result<Vec<[f64; 2]>, DrawingError> {
@@ -305,11 +300,7 @@ mod tests {
         for (shape, area, error) in [
             (&*path(&cubics), std::f64::consts::PI, 1.5e-3),
             (&path("M -50 0 A 50 50 0 0 1 50 0 Z"), 3926.99, 1e-3),
-            (
-                &path("M 0 -1 a 2 1 0 1 1 0 2 a 2 1 0 1 1 0 -2 z"),
-                std::f64::consts::TAU,
-                1e-3,
-            ),
+            (&path("M 0 -1 a 2 1 0 1 1 0 2 a 2 1 0 1 1 0 -2 z"), std::f64::consts::TAU, 1e-3),
             ("<circle cx=\"7\" cy=\"5\" r=\"3\"/>", 28.274, 2e-3),
             ("<ellipse rx=\"3\" ry=\"2\"/>", 18.850, 2e-3),
             ("<rect width=\"4\" height=\"2\"/>", 8.0, 2e-3),
@@ -331,16 +322,10 @@ mod tests {
         let symbol = format!(
             "<symbol id='s' viewBox='0 0 10 20'>{LARGE}</symbol><use href='#s' width='10' height='20'/>"
         );
-        let twice = format!(
-            "{LARGE}{}",
-            LARGE.replace("/>", " fill='none' stroke='#000'/>")
-        );
+        let twice = format!("{LARGE}{}", LARGE.replace("/>", " fill='none' stroke='#000'/>"));
         let marked = format!(
             "<marker id='m'>{SMALL}</marker>{}",
-            LARGE.replace(
-                "/>",
-                " marker-mid='url(#m)' style='marker-start: url(#m)'/>"
-            )
+            LARGE.replace("/>", " marker-mid='url(#m)' style='marker-start: url(#m)'/>")
         );
         for (content, expected) in [
             (marked, [0.0, 10.0, -20.0, 0.0]),
@@ -349,24 +334,15 @@ mod tests {
             (symbol, [0.0, 10.0, -20.0, 0.0]),
             (twice, [0.0, 10.0, -20.0, 0.0]),
             (LARGE.replace("Z", "Z M 99 99 z"), [0.0, 10.0, -20.0, 0.0]),
-            (
-                LARGE.replace("d=\"", "d=\"M 99 99 z "),
-                [0.0, 10.0, -20.0, 0.0],
-            ),
+            (LARGE.replace("d=\"", "d=\"M 99 99 z "), [0.0, 10.0, -20.0, 0.0]),
         ] {
             assert_near(bounds(drawn(&content)), expected);
         }
-        let narrow = format!(
-            "{}<g clip-path='url(#f)'>{LARGE}</g>",
-            frame.replace("'10'", "'9'")
-        );
+        let narrow = format!("{}<g clip-path='url(#f)'>{LARGE}</g>", frame.replace("'10'", "'9'"));
         assert_refused(drawn(&narrow), "clipPath `f`");
         assert_refused(drawn("<text y='9'>A</text>"), "text alone");
         let two = format!("{SMALL}{LARGE}");
-        assert_refused(
-            drawn(&two),
-            "2 contours, by size #1 10 x 20 at (0, 0), #2 1 x 1 at (0, 0)",
-        );
+        assert_refused(drawn(&two), "2 contours, by size #1 10 x 20 at (0, 0), #2 1 x 1 at (0, 0)");
     }
 
     #[test]
@@ -463,10 +439,7 @@ mod tests {
             (of("M0 0 L x"), "no visible path"),
             (of("M0 0 L1 0 L1 1 Z M5 5 L6 6 H5Z"), "#2 1 x 1 at (5, 5)"),
             (of("M0 0 L1 0 L1 1 Z L6 6 H5Z"), "#2 1 x 1 at (0, 0)"),
-            (
-                stroked("M0 0 H10 V10"),
-                "ends open at (10, 10), 14.14214 from",
-            ),
+            (stroked("M0 0 H10 V10"), "ends open at (10, 10), 14.14214 from"),
             (stroked("M0 0 H10 V10 L x 3 Z"), "ends open at (10, 10)"),
             (of("M0 0 H10 Z"), "2 different points"),
         ] {

@@ -9,9 +9,9 @@ const SAFE_PEAK: f64 = 0.8;
 /// By how much less a hinge opens until it is not above it (rad): 5 degrees.
 const LESS: f64 = 0.0873;
 
-/// The largest opening, `most` (rad) or less by steps of 5 degrees, at which a ligament of `w_lig` (mm, in the thickness of the weights)
-/// that turns freely is inside the training domain and safe, at the smallest cut angle of the weights and at a right angle; at least 10
-/// degrees.
+/// The largest opening, `most` (rad) or less by steps of 5 degrees, at which a ligament of `w_lig`
+/// (mm, in the thickness of the weights) that turns freely is inside the training domain and safe,
+/// at the smallest cut angle of the weights and at a right angle; at least 10 degrees.
 pub fn safe_opening(surrogate: &Surrogate, regime: Regime, w_lig: f64, most: f64) -> f64 {
     let [least, _] = surrogate.domain().alpha;
     let bears = |theta: f64| {
@@ -30,15 +30,12 @@ pub fn safe_opening(surrogate: &Surrogate, regime: Regime, w_lig: f64, most: f64
     opening
 }
 
-/// (D / D_s)^2, the damage term (17) of a sheet of uniform ligaments of `w_lig` (mm, in the thickness of the weights) that turn freely by
-/// `theta` (rad) at a right angle.
+/// (D / D_s)^2, the damage term (17) of a sheet of uniform ligaments of `w_lig` (mm, in the
+/// thickness of the weights) that turn freely by `theta` (rad) at a right angle.
 pub fn damage_of_turn(surrogate: &Surrogate, regime: Regime, w_lig: f64, theta: f64) -> f64 {
     let (design, state) = free_turn(surrogate, regime, w_lig, FRAC_PI_2, theta);
     let damage = surrogate.damage_values(&[design], &[state]);
-    damage
-        .iter()
-        .map(|damage| (damage.d / surrogate.damage_scale()).powi(2))
-        .sum()
+    damage.iter().map(|damage| (damage.d / surrogate.damage_scale()).powi(2)).sum()
 }
 
 fn free_turn(

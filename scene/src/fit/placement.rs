@@ -1,6 +1,6 @@
-//! Where a silhouette stands on an opened sheet: the similarity with the least squared distances of the corners of the sheet from the
-//! silhouette and of points on the silhouette from the sheet, by repeated fits to nearest points (Besl and McKay, IEEE Trans. PAMI 14,
-//! 1992, 239).
+//! Where a silhouette stands on an opened sheet: the similarity with the least squared distances of
+//! the corners of the sheet from the silhouette and of points on the silhouette from the sheet, by
+//! repeated fits to nearest points (Besl and McKay, IEEE Trans. PAMI 14, 1992, 239).
 
 use design::geometry::plane::{complex, point};
 use design::geometry::polygon::nearest_on_outline;
@@ -23,10 +23,7 @@ pub fn place(silhouette: &[[f64; 2]], outline: &[[f64; 2]], guess: Similarity) -
         };
         let of_point = |at: &[f64; 2]| -> Pair {
             let at = complex(*at);
-            [
-                at,
-                complex(nearest_on_outline(point(place.of(at)), outline)),
-            ]
+            [at, complex(nearest_on_outline(point(place.of(at)), outline))]
         };
         let corners = outline.iter().map(of_corner);
         let points = silhouette.iter().step_by(every).map(of_point);
@@ -46,17 +43,8 @@ mod tests {
 
     #[test]
     fn an_outline_is_found_near_its_place() {
-        let silhouette = [
-            [0.0, 0.0],
-            [40.0, 0.0],
-            [40.0, 10.0],
-            [15.0, 30.0],
-            [0.0, 20.0],
-        ];
-        let motion = Similarity {
-            turn: c64::cis(0.5) * 3.0,
-            shift: c64::new(200.0, -70.0),
-        };
+        let silhouette = [[0.0, 0.0], [40.0, 0.0], [40.0, 10.0], [15.0, 30.0], [0.0, 20.0]];
+        let motion = Similarity { turn: c64::cis(0.5) * 3.0, shift: c64::new(200.0, -70.0) };
         let outline = silhouette.map(|p| point(motion.of(complex(p))));
         let guess = Similarity {
             turn: motion.turn * c64::cis(0.1) * 1.05,

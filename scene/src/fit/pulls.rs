@@ -1,8 +1,9 @@
-//! Which panels are pulled, and where to, so that the sheet follows its kinematics from the flat state on.
+//! Which panels are pulled, and where to, so that the sheet follows its kinematics from the flat
+//! state on.
 //!
-//! A sheet of narrow ligaments is nearly a mechanism: every hinge opens by the same angle. A panel that is to be pulled along a
-//! straight line must advance along it all the way. The steadiness of a panel is its smallest advance between neighbouring openings,
-//! over the mean one.
+//! A sheet of narrow ligaments is nearly a mechanism: every hinge opens by the same angle. A panel
+//! that is to be pulled along a straight line must advance along it all the way. The steadiness of
+//! a panel is its smallest advance between neighbouring openings, over the mean one.
 
 use design::geometry::plane::{complex, point};
 use design::geometry::polygon::distance_to_outline;
@@ -22,7 +23,8 @@ pub struct Pull {
     pub panel: [usize; 2],
     /// Displacement of its reference point in the opened sheet, while the held panel stays (mm).
     pub displacement: [f64; 2],
-    /// Smallest advance along the displacement over the mean one; 1 for a motion at a constant rate along a straight line.
+    /// Smallest advance along the displacement over the mean one; 1 for a motion at a constant rate
+    /// along a straight line.
     pub steadiness: f64,
     /// Distance of its reference point from its edges, over the radius of a window.
     pub room: f64,
@@ -45,9 +47,8 @@ pub fn opened_about(sheet: &Sheet, held: usize, theta: f64) -> Configuration {
 /// How every panel of the outline would be pulled, in order around the sheet.
 pub fn candidates(sheet: &Sheet, grid: Grid, held: usize, theta: f64) -> Vec<Pull> {
     let openings = (0..=OPENINGS).map(|i| theta * i as f64 / OPENINGS as f64);
-    let path: Vec<Configuration> = openings
-        .map(|opening| opened_about(sheet, held, opening))
-        .collect();
+    let path: Vec<Configuration> =
+        openings.map(|opening| opened_about(sheet, held, opening)).collect();
     let r_win = sheet.options.process.r_win;
     around(grid)
         .into_iter()
@@ -58,9 +59,7 @@ pub fn candidates(sheet: &Sheet, grid: Grid, held: usize, theta: f64) -> Vec<Pul
                 c64::new(x, y)
             };
             let end = at(OPENINGS);
-            let Panel {
-                reference, corners, ..
-            } = sheet.panels[panel];
+            let Panel { reference, corners, .. } = sheet.panels[panel];
             let along = end.conj() / end.norm().max(f64::MIN_POSITIVE);
             let advance = (0..OPENINGS).map(|i| ((at(i + 1) - at(i)) * along).re);
             let least = advance.fold(f64::INFINITY, f64::min);
@@ -92,9 +91,7 @@ pub fn pulls(candidates: &[Pull], count: usize) -> Vec<Pull> {
         pull.steadiness * far.min(1.0) * pull.room.min(1.0)
     };
     let best = |part: &[Pull]| {
-        let best = part
-            .iter()
-            .max_by(|one, other| worth(one).total_cmp(&worth(other)));
+        let best = part.iter().max_by(|one, other| worth(one).total_cmp(&worth(other)));
         best.copied()
     };
     let parts = candidates.chunks(candidates.len().div_ceil(count));
@@ -115,10 +112,8 @@ mod tests {
     fn squares() -> Sheet {
         let outline = Outline::rectangle(200.0, 150.0);
         let pattern = CutPattern::new(GRID, outline, &PatternCoordinates::uniform(GRID)).unwrap();
-        let options = SheetOptions {
-            hinge_point: HingePoint::Corner,
-            process: HingeConstants::PAPER.into(),
-        };
+        let options =
+            SheetOptions { hinge_point: HingePoint::Corner, process: HingeConstants::PAPER.into() };
         Sheet::new(&pattern, &vec![2.0; GRID.hinge_count()], options).unwrap()
     }
 

@@ -1,4 +1,5 @@
-//! The scene of a sheet that is fitted to the target of another: what the fit, the pulls and one equilibrium decide becomes keys.
+//! The scene of a sheet that is fitted to the target of another: what the fit, the pulls and one
+//! equilibrium decide becomes keys.
 
 use crate::analysis::out_of_plane::Stability;
 use crate::fit::opening::safe_opening;
@@ -32,17 +33,20 @@ const UNKNOWN: f64 = 0.785;
 const ACUTE: f64 = 0.524;
 /// By how much the cut angles stay away from the ends of the training domain (rad): two degrees.
 const INSIDE: f64 = 0.035;
-/// Weights of the damage and of states outside the training domain. With lower ones the ligaments of a slender shape tear, and a few
-/// states remain outside.
+/// Weights of the damage and of states outside the training domain. With lower ones the ligaments
+/// of a slender shape tear, and a few states remain outside.
 const DAMAGE: f64 = 0.4;
 const DOMAIN: f64 = 3e4;
-/// Distance of the silhouette from the opened outline at which a place counts as reached, over the longer side of the sheet.
+/// Distance of the silhouette from the opened outline at which a place counts as reached, over the
+/// longer side of the sheet.
 const REACHED: f64 = 0.02;
 /// The largest number of pulls.
 const MOST_PULLS: usize = 4;
-/// Outline error of an equilibrium over the outline error of the pins up to which another pull is not needed.
+/// Outline error of an equilibrium over the outline error of the pins up to which another pull is
+/// not needed.
 const CLOSE: f64 = 1.25;
-/// Steps of the search from the fitted sheet, and the length of its first step: it starts near its end.
+/// Steps of the search from the fitted sheet, and the length of its first step: it starts near its
+/// end.
 const STEPS: usize = 100;
 const FIRST_STEP: f64 = 0.03;
 
@@ -53,7 +57,8 @@ pub struct Nearness {
     pub error: f64,
     /// The same over the longer side of the flat sheet.
     pub relative: f64,
-    /// The area inside both the polygon through these corners and the silhouette, over that inside one of them.
+    /// The area inside both the polygon through these corners and the silhouette, over that inside
+    /// one of them.
     pub overlap: f64,
 }
 
@@ -74,13 +79,15 @@ pub struct FittedScene {
     pub opening: f64,
     /// The sheet on pins.
     pub on_pins: Nearness,
-    /// The places that it does not reach within `REACHED` of its longer side, the farthest first, one for each stretch of the silhouette.
+    /// The places that it does not reach within `REACHED` of its longer side, the farthest first,
+    /// one for each stretch of the silhouette.
     pub missed: Vec<Missed>,
     /// Rotation of the silhouette on it (rad).
     rotation: f64,
     /// Its equilibrium under the pulls before any search; `None` if none was found.
     pub pulled: Option<Nearness>,
-    /// Whether it stays in its plane there by itself; `None` for a film and without an equilibrium, where the panels are held flat.
+    /// Whether it stays in its plane there by itself; `None` for a film and without an equilibrium,
+    /// where the panels are held flat.
     pub stability: Option<Stability>,
 }
 
@@ -124,7 +131,8 @@ pub fn fitted(scene: &Scene) -> Result<FittedScene, FitError> {
             continue;
         };
         let near = nearness(&pulled.outline, pulled.place);
-        // The worst first: cuts close, the outline is far, the sheet jumps, the panels leave their plane.
+        // The worst first: cuts close, the outline is far, the sheet jumps, the panels leave their
+        // plane.
         let overlaps = pulled.overlap > OVERLAP;
         let is_close = near.error <= CLOSE * pins.error;
         let defects = [overlaps, !is_close, pulled.jumps, !pulled.is_flat()];
@@ -134,7 +142,8 @@ pub fn fitted(scene: &Scene) -> Result<FittedScene, FitError> {
             break;
         }
     }
-    // Of those with the same defects the one with the least of the worst; without defects the one with the fewest pulls.
+    // Of those with the same defects the one with the least of the worst; without defects the one
+    // with the fewest pulls.
     let best = tried.into_iter().min_by(|one, other| {
         let by_size = match one.0 {
             [true, ..] => one.1.overlap.total_cmp(&other.1.overlap),
@@ -158,30 +167,22 @@ pub fn fitted(scene: &Scene) -> Result<FittedScene, FitError> {
         config,
         opening: making.opening,
         on_pins: pins,
-        missed: missed(
-            silhouette,
-            &on_pins,
-            place_on_pins,
-            REACHED * fitted.longer(),
-        ),
+        missed: missed(silhouette, &on_pins, place_on_pins, REACHED * fitted.longer()),
         rotation: fitted.rotation(),
         pulled,
         stability,
     })
 }
 
-/// The numbers of panels of a sheet whose stock is `factor` times as long and as wide, fitted on pins from the rotation of a fit, and
-/// how near it comes.
+/// The numbers of panels of a sheet whose stock is `factor` times as long and as wide, fitted on
+/// pins from the rotation of a fit, and how near it comes.
 pub fn on_larger_stock(
     scene: &Scene,
     fit_of_stock: &FittedScene,
     factor: f64,
 ) -> Result<([usize; 2], Nearness), FitError> {
     let making = making(scene);
-    let larger = Making {
-        stock: making.stock.map(|side| factor * side),
-        ..making
-    };
+    let larger = Making { stock: making.stock.map(|side| factor * side), ..making };
     let silhouette = &scene.target.points;
     let fitted = fit(silhouette, &larger, &[fit_of_stock.rotation])?;
     let (outline, place) = fitted.opened(0);
@@ -212,7 +213,8 @@ fn placed(silhouette: &[[f64; 2]], place: Similarity) -> Vec<[f64; 2]> {
     placed.collect()
 }
 
-/// The farthest place of each stretch of a silhouette that is more than `least` (mm) from an outline.
+/// The farthest place of each stretch of a silhouette that is more than `least` (mm) from an
+/// outline.
 fn missed(
     silhouette: &[[f64; 2]],
     outline: &[[f64; 2]],
@@ -271,10 +273,7 @@ fn pulled(scene: &Scene, silhouette: &[[f64; 2]], guess: Similarity) -> Option<P
     let sheet = &deployment.sheet;
     let outline = deployment.outline(&sheet.free_outline_corners());
     let place = place(silhouette, &outline, guess);
-    let overlaps = deployment
-        .path
-        .iter()
-        .map(|step| overlap(sheet, &step.configuration));
+    let overlaps = deployment.path.iter().map(|step| overlap(sheet, &step.configuration));
     let overlap = overlaps.fold(0.0, f64::max);
     let mut statuses = deployment.path.iter().map(|step| step.status);
     Some(Pulled {
@@ -311,7 +310,8 @@ fn making(scene: &Scene) -> Making {
     }
 }
 
-/// The keys of the scene with the fitted sheet, its supports, its pulls and the place of its target.
+/// The keys of the scene with the fitted sheet, its supports, its pulls and the place of its
+/// target.
 fn fitted_keys(
     scene: &Scene,
     fitted: &Fitted,
@@ -324,10 +324,7 @@ fn fitted_keys(
     config.sheet.corners = Some(fitted.outline.corners.map(|corner| corner.map(rounded)));
     config.sheet.panels = [fitted.grid.m, fitted.grid.n];
     // For the first equilibrium: in a hanging sheet the weight would act.
-    config.posture = Some(PostureConfig {
-        kind: Posture::HeldFlat,
-        down: None,
-    });
+    config.posture = Some(PostureConfig { kind: Posture::HeldFlat, down: None });
     let regime = scene.material.regime(config.ligament.start);
     config.start = StartConfig::at(&fitted.pattern, widths(scene, fitted, regime));
     config.clear_actuation();
@@ -358,9 +355,9 @@ fn fitted_keys(
     config
 }
 
-/// The widths of the ligaments at the start (mm). The ligament of a plate turns about its middle, w_lig / (2 sin alpha) from the corner
-/// of its void along the main cut: if this distance is the same at every hinge, the voids remain parallelograms, and the sheet opens
-/// like that on pins.
+/// The widths of the ligaments at the start (mm). The ligament of a plate turns about its middle,
+/// w_lig / (2 sin alpha) from the corner of its void along the main cut: if this distance is the
+/// same at every hinge, the voids remain parallelograms, and the sheet opens like that on pins.
 fn widths(scene: &Scene, fitted: &Fitted, regime: Regime) -> Vec<f64> {
     let LigamentConfig { start, range } = scene.config.ligament;
     let [narrowest, widest] = [1.01 * range[0], 0.99 * range[1]];
@@ -394,15 +391,9 @@ mod tests {
             [18.0, 30.0],
             [0.0, 30.0],
         ];
-        let here = Similarity {
-            turn: complex([1.0, 0.0]),
-            shift: complex([0.0; 2]),
-        };
+        let here = Similarity { turn: complex([1.0, 0.0]), shift: complex([0.0; 2]) };
         let missed = missed(&silhouette, &outline, here, 4.0);
         let expected = [(20.0, [0.5, 1.0]), (5.0, [0.875, 0.3])];
-        assert_eq!(
-            missed,
-            expected.map(|(distance, at)| Missed { distance, at })
-        );
+        assert_eq!(missed, expected.map(|(distance, at)| Missed { distance, at }));
     }
 }

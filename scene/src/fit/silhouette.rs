@@ -1,7 +1,8 @@
 //! The sheet, and the place of a silhouette, so that the sheet of rigid panels on pins becomes it.
 //!
-//! Free are the cuts, the corners of the sheet inside its stock, and the size, the rotation and the position of the silhouette. The
-//! search is L-BFGS from several rotations of the silhouette, in each from the rectangle with its aspect.
+//! Free are the cuts, the corners of the sheet inside its stock, and the size, the rotation and the
+//! position of the silhouette. The search is L-BFGS from several rotations of the silhouette, in
+//! each from the rectangle with its aspect.
 
 use crate::fit::pulls::opened_about;
 use design::geometry::plane::{complex, point};
@@ -30,10 +31,10 @@ use std::f64::consts::FRAC_PI_2;
 use std::sync::atomic::AtomicBool;
 
 /// Rotations of the silhouette at the starts (rad).
-pub(super) const ROTATIONS: [f64; 10] = [
-    0.0, 0.26, -0.26, 0.52, -0.52, 0.785, -0.785, 1.05, -1.05, FRAC_PI_2,
-];
-/// Steps of every search, the number of searches that go on from there, and the steps that they have at their ends.
+pub(super) const ROTATIONS: [f64; 10] =
+    [0.0, 0.26, -0.26, 0.52, -0.52, 0.785, -0.785, 1.05, -1.05, FRAC_PI_2];
+/// Steps of every search, the number of searches that go on from there, and the steps that they
+/// have at their ends.
 const FIRST_STEPS: usize = 100;
 const KEPT: usize = 8;
 const STEPS: usize = 600;
@@ -41,9 +42,11 @@ const STEPS: usize = 600;
 const FIRST_STEP: f64 = 0.1;
 /// Part of the stock, along one of its sides, that the sheet of a start fills.
 const FILLED: f64 = 0.9;
-/// Sides of the panels of the starts over the radius of a window. With 3.6 radii most windows overlap, and the outline is no nearer.
+/// Sides of the panels of the starts over the radius of a window. With 3.6 radii most windows
+/// overlap, and the outline is no nearer.
 const SIDES: [f64; 3] = [4.4, 4.8, 5.4];
-/// Smallest distance of two corners of a panel that is not penalised, over the radius of a window: two radii and a gap.
+/// Smallest distance of two corners of a panel that is not penalised, over the radius of a window:
+/// two radii and a gap.
 const APART: f64 = 2.3;
 /// The largest number of panels.
 const MOST_PANELS: f64 = 150.0;
@@ -81,7 +84,8 @@ pub struct Fitted {
     pub pattern: PatternCoordinates,
     /// The flat sheet.
     pub sheet: Sheet,
-    /// Root mean square distance of the free corners of the opened outline from the silhouette (mm).
+    /// Root mean square distance of the free corners of the opened outline from the silhouette
+    /// (mm).
     pub outline_error: f64,
     /// Opening of every hinge (rad).
     opening: f64,
@@ -96,7 +100,8 @@ impl Fitted {
         self.turn.arg()
     }
 
-    /// The free corners of the outline of the opened sheet whose panel `held` stays where it is (mm), and the place of the silhouette there.
+    /// The free corners of the outline of the opened sheet whose panel `held` stays where it is
+    /// (mm), and the place of the silhouette there.
     pub fn opened(&self, held: usize) -> (Vec<[f64; 2]>, Similarity) {
         let opened = opened_about(&self.sheet, held, self.opening);
         let corner = |(panel, corner): (usize, usize)| {
@@ -112,15 +117,14 @@ impl Fitted {
     }
 }
 
-/// Fits a sheet to a silhouette, a closed curve in any position and of any size, from each of some rotations of it (rad).
+/// Fits a sheet to a silhouette, a closed curve in any position and of any size, from each of some
+/// rotations of it (rad).
 pub fn fit(
     silhouette: &[[f64; 2]],
     making: &Making,
     rotations: &[f64],
 ) -> Result<Fitted, DesignError> {
-    let starts = rotations
-        .par_iter()
-        .flat_map_iter(|&rotation| SIDES.map(|side| (rotation, side)));
+    let starts = rotations.par_iter().flat_map_iter(|&rotation| SIDES.map(|side| (rotation, side)));
     let begun = starts.map(|(rotation, side)| {
         Search::new(silhouette, making, rotation, side)?.advanced(FIRST_STEPS)
     });
@@ -133,9 +137,7 @@ pub fn fit(
     // Two sides of panels may give the same numbers of panels.
     searches.dedup_by(|one, other| loss(one) == loss(other));
     searches.truncate(KEPT);
-    let ends = searches
-        .into_par_iter()
-        .map(|search| search?.advanced(STEPS));
+    let ends = searches.into_par_iter().map(|search| search?.advanced(STEPS));
     let best = ends.min_by(|one, other| loss(one).total_cmp(&loss(other)));
     best.expect("there are starts")?.fitted(making.opening)
 }
@@ -144,7 +146,8 @@ pub fn fit(
 struct Search {
     problem: DesignProblem,
     state: SearchState,
-    /// Scale and rotation of the silhouette at the start, and the centre of its area in its own coordinates.
+    /// Scale and rotation of the silhouette at the start, and the centre of its area in its own
+    /// coordinates.
     turn: c64,
     centre: c64,
     /// Value of the objective at the best design (mm^2).
@@ -172,29 +175,17 @@ impl Search {
         let problem = making.problem(making.grid(sides, side), turned(turn).collect(), sheet);
         let corner = [0, 1].map(|c| logit(sides[c] / making.stock[c]));
         let mut start = DesignVector::uniform(problem.grid);
-        start.fit = Some(FitVariables {
-            ln_size: 0.0,
-            rotation: 0.0,
-            corners: [corner; 4],
-        });
+        start.fit = Some(FitVariables { ln_size: 0.0, rotation: 0.0, corners: [corner; 4] });
         let first = problem.evaluate(&start)?;
         let state = SearchState::new(&problem, start, &first, SearchMethod::Lbfgs, FIRST_STEP);
-        Ok(Self {
-            problem,
-            state,
-            turn,
-            centre,
-            loss: first.loss,
-        })
+        Ok(Self { problem, state, turn, centre, loss: first.loss })
     }
 
     /// Goes on until `steps` are made.
     fn advanced(mut self, steps: usize) -> Result<Self, DesignError> {
         let never = AtomicBool::new(false);
         let Ok(_) =
-            optimise::<Infallible>(&self.problem, &mut self.state, steps, &never, &mut |_| {
-                Ok(())
-            });
+            optimise::<Infallible>(&self.problem, &mut self.state, steps, &never, &mut |_| Ok(()));
         self.loss = self.problem.evaluate(&self.state.best)?.loss;
         Ok(self)
     }
@@ -219,35 +210,20 @@ impl Search {
 impl Making {
     fn problem(&self, grid: Grid, target: Vec<[f64; 2]>, sheet: f64) -> DesignProblem {
         let panel_area = (SIDES[0] * self.options.process.r_win).powi(2);
-        let shape = Shape {
-            target,
-            coverage_weight: COVERAGE,
-            centred: true,
-        };
+        let shape = Shape { target, coverage_weight: COVERAGE, centred: true };
         let min_distance = APART * self.options.process.r_win;
         let penalties = vec![
             Weighted::new(DIFFERENCE * sheet, SymmetricDifference::new(shape.clone())),
             Weighted::new(PANEL_SHAPE * panel_area, PanelShape { min_distance }),
-            Weighted::new(
-                ANGLES * panel_area,
-                CutAngles {
-                    least: self.least_angle,
-                },
-            ),
+            Weighted::new(ANGLES * panel_area, CutAngles { least: self.least_angle }),
         ];
         DesignProblem {
             grid,
             outline: Outline::rectangle(self.stock[0], self.stock[1]),
             widths: self.widths,
             options: self.options,
-            model: Model::Ideal {
-                opening: self.opening,
-            },
-            objective: Objective {
-                shape,
-                functionals: Vec::new(),
-                penalties,
-            },
+            model: Model::Ideal { opening: self.opening },
+            objective: Objective { shape, functionals: Vec::new(), penalties },
         }
     }
 
@@ -276,51 +252,35 @@ mod tests {
         stock: [300.0, 300.0],
         opening: 1.0,
         least_angle: 0.5,
-        widths: WidthChart {
-            w_minus: 0.7,
-            w_plus: 1.8,
-        },
+        widths: WidthChart { w_minus: 0.7, w_plus: 1.8 },
         options: SheetOptions {
             hinge_point: HingePoint::CutTip,
-            process: CuttingProcess {
-                hole: Hole::Ratio(0.16),
-                kerf: 0.1,
-                r_win: 8.0,
-            },
+            process: CuttingProcess { hole: Hole::Ratio(0.16), kerf: 0.1, r_win: 8.0 },
         },
     };
 
     fn leaf(centre: [f64; 2], height: f64, rotation_deg: f64) -> Vec<[f64; 2]> {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../configs/targets");
         let file = "leaf.svg".into();
-        let shape = TargetShape::Svg {
-            file,
-            centre,
-            height: Some(height),
-            rotation_deg,
-        };
+        let shape = TargetShape::Svg { file, centre, height: Some(height), rotation_deg };
         Target::sample(&shape, &folder, 400).unwrap().points
     }
 
     #[test]
     fn a_leaf_is_reached_wherever_it_stands_in_its_file() {
-        let fits = [leaf([0.0; 2], 100.0, 0.0), leaf([5e3, -70.0], 2e3, 0.0)].map(|silhouette| {
-            (
-                fit(&silhouette, &MAKING, &[0.0, 0.3, -0.3]).unwrap(),
-                silhouette,
-            )
-        });
+        let fits = [leaf([0.0; 2], 100.0, 0.0), leaf([5e3, -70.0], 2e3, 0.0)]
+            .map(|silhouette| (fit(&silhouette, &MAKING, &[0.0, 0.3, -0.3]).unwrap(), silhouette));
         for (fit, silhouette) in &fits {
             assert!(fit.outline_error < 0.015 * 300.0, "{}", fit.outline_error);
             for [x, y] in fit.outline.corners {
                 assert!((0.0..=300.0).contains(&x) && (0.0..=300.0).contains(&y));
             }
-            // The place of the silhouette, and the outline of the opened sheet, are where the error says.
+            // The place of the silhouette, and the outline of the opened sheet, are where the error
+            // says.
             for held in [0, fit.grid.m + 1] {
                 let (outline, place) = fit.opened(held);
-                let placed: Vec<[f64; 2]> = (silhouette.iter())
-                    .map(|p| point(place.of(complex(*p))))
-                    .collect();
+                let placed: Vec<[f64; 2]> =
+                    (silhouette.iter()).map(|p| point(place.of(complex(*p)))).collect();
                 let error = chamfer(&outline, &placed, 0.0).0.sqrt();
                 assert!((error / fit.outline_error - 1.0).abs() < 1e-6, "{error}");
             }

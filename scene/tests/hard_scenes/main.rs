@@ -1,4 +1,5 @@
-//! Scenes drawn at random on which a path or a search once went wrong; the first part of a name says how.
+//! Scenes drawn at random on which a path or a search once went wrong; the first part of a name
+//! says how.
 
 use design::equilibrium::load_step::{LoadStep, Status};
 use design::hinge_law::Contact;
@@ -19,7 +20,8 @@ fn folder() -> PathBuf {
     PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/hard_scenes"))
 }
 
-/// A scene, and its problem with the contact and the hinge point that it was drawn with, which are no keys.
+/// A scene, and its problem with the contact and the hinge point that it was drawn with, which are
+/// no keys.
 fn drawn(name: &str, change: impl FnOnce(&mut SceneConfig)) -> (Scene, DesignProblem) {
     let path = folder().join(name).with_extension("toml");
     let mut keys: toml::Table = toml::from_str(&std::fs::read_to_string(&path).unwrap()).unwrap();
@@ -88,11 +90,7 @@ fn reaches_one_state_at_full_load(name: &str) {
 fn sheets_that_have_an_equilibrium_reach_full_load_with_any_number_of_load_steps() {
     let kinds = ["branch", "false-no-equilibrium", "load", "slow"];
     let names: Vec<String> = kinds.iter().flat_map(|kind| named(kind)).collect();
-    let all = |names: &[String]| {
-        names
-            .iter()
-            .for_each(|name| reaches_one_state_at_full_load(name))
-    };
+    let all = |names: &[String]| names.iter().for_each(|name| reaches_one_state_at_full_load(name));
     std::thread::scope(|scope| {
         for half in names.chunks(names.len().div_ceil(2)) {
             scope.spawn(|| all(half));
@@ -132,7 +130,8 @@ fn a_search_through_jumps_does_not_end_above_its_start() {
     }
 }
 
-/// Losses of a design with its path followed and corrected, and by how much their states differ at most.
+/// Losses of a design with its path followed and corrected, and by how much their states differ at
+/// most.
 fn compared(problem: &DesignProblem, anchor: &DesignVector, design: &DesignVector) -> [f64; 3] {
     let known = problem.evaluate(anchor).unwrap().deployment.warm_start();
     let corrected = problem.evaluate_near(design, Some(&known)).unwrap();
@@ -143,8 +142,8 @@ fn compared(problem: &DesignProblem, anchor: &DesignVector, design: &DesignVecto
     [followed.loss, corrected.loss, most]
 }
 
-/// Between two nearly perfect bifurcations of this sheet a panel turns to one side or the other; a small change of the design
-/// exchanges the sides, without a jump.
+/// Between two nearly perfect bifurcations of this sheet a panel turns to one side or the other; a
+/// small change of the design exchanges the sides, without a jump.
 #[test]
 fn a_corrected_path_has_the_loss_of_the_followed_one_or_other_stable_states() {
     let (scene, problem) = drawn("corrected-path-pet-3x3-55", |_| {});

@@ -4,8 +4,8 @@ use crate::changed;
 use design::equilibrium::load_step::Status;
 use design::pattern::design_vector::DesignVector;
 
-/// A pull of six times the load at the corner of the sheet presses panels together before they snap open: the
-/// tangent of the flat sheet predicts panels that pass through each other.
+/// A pull of six times the load at the corner of the sheet presses panels together before they snap
+/// open: the tangent of the flat sheet predicts panels that pass through each other.
 #[test]
 fn a_sheet_that_is_pressed_closed_opens_with_any_number_of_load_steps() {
     let energy = |load_steps: usize| {
@@ -25,8 +25,9 @@ fn a_sheet_that_is_pressed_closed_opens_with_any_number_of_load_steps() {
     assert!((coarse / fine - 1.0).abs() < 1e-9, "{coarse} {fine}");
 }
 
-/// A design of the polyester sheet for which an increment of a tenth of the load crosses a ridge of the learned
-/// energy into a minimum of much higher energy outside the training domain, which no sheet can reach by itself.
+/// A design of the polyester sheet for which an increment of a tenth of the load crosses a ridge of
+/// the learned energy into a minimum of much higher energy outside the training domain, which no
+/// sheet can reach by itself.
 #[test]
 fn no_load_step_crosses_a_ridge_of_the_energy() {
     let design: DesignVector = serde_json::from_str(include_str!("ridge_3x3_design.json")).unwrap();

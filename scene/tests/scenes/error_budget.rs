@@ -32,7 +32,8 @@ fn corners(of: &Deployment) -> Vec<[f64; 2]> {
     deployed_corners(&of.sheet, &of.final_step().configuration).concat()
 }
 
-/// The stress scales all forces alike: under a prescribed stroke no corner moves, and the load is off by its deviation.
+/// The stress scales all forces alike: under a prescribed stroke no corner moves, and the load is
+/// off by its deviation.
 #[test]
 fn an_error_of_the_stress_is_one_of_the_load() {
     let mut scene = film(|_| ());
@@ -93,15 +94,13 @@ fn a_verified_sheet_has_the_residual_of_its_rounds() {
     assert_close(found.corners[0], 0.02, 1e-15);
 }
 
-/// The heights of a plate that nothing holds flat are a part of the sum, and not known if it leaves its plane.
+/// The heights of a plate that nothing holds flat are a part of the sum, and not known if it leaves
+/// its plane.
 #[test]
 fn a_plate_that_tilts_has_the_heights_of_its_corners() {
     let plate = |posture, change: fn(&mut SceneConfig)| {
         let scene = changed("a4-plate.toml", |config| {
-            config.posture = Some(PostureConfig {
-                kind: posture,
-                down: None,
-            });
+            config.posture = Some(PostureConfig { kind: posture, down: None });
             change(config);
         });
         let budget = budget(&scene, None);
@@ -111,10 +110,7 @@ fn a_plate_that_tilts_has_the_heights_of_its_corners() {
     assert!(plate(Posture::HeldFlat, |_| ()).is_none());
     let (tilt, total) = plate(Posture::Free, |_| ()).unwrap();
     let [rms, largest] = tilt.unwrap().corners;
-    assert!(
-        0.1 < rms && rms < largest && largest < 1.0,
-        "{rms} {largest}"
-    );
+    assert!(0.1 < rms && rms < largest && largest < 1.0, "{rms} {largest}");
     assert!(rms < total.corners[0]);
     let pushed = plate(Posture::Free, |config| {
         config.loads[0].force = config.loads[0].force.map(|component| -component);

@@ -1,4 +1,5 @@
-//! The levels of a scene: what each takes from it, their derivatives, and the difference to a finer one.
+//! The levels of a scene: what each takes from it, their derivatives, and the difference to a finer
+//! one.
 
 use design::hinge_law::{MeanLaw, Order};
 use design::{DesignVector, HingeLaw, SurrogateLaw};
@@ -15,10 +16,7 @@ fn scene(name: &str) -> Scene {
 #[test]
 fn every_level_of_a_plate_deploys_and_nears_the_finest() {
     let plate = scene("a4-plate.toml");
-    assert_eq!(
-        plate.learned_levels(),
-        [Level::Draft, Level::Standard, Level::Fine]
-    );
+    assert_eq!(plate.learned_levels(), [Level::Draft, Level::Standard, Level::Fine]);
     let design = plate.start();
     let at = |level: Level| {
         let scene = plate.at_level(level).unwrap();
@@ -28,20 +26,10 @@ fn every_level_of_a_plate_deploys_and_nears_the_finest() {
     let finest = at(Level::Fine);
     let opening = Some(finest.deployment.final_step().mean_opening());
     let pins = plate.at_level(Level::Pin).unwrap();
-    let pins = AtLevel::new(
-        &pins,
-        &DesignVector {
-            opening,
-            ..design.clone()
-        },
-    )
-    .unwrap();
+    let pins = AtLevel::new(&pins, &DesignVector { opening, ..design.clone() }).unwrap();
     let off = |coarse: &AtLevel| coarse.difference(&finest);
     assert_eq!(off(&finest).corners, [0.0; 2]);
-    assert_eq!(
-        (off(&finest).load, off(&finest).damage),
-        (Some(0.0), Some(0.0))
-    );
+    assert_eq!((off(&finest).load, off(&finest).damage), (Some(0.0), Some(0.0)));
     let [draft, standard] = [Level::Draft, Level::Standard].map(|level| off(&at(level)));
     for learned in [draft, standard] {
         let [rms, largest] = learned.corners;
@@ -80,21 +68,12 @@ fn the_mean_law_is_the_mean_of_its_laws_in_every_derivative() {
             Arc::new(SurrogateLaw { surrogate })
         })
         .collect();
-    let designs = plate
-        .problem()
-        .unwrap()
-        .cut(&plate.start())
-        .unwrap()
-        .1
-        .designs();
+    let designs = plate.problem().unwrap().cut(&plate.start()).unwrap().1.designs();
     let designs: Vec<HingeDesign> = designs[..2].to_vec();
     let states = [[0.02, 0.01, 0.2], [0.1, -0.02, 0.4]].map(HingeDeformation::from);
     let all = |law: &dyn HingeLaw| {
         let law = law.prepare(&designs);
-        (
-            law.energies(&states, Order::Design),
-            law.damage(&states, true),
-        )
+        (law.energies(&states, Order::Design), law.damage(&states, true))
     };
     let each: Vec<_> = laws.iter().map(|law| all(&**law)).collect();
     let (energies, damage) = all(&MeanLaw { laws });
@@ -110,13 +89,9 @@ fn the_mean_law_is_the_mean_of_its_laws_in_every_derivative() {
         close(energies[h].design.hole, &|k| each[k].0[h].design.hole);
         close(energies[h].mixed[2].w_lig, &|k| each[k].0[h].mixed[2].w_lig);
         close(damage[h].d, &|k| each[k].1[h].d);
-        close(damage[h].gradient.design.w_lig, &|k| {
-            each[k].1[h].gradient.design.w_lig
-        });
+        close(damage[h].gradient.design.w_lig, &|k| each[k].1[h].gradient.design.w_lig);
         close(damage[h].d_peak.unwrap(), &|k| each[k].1[h].d_peak.unwrap());
-        close(damage[h].peak_gradient.state[2], &|k| {
-            each[k].1[h].peak_gradient.state[2]
-        });
+        close(damage[h].peak_gradient.state[2], &|k| each[k].1[h].peak_gradient.state[2]);
     }
 }
 

@@ -4,8 +4,9 @@ use crate::shipped;
 use scene::target::TARGET_POINTS;
 use scene::{Scene, SceneConfig};
 
-/// Fails unless a copy of a shipped scene is refused after each change of a table. A row has the text of the scene, without
-/// comments, what stands in its place, and a part of the message; `|` is a line break of the scene.
+/// Fails unless a copy of a shipped scene is refused after each change of a table. A row has the
+/// text of the scene, without comments, what stands in its place, and a part of the message; `|` is
+/// a line break of the scene.
 fn assert_refused(name: &str, table: &str) {
     let scene = std::fs::read_to_string(shipped(name)).unwrap();
     let bare = |line: &str| line.split(" #").next().unwrap().trim_end().to_owned();
@@ -181,10 +182,7 @@ fn a_scene_starts_at_a_design_from_any_folder() {
     design.omega.iter_mut().enumerate().for_each(wave);
     design.pattern.z.iter_mut().enumerate().for_each(wave);
     let folder = tempfile::tempdir().unwrap();
-    let moved = SceneConfig {
-        start: scene.starting_at(&design).start,
-        ..scene.located().unwrap()
-    };
+    let moved = SceneConfig { start: scene.starting_at(&design).start, ..scene.located().unwrap() };
     let moved = Scene::new(moved, &folder.path().join("scene.toml")).unwrap();
     assert_eq!(moved.model_hash(), scene.model_hash());
     let [loss, expected] = [

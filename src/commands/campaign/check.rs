@@ -14,9 +14,10 @@ use support::table::Table;
 
 /// Solve some of the finished rays again and compare their samples to the last bit
 ///
-/// A difference shows that the solver or a machine is not deterministic, or that the nodes of a cluster differ although
-/// their versions of gmsh and ccx agree. Nothing in the folder is changed. Exit code 1 if any ray differs. Example:
-/// kirigami campaign check configs/campaigns/demo.toml --every 10
+/// A difference shows that the solver or a machine is not deterministic, or that the nodes of a
+/// cluster differ although their versions of gmsh and ccx agree. Nothing in the folder is changed.
+/// Exit code 1 if any ray differs. Example: kirigami campaign check configs/campaigns/demo.toml
+/// --every 10
 #[derive(Args)]
 pub struct CheckCommand {
     #[command(flatten)]
@@ -39,9 +40,7 @@ impl CheckCommand {
         let solved = solve_again(&campaign, &folder, &solver, every, stop, &mut show)?;
         bar.finish();
         let mut rows = Table::new(["ray", "samples before", "now", "difference in W"]);
-        let differing = solved
-            .iter()
-            .filter_map(|ray| Some((&ray.job, ray.difference?)));
+        let differing = solved.iter().filter_map(|ray| Some((&ray.job, ray.difference?)));
         let count = differing.clone().count();
         for (job, difference) in differing {
             let [before, now] = difference.samples.map(|n| n.to_string());

@@ -9,15 +9,17 @@ use fe_driver::{JobPart, Solved, Tally, finished_windows};
 use std::path::PathBuf;
 use verification::{SpotStates, rows};
 
-/// Collect the samples of all finished jobs: the database hinges.parquet, and spot-check.parquet, on which weights are tested
+/// Collect the samples of all finished jobs: the database hinges.parquet, and spot-check.parquet,
+/// on which weights are tested
 ///
-/// Rays on the finer mesh are in the database too; `train` corrects the others by them. Example: kirigami campaign collect
-/// configs/campaigns/demo.toml
+/// Rays on the finer mesh are in the database too; `train` corrects the others by them. Example:
+/// kirigami campaign collect configs/campaigns/demo.toml
 #[derive(Args)]
 pub struct CollectCommand {
     #[command(flatten)]
     campaign: CampaignArgs,
-    /// Parquet file to write; the spot check is written next to it [default: hinges.parquet in the folder of the jobs]
+    /// Parquet file to write; the spot check is written next to it [default: hinges.parquet in the
+    /// folder of the jobs]
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
     /// Collect even if some jobs are not finished
@@ -81,11 +83,8 @@ impl CollectCommand {
 
 /// The counts of rays that the collected database lacks.
 fn missing(tally: &Tally) -> String {
-    let failures: Vec<_> = tally
-        .failures
-        .iter()
-        .map(|(kind, count)| format!("{count} {kind}"))
-        .collect();
+    let failures: Vec<_> =
+        tally.failures.iter().map(|(kind, count)| format!("{count} {kind}")).collect();
     let reasons = match failures.as_slice() {
         [] => String::new(),
         failures => format!(" (last failures: {})", failures.join(", ")),

@@ -9,9 +9,10 @@ use verification::{rays_on_paths, recorded_paths};
 
 /// Add rays to a campaign where a design leaves the training domain
 ///
-/// A ray is added for each hinge with a state outside of the training domain on its path, through the outermost such state,
-/// ending 10 % beyond it. The rays are appended to a CSV file, which a campaign names as extra_rays. Example:
-/// kirigami campaign extend runs/pet-3x3 --rays configs/campaigns/pet-0.5mm-rays.csv
+/// A ray is added for each hinge with a state outside of the training domain on its path, through
+/// the outermost such state, ending 10 % beyond it. The rays are appended to a CSV file, which a
+/// campaign names as extra_rays. Example: kirigami campaign extend runs/pet-3x3 --rays
+/// configs/campaigns/pet-0.5mm-rays.csv
 #[derive(Args)]
 pub struct ExtendCommand {
     #[command(flatten)]
@@ -39,11 +40,7 @@ impl ExtendCommand {
             end: ray.end.scaled(scene.scale().recip()),
         };
         let rays: Vec<Ray> = rays.iter().map(of_the_file).collect();
-        let Added {
-            added,
-            known,
-            refused,
-        } = add_extra_rays(&self.rays, &rays)?;
+        let Added { added, known, refused } = add_extra_rays(&self.rays, &rays)?;
         println!(
             "{} of {} hinges leave the training domain\n{added} rays added to {}, {known} already in the file, {refused} \
              rejected (beyond |eta| = 1 or -30 to 120 deg)\nTo solve the new rays, set extra_rays = \"FILE\" in a campaign (path \

@@ -9,9 +9,9 @@ use verification::collected_windows;
 
 /// Restore the job folders of a campaign from the database that was collected from them
 ///
-/// A later run then solves only the rays that the database lacks. Jobs solved with other settings or
-/// other versions of gmsh and ccx do not belong to the campaign and are skipped. Rays of the spot check are solved again, since
-/// its file has four states of each.
+/// A later run then solves only the rays that the database lacks. Jobs solved with other settings
+/// or other versions of gmsh and ccx do not belong to the campaign and are skipped. Rays of the
+/// spot check are solved again, since its file has four states of each.
 #[derive(Args)]
 pub struct RestoreCommand {
     #[command(flatten)]

@@ -71,10 +71,7 @@ impl RayProgress {
 /// An error if rays are left to solve, or if every ray failed.
 fn refuse_unfinished(tally: &Tally, folder: &Path) -> Result<()> {
     if tally.to_run() > 0 {
-        bail!(Unfinished {
-            left: tally.to_run(),
-            what: "rays"
-        });
+        bail!(Unfinished { left: tally.to_run(), what: "rays" });
     }
     ensure!(
         tally.failed == 0 || tally.complete + tally.partial > 0,

@@ -13,10 +13,11 @@ use support::text_file;
 
 /// Solve a campaign on a cluster: submit it to Slurm as an array of jobs
 ///
-/// Each task of the array runs one shard. It stops before its time limit and is queued again until its rays are
-/// solved. A further job collects the database when all tasks have ended. The folder of the campaign must be on a file
-/// system that all nodes share. Submit again after tasks were cancelled: solved rays are not solved again. Example:
-/// kirigami campaign submit configs/campaigns/pet-0.5mm.toml --shards 32 --time 240
+/// Each task of the array runs one shard. It stops before its time limit and is queued again until
+/// its rays are solved. A further job collects the database when all tasks have ended. The folder
+/// of the campaign must be on a file system that all nodes share. Submit again after tasks were
+/// cancelled: solved rays are not solved again. Example: kirigami campaign submit
+/// configs/campaigns/pet-0.5mm.toml --shards 32 --time 240
 #[derive(Args)]
 pub struct SubmitCommand {
     #[command(flatten)]

@@ -34,10 +34,7 @@ impl CompareCommand {
         let reference = (self.reference.as_ref()).map(|file| Database::read(file));
         let reference = reference.transpose()?;
         let (rays, finer) = match &reference {
-            Some(reference) => (
-                compare(&database, reference),
-                reference.manifest().tier.clone(),
-            ),
+            Some(reference) => (compare(&database, reference), reference.manifest().tier.clone()),
             None => {
                 let finer = database.manifest().finer.as_ref();
                 let finer = finer.map_or(String::new(), |finer| finer.tier.clone());
@@ -79,10 +76,7 @@ fn summary(
     let count = rays.iter().map(|ray| ray.rows.len()).sum::<usize>();
     let cpu = [0, 1].map(|i| rays.iter().map(|ray| ray.cpu_s[i]).sum::<f64>() / rays.len() as f64);
     let mut page = Document::default();
-    page.heading(
-        2,
-        format!("Tier {tier} against tier {reference}, over all common states"),
-    );
+    page.heading(2, format!("Tier {tier} against tier {reference}, over all common states"));
     page.text(format!(
         "{count} states of {} rays, {:.1} and {:.1} CPU s per ray. Differences are root mean squares relative \
          to the root mean square of the tier {reference}: {SCALE}. `kirigami dataset compare`.",
@@ -130,43 +124,27 @@ fn ranked<'a>(rays: &'a [ComparedRay<'a>], states: &[Vec<ComparedState>]) -> Vec
 fn columns<'a>() -> Columns<'a, Ranked<'a>> {
     let mut columns = Columns::new();
     for (i, (name, decimals)) in PLACE.into_iter().enumerate() {
-        columns = columns.column(name, move |(ray, _): &Ranked| {
-            Cell::fixed(place(ray)[i], decimals)
-        });
+        columns =
+            columns.column(name, move |(ray, _): &Ranked| Cell::fixed(place(ray)[i], decimals));
     }
     columns = columns
         .column("W, N mm", |(ray, _)| Cell::fixed(ray.end().sample.w, 1))
         .column("CPU s", |(ray, _)| Cell::fixed(ray.cpu_s[0], 1))
-        .column("CPU s of the reference", |(ray, _)| {
-            Cell::fixed(ray.cpu_s[1], 1)
-        });
+        .column("CPU s of the reference", |(ray, _)| Cell::fixed(ray.cpu_s[1], 1));
     for (i, name) in COMPARED.into_iter().enumerate() {
-        columns = columns.column(name, move |(_, differences)| {
-            Cell::percent(differences[i], 1)
-        });
+        columns = columns.column(name, move |(_, differences)| Cell::percent(differences[i], 1));
     }
     columns
 }
 
 /// The names of [`place`], and their decimals on a page.
-const PLACE: [(&str, usize); 5] = [
-    ("w_lig, mm", 1),
-    ("alpha, deg", 0),
-    ("eta_a", 2),
-    ("eta_s", 2),
-    ("theta, deg", 0),
-];
+const PLACE: [(&str, usize); 5] =
+    [("w_lig, mm", 1), ("alpha, deg", 0), ("eta_a", 2), ("eta_s", 2), ("theta, deg", 0)];
 
 /// w_lig (mm), alpha (deg), and the end of the ray: eta_a, eta_s, theta (deg).
 fn place(ray: &ComparedRay) -> [f64; 5] {
     let end = ray.end();
     let (design, sample) = (&end.design, &end.sample);
     let [eta_a, eta_s] = end.eta();
-    [
-        design.w_lig,
-        design.alpha.to_degrees(),
-        eta_a,
-        eta_s,
-        sample.theta.to_degrees(),
-    ]
+    [design.w_lig, design.alpha.to_degrees(), eta_a, eta_s, sample.theta.to_degrees()]
 }

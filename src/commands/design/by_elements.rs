@@ -39,7 +39,8 @@ impl DesignCommand {
     }
 }
 
-/// An error if the run folder holds a search at another level, which would be found out after all solves.
+/// An error if the run folder holds a search at another level, which would be found out after all
+/// solves.
 fn refuse_run_of_another_level(scene: &Scene) -> Result<()> {
     let folder = scene.output();
     if holds_a_run(&folder) {

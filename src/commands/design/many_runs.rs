@@ -1,5 +1,5 @@
-//! Several design runs in one command: every scene with every seed, each in a run folder of its own, and one table that
-//! compares them.
+//! Several design runs in one command: every scene with every seed, each in a run folder of its
+//! own, and one table that compares them.
 
 use crate::ui::run_folder;
 use anyhow::{Context, Result, ensure};

@@ -14,11 +14,12 @@ const START: &str = "start";
 /// A scene and a design of its sheet.
 #[derive(Args)]
 pub struct Inspected {
-    /// Scene (TOML); see configs/scenes. Or the folder of a run, which holds its scene, material and weights
+    /// Scene (TOML); see configs/scenes. Or the folder of a run, which holds its scene, material
+    /// and weights
     #[arg(value_name = "SCENE")]
     scene: PathBuf,
-    /// Design (JSON): the state.json of a run, or a design alone; `start` is the start design of the scene [default: the design of the
-    /// scene's run]
+    /// Design (JSON): the state.json of a run, or a design alone; `start` is the start design of
+    /// the scene [default: the design of the scene's run]
     #[arg(long, value_name = "FILE")]
     design: Option<PathBuf>,
 }
@@ -29,14 +30,11 @@ type Named = (DesignVector, String);
 impl Inspected {
     /// A scene, or the folder of a run, with its own design.
     pub(crate) fn of(scene: &Path) -> Self {
-        Self {
-            scene: scene.to_owned(),
-            design: None,
-        }
+        Self { scene: scene.to_owned(), design: None }
     }
 
-    /// The scene, a design of its sheet and the name of the design: without `--design` the design of the scene's run, or the start design
-    /// if the scene has no run.
+    /// The scene, a design of its sheet and the name of the design: without `--design` the design
+    /// of the scene's run, or the start design if the scene has no run.
     pub(crate) fn read(&self) -> Result<(Scene, DesignVector, String)> {
         let scene = self.scene()?;
         let (design, name) = match self.stored(&scene)? {
@@ -59,7 +57,8 @@ impl Inspected {
         Ok((scene, design, name))
     }
 
-    /// The design that `--design` names, or the design of the scene's run; `None` if the scene has no run.
+    /// The design that `--design` names, or the design of the scene's run; `None` if the scene has
+    /// no run.
     fn stored(&self, scene: &Scene) -> Result<Option<Named>> {
         Ok(match &self.design {
             None => {

@@ -13,16 +13,17 @@ use support::toml_file;
 
 /// Check a material before windows are solved with it
 ///
-/// Prints the law as the window solver reads it, the critical panel edge L* and Gamma (21)-(22), thickness against
-/// ligament width, buckling against yield, and the openings at which ligaments tear. Exits with 1 if a
-/// verdict is an error. Example: kirigami material check configs/materials/pet-0.5mm.toml
-/// configs/scenes/pet-7x7.toml
+/// Prints the law as the window solver reads it, the critical panel edge L* and Gamma (21)-(22),
+/// thickness against ligament width, buckling against yield, and the openings at which ligaments
+/// tear. Exits with 1 if a verdict is an error. Example: kirigami material check
+/// configs/materials/pet-0.5mm.toml configs/scenes/pet-7x7.toml
 #[derive(Args)]
 pub struct CheckCommand {
     /// Material (TOML); see configs/materials
     #[arg(value_name = "MATERIAL")]
     material: PathBuf,
-    /// Scene (TOML), or the folder of a run, whose ligament widths and panels are intended; its own material is not read
+    /// Scene (TOML), or the folder of a run, whose ligament widths and panels are intended; its own
+    /// material is not read
     #[arg(value_name = "SCENE")]
     scene: Option<PathBuf>,
     /// Print JSON instead of text
@@ -38,10 +39,8 @@ impl CheckCommand {
             None => None,
         };
         let thickness = scene.as_ref().and_then(|scene| scene.thickness);
-        let material = SheetMaterial {
-            thickness: thickness.unwrap_or(measured.thickness),
-            ..measured
-        };
+        let material =
+            SheetMaterial { thickness: thickness.unwrap_or(measured.thickness), ..measured };
         let intended = intended(&material, scene.as_ref());
         if let Some(scene) = &self.scene {
             let [min, max] = intended.w_lig;
@@ -57,10 +56,7 @@ impl CheckCommand {
         } else {
             print(&material, &check);
         }
-        let errors = check
-            .verdicts
-            .iter()
-            .filter(|verdict| verdict.severity == Severity::Error);
+        let errors = check.verdicts.iter().filter(|verdict| verdict.severity == Severity::Error);
         match errors.count() {
             0 => Ok(()),
             1 => bail!("the material has 1 error for this use"),
@@ -89,10 +85,7 @@ fn intended(material: &SheetMaterial, scene: Option<&SceneConfig>) -> Intended {
 }
 
 fn print(material: &SheetMaterial, check: &MaterialCheck) {
-    println!(
-        "{}, {} mm (law {})\n",
-        material.name, material.thickness, check.law_hash
-    );
+    println!("{}, {} mm (law {})\n", material.name, material.thickness, check.law_hash);
     println!(
         "*ELASTIC as the window solver reads it: E = {} MPa, nu = {}",
         material.young, material.poisson
@@ -104,12 +97,7 @@ fn print(material: &SheetMaterial, check: &MaterialCheck) {
             Some([next, to]) => format!("{:.0}", (next - stress) / (to - strain)),
             None => "constant".into(),
         };
-        rows.row([
-            (index + 1).to_string(),
-            stress.to_string(),
-            strain.to_string(),
-            slope,
-        ]);
+        rows.row([(index + 1).to_string(), stress.to_string(), strain.to_string(), slope]);
     }
     println!("{rows}\n");
     let mut widths = Table::new([

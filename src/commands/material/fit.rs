@@ -15,12 +15,13 @@ use tensile::{
 
 /// Fit a material to tensile tests: modulus, yield, hardening, fracture strain
 ///
-/// Files as the testing machine exports them, of one specimen or several. Columns, units, separators, decimal signs and the
-/// dimensions above a table are recognised, or given by --columns, --units, --width and --gauge-length. Slack and toe are removed (ISO 527-1, ASTM D638), and unloading
-/// loops and rows after the break are dropped. Beyond a yield peak with a draw plateau the curve of the material
-/// is constructed from the work of the machine; docs/MATERIALS.md states the rules. Writes the material file and a
-/// picture of all curves. Example: kirigami material fit strip-*.csv --name film --thickness 0.5
-/// --density-kg-m3 1390
+/// Files as the testing machine exports them, of one specimen or several. Columns, units,
+/// separators, decimal signs and the dimensions above a table are recognised, or given by
+/// --columns, --units, --width and --gauge-length. Slack and toe are removed (ISO 527-1, ASTM
+/// D638), and unloading loops and rows after the break are dropped. Beyond a yield peak with a draw
+/// plateau the curve of the material is constructed from the work of the machine; docs/MATERIALS.md
+/// states the rules. Writes the material file and a picture of all curves. Example: kirigami
+/// material fit strip-*.csv --name film --thickness 0.5 --density-kg-m3 1390
 #[derive(Args)]
 #[command(allow_negative_numbers = true)]
 pub struct FitCommand {
@@ -58,8 +59,8 @@ pub struct FitCommand {
 #[derive(Args)]
 #[command(next_help_heading = "Files")]
 struct ColumnArgs {
-    /// Columns by number or name, such as strain=3,stress=Load; quantities: force, stress, true-stress, extension,
-    /// strain, true-strain
+    /// Columns by number or name, such as strain=3,stress=Load; quantities: force, stress,
+    /// true-stress, extension, strain, true-strain
     #[arg(long, value_name = "QUANTITY=COLUMN,...", value_delimiter = ',', value_parser = assignment)]
     columns: Vec<(Quantity, String)>,
     /// Units, such as strain=%,force=kN, instead of those in the names of the columns
@@ -77,14 +78,17 @@ struct ColumnArgs {
 #[derive(Args)]
 #[command(next_help_heading = "Evaluation")]
 struct EvaluationArgs {
-    /// Young's modulus (MPa), if it is known better than from these records; the compliance of the machine is removed, but
-    /// not from a strain whose slope is within a quarter of it, which is an extensometer's
+    /// Young's modulus (MPa), if it is known better than from these records; the compliance of the
+    /// machine is removed, but not from a strain whose slope is within a quarter of it, which is an
+    /// extensometer's
     #[arg(long, value_name = "MPA")]
     young: Option<f64>,
-    /// Natural draw ratio, measured on the neck: initial over drawn section [default: where the stress rises again]
+    /// Natural draw ratio, measured on the neck: initial over drawn section [default: where the
+    /// stress rises again]
     #[arg(long, value_name = "RATIO")]
     draw_ratio: Option<f64>,
-    /// True plastic strain at fracture, measured on the broken section: ln(A0 / A) [default: from the records]
+    /// True plastic strain at fracture, measured on the broken section: ln(A0 / A) [default: from
+    /// the records]
     #[arg(long, value_name = "STRAIN")]
     fracture_strain: Option<f64>,
 }
@@ -139,11 +143,7 @@ impl FitCommand {
         for warning in doubtful_moduli(&fit) {
             println!("warning: {warning}");
         }
-        println!(
-            "\nmaterial: {} (law {})",
-            file.display(),
-            material.law_hash()
-        );
+        println!("\nmaterial: {} (law {})", file.display(), material.law_hash());
         println!("picture:  {}", pictures[1].display());
         println!("next:     kirigami material check {}", shell_word(&file));
         Ok(())
@@ -151,9 +151,8 @@ impl FitCommand {
 
     /// Each file with what it does not say about itself.
     fn records(&self) -> Result<Vec<(PathBuf, RecordOptions)>> {
-        let named = Path::new(&self.name)
-            .file_name()
-            .is_some_and(|name| name == self.name.as_str());
+        let named =
+            Path::new(&self.name).file_name().is_some_and(|name| name == self.name.as_str());
         ensure!(named, "--name {:?} is not a file name", self.name);
         let files = self.tests.len();
         let each = |option: &str, values: &[f64], file: usize| match values {
@@ -180,15 +179,11 @@ impl FitCommand {
     }
 
     fn options(&self) -> Result<FitOptions> {
-        let EvaluationArgs {
-            young,
-            draw_ratio,
-            fracture_strain,
-        } = self.evaluation;
+        let EvaluationArgs { young, draw_ratio, fracture_strain } = self.evaluation;
         let within = |option: &str, value: Option<f64>, [min, max]: [f64; 2]| match value {
-            Some(value) if !(min..=max).contains(&value) => Err(anyhow::anyhow!(
-                "--{option} {value} violates {min} <= {option} <= {max}"
-            )),
+            Some(value) if !(min..=max).contains(&value) => {
+                Err(anyhow::anyhow!("--{option} {value} violates {min} <= {option} <= {max}"))
+            }
             _ => Ok(()),
         };
         within("young", young, [10.0, 1e6])?;
@@ -204,9 +199,7 @@ impl FitCommand {
 
 /// A pair such as `strain=3`.
 fn assignment(text: &str) -> Result<(Quantity, String), String> {
-    let (quantity, value) = text
-        .split_once('=')
-        .ok_or("write QUANTITY=VALUE, such as strain=3")?;
+    let (quantity, value) = text.split_once('=').ok_or("write QUANTITY=VALUE, such as strain=3")?;
     Ok((quantity.trim().parse()?, value.trim().to_owned()))
 }
 
@@ -284,11 +277,7 @@ fn law_table(fit: &MaterialFit) -> Table {
     let mut table = Table::new(["law", "mean", "standard deviation"]);
     let mut row = |name: &str, of: &Statistic, digits: usize| {
         let [mean, deviation] = [Some(of.mean), of.deviation];
-        table.row([
-            Cell::text(name),
-            Cell::fixed(mean, digits),
-            Cell::fixed(deviation, digits),
-        ]);
+        table.row([Cell::text(name), Cell::fixed(mean, digits), Cell::fixed(deviation, digits)]);
     };
     row("Young's modulus, MPa", &fit.young, 0);
     row("offset yield Rp0.2, MPa", &fit.offset_yield, 2);
@@ -301,10 +290,7 @@ fn law_table(fit: &MaterialFit) -> Table {
             row(name, of, digits);
         }
     }
-    let fracture = Statistic {
-        mean: fit.fracture_strain,
-        deviation: fit.fracture_scatter,
-    };
+    let fracture = Statistic { mean: fit.fracture_strain, deviation: fit.fracture_scatter };
     row("fracture strain (true, plastic)", &fracture, 4);
     table
 }
@@ -320,10 +306,7 @@ fn notes(fit: &MaterialFit) -> Vec<String> {
     ));
     let ends = |origin| {
         let mut rows = fit.curve.iter().filter(|row| row.origin == origin);
-        rows.clone()
-            .next()
-            .zip(rows.next_back())
-            .map(|(first, last)| [first.strain, last.strain])
+        rows.clone().next().zip(rows.next_back()).map(|(first, last)| [first.strain, last.strain])
     };
     if let Some([from, to]) = ends(Origin::Drawn) {
         notes.push(format!(
@@ -343,10 +326,7 @@ fn notes(fit: &MaterialFit) -> Vec<String> {
     }
     if fit.young_given {
         let measured = Statistic::new(fit.specimens.iter().map(|specimen| specimen.linear.young));
-        let removed = fit
-            .specimens
-            .iter()
-            .any(|specimen| specimen.compliance != 0.0);
+        let removed = fit.specimens.iter().any(|specimen| specimen.compliance != 0.0);
         notes.push(format!(
             "the records have a mean slope of {:.0} MPa; {}",
             measured.mean,
@@ -371,14 +351,8 @@ fn notes(fit: &MaterialFit) -> Vec<String> {
 /// The dimensions that the file of a specimen states, one note a specimen.
 fn stated_sizes(specimen: &Specimen) -> Option<String> {
     let sizes = specimen.stated.iter();
-    let sizes = sizes.map(|it| {
-        format!(
-            "{} {} mm (line {})",
-            it.name.replace('-', " "),
-            it.value,
-            it.line
-        )
-    });
+    let sizes =
+        sizes.map(|it| format!("{} {} mm (line {})", it.name.replace('-', " "), it.value, it.line));
     let sizes: Vec<String> = sizes.collect();
     let name = file_name(specimen);
     (!sizes.is_empty()).then(|| format!("{name} states the dimensions used: {}", sizes.join(", ")))
@@ -386,10 +360,12 @@ fn stated_sizes(specimen: &Specimen) -> Option<String> {
 
 /// Fewest rows from which a modulus is taken without a word.
 const FEW_ROWS: usize = 5;
-/// Largest standard error of a modulus, and largest distance to the median of the specimens, over the modulus.
+/// Largest standard error of a modulus, and largest distance to the median of the specimens, over
+/// the modulus.
 const DOUBTFUL: f64 = 0.1;
 
-/// Measured moduli from few rows, with a large error, or far from the moduli of the other specimens; one sentence each.
+/// Measured moduli from few rows, with a large error, or far from the moduli of the other
+/// specimens; one sentence each.
 fn doubtful_moduli(fit: &MaterialFit) -> Vec<String> {
     let mut moduli: Vec<f64> = fit.specimens.iter().map(|it| it.linear.young).collect();
     moduli.sort_by(f64::total_cmp);

@@ -1,8 +1,10 @@
-//! `kirigami material learn`: from a material file to weights of its hinge energy, with a known error.
+//! `kirigami material learn`: from a material file to weights of its hinge energy, with a known
+//! error.
 //!
-//! Rays of the campaign are solved in rounds, each with twice the rays of the one before. After each round several weights
-//! of another material are fine-tuned on all rays. One network learns these rays and, at random states, the median of
-//! the fine-tuned networks. It is tested at random states of rays that no training contains.
+//! Rays of the campaign are solved in rounds, each with twice the rays of the one before. After
+//! each round several weights of another material are fine-tuned on all rays. One network learns
+//! these rays and, at random states, the median of the fine-tuned networks. It is tested at random
+//! states of rays that no training contains.
 
 mod conclusion;
 mod fine_tuning;
@@ -35,21 +37,22 @@ use verification::{
 
 /// Solve hinge windows of a material and train its weights until they are accurate enough
 ///
-/// Starts from weights of another material and solves rays in rounds: 25, 50, 100, ... After each round the weights are
-/// fine-tuned, and one network learns the rays and the median of the fine-tuned networks. This network is compared with a spot
-/// check: windows at random states of the campaign's region, never trained on. Stops when the root mean square errors of W
-/// and of the forces there are small enough, or at the time limit (exit code 75: the same command continues). The folder
-/// holds weights.safetensors, the database, the spot check, learn.csv, and the campaign and training that can be edited.
-/// Example:
-/// kirigami material learn configs/materials/polypropylene-0.8mm.toml --accuracy 1% --time 1h --out runs/polypropylene
+/// Starts from weights of another material and solves rays in rounds: 25, 50, 100, ... After each
+/// round the weights are fine-tuned, and one network learns the rays and the median of the
+/// fine-tuned networks. This network is compared with a spot check: windows at random states of the
+/// campaign's region, never trained on. Stops when the root mean square errors of W and of the
+/// forces there are small enough, or at the time limit (exit code 75: the same command continues).
+/// The folder holds weights.safetensors, the database, the spot check, learn.csv, and the campaign
+/// and training that can be edited. Example: kirigami material learn
+/// configs/materials/polypropylene-0.8mm.toml --accuracy 1% --time 1h --out runs/polypropylene
 #[derive(Args)]
 pub struct LearnCommand {
     /// Material (TOML), as written by `material fit`
     #[arg(value_name = "MATERIAL")]
     material: PathBuf,
-    /// Weights of another material, with which fine-tuning starts; once for each file. Several together have smaller errors
-    /// than each. One alone is fine-tuned and kept [default: medium and medium-1 to -3 of data/pet-0.5mm; on a plate tier of
-    /// data/polypropylene-3mm]
+    /// Weights of another material, with which fine-tuning starts; once for each file. Several
+    /// together have smaller errors than each. One alone is fine-tuned and kept [default: medium
+    /// and medium-1 to -3 of data/pet-0.5mm; on a plate tier of data/polypropylene-3mm]
     #[arg(long, value_name = "WEIGHTS")]
     from: Vec<PathBuf>,
     /// Error of W at which the weights are accurate enough, relative to its root mean square
@@ -58,11 +61,12 @@ pub struct LearnCommand {
     /// The same of the forces: root mean square of the errors of F_a, F_s and M
     #[arg(long, value_name = "PERCENT", default_value = "5%", value_parser = percent)]
     forces: f64,
-    /// Start no ray after this time, with its unit: h, min or s; the spot check, running solves and trainings are finished
+    /// Start no ray after this time, with its unit: h, min or s; the spot check, running solves and
+    /// trainings are finished
     #[arg(long, value_name = "TIME", default_value = "1h", value_parser = time)]
     time: Duration,
-    /// Mesh tier of the windows, which also says whether the ligaments belong to a film or to a plate [default: plate from 2 mm of
-    /// thickness on, below it default]
+    /// Mesh tier of the windows, which also says whether the ligaments belong to a film or to a
+    /// plate [default: plate from 2 mm of thickness on, below it default]
     #[arg(long, value_name = "TIER")]
     tier: Option<Tier>,
     /// Number of rays of the first round
@@ -71,23 +75,27 @@ pub struct LearnCommand {
     /// Number of rays of the spot check, each with 4 states
     #[arg(long, value_name = "N", default_value_t = 16, value_parser = clap::value_parser!(u16).range(3..))]
     spot_rays: u16,
-    /// Seed of the states of the spot check. Errors that led to a choice are measured again with another seed
+    /// Seed of the states of the spot check. Errors that led to a choice are measured again with
+    /// another seed
     #[arg(long, value_name = "SEED", default_value_t = 1)]
     spot_seed: u64,
     #[command(flatten)]
     solve: SolveArgs,
-    /// Folder for the results; a folder of a stopped run is continued. Its weights come from the last round of this command
+    /// Folder for the results; a folder of a stopped run is continued. Its weights come from the
+    /// last round of this command
     #[arg(long, value_name = "FOLDER")]
     out: PathBuf,
 }
 
-/// Folders of the weights with which fine-tuning starts, and their names: networks of one training with several seeds.
+/// Folders of the weights with which fine-tuning starts, and their names: networks of one training
+/// with several seeds.
 const FILM_PARENTS: &str = "data/pet-0.5mm";
 const PLATE_PARENTS: &str = "data/polypropylene-3mm";
 const PARENTS: [&str; 4] = ["medium", "medium-1", "medium-2", "medium-3"];
 /// States on a ray of the spot check.
 const STATES_PER_RAY: usize = 4;
-/// The shipped training, and its copy in the folder. `kirigami init` writes another training to the same folder.
+/// The shipped training, and its copy in the folder. `kirigami init` writes another training to the
+/// same folder.
 const TRAINING_FILE: &str = "fine-tuning.toml";
 const TRAINING: &str = include_str!("../../../configs/training/fine-tuning.toml");
 
@@ -95,12 +103,10 @@ impl LearnCommand {
     pub(crate) fn run(&self) -> Result<()> {
         let began = Instant::now();
         let material = SheetMaterial::load(&self.material)?;
-        let tier = self
-            .tier
-            .unwrap_or(match Regime::usual(material.thickness) {
-                Regime::Film => Tier::Default,
-                Regime::Plate => Tier::Plate,
-            });
+        let tier = self.tier.unwrap_or(match Regime::usual(material.thickness) {
+            Regime::Film => Tier::Default,
+            Regime::Plate => Tier::Plate,
+        });
         let from = match &*self.from {
             [] => shipped_parents(tier.regime()),
             named => named.to_vec(),
@@ -129,10 +135,7 @@ impl LearnCommand {
             fits: self.out.join("fits"),
         };
         let spot = self.spot_check(&campaign, &region)?;
-        let accuracy = Accuracy {
-            energy: self.accuracy,
-            forces: self.forces,
-        };
+        let accuracy = Accuracy { energy: self.accuracy, forces: self.forces };
         let task = LearningTask {
             campaign: &campaign,
             folder: &self.out.join("campaign"),
@@ -144,12 +147,7 @@ impl LearnCommand {
             deadline: began.checked_add(self.time),
             stop: interrupt::stop_flag()?,
         };
-        let mut steps = Steps {
-            out: &self.out,
-            fine_tuning,
-            rounds: Vec::new(),
-            progress: None,
-        };
+        let mut steps = Steps { out: &self.out, fine_tuning, rounds: Vec::new(), progress: None };
         let end = learn(task, &mut steps)?;
         let workers = self.solve.workers();
         let (material, weights) = (self.out.join("material.toml"), weights_file(&self.out));
@@ -171,7 +169,8 @@ impl LearnCommand {
         }
     }
 
-    /// Writes material, campaign and training to a new folder. The files of a folder that is continued are kept.
+    /// Writes material, campaign and training to a new folder. The files of a folder that is
+    /// continued are kept.
     fn write_inputs(&self, material: &SheetMaterial, tier: Tier) -> Result<()> {
         if !self.out.join(TRAINING_FILE).exists() {
             run_folder::write(&self.out, TRAINING_FILE, TRAINING)?;
@@ -216,12 +215,7 @@ impl LearnCommand {
     /// The states on which weights are tested, drawn uniformly inside the region of the campaign.
     fn spot_check(&self, campaign: &Campaign, region: &TrainingDomain) -> Result<Database> {
         let count = STATES_PER_RAY * usize::from(self.spot_rays);
-        let paths = random_paths(
-            campaign.drawn(region),
-            count,
-            STATES_PER_RAY,
-            self.spot_seed,
-        );
+        let paths = random_paths(campaign.drawn(region), count, STATES_PER_RAY, self.spot_seed);
         let mut windows = self.solve.service(&self.out.join("spot-check"))?;
         windows.limit = campaign.time_limit;
         let check = spot_check(&windows, &paths, &campaign.material, campaign.tier);

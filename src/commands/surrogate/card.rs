@@ -29,10 +29,8 @@ impl CardCommand {
         if let Some(base) = &card.fine_tuned_from {
             println!("fine-tuned from weights {base}");
         }
-        for Teacher {
-            weights,
-            fine_tuned_from,
-        } in (card.distillation.iter()).flat_map(|distillation| &distillation.teachers)
+        for Teacher { weights, fine_tuned_from } in
+            (card.distillation.iter()).flat_map(|distillation| &distillation.teachers)
         {
             let from = known(fine_tuned_from);
             println!("distilled from weights {weights}, fine-tuned from {from}");

@@ -1,4 +1,5 @@
-//! Errors of weights at given states against finite elements, and the states with the largest errors.
+//! Errors of weights at given states against finite elements, and the states with the largest
+//! errors.
 
 use dataset::{COMPARED, ComparedState, Row, reference_rms};
 use support::document::Document;
@@ -23,10 +24,8 @@ impl<'a> StateErrors<'a> {
             surrogate.contains(&row.design, &state)
         };
         let inside: Vec<&Row> = rows.iter().filter(inside).collect();
-        let (designs, deformations): (Vec<_>, Vec<_>) = inside
-            .iter()
-            .map(|row| (row.design, row.sample.deformation()))
-            .unzip();
+        let (designs, deformations): (Vec<_>, Vec<_>) =
+            inside.iter().map(|row| (row.design, row.sample.deformation())).unzip();
         let predicted = surrogate.samples(&designs, &deformations);
         Self {
             outside: rows.len() - inside.len(),
@@ -40,9 +39,8 @@ impl<'a> StateErrors<'a> {
     /// |error| of the quantity `i` divided by `scale`, over the states where it is known, in ascending order.
     fn sorted(&self, i: usize, scale: impl Fn(&ComparedState) -> f64) -> Vec<f64> {
         let known = self.states.iter().filter(|state| state.is_known(i));
-        let mut errors: Vec<f64> = known
-            .map(|state| (state.value[i] - state.reference[i]).abs() / scale(state))
-            .collect();
+        let mut errors: Vec<f64> =
+            known.map(|state| (state.value[i] - state.reference[i]).abs() / scale(state)).collect();
         errors.sort_by(f64::total_cmp);
         errors
     }
@@ -120,9 +118,7 @@ impl<'a> StateErrors<'a> {
     pub fn document(&self) -> Document {
         let (inside, all) = (self.rows.len(), self.rows.len() + self.outside);
         let mut page = Document::default();
-        page.text(format!(
-            "{inside} of {all} states inside the training domain"
-        ));
+        page.text(format!("{inside} of {all} states inside the training domain"));
         if inside == 0 {
             return page;
         }

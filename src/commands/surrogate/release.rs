@@ -17,11 +17,13 @@ use verification::{first_guess, releases, verification_tier};
 
 /// Deform hinges by finite elements, unload them, and learn their residual deformation
 ///
-/// The states are drawn uniformly inside the training domain of the weights, one a hinge, with holes of 0.16 ligament widths. Each hinge is deformed along the straight
-/// ray to its state and unloaded until it is without forces; that takes two to three windows. Writes released.csv, the
-/// deformation that stays and the stiffness about it, and springback.json, the law that a scene names (surrogate.springback), with its
-/// errors at hinges that the fit has not seen. Example:
-/// kirigami surrogate release data/polypropylene-3mm/medium.safetensors --material configs/materials/polypropylene-3mm.toml --count 80
+/// The states are drawn uniformly inside the training domain of the weights, one a hinge, with
+/// holes of 0.16 ligament widths. Each hinge is deformed along the straight ray to its state and
+/// unloaded until it is without forces; that takes two to three windows. Writes released.csv, the
+/// deformation that stays and the stiffness about it, and springback.json, the law that a scene
+/// names (surrogate.springback), with its errors at hinges that the fit has not seen. Example:
+/// kirigami surrogate release data/polypropylene-3mm/medium.safetensors --material
+/// configs/materials/polypropylene-3mm.toml --count 80
 #[derive(Args)]
 pub struct ReleaseCommand {
     /// Weights (safetensors with their card)
@@ -36,8 +38,8 @@ pub struct ReleaseCommand {
     /// Sheet material that the weights were trained on (TOML)
     #[arg(long, value_name = "FILE")]
     material: PathBuf,
-    /// Mesh tier of the windows [default: the tier of the weights' database, or the finer tier that the database was
-    /// corrected to]
+    /// Mesh tier of the windows [default: the tier of the weights' database, or the finer tier that
+    /// the database was corrected to]
     #[arg(long, value_name = "TIER")]
     tier: Option<Tier>,
     /// Folder for the table and the solutions
@@ -78,11 +80,7 @@ impl ReleaseCommand {
         for reason in &found.failed {
             println!("not unloaded: {reason}");
         }
-        ensure!(
-            !found.rows.is_empty(),
-            "no hinge was unloaded; see {}",
-            self.out.display()
-        );
+        ensure!(!found.rows.is_empty(), "no hinge was unloaded; see {}", self.out.display());
         let mut writer = csv::Writer::from_writer(Vec::new());
         for row in &found.rows {
             writer.serialize(row)?;
@@ -111,9 +109,7 @@ fn card(law: &Springback) -> Document {
     let hinges = law.hinges;
     let mut page = Document::default();
     let Some(errors) = &law.errors else {
-        page.text(format!(
-            "law of {hinges} hinges, whose errors are not known"
-        ));
+        page.text(format!("law of {hinges} hinges, whose errors are not known"));
         return page;
     };
     page.text(format!(
@@ -121,21 +117,14 @@ fn card(law: &Springback) -> Document {
         errors.hinges
     ));
     let mut table = Table::new(["", "eta_a", "eta_s", "theta, deg"]);
-    for (name, [a, s, theta]) in [
-        ("springs back", errors.sprung),
-        ("error of the residual", errors.rest),
-    ] {
-        let [a, s, theta] = [
-            format!("{a:.4}"),
-            format!("{s:.4}"),
-            format!("{:.2}", theta.to_degrees()),
-        ];
+    for (name, [a, s, theta]) in
+        [("springs back", errors.sprung), ("error of the residual", errors.rest)]
+    {
+        let [a, s, theta] =
+            [format!("{a:.4}"), format!("{s:.4}"), format!("{:.2}", theta.to_degrees())];
         table.row([name, &a, &s, &theta]);
     }
     page.table(table);
-    page.text(format!(
-        "error of the stiffness about it: {:.1} %",
-        100.0 * errors.stiffness
-    ));
+    page.text(format!("error of the stiffness about it: {:.1} %", 100.0 * errors.stiffness));
     page
 }

@@ -10,8 +10,9 @@ use train::{ErrorInterval, spot_check};
 
 /// Print the errors of weights on a database, such as a spot check or rays of a finer mesh
 ///
-/// Only states inside the training domain are evaluated, except for the 95 % intervals of the errors over other rays. Rays that the weights were trained on count too, if the
-/// database has any. Example: kirigami surrogate test data/pet-0.5mm/medium.safetensors
+/// Only states inside the training domain are evaluated, except for the 95 % intervals of the
+/// errors over other rays. Rays that the weights were trained on count too, if the database has
+/// any. Example: kirigami surrogate test data/pet-0.5mm/medium.safetensors
 /// data/pet-0.5mm/spot-check.parquet
 #[derive(Args)]
 pub struct TestCommand {
@@ -21,8 +22,8 @@ pub struct TestCommand {
     /// Database (Parquet with its manifest)
     #[arg(value_name = "DATABASE")]
     database: PathBuf,
-    /// Write the errors to the card of the weights as their spot check, from which the error budget of a design takes the errors of the
-    /// hinge law. The states must be in no training
+    /// Write the errors to the card of the weights as their spot check, from which the error budget
+    /// of a design takes the errors of the hinge law. The states must be in no training
     #[arg(long)]
     record: bool,
 }
@@ -59,10 +60,7 @@ pub(crate) fn print_errors(surrogate: &Surrogate, database: &Database) {
         manifest.tier,
         manifest.rays
     );
-    print!(
-        "{}",
-        StateErrors::new(surrogate, database.rows()).document()
-    );
+    print!("{}", StateErrors::new(surrogate, database.rows()).document());
     if let Some([w, forces]) = ErrorInterval::of(surrogate, database.rows()) {
         println!("all states: W {w}; forces {forces}");
     }

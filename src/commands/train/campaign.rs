@@ -1,4 +1,5 @@
-//! The trainings of a campaign: of every network that it names, four seeds, tested on its spot check.
+//! The trainings of a campaign: of every network that it names, four seeds, tested on its spot
+//! check.
 
 use crate::commands::campaign::{DATABASE, SPOT_CHECK};
 use crate::commands::surrogate::{print_errors, record};
@@ -40,10 +41,7 @@ impl TrainCommand {
                 database: folder.join(DATABASE),
                 // The settings of fine-tuning are the default of trainings that begin from weights.
                 config: from.is_none().then(|| training.clone()),
-                out: folder
-                    .join("weights")
-                    .join(stem)
-                    .with_added_extension("safetensors"),
+                out: folder.join("weights").join(stem).with_added_extension("safetensors"),
                 from,
                 seeds: SEEDS,
                 replace: self.replace,
@@ -87,12 +85,12 @@ impl TrainCommand {
     }
 }
 
-/// The weights from which each training of a campaign begins, if there are any; an error for weights that no training begins from.
+/// The weights from which each training of a campaign begins, if there are any; an error for
+/// weights that no training begins from.
 fn weights_before(campaign: &Campaign, file: &Path) -> Result<Vec<Option<PathBuf>>> {
     let configs = campaign.training.iter();
-    let configs: Vec<TrainingConfig> = configs
-        .map(|training| toml_file::read(training))
-        .collect::<Result<_, _>>()?;
+    let configs: Vec<TrainingConfig> =
+        configs.map(|training| toml_file::read(training)).collect::<Result<_, _>>()?;
     let mut before = vec![None; configs.len()];
     for named in &campaign.pretrained {
         let weights = Surrogate::load(named)?;

@@ -1,4 +1,5 @@
-//! Trainings that continue after a stop, and networks stored in a folder, so that each is trained once.
+//! Trainings that continue after a stop, and networks stored in a folder, so that each is trained
+//! once.
 
 use crate::ui::exit::Unfinished;
 use crate::ui::progress::Progress;
@@ -13,8 +14,8 @@ use surrogate::{Card, Surrogate};
 /// Maximum training time that is lost if the process is killed.
 const SAVE_EVERY: Duration = Duration::from_secs(30);
 
-/// The network of a configuration, its data and its initial weights (random if there is no `pretrained`): the file `name` of
-/// the folder, if it was trained so, otherwise a new one.
+/// The network of a configuration, its data and its initial weights (random if there is no
+/// `pretrained`): the file `name` of the folder, if it was trained so, otherwise a new one.
 ///
 /// A training that was stopped is continued.
 pub fn kept_fit<'a>(
@@ -61,8 +62,8 @@ pub(super) fn is_of(
         && card.distillation.as_ref() == data.record()
 }
 
-/// A training that continues from the file `state`, if it exists. The state of another training, or a damaged one, is an
-/// error, or with `discard` is discarded.
+/// A training that continues from the file `state`, if it exists. The state of another training, or
+/// a damaged one, is an error, or with `discard` is discarded.
 pub(super) fn continued_fit(
     data: TrainingData,
     config: &TrainingConfig,
@@ -81,7 +82,8 @@ pub(super) fn continued_fit(
     }
 }
 
-/// One training; its state is saved in the file `state` from time to time, when it is stopped and at its end.
+/// One training; its state is saved in the file `state` from time to time, when it is stopped and
+/// at its end.
 fn fit(data: TrainingData, config: &TrainingConfig, start: Start, state: &Path) -> Result<Trained> {
     let stop = interrupt::stop_flag()?;
     let mut training = Training::new(data, config, start)?;
@@ -89,10 +91,8 @@ fn fit(data: TrainingData, config: &TrainingConfig, start: Start, state: &Path) 
     let mut saved = Instant::now();
     while !training.is_finished() {
         let epoch = training.epoch()?;
-        let message = format!(
-            "loss {:.2e}, validation {:.2e}",
-            epoch.training_loss, epoch.validation_loss
-        );
+        let message =
+            format!("loss {:.2e}, validation {:.2e}", epoch.training_loss, epoch.validation_loss);
         bar.show(epoch.epoch, None, &message);
         let stopping = stop.load(Ordering::Relaxed);
         if stopping || saved.elapsed() > SAVE_EVERY || training.is_finished() {
@@ -100,10 +100,7 @@ fn fit(data: TrainingData, config: &TrainingConfig, start: Start, state: &Path) 
             saved = Instant::now();
         }
         if stopping && !training.is_finished() {
-            bail!(Unfinished {
-                left: epoch.epochs - epoch.epoch,
-                what: "epochs",
-            });
+            bail!(Unfinished { left: epoch.epochs - epoch.epoch, what: "epochs" });
         }
     }
     bar.finish();

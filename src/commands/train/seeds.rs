@@ -1,8 +1,8 @@
 //! Trainings that differ only in their seed, and the choice among them.
 //!
-//! Every seed has its own files next to the weights `X`: `X-seed-S.safetensors`, and `X-seed-S.state`, from which a stopped
-//! training continues. The states remain: from them the command that finds all seeds trained writes the weights, the curves
-//! and the comparison.
+//! Every seed has its own files next to the weights `X`: `X-seed-S.safetensors`, and
+//! `X-seed-S.state`, from which a stopped training continues. The states remain: from them the
+//! command that finds all seeds trained writes the weights, the curves and the comparison.
 
 use crate::commands::train::kept_fits::{continued_fit, is_of};
 use crate::commands::train::{TrainCommand, hold};
@@ -42,10 +42,7 @@ impl TrainCommand {
         base: Option<&Surrogate>,
     ) -> Result<()> {
         let seeds = config.seed..config.seed + self.seeds;
-        let with = |seed| TrainingConfig {
-            seed,
-            ..config.clone()
-        };
+        let with = |seed| TrainingConfig { seed, ..config.clone() };
         let configs: Vec<TrainingConfig> = seeds.map(with).collect();
         let shared = Shared { database, base };
         self.refuse_other_weights(&configs, shared)?;
@@ -89,15 +86,8 @@ impl TrainCommand {
             }
         }
         match left {
-            0 => ensure!(
-                failed == 0,
-                "{failed} of {} trainings failed",
-                configs.len()
-            ),
-            _ => bail!(Unfinished {
-                left,
-                what: "trainings"
-            }),
+            0 => ensure!(failed == 0, "{failed} of {} trainings failed", configs.len()),
+            _ => bail!(Unfinished { left, what: "trainings" }),
         }
         Ok(())
     }
@@ -125,7 +115,8 @@ impl TrainCommand {
         continued_fit(database.into(), config, base, &state, discard)
     }
 
-    /// Writes the weights of the best seed with their curves and plots, and the comparison of the seeds.
+    /// Writes the weights of the best seed with their curves and plots, and the comparison of the
+    /// seeds.
     fn choose(&self, configs: &[TrainingConfig], shared: Shared) -> Result<()> {
         let members = configs.iter();
         let members = members.map(|config| self.continued(config, shared, false));
@@ -194,7 +185,8 @@ fn validation_errors(trained: &Trained) -> [f64; 3] {
     })
 }
 
-/// The error by which the best training is chosen: of W and the forces, which decide how a sheet opens; of D where they are not known.
+/// The error by which the best training is chosen: of W and the forces, which decide how a sheet
+/// opens; of D where they are not known.
 fn validation_error(trained: &Trained) -> f64 {
     let [w, d, _] = validation_errors(trained);
     if w.is_nan() { d } else { w }

@@ -67,10 +67,7 @@ impl VerifyCommand {
             record(scene, design, |checks| checks.whole_sheet = Some(found))?;
         }
         if check.path.is_empty() {
-            bail!(
-                "no increment of the sheet converged; see {}",
-                self.out.display()
-            );
+            bail!("no increment of the sheet converged; see {}", self.out.display());
         }
         Ok(())
     }
@@ -119,11 +116,7 @@ impl VerifyCommand {
             100.0 * last.fraction,
             last.tilt_deg
         );
-        for (view, name) in [
-            (View::Above, "above"),
-            (View::Front, "front"),
-            (View::Side, "side"),
-        ] {
+        for (view, name) in [(View::Above, "above"), (View::Front, "front"), (View::Side, "side")] {
             let svg = surface(&seen, view, &scene.config.title, &subtitle);
             picture::save(&svg, &self.out.join(format!("sheet-{name}")), WIDTH)?;
         }

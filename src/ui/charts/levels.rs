@@ -17,7 +17,8 @@ const LINES: [(Cause, RGBColor); 4] = [
     (Cause::Thickness, COLOURS[4]),
 ];
 
-/// One point for every level but the finest, a grey band up to the error of the mesh, and lines for what no level lowers.
+/// One point for every level but the finest, a grey band up to the error of the mesh, and lines for
+/// what no level lowers.
 pub fn levels(found: &Levels) -> Result<String> {
     let points: Vec<(f64, f64, &str)> = (found.levels.iter())
         .filter_map(|level| {
@@ -37,10 +38,8 @@ pub fn levels(found: &Levels) -> Result<String> {
     let up = around(heights);
     drawn(SIZE, |root| {
         let seconds = Axis::powers(across.clone().log_scale(), "seconds of a search");
-        let corners = Axis::powers(
-            up.clone().log_scale(),
-            "largest difference of a panel corner, mm",
-        );
+        let corners =
+            Axis::powers(up.clone().log_scale(), "largest difference of a panel corner, mm");
         let mut chart = axes(root, "Levels, and what no level lowers", seconds, corners)?;
         if let Some(mesh) = of(Cause::WindowMesh) {
             let band = [(across.start, up.start), (across.end, mesh)];
@@ -61,11 +60,7 @@ pub fn levels(found: &Levels) -> Result<String> {
             (points.iter()).map(|point| Circle::new((point.0, point.1), 5, POINT.filled())),
         )?;
         chart.draw_series(points.iter().map(|(seconds, corners, name)| {
-            Text::new(
-                (*name).to_owned(),
-                (1.12 * seconds, *corners),
-                (FONT, 13).into_font(),
-            )
+            Text::new((*name).to_owned(), (1.12 * seconds, *corners), (FONT, 13).into_font())
         }))?;
         names(&mut chart, SeriesLabelPosition::UpperRight)
     })

@@ -4,14 +4,12 @@ use super::axes::{Axis, axes, marks};
 use super::*;
 use dataset::ComparedState;
 
-/// Charts side by side, one for each quantity of [`dataset::COMPARED`] that is known, with its title and the line of
-/// perfect agreement; `axes` names the reference and the evaluated values.
+/// Charts side by side, one for each quantity of [`dataset::COMPARED`] that is known, with its
+/// title and the line of perfect agreement; `axes` names the reference and the evaluated values.
 pub fn parity(states: &[ComparedState], titles: [&str; 6], axes: [&str; 2]) -> Result<String> {
     let points = |i: usize| -> Vec<(f64, f64)> {
         let known = states.iter().filter(|state| state.is_known(i));
-        known
-            .map(|state| (state.reference[i], state.value[i]))
-            .collect()
+        known.map(|state| (state.reference[i], state.value[i])).collect()
     };
     let charts = titles.into_iter().enumerate();
     let charts = charts.map(|(i, title)| (title, points(i)));
@@ -48,10 +46,7 @@ mod tests {
     fn a_parity_chart_holds_a_mark_for_every_row() {
         let states = [1.0, 2.0, 3.5, f64::NAN].map(|target| {
             let with_unknown = |value: f64| [value, f64::NAN, f64::NAN, f64::NAN, value, f64::NAN];
-            ComparedState {
-                value: with_unknown(1.1 * target),
-                reference: with_unknown(target),
-            }
+            ComparedState { value: with_unknown(1.1 * target), reference: with_unknown(target) }
         });
         let axes = ["finite elements", "surrogate"];
         let svg = parity(&states, dataset::COMPARED, axes).unwrap();

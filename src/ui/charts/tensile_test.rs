@@ -1,4 +1,5 @@
-//! Chart of a fitted material: the records of its specimens at small strains and in full, and the hardening curve.
+//! Chart of a fitted material: the records of its specimens at small strains and in full, and the
+//! hardening curve.
 
 use super::axes::{Axis, Chart, axes, line, names};
 use super::*;
@@ -15,8 +16,8 @@ const CROSS: i32 = 3;
 /// A panel with a strain and a stress (MPa) as axes.
 type StressChart<'a> = Chart<'a, RangedCoordf64, RangedCoordf64>;
 
-/// Three panels: the linear part with modulus and offset yield, the whole records with the draw, and the hardening table
-/// on the curve that it approximates.
+/// Three panels: the linear part with modulus and offset yield, the whole records with the draw,
+/// and the hardening table on the curve that it approximates.
 pub fn tensile_test(fit: &MaterialFit, name: &str) -> Result<String> {
     drawn((3 * PANEL.0, PANEL.1), |root| {
         let areas = root.split_evenly((1, 3));
@@ -47,16 +48,8 @@ fn small_strains(area: &Area, fit: &MaterialFit) -> ChartResult {
     let at_yield = (100.0 * yields / young + 0.2, yields);
     mark(&mut chart, at_yield)?;
     let right = 0.03 * (end - start);
-    write_at(
-        &mut chart,
-        (at_yield.0 + right, 0.5 * yields),
-        &format!("E = {young:.0} MPa"),
-    )?;
-    write_at(
-        &mut chart,
-        (at_yield.0 + right, 0.4 * yields),
-        &format!("Rp0.2 = {yields:.1} MPa"),
-    )?;
+    write_at(&mut chart, (at_yield.0 + right, 0.5 * yields), &format!("E = {young:.0} MPa"))?;
+    write_at(&mut chart, (at_yield.0 + right, 0.4 * yields), &format!("Rp0.2 = {yields:.1} MPa"))?;
     names(&mut chart, SeriesLabelPosition::LowerRight)
 }
 
@@ -73,10 +66,8 @@ fn records(area: &Area, fit: &MaterialFit, name: &str) -> ChartResult {
         (fit.upper_yield, fit.plateau, fit.draw_ratio)
     {
         let (stress, natural) = (plateau.mean, 100.0 * (ratio.mean - 1.0));
-        for line in [
-            [(0.0, stress), (natural, stress)],
-            [(natural, 0.0), (natural, 1.06 * stress)],
-        ] {
+        for line in [[(0.0, stress), (natural, stress)], [(natural, 0.0), (natural, 1.06 * stress)]]
+        {
             chart.draw_series(DashedLineSeries::new(line, 6, 4, GUIDE.stroke_width(1)))?;
         }
         for draw in fit.specimens.iter().filter_map(|specimen| specimen.draw) {
@@ -92,11 +83,8 @@ fn records(area: &Area, fit: &MaterialFit, name: &str) -> ChartResult {
         )?;
         let ratio = format!("natural draw ratio {:.2}", ratio.mean);
         // The text takes a third of the width.
-        let beside = if natural + 0.36 * end < end {
-            natural + 0.02 * end
-        } else {
-            natural - 0.36 * end
-        };
+        let beside =
+            if natural + 0.36 * end < end { natural + 0.02 * end } else { natural - 0.36 * end };
         write_at(&mut chart, (beside, 0.5 * stress), &ratio)?;
     }
     names(&mut chart, SeriesLabelPosition::UpperRight)
@@ -104,10 +92,7 @@ fn records(area: &Area, fit: &MaterialFit, name: &str) -> ChartResult {
 
 /// The hardening curve by its origin, the rows of the table, and the fracture strain.
 fn hardening(area: &Area, fit: &MaterialFit) -> ChartResult {
-    let end = 1.05
-        * fit
-            .fracture_strain
-            .max(fit.curve[fit.curve.len() - 1].strain);
+    let end = 1.05 * fit.fracture_strain.max(fit.curve[fit.curve.len() - 1].strain);
     let top = 1.25 * fit.curve.iter().map(|row| row.stress).fold(0.0, f64::max);
     let strain = Axis::new(-0.02 * end..1.02 * end, "true plastic strain");
     let stress = Axis::new(0.0..top, "true stress, MPa");
@@ -127,10 +112,7 @@ fn hardening(area: &Area, fit: &MaterialFit) -> ChartResult {
             }
         }
     }
-    let rows = fit
-        .table
-        .iter()
-        .map(|row| Circle::new((row.strain, row.stress), 3, BLACK));
+    let rows = fit.table.iter().map(|row| Circle::new((row.strain, row.stress), 3, BLACK));
     chart
         .draw_series(rows)?
         .label(format!("table, {} rows", fit.table.len()))
@@ -138,18 +120,14 @@ fn hardening(area: &Area, fit: &MaterialFit) -> ChartResult {
     let fracture = [(fit.fracture_strain, 0.0), (fit.fracture_strain, 0.8 * top)];
     let colour = COLOURS[4];
     chart
-        .draw_series(DashedLineSeries::new(
-            fracture,
-            6,
-            4,
-            colour.stroke_width(1),
-        ))?
+        .draw_series(DashedLineSeries::new(fracture, 6, 4, colour.stroke_width(1)))?
         .label(format!("fracture strain {:.3}", fit.fracture_strain))
         .legend(move |(x, y)| PathElement::new([(x, y), (x + 18, y)], colour.stroke_width(1)));
     names(&mut chart, SeriesLabelPosition::UpperLeft)
 }
 
-/// The connected parts of a curve with one origin. A part begins at the last row of the part before it.
+/// The connected parts of a curve with one origin. A part begins at the last row of the part before
+/// it.
 fn parts(curve: &[HardeningRow], origin: Origin) -> Vec<&[HardeningRow]> {
     let mut start = 0;
     let mut parts = Vec::new();
@@ -162,7 +140,8 @@ fn parts(curve: &[HardeningRow], origin: Origin) -> Vec<&[HardeningRow]> {
     parts
 }
 
-/// The used rows of each specimen as a line and the dropped ones as crosses, between two strains (%).
+/// The used rows of each specimen as a line and the dropped ones as crosses, between two strains
+/// (%).
 fn draw_records(
     chart: &mut StressChart,
     specimens: &[Specimen],
@@ -170,30 +149,20 @@ fn draw_records(
 ) -> ChartResult {
     let within = move |strain: f64| (from..=to).contains(&(100.0 * strain));
     for (index, specimen) in specimens.iter().enumerate() {
-        let seen: Vec<_> = specimen
-            .nominal
-            .iter()
-            .filter(|row| within(row[0]))
-            .collect();
+        let seen: Vec<_> = specimen.nominal.iter().filter(|row| within(row[0])).collect();
         let step = seen.len().div_ceil(POINTS).max(1);
         let points = seen.iter().step_by(step).chain(seen.last());
         let points = points.map(|row| (100.0 * row[0], row[1]));
         let style = POINT.mix(0.8).stroke_width(1);
         if index == 0 {
-            let name = if specimens.len() == 1 {
-                "record"
-            } else {
-                "records"
-            };
+            let name = if specimens.len() == 1 { "record" } else { "records" };
             line(chart, name, points, style)?;
         } else {
             chart.draw_series(LineSeries::new(points, style))?;
         }
     }
     let dropped = specimens.iter().flat_map(|specimen| &specimen.dropped);
-    let dropped: Vec<_> = dropped
-        .filter(|row| within(row.strain) && row.stress >= 0.0)
-        .collect();
+    let dropped: Vec<_> = dropped.filter(|row| within(row.strain) && row.stress >= 0.0).collect();
     if dropped.is_empty() {
         return Ok(());
     }

@@ -17,8 +17,8 @@ pub fn remove_stale(path: &Path) -> io::Result<()> {
     }
 }
 
-/// The bytes of a file that a program wrote; empty if there is none. Anything else than a regular file of at most 1 GiB is an
-/// error, also a link, which could name an endless device.
+/// The bytes of a file that a program wrote; empty if there is none. Anything else than a regular
+/// file of at most 1 GiB is an error, also a link, which could name an endless device.
 pub fn output_file(path: &Path) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     match open(path) {

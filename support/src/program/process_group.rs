@@ -1,4 +1,5 @@
-//! A child process in a process group and an environment of its own, none of whose processes outlives it.
+//! A child process in a process group and an environment of its own, none of whose processes
+//! outlives it.
 
 use crate::processes::{FOLDER, cpu_seconds, kill_all_of};
 use nix::sys::resource::{Resource, getrlimit, setrlimit};
@@ -18,8 +19,8 @@ pub(super) const GRACE: Duration = Duration::from_secs(2);
 /// Maximum polling interval of a running program.
 pub(super) const POLL: Duration = Duration::from_millis(20);
 
-/// A child process that leads its own process group; dropping this value kills the group and every other process that
-/// the child started.
+/// A child process that leads its own process group; dropping this value kills the group and every
+/// other process that the child started.
 pub(super) struct Group {
     child: Child,
     /// The folder that it runs in.
@@ -27,7 +28,8 @@ pub(super) struct Group {
 }
 
 impl Group {
-    /// Starts a program in `folder`, with its output in `log`, after killing what an earlier run left there.
+    /// Starts a program in `folder`, with its output in `log`, after killing what an earlier run
+    /// left there.
     pub fn spawn(
         program: &Path,
         arguments: &[&str],
@@ -45,7 +47,8 @@ impl Group {
             .stdout(output.try_clone()?)
             .stderr(output)
             .process_group(0);
-        // The user's environment and home must not decide a result: ccx reads CCX_NPROC_*, gmsh reads ~/.gmshrc.
+        // The user's environment and home must not decide a result: ccx reads CCX_NPROC_*, gmsh
+        // reads ~/.gmshrc.
         command.env_clear().env("HOME", &folder).env("LC_ALL", "C");
         command.env(FOLDER, &folder);
         for variable in ["PATH", "LD_LIBRARY_PATH", "TMPDIR"] {
@@ -64,8 +67,8 @@ impl Group {
             command.env(variable, "1");
         }
         #[cfg(target_os = "linux")]
-        // SAFETY: between fork and exec the closure makes only three system calls, prctl, getrlimit and setrlimit, which are
-        // async-signal-safe, and does not allocate.
+        // SAFETY: between fork and exec the closure makes only three system calls, prctl, getrlimit
+        // and setrlimit, which are async-signal-safe, and does not allocate.
         unsafe {
             command.pre_exec(|| {
                 // Only root may raise the limit that it was started with.
@@ -123,7 +126,8 @@ impl Group {
 }
 
 impl Drop for Group {
-    /// Kills the group and reaps its leader, if the leader is still running, and kills what it left running.
+    /// Kills the group and reaps its leader, if the leader is still running, and kills what it left
+    /// running.
     fn drop(&mut self) {
         if let Ok(None) = self.child.try_wait() {
             let _ = killpg(self.pid(), Signal::SIGKILL);

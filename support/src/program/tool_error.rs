@@ -23,10 +23,7 @@ pub enum ToolError {
         program: Option<PathBuf>,
     },
     #[error("cannot run {program}: {source}", program = .program.display())]
-    Start {
-        program: PathBuf,
-        source: std::io::Error,
-    },
+    Start { program: PathBuf, source: std::io::Error },
     #[error(
         "{program} cannot be used as {name}: `{flag}` ended with {status} and printed no version of it, but {printed}; install it \
          ({install}) or set {variable} to its path",
@@ -70,11 +67,7 @@ pub enum ToolError {
     #[error("{name} was stopped on request")]
     Stopped { name: &'static str },
     #[error("{name} failed with {status}; the end of its log:\n{tail}")]
-    Failed {
-        name: &'static str,
-        status: ExitStatus,
-        tail: String,
-    },
+    Failed { name: &'static str, status: ExitStatus, tail: String },
 }
 
 impl ToolError {

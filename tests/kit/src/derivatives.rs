@@ -16,8 +16,8 @@ pub struct TaylorRemainders {
 }
 
 impl TaylorRemainders {
-    /// Remainders of `f` about `x` along `direction` for `count` steps, beginning with `first` and halved each
-    /// time.
+    /// Remainders of `f` about `x` along `direction` for `count` steps, beginning with `first` and
+    /// halved each time.
     pub fn new<E>(
         mut f: impl FnMut(&[f64]) -> Result<f64, E>,
         x: &[f64],
@@ -64,7 +64,8 @@ fn moved(x: &[f64], direction: &[f64], h: f64) -> Vec<f64> {
     pairs.map(|(x, d)| x + h * d).collect()
 }
 
-/// Fails unless each entry of a gradient is the slope of `f` along its coordinate; the error that is allowed depends on the slope.
+/// Fails unless each entry of a gradient is the slope of `f` along its coordinate; the error that
+/// is allowed depends on the slope.
 #[track_caller]
 pub fn assert_gradient(
     f: impl Fn(&[f64]) -> f64,

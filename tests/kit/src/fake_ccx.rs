@@ -5,18 +5,15 @@ use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// An executable script in `folder` that prints the version 2.20 on request and otherwise runs `body`.
+/// An executable script in `folder` that prints the version 2.20 on request and otherwise runs
+/// `body`.
 pub fn fake_ccx(folder: &Path, body: &str) -> PathBuf {
     script(folder, "echo 'This is Version 2.20'", body)
 }
 
 /// A ccx with the version of the installed one that runs `body` and refuses its input.
 pub fn failing_ccx(folder: &Path, body: &str) -> PathBuf {
-    script(
-        folder,
-        "ccx -v",
-        &format!("{body}; echo ' *ERROR'; exit 201"),
-    )
+    script(folder, "ccx -v", &format!("{body}; echo ' *ERROR'; exit 201"))
 }
 
 fn script(folder: &Path, version: &str, body: &str) -> PathBuf {

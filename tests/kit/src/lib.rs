@@ -1,4 +1,5 @@
-//! What the tests of several crates share: derivatives, running processes, a CalculiX that is a script.
+//! What the tests of several crates share: derivatives, running processes, a CalculiX that is a
+//! script.
 
 pub mod derivatives;
 mod fake_ccx;

@@ -3,7 +3,8 @@
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-/// Working folders below `folder` of processes that still run; waits up to 5 s for them to exit after SIGKILL.
+/// Working folders below `folder` of processes that still run; waits up to 5 s for them to exit
+/// after SIGKILL.
 pub fn left_running(folder: &Path) -> Vec<PathBuf> {
     let running = || -> Vec<PathBuf> {
         let processes = std::fs::read_dir("/proc").unwrap().flatten();

@@ -42,10 +42,8 @@ pub fn rows(jobs: usize) -> Vec<Row> {
     let mut rows = Vec::new();
     for job in 0..jobs {
         let spread = |step: f64| (step * (job + 1) as f64).fract();
-        let design = HingeConstants::PAPER.hinge(
-            5.0 + 20.0 * spread(0.754_877_666),
-            0.8 + 0.77 * spread(0.569_840_291),
-        );
+        let design = HingeConstants::PAPER
+            .hinge(5.0 + 20.0 * spread(0.754_877_666), 0.8 + 0.77 * spread(0.569_840_291));
         let eta_a = 0.6 * spread(0.414_213_562) - 0.3;
         let eta_s = 0.5 * spread(0.732_050_808) - 0.25;
         let end =
@@ -87,10 +85,8 @@ pub fn trained(epochs: usize) -> Trained {
 
 /// The energies of a surrogate at some states.
 pub fn energies(surrogate: &Surrogate) -> Vec<f64> {
-    let (designs, deformations): (Vec<_>, Vec<_>) = rows(7)
-        .iter()
-        .map(|row| (row.design, row.sample.deformation()))
-        .unzip();
+    let (designs, deformations): (Vec<_>, Vec<_>) =
+        rows(7).iter().map(|row| (row.design, row.sample.deformation())).unzip();
     let prepared = surrogate.prepare(&designs);
     let energies = surrogate.evaluate(&prepared, &deformations, Order::Value);
     energies.iter().map(|energy| energy.w).collect()

@@ -40,9 +40,7 @@ fn ensemble() -> ([Surrogate; 2], Vec<(HingeDesign, HingeDeformation)>) {
         trained.unwrap().surrogate
     });
     let others = rows(120).split_off(200);
-    let states = others
-        .iter()
-        .map(|row| (row.design, row.sample.deformation()));
+    let states = others.iter().map(|row| (row.design, row.sample.deformation()));
     (members, states.collect())
 }
 
@@ -52,10 +50,7 @@ fn a_network_learns_the_median_of_several() {
     let database = database(rows(20));
     let distillation = Distillation::new(&members, &states);
     let student = |distillation: Option<&Distillation>| {
-        let data = TrainingData {
-            database: &database,
-            distillation,
-        };
+        let data = TrainingData { database: &database, distillation };
         let start = Start::Weights(&members[0]);
         finished(Training::new(data, &config(40), start).unwrap()).surrogate
     };
@@ -77,26 +72,15 @@ fn a_network_learns_the_median_of_several() {
         squares.sum::<f64>().sqrt()
     };
     let [distilled_distance, alone_distance] = [&distilled, &alone].map(distance);
-    assert!(
-        distilled_distance < 0.3 * alone_distance,
-        "{distilled_distance} and {alone_distance}"
-    );
+    assert!(distilled_distance < 0.3 * alone_distance, "{distilled_distance} and {alone_distance}");
     let record = distilled.card().distillation.as_ref().unwrap();
     let hashes = members.iter().map(Surrogate::hash);
-    assert!(
-        hashes.eq(record
-            .teachers
-            .iter()
-            .map(|teacher| teacher.weights.clone()))
-    );
+    assert!(hashes.eq(record.teachers.iter().map(|teacher| teacher.weights.clone())));
     assert_eq!(alone.card().distillation, None);
     // The median is not evidence: domain, scales and test errors are of the rows alone.
     assert_eq!(distilled.card().domain, alone.card().domain);
     assert_eq!(distilled.card().energy_scale, alone.card().energy_scale);
-    assert_eq!(
-        distilled.card().test_errors.rows,
-        alone.card().test_errors.rows
-    );
+    assert_eq!(distilled.card().test_errors.rows, alone.card().test_errors.rows);
 }
 
 #[test]
@@ -107,36 +91,21 @@ fn a_training_with_a_distillation_continues_only_with_it() {
     let state = folder.path().join("chi.state");
     let begun = |members: &[Surrogate], states: &[_], start| {
         let distillation = Distillation::new(members, states);
-        let data = TrainingData {
-            database: &database,
-            distillation: Some(&distillation),
-        };
+        let data = TrainingData { database: &database, distillation: Some(&distillation) };
         Training::new(data, &config(2), start)
     };
     let mut training = begun(&members, &states, Start::Fresh).unwrap();
     training.epoch().unwrap();
     training.save(&state).unwrap();
-    let resumed = Start::State {
-        state: &state,
-        pretrained: None,
-    };
+    let resumed = Start::State { state: &state, pretrained: None };
     let fewer = &states[1..];
     let straight = finished(begun(&members, &states, Start::Fresh).unwrap());
     let continued = finished(begun(&members, &states, resumed).unwrap());
-    assert_eq!(
-        energies(&straight.surrogate),
-        energies(&continued.surrogate)
-    );
-    for other in [
-        begun(&members[..1], &states, resumed),
-        begun(&members, fewer, resumed),
-    ] {
+    assert_eq!(energies(&straight.surrogate), energies(&continued.surrogate));
+    for other in [begun(&members[..1], &states, resumed), begun(&members, fewer, resumed)] {
         assert!(matches!(
             other.err(),
-            Some(TrainError::State(StateError::Other {
-                what: "distillation",
-                ..
-            }))
+            Some(TrainError::State(StateError::Other { what: "distillation", .. }))
         ));
     }
 }

@@ -6,7 +6,8 @@ use hinge::HingeSample;
 use surrogate::Surrogate;
 use train::{Parity, Start, StateError, TrainError, Training, TrainingConfig, train};
 
-/// The rows in a sheet of `factor` times the thickness, whose material is `stiffness` times as stiff.
+/// The rows in a sheet of `factor` times the thickness, whose material is `stiffness` times as
+/// stiff.
 fn similar(rows: Vec<Row>, factor: f64, stiffness: f64) -> Vec<Row> {
     let (areas, volumes) = (factor.powi(2) * stiffness, factor.powi(3) * stiffness);
     let row = |row: Row| Row {
@@ -25,14 +26,11 @@ fn similar(rows: Vec<Row>, factor: f64, stiffness: f64) -> Vec<Row> {
     rows.into_iter().map(row).collect()
 }
 
-/// The training of `epochs` epochs on the rows of a sheet of another thickness and stiffness, which starts from
-/// `pretrained`.
+/// The training of `epochs` epochs on the rows of a sheet of another thickness and stiffness, which
+/// starts from `pretrained`.
 fn tuned(pretrained: &Surrogate, epochs: usize) -> (Database, Training) {
     let database = database(similar(rows(30), 0.4, 3.0));
-    let config = TrainingConfig {
-        learning_rate: 1e-3,
-        ..config(epochs)
-    };
+    let config = TrainingConfig { learning_rate: 1e-3, ..config(epochs) };
     let start = Start::Weights(pretrained);
     let training = Training::new(&database, &config, start).unwrap();
     (database, training)
@@ -62,10 +60,7 @@ fn fine_tuning_starts_with_the_function_of_the_given_weights() {
     assert!((energy / 3.0 - 1.0).abs() < 0.1, "{energy}");
     let factors = [energy, energy, energy, energy, d, d_peak];
     for ((expected, found), factor) in expected.iter().zip(&found).zip(factors) {
-        let size = expected
-            .iter()
-            .map(|[_, predicted]| predicted.abs())
-            .fold(0.0, f64::max);
+        let size = expected.iter().map(|[_, predicted]| predicted.abs()).fold(0.0, f64::max);
         for (expected, found) in expected.iter().zip(found) {
             let difference = (factor * expected[1] - found[1]).abs();
             assert!(difference < 1e-5 * factor * size, "{difference}");
@@ -88,36 +83,24 @@ fn a_fine_tuned_network_is_closer_than_one_from_scratch() {
 #[test]
 fn weights_of_the_same_law_keep_their_domain_and_sizes() {
     let of_law = |rows: Vec<Row>, law: &str| {
-        let with_law = |row| Row {
-            material_hash: law.into(),
-            ..row
-        };
+        let with_law = |row| Row { material_hash: law.into(), ..row };
         database(rows.into_iter().map(with_law).collect())
     };
     let whole = of_law(rows(40), "film");
     let pretrained = train(&whole, &config(1), &mut |_| {}).unwrap().surrogate;
     let few: Vec<Row> = whole.part(Part::Training).into_iter().take(80).collect();
     let start = |rows: &Database| {
-        let other = TrainingConfig {
-            embedding: vec![4],
-            ..config(1)
-        };
+        let other = TrainingConfig { embedding: vec![4], ..config(1) };
         let config = other.with_sizes_of(&pretrained);
         let training = Training::new(rows, &config, Start::Weights(&pretrained));
         training.unwrap().finish().unwrap().surrogate
     };
     let domain = |surrogate: &Surrogate| surrogate.card().domain.clone();
-    assert_eq!(
-        domain(&start(&of_law(few.clone(), "film"))),
-        domain(&pretrained)
-    );
+    assert_eq!(domain(&start(&of_law(few.clone(), "film"))), domain(&pretrained));
     let other = domain(&start(&of_law(few.clone(), "steel")));
     assert_ne!(other, domain(&pretrained));
     // Rows beyond the domain enlarge it.
-    assert_ne!(
-        domain(&start(&of_law(rows(120), "film"))),
-        domain(&pretrained)
-    );
+    assert_ne!(domain(&start(&of_law(rows(120), "film"))), domain(&pretrained));
     // The same law in another thickness: the ligaments scale with it.
     let thin = domain(&start(&of_law(similar(few, 0.4, 1.0), "film")));
     assert_eq!(thin, domain(&pretrained.clone().scaled(0.4)));
@@ -128,10 +111,7 @@ fn weights_of_the_same_law_keep_their_domain_and_sizes() {
 fn frozen_layers_are_not_trained() {
     let pretrained = trained(2).surrogate;
     let database = database(rows(20));
-    let config = TrainingConfig {
-        frozen_layers: 1,
-        ..config(2)
-    };
+    let config = TrainingConfig { frozen_layers: 1, ..config(2) };
     let folder = tempfile::tempdir().unwrap();
     let state = folder.path().join("chi.state");
     let begun = |start| Training::new(&database, &config, start).unwrap();
@@ -141,10 +121,7 @@ fn frozen_layers_are_not_trained() {
     training.epoch().unwrap();
     training.save(&state).unwrap();
     // Also of a training that is resumed.
-    let resumed = |pretrained| Start::State {
-        state: &state,
-        pretrained,
-    };
+    let resumed = |pretrained| Start::State { state: &state, pretrained };
     let last = finished(begun(resumed(Some(&pretrained)))).last.layers();
     let without = Training::new(&database, &config, resumed(None));
     assert!(matches!(
@@ -154,10 +131,7 @@ fn frozen_layers_are_not_trained() {
     for (initial, last) in [
         (&initial.chi, &last.chi),
         (&initial.chi_d, &last.chi_d),
-        (
-            initial.chi_p.as_ref().unwrap(),
-            last.chi_p.as_ref().unwrap(),
-        ),
+        (initial.chi_p.as_ref().unwrap(), last.chi_p.as_ref().unwrap()),
     ] {
         assert_eq!(initial[0], last[0]);
         assert_ne!(initial[1], last[1]);
@@ -173,20 +147,14 @@ fn unsuitable_initial_weights_are_errors() {
         let training = Training::new(&database, config, start);
         training.err().unwrap()
     };
-    let wider = TrainingConfig {
-        embedding: vec![32, 32, 32],
-        ..config(1)
-    };
+    let wider = TrainingConfig { embedding: vec![32, 32, 32], ..config(1) };
     let error = refusal(&base, &wider);
     assert!(matches!(error, TrainError::OtherSizes { .. }), "{error}");
     let mut card = base.card().clone();
     card.damage_sharpness = 9.0;
     let sharper = Surrogate::from_parts(base.layers(), card).unwrap();
     let error = refusal(&sharper, &config(1));
-    assert!(
-        matches!(error, TrainError::OtherSharpness { .. }),
-        "{error}"
-    );
+    assert!(matches!(error, TrainError::OtherSharpness { .. }), "{error}");
     let mut layers = base.layers();
     layers.chi[0].bias.values[0] += 0.1;
     let plain = Surrogate::from_parts(layers, base.card().clone()).unwrap();

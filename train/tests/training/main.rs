@@ -44,10 +44,7 @@ fn an_energy_in_closed_form_is_learned() {
     assert_eq!(card.test_errors, errors);
     assert_eq!(card.training["batch_size"], 64);
     assert_eq!(card.hinge.r_win, 100.0);
-    assert!(
-        card.domain.alpha[1] > 2.0,
-        "mirror images belong to the domain"
-    );
+    assert!(card.domain.alpha[1] > 2.0, "mirror images belong to the domain");
     assert_eq!(trained.parity.states.len(), errors.rows);
 }
 
@@ -68,10 +65,7 @@ fn a_damage_head_without_a_known_error_is_that_of_the_last_epoch() {
     let mut training = Training::new(&database, &config, Start::Fresh).unwrap();
     training.epoch().unwrap();
     training.save(&state).unwrap();
-    let start = Start::State {
-        state: &state,
-        pretrained: None,
-    };
+    let start = Start::State { state: &state, pretrained: None };
     let mut training = Training::new(&database, &config, start).unwrap();
     while !training.is_finished() {
         training.epoch().unwrap();
@@ -93,10 +87,8 @@ fn a_damage_head_without_a_known_error_is_that_of_the_last_epoch() {
 #[test]
 fn mirror_images_give_the_same_energy_and_damage() {
     let surrogate = trained(2).surrogate;
-    let (designs, states): (Vec<_>, Vec<_>) = rows(7)
-        .iter()
-        .map(|row| (row.design, row.sample.deformation()))
-        .unzip();
+    let (designs, states): (Vec<_>, Vec<_>) =
+        rows(7).iter().map(|row| (row.design, row.sample.deformation())).unzip();
     let images: Vec<_> = designs.iter().map(HingeDesign::mirrored).collect();
     let mirrored: Vec<_> = states.iter().map(HingeDeformation::mirrored).collect();
     let close = |left: f64, right: f64| (left - right).abs() <= 1e-12 * left.abs().max(1.0);
@@ -104,10 +96,7 @@ fn mirror_images_give_the_same_energy_and_damage() {
     let evaluate = |designs: &[HingeDesign], states: &[HingeDeformation]| {
         surrogate.evaluate(&surrogate.prepare(designs), states, Order::Forces)
     };
-    for (hinge, image) in evaluate(&designs, &states)
-        .iter()
-        .zip(evaluate(&images, &mirrored))
-    {
+    for (hinge, image) in evaluate(&designs, &states).iter().zip(evaluate(&images, &mirrored)) {
         assert!(hinge.w > 0.0 && close(hinge.w, image.w));
         let [f_a, f_s, m_theta] = image.forces;
         for (force, image) in hinge.forces.into_iter().zip([f_a, -f_s, m_theta]) {
@@ -124,10 +113,7 @@ fn mirror_images_give_the_same_energy_and_damage() {
 fn equal_seeds_give_equal_weights_and_different_seeds_different_ones() {
     let first = energies(&trained(2).surrogate);
     assert_eq!(first, energies(&trained(2).surrogate));
-    let other = TrainingConfig {
-        seed: 5,
-        ..config(2)
-    };
+    let other = TrainingConfig { seed: 5, ..config(2) };
     let other = train(&database(rows(60)), &other, &mut |_| {}).unwrap();
     assert_ne!(first, energies(&other.surrogate));
 }
@@ -151,32 +137,11 @@ fn constant_features_and_zero_targets_are_errors() {
         train(&database(rows), &config(1), &mut |_| {}).unwrap_err()
     };
     let error = refusal(|row| row.design.alpha = FRAC_PI_2);
-    assert!(
-        matches!(
-            error,
-            TrainError::ConstantFeature {
-                feature: "alpha",
-                ..
-            }
-        ),
-        "{error}"
-    );
+    assert!(matches!(error, TrainError::ConstantFeature { feature: "alpha", .. }), "{error}");
     let error = refusal(|row| row.sample.theta = 0.7);
-    assert!(
-        matches!(
-            error,
-            TrainError::ConstantFeature {
-                feature: "theta",
-                ..
-            }
-        ),
-        "{error}"
-    );
+    assert!(matches!(error, TrainError::ConstantFeature { feature: "theta", .. }), "{error}");
     let error = refusal(|row| row.sample.d = 0.0);
-    assert!(
-        matches!(error, TrainError::NoScale { target: "D", .. }),
-        "{error}"
-    );
+    assert!(matches!(error, TrainError::NoScale { target: "D", .. }), "{error}");
 }
 
 #[test]
@@ -186,24 +151,15 @@ fn a_loss_that_overflows_float32_is_an_error() {
         row.sample.f_a *= 1e-60;
     }
     let error = train(&database(rows), &config(2), &mut |_| {}).unwrap_err();
-    assert!(
-        matches!(error, TrainError::Diverged { epoch: 1, .. }),
-        "{error}"
-    );
+    assert!(matches!(error, TrainError::Diverged { epoch: 1, .. }), "{error}");
 }
 
 #[test]
 fn a_database_without_compression_and_without_d_peak_can_be_trained_on() {
     let mut tension = rows(20);
     for row in &mut tension {
-        let end = HingeDeformation {
-            a: row.sample.a.abs(),
-            ..row.sample.deformation()
-        };
-        row.sample = HingeSample {
-            d_peak: None,
-            ..sample(&row.design, end, row.sample.lambda)
-        };
+        let end = HingeDeformation { a: row.sample.a.abs(), ..row.sample.deformation() };
+        row.sample = HingeSample { d_peak: None, ..sample(&row.design, end, row.sample.lambda) };
     }
     let trained = train(&database(tension), &config(2), &mut |_| {}).unwrap();
     let card = trained.surrogate.card();

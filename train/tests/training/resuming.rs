@@ -16,10 +16,7 @@ fn begun(epochs: usize, run: usize) -> Training {
 
 fn resumed(state: &Path, config: &TrainingConfig) -> Result<Training, TrainError> {
     let database = database(rows(20));
-    let start = Start::State {
-        state,
-        pretrained: None,
-    };
+    let start = Start::State { state, pretrained: None };
     Training::new(&database, config, start)
 }
 
@@ -30,10 +27,7 @@ fn a_resumed_training_is_bit_exact() {
     let straight = finished(begun(5, 0));
     begun(5, 2).save(&state).unwrap();
     let database = database(rows(20));
-    let start = Start::State {
-        state: &state,
-        pretrained: None,
-    };
+    let start = Start::State { state: &state, pretrained: None };
     let training = Training::new(&database, &config(5), start).unwrap();
     assert_eq!(training.history().len(), 2);
     let resumed = finished(training);
@@ -41,9 +35,7 @@ fn a_resumed_training_is_bit_exact() {
     assert_eq!(energies(&straight.last), energies(&resumed.last));
     let losses = |trained: &Trained| -> Vec<_> {
         let epochs = trained.history.iter();
-        epochs
-            .map(|it| (it.training_loss, it.validation_loss, it.best))
-            .collect()
+        epochs.map(|it| (it.training_loss, it.validation_loss, it.best)).collect()
     };
     assert_eq!(losses(&straight), losses(&resumed));
 }
@@ -53,23 +45,14 @@ fn a_damaged_or_foreign_state_is_an_error() {
     let folder = tempfile::tempdir().unwrap();
     let state = folder.path().join("chi.state");
     begun(3, 1).save(&state).unwrap();
-    let other = TrainingConfig {
-        batch_size: 32,
-        ..config(3)
-    };
+    let other = TrainingConfig { batch_size: 32, ..config(3) };
     let error = resumed(&state, &other).err().unwrap();
     assert!(error.to_string().contains("configuration"), "{error}");
 
     let bytes = std::fs::read(&state).unwrap();
     let mut flipped = bytes.clone();
     flipped[bytes.len() / 2] ^= 1;
-    let cases = [
-        &bytes[..0],
-        &bytes[..31],
-        &bytes[..32],
-        &bytes[..bytes.len() - 1],
-        &flipped,
-    ];
+    let cases = [&bytes[..0], &bytes[..31], &bytes[..32], &bytes[..bytes.len() - 1], &flipped];
     for damaged in cases {
         std::fs::write(&state, damaged).unwrap();
         let error = resumed(&state, &config(3)).err().unwrap();
@@ -78,8 +61,5 @@ fn a_damaged_or_foreign_state_is_an_error() {
     }
     std::fs::remove_file(&state).unwrap();
     let error = resumed(&state, &config(3)).err().unwrap();
-    assert!(
-        matches!(error, TrainError::State(StateError::Read(_))),
-        "{error}"
-    );
+    assert!(matches!(error, TrainError::State(StateError::Read(_))), "{error}");
 }

@@ -1,4 +1,5 @@
-//! Sheets, weights and campaigns checked by a fake solver with a closed-form hinge: exact, and with windows that fail.
+//! Sheets, weights and campaigns checked by a fake solver with a closed-form hinge: exact, and with
+//! windows that fail.
 
 #[path = "../../../fe_driver/tests/common/fake_solver.rs"]
 mod fake_solver;
@@ -92,8 +93,8 @@ fn springs(factor: f64) -> Scene {
 /// (k_a, k_s) (N/mm) and k_theta (N mm/rad).
 const SPRINGS: [f64; 3] = [400.0, 250.0, 300.0];
 
-/// The finite elements of the test are springs that are a tenth stiffer than the springs of the scene: the exact equilibrium is the
-/// equilibrium of a scene with their stiffness.
+/// The finite elements of the test are springs that are a tenth stiffer than the springs of the
+/// scene: the exact equilibrium is the equilibrium of a scene with their stiffness.
 #[test]
 fn a_balanced_sheet_is_that_of_the_hinges_of_the_solver() {
     let folder = tempfile::tempdir().unwrap();
@@ -110,17 +111,15 @@ fn a_balanced_sheet_is_that_of_the_hinges_of_the_solver() {
     assert!(error(found.by_law()) > 10.0 * BALANCED);
     assert!(error(found.by_elements()) < BALANCED, "{:?}", found.rounds);
     let errors: Vec<f64> = found.rounds.iter().map(|round| round.force_error).collect();
-    assert!(
-        errors.is_sorted_by(|before, now| before > now),
-        "{errors:?}"
-    );
+    assert!(errors.is_sorted_by(|before, now| before > now), "{errors:?}");
     // The same sheet again solves nothing.
     let again = solver();
     balance(&springs(1.0), &again, &folder, 8).unwrap();
     assert_eq!(again.attempts(), 0);
 }
 
-/// Hinges whose stiffness depends on the mesh: [`SPRINGS`] times 1.05 on the mesh `default`, times 1.1 on any other.
+/// Hinges whose stiffness depends on the mesh: [`SPRINGS`] times 1.05 on the mesh `default`, times
+/// 1.1 on any other.
 struct ByMesh([NeverFails; 2]);
 
 type NeverFails = FakeSolver<fn(&WindowSolve) -> Option<Fault>>;
@@ -152,8 +151,8 @@ impl Solver for ByMesh {
     }
 }
 
-/// The cheaper mesh is balanced first, and the forces of the finest one in nearly the same states, which are others, give no
-/// false slope.
+/// The cheaper mesh is balanced first, and the forces of the finest one in nearly the same states,
+/// which are others, give no false slope.
 #[test]
 fn a_sheet_is_balanced_on_the_cheaper_mesh_first() {
     let (scene, folder) = (springs(1.0), tempfile::tempdir().unwrap());
@@ -203,17 +202,15 @@ impl Solver for Stiffer {
         let mut solution = self.0.attempt(solve, work, limit, stop)?;
         let law = self.1.prepare(&[solve.problem.hinge.design]);
         for sample in &mut solution.samples {
-            let energy = self
-                .1
-                .evaluate(&law, &[sample.deformation()], Order::Forces)[0];
+            let energy = self.1.evaluate(&law, &[sample.deformation()], Order::Forces)[0];
             [sample.f_a, sample.f_s, sample.m_theta] = energy.forces.map(|force| 1.2 * force);
         }
         Ok(solution)
     }
 }
 
-/// The search goes on with the hinges of the solver, whose forces the law of the final design has at their states, although they are far
-/// from the forces of the learned law.
+/// The search goes on with the hinges of the solver, whose forces the law of the final design has
+/// at their states, although they are far from the forces of the learned law.
 #[test]
 fn a_final_design_has_the_forces_of_the_solver() {
     let folder = tempfile::tempdir().unwrap();
@@ -225,18 +222,12 @@ fn a_final_design_has_the_forces_of_the_solver() {
     let stiffer = || Stiffer(healthy(), weights.clone());
     let designed = |solver: &Stiffer| {
         let service = &service(solver, &folder);
-        let windows = ElementWindows {
-            tier: Tier::Tiny,
-            service,
-        };
+        let windows = ElementWindows { tier: Tier::Tiny, service };
         final_design(&scene, &windows, &NEVER, &mut |_, _| {}).unwrap()
     };
     let found = designed(&stiffer());
     let rungs = &found.designed.rungs;
-    assert_eq!(
-        [rungs[0].level, rungs[1].level],
-        [Level::Standard, Level::Final]
-    );
+    assert_eq!([rungs[0].level, rungs[1].level], [Level::Standard, Level::Final]);
     let [first, .., last] = &rungs[..] else {
         panic!("at least two searches");
     };
@@ -247,20 +238,14 @@ fn a_final_design_has_the_forces_of_the_solver() {
     assert_eq!(run.config.level, Level::Final);
     let problem = run.problem().unwrap();
     let deployed = problem.deploy(&run.start()).unwrap();
-    let (designs, states) = (
-        deployed.sheet.designs(),
-        &deployed.final_step().deformations,
-    );
+    let (designs, states) = (deployed.sheet.designs(), &deployed.final_step().deformations);
     let law = problem.model.mechanics().unwrap().law.clone();
     let forces = law.prepare(&designs).energies(states, Order::Forces);
     let exact = weights.evaluate(&weights.prepare(&designs), states, Order::Forces);
     for (hinge, (found, exact)) in std::iter::zip(forces, exact).enumerate() {
         for (found, exact) in std::iter::zip(found.forces, exact.forces) {
             let size = exact.abs().max(0.1);
-            assert!(
-                (found - 1.2 * exact).abs() < 0.05 * size,
-                "{hinge}: {found} {exact}"
-            );
+            assert!((found - 1.2 * exact).abs() < 0.05 * size, "{hinge}: {found} {exact}");
         }
     }
     let again = stiffer();
@@ -272,7 +257,8 @@ fn a_final_design_has_the_forces_of_the_solver() {
 #[test]
 fn a_hinge_that_is_never_solved_ends_no_round_and_is_named() {
     let (scene, folder) = (scene(), tempfile::tempdir().unwrap());
-    // The hinge of the design's third path has its own end in every round: it is known by its ligament and angle.
+    // The hinge of the design's third path has its own end in every round: it is known by its
+    // ligament and angle.
     let paths = recorded_paths(&scene, &start(&scene)).unwrap();
     let end = paths[3].end();
     let diverges = FakeSolver::new(STIFFNESS, |solve: &WindowSolve| {
@@ -286,10 +272,7 @@ fn a_hinge_that_is_never_solved_ends_no_round_and_is_named() {
     assert_eq!(round.unsolved.len(), 1);
     assert_eq!(round.unsolved[0].hinge, 3);
     let reason = &round.unsolved[0].reason;
-    assert!(
-        reason.contains("diverged") && reason.contains("solves"),
-        "{reason}"
-    );
+    assert!(reason.contains("diverged") && reason.contains("solves"), "{reason}");
     assert!(found.hinges[3].is_none());
     assert_eq!(found.hinges.iter().flatten().count(), paths.len() - 1);
     // A second round has other paths, all of which are solved.
@@ -329,11 +312,7 @@ fn a_replay_compares_every_state_and_names_what_failed() {
         let replay = Replay::new(&windows, design, &scene.material, surrogate);
         let replay = replay.unwrap();
         let page = replay.document().markdown();
-        assert_eq!(
-            page.contains("Not solved, so that"),
-            !replay.unsolved.is_empty(),
-            "{page}"
-        );
+        assert_eq!(page.contains("Not solved, so that"), !replay.unsolved.is_empty(), "{page}");
         (replay.hinges, replay.unsolved)
     };
     let (hinges, unsolved) = replayed(&hangs);
@@ -430,11 +409,8 @@ fn rays_are_solved_in_rounds_until_the_weights_are_accurate() {
     let check = spot_check(&windows, &paths, &campaign.material, campaign.tier).unwrap();
     let rays = folder.path().join("campaign");
     let learned = |accuracy: f64, deadline: Option<Instant>| {
-        let mut steps = Shipped {
-            weights: scene.surrogate().unwrap().clone(),
-            trained: Vec::new(),
-            saved: 0,
-        };
+        let mut steps =
+            Shipped { weights: scene.surrogate().unwrap().clone(), trained: Vec::new(), saved: 0 };
         let task = LearningTask {
             campaign: &campaign,
             folder: &rays,
@@ -442,10 +418,7 @@ fn rays_are_solved_in_rounds_until_the_weights_are_accurate() {
             workers: 1,
             first_rays: 3,
             spot: &check.rows,
-            accuracy: Accuracy {
-                energy: accuracy,
-                forces: accuracy,
-            },
+            accuracy: Accuracy { energy: accuracy, forces: accuracy },
             deadline,
             stop: &NEVER,
         };
@@ -463,9 +436,6 @@ fn rays_are_solved_in_rounds_until_the_weights_are_accurate() {
     assert_eq!(all, (LearningEnd::AllRays, vec![3, 6, 12], 3));
     // What is solved is not solved again, and the weights of earlier rounds are not taken.
     let before = solver.attempts();
-    assert_eq!(
-        learned(1e9, None),
-        (LearningEnd::Accurate, vec![3, 6, 12], 1)
-    );
+    assert_eq!(learned(1e9, None), (LearningEnd::Accurate, vec![3, 6, 12], 1));
     assert_eq!(solver.attempts(), before);
 }

@@ -1,4 +1,5 @@
-//! Unloaded hinges and sheets: by springs that slip, whose rest is known exactly, and by finite elements at the limits.
+//! Unloaded hinges and sheets: by springs that slip, whose rest is known exactly, and by finite
+//! elements at the limits.
 
 use design::objective::design_problem::Deployment;
 use design::sheet::kinematics::deployed_corners;
@@ -123,11 +124,8 @@ fn rows(solver: Slipping, count: usize) -> Vec<ReleasedSample> {
     // A law knows one hole.
     let mut domain = surrogate.domain().clone();
     domain.holes = None;
-    let inside = DrawnStates {
-        domain: &domain,
-        constants: &surrogate.card().hinge,
-        regime: Regime::Film,
-    };
+    let inside =
+        DrawnStates { domain: &domain, constants: &surrogate.card().hinge, regime: Regime::Film };
     let drawn = random_paths(inside, count, 1, 5);
     let hinges: Vec<HingePath> = drawn.into_iter().map(|path| path.hinge).collect();
     let guess = |design: &_, reached: &_| first_guess(&scene.material, design, reached);
@@ -164,7 +162,8 @@ fn what_never_yields_springs_back_to_the_flat_state() {
     }
 }
 
-/// The sheet without loads by its exact hinges is what the rounds of solved windows find, from a law that is only nearly right.
+/// The sheet without loads by its exact hinges is what the rounds of solved windows find, from a
+/// law that is only nearly right.
 #[test]
 fn a_sheet_that_is_let_go_has_the_hinges_of_the_solver() {
     let solver = Slipping([40.0, 60.0, 45.0]);
@@ -193,10 +192,7 @@ fn a_sheet_that_is_let_go_has_the_hinges_of_the_solver() {
                 }
                 from = to;
             }
-            ReleasedHinge {
-                rest: slipped.into(),
-                ..solver.released(&HingeDeformation::default())
-            }
+            ReleasedHinge { rest: slipped.into(), ..solver.released(&HingeDeformation::default()) }
         })
         .collect();
     let exact = problem.unload(deployed, exact).unwrap();
@@ -213,18 +209,12 @@ fn a_sheet_that_is_let_go_has_the_hinges_of_the_solver() {
 fn a_law_for_another_material_is_refused() {
     let scene = scene();
     let rows = rows(Slipping([6.0, 9.0, 12.0]), 40);
-    let other = SheetMaterial {
-        young: 0.5 * scene.material.young,
-        ..scene.material.clone()
-    };
+    let other = SheetMaterial { young: 0.5 * scene.material.young, ..scene.material.clone() };
     let law = Springback::fit(&rows, &[], &other, "tiny").unwrap();
     let problem = scene.problem().unwrap();
     let deployed = problem.deploy(&scene.start()).unwrap();
     let refused = released_hinges(&scene, &problem, &law, &deployed).unwrap_err();
-    assert!(
-        refused.to_string().contains("another material"),
-        "{refused}"
-    );
+    assert!(refused.to_string().contains("another material"), "{refused}");
 }
 
 /// Without springs that slip, an unloaded sheet is flat again.
@@ -241,17 +231,13 @@ fn an_elastic_sheet_is_flat_again() {
         deployed_corners(&of.sheet, configuration).concat()
     };
     let last = released.path.last().unwrap();
-    let pairs = std::iter::zip(
-        corners(&deployed, &last.configuration),
-        corners(&deployed, &flat),
-    );
-    let most = pairs
-        .map(|([x, y], [u, v])| f64::hypot(x - u, y - v))
-        .fold(0.0, f64::max);
+    let pairs = std::iter::zip(corners(&deployed, &last.configuration), corners(&deployed, &flat));
+    let most = pairs.map(|([x, y], [u, v])| f64::hypot(x - u, y - v)).fold(0.0, f64::max);
     assert!(most < 1e-4, "{most}");
 }
 
-/// Finite elements: a ligament that never yields goes back to the flat state, one that yields at once nearly stays.
+/// Finite elements: a ligament that never yields goes back to the flat state, one that yields at
+/// once nearly stays.
 #[test]
 fn ligaments_at_the_limits_of_plasticity() {
     let plate = |stress: f64| SheetMaterial {
@@ -264,10 +250,7 @@ fn ligaments_at_the_limits_of_plasticity() {
         plastic: vec![[stress, 0.0]],
         ..SheetMaterial::default()
     };
-    let constants = HingeConstants {
-        r_win: 12.0,
-        ..HingeConstants::PAPER
-    };
+    let constants = HingeConstants { r_win: 12.0, ..HingeConstants::PAPER };
     let design = constants.hinge(1.5, 1.3);
     let end = HingeDeformation::from_eta(0.1, 0.02, 0.3, design.w_lig);
     let share = |stress: f64| {

@@ -1,4 +1,5 @@
-//! Designed sheets solved as a whole with gmsh and CalculiX, compared with the deployment by the hinge law.
+//! Designed sheets solved as a whole with gmsh and CalculiX, compared with the deployment by the
+//! hinge law.
 
 use fe_driver::{CalculiX, SolveService, SolveStore};
 use mesher::Tier;
@@ -99,20 +100,11 @@ fn panels_held_flat_go_where_the_law_has_them() {
     let flat = &check.findings[check.findings.len() - 1];
     assert_eq!(flat.severity, Severity::Note);
     let page = check.document().markdown();
-    for part in [
-        "agrees with the hinge law",
-        "panels held flat",
-        "| hinge | w_lig",
-        "| 3 |",
-    ] {
+    for part in ["agrees with the hinge law", "panels held flat", "| hinge | w_lig", "| 3 |"] {
         assert!(page.contains(part), "{page}");
     }
     // The path agrees with the path of the law from its beginning.
-    let half = branch
-        .path
-        .iter()
-        .find(|state| state.fraction > 0.5)
-        .unwrap();
+    let half = branch.path.iter().find(|state| state.fraction > 0.5).unwrap();
     assert!(half.corners[1] < 0.005 * check.size, "{half:?}");
 }
 
@@ -135,19 +127,11 @@ fn a_patch_of_a_sheet_is_where_the_law_has_it() {
     assert!((last.opening_deg[0] - last.opening_deg[1]).abs() < 0.3);
     let numbers: Vec<usize> = branch.panels.iter().map(|panel| panel.panel).collect();
     assert_eq!(numbers, [2, 3, 4, 5]);
-    assert!(
-        check
-            .document()
-            .to_string()
-            .contains("A patch of a larger sheet")
-    );
+    assert!(check.document().to_string().contains("A patch of a larger sheet"));
 
     let versions = CalculiX::find().unwrap().versions();
     let pulled = task_of([1, 0]).unwrap().solve(&versions).unwrap_err();
-    assert!(
-        pulled.to_string().contains("pulled by a prescribed stroke"),
-        "{pulled}"
-    );
+    assert!(pulled.to_string().contains("pulled by a prescribed stroke"), "{pulled}");
     let absent = task_of([2, 0]).err().unwrap();
     assert!(absent.to_string().contains("no panel [2, 0]"), "{absent}");
 }
@@ -159,22 +143,11 @@ fn a_path_that_ends_early_is_reported_as_far_as_it_goes() {
     let check = checked(&task, Duration::from_secs(8));
     let branch = &check;
     let reason = branch.stopped.as_deref().unwrap();
-    assert!(
-        reason.contains("Nothing") && reason.contains("time limit"),
-        "{reason}"
-    );
+    assert!(reason.contains("Nothing") && reason.contains("time limit"), "{reason}");
     assert_eq!(check.findings[0].severity, Severity::Error);
     let message = &check.findings[0].message;
-    assert!(
-        message.contains("not known") || message.contains("not solved"),
-        "{message}"
-    );
-    assert!(
-        check
-            .document()
-            .to_string()
-            .contains("free, nothing in the way")
-    );
+    assert!(message.contains("not known") || message.contains("not solved"), "{message}");
+    assert!(check.document().to_string().contains("free, nothing in the way"));
 }
 
 #[test]
@@ -184,19 +157,12 @@ fn what_has_no_counterpart_is_refused() {
             let versions = CalculiX::find().unwrap().versions();
             task.solve(&versions).map(|_| ())
         });
-        found
-            .err()
-            .map(|error| error.to_string())
-            .unwrap_or_default()
+        found.err().map(|error| error.to_string()).unwrap_or_default()
     };
     let force = "force = [0.0, -1.0]";
     for (change, support, expected) in [
         (AS_IT_IS, Some(Posture::Hanging), "in which direction"),
-        (
-            [force, "force = [0.0, -1.0]\ncouple = 3.0"],
-            None,
-            "couples on panels",
-        ),
+        ([force, "force = [0.0, -1.0]\ncouple = 3.0"], None, "couples on panels"),
         (
             ["kind = \"clamp\"", "kind = \"clamp\"\nrotation_deg = 1.0"],
             None,
@@ -206,13 +172,8 @@ fn what_has_no_counterpart_is_refused() {
         let message = refused(change, support);
         assert!(message.contains(expected), "{expected}: {message}");
     }
-    let unstructured = SheetTask::new(
-        &scene(AS_IT_IS),
-        &scene(AS_IT_IS).start(),
-        None,
-        Tier::Paper,
-        None,
-    );
+    let unstructured =
+        SheetTask::new(&scene(AS_IT_IS), &scene(AS_IT_IS).start(), None, Tier::Paper, None);
     let versions = CalculiX::find().unwrap().versions();
     let error = unstructured.unwrap().solve(&versions).unwrap_err();
     assert!(error.to_string().contains("no structured mesh"), "{error}");
@@ -226,9 +187,7 @@ fn the_cost_is_that_of_measured_sheets() {
     let folder = tempfile::tempdir().unwrap();
     let (limit, stop) = (Duration::from_secs(60), AtomicBool::new(false));
     let shape = &solve.problem.shape;
-    let mesh = shape
-        .mesh(folder.path(), &calculix.gmsh, limit, &stop)
-        .unwrap();
+    let mesh = shape.mesh(folder.path(), &calculix.gmsh, limit, &stop).unwrap();
     let cost = SheetCost::of(&mesh, solve.problem.keeping);
     assert_eq!(cost.unknowns, 3 * mesh.nodes.len());
     assert!((3.0..60.0).contains(&cost.cpu_seconds), "{cost:?}");

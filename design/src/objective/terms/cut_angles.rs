@@ -1,5 +1,5 @@
-//! Penalty on cut angles that the weights do not know: the mean over the hinges of max(0, alpha_min / alpha' - 1)^2, with alpha' the
-//! smaller one of alpha and pi - alpha.
+//! Penalty on cut angles that the weights do not know: the mean over the hinges of max(0, alpha_min
+//! / alpha' - 1)^2, with alpha' the smaller one of alpha and pi - alpha.
 
 use crate::objective::term::{Deployed, Term, TermGradient};
 use std::f64::consts::FRAC_PI_2;
@@ -21,11 +21,8 @@ impl Term for CutAngles {
         let share = 1.0 / at.sheet.hinges.len() as f64;
         let mut value = 0.0;
         for (hinge, by_angle) in std::iter::zip(&at.sheet.hinges, &mut gradient.by_sheet.alphas) {
-            let (acute, sign) = if hinge.alpha > FRAC_PI_2 {
-                (PI - hinge.alpha, -1.0)
-            } else {
-                (hinge.alpha, 1.0)
-            };
+            let (acute, sign) =
+                if hinge.alpha > FRAC_PI_2 { (PI - hinge.alpha, -1.0) } else { (hinge.alpha, 1.0) };
             let excess = (self.least / acute - 1.0).max(0.0);
             value += share * excess * excess;
             *by_angle -= weight * share * sign * 2.0 * excess * self.least / (acute * acute);

@@ -1,5 +1,6 @@
-//! The damage functional (17): the mean over hinges of (max_i^tau D_ih / D_s)^2. D is the mean or the peak damage. A ligament tears at a
-//! peak damage of 1: from 0.9 on it costs (100 (max_i^tau D_ih - 0.9))^2 more.
+//! The damage functional (17): the mean over hinges of (max_i^tau D_ih / D_s)^2. D is the mean or
+//! the peak damage. A ligament tears at a peak damage of 1: from 0.9 on it costs (100 (max_i^tau
+//! D_ih - 0.9))^2 more.
 
 use crate::geometry::smooth_extrema::smooth_max;
 use crate::hinge_law::DamageMeasure;

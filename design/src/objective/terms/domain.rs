@@ -1,13 +1,13 @@
-//! Penalty on hinge states outside the training domain of the hinge law: the mean over hinges and load
-//! steps of
+//! Penalty on hinge states outside the training domain of the hinge law: the mean over hinges and
+//! load steps of
 //!
 //! ```text
 //! (5 max(0, gamma - 0.98))^2 + sum over the intervals of w_lig and alpha of (10 e / l)^2,
 //! ```
 //!
-//! where gamma is the gauge of the domain, l the length of an interval and e the distance of the hinge from it.
-//! A state beyond the domain by a tenth of the range costs 1. The penalty begins at 98 % of the domain, because
-//! otherwise a minimum would lie just outside.
+//! where gamma is the gauge of the domain, l the length of an interval and e the distance of the
+//! hinge from it. A state beyond the domain by a tenth of the range costs 1. The penalty begins at
+//! 98 % of the domain, because otherwise a minimum would lie just outside.
 
 use crate::hinge_law::HingeGradient;
 use crate::objective::term::{Deployed, Term, TermGradient};
@@ -21,7 +21,8 @@ const PER_HALF_RANGE: f64 = 5.0;
 const MARGIN: f64 = 0.02;
 /// Factor on e, relative to the length of an interval.
 const PER_INTERVAL: f64 = 10.0;
-/// Lower bound of the interval length; shorter intervals (a single training row, say) are widened to it.
+/// Lower bound of the interval length; shorter intervals (a single training row, say) are widened
+/// to it.
 const NARROWEST_INTERVAL: f64 = 0.01;
 
 /// The penalty on states outside a training domain.
@@ -97,10 +98,7 @@ mod tests {
 
     /// x = (a, s, theta, w_lig, alpha, rho_f)
     fn design(x: &[f64]) -> HingeDesign {
-        HingeDesign {
-            fillet_ratio: x[5],
-            ..HingeConstants::PAPER.hinge(x[3], x[4])
-        }
+        HingeDesign { fillet_ratio: x[5], ..HingeConstants::PAPER.hinge(x[3], x[4]) }
     }
 
     fn value_in(domain: &TrainingDomain, x: &[f64]) -> f64 {

@@ -4,8 +4,8 @@
 //! max(0, l/d - 1)^2,      l = 1.1 d_min
 //! ```
 //!
-//! d is the distance of a hole or a clip from an edge of its panel or from a hinge, d_min the smallest that can be made. The
-//! penalty grows without bound as d vanishes.
+//! d is the distance of a hole or a clip from an edge of its panel or from a hinge, d_min the
+//! smallest that can be made. The penalty grows without bound as d vanishes.
 
 use crate::objective::term::{Deployed, Term, TermGradient};
 use crate::sheet::cut_sheet::AttachmentPoint;
@@ -71,23 +71,14 @@ mod tests {
         }
         let options = SheetOptions {
             hinge_point: HingePoint::Corner,
-            process: CuttingProcess {
-                r_win: 12.0,
-                ..HingeConstants::PAPER.into()
-            },
+            process: CuttingProcess { r_win: 12.0, ..HingeConstants::PAPER.into() },
         };
         let widths = x[2 * count..].iter().map(|w| 2.0 + w).collect::<Vec<f64>>();
         Sheet::new(&pattern, &widths, options).unwrap()
     }
 
     fn attachment(point: PanelPoint, hole: Option<f64>, clip: Option<f64>) -> AttachmentPoint {
-        AttachmentPoint {
-            panel: 1,
-            point,
-            hole,
-            clip,
-            ..AttachmentPoint::default()
-        }
+        AttachmentPoint { panel: 1, point, hole, clip, ..AttachmentPoint::default() }
     }
 
     #[test]
@@ -108,17 +99,10 @@ mod tests {
             (attachment(edge, None, Some(48.0)), true),
         ];
         for (attachment, costs) in cases {
-            let term = Fastenings {
-                attachments: vec![attachment.clone()],
-            };
+            let term = Fastenings { attachments: vec![attachment.clone()] };
             let all = |x: &[f64]| {
                 let sheet = sheet(x);
-                let at = Deployed {
-                    sheet: &sheet,
-                    path: &[],
-                    outline: &[],
-                    fit: None,
-                };
+                let at = Deployed { sheet: &sheet, path: &[], outline: &[], fit: None };
                 let mut gradient = TermGradient::zeros(&at);
                 let value = term.evaluate(&at, 1.0, &mut gradient);
                 let (by_points, by_widths) = sheet.pullback(&gradient.by_sheet);

@@ -10,10 +10,10 @@
 //! max(0, l_min/l - 1)^2,  l: their distance
 //! ```
 //!
-//! rho is 1 at the corner of a square of any size. It is 4 at the corner of a rectangle eight times as long as
-//! wide, or between two equal edges at 14 degrees, and grows without bound as a panel collapses. Sheets that
-//! open far need stretched panels, so shapes that can be cut well cost nothing. Corners closer than l_min
-//! leave no room for the windows of their hinges.
+//! rho is 1 at the corner of a square of any size. It is 4 at the corner of a rectangle eight times
+//! as long as wide, or between two equal edges at 14 degrees, and grows without bound as a panel
+//! collapses. Sheets that open far need stretched panels, so shapes that can be cut well cost
+//! nothing. Corners closer than l_min leave no room for the windows of their hinges.
 
 use crate::geometry::plane::{I, add, complex, cross};
 use crate::objective::term::{Deployed, Term, TermGradient};
@@ -43,8 +43,8 @@ impl Term for PanelShape {
     }
 }
 
-/// The penalty with the minimum corner distance `min_distance` (mm), and its gradient in the corners of
-/// every panel (1/mm); infinite if a panel is not convex.
+/// The penalty with the minimum corner distance `min_distance` (mm), and its gradient in the
+/// corners of every panel (1/mm); infinite if a panel is not convex.
 fn panel_shape(panels: &[Panel], min_distance: f64) -> (f64, Vec<[[f64; 2]; 4]>) {
     let (mut value, mut gradient) = (0.0, vec![[[0.0; 2]; 4]; panels.len()]);
     for (panel, gradient) in std::iter::zip(panels, &mut gradient) {

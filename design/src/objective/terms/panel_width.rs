@@ -1,13 +1,13 @@
-//! Barrier that keeps panels as wide as a cutter needs: the mean over panels of the sum over their corners and the two
-//! edges that do not end at the corner of
+//! Barrier that keeps panels as wide as a cutter needs: the mean over panels of the sum over their
+//! corners and the two edges that do not end at the corner of
 //!
 //! ```text
 //! b(x) = (1 - x)^3 / x^2  for 0 < x < 1,    0 for x >= 1,    infinite for x <= 0,    x = (d - d_min)/d_min
 //! ```
 //!
-//! d is the distance of the corner from the line of the edge. The shortest edge of a panel is not shorter than its
-//! smallest d. b is C^2; a search that begins with wider panels never evaluates a design with a thinner one, because
-//! steps to an infinite loss are halved.
+//! d is the distance of the corner from the line of the edge. The shortest edge of a panel is not
+//! shorter than its smallest d. b is C^2; a search that begins with wider panels never evaluates a
+//! design with a thinner one, because steps to an infinite loss are halved.
 
 use crate::geometry::plane::{I, add, complex, cross};
 use crate::objective::term::{Deployed, Term, TermGradient};
@@ -40,7 +40,8 @@ impl Term for PanelWidth {
     }
 }
 
-/// The barrier for the minimum width `min_width` (mm), in mm^2, and its gradient in the corners of every panel (mm).
+/// The barrier for the minimum width `min_width` (mm), in mm^2, and its gradient in the corners of
+/// every panel (mm).
 fn panel_width(panels: &[Panel], min_width: f64) -> (f64, Vec<[[f64; 2]; 4]>) {
     let weight = WEIGHT * min_width.powi(2) / panels.len() as f64;
     let (mut value, mut gradient) = (0.0, vec![[[0.0; 2]; 4]; panels.len()]);
@@ -60,15 +61,15 @@ fn panel_width(panels: &[Panel], min_width: f64) -> (f64, Vec<[[f64; 2]; 4]>) {
     (value, gradient)
 }
 
-/// The minimum distance of a corner from the line of an edge that does not end at it, over all panels (mm).
+/// The minimum distance of a corner from the line of an edge that does not end at it, over all
+/// panels (mm).
 pub fn thinnest_panel(panels: &[[[f64; 2]; 4]]) -> f64 {
-    let widths = panels
-        .iter()
-        .flat_map(|panel| PAIRS.map(|pair| distance(panel, pair).0));
+    let widths = panels.iter().flat_map(|panel| PAIRS.map(|pair| distance(panel, pair).0));
     widths.fold(f64::INFINITY, f64::min)
 }
 
-/// The distance of a corner from the line of an edge, the edge, and the vector from its start to the corner.
+/// The distance of a corner from the line of an edge, the edge, and the vector from its start to
+/// the corner.
 fn distance(panel: &[[f64; 2]; 4], (edge, corner): (usize, usize)) -> (f64, c64, c64) {
     let [start, end, at] = [edge, (edge + 1) % 4, corner].map(|j| complex(panel[j]));
     let (along, arm) = (end - start, at - start);
@@ -76,16 +77,7 @@ fn distance(panel: &[[f64; 2]; 4], (edge, corner): (usize, usize)) -> (f64, c64,
 }
 
 /// Edges, by the corner at which they start, and the corners that they do not contain.
-const PAIRS: [(usize, usize); 8] = [
-    (0, 2),
-    (0, 3),
-    (1, 3),
-    (1, 0),
-    (2, 0),
-    (2, 1),
-    (3, 1),
-    (3, 2),
-];
+const PAIRS: [(usize, usize); 8] = [(0, 2), (0, 3), (1, 3), (1, 0), (2, 0), (2, 1), (3, 1), (3, 2)];
 
 /// b and db/dx.
 fn barrier(x: f64) -> (f64, f64) {

@@ -1,5 +1,6 @@
-//! The area of the symmetric difference of target and deployed outline, over the area of the target. It is zero only where
-//! they coincide, wherever the corners are along the outline, whereas the Chamfer distance also depends on their spacing.
+//! The area of the symmetric difference of target and deployed outline, over the area of the
+//! target. It is zero only where they coincide, wherever the corners are along the outline, whereas
+//! the Chamfer distance also depends on their spacing.
 
 use crate::geometry::polygon::{area, counter_clockwise};
 use crate::geometry::symmetric_difference::symmetric_difference;

@@ -1,11 +1,13 @@
-//! What `kirigami material learn` says at its end: what was reached, what is left, where the weights are and what comes next.
+//! What `kirigami material learn` says at its end: what was reached, what is left, where the
+//! weights are and what comes next.
 
 use crate::ui::progress::duration;
 use crate::ui::shell_word::shell_word;
 use std::path::Path;
 use verification::{Accuracy, LearningRound};
 
-/// Exponent of the error in the number of rays below which more rays are no help that can be foretold.
+/// Exponent of the error in the number of rays below which more rays are no help that can be
+/// foretold.
 const FLAT: f64 = 0.1;
 
 /// A month (s).
@@ -25,10 +27,8 @@ pub(super) fn conclusion(
         Some(intervals) => intervals.map(|found| found.to_string()),
         None => reached(last).map(|error| format!("{error:.2} %")),
     };
-    let mut text = format!(
-        "W {w}, asked {} %; forces {forces}, asked {} %\n",
-        asked.energy, asked.forces
-    );
+    let mut text =
+        format!("W {w}, asked {} %; forces {forces}, asked {} %\n", asked.energy, asked.forces);
     if let Some(left) = time_left(rounds, asked, workers) {
         text += &left;
     }
@@ -46,8 +46,8 @@ fn reached(round: &LearningRound) -> [f64; 2] {
     [errors.percents()[0], errors.forces_percent()]
 }
 
-/// The time that is still needed if the errors go on to fall with a power of the number of rays; nothing if they are small
-/// enough, or after one round.
+/// The time that is still needed if the errors go on to fall with a power of the number of rays;
+/// nothing if they are small enough, or after one round.
 fn time_left(rounds: &[LearningRound], asked: Accuracy, workers: usize) -> Option<String> {
     let (last, earlier) = rounds.split_last()?;
     // The slope of a short round is noise.

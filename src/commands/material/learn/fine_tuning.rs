@@ -1,4 +1,5 @@
-//! The network of one round: several weights are fine-tuned on its rays, and one network learns the rays and their median.
+//! The network of one round: several weights are fine-tuned on its rays, and one network learns the
+//! rays and their median.
 
 use crate::commands::train::kept_fit;
 use ::train::{Distillation, TrainingConfig, TrainingData};
@@ -20,8 +21,8 @@ pub(super) struct FineTuning {
 }
 
 impl FineTuning {
-    /// The network of the first `rays` rays of the campaign, and the time of all trainings that it took (s). One parent
-    /// alone is fine-tuned.
+    /// The network of the first `rays` rays of the campaign, and the time of all trainings that it
+    /// took (s). One parent alone is fine-tuned.
     pub(super) fn network(&self, rays: usize, database: &Database) -> Result<(Surrogate, f64)> {
         let tuned = self.parents.iter().enumerate().map(|(place, parent)| {
             let name = format!("{rays}-rays-{place}");
@@ -37,13 +38,8 @@ impl FineTuning {
             let (name, first) = (format!("{rays}-rays"), Some(&networks[0]));
             networks.push(kept_fit(&self.fits, &name, data, &self.config, first)?);
         }
-        let training_s = networks
-            .iter()
-            .filter_map(|network| network.card().training_s)
-            .sum();
-        let last = networks
-            .pop()
-            .context("fine-tuning needs weights to start from")?;
+        let training_s = networks.iter().filter_map(|network| network.card().training_s).sum();
+        let last = networks.pop().context("fine-tuning needs weights to start from")?;
         Ok((last, training_s))
     }
 }
