@@ -4,8 +4,9 @@
 use crate::error::DatasetError;
 use crate::rows::Row;
 use crate::schema;
-use polars::io::parquet::write::BatchedWriter;
-use polars::prelude::{ParquetReader, ParquetWriter, SerReader};
+use polars::io::parquet::write::{BatchedWriter, KeyValueMetadata};
+use polars::prelude::{CompatLevel, ParquetReader, ParquetWriter, SchemaExt, SerReader};
+use polars_parquet::write::schema_to_metadata_key;
 use std::io::{Cursor, Write};
 use support::caught_panic;
 
@@ -21,10 +22,14 @@ pub(crate) struct Table<W: Write> {
 
 impl<W: Write> Table<W> {
     pub fn new(to: W) -> Result<Self, DatasetError> {
-        Ok(Self {
-            writer: ParquetWriter::new(to).batched(schema::to_frame(&[])?.schema())?,
-            waiting: Vec::new(),
-        })
+        let frame = schema::to_frame(&[])?;
+        // Polars would declare texts as views, which Arrow's other libraries cannot filter or sort.
+        let plain = schema_to_metadata_key(&frame.schema().to_arrow(CompatLevel::oldest()));
+        let plain = vec![(plain.key, plain.value.unwrap_or_default())];
+        let writer = ParquetWriter::new(to)
+            .with_key_value_metadata(Some(KeyValueMetadata::from_static(plain)))
+            .batched(frame.schema())?;
+        Ok(Self { writer, waiting: Vec::new() })
     }
 
     /// Appends rows.
@@ -138,7 +143,7 @@ impl<W: Write> Write for Hashing<W> {
 mod tests {
     use super::*;
     use crate::rows::tests::rows;
-    use polars::prelude::{Column, DataFrame, IntoColumn, NamedFrom, Series};
+    use polars::prelude::{ArrowDataType, Column, DataFrame, IntoColumn, NamedFrom, Series};
 
     #[test]
     fn rows_that_arrive_in_parts_give_the_file_that_is_written_at_once() {
@@ -153,11 +158,15 @@ mod tests {
         assert_eq!(bytes.hash(), hash(&bytes.to));
         assert_eq!(bytes.to, encode(&rows).unwrap());
         assert_eq!(decode(&bytes.to).unwrap(), rows);
+    }
 
-        let (mut at_once, group) = (Vec::new(), &rows[..GROUP]);
-        let mut frame = schema::to_frame(group).unwrap();
-        ParquetWriter::new(&mut at_once).finish(&mut frame).unwrap();
-        assert_eq!(encode(group).unwrap(), at_once);
+    #[test]
+    fn texts_are_of_the_type_that_every_reader_of_parquet_filters() {
+        let bytes = encode(&rows(3)).unwrap();
+        let schema = ParquetReader::new(Cursor::new(&bytes)).schema().unwrap();
+        let texts = schema::texts().map(|column| &schema.get(column.name).unwrap().dtype);
+        let texts: Vec<_> = texts.collect();
+        assert!(!texts.is_empty() && texts.iter().all(|it| **it == ArrowDataType::LargeUtf8));
     }
 
     #[test]

@@ -50,6 +50,27 @@ def test_databases_are_read_by_polars_and_pandas():
         kg.read_database(path, "excel")
 
 
+@pytest.mark.parametrize("path", sorted(DATA.glob("*/*.parquet")), ids=lambda path: f"{path.parent.name}-{path.stem}")
+def test_the_shipped_databases_are_filtered_by_number_and_by_text(path):
+    pandas = pytest.importorskip("pandas")
+    parquet = pytest.importorskip("pyarrow.parquet")
+    duckdb = pytest.importorskip("duckdb")
+    whole = pandas.read_parquet(path)
+    tier = whole.tier.iloc[0]
+    for column, sign, value, expected in [
+        ("theta", ">", 0.5, (whole.theta > 0.5).sum()),
+        ("tier", "==", tier, (whole.tier == tier).sum()),
+    ]:
+        assert expected > 0
+        assert len(pandas.read_parquet(path, filters=[(column, sign, value)])) == expected
+        assert parquet.read_table(path, filters=[(column, sign, value)]).num_rows == expected
+        query = f"select count(*) from read_parquet(?) where {column} {sign} ?"
+        assert duckdb.execute(query, [str(path), value]).fetchone() == (expected,)
+    in_order = parquet.read_table(path).sort_by("theta")["theta"].to_numpy()
+    np.testing.assert_array_equal(in_order, np.sort(whole.theta))
+    assert "string_view" not in {str(column.type) for column in parquet.read_schema(path)}
+
+
 def test_a_run_folder_is_read_back(program, tmp_path):
     keys = (SCENES / "pin-7x7.toml").read_text()
     scene = tmp_path / "pins.toml"
