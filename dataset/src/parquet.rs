@@ -143,7 +143,7 @@ impl<W: Write> Write for Hashing<W> {
 mod tests {
     use super::*;
     use crate::rows::tests::rows;
-    use polars::prelude::{ArrowDataType, Column, DataFrame, IntoColumn, NamedFrom, Series};
+    use polars::prelude::{Column, DataFrame, IntoColumn, NamedFrom, Series};
 
     #[test]
     fn rows_that_arrive_in_parts_give_the_file_that_is_written_at_once() {
@@ -163,10 +163,13 @@ mod tests {
     #[test]
     fn texts_are_of_the_type_that_every_reader_of_parquet_filters() {
         let bytes = encode(&rows(3)).unwrap();
-        let schema = ParquetReader::new(Cursor::new(&bytes)).schema().unwrap();
-        let texts = schema::texts().map(|column| &schema.get(column.name).unwrap().dtype);
-        let texts: Vec<_> = texts.collect();
-        assert!(!texts.is_empty() && texts.iter().all(|it| **it == ArrowDataType::LargeUtf8));
+        let frame = schema::to_frame(&rows(3)).unwrap();
+        let declared = |level| schema_to_metadata_key(&frame.schema().to_arrow(level)).value;
+        let mut reader = ParquetReader::new(Cursor::new(&bytes));
+        let metadata = reader.get_metadata().unwrap().key_value_metadata.clone().unwrap();
+        let found = metadata.iter().find(|pair| pair.key == "ARROW:schema").unwrap();
+        assert_eq!(found.value, declared(CompatLevel::oldest()));
+        assert_ne!(found.value, declared(CompatLevel::newest()));
     }
 
     #[test]
