@@ -33,7 +33,7 @@ use design::optimise::outer_loop::Ended;
 use scene::analysis::design_checks::DesignChecks;
 use scene::analysis::error_budget::ErrorBudget;
 use scene::design_run::Designed;
-use scene::{Level, LevelDifference, Rung, Scene};
+use scene::{CoarseSearch, Level, LevelDifference, Scene};
 use serde::Serialize;
 use support::severity::Severity;
 
@@ -44,8 +44,8 @@ pub struct Report {
     pub title: String,
     /// Why the run ended.
     pub ended: Ended,
-    /// The levels at which the start of the search was found, if there were any.
-    pub rungs: Vec<Rung>,
+    /// The searches at coarser levels that found the start, if there were any.
+    pub coarse_searches: Vec<CoarseSearch>,
     /// Number of steps after the start.
     pub steps: usize,
     /// Number of steps that were halved because a design had no objective value.
@@ -113,31 +113,31 @@ impl Report {
     }
 
     /// The searches at coarser levels: the error of each, measured by the next finer one.
-    pub fn climb(&self) -> Vec<String> {
-        let rungs = self.rungs.iter().map(|rung| {
+    pub fn coarse_search_lines(&self) -> Vec<String> {
+        let searches = self.coarse_searches.iter().map(|search| {
             let percent = |load| format!(", the load by {} %", rounded(100.0 * load, 2));
             let peak = |peak| format!(", D_peak by {}", rounded(peak, 2));
             let LevelDifference {
                 corners,
                 load,
                 damage,
-            } = rung.difference;
-            let reference = match rung.finer {
+            } = search.difference;
+            let reference = match search.finer {
                 Level::Final => "finite elements of every hinge".to_owned(),
                 finer => format!("`{finer}`"),
             };
             format!(
-                "searched at the level `{}` in {} steps: its corners differ from {reference} by {} mm at most{}{}; asked for: {} mm",
-                rung.level,
-                rung.steps,
+                "searched at the level `{}` in {} steps: its corners differ from {reference} by {} mm at most{}{}; tolerance: {} mm",
+                search.level,
+                search.steps,
                 rounded(corners[1], 2),
                 load.map_or(String::new(), percent),
                 damage.map_or(String::new(), peak),
-                rounded(rung.asked, 3)
+                rounded(search.tolerance, 3)
             )
         });
-        let mut lines: Vec<String> = rungs.collect();
-        if self.rungs.last().is_some_and(|last| !last.suffices()) {
+        let mut lines: Vec<String> = searches.collect();
+        if self.coarse_searches.last().is_some_and(|last| !last.suffices()) {
             lines.push(match self.steps {
                 _ if self.facts.level == Level::Final => {
                     "not converged: all rounds of finite elements were made".into()
@@ -178,9 +178,9 @@ impl Report {
         let deployment = &designed.best.deployment;
         let hinges = HingeRow::all(scene, deployment);
         let facts = FactSheet::new(scene, &designed.problem, deployment, &hinges);
-        let last = designed.rungs.last();
-        let by_elements = last.filter(|rung| rung.finer == Level::Final);
-        let residual = by_elements.map(|rung| rung.difference.corners[1]);
+        let last = designed.coarse_searches.last();
+        let by_elements = last.filter(|search| search.finer == Level::Final);
+        let residual = by_elements.map(|search| search.difference.corners[1]);
         let errors = ErrorBudget::new(scene, &designed.problem, deployment, residual);
         let dead_loads = scene.config.has_loads() && scene.config.drive.is_none();
         let budget = errors
@@ -197,11 +197,16 @@ impl Report {
             cut_file: false,
             title: scene.config.title.clone(),
             ended: designed.ended.clone(),
-            rungs: designed.rungs.clone(),
-            steps: designed.history.len() - 1,
-            setbacks: designed.history.iter().filter(|record| record.setback.is_some()).count(),
+            coarse_searches: designed.coarse_searches.clone(),
+            steps: designed.search.last().step,
+            setbacks: designed
+                .search
+                .history
+                .iter()
+                .filter(|record| record.setback.is_some())
+                .count(),
             terms: designed.problem.objective.labels(),
-            before: match designed.rungs.first() {
+            before: match designed.coarse_searches.first() {
                 Some(first) => first.start.clone(),
                 None => Scores::new(&designed.problem.objective, &designed.start),
             },

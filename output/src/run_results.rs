@@ -28,7 +28,7 @@ pub fn write_results(
 ) -> Result<Report, ResultsError> {
     let best = &designed.best.deployment;
     let cuts = CutLines::of(scene, best);
-    let checks = DesignChecks::read(&scene.output(), &designed.design)?;
+    let checks = DesignChecks::read(&scene.output(), &designed.search.best)?;
     let report = Report::new(scene, designed, &cuts, checks, force);
     let drawn = cuts.as_ref().ok().filter(|_| report.cut_file);
     let results = Results {

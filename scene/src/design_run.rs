@@ -4,14 +4,14 @@
 //! from it.
 
 use crate::checked_scene::{MODEL_PARTS, Scene};
+use crate::coarse_search::CoarseSearch;
 use crate::keys::SceneConfig;
+use crate::level::Level;
 use crate::run_inputs::{self, InputHashes, RunInputsError, STATE_FILE};
-use crate::rung::Rung;
 use crate::scene_error::SceneError;
 use design::objective::design_problem::{DesignError, DesignProblem, Evaluation};
-use design::objective::scores::Scores;
 use design::objective::terms::panel_width::thinnest_panel;
-use design::optimise::outer_loop::{Ended, SearchState, StepRecord, optimise};
+use design::optimise::outer_loop::{Ended, SearchState, Until, optimise};
 use design::pattern::design_vector::DesignVector;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -24,28 +24,28 @@ use support::file_error::FileError;
 use support::sealed_json::{self, SealError};
 use support::{regular_file, whole_file};
 
+/// The folder of the coarse searches, in the folder of a run.
+pub const LEVELS: &str = "levels";
+
 const SAVE_EVERY: Duration = Duration::from_secs(1);
 
 /// A finished run.
 pub struct Designed {
+    /// Its scene.
+    pub scene: Scene,
     /// The design problem of the scene.
     pub problem: DesignProblem,
     /// Why the search ended.
     pub ended: Ended,
-    /// One record per step, beginning with the record of the start.
-    pub history: Vec<StepRecord>,
-    /// The design with the minimum loss of those whose path was followed from the flat sheet.
-    pub design: DesignVector,
+    /// The state of the search, with one record per step.
+    pub search: SearchState,
     /// The evaluation of the start.
     pub start: Evaluation,
-    /// The evaluation of `design`, whose path is followed from the flat sheet.
+    /// The evaluation of the best design, whose path is followed from the flat sheet.
     pub best: Evaluation,
-    /// Whether a corrected path of the search was on another branch than the followed one; see
-    /// [`SearchState::branch_mismatch`].
-    pub branch_mismatch: bool,
-    /// The levels at which the start of the search was found; empty if the search began at the
-    /// start of the scene.
-    pub rungs: Vec<Rung>,
+    /// The searches at coarser levels that found the start; empty if the search began at the start
+    /// of the scene.
+    pub coarse_searches: Vec<CoarseSearch>,
 }
 
 /// Why a run failed.
@@ -102,9 +102,9 @@ struct RunState {
     /// How the search ended; `None` while it is under way.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     ended: Option<Ended>,
-    /// See [`Designed::rungs`].
+    /// See [`Designed::coarse_searches`].
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    rungs: Vec<Rung>,
+    coarse_searches: Vec<CoarseSearch>,
     #[serde(flatten)]
     search: SearchState,
 }
@@ -158,31 +158,35 @@ pub fn left_run(scene: &Scene) -> Result<Option<(Ended, DesignVector)>, InverseD
 /// deploys.
 const SEARCH_KEYS: [&str; 3] = ["objective", "optimiser", "tolerances"];
 
+/// The searches at coarser levels that found the start of a run.
+#[derive(Default)]
+pub struct Earlier {
+    /// What is kept of them, the coarsest first.
+    pub searches: Vec<CoarseSearch>,
+    /// The last one, with whose optimiser the run begins.
+    pub optimiser: Option<SearchState>,
+}
+
+/// Called with the level and the state of a search after each of its steps.
+pub type OnStep<'a> = &'a mut dyn FnMut(Level, &SearchState);
+
+/// A run whose start is evaluated.
+pub struct BegunRun {
+    /// The scene of the run.
+    pub scene: Scene,
+    /// Its design problem.
+    pub problem: DesignProblem,
+    /// The evaluation of its start.
+    pub start: Evaluation,
+}
+
 impl Designed {
     /// The start of a scene before any step of its search, with its path followed from the flat
     /// sheet until `stop` becomes true.
     pub fn at_start(scene: &Scene, stop: Arc<AtomicBool>) -> Result<Self, InverseDesignError> {
-        let mut problem = scene.problem()?;
-        problem.stop_by(stop);
-        let design = scene.start();
-        let start = problem.evaluate(&design).map_err(InverseDesignError::Start)?;
-        let record = StepRecord {
-            step: 0,
-            scores: Scores::new(&problem.objective, &start),
-            followed: true,
-            halvings: 0,
-            setback: None,
-        };
-        Ok(Self {
-            ended: Ended::Stopped,
-            history: vec![record],
-            branch_mismatch: false,
-            rungs: Vec::new(),
-            design,
-            best: start.clone(),
-            start,
-            problem,
-        })
+        let run = BegunRun::new(scene.clone(), Some(stop))?;
+        let search = run.begun();
+        run.designed(Ended::Stopped, search, Vec::new())
     }
 
     /// The run in the run folder of a scene as it was left, with its paths followed from the flat
@@ -194,103 +198,113 @@ impl Designed {
         let Some(state) = RunState::read(&scene.output().join(STATE_FILE), scene)? else {
             return Ok(None);
         };
-        let mut problem = scene.problem()?;
-        problem.stop_by(stop);
-        let start = (problem.evaluate(&scene.start())).map_err(InverseDesignError::Start)?;
+        let run = BegunRun::new(scene.clone(), Some(stop))?;
         let ended = state.left();
-        let RunState { rungs, mut search, .. } = state;
-        search.pause(&problem);
-        let found = Self::found(problem, ended, search, start)?;
-        Ok(Some(Self { rungs, ..found }))
-    }
-
-    /// A search that has ended.
-    fn found(
-        problem: DesignProblem,
-        ended: Ended,
-        search: SearchState,
-        start: Evaluation,
-    ) -> Result<Self, InverseDesignError> {
-        let best = problem.evaluate(&search.best).map_err(InverseDesignError::Best)?;
-        Ok(Self {
-            problem,
-            ended,
-            branch_mismatch: search.branch_mismatch(),
-            history: search.history,
-            design: search.best,
-            start,
-            best,
-            rungs: Vec::new(),
-        })
+        let RunState { coarse_searches, mut search, .. } = state;
+        search.pause(&run.problem);
+        run.designed(ended, search, coarse_searches).map(Some)
     }
 }
 
-/// Runs the search of a scene in its run folder; continues from the state there if there is one.
-///
-/// `progress` is called with the state of the search after every step; the run stops at the end of
-/// the step during which `stop` becomes true.
+impl BegunRun {
+    /// Evaluates the start of a scene; its paths are followed until `stop` becomes true.
+    pub fn new(scene: Scene, stop: Option<Arc<AtomicBool>>) -> Result<Self, InverseDesignError> {
+        let mut problem = scene.problem()?;
+        if let Some(stop) = stop {
+            problem.stop_by(stop);
+        }
+        let start = problem.evaluate(&scene.start()).map_err(InverseDesignError::Start)?;
+        Ok(Self { scene, problem, start })
+    }
+
+    /// The search at its start.
+    pub(crate) fn begun(&self) -> SearchState {
+        let (optimiser, start) = (&self.scene.config.optimiser, self.scene.start());
+        let (method, rate) = (optimiser.method, optimiser.learning_rate);
+        SearchState::new(&self.problem, start, &self.start, method, rate)
+    }
+
+    /// Runs the search in the run folder of the scene, `until` then or to all steps of the scene;
+    /// continues from the state there if there is one.
+    ///
+    /// `progress` is called after every step; the run stops at the end
+    /// of the step during which `stop` becomes true.
+    pub fn search(
+        self,
+        earlier: &Earlier,
+        until: Option<Until>,
+        stop: &AtomicBool,
+        progress: OnStep,
+    ) -> Result<Designed, InverseDesignError> {
+        let Self { scene, problem, start } = &self;
+        let (level, steps) = (scene.config.level, scene.config.optimiser.steps);
+        let until = until.unwrap_or(steps.into());
+        let folder = scene.output();
+        std::fs::create_dir_all(&folder).map_err(FileError::at(&folder))?;
+        let path = folder.join(STATE_FILE);
+        wide_enough(scene, start)?;
+        let (searches, mut search) = match RunState::read(&path, scene)? {
+            Some(state) => (state.coarse_searches, state.search),
+            None => {
+                let search = match &earlier.optimiser {
+                    Some(coarser) => SearchState::after(coarser, problem, scene.start(), start),
+                    None => self.begun(),
+                };
+                progress(level, &search);
+                (earlier.searches.clone(), search)
+            }
+        };
+        let inputs = run_inputs::keep(scene)?;
+        let save = |search: &SearchState, ended: Option<&Ended>| {
+            let state = RunState {
+                scene: scene.config.clone(),
+                model: scene.model_hash(),
+                inputs: inputs.clone(),
+                ended: ended.cloned(),
+                coarse_searches: searches.clone(),
+                search: search.clone(),
+            };
+            state.write(&path)
+        };
+        // The state names the hashes of the inputs that have just been written.
+        save(&search, None)?;
+        let mut saved = Instant::now();
+        let ended = optimise(problem, &mut search, until, stop, &mut |search| {
+            progress(level, search);
+            if saved.elapsed() > SAVE_EVERY {
+                save(search, None)?;
+                saved = Instant::now();
+            }
+            Ok::<_, FileError>(())
+        })?;
+        save(&search, Some(&ended))?;
+        self.designed(ended, search, searches)
+    }
+
+    /// A search that has ended. The path of a start that is the best design is not followed again.
+    fn designed(
+        self,
+        ended: Ended,
+        search: SearchState,
+        coarse_searches: Vec<CoarseSearch>,
+    ) -> Result<Designed, InverseDesignError> {
+        let Self { scene, problem, start } = self;
+        let best = match search.best == scene.start() {
+            true => start.clone(),
+            false => problem.evaluate(&search.best).map_err(InverseDesignError::Best)?,
+        };
+        Ok(Designed { scene, problem, ended, search, start, best, coarse_searches })
+    }
+}
+
+/// Runs the search of a scene in its run folder; see [`BegunRun::search`].
 pub fn inverse_design(
     scene: &Scene,
     stop: &AtomicBool,
     progress: &mut dyn FnMut(&SearchState),
 ) -> Result<Designed, InverseDesignError> {
-    design_after(Vec::new(), scene, stop, progress)
-}
-
-/// The same for a scene whose start was found at other levels.
-pub fn design_after(
-    rungs: Vec<Rung>,
-    scene: &Scene,
-    stop: &AtomicBool,
-    progress: &mut dyn FnMut(&SearchState),
-) -> Result<Designed, InverseDesignError> {
-    let problem = scene.problem()?;
-    let folder = scene.output();
-    std::fs::create_dir_all(&folder).map_err(FileError::at(&folder))?;
-    let path = folder.join(STATE_FILE);
-    let design = scene.start();
-    let start = problem.evaluate(&design).map_err(InverseDesignError::Start)?;
-    wide_enough(scene, &start)?;
-    let (optimiser, model) = (&scene.config.optimiser, scene.model_hash());
-    let mut rungs = rungs;
-    let mut search = match RunState::read(&path, scene)? {
-        Some(state) => {
-            rungs = state.rungs;
-            state.search
-        }
-        None => {
-            let (method, rate) = (optimiser.method, optimiser.learning_rate);
-            let search = SearchState::new(&problem, design, &start, method, rate);
-            progress(&search);
-            search
-        }
-    };
-    let inputs = run_inputs::keep(scene)?;
-    let save = |search: &SearchState, ended: Option<&Ended>| {
-        let state = RunState {
-            scene: scene.config.clone(),
-            model: model.clone(),
-            inputs: inputs.clone(),
-            ended: ended.cloned(),
-            rungs: rungs.clone(),
-            search: search.clone(),
-        };
-        state.write(&path)
-    };
-    // The state names the hashes of the inputs that have just been written.
-    save(&search, None)?;
-    let mut saved = Instant::now();
-    let ended = optimise(&problem, &mut search, optimiser.steps, stop, &mut |search| {
-        progress(search);
-        if saved.elapsed() > SAVE_EVERY {
-            save(search, None)?;
-            saved = Instant::now();
-        }
-        Ok::<_, FileError>(())
-    })?;
-    save(&search, Some(&ended))?;
-    let found = Designed::found(problem, ended, search, start)?;
-    Ok(Designed { rungs, ..found })
+    let run = BegunRun::new(scene.clone(), None)?;
+    run.search(&Earlier::default(), None, stop, &mut |_, search| progress(search))
 }
 
 /// An error if a panel of the start is so thin that the barrier of the minimum width is infinite.

@@ -14,13 +14,13 @@ use anyhow::{Context, Result, bail, ensure};
 use clap::Args;
 use design::objective::scores::shown;
 use design::objective::term::in_words;
-use design::optimise::outer_loop::{Ended, SearchState, StepRecord};
+use design::optimise::outer_loop::{Ended, StepRecord};
 use output::drawing::deployment_frames;
 use output::report::{Report, Warning};
 use output::run_files::{ANIMATION, RUN_FILES, Writer};
 use output::run_results::{remove_run, write_results};
-use scene::analysis::ladder::{Climbed, climb};
-use scene::design_run::{Designed, inverse_design};
+use scene::analysis::refinement::refine;
+use scene::design_run::{BegunRun, Designed, Earlier, LEVELS, OnStep};
 use scene::run_inputs::{SCENE_FILE, holds_a_run, scene_file};
 use scene::{Level, Scene, SceneConfig};
 use std::path::{Path, PathBuf};
@@ -48,9 +48,9 @@ pub struct DesignCommand {
     #[arg(long, value_name = "LEVEL", value_parser = with_unit::level())]
     level: Option<Level>,
     /// How accurately the corners of the panels are to be known: a length such as 0.5mm, or a part
-    /// of the longer side of the sheet such as 0.2%. The search runs at the cheapest level,
-    /// `draft`, and goes up until the difference to the next finer level is smaller; that level
-    /// evaluates the design
+    /// of the longer side of the sheet such as 0.2%. The search begins at `draft`. While the
+    /// difference to the next finer level is larger, that level, `standard` and then `fine`,
+    /// continues from the converged design. The next finer level evaluates the result
     #[arg(long, value_name = "ACCURACY", value_parser = with_unit::accuracy, conflicts_with_all = ["level", "steps"])]
     within: Option<Accuracy>,
     /// Run folder, instead of the scene's. Of several runs: the folder of the table, designs.md and
@@ -96,15 +96,14 @@ impl DesignCommand {
                 let scene = self.scene(file, |config| {
                     config.output = out.unwrap_or_else(|| config.output.clone());
                 })?;
-                let (report, ended) =
-                    with_level_bars(&scene, |progress| self.design(&scene, progress))?;
+                let report = with_level_bars(&scene, |progress| self.design(&scene, progress))?;
                 if self.json {
                     println!("{}", serde_json::to_string_pretty(&report)?);
                 } else {
                     let folder = scene.output().canonicalize()?;
                     println!("{}\nwritten to {}", report.document(), folder.display());
                 }
-                check(&scene, &report, &ended)
+                check(&scene, &report)
             }
             _ => {
                 ensure!(!self.json, "--json prints the report of one run: name one scene");
@@ -158,7 +157,7 @@ impl DesignCommand {
         let (mut left, mut failed, mut done) = (runs.len(), 0, 0);
         let work = |i: usize, reports: &Reports<(usize, Result<()>)>| {
             let designed = self.design(&scenes[i], &mut |_, _| {});
-            let ended = designed.and_then(|(report, ended)| check(&scenes[i], &report, &ended));
+            let ended = designed.and_then(|report| check(&scenes[i], &report));
             reports.send((i, ended));
         };
         work_through(runs.len(), workers, stop, &work, &mut |(i, ended)| {
@@ -191,19 +190,23 @@ impl DesignCommand {
     }
 
     /// One run: its search and its results.
-    fn design(&self, scene: &Scene, progress: OnStep) -> Result<(Report, Ended)> {
+    fn design(&self, scene: &Scene, progress: OnStep) -> Result<Report> {
         refuse_files_of_others(&scene.output())?;
         let _held = run_folder::hold(&scene.output())?;
         if self.restart {
             remove_run(scene)?;
-            remove_level_runs(&scene.output())?;
+            let levels = scene.output().join(LEVELS);
+            if levels.exists() {
+                std::fs::remove_dir_all(&levels)
+                    .with_context(|| format!("cannot remove {}", levels.display()))?;
+            }
         }
         match self.within {
             None if self.by_elements(scene.config.level) => {
                 self.search_by_elements(scene, progress)
             }
             None => self.search(scene, progress),
-            Some(accuracy) => self.climb(scene, accuracy, progress),
+            Some(accuracy) => self.refine(scene, accuracy, progress),
         }
     }
 
@@ -213,43 +216,36 @@ impl DesignCommand {
     }
 
     #[cfg(not(feature = "pipeline"))]
-    fn search_by_elements(&self, _: &Scene, _: OnStep) -> Result<(Report, Ended)> {
+    fn search_by_elements(&self, _: &Scene, _: OnStep) -> Result<Report> {
         bail!(
             "the level `final` needs finite elements: install the whole program, as the README says"
         )
     }
 
     /// A search at the level of the scene.
-    fn search(&self, scene: &Scene, progress: OnStep) -> Result<(Report, Ended)> {
-        let (stop, level) = (interrupt::stop_flag()?, scene.config.level);
-        let designed = inverse_design(scene, stop, &mut |search| progress(level, search))?;
-        let report = write_run(scene, &designed, self.force)?;
-        Ok((report, designed.ended))
+    fn search(&self, scene: &Scene, progress: OnStep) -> Result<Report> {
+        let (run, stop) = (BegunRun::new(scene.clone(), None)?, interrupt::stop_flag()?);
+        let designed = run.search(&Earlier::default(), None, stop, progress)?;
+        write_run(scene, &designed, self.force)
     }
 
     /// Searches from the cheapest level to one that is accurate enough.
-    fn climb(
-        &self,
-        scene: &Scene,
-        accuracy: Accuracy,
-        progress: OnStep,
-    ) -> Result<(Report, Ended)> {
-        let asked = match accuracy {
+    fn refine(&self, scene: &Scene, accuracy: Accuracy, progress: OnStep) -> Result<Report> {
+        let tolerance = match accuracy {
             Accuracy::Length(mm) => mm,
             Accuracy::Part(part) => part * scene.config.sheet.outline().size(),
         };
-        self.write_climbed(climb(scene, asked, interrupt::stop_flag()?, progress)?)
+        self.write_refined(refine(scene, tolerance, interrupt::stop_flag()?, progress)?)
     }
 
     /// Writes the results of a design that was found on several levels.
-    fn write_climbed(&self, climbed: Climbed) -> Result<(Report, Ended)> {
-        let Climbed { scene, designed } = climbed;
+    fn write_refined(&self, designed: Designed) -> Result<Report> {
+        let scene = &designed.scene;
         if designed.ended == Ended::Stopped {
-            let made = designed.history.len() - 1;
+            let made = designed.search.last().step;
             bail!(Unfinished { left: scene.config.optimiser.steps - made, what: "design steps" });
         }
-        let report = write_run(&scene, &designed, self.force)?;
-        Ok((report, designed.ended))
+        write_run(scene, &designed, self.force)
     }
 
     /// A scene with the changes of the command line and the changes of `change`.
@@ -278,9 +274,6 @@ impl DesignCommand {
     }
 }
 
-/// Called with the level and the state of a search after each of its steps.
-type OnStep<'a> = &'a mut dyn FnMut(Level, &SearchState);
-
 /// Runs searches at one or several levels, each with a bar of its own.
 fn with_level_bars<T>(scene: &Scene, searches: impl FnOnce(OnStep) -> T) -> T {
     let total = scene.config.optimiser.steps;
@@ -294,23 +287,6 @@ fn with_level_bars<T>(scene: &Scene, searches: impl FnOnce(OnStep) -> T) -> T {
     });
     shown.into_iter().for_each(|(_, bar)| bar.finish());
     found
-}
-
-/// Removes the runs of levels in the folder of a run, such as `draft` and `final-1`; other runs
-/// there, such as `seed-1`, are not its.
-fn remove_level_runs(folder: &Path) -> Result<()> {
-    let is_of_level = |path: &PathBuf| {
-        let name = path.file_name().unwrap_or_default().to_string_lossy();
-        let search = name.strip_prefix("final-");
-        let is_search = search.is_some_and(|number| number.parse::<usize>().is_ok());
-        (is_search || Level::named(&name).is_some()) && holds_a_run(path)
-    };
-    let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
-    for run in entries.map(|entry| entry.path()).filter(is_of_level) {
-        std::fs::remove_dir_all(&run)
-            .with_context(|| format!("cannot remove {}", run.display()))?;
-    }
-    Ok(())
 }
 
 /// An error if a run would replace files of its folder that no run has written.
@@ -341,8 +317,8 @@ pub(crate) fn write_run(scene: &Scene, designed: &Designed, force: bool) -> Resu
 }
 
 /// An error if a run is not at its end, or has no cut file.
-fn check(scene: &Scene, report: &Report, ended: &Ended) -> Result<()> {
-    match ended {
+fn check(scene: &Scene, report: &Report) -> Result<()> {
+    match &report.ended {
         Ended::Completed | Ended::Settled => {}
         Ended::Stopped => bail!(Unfinished {
             left: scene.config.optimiser.steps - report.steps,

@@ -350,7 +350,7 @@ impl Session {
         self.tell(Kind::Page, &Shown { page, run, ms: None });
         let adopted = SceneConfig {
             output: self.opened()?.project.next_run(),
-            ..scene.starting_at(&designed.design)
+            ..scene.starting_at(&designed.search.best)
         };
         let shown = self.opened()?.scene.changed(adopted.clone())?;
         let sheet = self.show(shown)?;

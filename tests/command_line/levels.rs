@@ -15,25 +15,28 @@ fn a_design_within_an_accuracy_is_searched_on_the_cheapest_level_that_has_it() {
     let work = Workplace::new();
     let design = format!("design {PLATE} --within 0.5mm --out plate --json --quiet");
     let report = json(&work.output(&design));
-    let [rung] = &report["rungs"].as_array().unwrap()[..] else {
-        panic!("{}", report["rungs"]);
+    let [search] = &report["coarse_searches"].as_array().unwrap()[..] else {
+        panic!("{}", report["coarse_searches"]);
     };
     assert_eq!(
-        [&rung["level"], &rung["finer"], &report["facts"]["level"]],
+        [&search["level"], &search["finer"], &report["facts"]["level"]],
         ["draft", "standard", "standard"]
     );
-    let largest = rung["difference"]["corners"][1].as_f64().unwrap();
+    let largest = search["difference"]["corners"][1].as_f64().unwrap();
     assert!(largest > 0.0 && largest < 0.5, "{largest}");
     let loss = |scores: &Value| scores["loss"].as_f64().unwrap();
     assert!(loss(&report["after"]) < 0.95 * loss(&report["before"]));
     let text = std::fs::read_to_string(work.path("plate/report.txt")).unwrap();
     assert!(text.lines().next().unwrap().ends_with("level standard"), "{text}");
-    assert!(text.contains("asked for: 0.5 mm"), "{text}");
+    assert!(text.contains("tolerance: 0.5 mm"), "{text}");
+    // The outline error rises while the loss falls, and the report says by which parts.
+    assert!(text.contains("648.7 at the start, 565.4 mm^2"), "{text}");
+    assert!(text.contains("The outline error rose while the loss fell"), "{text}");
     // The same command, and the run folder alone, are the same run.
     for again in [&*design, "design plate --json --quiet"] {
         let again = json(&work.output(again));
         assert_eq!(again["after"], report["after"]);
-        assert_eq!(again["rungs"], report["rungs"]);
+        assert_eq!(again["coarse_searches"], report["coarse_searches"]);
     }
 }
 

@@ -9,11 +9,10 @@
 use crate::balanced_sheet::{BALANCED, Balanced, DRAFT_ROUNDS, balanced};
 use crate::replay::ElementWindows;
 use crate::verification_error::VerificationError;
-use design::optimise::outer_loop::{Ended, SearchState};
+use design::optimise::outer_loop::Ended;
 use mesher::Tier;
-use scene::analysis::ladder::Climbed;
 use scene::analysis::level_difference::AtLevel;
-use scene::design_run::{design_after, inverse_design};
+use scene::design_run::{BegunRun, Designed, Earlier, LEVELS, OnStep};
 use scene::{Level, Scene, SolvedHinge, SolvedHinges};
 use std::sync::atomic::AtomicBool;
 use support::file_error::FileError;
@@ -40,52 +39,46 @@ pub fn final_design(
     scene: &Scene,
     windows: &ElementWindows,
     stop: &AtomicBool,
-    progress: &mut dyn FnMut(Level, &SearchState),
-) -> Result<Climbed, VerificationError> {
-    let folder = &scene.config.output;
+    progress: OnStep,
+) -> Result<Designed, VerificationError> {
+    let [folder, levels] = [scene.config.output.clone(), scene.config.output.join(LEVELS)];
     let mut at = scene.at_level(Level::Standard)?;
-    at.config.output = folder.join(Level::Standard.name());
-    let asked = BALANCED * scene.config.sheet.outline().size();
-    let mut rungs = Vec::new();
+    at.config.output = levels.join(Level::Standard.name());
+    let tolerance = BALANCED * scene.config.sheet.outline().size();
+    let mut earlier = Earlier::default();
     for searched in 1..=SEARCHES {
         let level = at.config.level;
-        let designed = inverse_design(&at, stop, &mut |state| progress(level, state))?;
+        let designed = BegunRun::new(at, None)?.search(&earlier, None, stop, progress)?;
         if designed.ended == Ended::Stopped {
-            let scene = at;
-            return Ok(Climbed { scene, designed });
+            return Ok(designed);
         }
-        let (found, corrected) = balanced(&at, &designed.design, windows, ROUNDS)?;
-        let file = at.output().join(SOLVED_HINGES);
+        let (found, corrected) = balanced(&designed.scene, &designed.search.best, windows, ROUNDS)?;
+        let file = designed.scene.output().join(SOLVED_HINGES);
         let file = std::path::absolute(&file).map_err(FileError::at(&file))?;
         solved_hinges(&found).write(&file)?;
-        let own = AtLevel { level, problem: designed.problem, deployment: found.by_law().clone() };
-        let finer = AtLevel {
-            level: Level::Final,
-            problem: corrected,
-            deployment: found.by_elements().clone(),
-        };
-        let rung = own.rung(&designed.history, &finer, asked);
-        let is_last = rung.suffices() || searched == SEARCHES;
-        rungs.push(rung);
-        let mut config = at.starting_at(&designed.design);
+        let own = AtLevel::new(level, &designed.problem, found.by_law());
+        let finer = AtLevel::new(Level::Final, &corrected, found.by_elements());
+        let coarse = own.coarse_search(&designed.search, &finer, tolerance);
+        let is_last = coarse.suffices() || searched == SEARCHES;
+        let mut config = designed.scene.starting_at(&designed.search.best);
+        earlier.searches.push(coarse);
+        earlier.optimiser = Some(designed.search);
         config.level = Level::Final;
         if let Some(files) = &mut config.surrogate {
             files.solved_hinges = Some(file);
         }
-        config.output.clone_from(folder);
         if is_last {
+            config.output.clone_from(&folder);
             config.optimiser.steps = 0;
         } else {
-            config.output.push(format!("{}-{searched}", Level::Final));
+            config.output = levels.join(format!("{}-{searched}", Level::Final));
         }
-        at = at.changed(config)?;
+        at = designed.scene.changed(config)?;
         if is_last {
             break;
         }
     }
-    let designed = design_after(rungs, &at, stop, &mut |state| progress(Level::Final, state))?;
-    let scene = at;
-    Ok(Climbed { scene, designed })
+    Ok(BegunRun::new(at, None)?.search(&earlier, None, stop, progress)?)
 }
 
 /// The last states of the hinges by finite elements.

@@ -41,7 +41,7 @@ pub struct StepRecord {
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Ended {
-    /// All steps were made.
+    /// All steps were made, or the search has converged where it was to.
     Completed,
     /// Stopped on request; the next run continues.
     Stopped,
@@ -102,19 +102,40 @@ struct Scored {
 /// the tolerance of the equilibria is larger.
 const SAME_BRANCH: f64 = 1e-6;
 
-/// Continues the search from `state` until it has made `steps` steps after the start, until no step
+/// When a search ends that can go on.
+#[derive(Clone, Copy)]
+pub struct Until {
+    /// Steps after the start, at most.
+    pub steps: usize,
+    /// Whether it also ends when it has converged: when ten steps lower the loss by less than a
+    /// thousandth of it.
+    pub converged: bool,
+}
+
+impl From<usize> for Until {
+    fn from(steps: usize) -> Self {
+        Self { steps, converged: false }
+    }
+}
+
+/// Steps, and the relative fall of the loss over them, of a search that has converged.
+const CONVERGED: (usize, f64) = (10, 1e-3);
+
+/// Continues the search from `state` until it has made all steps or has converged, until no step
 /// lowers the loss, or until the end of the step during which `stop` becomes true.
 ///
 /// `sink` receives the state after every step and may end the search by an error.
 pub fn optimise<E>(
     problem: &DesignProblem,
     state: &mut SearchState,
-    steps: usize,
+    until: impl Into<Until>,
     stop: &AtomicBool,
     sink: &mut dyn FnMut(&SearchState) -> Result<(), E>,
 ) -> Result<Ended, E> {
+    let until = until.into();
     loop {
-        let ended = match (state.history.len() > steps, stop.load(Ordering::Relaxed)) {
+        let done = state.history.len() > until.steps || (until.converged && state.has_converged());
+        let ended = match (done, stop.load(Ordering::Relaxed)) {
             (true, _) => Ended::Completed,
             (_, true) => Ended::Stopped,
             _ => match state.next(problem) {
@@ -148,8 +169,28 @@ impl SearchState {
         method: SearchMethod,
         learning_rate: f64,
     ) -> Self {
+        let search = Search::new(method, learning_rate, start.to_flat().len());
+        Self::with(search, problem, start, evaluation)
+    }
+
+    /// The same with the optimiser of a search for a similar problem, which knows its curvature.
+    pub fn after(
+        similar: &Self,
+        problem: &DesignProblem,
+        start: DesignVector,
+        evaluation: &Evaluation,
+    ) -> Self {
+        Self::with(similar.search.clone().moved(), problem, start, evaluation)
+    }
+
+    fn with(
+        search: Search,
+        problem: &DesignProblem,
+        start: DesignVector,
+        evaluation: &Evaluation,
+    ) -> Self {
         let mut state = Self {
-            search: Search::new(method, learning_rate, start.to_flat().len()),
+            search,
             proposal: start.clone(),
             best: start.clone(),
             best_followed: Scored { design: start.clone(), loss: evaluation.loss, step: 0 },
@@ -168,6 +209,14 @@ impl SearchState {
     /// The record of the last step.
     pub fn last(&self) -> &StepRecord {
         &self.history[self.history.len() - 1]
+    }
+
+    /// See [`CONVERGED`].
+    fn has_converged(&self) -> bool {
+        let (steps, fall) = CONVERGED;
+        let loss = self.last().scores.loss;
+        let before = self.history.iter().rev().nth(steps);
+        before.is_some_and(|before| before.scores.loss - loss < fall * loss)
     }
 
     /// The design of the last step.

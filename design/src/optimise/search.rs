@@ -76,6 +76,14 @@ impl Search {
         }
     }
 
+    /// The optimiser at the start of a similar problem.
+    pub(crate) fn moved(mut self) -> Self {
+        if let Self::Lbfgs(lbfgs) = &mut self {
+            lbfgs.from = None;
+        }
+        self
+    }
+
     /// Whether the state has `n` coordinates.
     pub(crate) fn fits(&self, n: usize) -> bool {
         match self {

@@ -609,7 +609,7 @@ fn kerf(input: &RuleInput) -> Option<Warning> {
 }
 
 fn other_branch(input: &RuleInput) -> Option<Warning> {
-    input.run.as_ref()?.designed.branch_mismatch.then(|| {
+    input.run.as_ref()?.designed.search.branch_mismatch().then(|| {
         Concern::OtherBranch.of_sheet(
             "during the search a corrected path was on another branch than the path followed from the flat sheet: the designs \
              found by it are not used, and the search went on from the best design whose path was followed"

@@ -26,8 +26,8 @@ domain   whether every state of the path is inside the training domain";
 const GAMMA: &str = "\nGamma    (21): moment of the weight of a panel that lies on a surface over the moment of its folded ligament";
 
 const OUTLINE_ROSE: &str = "\
-The outline error is larger than at the start although the loss is smaller: the loss also weighs how well the outline
-covers the target, and the terms above. Lower their weights in [objective] for a closer outline.";
+The outline error rose while the loss fell: of the Chamfer distance, its square is only the part from the corners of the sheet
+to the target. The other part, from the target to the corners, is large where panels are, and terms such as damage have weights.";
 
 impl Report {
     /// The report as parts for people.
@@ -40,7 +40,9 @@ impl Report {
         }
         page.text(head);
         page.list(self.errors());
-        page.text(self.end_of_search());
+        let [start, best] = [&self.before, &self.after].map(|scores| rounded(scores.loss, 4));
+        let search = self.end_of_search();
+        page.text(format!("{search}; loss, which is minimised: {start} at the start, {best} mm^2"));
         page.table(self.objective());
         if self.rose() {
             page.text(OUTLINE_ROSE);
@@ -67,7 +69,8 @@ impl Report {
     pub fn fact_rows(&self) -> Vec<(&'static str, String)> {
         let mut rows = self.facts.rows();
         let hashes = rows.iter().position(|(name, _)| name.starts_with("hash"));
-        let mut further: Vec<_> = (self.climb().into_iter()).map(|line| ("ladder", line)).collect();
+        let mut further: Vec<_> =
+            (self.coarse_search_lines().into_iter()).map(|line| ("coarse search", line)).collect();
         if let Some(estimate) = &self.estimate {
             let percent = |x: f64| format!("{:.1} %", 100.0 * x);
             let text = format!(
@@ -97,10 +100,12 @@ impl Report {
     /// The objective at the start and at the best design.
     fn objective(&self) -> Table {
         let rows = |scores: &Scores| {
-            let mut rows = vec![("outline error (mm)".to_owned(), scores.outline_error)];
+            let mut rows = vec![
+                ("loss (mm^2)".to_owned(), scores.loss),
+                ("outline error (mm)".to_owned(), scores.outline_error),
+            ];
             let values = scores.terms.values().copied();
             rows.extend(self.terms.iter().cloned().zip(values));
-            rows.push(("loss (mm^2)".to_owned(), scores.loss));
             if self.facts.has_domain {
                 rows.push(("inside domain (%)".to_owned(), 100.0 * scores.share_inside));
             }

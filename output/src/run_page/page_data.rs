@@ -124,7 +124,7 @@ impl<'a> PageData<'a> {
             }),
             warnings: &report.warnings,
             scene: scene_text(scene),
-            history: History::new(&designed.problem.objective, &designed.history),
+            history: History::new(&designed.problem.objective, &designed.search.history),
             stroke: reached.map(|reached| (reached.stroke_of.as_str(), reached.units)),
             peak: reached
                 .and_then(|reached| reached.peak)

@@ -19,7 +19,7 @@ fn circle(folder: &Path, (method, noise, seed): (&str, f64, u64)) -> Scene {
 }
 
 fn least_loss(designed: &Designed) -> f64 {
-    let losses = designed.history.iter().map(|step| step.scores.loss);
+    let losses = designed.search.history.iter().map(|step| step.scores.loss);
     losses.fold(f64::INFINITY, f64::min)
 }
 
@@ -30,7 +30,7 @@ fn a_search_keeps_a_design_whose_path_was_followed() {
         let folder = tempfile::tempdir().unwrap();
         let scene = circle(folder.path(), start);
         let designed = run(&scene, None).unwrap();
-        assert!(designed.branch_mismatch, "{start:?}");
+        assert!(designed.search.branch_mismatch(), "{start:?}");
         assert!(designed.best.loss < 0.5 * designed.start.loss, "{start:?}");
         // The design in the run folder has the loss that the report states, and no step found a
         // lower one.
@@ -41,7 +41,7 @@ fn a_search_keeps_a_design_whose_path_was_followed() {
         assert!(least > (1.0 - 1e-6) * designed.best.loss, "{start:?}");
         // A settled search has settled on a followed path.
         if designed.ended == Ended::Settled {
-            assert!(designed.history.last().unwrap().followed);
+            assert!(designed.search.history.last().unwrap().followed);
         }
         let report = write_results(&scene, &designed, false).unwrap();
         let note = one(&report, Concern::OtherBranch);
@@ -55,11 +55,11 @@ fn a_search_keeps_a_design_whose_path_was_followed() {
 fn every_path_is_followed_after_a_contradiction() {
     let folder = tempfile::tempdir().unwrap();
     let designed = run(&circle(folder.path(), ("adam", 0.5, 6)), None).unwrap();
-    let corrected = designed.history.iter().rposition(|step| !step.followed);
-    let history = &designed.history[corrected.map_or(0, |last| last + 1)..];
+    let corrected = designed.search.history.iter().rposition(|step| !step.followed);
+    let history = &designed.search.history[corrected.map_or(0, |last| last + 1)..];
     assert!(history.len() > 20 && history.iter().all(|step| step.followed));
-    assert_eq!(designed.history.len(), 41);
-    let steps = designed.history.iter().map(|step| step.step);
+    assert_eq!(designed.search.history.len(), 41);
+    let steps = designed.search.history.iter().map(|step| step.step);
     // The discarded steps are not in the history.
     assert!(steps.eq(0..41));
 }
@@ -77,8 +77,8 @@ fn a_stopped_search_that_is_refuted_resumes_to_the_same_trajectory() {
             assert_eq!(stopped.ended, Ended::Stopped);
             assert!(stopped.best.loss <= stopped.start.loss);
             let resumed = run(&scene, None).unwrap();
-            assert_eq!(resumed.history, uninterrupted.history, "{start:?} {stop}");
-            assert_eq!(resumed.design, uninterrupted.design);
+            assert_eq!(resumed.search.history, uninterrupted.search.history, "{start:?} {stop}");
+            assert_eq!(resumed.search.best, uninterrupted.search.best);
         }
     }
 }
@@ -86,7 +86,7 @@ fn a_stopped_search_that_is_refuted_resumes_to_the_same_trajectory() {
 #[test]
 fn a_search_without_a_contradiction_is_not_noted() {
     let run = Finished::new(SCENE);
-    assert!(!run.designed.branch_mismatch);
+    assert!(!run.designed.search.branch_mismatch());
     assert!(found(&run.report, Concern::OtherBranch).is_empty());
 }
 

@@ -53,7 +53,7 @@ fn a_whole_sheet_by_finite_elements_is_in_the_report() {
         checks.write(&run.scene.output(), design).unwrap();
         write_results(&run.scene, &run.designed, false).unwrap()
     };
-    let best = &run.designed.design;
+    let best = &run.designed.search.best;
     let report = again(Posture::Free, best);
     assert!(found(&report, Concern::LeavesPlane).is_empty());
     let finding = one(&report, Concern::WholeSheet);

@@ -102,7 +102,7 @@ fn every_term_counts_and_the_report_names_hinges_outside_the_domain() {
     // Ligaments may be wider than the maximum of 25 mm in the card.
     let run = Finished::within(folder, &learned(&[("start = 18.0", "start = 25.9")]));
     let (designed, report) = (&run.designed, &run.report);
-    assert_eq!(designed.history.len(), 7);
+    assert_eq!(designed.search.history.len(), 7);
     let (start, best) = (&designed.start, &designed.best);
     assert!(best.loss < start.loss, "{} {}", best.loss, start.loss);
     let (terms, area) = (&start.terms, 160e3);
@@ -263,5 +263,5 @@ fn a_run_is_not_continued_with_another_model() {
     let error = run(&read(), None).err().unwrap();
     assert_says(&error.to_string(), "the weights changed since");
     remove_run(&read()).unwrap();
-    assert_eq!(run(&read(), None).unwrap().history.len(), 2);
+    assert_eq!(run(&read(), None).unwrap().search.history.len(), 2);
 }

@@ -16,8 +16,8 @@ fn designed(changes: &[(&str, &str)]) -> Designed {
 fn the_loss_falls_and_the_best_design_is_returned() {
     let designed = designed(&[]);
     assert_eq!(designed.ended, Ended::Completed);
-    assert_eq!(designed.history.len(), 26);
-    let losses = designed.history.iter().map(|step| step.scores.loss);
+    assert_eq!(designed.search.history.len(), 26);
+    let losses = designed.search.history.iter().map(|step| step.scores.loss);
     let losses: Vec<f64> = losses.collect();
     assert_eq!(losses[0], designed.start.loss);
     assert!(designed.best.loss < 0.8 * losses[0]);
@@ -33,7 +33,7 @@ const LBFGS: (&str, &str) = ("steps = 25", "steps = 25\nmethod = \"lbfgs\"");
 fn every_step_of_lbfgs_lowers_the_loss() {
     let designed = designed(&[LBFGS]);
     let falls = |pair: &[StepRecord]| pair[1].scores.loss < pair[0].scores.loss;
-    assert!(designed.history.windows(2).all(falls));
+    assert!(designed.search.history.windows(2).all(falls));
     assert!(designed.best.loss < 0.8 * designed.start.loss);
 }
 
@@ -44,7 +44,7 @@ fn lbfgs_ends_at_a_minimum() {
     let shape = ("[objective]", "[objective]\npanel_shape = 0.1");
     let designed = designed(&[many, shape]);
     assert_eq!(designed.ended, Ended::Settled);
-    let mut steps = designed.history.iter();
+    let mut steps = designed.search.history.iter();
     assert!(steps.all(|record| record.setback.is_none()));
 }
 
@@ -61,11 +61,11 @@ fn resumes(text: &str) {
     // In the middle of steps whose paths are corrected from the path of step 10.
     let stopped = run(&scene, Some(13)).unwrap();
     assert_eq!(stopped.ended, Ended::Stopped);
-    assert_eq!(stopped.history.len(), 14);
-    assert!(uninterrupted.history.iter().any(|record| !record.followed));
+    assert_eq!(stopped.search.history.len(), 14);
+    assert!(uninterrupted.search.history.iter().any(|record| !record.followed));
     let resumed = run(&scene, None).unwrap();
-    assert_eq!(resumed.history, uninterrupted.history);
-    assert_eq!(resumed.design, uninterrupted.design);
+    assert_eq!(resumed.search.history, uninterrupted.search.history);
+    assert_eq!(resumed.search.best, uninterrupted.search.best);
     // A finished run makes no further steps.
     let mut steps = 0;
     inverse_design(&scene, &AtomicBool::new(false), &mut |_| steps += 1).unwrap();
@@ -78,7 +78,7 @@ fn a_run_continues_with_more_steps_but_not_with_another_scene() {
     let run_with = |changes: &[_]| run(&read(folder.path(), &with(changes)), None);
     run_with(&[("steps = 25", "steps = 2")]).unwrap();
     let longer = run_with(&[("steps = 25", "steps = 4")]).unwrap();
-    assert_eq!(longer.history.len(), 5);
+    assert_eq!(longer.search.history.len(), 5);
     let harder = [("steps = 25", "steps = 4"), ("[2.0, 0.0]", "[3.0, 0.0]")];
     let error = |changes| run_with(changes).err().unwrap().to_string();
     assert_says(&error(&harder), "the key `loads` changed since");
@@ -108,7 +108,7 @@ fn a_search_continues_with_other_tolerances() {
         run(&read(folder.path(), &text), None).unwrap()
     };
     run_with(0.5, 1);
-    assert_eq!(run_with(1.0, 2).history.len(), 3);
+    assert_eq!(run_with(1.0, 2).search.history.len(), 3);
 }
 
 #[test]
@@ -117,7 +117,7 @@ fn the_design_of_a_run_is_that_of_the_same_scene_and_model() {
     let scene = |changes: &[_]| read(folder.path(), &with(changes));
     assert!(design_of_run(&scene(&[])).unwrap().is_none());
     let two_steps = ("steps = 25", "steps = 2");
-    let best = run(&scene(&[two_steps]), None).unwrap().design;
+    let best = run(&scene(&[two_steps]), None).unwrap().search.best;
     // Title, cutting, objective and optimiser change neither the sheet nor how it deploys.
     let allowed = ("title = \"", "cutting.margin = 1.0\ntitle = \"another ");
     let found = design_of_run(&scene(&[allowed, LBFGS])).unwrap();
@@ -147,11 +147,11 @@ fn the_design_of_a_run_is_that_of_the_same_scene_and_model() {
 fn a_step_to_a_design_without_value_is_halved_and_reported() {
     // A learning rate that moves the charts to their bounds, where cuts collide.
     let designed = designed(&[("learning_rate = 0.03", "learning_rate = 9.0")]);
-    let mut steps = designed.history.iter();
+    let mut steps = designed.search.history.iter();
     let set_back = steps.find(|record| record.halvings > 0).unwrap();
     assert!(!set_back.setback.as_ref().unwrap().is_empty());
     assert!(designed.best.loss <= designed.start.loss);
-    let mut steps = designed.history.iter();
+    let mut steps = designed.search.history.iter();
     assert!(steps.all(|record| record.scores.loss.is_finite()));
 }
 

@@ -2,25 +2,27 @@
 //! error of the coarser level.
 
 use crate::analysis::actuation_curve::ActuationCurve;
-use crate::{Level, LevelDifference, Rung, Scene, SceneError};
+use crate::{CoarseSearch, Level, LevelDifference, Scene, SceneError};
 use design::geometry::plane::{complex, point};
 use design::geometry::polygon::distance;
 use design::geometry::similarity::{Scale, Similarity};
 use design::hinge_law::DamageMeasure;
 use design::objective::design_problem::{Deployment, DesignError, DesignProblem};
-use design::optimise::outer_loop::StepRecord;
+use design::optimise::outer_loop::SearchState;
 use design::pattern::design_vector::DesignVector;
 use design::sheet::kinematics::deployed_corners;
 use support::statistics::rms_and_maximum;
 
-/// A sheet at a level.
+/// What is compared of a sheet at a level.
+#[derive(Clone)]
 pub struct AtLevel {
-    /// The level.
-    pub level: Level,
-    /// Its design problem.
-    pub problem: DesignProblem,
-    /// The design, deployed.
-    pub deployment: Deployment,
+    level: Level,
+    /// Panel corners in the state that is compared with the target (mm).
+    corners: Vec<[f64; 2]>,
+    /// The load at the end of the path, where the motion is prescribed.
+    pub load: Option<f64>,
+    /// The largest D_peak of a hinge along the path, if it is known of every hinge.
+    pub damage_peak: Option<f64>,
 }
 
 /// Why a sheet has no state at a level.
@@ -33,77 +35,84 @@ pub enum LevelError {
     Design { level: Level, source: DesignError },
 }
 
+/// Deploys a design of a scene at the level of the scene.
+pub fn deployed(
+    scene: &Scene,
+    design: &DesignVector,
+) -> Result<(DesignProblem, Deployment), LevelError> {
+    let problem = scene.problem()?;
+    let deployment = problem.deploy(design).and_then(|deployment| {
+        deployment.at_target_state()?;
+        Ok(deployment)
+    });
+    let level = scene.config.level;
+    let deployment = deployment.map_err(|source| LevelError::Design { level, source })?;
+    Ok((problem, deployment))
+}
+
 impl AtLevel {
-    /// Deploys a design of a scene at the level of the scene.
-    pub fn new(scene: &Scene, design: &DesignVector) -> Result<Self, LevelError> {
-        let level = scene.config.level;
-        let problem = scene.problem()?;
-        let deployed = || -> Result<Deployment, DesignError> {
-            let deployment = problem.deploy(design)?;
-            deployment.at_target_state()?;
-            Ok(deployment)
-        };
-        let deployment = deployed().map_err(|source| LevelError::Design { level, source })?;
-        Ok(Self { level, problem, deployment })
+    /// A deployed sheet of a design problem at a level.
+    pub fn new(level: Level, problem: &DesignProblem, deployment: &Deployment) -> Self {
+        let configuration = &deployment.compared().configuration;
+        let corners = deployed_corners(&deployment.sheet, configuration);
+        let hinges = 0..deployment.sheet.hinges.len();
+        let mut peaks = hinges.map(|hinge| deployment.damage_max(DamageMeasure::Peak, hinge));
+        Self {
+            level,
+            corners: corners.into_iter().flatten().collect(),
+            load: load(problem, deployment),
+            damage_peak: peaks.try_fold(0.0, |largest: f64, peak| Some(largest.max(peak?))),
+        }
     }
 
-    /// What is kept of a search that ended at this design, compared with a finer level and with the
-    /// difference `asked` for (mm).
-    pub fn rung(&self, history: &[StepRecord], finer: &Self, asked: f64) -> Rung {
-        Rung {
+    /// What is kept of a search that ended at this design, compared with a finer level and with a
+    /// tolerance (mm).
+    pub fn coarse_search(
+        &self,
+        search: &SearchState,
+        finer: &Self,
+        tolerance: f64,
+    ) -> CoarseSearch {
+        CoarseSearch {
             level: self.level,
-            start: history[0].scores.clone(),
-            steps: history.len() - 1,
+            start: search.history[0].scores.clone(),
+            steps: search.last().step,
             finer: finer.level,
             difference: self.difference(finer),
-            asked,
+            tolerance,
         }
     }
 
     /// The difference to a finer level.
     pub fn difference(&self, finer: &Self) -> LevelDifference {
-        let [own, other] = [self, finer].map(Self::corners);
+        let [own, other] = [&self.corners, &finer.corners];
         let moved = match self.level {
             Level::Pin => {
-                let pairs: Vec<_> = std::iter::zip(own.iter().copied(), other.iter().copied())
-                    .map(|(own, other)| [own, other].map(complex))
+                let pairs: Vec<_> = std::iter::zip(own, other)
+                    .map(|(own, other)| [*own, *other].map(complex))
                     .collect();
                 match Similarity::least_squares(&pairs, Scale::Given) {
                     Some(motion) => pairs.iter().map(|[p, _]| point(motion.of(*p))).collect(),
-                    None => own,
+                    None => own.clone(),
                 }
             }
-            _ => own,
+            _ => own.clone(),
         };
-        let distances = std::iter::zip(moved, other).map(|(own, other)| distance(own, other));
+        let distances = std::iter::zip(moved, other).map(|(own, other)| distance(own, *other));
         let relative = |[own, other]: [f64; 2]| (own - other).abs() / other.abs();
         let both = |of: fn(&Self) -> Option<f64>| Some([of(self)?, of(finer)?]);
         LevelDifference {
             corners: rms_and_maximum(distances),
-            load: both(Self::load).map(relative),
-            damage: both(Self::damage_peak).map(|[own, other]| (own - other).abs()),
+            load: both(|at| at.load).map(relative),
+            damage: both(|at| at.damage_peak).map(|[own, other]| (own - other).abs()),
         }
     }
+}
 
-    /// Panel corners in the state that is compared with the target (mm).
-    fn corners(&self) -> Vec<[f64; 2]> {
-        let configuration = &self.deployment.compared().configuration;
-        let corners = deployed_corners(&self.deployment.sheet, configuration);
-        corners.into_iter().flatten().collect()
-    }
-
-    /// The load at the end of the path, where the motion is prescribed.
-    pub fn load(&self) -> Option<f64> {
-        let mechanics = self.problem.model.mechanics()?;
-        let curve = ActuationCurve::new(mechanics, &self.deployment)?;
-        let end = curve.points.last().map(|point| point[1]);
-        end.filter(|_| curve.is_prescribed(mechanics))
-    }
-
-    /// The largest D_peak of a hinge along the path, if it is known of every hinge.
-    pub fn damage_peak(&self) -> Option<f64> {
-        let hinges = 0..self.deployment.sheet.hinges.len();
-        let mut peaks = hinges.map(|hinge| self.deployment.damage_max(DamageMeasure::Peak, hinge));
-        peaks.try_fold(0.0, |largest: f64, peak| Some(largest.max(peak?)))
-    }
+/// The load at the end of the path, where the motion is prescribed.
+fn load(problem: &DesignProblem, deployment: &Deployment) -> Option<f64> {
+    let mechanics = problem.model.mechanics()?;
+    let curve = ActuationCurve::new(mechanics, deployment)?;
+    let end = curve.points.last().map(|point| point[1]);
+    end.filter(|_| curve.is_prescribed(mechanics))
 }

@@ -1,10 +1,10 @@
 //! What each level of a scene costs, and by how much it differs from the finest one.
 
 use crate::analysis::error_budget::{Cause, Contribution, ErrorBudget};
-use crate::analysis::level_difference::{AtLevel, LevelError};
+use crate::analysis::level_difference::{AtLevel, LevelError, deployed};
+use crate::design_run::BegunRun;
 use crate::{Level, LevelDifference, Scene};
-use design::objective::design_problem::DesignError;
-use design::optimise::outer_loop::{SearchState, optimise};
+use design::optimise::outer_loop::optimise;
 use design::pattern::design_vector::DesignVector;
 use serde::{Deserialize, Serialize};
 use std::convert::Infallible;
@@ -56,37 +56,35 @@ pub fn levels(
     let scenes: Vec<Scene> = scenes.filter_map(|level| scene.at_level(level).ok()).collect();
     let finest = scenes.last().unwrap_or(scene);
     progress(finest.config.level);
-    let reference = AtLevel::new(finest, design)?;
+    let (problem, deployment) = deployed(finest, design)?;
+    let reference = AtLevel::new(finest.config.level, &problem, &deployment);
     let mut found = Vec::new();
     for scene in &scenes {
         let level = scene.config.level;
         progress(level);
         let mut design = design.clone();
         if level == Level::Pin {
-            design.opening.get_or_insert(reference.deployment.final_step().mean_opening());
+            design.opening.get_or_insert(deployment.final_step().mean_opening());
         }
-        let step = seconds(scene, stop).ok();
-        let own;
-        let at = if level == reference.level {
-            Ok(&reference)
-        } else {
-            own = AtLevel::new(scene, &design);
-            own.as_ref()
+        let step = seconds(scene, stop);
+        let is_finest = level == finest.config.level;
+        let at = match is_finest {
+            true => Ok(reference.clone()),
+            false => deployed(scene, &design).map(|(of, to)| AtLevel::new(level, &of, &to)),
         };
-        let known = at.ok();
+        let known = at.as_ref().ok();
         let search = step.map(|step| step * steps(scene) as f64);
         found.push(LevelCost {
             level,
             step,
             search,
-            load: known.and_then(AtLevel::load),
-            damage: known.and_then(AtLevel::damage_peak),
-            difference: (known.filter(|_| level != reference.level))
-                .map(|at| at.difference(&reference)),
-            failure: at.err().map(ToString::to_string),
+            load: known.and_then(|at| at.load),
+            damage: known.and_then(|at| at.damage_peak),
+            difference: (known.filter(|_| !is_finest)).map(|at| at.difference(&reference)),
+            failure: at.as_ref().err().map(ToString::to_string),
         });
     }
-    let budget = ErrorBudget::new(finest, &reference.problem, &reference.deployment, None);
+    let budget = ErrorBudget::new(finest, &problem, &deployment, None);
     let others = budget.into_iter().flat_map(|budget| budget.contributions);
     Ok(Levels {
         levels: found,
@@ -101,18 +99,11 @@ fn steps(scene: &Scene) -> usize {
     }
 }
 
-/// Seconds of a step of the search from the start of a scene.
-fn seconds(scene: &Scene, stop: &AtomicBool) -> Result<f64, LevelError> {
-    let level = scene.config.level;
-    let failed = |source: DesignError| LevelError::Design { level, source };
-    let (problem, start) = (scene.problem()?, scene.start());
-    let optimiser = &scene.config.optimiser;
+/// Seconds of a step of the search from the start of a scene; `None` if that has no search.
+fn seconds(scene: &Scene, stop: &AtomicBool) -> Option<f64> {
     let begin = Instant::now();
-    let evaluation = problem.evaluate(&start).map_err(failed)?;
-    let (method, rate) = (optimiser.method, optimiser.learning_rate);
-    let mut search = SearchState::new(&problem, start, &evaluation, method, rate);
-    let last = TIMED.min(steps(scene)) - 1;
-    let searched = optimise(&problem, &mut search, last, stop, &mut |_| Ok::<_, Infallible>(()));
-    let Ok(_) = searched;
-    Ok(begin.elapsed().as_secs_f64() / search.history.len() as f64)
+    let run = BegunRun::new(scene.clone(), None).ok()?;
+    let (mut search, last) = (run.begun(), TIMED.min(steps(scene)) - 1);
+    let Ok(_) = optimise::<Infallible>(&run.problem, &mut search, last, stop, &mut |_| Ok(()));
+    Some(begin.elapsed().as_secs_f64() / search.history.len() as f64)
 }

@@ -2,11 +2,15 @@
 //! one.
 
 use design::hinge_law::{MeanLaw, Order};
-use design::{DesignVector, HingeLaw, SurrogateLaw};
+use design::optimise::outer_loop::{Ended, SearchState, Until, optimise};
+use design::optimise::search::SearchMethod;
+use design::{DesignProblem, DesignVector, HingeLaw, SurrogateLaw};
 use hinge::{HingeDeformation, HingeDesign};
-use scene::analysis::level_difference::AtLevel;
+use scene::analysis::level_difference::{AtLevel, deployed};
 use scene::{Level, Scene};
+use std::convert::Infallible;
 use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 use testkit::derivatives::{TaylorRemainders, assert_close};
 
 fn scene(name: &str) -> Scene {
@@ -21,16 +25,21 @@ fn every_level_of_a_plate_deploys_and_nears_the_finest() {
     let at = |level: Level| {
         let scene = plate.at_level(level).unwrap();
         assert_eq!(scene.config.level, level);
-        AtLevel::new(&scene, &design).unwrap()
+        deployed(&scene, &design).unwrap()
     };
-    let finest = at(Level::Fine);
-    let opening = Some(finest.deployment.final_step().mean_opening());
+    let compared = |level: Level| {
+        let (problem, deployment) = at(level);
+        AtLevel::new(level, &problem, &deployment)
+    };
+    let finest = compared(Level::Fine);
+    let opening = Some(at(Level::Fine).1.final_step().mean_opening());
     let pins = plate.at_level(Level::Pin).unwrap();
-    let pins = AtLevel::new(&pins, &DesignVector { opening, ..design.clone() }).unwrap();
+    let (problem, pins) = deployed(&pins, &DesignVector { opening, ..design.clone() }).unwrap();
+    let pins = AtLevel::new(Level::Pin, &problem, &pins);
     let off = |coarse: &AtLevel| coarse.difference(&finest);
     assert_eq!(off(&finest).corners, [0.0; 2]);
     assert_eq!((off(&finest).load, off(&finest).damage), (Some(0.0), Some(0.0)));
-    let [draft, standard] = [Level::Draft, Level::Standard].map(|level| off(&at(level)));
+    let [draft, standard] = [Level::Draft, Level::Standard].map(|level| off(&compared(level)));
     for learned in [draft, standard] {
         let [rms, largest] = learned.corners;
         assert!(0.0 < rms && rms < largest && largest < 0.05, "{learned:?}");
@@ -39,8 +48,37 @@ fn every_level_of_a_plate_deploys_and_nears_the_finest() {
     let pins = off(&pins);
     assert!(pins.corners[1] > 5.0 * draft.corners[1] && pins.load.is_none());
     // A spring has no path but its own stiffness at 20 deg.
-    let springs = off(&at(Level::Linear));
+    let springs = off(&compared(Level::Linear));
     assert!(springs.corners[1] > draft.corners[1] && springs.damage.is_none());
+}
+
+/// A coarse search ends when it has converged, and the next level descends faster with its curvature
+/// than from nothing.
+#[test]
+fn a_level_goes_on_with_the_optimiser_of_the_one_before() {
+    let plate = scene("a4-plate.toml");
+    let [draft, standard] = [Level::Draft, Level::Standard]
+        .map(|level| plate.at_level(level).unwrap().problem().unwrap());
+    let new = |problem, start: &DesignVector| {
+        let evaluation = DesignProblem::evaluate(problem, start).unwrap();
+        SearchState::new(problem, start.clone(), &evaluation, SearchMethod::Lbfgs, 0.1)
+    };
+    let searched = |problem, mut search: SearchState, until: Until| {
+        let stop = AtomicBool::new(false);
+        let ended = optimise(problem, &mut search, until, &stop, &mut |_| Ok::<_, Infallible>(()));
+        assert_eq!(ended, Ok(Ended::Completed));
+        search
+    };
+    let coarse = new(&draft, &plate.start());
+    let coarse = searched(&draft, coarse, Until { steps: 100, converged: true });
+    assert!((11..60).contains(&coarse.last().step), "{}", coarse.last().step);
+    let start = &coarse.best;
+    let evaluation = standard.evaluate(start).unwrap();
+    let after = SearchState::after(&coarse, &standard, start.clone(), &evaluation);
+    let [after, fresh] =
+        [after, new(&standard, start)].map(|search| searched(&standard, search, 5.into()));
+    let fall = |search: &SearchState| search.history[0].scores.loss - search.last().scores.loss;
+    assert!(fall(&after) > 1.5 * fall(&fresh), "{} {}", fall(&after), fall(&fresh));
 }
 
 #[test]

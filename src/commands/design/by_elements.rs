@@ -1,23 +1,19 @@
 //! The level `final`: a search with finite elements for the hinges.
 
-use crate::commands::design::{DesignCommand, OnStep};
+use crate::commands::design::DesignCommand;
 use crate::commands::solve_args::{SolveArgs, task_error};
 use crate::ui::interrupt;
 use crate::ui::progress::{announce, duration};
 use anyhow::{Context, Result, ensure};
-use design::optimise::outer_loop::Ended;
 use output::report::Report;
+use scene::design_run::OnStep;
 use scene::run_inputs::{SCENE_FILE, holds_a_run};
 use scene::{Level, Scene, SceneConfig};
 use verification::{ElementWindows, final_design, most_cpu_seconds, verification_tier};
 
 impl DesignCommand {
     /// A search that goes on with the hinges solved by finite elements.
-    pub(super) fn search_by_elements(
-        &self,
-        scene: &Scene,
-        progress: OnStep,
-    ) -> Result<(Report, Ended)> {
+    pub(super) fn search_by_elements(&self, scene: &Scene, progress: OnStep) -> Result<Report> {
         refuse_run_of_another_level(scene)?;
         let weights = scene.weights();
         let tier = verification_tier(None, weights.context(
@@ -35,7 +31,7 @@ impl DesignCommand {
         ));
         let (windows, stop) = (ElementWindows { tier, service }, interrupt::stop_flag()?);
         let found = final_design(scene, &windows, stop, progress);
-        self.write_climbed(found.map_err(task_error)?)
+        self.write_refined(found.map_err(task_error)?)
     }
 }
 

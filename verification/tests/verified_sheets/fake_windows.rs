@@ -226,12 +226,12 @@ fn a_final_design_has_the_forces_of_the_solver() {
         final_design(&scene, &windows, &NEVER, &mut |_, _| {}).unwrap()
     };
     let found = designed(&stiffer());
-    let rungs = &found.designed.rungs;
-    assert_eq!([rungs[0].level, rungs[1].level], [Level::Standard, Level::Final]);
-    let [first, .., last] = &rungs[..] else {
+    let searches = &found.coarse_searches;
+    assert_eq!([searches[0].level, searches[1].level], [Level::Standard, Level::Final]);
+    let [first, .., last] = &searches[..] else {
         panic!("at least two searches");
     };
-    let off = [first, last].map(|rung| rung.difference.corners[1]);
+    let off = [first, last].map(|search| search.difference.corners[1]);
     assert!(off[1] < 0.5 * off[0], "{off:?}");
     // The run is opened again with its law, which has the forces of the solver, and solves nothing.
     let run = Scene::read(&scene_file(&found.scene.output()).unwrap()).unwrap();
@@ -251,7 +251,7 @@ fn a_final_design_has_the_forces_of_the_solver() {
     let again = stiffer();
     let same = designed(&again);
     assert_eq!(again.0.attempts(), 0);
-    assert_eq!(same.designed.design, found.designed.design);
+    assert_eq!(same.search.best, found.search.best);
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! How a design was found on a ladder of levels: what is kept of it in the state of a run.
+//! A search at a coarser level than its run, as the state of the run keeps it.
 
 use crate::level::Level;
 use design::objective::scores::Scores;
@@ -18,9 +18,9 @@ pub struct LevelDifference {
     pub damage: Option<f64>,
 }
 
-/// A level at which a design was searched for, and how far it was from the next finer one.
+/// A search at a coarser level, and the difference of its design to the next finer level.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Rung {
+pub struct CoarseSearch {
     /// The level of the search.
     pub level: Level,
     /// The scores of its start.
@@ -31,13 +31,13 @@ pub struct Rung {
     pub finer: Level,
     /// The difference of the design to the finer level.
     pub difference: LevelDifference,
-    /// The required accuracy (mm).
-    pub asked: f64,
+    /// The tolerance of the panel corners (mm).
+    pub tolerance: f64,
 }
 
-impl Rung {
-    /// Whether the panel corners differ by the required accuracy at most.
+impl CoarseSearch {
+    /// Whether the panel corners differ by the tolerance at most.
     pub fn suffices(&self) -> bool {
-        self.difference.corners[1] <= self.asked
+        self.difference.corners[1] <= self.tolerance
     }
 }
