@@ -1,7 +1,7 @@
 //! The command line: one subcommand per module of [`crate::commands`].
 
 use crate::commands::{
-    compare, completions, cut, design, export, init, inspect, levels, man, material, studio,
+    compare, completions, cut, design, doctor, export, init, inspect, levels, man, material, studio,
 };
 #[cfg(feature = "pipeline")]
 use crate::commands::{demo, pipeline};
@@ -44,6 +44,7 @@ enum Command {
     Export(export::ExportCommand),
     Init(init::InitCommand),
     Studio(studio::StudioCommand),
+    Doctor(doctor::DoctorCommand),
     #[cfg(feature = "pipeline")]
     Demo(demo::DemoCommand),
     #[cfg(feature = "pipeline")]
@@ -72,6 +73,7 @@ impl Cli {
             Command::Export(command) => command.run(),
             Command::Init(command) => command.run(),
             Command::Studio(command) => command.run(),
+            Command::Doctor(command) => command.run(),
             #[cfg(feature = "pipeline")]
             Command::Demo(command) => command.run(|words| Self::try_parse_from(words)?.run()),
             #[cfg(feature = "pipeline")]

@@ -1,5 +1,8 @@
 //! The subcommands, one per file.
 
+/// Whether the commands from a material to weights are in this build, and finite elements.
+pub(crate) const WHOLE_BUILD: bool = cfg!(feature = "pipeline");
+
 /// Subcommands, each run by its own command.
 macro_rules! subcommands {
     ($visible:vis enum $name:ident { $($(#[$of:meta])* $variant:ident($command:ty),)* }) => {
@@ -31,7 +34,6 @@ pub mod dataset;
 pub mod demo;
 pub mod design;
 mod design_checks;
-#[cfg(feature = "pipeline")]
 pub mod doctor;
 pub mod export;
 pub mod init;

@@ -7,6 +7,7 @@ mod silhouette;
 mod size_args;
 mod template;
 
+use crate::commands::WHOLE_BUILD;
 use crate::new_project::cut_from::CutFrom;
 use crate::new_project::edited::{heading, scale, set};
 use crate::new_project::first_scene::FirstScene;
@@ -19,8 +20,9 @@ use crate::ui::shell_word::shell_word;
 use anyhow::{Context, Result, bail, ensure};
 use clap::Args;
 use hinge::{Regime, SheetMaterial};
+use scene::analysis::material_check::{Intended, MaterialCheck};
 use scene::fit::opening::{damage_of_turn, safe_opening};
-use scene::{Scene, Stock};
+use scene::{Posture, Scene, Stock};
 use std::path::{Path, PathBuf};
 use support::text_file;
 use surrogate::{Card, Surrogate};
@@ -100,6 +102,14 @@ impl NewProject {
             self.stock.map(|stock| CutFrom { stock, margin: self.margin.unwrap_or(0.0) });
         let mut first = FirstScene::new(self.size, cut_from, sheet.thickness, named)?;
         let regime = first.regime;
+        let check = MaterialCheck::new(&sheet, &Intended::usual(sheet.thickness, regime));
+        let excluded: Vec<String> = check.errors().map(|it| it.message.clone()).collect();
+        ensure!(
+            excluded.is_empty(),
+            "{}: {}; choose another material (`kirigami material check`)",
+            material.display(),
+            excluded.join("; ")
+        );
         let weights = fitting.iter().find(|weights| weights.regime == regime);
         let trained = weights.is_some();
         first.any_width = self.any_width;
@@ -107,8 +117,9 @@ impl NewProject {
             first.opening = weights.opening;
             first.damage = Some(weights.damage);
         }
-        let weights = weights.map_or("weights.safetensors".into(), |weights| weights.file.clone());
-        let scene = first.text(&weights, self.target.as_deref())?;
+        let own = self.folder.join("weights.safetensors");
+        let weights = weights.map_or(&own, |weights| &weights.file);
+        let scene = first.text(&self.folder, weights, self.target.as_deref())?;
         let name = self.folder.file_name().unwrap_or_default().to_string_lossy();
         // The hinges of a plate are solved in its thickness: in the thickness of a film they would
         // be too narrow.
@@ -120,28 +131,35 @@ impl NewProject {
         let campaign = campaign(&name, solved, regime)?;
 
         let template = Template::of(regime);
-        let readme = readme(&self.folder, template, regime, trained);
+        let readme = |scene: Option<&Scene>| {
+            let posture = scene.and_then(|scene| scene.config.posture);
+            let alone =
+                regime == Regime::Plate && posture.is_none_or(|it| it.kind == Posture::Hanging);
+            let why = [template.why, if alone { ALONE } else { "" }].concat();
+            readme(&self.folder, &why, regime, trained, WHOLE_BUILD)
+        };
         output_file::create_folder(&self.folder)?;
         for (file, contents) in [
             ("material.toml", &*text),
             ("campaign.toml", &campaign),
             (TRAINING, template.training),
             ("scene.toml", &scene),
-            ("README.md", &readme),
+            (README, &readme(None)),
         ] {
             output_file::write(&self.folder.join(file), contents)?;
         }
         if !trained {
-            return Ok(readme);
+            return Ok(readme(None));
         }
         let scene_file = self.folder.join("scene.toml");
         let first = Self::checked_scene(&scene_file)?;
         if self.target.is_none() {
-            return Ok(readme);
+            return Ok(readme(None));
         }
         let (text, expected) = fitted_text(&first, &scene)?;
         output_file::write(&scene_file, &text)?;
-        Self::checked_scene(&scene_file)?;
+        let readme = readme(Some(&Self::checked_scene(&scene_file)?));
+        output_file::write(&self.folder.join(README), &readme)?;
         Ok(format!("{readme}\n{expected}"))
     }
 
@@ -184,7 +202,7 @@ impl NewProject {
                 let w_lig = 0.5 * surrogate.domain().w_lig.iter().sum::<f64>();
                 let opening = safe_opening(&surrogate, regime, w_lig, first_scene::OPENING);
                 fitting.push(Weights {
-                    file: std::path::absolute(file)?,
+                    file,
                     regime,
                     opening,
                     damage: damage_of_turn(&surrogate, regime, w_lig, opening),
@@ -212,8 +230,11 @@ struct Weights {
     damage: f64,
 }
 
-/// File of the training in a new folder.
+/// Files in a new folder.
 const TRAINING: &str = "training.toml";
+const README: &str = "README.md";
+/// What the README says of a plate that hangs.
+const ALONE: &str = " Nothing holds its panels there; the report says whether they stay.";
 
 /// The shipped campaign of a regime, scaled to a sheet of `thickness` (mm); its material is
 /// `material.toml` in the same folder.
@@ -242,7 +263,7 @@ pub(crate) fn campaign(name: &str, thickness: f64, regime: Regime) -> Result<Str
 }
 
 /// What the sheet is, and the commands of the project in their order.
-fn readme(folder: &Path, template: &Template, regime: Regime, trained: bool) -> String {
+fn readme(folder: &Path, why: &str, regime: Regime, trained: bool, whole_build: bool) -> String {
     let path = |name: &str| shell_word(&folder.join(name));
     let (campaign, scene, material) =
         (path("campaign.toml"), path("scene.toml"), path("material.toml"));
@@ -253,7 +274,8 @@ fn readme(folder: &Path, template: &Template, regime: Regime, trained: bool) -> 
         Regime::Film => "--equilibrium   # the deployed sheet by finite elements of its ligaments",
         Regime::Plate => "--sheet   # the whole sheet by finite elements: whether it stays flat",
     };
-    let design = format!("kirigami design {scene}\nkirigami verify {scene} {check}\n");
+    let design = format!("kirigami design {scene}\n");
+    let verify = format!("kirigami verify {scene} {check}\n");
     let learn = format!("kirigami material learn {material} --out {learned}\n");
     let with = format!("kirigami design {scene} --weights {learned_weights} --restart\n");
     let campaign = format!(
@@ -262,28 +284,39 @@ fn readme(folder: &Path, template: &Template, regime: Regime, trained: bool) -> 
          kirigami campaign collect {campaign} --folder {jobs} --out {database}\n\
          kirigami train {database} --config {training} --out {weights}\n"
     );
-    let parts = if trained {
-        vec![
-            ("The material has weights. Design the sheet, and check it:", design),
+    let install = "cargo install --path . --locked\n".to_owned();
+    let parts = match (trained, whole_build) {
+        (true, true) => vec![
+            ("The material has weights. Design the sheet, and check it:", design + &verify),
             (
                 "After a change to the material, fine-tune weights on about an hour of its solves:",
                 learn + &with,
             ),
             ("Or train weights from nothing, in many hours:", campaign),
-        ]
-    } else {
-        vec![
+        ],
+        (false, true) => vec![
             (
                 "The material has no weights yet. Fine-tune weights on about an hour of its solves, and design the sheet:",
                 learn + &with,
             ),
             (
                 "Or train weights from nothing, in many hours; the scene names these:",
-                campaign + &design,
+                campaign + &design + &verify,
             ),
-        ]
+        ],
+        (true, false) => vec![
+            ("The material has weights. Design the sheet:", design),
+            (
+                "The whole program also checks it by finite elements, and makes weights for other materials. In the folder of kirigami:",
+                install,
+            ),
+        ],
+        (false, false) => vec![(
+            "The material has no weights yet. The whole program makes them. In the folder of kirigami:",
+            install,
+        )],
     };
-    let mut text = format!("# A sheet of your own\n\n{}\n", template.why);
+    let mut text = format!("# A sheet of your own\n\n{why}\n");
     for (title, commands) in parts {
         text += &format!("\n{title}\n\n```sh\n{commands}```\n");
     }
@@ -310,9 +343,19 @@ mod tests {
 
     #[test]
     fn the_commands_of_a_folder_with_a_space_can_be_copied() {
-        let template = Template::of(Regime::Film);
-        let text = readme(Path::new("my sheet"), template, Regime::Film, true);
+        let text = readme(Path::new("my sheet"), "", Regime::Film, true, true);
         assert!(text.contains("kirigami design 'my sheet/scene.toml'\n"), "{text}");
+    }
+
+    #[test]
+    fn a_readme_names_the_commands_of_its_build_alone() {
+        for trained in [false, true] {
+            let text = readme(Path::new("sheet"), "", Regime::Plate, trained, false);
+            let commands = text.lines().filter(|line| line.starts_with("kirigami "));
+            let commands: Vec<&str> = commands.collect();
+            let design = ["kirigami design sheet/scene.toml"];
+            assert_eq!(commands, if trained { &design[..] } else { &[] }, "{text}");
+        }
     }
 
     #[test]

@@ -26,10 +26,10 @@ pub(crate) struct Pattern(CutPattern);
 
 /// A flat sheet: rigid panels joined by ligaments.
 ///
-/// Sheet(pattern, w_lig, kerf=0.2)
+/// Sheet(pattern, w_lig, slit_width=0.2)
 ///
-/// w_lig: ligament widths (mm), a number or an array of shape (hinges,); kerf: width that the
-/// cutter removes (mm).
+/// w_lig: ligament widths (mm), a number or an array of shape (hinges,); slit_width: width of the
+/// slits (mm).
 #[pyclass(frozen, module = "kirigami")]
 pub(crate) struct Sheet(pub(crate) Arc<design::Sheet>);
 
@@ -101,11 +101,11 @@ impl Pattern {
 #[pymethods]
 impl Sheet {
     #[new]
-    #[pyo3(signature = (pattern, w_lig, kerf=0.2))]
-    fn new(pattern: &Pattern, w_lig: &Bound<PyAny>, kerf: f64) -> PyResult<Self> {
+    #[pyo3(signature = (pattern, w_lig, slit_width=0.2))]
+    fn new(pattern: &Pattern, w_lig: &Bound<PyAny>, slit_width: f64) -> PyResult<Self> {
         let hinges = pattern.hinges();
         let widths = numbers(w_lig, "w_lig")?.filled("w_lig", &[hinges], hinges)?;
-        let constants = HingeConstants { kerf, ..HingeConstants::PAPER };
+        let constants = HingeConstants { kerf: slit_width, ..HingeConstants::PAPER };
         let options = SheetOptions { hinge_point: HingePoint::CutTip, process: constants.into() };
         let sheet = design::Sheet::new(&pattern.0, &widths, options);
         let wrong = |error| errors::design(design::DesignError::Sheet(error));

@@ -13,12 +13,13 @@ use design::objective::shape::TargetState;
 use design::sheet::cut_sheet::SheetOptions;
 use hinge::SheetMaterial;
 use std::path::{Path, PathBuf};
+use support::relative_path;
 use surrogate::{Springback, Surrogate};
 
 /// Version of geometry, mechanics and objective: raised when a change of the code changes the loss
 /// of a design, so that a run of an earlier version is not continued.
 ///
-/// 1: O stands half a kerf further from the line of the secondary cut. 2: the path is followed in
+/// 1: O stands half a slit further from the line of the secondary cut. 2: the path is followed in
 /// increments of its own, so that a sheet that jumps may end on another branch. 3: where it cannot
 /// be followed, it goes on from a minimum that does not depend on the load steps. 4: a hanging
 /// sheet has weight; supports and loads act at their points.
@@ -107,13 +108,13 @@ impl Scene {
 
     /// The keys of the scene for a file in another folder: its paths are absolute.
     pub fn located(&self) -> std::io::Result<SceneConfig> {
-        let mut config = self.config.clone();
-        for (_, path) in config.inputs_mut() {
-            *path = self.absolute(path)?;
-        }
-        config.material = self.absolute(&config.material)?;
-        config.output = self.absolute(&config.output)?;
-        Ok(config)
+        self.config.clone().with_paths(|path| self.absolute(path))
+    }
+
+    /// The scene for another folder: its paths are relative to this folder.
+    pub fn moved_to(&self, folder: &Path) -> std::io::Result<SceneConfig> {
+        let moved = |path: &Path| relative_path::from_folder(folder, &self.file(path));
+        self.config.clone().with_paths(moved)
     }
 
     /// An error if a law of released hinges is not for the hinges of this scene.

@@ -16,6 +16,7 @@ use design::objective::shape::TargetState;
 use design::pattern::cut_pattern::CutPattern;
 use design::pattern::pattern_error::PatternError;
 use design::sheet::topology::panel_endpoints;
+use hinge::InvalidDesign;
 use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::FRAC_PI_2;
 use support::key_limits::{self, within};
@@ -110,8 +111,16 @@ fn ligament(scene: &SceneConfig) -> Result<(), InvalidScene> {
     let [min, max] = ligament.range;
     for w_lig in [min, max] {
         let design = process.hinge(w_lig, FRAC_PI_2);
-        let refuse = |source| InvalidScene::Hinge { w_lig, source };
+        let refuse = |source| match source {
+            InvalidDesign::Kerf { kerf: slit, limit: hole } => InvalidScene::Slit { slit, hole },
+            source => InvalidScene::Hinge { w_lig, source },
+        };
         design.validate().map_err(refuse)?;
+    }
+    let slit = process.slit_width;
+    let kerf = scene.cutting.tool_kerf(slit);
+    if !(kerf > 0.0 && kerf <= slit) {
+        return Err(InvalidScene::Kerf { kerf, slit });
     }
     let outline = scene.sheet.outline();
     let size = outline.size();
@@ -214,7 +223,7 @@ fn fastening(scene: &SceneConfig, attached: &Attached) -> Result<(), InvalidScen
         if edge.is_some() {
             return Err(InvalidScene::HoleOnEdge { key });
         }
-        let kerf = scene.process.kerf;
+        let kerf = scene.cutting.tool_kerf(scene.process.slit_width);
         if hole <= kerf {
             return Err(InvalidScene::HoleBelowKerf { key, hole, kerf });
         }

@@ -12,6 +12,9 @@ pub struct CuttingConfig {
     /// no key; some machines have their own.
     #[serde(skip)]
     pub over_run: f64,
+    /// Width that the tool removes (mm), at most `process.slit_width`; a narrower tool cuts around
+    /// the slits. By default a run's files are for a tool as wide as the slits.
+    pub kerf: Option<f64>,
     /// The material that the sheet is cut from, in either orientation: `"a5"` to `"a0"`,
     /// `"letter"`, `"tabloid"`, or width and height (mm). The report warns of a sheet that does not
     /// fit on it.
@@ -21,8 +24,15 @@ pub struct CuttingConfig {
     pub margin: f64,
 }
 
+impl CuttingConfig {
+    /// Width that the tool of the files of a run removes, in a sheet with slits of this width (mm).
+    pub fn tool_kerf(&self, slit_width: f64) -> f64 {
+        self.kerf.unwrap_or(slit_width)
+    }
+}
+
 impl Default for CuttingConfig {
     fn default() -> Self {
-        Self { over_run: 1.0, stock: None, margin: 0.0 }
+        Self { over_run: 1.0, kerf: None, stock: None, margin: 0.0 }
     }
 }

@@ -37,6 +37,14 @@ pub enum InvalidScene {
     Panels { columns: usize, rows: usize },
     #[error("ligament.range and process, at w_lig = {w_lig} mm: {source}")]
     Hinge { w_lig: f64, source: InvalidDesign },
+    #[error(
+        "process.slit_width = {slit} mm violates 0 < slit_width < {hole} mm, the diameter of the smallest hole: the slit ends in it"
+    )]
+    Slit { slit: f64, hole: f64 },
+    #[error(
+        "cutting.kerf = {kerf} mm violates 0 < kerf <= process.slit_width = {slit} mm: no tool cuts a slit narrower than it removes"
+    )]
+    Kerf { kerf: f64, slit: f64 },
     #[error("{source} (a window is a part of the sheet, which is {size:.0} mm large)")]
     Window { source: OutOfRange, size: f64 },
     #[error("ligament.range = [{min}, {max}] mm violates minimum < maximum")]
@@ -92,7 +100,9 @@ pub enum InvalidScene {
         "{key}.hole: a hole at the edge of a panel would be open: set `at` to a point [x, y] inside the panel, or use a clip"
     )]
     HoleOnEdge { key: String },
-    #[error("{key}.hole = {hole} mm violates hole > process.kerf = {kerf} mm")]
+    #[error(
+        "{key}.hole = {hole} mm violates hole > {kerf} mm, the kerf of the tool (cutting.kerf)"
+    )]
     HoleBelowKerf { key: String, hole: f64, kerf: f64 },
     #[error(
         "panel {panel:?} has two holes or clips at one point: give one of its supports and loads a hole or a clip"

@@ -49,7 +49,7 @@ pub struct SceneConfig {
     /// The start of the search; by default the uniform sheet.
     #[serde(default)]
     pub start: StartConfig,
-    /// The cutting tool and the windows of the hinges.
+    /// What is cut at a hinge, and its window.
     pub process: CuttingProcess,
     /// How the sheet is cut.
     #[serde(default)]

@@ -18,6 +18,7 @@ use crate::drawing::drawn_outline::numbered;
 use crate::keys::{SceneConfig, resolved};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
+use std::convert::Infallible;
 use std::io;
 use std::path::{Path, PathBuf};
 use support::file_error::FileError;
@@ -178,12 +179,21 @@ impl SceneConfig {
             learned.springback = None;
             learned.solved_hinges = None;
         }
-        for (_, path) in config.inputs_mut() {
-            *path = PathBuf::new();
-        }
-        config.material = PathBuf::new();
-        config.output = PathBuf::new();
+        let Ok(config) = config.with_paths(|_| Ok::<_, Infallible>(PathBuf::new()));
         config
+    }
+
+    /// The same scene with other paths.
+    pub(crate) fn with_paths<E>(
+        mut self,
+        other: impl Fn(&Path) -> Result<PathBuf, E>,
+    ) -> Result<Self, E> {
+        for (_, path) in self.inputs_mut() {
+            *path = other(path)?;
+        }
+        self.material = other(&self.material)?;
+        self.output = other(&self.output)?;
+        Ok(self)
     }
 }
 

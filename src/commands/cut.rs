@@ -24,7 +24,7 @@ use support::severity::Severity;
 /// settings of the scene. With --paper also a PDF at 1:1 on pages that overlap. docs/CUTTING.md
 /// describes the files. With --for the file holds what one kind of machine or service accepts.
 /// Examples: kirigami cut configs/scenes/demo.toml --paper a4; kirigami cut
-/// configs/scenes/a4-plate.toml --for laser-service
+/// configs/scenes/a4-plate-service.toml --for laser-service
 #[derive(Args)]
 pub struct CutCommand {
     #[command(flatten)]
@@ -79,7 +79,7 @@ pub(crate) fn machine_file_of_run(run: &Path, name: &str) -> Result<(Written, Ve
     let machines = Machines::shipped();
     let machine = self::machine(&machines, name)?;
     let run = Checked::new(&Inspected::of(run), false)?;
-    let file = run.cut_for(&machines, machine, None)?;
+    let file = run.cut_for(&machines, machine, None, false)?;
     Ok((file.written, file.verdicts))
 }
 
@@ -92,7 +92,7 @@ impl CutCommand {
         match machine {
             None => self.print(&checked.cut(self.paper, out)?),
             Some(machine) => {
-                self.print_file(machine, &checked.cut_for(&machines, machine, out)?);
+                self.print_file(machine, &checked.cut_for(&machines, machine, out, self.force)?);
             }
         }
         Ok(())
@@ -128,12 +128,7 @@ impl CutCommand {
             return;
         }
         println!("{}: {}; {named}\n{features}", machine.name, machine.says);
-        for Verdict { name, refuses, .. } in verdicts {
-            match &refuses[..] {
-                [] => println!("{name}: no published limit is broken"),
-                _ => println!("{name}: refuses {}", refuses.join("; ")),
-            }
-        }
+        verdicts.iter().for_each(|verdict| println!("{verdict}"));
         println!("written to {}", written.folder.display());
     }
 }
@@ -192,26 +187,31 @@ impl Checked {
         machines: &Machines,
         machine: &Machine,
         out: Option<&Path>,
+        force: bool,
     ) -> Result<MachineFile> {
         let mut drawing = machine.drawing(&self.cuts)?;
         mark_errors(&mut drawing, &self.errors);
+        let features = self.cuts.features();
+        let services = machines.service.iter().filter(|it| it.machine == machine.name);
+        let verdicts: Vec<Verdict> = services
+            .map(|service| Verdict {
+                name: service.name.clone(),
+                source: service.source.clone(),
+                refuses: service.refusals(&features, self.scene.material.thickness),
+            })
+            .collect();
+        let accepted = verdicts.iter().any(|verdict| verdict.refuses.is_empty());
+        let said: Vec<String> = verdicts.iter().map(Verdict::to_string).collect();
+        ensure!(
+            force || accepted || verdicts.is_empty(),
+            "no service cuts this sheet: {}; --force writes the file",
+            said.join("; ")
+        );
         let out = self.out_or(out, &format!("cut/{}", machine.name));
         let _held = run_folder::hold(&out)?;
         let mut written = Written::to(&out)?;
         written.drawing(&drawing)?;
-        let features = self.cuts.features();
-        let services = machines.service.iter().filter(|_| machine.services);
-        let verdicts = services.map(|service| Verdict {
-            name: service.name.clone(),
-            source: service.source.clone(),
-            refuses: service.refusals(&features, self.scene.material.thickness),
-        });
-        Ok(MachineFile {
-            verdicts: verdicts.collect(),
-            features,
-            named: self.named.clone(),
-            written,
-        })
+        Ok(MachineFile { verdicts, features, named: self.named.clone(), written })
     }
 
     /// The folder of the files: by default one in the run folder of the scene.
@@ -258,6 +258,15 @@ pub(crate) struct Verdict {
     name: String,
     source: String,
     refuses: Vec<String>,
+}
+
+impl Display for Verdict {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        match &self.refuses[..] {
+            [] => write!(f, "{}: no published limit is broken", self.name),
+            refuses => write!(f, "{} refuses {}", self.name, refuses.join(", ")),
+        }
+    }
 }
 
 /// The file of a machine, and the answers of services to it.

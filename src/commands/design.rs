@@ -45,7 +45,7 @@ pub struct DesignCommand {
     /// The level, instead of the scene's: how much of the hinges is modelled; see `kirigami
     /// levels`. At `final` the hinges are solved by finite elements after the search, and it goes
     /// on with them: hours, which are stated first
-    #[arg(long, value_name = "LEVEL", value_parser = with_unit::level())]
+    #[arg(long, value_name = "LEVEL", value_parser = with_unit::level_up_to(Level::Final))]
     level: Option<Level>,
     /// How accurately the corners of the panels are to be known: a length such as 0.5mm, or a part
     /// of the longer side of the sheet such as 0.2%. The search begins at `draft`. While the

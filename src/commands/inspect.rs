@@ -23,7 +23,7 @@ pub struct InspectCommand {
     #[command(flatten)]
     inspected: Inspected,
     /// The level, instead of the scene's: how much of the hinges is modelled; see `kirigami levels`
-    #[arg(long, value_name = "LEVEL", value_parser = with_unit::level())]
+    #[arg(long, value_name = "LEVEL", value_parser = with_unit::level_up_to(Level::Fine))]
     level: Option<Level>,
     /// Print every number as JSON
     #[arg(long)]

@@ -1,11 +1,10 @@
 //! The subcommands of the pipeline from a material to weights; absent from a build for design
 //! alone.
 
-use crate::commands::{campaign, dataset, doctor, mesh, solve, surrogate, train, verify};
+use crate::commands::{campaign, dataset, mesh, solve, surrogate, train, verify};
 
 subcommands! {
     pub enum PipelineCommand {
-        Doctor(doctor::DoctorCommand),
         Mesh(mesh::MeshCommand),
         Solve(solve::SolveCommand),
         Campaign(campaign::CampaignCommand),

@@ -27,7 +27,7 @@ pub struct StudioCommand {
     #[arg(value_name = "SCENE")]
     scene: Option<PathBuf>,
     /// The level, instead of the scene's: how much of the hinges is modelled; see `kirigami levels`
-    #[arg(long, value_name = "LEVEL", value_parser = with_unit::level(), requires = "scene")]
+    #[arg(long, value_name = "LEVEL", value_parser = with_unit::level_up_to(Level::Fine), requires = "scene")]
     level: Option<Level>,
     /// Folder of the folders of new sheets
     #[arg(long, value_name = "FOLDER", default_value = "runs/studio")]

@@ -2,7 +2,7 @@
 
 use anyhow::{Result, ensure};
 use scene::Stock;
-use toml_edit::{Array, Item, Table, value};
+use toml_edit::{Array, Item, value};
 
 /// A stock and its border that the machine cannot cut (mm).
 #[derive(Clone, Copy)]
@@ -26,18 +26,16 @@ impl CutFrom {
         Ok(sheet)
     }
 
-    /// The table `[cutting]` of a scene.
-    pub(super) fn table(self) -> Item {
-        let mut cutting = Table::new();
+    /// Adds the stock to the table `[cutting]` of a scene.
+    pub(super) fn write(self, cutting: &mut Item) {
         cutting["stock"] = match self.stock {
             Stock::Paper(paper) => value(paper.to_string()),
             Stock::Sides(sides) => value(Array::from_iter(sides)),
         };
         cutting["margin"] = value(self.margin);
-        cutting.decor_mut().set_prefix(
-            "\n# The stock that the sheet is cut from, and its border that the machine cannot cut (mm).\n",
-        );
-        Item::Table(cutting)
+        if let Some(margin) = cutting["margin"].as_value_mut() {
+            margin.decor_mut().set_suffix(" # mm; border of the stock that the machine cannot cut");
+        }
     }
 }
 

@@ -21,6 +21,7 @@ use hinge::Regime;
 use scene::drawing::drawn_outline::numbered;
 use scene::{CuttingConfig, Paper, place_drawing, rounded};
 use std::path::Path;
+use support::relative_path;
 use toml_edit::{Array, DocumentMut, Item, Table, value};
 
 /// Minimum side of a panel over the radius of a window: windows of neighbouring hinges do not
@@ -115,9 +116,17 @@ impl FirstScene {
         })
     }
 
-    /// The scene file, in a folder with `material.toml`; with the outline of a drawing as its
-    /// target if there is one.
-    pub(super) fn text(&self, weights: &Path, drawing: Option<&Path>) -> Result<String> {
+    /// The scene file in a folder with `material.toml`; with the outline of a drawing as its target
+    /// if there is one.
+    pub(super) fn text(
+        &self,
+        folder: &Path,
+        weights: &Path,
+        drawing: Option<&Path>,
+    ) -> Result<String> {
+        let named = |file: &Path| -> Result<String> {
+            Ok(relative_path::from_folder(folder, file)?.display().to_string())
+        };
         let template = Template::of(self.regime);
         let factor = self.thickness / template.thickness;
         let [columns, rows] = self.panels;
@@ -138,14 +147,14 @@ impl FirstScene {
         set(&mut scene["sheet"]["size"], Array::from_iter(self.size));
         set(&mut scene["sheet"]["panels"], whole(self.panels));
         if let Some(cut_from) = self.cut_from {
-            scene["cutting"] = cut_from.table();
+            cut_from.write(&mut scene["cutting"]);
         }
         for key in ["start", "range"] {
             scale(&mut scene["ligament"][key], factor);
         }
         scale(&mut scene["process"]["r_win"], factor);
         let surrogate = &mut scene["surrogate"];
-        set(&mut surrogate["weights"], weights.display().to_string());
+        set(&mut surrogate["weights"], named(weights)?);
         if let Some(surrogate) = surrogate.as_table_mut() {
             surrogate.remove("ensemble");
             // The law of released hinges and the smaller network stand next to the weights of their
@@ -153,7 +162,7 @@ impl FirstScene {
             for (key, name) in [("springback", SPRINGBACK), ("draft", DRAFT)] {
                 match weights.with_file_name(name) {
                     file if file.is_file() => {
-                        set(&mut surrogate[key], file.display().to_string());
+                        set(&mut surrogate[key], named(&file)?);
                     }
                     _ => _ = surrogate.remove(key),
                 }
@@ -183,7 +192,7 @@ impl FirstScene {
             set(&mut scene["posture"]["down"], Array::from_iter(pull));
         }
         if let Some(drawing) = drawing {
-            scene["target"] = placed(drawing, centre, size[0] * size[1])?;
+            scene["target"] = placed(drawing, named(drawing)?, centre, size[0] * size[1])?;
             return Ok(scene.to_string());
         }
         if let Some(range) = scene["ligament"]["range"].as_array_mut()
@@ -242,13 +251,12 @@ impl FirstScene {
     }
 }
 
-/// The table `[target]` of a drawn outline, centred at `centre` (mm) and the given area (mm^2).
-fn placed(drawing: &Path, centre: [f64; 2], area: f64) -> Result<Item> {
+/// The table `[target]` of a drawing, `named` by the scene, centred at `centre` (mm) and the given area (mm^2).
+fn placed(drawing: &Path, named: String, centre: [f64; 2], area: f64) -> Result<Item> {
     input_file::require(&numbered(drawing).0, "--target")?;
-    let file = std::path::absolute(drawing)?;
-    let (centre, height) = place_drawing(&file, centre, area)?;
+    let (centre, height) = place_drawing(drawing, centre, area)?;
     let mut svg = Table::new();
-    svg["file"] = value(file.display().to_string());
+    svg["file"] = value(named);
     svg["centre"] = value(Array::from_iter(centre));
     svg["height"] = value(height);
     svg.decor_mut().set_prefix(
@@ -335,7 +343,7 @@ mod tests {
     fn the_stroke_is_along_the_pull() {
         let strokes = [(0.1, 30.4), (3.0, 45.4)].map(|(thickness, shipped)| {
             let scene = FirstScene::new(Some(Paper::A4.size()), None, thickness, None).unwrap();
-            let text = scene.text(Path::new("weights.safetensors"), None).unwrap();
+            let text = scene.text(Path::new("."), Path::new("weights.safetensors"), None).unwrap();
             let text: DocumentMut = text.parse().unwrap();
             let stroke = text["drive"]["stroke"].as_float().unwrap();
             assert!((stroke - shipped).abs() < 0.1, "{stroke}");

@@ -119,6 +119,11 @@ impl Everyday {
         }
     }
 
+    /// The path of the last computation that was shown, once.
+    pub fn last_path(&self) -> Option<WarmStart> {
+        self.lock().path.take()
+    }
+
     /// Shows nothing of what is under way. Returns the path of the last computation that was shown,
     /// once.
     pub fn stop(&self) -> Option<WarmStart> {

@@ -20,9 +20,13 @@ pub(super) fn for_service(config: &mut SceneConfig, name: &str, thickness: f64) 
     let least = service.limits(thickness);
     let [narrowest, widest] = config.ligament.range;
     let process = &mut config.process;
-    process.kerf = process.kerf.max(least.slot);
+    if process.slit_width < least.slot {
+        process.slit_width = least.slot;
+        // The service cuts around its slots and allows for the width that its tool removes.
+        config.cutting.kerf = None;
+    }
     // A hole is wider than the slit that ends in it.
-    let hole = least.hole.max(process.kerf + 2.0 * ROOM);
+    let hole = least.hole.max(process.slit_width + 2.0 * ROOM);
     if 2.0 * process.hinge(narrowest, FRAC_PI_2).fillet_ratio * narrowest < hole {
         process.hole = Hole::Diameter(hole);
         // Its law is for holes that grow with the ligament.
@@ -43,7 +47,7 @@ pub(super) fn for_service(config: &mut SceneConfig, name: &str, thickness: f64) 
     let radius = radius(narrowest);
     let features = Features {
         hole: 2.0 * radius,
-        slot: process.kerf,
+        slot: process.slit_width,
         bridge: narrowest - radius,
         edge: narrowest - radius,
         size: config.sheet.size.unwrap_or_default(),

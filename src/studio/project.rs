@@ -55,7 +55,7 @@ impl Project {
         if path.is_dir() {
             copy_run(path, &project.folder.join(project.next_run()))?;
         }
-        let scene = project.write(shown.located()?)?;
+        let scene = project.write(shown.moved_to(&project.folder)?)?;
         Ok((project, scene))
     }
 
@@ -88,7 +88,8 @@ impl Project {
         let mut config = first.config;
         config.title.clone_from(&sheet.name);
         if let Some(kerf) = sheet.kerf {
-            config.process.kerf = kerf;
+            config.process.slit_width = kerf;
+            config.cutting.kerf = Some(kerf);
         }
         if let Some(service) = &sheet.service {
             for_service(&mut config, service, first.material.thickness)?;

@@ -60,7 +60,7 @@ pub(crate) struct NewSheet {
     pub stock: Option<Stock>,
     /// See `stock`.
     pub margin: Option<f64>,
-    /// Width that the tool removes (mm).
+    /// Width that the tool removes, and the slits have (mm).
     pub kerf: Option<f64>,
     /// The service that cuts it.
     pub service: Option<String>,

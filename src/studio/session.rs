@@ -146,9 +146,7 @@ impl Session {
             Request::Drawing(drawing) => self.drawing(&drawing)?,
             Request::Level { level } => {
                 let other = self.opened()?.scene.at_level(level)?;
-                self.show(other)?;
-                self.tell_scene();
-                self.draft()?;
+                self.draft(other, None)?;
             }
             Request::Levels => self.levels()?,
             Request::Design => self.design()?,
@@ -223,25 +221,21 @@ impl Session {
 
     fn change(&mut self, Change { scene, by }: Change) -> Result<()> {
         let changed = self.opened()?.scene.changed(*scene)?;
-        self.show(changed)?.by = Some(by);
-        self.draft()
+        self.draft(changed, Some(by))
     }
 
     fn panels(&mut self, panels: [usize; 2]) -> Result<()> {
         self.tell(Kind::Working, &"panels");
         let changed = with_panels(&self.opened()?.scene, panels)?;
-        self.show(changed)?;
-        self.tell_scene();
-        self.draft()
+        self.draft(changed, None)
     }
 
     fn drawing(&mut self, drawing: &Drawing) -> Result<()> {
         let Opened { project, scene, .. } = self.opened()?;
         let (scene, says) = self.fitted(project, scene, drawing)?;
-        self.show(scene)?;
+        self.draft(scene, None)?;
         self.tell(Kind::Fit, &says);
-        self.tell_scene();
-        self.draft()
+        Ok(())
     }
 
     /// A sheet that is fitted to a drawing, and what is said of it.
@@ -273,17 +267,24 @@ impl Session {
         Ok(())
     }
 
-    /// Shows the sheet at full load.
-    fn draft(&mut self) -> Result<()> {
+    /// Shows another scene at full load, and its keys unless a page has changed them. A scene
+    /// without an equilibrium is refused: the last one stays, here and on disk.
+    fn draft(&mut self, scene: Scene, by: Option<(String, u64)>) -> Result<()> {
         self.say("");
         let begin = Instant::now();
+        let path = self.everyday.last_path();
         let sheet = self.opened_mut()?;
-        let (scene, problem) = (&sheet.scene, sheet.scene.problem()?);
-        let deployment = draft(&problem, &scene.start(), sheet.known.as_ref())?;
+        sheet.known = path.or(sheet.known.take());
+        let problem = scene.problem()?;
+        let deployment = draft(&problem, &scene.start(), sheet.known_near(&scene))?;
+        let sheet = self.show(scene)?;
         sheet.known = Some(deployment.warm_start());
-        let draft = Draft::new(&sheet.scene, &problem, &deployment, begin);
-        let event = Event::new(Kind::Draft, &draft);
-        (self.listener)(event);
+        sheet.by = by;
+        if self.opened()?.by.is_none() {
+            self.tell_scene();
+        }
+        let draft = Draft::new(&self.opened()?.scene, &problem, &deployment, begin);
+        (self.listener)(Event::new(Kind::Draft, &draft));
         Ok(())
     }
 
@@ -311,13 +312,14 @@ impl Session {
             return Ok(());
         };
         let scene = sheet.scene.changed(config.clone())?;
-        let sheet = self.show(scene)?;
+        self.draft(scene, None)?;
+        let sheet = self.opened_mut()?;
         lists(sheet).0.pop();
         let left = std::mem::replace(&mut sheet.on_disk, config);
         lists(sheet).1.push(left);
         sheet.project.save(&sheet.scene)?;
         self.tell_scene();
-        self.draft()
+        Ok(())
     }
 
     fn design(&mut self) -> Result<()> {
@@ -329,11 +331,14 @@ impl Session {
         };
         self.stop_everyday();
         self.tell(Kind::Working, &"design");
-        self.search(scene, &self.stop_search.clone())
+        let (run, stop) = (run_name(&scene), self.stop_search.clone());
+        let end = self.search(scene, &stop)?;
+        self.say(&format!("{run}: {end}"));
+        Ok(())
     }
 
-    /// Runs the search of a scene, and shows its best design.
-    fn search(&mut self, scene: Scene, stop: &AtomicBool) -> Result<()> {
+    /// Runs the search of a scene, and shows its best design; how it ended, in words.
+    fn search(&mut self, scene: Scene, stop: &AtomicBool) -> Result<String> {
         let _held = run_folder::hold(&scene.output())?;
         let problem = scene.problem()?;
         let mut steps = Steps::default();
@@ -363,7 +368,7 @@ impl Session {
         self.at_rest = true;
         self.list_files()?;
         self.tell(Kind::Working, &());
-        Ok(())
+        Ok(report.end_of_search())
     }
 
     /// Writes cut files, from the run of the sheet that is shown: one without a step if there is
@@ -438,15 +443,10 @@ impl Session {
         self.sheet.as_mut().context(NO_SHEET)
     }
 
-    /// Shows a scene; its equilibrium is not near the last one if the sheet or its supports are
-    /// others.
+    /// Shows a scene.
     fn show(&mut self, scene: Scene) -> Result<&mut Opened> {
         self.stop_everyday();
         let sheet = self.opened_mut()?;
-        let held = |scene: &Scene| (scene.config.sheet, scene.config.supports.clone());
-        if held(&scene) != held(&sheet.scene) {
-            sheet.known = None;
-        }
         sheet.scene = scene;
         sheet.by = None;
         Ok(sheet)
@@ -503,6 +503,13 @@ fn fitted_to(scene: &Scene, file: PathBuf, path: &Path) -> Result<(Scene, Value)
 const NO_SHEET: &str = "there is no sheet yet: begin one";
 
 impl Opened {
+    /// The last equilibrium, if a scene's may be near it: of the same sheet with the same
+    /// supports.
+    fn known_near(&self, scene: &Scene) -> Option<&WarmStart> {
+        let held = |scene: &Scene| (scene.config.sheet, scene.config.supports.clone());
+        self.known.as_ref().filter(|_| held(scene) == held(&self.scene))
+    }
+
     /// The scene with a run folder of its own.
     fn scene_of_run(&self) -> Result<Scene> {
         let config = SceneConfig { output: self.project.next_run(), ..self.scene.config.clone() };

@@ -42,8 +42,8 @@ pub(super) struct Shop {
     materials: Vec<Offered>,
     /// Names and what they are.
     machines: Vec<[String; 2]>,
-    /// Names of services that cut.
-    services: Vec<String>,
+    /// Names of services that cut, and the machines whose files they take.
+    services: Vec<[String; 2]>,
     /// Finished sheets, with pictures of the flat and the opened sheet (SVG).
     examples: Vec<Value>,
     /// Names and what they are; those that a search of the studio can have.
@@ -78,7 +78,9 @@ impl Shop {
             machines: (machine.into_iter())
                 .map(|machine| [machine.name, machine.says])
                 .collect(),
-            services: service.into_iter().map(|service| service.name).collect(),
+            services: (service.into_iter())
+                .map(|service| [service.name, service.machine])
+                .collect(),
             examples: (EXAMPLES.into_iter())
                 .filter(|[scene, ..]| is_example(Path::new(scene)))
                 .map(|[scene, title, becomes]| {

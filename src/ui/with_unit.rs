@@ -28,9 +28,10 @@ pub(crate) fn accuracy(text: &str) -> Result<Accuracy, String> {
     }
 }
 
-/// The name of a level.
-pub(crate) fn level() -> impl TypedValueParser<Value = Level> {
-    PossibleValuesParser::new(Level::ALL.map(Level::name))
+/// The name of a level up to the finest one that a command can use.
+pub(crate) fn level_up_to(finest: Level) -> impl TypedValueParser<Value = Level> {
+    let levels = Level::ALL.into_iter().filter(move |level| *level <= finest);
+    PossibleValuesParser::new(levels.map(Level::name))
         .map(|name| Level::named(&name).expect("the parser takes the names of levels alone"))
 }
 

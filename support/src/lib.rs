@@ -29,6 +29,7 @@ pub mod processes;
 #[cfg(unix)]
 pub mod program;
 pub mod regular_file;
+pub mod relative_path;
 #[cfg(unix)]
 pub mod scratch;
 pub mod sealed_json;

@@ -23,7 +23,9 @@ fn the_message_about_a_missing_program_states_how_to_install_it() {
         assert_eq!(output.status.code(), Some(1), "{ccx}");
         String::from_utf8(output.stdout).unwrap()
     };
-    assert!(doctor("/no/such/program").contains("was not found"));
+    let said = doctor("/no/such/program");
+    assert!(said.contains("was not found") && said.contains("weights data/petg-3mm/"), "{said}");
+    assert!(said.starts_with(concat!("kirigami ", env!("CARGO_PKG_VERSION"))), "{said}");
     // A program that cannot be loaded, and another one, which prints a number.
     for (status, printed) in [(127, "libspooles.so.2.2: cannot open"), (0, "line 4, in x")] {
         let script = format!("#!/bin/sh\necho '{printed}' >&2\nexit {status}\n");

@@ -11,7 +11,7 @@ fn a_design_of_another_scene_is_not_cut_unless_it_is_named() {
     work.output(&format!("cut {SCENE}"));
     work.edit(SCENE, &[("steps = 150", "steps = 3")]);
     work.output(&format!("cut {SCENE}"));
-    work.edit(SCENE, &[("kerf = 0.2", "kerf = 0.3")]);
+    work.edit(SCENE, &[("slit_width = 0.2", "slit_width = 0.3")]);
     work.error(&format!("cut {SCENE}"));
     // The run has its own copy of the scene.
     work.output("cut runs/pin-7x7");
@@ -31,7 +31,7 @@ fn a_designed_sheet_is_cut_on_paper() {
         assert!(work.path("files").join(name).exists(), "{name}");
     }
     // Files of the last call do not remain.
-    work.edit(SCENE, &[("[process]", "[cutting]\nmargin = 3.0\n\n[process]")]);
+    work.edit(SCENE, &[("[cutting]", "[cutting]\nmargin = 3.0")]);
     let json = work.output(&format!("{cut} --json"));
     let json: serde_json::Value = serde_json::from_str(&json).unwrap();
     assert_eq!(json["totals"]["holes"], 84);
@@ -46,7 +46,10 @@ fn a_sheet_is_cut_for_a_machine() {
     let work = Workplace::new();
     // Before the search.
     let said = work.output(&format!("cut {SCENE} --for laser-service --design start"));
-    assert!(said.contains("SendCutSend: ") && said.contains("(process.kerf)"), "{said}");
+    assert!(
+        said.contains("SendCutSend refuses") && said.contains("(process.slit_width)"),
+        "{said}"
+    );
     let said = work.output(
         "cut configs/scenes/a4-plate-service.toml --for laser-service --design start --out drilled",
     );
@@ -62,13 +65,45 @@ fn a_sheet_is_cut_for_a_machine() {
     assert_eq!(json["services"], serde_json::json!([]));
 }
 
+/// A laser cuts around the slots of a sheet for a service: the finished sheet is the same.
+#[test]
+fn a_sheet_for_a_service_is_cut_by_a_laser_of_its_own_kerf() {
+    let work = Workplace::new();
+    let scene = "configs/scenes/a4-plate-service.toml";
+    let cut = format!("cut {scene} --design start --out cut");
+    for machine in ["ponoko", "lightburn", "knife"] {
+        let message = work.error(&format!("{cut} --for {machine}"));
+        assert!(message.contains("set cutting.kerf"), "{message}");
+    }
+    work.edit(scene, &[("[surrogate]", "[cutting]\nkerf = 0.2\n\n[surrogate]")]);
+    for machine in ["ponoko", "lightburn"] {
+        work.output(&format!("{cut} --for {machine}"));
+        let file = std::fs::read_to_string(work.path("cut/cut.svg")).unwrap();
+        // The page is 5 mm larger on each side than the path of the beam.
+        assert!(file.contains("width=\"220.2mm\" height=\"307.2mm\""), "{machine}");
+        // Slits and outline alone: no hole is a path of its own.
+        assert!(!file.contains("HOLES"), "{machine}");
+    }
+    let message = work.error(&format!("{cut} --for knife"));
+    assert!(message.contains("1.5 mm wide") && message.contains("lines of 0.2 mm"), "{message}");
+}
+
+#[test]
+fn a_file_that_every_service_refuses_is_not_written() {
+    let work = Workplace::new();
+    let cut = "cut configs/scenes/a4-plate.toml --for laser-service --design start --out files";
+    let message = work.error(cut);
+    assert!(message.contains("no service cuts this sheet: SendCutSend refuses"), "{message}");
+    assert!(!work.path("files").exists());
+    work.output(&format!("{cut} --force"));
+}
+
 #[test]
 fn a_sheet_larger_than_its_stock_is_a_warning() {
     let work = Workplace::new();
     let design = format!("design {SCENE} --steps 1 --restart");
-    let stock =
-        |width: f64| format!("[cutting]\nstock = [{width}, 2900.0]\nmargin = 10.0\n\n[process]");
-    work.edit(SCENE, &[("[process]", &stock(2823.0))]);
+    let stock = |width: f64| format!("[cutting]\nstock = [{width}, 2900.0]\nmargin = 10.0");
+    work.edit(SCENE, &[("[cutting]", &stock(2823.0))]);
     assert!(!work.output(&design).contains("the stock has"));
     work.edit(SCENE, &[("2823", "2821")]);
     let said = work.output(&design);
@@ -79,8 +114,7 @@ fn a_sheet_larger_than_its_stock_is_a_warning() {
 #[test]
 fn a_stock_is_a_paper_or_two_sides() {
     let work = Workplace::new();
-    let stock = "[cutting]\nstock = \"a0\"\n\n[process]";
-    work.edit(SCENE, &[("[process]", stock)]);
+    work.edit(SCENE, &[("[cutting]", "[cutting]\nstock = \"a0\"")]);
     let said = work.output(&format!("design {SCENE} --steps 1"));
     assert!(said.contains("the stock has 841.0 x 1189.0 mm"), "{said}");
 }

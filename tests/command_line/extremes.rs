@@ -52,7 +52,8 @@ const SWEEPS: [Sweep; 6] = [
         values: &[0.3, 1.6, 3.0, 10.0],
         change: |scene, thickness| {
             scene.thickness = Some(thickness);
-            scene.process.kerf *= thickness / 3.0;
+            scene.process.slit_width *= thickness / 3.0;
+            scene.cutting.kerf = None;
             scene.process.r_win *= thickness / 3.0;
             scene.ligament.start *= thickness / 3.0;
             scene.ligament.range = scene.ligament.range.map(|width| width * thickness / 3.0);

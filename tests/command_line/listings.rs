@@ -19,7 +19,7 @@ fn case(name: &str) -> Value {
 fn printed(work: &Workplace, command: &str, sections: &str, options: &str) -> Value {
     let scene = format!(
         "title = \"Case\"\nmaterial = \"configs/materials/pet-0.5mm.toml\"\noutput = \"run\"\n{sections}\n\
-         [process]\nfillet_ratio = 0.16\nkerf = 0.2\nr_win = 100.0\n\
+         [process]\nfillet_ratio = 0.16\nslit_width = 0.2\nr_win = 100.0\n\
          [ligament]\nstart = 15.0\nrange = [5.0, 25.0]\n\
          [optimiser]\nsteps = 1\nlearning_rate = 0.1\n"
     );

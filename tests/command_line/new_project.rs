@@ -96,7 +96,9 @@ fn a_drawing_becomes_the_target() {
     assert!(said.contains("kirigami verify leaf/scene.toml"), "{said}");
     let scene = keys(&work, "leaf/scene.toml");
     let svg = &scene["target"]["svg"];
-    assert!(Path::new(svg["file"].as_str().unwrap()).is_absolute());
+    // The scene says that its paths are relative.
+    let paths = [&svg["file"], &scene["surrogate"]["weights"], &scene["surrogate"]["draft"]];
+    assert!(paths.iter().all(|path| Path::new(path.as_str().unwrap()).is_relative()));
     work.output("design leaf/scene.toml --steps 1 --force");
 }
 
@@ -107,6 +109,11 @@ fn a_project_with_all_defaults_is_designed() {
     let work = Workplace::new();
     let said = work.output("init plate");
     assert!(said.contains("Nothing holds its panels there"), "{said}");
+    // Boards hold a sheet that is fitted to a drawing.
+    let heart = "init heart --target configs/targets/heart.svg --size 300x300";
+    work.output(heart);
+    let readme = std::fs::read_to_string(work.path("heart/README.md")).unwrap();
+    assert!(!readme.contains("Nothing holds"), "{readme}");
     work.output("init film --thickness 0.5");
     for (project, thickness, sides) in
         [("plate", 3.0, "[210.0, 297.0]"), ("film", 0.5, "[1050.0, 1485.0]")]
@@ -132,6 +139,20 @@ fn plates_of_other_materials_stay_in_their_plane() {
         assert!(said.contains("by themselves they stay"), "{said}");
         std::fs::remove_dir_all(work.path("plate")).unwrap();
     }
+}
+
+/// As `material check` says.
+#[test]
+fn a_material_that_tears_before_it_opens_is_refused() {
+    let work = Workplace::new();
+    let acrylic = "configs/materials/acrylic-3mm.toml";
+    let message = work.error(&format!("init sheet --material {acrylic}"));
+    assert!(message.contains("tears: the tip of a ligament strains"), "{message}");
+    assert!(!work.path("sheet").exists());
+    let checked = work.program(&format!("material check {acrylic}")).output().unwrap();
+    let checked = String::from_utf8(checked.stdout).unwrap();
+    let verdict = message.split(".toml: ").nth(1).unwrap().split("; choose").next().unwrap();
+    assert!(checked.contains(verdict), "{checked}");
 }
 
 /// Weights of ligaments that buckle do not serve those that bend in the plane.

@@ -33,7 +33,7 @@ fn a_plate_springs_back_and_one_of_twice_the_thickness_twice_as_far() {
         ("[60.0, 60.0]", "[120.0, 120.0]"),
         ("start = 1.6", "start = 3.2"),
         ("[1.0, 2.8]", "[2.0, 5.6]"),
-        ("kerf = 0.2", "kerf = 0.4"),
+        ("slit_width = 0.2", "slit_width = 0.4"),
         ("r_win = 12.0", "r_win = 24.0"),
         ("stroke = 22.0", "stroke = 44.0"),
         (WEIGHTS, &with_law(LAW)),

@@ -158,9 +158,9 @@ fn place(sheet: &Sheet, attachment: &AttachmentPoint, kind: SupportKind) -> Plac
 }
 
 /// A point of a panel; if it lies on the line of a cut, the nearest point of the finished edge,
-/// half a kerf inside.
+/// half a slit inside.
 fn on_finished_edge(sheet: &Sheet, panel: usize, point: [f64; 2]) -> [f64; 2] {
-    let kerf = sheet.options.process.kerf;
+    let slit = sheet.options.process.slit_width;
     let corners = finished_corners(sheet, panel);
     let mut moved = point;
     for edge in 0..4 {
@@ -169,14 +169,14 @@ fn on_finished_edge(sheet: &Sheet, panel: usize, point: [f64; 2]) -> [f64; 2] {
         let length = along[0].hypot(along[1]);
         let inward = [-along[1] / length, along[0] / length];
         let depth = (moved[0] - p[0]) * inward[0] + (moved[1] - p[1]) * inward[1];
-        if depth.abs() <= kerf {
+        if depth.abs() <= slit {
             moved = [0, 1].map(|i| moved[i] - depth * inward[i]);
         }
     }
     moved
 }
 
-/// The corners of a panel between its finished edges: the edges of cuts are half a kerf inside of
+/// The corners of a panel between its finished edges: the edges of cuts are half a slit inside of
 /// their lines.
 fn finished_corners(sheet: &Sheet, panel: usize) -> [[f64; 2]; 4] {
     let Grid { m, n } = sheet.grid;
@@ -188,7 +188,7 @@ fn finished_corners(sheet: &Sheet, panel: usize) -> [[f64; 2]; 4] {
         let along = [q[0] - p[0], q[1] - p[1]];
         let length = along[0].hypot(along[1]);
         let direction = along.map(|x| x / length);
-        let inside = if on_outline[edge] { 0.0 } else { 0.5 * sheet.options.process.kerf };
+        let inside = if on_outline[edge] { 0.0 } else { 0.5 * sheet.options.process.slit_width };
         let start = [p[0] - inside * direction[1], p[1] + inside * direction[0]];
         (start, direction)
     });

@@ -38,7 +38,8 @@ impl AttachmentPoint {
         let hinges = sheet.hinges.iter().enumerate();
         let hinges =
             hinges.filter(|(_, hinge)| [hinge.panel_a(), hinge.panel_b()].contains(&self.panel));
-        let (r_win, half_kerf) = (sheet.options.process.r_win, 0.5 * sheet.options.process.kerf);
+        let process = sheet.options.process;
+        let (r_win, half_slit) = (process.r_win, 0.5 * process.slit_width);
         let mut clearances = Vec::new();
         let mut add = |obstacle, least| {
             clearances.push(Clearance {
@@ -49,7 +50,7 @@ impl AttachmentPoint {
         };
         if let Some(diameter) = self.hole {
             for (i, _) in edges(&panel.corners).enumerate() {
-                add(Obstacle::Edge([i, (i + 1) % 4]), diameter + half_kerf);
+                add(Obstacle::Edge([i, (i + 1) % 4]), diameter + half_slit);
             }
             for (h, _) in hinges.clone() {
                 add(Obstacle::HoleToHinge(h), r_win + 0.5 * diameter);

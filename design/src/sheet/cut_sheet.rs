@@ -116,8 +116,8 @@ pub struct Hinge {
     pub main: [f64; 2],
     /// Material between O and the finished edge of the secondary cut (mm).
     pub w_lig: f64,
-    /// Distance of O from the line of the secondary cut (mm): w_lig plus half the kerf, or w_lig
-    /// alone if that line is the outline of the sheet, which is cut to its finished edge.
+    /// Distance of O from the line of the secondary cut (mm): w_lig plus half of the slit, or
+    /// w_lig alone if that line is the outline of the sheet, which is cut to its finished edge.
     pub set_back: f64,
     /// Angle between the cuts, measured into the material (rad).
     pub alpha: f64,
@@ -214,9 +214,9 @@ impl Sheet {
             .enumerate()
             .map(|(h, (site, &w_lig))| {
                 let [i, j] = site.vertex;
-                let half_kerf =
-                    if grid.is_interior(i, j) { 0.5 * options.process.kerf } else { 0.0 };
-                let widths = [w_lig, w_lig + half_kerf];
+                let interior = grid.is_interior(i, j);
+                let half_slit = if interior { 0.5 * options.process.slit_width } else { 0.0 };
+                let widths = [w_lig, w_lig + half_slit];
                 Hinge::new(h, site, &pattern.points, widths, options)
             })
             .collect::<Result<_, _>>()?;
@@ -246,12 +246,12 @@ impl Sheet {
 
     /// The design vectors g of the hinges; (7).
     pub fn designs(&self) -> Vec<HingeDesign> {
-        let CuttingProcess { kerf, r_win, .. } = self.options.process;
+        let CuttingProcess { slit_width, r_win, .. } = self.options.process;
         let design = |hinge: &Hinge| HingeDesign {
             w_lig: hinge.w_lig,
             alpha: hinge.alpha,
             fillet_ratio: hinge.fillet_ratio,
-            kerf,
+            kerf: slit_width,
             r_win,
         };
         self.hinges.iter().map(design).collect()

@@ -1,9 +1,8 @@
-//! What the cutting tool leaves at every hinge: its hole, the kerf, and the window for which the
-//! hinge was measured.
+//! What is cut at every hinge: its hole, the slit, and the window for which the hinge was measured.
 
 use hinge::{HingeConstants, HingeDesign};
 use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize, de::Error as _};
 
 /// The hole at the tip of a main cut.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -14,20 +13,20 @@ pub enum Hole {
     Diameter(f64),
 }
 
-/// The cutting tool and the windows of the hinges.
+/// What is cut at a hinge, and its window.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(try_from = "ProcessKeys", into = "ProcessKeys")]
 #[schemars(with = "ProcessKeys")]
 pub struct CuttingProcess {
     /// The hole at the tip of every main cut.
     pub hole: Hole,
-    /// Width the cutting tool removes (mm).
-    pub kerf: f64,
+    /// Width of the slits (mm).
+    pub slit_width: f64,
     /// Radius of a hinge's window (mm).
     pub r_win: f64,
 }
 
-/// The cutting tool and the windows of the hinges.
+/// What is cut at a hinge, and its window.
 #[derive(Clone, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct ProcessKeys {
@@ -35,19 +34,31 @@ struct ProcessKeys {
     /// the paper cuts 0.16. Either this or `hole_diameter`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     fillet_ratio: Option<f64>,
-    /// Diameter of the hole at the tip of every main cut (mm), above kerf. Either this or
+    /// Diameter of the hole at the tip of every main cut (mm), above `slit_width`. Either this or
     /// `fillet_ratio`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     hole_diameter: Option<f64>,
-    /// Width the cutting tool removes along the main cut (mm), above 0 and below the diameter of
-    /// the hole. It may differ from the kerf of the weights: in a film from 0.002 to 0.15 w_lig it
-    /// changes W by less than 0.5 % and the force by less than 2.5 %, in a plate from 0.05 to 0.64
-    /// w_lig by less than 0.4 and 3.5 %.
-    kerf: f64,
+    /// Width of the finished slits (mm), above 0 and below the diameter of the hole. It may differ
+    /// from the slit of the weights: in a film from 0.002 to 0.15 w_lig it changes W by less than
+    /// 0.5 % and the force by less than 2.5 %, in a plate from 0.05 to 0.64 w_lig by less than 0.4
+    /// and 3.5 %.
+    slit_width: f64,
+    /// The key of earlier scenes.
+    #[serde(default, skip_serializing, deserialize_with = "earlier_kerf")]
+    #[schemars(skip)]
+    kerf: (),
     /// Radius of the half-disc of sheet assigned to the hinge (mm), above 2.5 w_lig. For learned
     /// hinges it is the radius of the weights, times the thickness of the sheet over the thickness
     /// in the training.
     r_win: f64,
+}
+
+/// A kerf was the width of the slits for some machines and the width that the tool removes for
+/// others.
+fn earlier_kerf<'de, D: Deserializer<'de>>(_: D) -> Result<(), D::Error> {
+    Err(D::Error::custom(
+        "is now two keys: process.slit_width, the width of the slits (mm), and cutting.kerf, the width that the tool removes (mm)",
+    ))
 }
 
 /// Why `[process]` does not define a hole.
@@ -66,18 +77,18 @@ impl TryFrom<ProcessKeys> for CuttingProcess {
             (None, Some(diameter)) => Hole::Diameter(diameter),
             (None, None) | (Some(_), Some(_)) => return Err(OneHole),
         };
-        let ProcessKeys { kerf, r_win, .. } = keys;
-        Ok(Self { hole, kerf, r_win })
+        let ProcessKeys { slit_width, kerf: (), r_win, .. } = keys;
+        Ok(Self { hole, slit_width, r_win })
     }
 }
 
 impl From<CuttingProcess> for ProcessKeys {
-    fn from(CuttingProcess { hole, kerf, r_win }: CuttingProcess) -> Self {
+    fn from(CuttingProcess { hole, slit_width, r_win }: CuttingProcess) -> Self {
         let [fillet_ratio, hole_diameter] = match hole {
             Hole::Ratio(ratio) => [Some(ratio), None],
             Hole::Diameter(diameter) => [None, Some(diameter)],
         };
-        Self { fillet_ratio, hole_diameter, kerf, r_win }
+        Self { fillet_ratio, hole_diameter, slit_width, kerf: (), r_win }
     }
 }
 
@@ -85,7 +96,7 @@ impl From<HingeConstants> for CuttingProcess {
     fn from(constants: HingeConstants) -> Self {
         Self {
             hole: Hole::Ratio(constants.fillet_ratio),
-            kerf: constants.kerf,
+            slit_width: constants.kerf,
             r_win: constants.r_win,
         }
     }
@@ -101,7 +112,7 @@ impl CuttingProcess {
                 Hole::Ratio(ratio) => ratio,
                 Hole::Diameter(diameter) => 0.5 * diameter / w_lig,
             },
-            kerf: self.kerf,
+            kerf: self.slit_width,
             r_win: self.r_win,
         }
     }
@@ -130,7 +141,7 @@ mod tests {
     #[test]
     fn a_process_has_one_hole_by_ratio_or_by_diameter() {
         let read = |hole: &str| {
-            toml::from_str::<CuttingProcess>(&format!("{hole}\nkerf = 0.2\nr_win = 100.0"))
+            toml::from_str::<CuttingProcess>(&format!("{hole}\nslit_width = 0.2\nr_win = 100.0"))
         };
         let drilled = read("hole_diameter = 2.0").unwrap();
         assert_eq!(drilled.hinge(10.0, 1.5).fillet_ratio, 0.1);
@@ -143,6 +154,8 @@ mod tests {
             let message = read(both).unwrap_err().to_string();
             assert!(message.contains("either fillet_ratio"), "{message}");
         }
+        let earlier = read("hole_diameter = 2.0\nkerf = 0.1").unwrap_err().to_string();
+        assert!(earlier.contains("process.slit_width") && earlier.contains("cutting.kerf"));
         for process in [drilled, papers] {
             let text = toml::to_string(&process).unwrap();
             assert_eq!(toml::from_str::<CuttingProcess>(&text).unwrap(), process);

@@ -69,7 +69,7 @@ impl Validity {
     }
 }
 
-/// [`overlap`] from which panels lie over each other: more than a kerf and rounding leave.
+/// [`overlap`] from which panels lie over each other: more than a slit and rounding leave.
 pub const OVERLAP: f64 = 0.01;
 
 /// The maximum common area of two neighbouring panels in a configuration, relative to the mean

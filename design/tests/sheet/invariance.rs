@@ -6,11 +6,11 @@ use crate::prelude::*;
 use crate::taylor::{springs, tiny};
 use std::f64::consts::PI;
 
-/// The random 3 x 3 sheet with another outline and kerf.
-fn on(corners: [[f64; 2]; 4], w_lig: f64, hinge_point: HingePoint, kerf: f64) -> Sheet {
+/// The random 3 x 3 sheet with another outline and slit width.
+fn on(corners: [[f64; 2]; 4], w_lig: f64, hinge_point: HingePoint, slit_width: f64) -> Sheet {
     let coordinates = coordinates(&case("p1_3x3_random"));
     let (grid, outline) = (Grid { m: 3, n: 3 }, Outline { corners });
-    let options = SheetOptions { hinge_point, process: CuttingProcess { kerf, ..PROCESS } };
+    let options = SheetOptions { hinge_point, process: CuttingProcess { slit_width, ..PROCESS } };
     cut(grid, outline, &coordinates, w_lig, options)
 }
 
@@ -65,7 +65,7 @@ fn a_scene_rotated_as_a_whole_deploys_alike() {
     for (law, hinge_point, force) in laws {
         let deployed = |angle: f64| {
             let corners = square.corners.map(|corner| turned(corner, angle));
-            let sheet = on(corners, 16.0, hinge_point, PROCESS.kerf);
+            let sheet = on(corners, 16.0, hinge_point, PROCESS.slit_width);
             pulled(&sheet, law, turned([force, 0.0], angle), 20.0 * force, 4)
         };
         let expected = deployed(0.0);
@@ -151,7 +151,7 @@ fn a_mirrored_sheet_deploys_as_the_mirror_image() {
 #[test]
 fn hinges_store_the_work_of_the_loads() {
     let square = Outline::rectangle(300.0, 300.0);
-    let sheet = on(square.corners, 16.0, HingePoint::CutTip, PROCESS.kerf);
+    let sheet = on(square.corners, 16.0, HingePoint::CutTip, PROCESS.slit_width);
     let laws: [(&dyn HingeLaw, f64); 2] = [(&springs(), 12.0), (&tiny(), 0.5)];
     for (law, force) in laws {
         let lost = |steps: usize| {

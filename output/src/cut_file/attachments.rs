@@ -41,14 +41,11 @@ impl PlacedAttachment {
         })
     }
 
-    /// Adds hole and mark to a drawing of the paths of a tool with the given kerf (mm).
-    pub(super) fn draw(&self, drawing: &mut CutDrawing, kerf: f64) {
+    /// Adds its mark to a drawing, unless it has a hole.
+    pub(super) fn mark(&self, drawing: &mut CutDrawing) {
         let [x, y] = self.at;
         match (self.hole, self.clip) {
-            (Some(diameter), _) => {
-                let (centre, radius) = (self.at, 0.5 * (diameter - kerf));
-                drawing.add(Layer::AttachmentHoles, Shape::Circle { centre, radius });
-            }
+            (Some(_), _) => {}
             (None, Some(ends)) => drawing.add(Layer::Attachments, Shape::Line(ends)),
             (None, None) => {
                 for [dx, dy] in [[ARM, ARM], [ARM, -ARM]] {

@@ -66,7 +66,6 @@ impl Layer {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub(super) enum Pen {
-    Black,
     Blue,
     Red,
 }
@@ -86,6 +85,13 @@ impl CutDrawing {
         self.shapes.push((layer, shape));
     }
 
+    /// Adds a cross with arms of the given length (mm).
+    pub(super) fn add_cross(&mut self, layer: Layer, [x, y]: [f64; 2], arm: f64) {
+        for ends in [[[x - arm, y], [x + arm, y]], [[x, y - arm], [x, y + arm]]] {
+            self.add(layer, Shape::Line(ends));
+        }
+    }
+
     /// The shapes that the tool cuts.
     pub fn cuts(&self) -> impl Iterator<Item = &Shape> {
         let cut = self.shapes.iter().filter(|(layer, _)| layer.is_cut());
@@ -103,7 +109,6 @@ impl CutDrawing {
         let pen = self.pens.map(|pens| pens[usize::from(!layer.is_cut())]);
         match pen {
             None => (colour, index),
-            Some(Pen::Black) => ([0, 0, 0], 7),
             Some(Pen::Blue) => ([0, 0, 255], 5),
             Some(Pen::Red) => ([255, 0, 0], 1),
         }

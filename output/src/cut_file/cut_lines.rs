@@ -5,14 +5,14 @@
 //! w_lig, which is drilled about O.
 //!
 //! **Ligament.** w_lig is the material between O and the finished edge of the secondary cut, as in
-//! the window: the distance of O from the line of that cut is larger by half a kerf. The hole
+//! the window: the distance of O from the line of that cut is larger by half the slit. The hole
 //! reduces the ligament by its radius, so that a caliper next to the hole reads (1 - rho_f) w_lig,
 //! [`CutLines::caliper`].
 //!
-//! **Kerf.** A slit is one pass of the tool along its line and removes the kerf, half on each
-//! flank: the tool's kerf is the design kerf w_c of (7). Holes and outline are closed paths, offset
-//! by half the kerf (holes inwards, the outline outwards), so that the finished hole and sheet have
-//! their nominal size.
+//! **Kerf.** The kerf is the width that the tool removes. A slit as wide is one pass along its line;
+//! a wider one is a closed path along its flanks. Closed paths are offset by half the kerf (holes and
+//! slits inwards, the outline outwards), so that finished holes, slits and sheet have their nominal
+//! size.
 //!
 //! **Over-run.** A slit that is open on the outline is cut beyond the finished edge, so that no web
 //! is left between the two cuts.
@@ -63,8 +63,8 @@ pub struct CutLines {
     pub holes: Vec<Hole>,
     /// Corners of the sheet, counter-clockwise (mm).
     pub outline: [[f64; 2]; 4],
-    /// Width of the kerf (mm).
-    pub kerf: f64,
+    /// Width of the slits (mm).
+    pub slit_width: f64,
     /// How the sheet is cut.
     pub cutting: CuttingConfig,
     /// Where panels are held and pulled.
@@ -95,11 +95,11 @@ impl CutLines {
             .map(|hinge| Hole { centre: hinge.tip, radius: process.hole_radius(hinge.w_lig) })
             .collect();
         for (hinge, hole) in holes.iter().enumerate() {
-            if 2.0 * hole.radius <= process.kerf {
+            if 2.0 * hole.radius <= process.slit_width {
                 return Err(FabricationError::HoleTooSmall {
                     hinge,
                     diameter: 2.0 * hole.radius,
-                    kerf: process.kerf,
+                    slit: process.slit_width,
                 });
             }
         }
@@ -107,14 +107,14 @@ impl CutLines {
             slits: slits(pattern, sheet, &holes)?,
             holes,
             outline: sheet.outline.corners,
-            kerf: process.kerf,
+            slit_width: process.slit_width,
             cutting,
             attachments: (attachments.iter())
                 .map(|attachment| PlacedAttachment::new(sheet, attachment))
                 .collect::<Result<_, _>>()?,
         };
         cuts.reach_what_they_cut(sheet)?;
-        gaps::check(cuts.finished(), &cuts.outline, cuts.kerf)?;
+        gaps::check(cuts.finished(), &cuts.outline, cuts.slit_width)?;
         Ok(cuts)
     }
 
@@ -147,26 +147,56 @@ impl CutLines {
         });
         let slits = self.slits.iter().map(|slit| Cut {
             ends: slit.ends,
-            radius: 0.5 * self.kerf,
+            radius: 0.5 * self.slit_width,
             hinges: slit.hinges.into_iter().flatten().collect(),
         });
         holes.chain(slits).collect()
     }
 
+    /// Width that the tool removes (mm).
+    pub fn kerf(&self) -> f64 {
+        self.cutting.tool_kerf(self.slit_width)
+    }
+
+    /// Whether a tool of the given kerf (mm) cuts a slit in one pass along its line.
+    pub(super) fn is_one_pass(&self, kerf: f64) -> bool {
+        kerf > self.slit_width - ROUNDING
+    }
+
     /// The paths of the tool, in the order of the pattern.
     pub fn drawing(&self) -> CutDrawing {
+        let kerf = self.kerf();
+        self.paths(kerf, self.is_one_pass(kerf), 0.0, true)
+    }
+
+    /// The paths of a tool of the given kerf (mm), which cuts lines, or else around slits; crosses
+    /// in place of holes of a diameter below `least_hole` (mm), and marks.
+    pub(super) fn paths(&self, kerf: f64, lines: bool, least_hole: f64, marks: bool) -> CutDrawing {
         let mut drawing = CutDrawing::default();
-        for hole in &self.holes {
-            let (centre, radius) = (hole.centre, self.tool_radius(hole));
-            drawing.add(Layer::Holes, Shape::Circle { centre, radius });
+        let mut hole = |layer, centre, radius| match 2.0 * radius < least_hole {
+            true => drawing.add_cross(Layer::Punch, centre, radius),
+            false => drawing.add(layer, Shape::Circle { centre, radius: radius - 0.5 * kerf }),
+        };
+        for Hole { centre, radius } in self.holes.iter().filter(|_| lines) {
+            hole(Layer::Holes, *centre, *radius);
         }
         for attachment in &self.attachments {
-            attachment.draw(&mut drawing, self.kerf);
+            if let Some(diameter) = attachment.hole {
+                hole(Layer::AttachmentHoles, attachment.at, 0.5 * diameter);
+            }
+        }
+        if marks {
+            self.attachments.iter().for_each(|attachment| attachment.mark(&mut drawing));
+        }
+        if !lines {
+            self.add_contours(&mut drawing, kerf);
+            return drawing;
         }
         for slit in &self.slits {
             drawing.add(Layer::Cut, Shape::Line(self.tool_slit(slit)));
         }
-        drawing.add(Layer::Outline, Shape::Polygon(self.tool_outline().to_vec()));
+        let outline = self.outline_at(0.5 * kerf).to_vec();
+        drawing.add(Layer::Outline, Shape::Polygon(outline));
         drawing
     }
 
@@ -190,14 +220,9 @@ impl CutLines {
         self.clearance(hinge) - self.holes[hinge].radius
     }
 
-    /// Radius of the path of the tool's centre in a hole (mm).
-    pub fn tool_radius(&self, hole: &Hole) -> f64 {
-        hole.radius - self.kerf / 2.0
-    }
-
     /// The path of the tool's centre around the sheet (mm).
     pub fn tool_outline(&self) -> [[f64; 2]; 4] {
-        self.outline_at(0.5 * self.kerf)
+        self.outline_at(0.5 * self.kerf())
     }
 
     /// The outline moved outwards by a distance (mm).
@@ -219,14 +244,13 @@ impl CutLines {
     /// Material between the tip O of a hinge and the nearest cut other than its own (mm).
     ///
     /// It is w_lig for a valid hinge, and less if another cut is closer than the secondary cut.
-    /// Half the kerf of a slit lies on this side of its line.
+    /// Half of a slit lies on this side of its line.
     pub fn clearance(&self, hinge: usize) -> f64 {
         let tip = self.holes[hinge].centre;
-        let to_slits = self
-            .slits
-            .iter()
-            .filter(|slit| !slit.hinges.contains(&Some(hinge)))
-            .map(|slit| distance_to_segment(tip, slit.ends[0], slit.ends[1]) - 0.5 * self.kerf);
+        let to_slits =
+            self.slits.iter().filter(|slit| !slit.hinges.contains(&Some(hinge))).map(|slit| {
+                distance_to_segment(tip, slit.ends[0], slit.ends[1]) - 0.5 * self.slit_width
+            });
         let to_outline = edges(&self.outline).map(|(p, q)| distance_to_segment(tip, p, q));
         to_slits.chain(to_outline).fold(f64::INFINITY, f64::min)
     }

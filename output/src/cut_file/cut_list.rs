@@ -35,9 +35,10 @@ pub fn attachment_list(cuts: &CutLines) -> String {
 /// One row a quantity: the totals, and the number of holes by diameter, rounded to 0.1 mm.
 pub fn cut_summary(cuts: &CutLines, totals: &Totals) -> String {
     let mut text = format!(
-        "quantity,value,unit\nkerf,{},mm\nover-run,{},mm\nslits,{},\nholes,{},\npierces,{},\ncut length,{:.3},m\n\
+        "quantity,value,unit\nkerf,{},mm\nslit width,{},mm\nover-run,{},mm\nslits,{},\nholes,{},\npierces,{},\ncut length,{:.3},m\n\
          idle travel,{:.3},m\nidle travel in the order of the pattern,{:.3},m\n",
-        cuts.kerf,
+        cuts.kerf(),
+        cuts.slit_width,
         cuts.cutting.over_run,
         totals.slits,
         totals.holes,

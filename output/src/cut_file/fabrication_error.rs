@@ -10,28 +10,28 @@ pub enum FabricationError {
     )]
     SlitVanishes { hinge: usize, length: f64, drilled: f64 },
     #[error(
-        "the hole of hinge {hinge} is {diameter:.3} mm wide, which must exceed the kerf of {kerf} mm: \
+        "the hole of hinge {hinge} is {diameter:.3} mm wide, which must exceed the slit of {slit} mm: \
          increase the ligament width or the fillet ratio"
     )]
-    HoleTooSmall { hinge: usize, diameter: f64, kerf: f64 },
+    HoleTooSmall { hinge: usize, diameter: f64, slit: f64 },
     #[error(
-        "the slits are {slit} mm wide, which must exceed the kerf of the tool, {tool_kerf} mm: increase process.kerf of the scene, \
-         the width of the slits, or use a machine that cuts lines"
+        "the slits are {slit} mm wide (process.slit_width), and the tool cuts lines of {kerf} mm: use a machine that cuts \
+         around slits, or design slits as wide as the tool cuts (cutting.kerf)"
     )]
-    SlitTooNarrow { slit: f64, tool_kerf: f64 },
+    SlitTooWide { slit: f64, kerf: f64 },
     #[error(
-        "a hole of {diameter:.3} mm is not wider than the kerf of the tool, {kerf} mm: use a finer tool (tool_kerf), or wider \
-         ligaments or a larger hole (process.fillet_ratio or hole_diameter) in the scene"
+        "the paths of this machine allow for the width that its tool removes, which is not known: set cutting.kerf (mm) in the \
+         scene"
     )]
-    HoleBelowTool { diameter: f64, kerf: f64 },
+    NoKerf,
     #[error(
-        "the cuts at the hinges {} and {} leave {gap:.3} mm between them, less than the kerf of {least} mm: move them \
+        "the cuts at the hinges {} and {} leave {gap:.3} mm between them, less than a slit of {least} mm: move them \
          apart (objective.panel_shape) or narrow the ligaments",
         .hinges[0], .hinges[1]
     )]
     CutsMeet { hinges: [usize; 2], gap: f64, least: f64 },
     #[error(
-        "the hole of hinge {hinge} leaves {gap:.3} mm to the outline, less than the kerf of {least} mm: move the cut \
+        "the hole of hinge {hinge} leaves {gap:.3} mm to the outline, less than a slit of {least} mm: move the cut \
          (objective.panel_shape) or reduce the fillet ratio"
     )]
     CutMeetsOutline { hinge: usize, gap: f64, least: f64 },

@@ -1,45 +1,42 @@
-//! Closed contours around what is removed from a sheet: a slit of the kerf's width with the holes
-//! at its ends.
+//! Closed contours around what is removed from a sheet: a slit with the holes at its ends.
 //!
 //! A slit between two hinges is one contour. One that is open on the outline is a notch of the
 //! outline, which thereby stays one contour.
 
+use crate::cut_file::cut_drawing::{CutDrawing, Layer};
 use crate::cut_file::cut_lines::{CutLines, Slit};
+use crate::display::Shape;
 use design::geometry::polygon::{distance, edges, side};
 use scene::drawing::bulged::Vertex;
 use std::f64::consts::PI;
 
-/// The contours of a sheet (mm), counter-clockwise.
-pub struct Contours {
-    /// One a slit between two hinges.
-    pub inner: Vec<Vec<Vertex>>,
-    /// The outline with its notches.
-    pub outer: Vec<Vertex>,
-}
-
 impl CutLines {
-    /// The contours that a tool of the given kerf (mm) follows with its centre, half of that from
-    /// the finished edges; with 0 the finished edges themselves. The kerf must be smaller than the
-    /// kerf of the slits.
-    pub fn contours(&self, tool_kerf: f64) -> Contours {
-        let inset = 0.5 * tool_kerf;
+    /// Adds the contours that a tool of the given kerf (mm) follows with its centre, half of that
+    /// from the finished edges, counter-clockwise: one a slit between two hinges, and the outline
+    /// with its notches. With 0 they are the finished edges. The tool must be narrower than the
+    /// slits.
+    pub(super) fn add_contours(&self, drawing: &mut CutDrawing, kerf: f64) {
+        let inset = 0.5 * kerf;
         let end = |slit: &Slit, which: usize| {
             slit.hinges[which].map(|hinge| End {
                 at: slit.ends[which],
                 towards: slit.ends[1 - which],
                 radius: self.holes[hinge].radius - inset,
-                half_width: 0.5 * self.kerf - inset,
+                half_width: 0.5 * self.slit_width - inset,
             })
         };
-        let inner = self.slits.iter().filter_map(|slit| {
-            let ends = [end(slit, 0)?, end(slit, 1)?];
-            Some(ends.iter().flat_map(|end| end.around()).collect())
-        });
+        for slit in &self.slits {
+            if let (Some(from), Some(to)) = (end(slit, 0), end(slit, 1)) {
+                let contour = [from, to].iter().flat_map(End::around).collect();
+                drawing.add(Layer::Cut, Shape::Contour(contour));
+            }
+        }
         let open: Vec<End> = (self.slits.iter())
             .filter(|slit| slit.hinges[1].is_none())
             .filter_map(|slit| end(slit, 0))
             .collect();
-        Contours { inner: inner.collect(), outer: notched(&self.outline_at(inset), &open) }
+        let outline = notched(&self.outline_at(inset), &open);
+        drawing.add(Layer::Outline, Shape::Contour(outline));
     }
 }
 

@@ -1,6 +1,6 @@
 //! The gaps between cuts.
 //!
-//! Two cuts leave at least the kerf between them, and so do holes and outline. A slit then meets
+//! Two cuts leave at least the width of a slit between them, and so do holes and outline. A slit then meets
 //! the outline at most once and no other cut, so that the sheet stays in one piece.
 
 use crate::cut_file::fabrication_error::FabricationError;

@@ -1,10 +1,9 @@
 //! Machines and services: what their files hold, and what they can cut.
 
-use crate::cut_file::cut_drawing::{CutDrawing, Layer, Pen};
+use crate::cut_file::cut_drawing::{CutDrawing, Pen};
 use crate::cut_file::cut_lines::CutLines;
 use crate::cut_file::fabrication_error::FabricationError;
 use crate::cut_file::sheet_drawing::registration_marks;
-use crate::display::Shape;
 use design::geometry::polygon::{bounds, distance_to_outline};
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -34,9 +33,10 @@ pub struct Machine {
     pub name: String,
     /// What it is, in a line.
     pub says: String,
-    /// How a slit is drawn.
-    cuts: Cuts,
-    /// Width that the tool removes and the paths allow for (mm); `None`: the kerf of the scene.
+    /// Whether it cuts nothing but lines: slits of one pass.
+    #[serde(default)]
+    lines: bool,
+    /// Width that the tool removes and the paths allow for (mm); `None`: cutting.kerf of the scene.
     tool_kerf: Option<f64>,
     /// Length by which an open slit is cut beyond the outline (mm); `None`: the length of the
     /// scene.
@@ -44,23 +44,10 @@ pub struct Machine {
     /// Diameter of the smallest hole that the tool cuts (mm).
     #[serde(default)]
     least_hole: f64,
-    /// Whether services that publish limits are listed.
-    #[serde(default)]
-    pub services: bool,
     /// Whether marks are drawn.
     marks: bool,
     /// The colours of cuts and of marks; `None`: each layer has its own.
     colours: Option<[Pen; 2]>,
-}
-
-/// How a slit is drawn.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-enum Cuts {
-    /// A line.
-    Lines,
-    /// A closed contour.
-    Slots,
 }
 
 /// What a service can cut; lengths in mm, those ending in `_t` in thicknesses.
@@ -71,6 +58,9 @@ pub struct Service {
     pub name: String,
     /// Where it says so.
     pub source: String,
+    /// The machine whose files it takes.
+    #[serde(default = "compensating")]
+    pub machine: String,
     #[serde(default)]
     hole: f64,
     #[serde(default)]
@@ -88,6 +78,11 @@ pub struct Service {
     #[serde(default)]
     edge_t: f64,
     size: Option<[f64; 2]>,
+}
+
+/// Most services allow for their kerf themselves.
+fn compensating() -> String {
+    "laser-service".to_owned()
 }
 
 /// The smallest features of a sheet, and its size (mm).
@@ -140,7 +135,7 @@ impl Service {
                 least.hole,
                 "process.hole_diameter (or fillet_ratio), ligament.range",
             ),
-            ("slits of", features.slot, least.slot, "process.kerf"),
+            ("slits of", features.slot, least.slot, "process.slit_width"),
             ("ligaments of", features.bridge, least.bridge, "ligament.range"),
             ("holes to the edge of", features.edge, least.edge, "ligament.range"),
         ]
@@ -172,69 +167,19 @@ impl Machine {
     /// The paths in a sheet and the marks on it, in the order of the pattern; an error if they do
     /// not exist.
     fn paths(&self, cuts: &CutLines) -> Result<CutDrawing, FabricationError> {
-        let kerf = self.tool_kerf.unwrap_or(match self.cuts {
-            Cuts::Lines => cuts.kerf,
-            Cuts::Slots => 0.0,
-        });
+        let kerf = self.tool_kerf.or(cuts.cutting.kerf).ok_or(FabricationError::NoKerf)?;
+        let lines = self.lines || cuts.is_one_pass(kerf);
+        // Lines of no width are the middles of slits, for drawing programs.
+        if lines && kerf > 0.0 && !cuts.is_one_pass(kerf) {
+            return Err(FabricationError::SlitTooWide { slit: cuts.slit_width, kerf });
+        }
         let mut cuts = cuts.clone();
         cuts.cutting.over_run = self.over_run(&cuts);
-        let mut drawing = match self.cuts {
-            Cuts::Lines => self.lines(&cuts, kerf)?,
-            Cuts::Slots => slots(&cuts, kerf)?,
-        };
-        for attachment in &cuts.attachments {
-            match attachment.hole {
-                Some(diameter) => {
-                    let layer = Layer::AttachmentHoles;
-                    self.hole(&mut drawing, layer, attachment.at, diameter, kerf)?;
-                }
-                None if self.marks => attachment.draw(&mut drawing, kerf),
-                None => {}
-            }
-        }
-        Ok(drawing)
+        Ok(cuts.paths(kerf, lines, self.least_hole, self.marks))
     }
 
     fn over_run(&self, cuts: &CutLines) -> f64 {
         self.over_run.unwrap_or(cuts.cutting.over_run)
-    }
-
-    fn lines(&self, cuts: &CutLines, kerf: f64) -> Result<CutDrawing, FabricationError> {
-        let mut drawing = CutDrawing::default();
-        for hole in &cuts.holes {
-            let diameter = 2.0 * hole.radius;
-            self.hole(&mut drawing, Layer::Holes, hole.centre, diameter, kerf)?;
-        }
-        for slit in &cuts.slits {
-            drawing.add(Layer::Cut, Shape::Line(cuts.tool_slit(slit)));
-        }
-        let outline = cuts.outline_at(0.5 * kerf).to_vec();
-        drawing.add(Layer::Outline, Shape::Polygon(outline));
-        Ok(drawing)
-    }
-
-    /// Adds the path of the tool in a finished hole, or the cross of one that the tool cannot cut.
-    fn hole(
-        &self,
-        drawing: &mut CutDrawing,
-        layer: Layer,
-        centre: [f64; 2],
-        diameter: f64,
-        kerf: f64,
-    ) -> Result<(), FabricationError> {
-        if diameter >= self.least_hole {
-            if diameter <= kerf {
-                return Err(FabricationError::HoleBelowTool { diameter, kerf });
-            }
-            let radius = 0.5 * (diameter - kerf);
-            drawing.add(layer, Shape::Circle { centre, radius });
-            return Ok(());
-        }
-        let ([x, y], arm) = (centre, 0.5 * diameter);
-        for ends in [[[x - arm, y], [x + arm, y]], [[x, y - arm], [x, y + arm]]] {
-            drawing.add(Layer::Punch, Shape::Line(ends));
-        }
-        Ok(())
     }
 }
 
@@ -242,21 +187,6 @@ impl Machine {
 pub(crate) fn fits(part: [f64; 2], place: [f64; 2]) -> bool {
     let ascending = |[a, b]: [f64; 2]| [a.min(b), a.max(b)];
     std::iter::zip(ascending(part), ascending(place)).all(|(part, place)| part <= place)
-}
-
-/// Closed contours; an error if the tool is as wide as the slits.
-fn slots(cuts: &CutLines, tool_kerf: f64) -> Result<CutDrawing, FabricationError> {
-    if tool_kerf >= cuts.kerf {
-        let slit = cuts.kerf;
-        return Err(FabricationError::SlitTooNarrow { slit, tool_kerf });
-    }
-    let contours = cuts.contours(tool_kerf);
-    let mut drawing = CutDrawing::default();
-    for contour in contours.inner {
-        drawing.add(Layer::Cut, Shape::Contour(contour));
-    }
-    drawing.add(Layer::Outline, Shape::Contour(contours.outer));
-    Ok(drawing)
 }
 
 impl CutLines {
@@ -271,7 +201,7 @@ impl CutLines {
             (self.holes.iter()).map(|hole| (hole.centre, hole.radius)).chain(attached).collect();
         Features {
             hole: least(&mut holes.iter().map(|(_, radius)| 2.0 * radius)),
-            slot: self.kerf,
+            slot: self.slit_width,
             bridge: least(&mut (0..self.holes.len()).map(|hinge| self.caliper(hinge))),
             edge: least(&mut holes.iter().map(|(centre, radius)| to_edge(*centre) - radius)),
             size: [0, 1].map(|axis| high[axis] - low[axis]),
@@ -310,7 +240,7 @@ mod tests {
         }
         let whys = machines.service[0].refusals(&fine, 3.0);
         assert_eq!(whys.len(), 3, "{whys:?}");
-        let narrow = "slits of 0.10 mm, at least 1.50 mm (process.kerf)";
+        let narrow = "slits of 0.10 mm, at least 1.50 mm (process.slit_width)";
         assert!(whys[1].contains(narrow), "{whys:?}");
     }
 }

@@ -70,7 +70,7 @@ pub(super) fn numbers(cuts: &CutLines, sheet: &Sheet) -> (Vec<Text>, Vec<Text>) 
 /// What a number inside a panel has to keep clear of.
 struct Taken {
     corners: [[f64; 2]; 4],
-    /// Half the kerf of the slits along the edges (mm).
+    /// Half the width of the slits along the edges (mm).
     edge: f64,
     /// Centre and radius of the holes at the panel's corners (mm).
     holes: Vec<([f64; 2], f64)>,
@@ -86,7 +86,7 @@ impl Taken {
             .map(|(_, hole)| (hole.centre, hole.radius));
         Self {
             corners: sheet.panels[k].corners,
-            edge: 0.5 * cuts.kerf,
+            edge: 0.5 * cuts.slit_width,
             holes: holes.collect(),
             texts: Vec::new(),
         }

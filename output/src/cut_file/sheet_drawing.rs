@@ -37,7 +37,20 @@ impl SheetDrawing {
         for text in panels.into_iter().chain(hinges) {
             numbered.add(Layer::Annotation, Shape::Text(text));
         }
-        let kerf = cuts.kerf;
+        let (kerf, slit) = (cuts.kerf(), cuts.slit_width);
+        let layers = numbered.layers().filter(|layer| layer.is_cut()).map(Layer::name);
+        let order = layers.collect::<Vec<_>>().join(", ");
+        let [paths, ends] = if cuts.is_one_pass(kerf) {
+            [
+                "CUT is one pass of the tool; HOLES and OUTLINE are paths of its centre".to_owned(),
+                format!(" Slits over-run the outline by {} mm.", cuts.cutting.over_run),
+            ]
+        } else {
+            [
+                format!("CUT and OUTLINE are paths of the tool around slits of {slit} mm"),
+                String::new(),
+            ]
+        };
         let notes = vec![
             format!(
                 "{}, {} mm thick, 1:1 in mm. Panels P0 to P{}, {} columns x {} rows; hinges 0 to {}.",
@@ -48,20 +61,8 @@ impl SheetDrawing {
                 sheet.grid.n,
                 sheet.hinges.len() - 1
             ),
-            format!(
-                "Kerf {kerf} mm: CUT is one pass of the tool; HOLES and OUTLINE are paths of its centre, {} mm off the \
-                 finished edge.",
-                0.5 * kerf
-            ),
-            format!(
-                "Order: HOLES, {}CUT, OUTLINE. Slits over-run the outline by {} mm.",
-                if numbered.on(Layer::AttachmentHoles).next().is_some() {
-                    "ATTACHMENT_HOLES, "
-                } else {
-                    ""
-                },
-                cuts.cutting.over_run
-            ),
+            format!("Kerf {kerf} mm: {paths}, {} mm off the finished edge.", 0.5 * kerf),
+            format!("Order: {order}.{ends}"),
             format!("{totals}."),
         ];
         Self { numbered, notes, totals, over_run: cuts.cutting.over_run }
@@ -84,12 +85,8 @@ pub(super) fn registration_marks(drawing: &mut CutDrawing, over_run: f64) {
     let radius = (0.004 * size).clamp(1.0, 5.0);
     let off = over_run + 4.0 * radius;
     let (low, high) = (low.map(|x| x - off), high.map(|x| x + off));
-    for [x, y] in [low, [high[0], low[1]], [low[0], high[1]]] {
-        let arm = 1.6 * radius;
-        for ends in [[[x - arm, y], [x + arm, y]], [[x, y - arm], [x, y + arm]]] {
-            drawing.add(Layer::Registration, Shape::Line(ends));
-        }
-        let centre = [x, y];
+    for centre in [low, [high[0], low[1]], [low[0], high[1]]] {
+        drawing.add_cross(Layer::Registration, centre, 1.6 * radius);
         drawing.add(Layer::Registration, Shape::Circle { centre, radius });
     }
 }

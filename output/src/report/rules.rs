@@ -33,12 +33,12 @@ const SHUT: f64 = -1e-6;
 /// Distance of the outline from the target over the longer side of the flat sheet from which it is
 /// a note, a warning and an error.
 const MISSED: [f64; 3] = [0.01, 0.03, 0.2];
-/// Kerf over ligament width for which another kerf than the kerf of the weights was measured, in a
+/// Slit over ligament width for which another slit than the weights' was measured, in a
 /// film (data/pet-0.5mm) and in a plate (data/polypropylene-3mm).
-const MEASURED_KERF_OF_FILM: [f64; 2] = [0.002, 0.15];
-const MEASURED_KERF_OF_PLATE: [f64; 2] = [0.05, 0.64];
-/// Relative difference of two kerfs that is rounding.
-const SAME_KERF: f64 = 1e-6;
+const MEASURED_SLIT_OF_FILM: [f64; 2] = [0.002, 0.15];
+const MEASURED_SLIT_OF_PLATE: [f64; 2] = [0.05, 0.64];
+/// Relative difference of two slits that is rounding.
+const SAME_SLIT: f64 = 1e-6;
 /// Relative error of a force (%) above which a law is inaccurate.
 const INACCURATE: f64 = 10.0;
 /// Separation of a path from its ray, in ligament widths: in a film W differs by less than 1 % up
@@ -84,7 +84,7 @@ const RULES: [Rule; 25] = [
     cutting,
     stock,
     ligaments_outside,
-    kerf,
+    slit_width,
     states_outside,
     path_dependence,
     flanks_touch,
@@ -587,25 +587,25 @@ fn missed(input: &RuleInput) -> Option<Warning> {
     Some(Warning { severity, ..Concern::TargetMissed.of_sheet(miss(error, facts.flat_size)) })
 }
 
-/// A learned law has the kerf of its training; the effect of another one was measured in a range.
-fn kerf(input: &RuleInput) -> Option<Warning> {
+/// A learned law has the slits of its training; the effect of others was measured in a range.
+fn slit_width(input: &RuleInput) -> Option<Warning> {
     let known = input.scene.surrogate()?.card().hinge.kerf;
-    let kerf = input.deployment.sheet.options.process.kerf;
-    if (kerf / known - 1.0).abs() < SAME_KERF {
+    let slit = input.deployment.sheet.options.process.slit_width;
+    if (slit / known - 1.0).abs() < SAME_SLIT {
         return None;
     }
     let regime = input.scene.material.regime(input.scene.config.ligament.start);
     let [least, most] = match regime {
-        Regime::Film => MEASURED_KERF_OF_FILM,
-        Regime::Plate => MEASURED_KERF_OF_PLATE,
+        Regime::Film => MEASURED_SLIT_OF_FILM,
+        Regime::Plate => MEASURED_SLIT_OF_PLATE,
     };
-    let beyond = input.hinges_where(|row| !(least..=most).contains(&(kerf / row.w_lig)));
+    let beyond = input.hinges_where(|row| !(least..=most).contains(&(slit / row.w_lig)));
     let message = format!(
-        "the kerf of {kerf} mm is neither the kerf of the weights, {} mm, nor between {least} and {most} ligament widths, where its effect on the hinge energy was measured: \
-         use a narrower tool or wider ligaments",
+        "the slit of {slit} mm (process.slit_width) is neither the slit of the weights, {} mm, nor between {least} and {most} ligament widths, where its effect on the hinge energy was measured: \
+         use narrower slits or wider ligaments",
         rounded(known, 4)
     );
-    about(Concern::KerfUnknown, beyond, message)
+    about(Concern::SlitUnknown, beyond, message)
 }
 
 fn other_branch(input: &RuleInput) -> Option<Warning> {

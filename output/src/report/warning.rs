@@ -29,8 +29,8 @@ pub enum Concern {
     WindowsLeavePanels,
     /// w_lig or alpha is outside the training domain of the hinge law.
     LigamentsOutsideDomain,
-    /// The effect of the kerf on the hinge energy is not known.
-    KerfUnknown,
+    /// The effect of the slit on the hinge energy is not known.
+    SlitUnknown,
     /// The path leaves the training domain of the hinge law.
     StatesOutsideDomain,
     /// The path departs so far from the straight ray to its end that energy and forces depend on
@@ -93,7 +93,7 @@ impl Concern {
             | Self::WholeSheet => Severity::Note,
             Self::WindowsOverlap
             | Self::LigamentsOutsideDomain
-            | Self::KerfUnknown
+            | Self::SlitUnknown
             | Self::StockTooSmall
             | Self::StatesOutsideDomain
             | Self::FlanksTouch

@@ -36,7 +36,7 @@ fn a_hole_is_cut_and_listed() {
     let cuts = cuts(hooked).unwrap();
     let drawing = cuts.drawing();
     let holes: Vec<&Shape> = drawing.on(Layer::AttachmentHoles).collect();
-    let radius = 3.0 - 0.5 * cuts.kerf;
+    let radius = 3.0 - 0.5 * cuts.slit_width;
     assert_eq!(holes, [&Shape::Circle { centre: at, radius }]);
     assert!(drawing.on(Layer::Attachments).next().is_none());
     // The holes of the ligaments are as many as without it.
@@ -76,7 +76,7 @@ fn a_hole_near_an_edge_or_a_hinge_is_refused() {
         let hooked = AttachmentPoint { hole: Some(diameter), ..attachment(PanelPoint::Fixed(at)) };
         cuts(hooked).map(|_| ()).map_err(|error| error.to_string())
     };
-    // A radius of material is left at the distance of a diameter, and half a kerf, from the cut.
+    // A radius of material is left at the distance of a diameter, and half a slit, from the cut.
     let kerf = 0.5 * super::KERF;
     hole([x, y - half + 8.0 + kerf + 1e-6], 8.0).unwrap();
     let error = hole([x, y - half + 8.0 + kerf - 1e-3], 8.0).unwrap_err();

@@ -293,7 +293,7 @@ fn the_files_of_every_machine_leave_the_solved_ligaments() {
                     for (_, centre, radius) in &file.circles {
                         let mut holes = cuts.holes.iter();
                         let hole = holes.find(|hole| length([hole.centre, *centre]) < 1e-9);
-                        assert_close(radius + 0.5 * cuts.kerf, hole.unwrap().radius, 1e-9);
+                        assert_close(radius + 0.5 * cuts.kerf(), hole.unwrap().radius, 1e-9);
                     }
                     assert_eq!(file.circles.len(), cuts.holes.len());
                     assert!(file.texts.is_empty());
@@ -314,6 +314,38 @@ fn the_files_of_every_machine_leave_the_solved_ligaments() {
                 other => panic!("the machine {other} has no test"),
             }
         }
+    }
+}
+
+/// Slits that are wider than the tool are cut around, by every machine whose file has paths of a
+/// tool: what remains is the finished sheet. A machine that cuts lines alone refuses them, and so
+/// does one whose tool is not known.
+#[test]
+fn a_tool_cuts_around_slits_that_are_wider() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.dxf");
+    let machines = Machines::shipped();
+    let drawing = |name: &str, cuts: &CutLines| {
+        let machine = machines.machine.iter().find(|it| it.name == name).unwrap();
+        machine.drawing(cuts)
+    };
+    for (_, mut cuts, _) in irregular_sheets() {
+        let kerf = 0.25 * KERF;
+        cuts.cutting.kerf = Some(kerf);
+        // A sheet whose finished edges are the paths.
+        let mut paths = cuts.clone();
+        paths.slit_width -= kerf;
+        paths.outline = cuts.tool_outline();
+        paths.holes.iter_mut().for_each(|hole| hole.radius -= 0.5 * kerf);
+        for drawn in [drawing("ponoko", &cuts), drawing("lightburn", &cuts), Ok(cuts.drawing())] {
+            std::fs::write(&path, dxf(&drawn.unwrap())).unwrap();
+            contours_leave_the_ligaments(&read_dxf(&path), &paths);
+        }
+        let wide = drawing("knife", &cuts);
+        assert!(matches!(wide, Err(FabricationError::SlitTooWide { .. })));
+        cuts.cutting.kerf = None;
+        assert!(matches!(drawing("lightburn", &cuts), Err(FabricationError::NoKerf)));
+        assert!(drawing("laser-service", &cuts).is_ok());
     }
 }
 
@@ -372,6 +404,6 @@ fn own_flank(cuts: &CutLines, hinge: usize, edge: [[f64; 2]; 2]) -> bool {
     let mut slits = cuts.slits.iter();
     let own = slits.find(|slit| slit.hinges.contains(&Some(hinge)));
     let [p, q] = own.unwrap().ends;
-    let on_slit = |end: &[f64; 2]| distance_to_segment(*end, p, q) < 0.6 * cuts.kerf;
+    let on_slit = |end: &[f64; 2]| distance_to_segment(*end, p, q) < 0.6 * cuts.slit_width;
     edge.iter().all(on_slit)
 }

@@ -19,7 +19,8 @@ use design::pattern::cut_pattern::{CutPattern, Outline};
 use design::pattern::grid::Grid;
 use design::sheet::cut_sheet::{HingePoint, Sheet, SheetOptions};
 use hinge::{HingeConstants, SheetMaterial};
-use output::cut_file::{CutLines, FabricationError, SheetDrawing, Slit};
+use output::cut_file::{CutLines, FabricationError, Layer, SheetDrawing, Slit};
+use output::display::Shape;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use scene::CuttingConfig;
@@ -60,7 +61,8 @@ fn uniform_cuts() -> CutLines {
 }
 
 fn cut_lines(pattern: &CutPattern, sheet: &Sheet) -> CutLines {
-    CutLines::new(pattern, sheet, CuttingConfig::default(), &[]).unwrap()
+    let cutting = CuttingConfig { kerf: Some(KERF), ..CuttingConfig::default() };
+    CutLines::new(pattern, sheet, cutting, &[]).unwrap()
 }
 
 /// The cut lines of irregular sheets of several sizes, with their drawings.
@@ -126,7 +128,11 @@ fn the_uniform_sheet_has_eight_slits_and_twelve_holes_at_their_positions() {
     }
     for hole in &cuts.holes {
         assert_close(hole.radius, 2.88, 1e-12);
-        assert_close(cuts.tool_radius(hole), 2.78, 1e-12);
+    }
+    let drawing = cuts.drawing();
+    for path in drawing.on(Layer::Holes) {
+        let Shape::Circle { radius, .. } = path else { panic!("{path:?}") };
+        assert_close(*radius, 2.78, 1e-12);
     }
     let outline = cuts.tool_outline();
     assert!((outline[0][0] + 0.1).abs() < 1e-12 && (outline[2][1] - 1200.1).abs() < 1e-9);

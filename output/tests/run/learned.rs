@@ -74,7 +74,7 @@ fn a_similar_sheet_of_another_thickness_deploys_to_a_similar_shape() {
     config.sheet.size = config.sheet.size.map(|size| size.map(|side| FACTOR * side));
     config.ligament.start *= FACTOR;
     config.ligament.range = config.ligament.range.map(|width| FACTOR * width);
-    config.process.kerf *= FACTOR;
+    config.process.slit_width *= FACTOR;
     config.process.r_win *= FACTOR;
     config.loads[0].force = config.loads[0].force.map(|x| FACTOR.powi(2) * x);
     if let TargetShape::Circle { centre, radius } = &mut config.target {

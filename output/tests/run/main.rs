@@ -33,7 +33,7 @@ ligament = { start = 18.0, range = [10.0, 26.0] }
 
 [process]
 fillet_ratio = 0.16
-kerf = 0.2
+slit_width = 0.2
 r_win = 100.0
 
 [linear]

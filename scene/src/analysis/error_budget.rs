@@ -331,8 +331,12 @@ impl Deployed<'_> {
             return Err("hinges are outside the training domain".into());
         }
         let check = self.scene.surrogate().and_then(|weights| weights.card().spot_check.as_ref());
-        let known = check.and_then(|check| Some((check, check.tier.as_deref()?, check.forces?)));
-        known.ok_or_else(|| "no spot check on the card: `surrogate test --record`".into())
+        let check = check.ok_or("no spot check on the card: `surrogate test --record`")?;
+        let known = check.tier.as_deref().zip(check.forces);
+        let (tier, forces) = known.ok_or(
+            "the spot check on the card is without mesh or forces: `surrogate test --record`",
+        )?;
+        Ok((check, tier, forces))
     }
 
     /// The errors of the weights at their spot check, with the source.
@@ -375,7 +379,8 @@ impl Deployed<'_> {
             sources.push(source);
         }
         if sources.is_empty() {
-            return (!on_finer_mesh).then(|| Err("no ensemble and no spot check".into()));
+            let unknown = self.spot_check().err();
+            return unknown.map(|why| Err(format!("no ensemble; {why}")));
         }
         Some(Ok((ForceErrors { modes }, sources.join("; "))))
     }

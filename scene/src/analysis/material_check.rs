@@ -26,6 +26,14 @@ pub struct Intended {
     pub lying_pitch: Option<f64>,
 }
 
+impl Intended {
+    /// A sheet of the given thickness (mm) with the ligaments for which there are hinge data.
+    pub fn usual(thickness: f64, regime: Regime) -> Self {
+        let w_lig = known_slenderness(regime).map(|ratio| ratio * thickness);
+        Self { w_lig, lying_pitch: None }
+    }
+}
+
 /// Estimates for one ligament width.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct LigamentEstimate {
@@ -115,6 +123,11 @@ impl MaterialCheck {
             ligaments,
             verdicts,
         }
+    }
+
+    /// What excludes the use.
+    pub fn errors(&self) -> impl Iterator<Item = &Finding> {
+        self.verdicts.iter().filter(|verdict| verdict.severity == Severity::Error)
     }
 }
 

@@ -255,7 +255,7 @@ mod tests {
         widths: WidthChart { w_minus: 0.7, w_plus: 1.8 },
         options: SheetOptions {
             hinge_point: HingePoint::CutTip,
-            process: CuttingProcess { hole: Hole::Ratio(0.16), kerf: 0.1, r_win: 8.0 },
+            process: CuttingProcess { hole: Hole::Ratio(0.16), slit_width: 0.1, r_win: 8.0 },
         },
     };
 

@@ -83,6 +83,19 @@ fn what_is_known_adds_in_squares_and_is_a_lower_bound_if_a_part_is_not() {
     assert!(effect(&budget, Cause::LoadingPath).unwrap().corners[0] > 0.0);
 }
 
+/// Its weights have a spot check, which was made inside of their domain.
+#[test]
+fn a_network_whose_error_is_not_known_says_why() {
+    let scene = film(|config| config.surrogate.as_mut().unwrap().ensemble.clear());
+    let mut deployment = deployed(&scene);
+    deployment.path.last_mut().unwrap().inside[0] = false;
+    let problem = scene.problem().unwrap();
+    let budget = ErrorBudget::new(&scene, &problem, &deployment, None).unwrap();
+    let mut parts = budget.contributions.iter();
+    let network = parts.find(|part| part.cause == Cause::Network).unwrap();
+    assert_eq!(network.source, "no ensemble; hinges are outside the training domain");
+}
+
 /// Finite elements of every hinge replace the errors that they see.
 #[test]
 fn a_verified_sheet_has_the_residual_of_its_rounds() {

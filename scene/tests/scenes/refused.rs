@@ -50,7 +50,10 @@ size = [2800.0, 2800.0] => size = [57708.8, 57708.8] => did you mean 57.7088 mm
 start = 18.0 => start = 0.018 => ligament.start
 range = [10.0, 26.0] => range = [0.010, 0.026] => did you mean 10 mm
 range = [10.0, 26.0] => range = [26.0, 10.0] => minimum < maximum
-kerf = 0.2 => kerf = -0.2 => 0 < kerf
+slit_width = 0.2 => slit_width = -0.2 => 0 < slit_width
+slit_width = 0.2 => kerf = 0.2 => `kerf`: is now two keys: process.slit_width
+kerf = 0.2 => kerf = 0.21 => 0 < kerf <= process.slit_width = 0.2 mm
+kerf = 0.2 => kerf = nan => cutting.kerf = NaN mm
 r_win = 70.0 => r_win = 0.1 => r_win > 2.5 w_lig
 r_win = 70.0 => r_win = 70000.0 => did you mean 70 mm
 k_theta = 300.0 => k_theta = -300.0 => linear.k_theta
@@ -106,7 +109,7 @@ kind = "clamp" => kind = "pin" => supports[0].clip: a clip keeps its panel from 
 force = [0.0, -1.0] => mass_g = 50.0 => loads[0].mass_g: a weight pulls along gravity
 [[loads]] => [[loads]]|panel = [1, 0]|force = [1.0, 0.0]||[[loads]] => panel [1, 0] is held or pulled at two points
 clip = 10.0 => hole = 4.0 => loads[0].hole: a hole at the edge of a panel would be open
-at = "bottom"|clip = 10.0 => at = [100.0, 30.0]|hole = 0.1 => violates hole > process.kerf
+at = "bottom"|clip = 10.0 => at = [100.0, 30.0]|hole = 0.1 => violates hole > 0.1 mm, the kerf of the tool (cutting.kerf)
 panel = [1, 3] => panel = [1, 2] => supports[0].clip: a clip holds an edge of the sheet
 [[loads]] => [[loads]]|panel = [1, 0]|at = "bottom"|clip = 5.0|force = [1.0, 0.0]||[[loads]] => panel [1, 0] has two holes or clips
 force = [0.0, -1.0] => force = [0.0, -1.0]||[[loads]]|panel = [1, 3]|at = "top"|force = [0.0, 1.0] => prevents the motion of this load

@@ -3,11 +3,10 @@
 use anyhow::{Result, bail, ensure};
 use clap::Args;
 use hinge::{Regime, SheetMaterial};
-use scene::analysis::material_check::{Intended, MaterialCheck, known_slenderness};
+use scene::analysis::material_check::{Intended, MaterialCheck};
 use scene::run_inputs::scene_file;
 use scene::{Posture, SceneConfig};
 use std::path::PathBuf;
-use support::severity::Severity;
 use support::table::{Cell, Table};
 use support::toml_file;
 
@@ -56,8 +55,7 @@ impl CheckCommand {
         } else {
             print(&material, &check);
         }
-        let errors = check.verdicts.iter().filter(|verdict| verdict.severity == Severity::Error);
-        match errors.count() {
+        match check.errors().count() {
             0 => Ok(()),
             1 => bail!("the material has 1 error for this use"),
             count => bail!("the material has {count} errors for this use"),
@@ -67,16 +65,13 @@ impl CheckCommand {
 
 /// The use that a scene states, and without a scene the widths for which there are hinge data.
 fn intended(material: &SheetMaterial, scene: Option<&SceneConfig>) -> Intended {
-    let usual = known_slenderness(Regime::usual(material.thickness));
+    let usual = Intended::usual(material.thickness, Regime::usual(material.thickness));
     let lying = scene.filter(|scene| {
         let posture = scene.posture.as_ref();
         posture.is_none_or(|posture| posture.kind == Posture::Lying)
     });
     Intended {
-        w_lig: scene.map_or_else(
-            || usual.map(|ratio| ratio * material.thickness),
-            |scene| scene.ligament.range,
-        ),
+        w_lig: scene.map_or(usual.w_lig, |scene| scene.ligament.range),
         lying_pitch: lying.map(|scene| {
             let panels = scene.sheet.grid().panel_count();
             (scene.sheet.outline().area() / panels as f64).sqrt()

@@ -161,7 +161,8 @@ const groups = {
     const most = scene.sheet.size?.map((side) => Math.floor(side / (shop.panel * scene.process.r_win)));
     if (most) button(box, `As many as the material allows: ${most.join(" \u00d7 ")}`, () => ask({ do: "panels", panels: most }), "More are narrower than the windows of their hinges");
     if (scene.thickness) numberField(box, "Thickness (mm)", "thickness", setThickness, "change");
-    numberField(box, "Kerf (mm)", "process.kerf");
+    numberField(box, "Width of slits (mm)", "process.slit_width");
+    numberField(box, "Kerf (mm)", "cutting.kerf", setKerf);
     if (scene.process.hole_diameter) numberField(box, "Hole diameter (mm)", "process.hole_diameter");
     else numberField(box, "Hole over ligament", "process.fillet_ratio");
     if (["pin", "linear"].includes(scene.level)) numberField(box, "Window r_win (mm)", "process.r_win");
@@ -245,7 +246,7 @@ function strokeNow() {
   return reached ? reached[0] : 0.1 * Math.max(...(scene.sheet.size ?? [100]));
 }
 
-/** Another thickness: ligaments, holes and windows in proportion, as the weights require; the kerf is the tool's. */
+/** Another thickness: ligaments, holes, windows and slots in proportion, as the weights require; a slit of one pass is as wide as the tool. */
 function setThickness(thickness) {
   if (!(thickness > 0)) return;
   const factor = thickness / scene.thickness;
@@ -255,8 +256,17 @@ function setThickness(thickness) {
   ligament.range = ligament.range.map(scaled);
   start.w_lig = start.w_lig?.map((width) => factor * width) ?? null;
   process.r_win = scaled(process.r_win);
+  if (process.slit_width !== scene.cutting.kerf) process.slit_width = scaled(process.slit_width);
   if (process.hole_diameter) process.hole_diameter = scaled(process.hole_diameter);
   set("thickness", thickness);
+  updateFields();
+}
+
+/** Another tool: slits of one pass are as wide. */
+function setKerf(kerf) {
+  const { process, cutting } = scene;
+  if (process.slit_width === cutting.kerf) process.slit_width = kerf;
+  set("cutting.kerf", kerf);
   updateFields();
 }
 

@@ -43,7 +43,7 @@ connect({
     for (const element of document.querySelectorAll("[data-meaning]")) element.title = meaningOf(element.dataset.meaning);
     byId("machine").length = byId("new-service").length = 1;
     for (const [name] of shop.machines) write(byId("machine"), "option", `for ${name}`).value = name;
-    for (const name of shop.services) write(byId("new-service"), "option", name).value = name;
+    for (const [name] of shop.services) write(byId("new-service"), "option", name).value = name;
   },
 
   sheet({ file: opened, command }) {
@@ -83,8 +83,6 @@ connect({
   },
 
   page(event) {
-    // What was refused at a field is still there; what a draft lacked is found.
-    if (!document.querySelector("#studio [aria-invalid]")) refuse("");
     const first = !run;
     const fraction = first ? 1 : fractionShown();
     take(event.page);
@@ -304,7 +302,7 @@ function begin(drawing = null) {
   const name = byId("new-name");
   const named = drawing && name.value === name.defaultValue ? drawing.name.replace(/\.(svg|dxf)$/i, "") : name.value;
   const stock = chosen === "own" ? size : chosen;
-  if (service) byId("machine").value = "laser-service";
+  if (service) byId("machine").value = shop.services.find(([name]) => name === service)[1];
   ask({ do: "new", name: named, material, thickness, size: stock ? null : size, stock, margin: stock && margin, kerf, service, drawing });
 }
 

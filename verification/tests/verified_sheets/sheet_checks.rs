@@ -27,7 +27,7 @@ start = 3.6
 range = [2.0, 5.0]
 [process]
 fillet_ratio = 0.16
-kerf = 0.1
+slit_width = 0.1
 r_win = 20.0
 [surrogate]
 weights = "data/pet-0.5mm/medium.safetensors"
