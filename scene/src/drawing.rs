@@ -2,8 +2,10 @@
 
 pub mod bulged;
 pub mod contour;
+mod css_geometry;
 pub mod drawn_outline;
 mod dxf_contours;
 mod near_origin;
 pub mod outline_points;
 mod svg_path;
+mod svg_warnings;

@@ -48,9 +48,9 @@ pub enum TargetShape {
         /// The points (mm), at least three.
         points: Vec<[f64; 2]>,
     },
-    /// A polygon in a file with one point a line, in order around the outline: x and y (mm, or the
-    /// unit behind their names), with commas, semicolons, tabs or blanks between them; `#` starts a
-    /// comment.
+    /// A polygon in a file with one point a line, in order or in blocks whose ends meet: x and y (mm,
+    /// or the unit behind their names), with commas, semicolons, tabs or blanks between them; `#`
+    /// starts a comment.
     Csv {
         /// Path of the file, relative to the folder of the scene.
         file: PathBuf,
@@ -121,9 +121,8 @@ pub struct Target {
     /// A point at which the outline crosses or touches itself, so that its inside is not defined
     /// (mm).
     pub crossing: Option<[f64; 2]>,
-    /// Length of the straight line that closes a path which its drawing leaves open (mm); 0 for a
-    /// closed one.
-    pub gap: f64,
+    /// What the reader of its drawing added or could not read.
+    pub notes: Vec<String>,
 }
 
 impl Target {
@@ -138,7 +137,7 @@ impl Target {
                         [centre[0] + radius * cos, centre[1] + radius * sin]
                     })
                     .collect();
-                Ok(Self { points, length: TAU * radius, crossing: None, gap: 0.0 })
+                Ok(Self { points, length: TAU * radius, crossing: None, notes: Vec::new() })
             }
             TargetShape::Rectangle { centre, size, rotation_deg } => {
                 let (sin, cos) = rotation_deg.to_radians().sin_cos();
@@ -163,7 +162,14 @@ impl Target {
                 let height = height.or(drawn.has_unit.then_some(own));
                 let height = height.ok_or_else(|| refused(DrawingError::NoUnit))?;
                 let placed = placed(&drawn.vertices, *centre, height, *rotation_deg)?;
-                Ok(Self { gap: drawn.gap * height / own, ..along_polygon(&placed, count)? })
+                let gap = drawn.gap * height / own;
+                let closed = (gap > 0.0).then(|| {
+                    format!(
+                        "it is open: a straight line of {gap:.2} mm was added, as viewers fill it"
+                    )
+                });
+                let notes = closed.into_iter().chain(drawn.warnings).collect();
+                Ok(Self { notes, ..along_polygon(&placed, count)? })
             }
         }
     }
@@ -221,7 +227,7 @@ fn along_polygon(vertices: &[[f64; 2]], count: usize) -> Result<Target, TargetEr
     // A file may repeat a vertex, such as the first at its end: an edge without length crosses
     // nothing.
     let distinct: Vec<[f64; 2]> = (edges().filter(|(p, q)| p != q).map(|(p, _)| p)).collect();
-    Ok(Target { points, length, crossing: polygon::self_crossing(&distinct), gap: 0.0 })
+    Ok(Target { points, length, crossing: polygon::self_crossing(&distinct), notes: Vec::new() })
 }
 
 /// Number of chords of a curve between two of its points.

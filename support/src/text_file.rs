@@ -7,14 +7,22 @@ use std::io::{self, ErrorKind};
 use std::path::Path;
 
 /// First bytes of files that are no texts, with what they are and the way out.
-const OTHERS: [(&[u8], &str); 7] = [
+const OTHERS: [(&[u8], &str); 12] = [
     (b"PK\x03\x04", "a workbook (xlsx) or another ZIP archive: save its sheet as CSV"),
     (b"\xD0\xCF\x11\xE0", "a workbook (xls): save its sheet as CSV"),
     (b"\x1F\x8B", "compressed by gzip: unpack it with `gunzip`"),
     (b"PAR1", "a Parquet table: write it as CSV"),
     (b"AC10", "a DWG drawing: save it as DXF"),
     (b"AutoCAD Binary DXF", "a binary DXF file: save it as text"),
-    (b"%PDF", "a PDF document: export its contents as text"),
+    (b"%PDF", "a PDF document: export its contents as text, and a drawing as SVG"),
+    (b"%!PS", "PostScript (EPS): open it in Inkscape or Illustrator, and save it as SVG"),
+    (b"\x89PNG", "a picture (PNG): trace it (Inkscape: Path, Trace Bitmap), and save it as SVG"),
+    (
+        b"\xFF\xD8\xFF",
+        "a picture (JPEG): trace it (Inkscape: Path, Trace Bitmap), and save it as SVG",
+    ),
+    (b"GIF8", "a picture (GIF): trace it (Inkscape: Path, Trace Bitmap), and save it as SVG"),
+    (b"RIFF", "a picture (WebP) or a drawing of CorelDRAW: export an outline as SVG"),
 ];
 
 /// The text of a file, with `\n` at the ends of its lines; an error if it is not a regular file, or

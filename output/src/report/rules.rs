@@ -357,11 +357,11 @@ fn departure(step: &LoadStep, peaks: &str, before: &str, place: &str) -> Option<
 
 fn target(input: &RuleInput) -> Option<Warning> {
     let target = &input.scene.target;
-    if target.gap > 0.0 {
-        return Some(Concern::TargetOpen.of_sheet(format!(
-            "the target outline is open in its drawing: a straight line of {:.2} mm was added, as viewers fill it",
-            target.gap
-        )));
+    if !target.notes.is_empty() {
+        let notes = target.notes.join("; ");
+        return Some(
+            Concern::TargetDrawing.of_sheet(format!("the drawing of the target: {notes}")),
+        );
     }
     target.crossing.map(|[x, y]| {
         Concern::TargetCrosses.of_sheet(format!(

@@ -54,8 +54,8 @@ pub enum Concern {
     OtherBranch,
     /// The target outline crosses or touches itself.
     TargetCrosses,
-    /// The target outline is open in its drawing.
-    TargetOpen,
+    /// The drawing of the target is open, or was not read in full.
+    TargetDrawing,
     /// The outline is further from the target than 1 % of the sheet (a warning from 3 %, an error
     /// from 20 %), or than twice what the model does not know of its corners.
     TargetMissed,
@@ -99,7 +99,7 @@ impl Concern {
             | Self::FlanksTouch
             | Self::Path
             | Self::TargetCrosses
-            | Self::TargetOpen
+            | Self::TargetDrawing
             | Self::LeavesPlane
             | Self::Weight
             | Self::Friction

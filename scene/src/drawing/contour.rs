@@ -19,21 +19,27 @@ pub enum DrawingError {
     Empty,
     #[error("the file is not readable as SVG: {0}; save the drawing as plain SVG")]
     NotSvg(usvg::Error),
+    #[error("the file {what}; export the drawing as SVG or DXF")]
+    OtherKind { what: String },
     #[error("the file is no drawing: {0}")]
     NotText(std::io::Error),
     #[error("line {line} of the DXF file: {what}")]
     NotDxf { line: usize, what: String },
-    #[error("an entity of the kind {kind} is not read; explode it in the drawing program")]
-    Unread { kind: String },
     #[error(
-        "there is no visible path in the file; draw the outline as a path, polygon, rect, circle \
-         or ellipse with a fill or a stroke, outside of <defs>, or in DXF as lines, arcs, polylines or splines on a visible layer"
+        "an entity of the kind {kind} on the layer `{layer}` is not read; explode it in the drawing program, or switch its \
+         layer off if it is no part of the outline"
     )]
-    NoPath,
+    Unread { kind: String, layer: String },
     #[error(
-        "the file has text alone; convert it to paths in the drawing program (Inkscape: Path, Object to Path)"
+        "the style `{name}: {value}` is not read; apply it in the drawing program, or write it as an attribute"
     )]
-    Text,
+    Style { name: String, value: String },
+    #[error(
+        "there is no visible path in the file{why}; draw the outline as a path, polygon, rect, circle \
+         or ellipse with a fill or a stroke, outside of <defs>, or in DXF as lines, arcs, polylines or splines in model \
+         space on a layer that is on, thawed and plotted"
+    )]
+    NoPath { why: String },
     #[error(
         "the drawing has {found} contours, by size {listed}; delete the others, or write the number of the outline behind the \
          name of the file, as in `drawing.svg#1`"
@@ -41,7 +47,9 @@ pub enum DrawingError {
     Several { found: usize, listed: String },
     #[error("there is no contour {number}: the drawing has {found}, by size {listed}")]
     NoSuch { number: usize, found: usize, listed: String },
-    #[error("lines branch at ({x}, {y}): delete those that are not part of the outline")]
+    #[error(
+        "lines branch at ({x}, {y}), or lie on each other there in part: delete those that are not part of the outline"
+    )]
     Branch { x: f64, y: f64 },
     #[error(
         "the path is drawn in part alone, because of the {element} `{id}`; release it in the drawing program, so that the \
@@ -72,13 +80,15 @@ pub enum DrawingError {
 }
 
 /// A line of a drawing, flattened to segments.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct Contour {
     pub points: Vec<[f64; 2]>,
     /// Whether its end is connected to its start.
     pub closed: bool,
     /// Whether its inside is filled: viewers close it.
     pub filled: bool,
+    /// Whether it ends where more than two lines meet.
+    pub branches: bool,
     /// Distance at which two points are one.
     pub rounding: f64,
 }
@@ -88,6 +98,11 @@ impl Contour {
     pub fn size(&self) -> [f64; 2] {
         let [low, high] = polygon::bounds(self.points.iter().copied());
         [high[0] - low[0], high[1] - low[1]]
+    }
+
+    /// Whether it has an inside.
+    pub fn is_whole(&self) -> bool {
+        self.closed || self.filled
     }
 
     /// It with each point once; one that returns to its start is closed.
@@ -112,18 +127,20 @@ impl Contour {
     /// Checks that it is an outline; returns the length of the line that closes it.
     pub fn check(&self) -> Result<f64, DrawingError> {
         let found = self.points.len();
-        if found < 3 {
-            return Err(DrawingError::TooFewPoints { found });
-        }
         let last = self.points[found - 1];
         let gap = match self.closed {
             true => 0.0,
             false => polygon::distance(self.points[0], last),
         };
-        if !self.closed && !self.filled {
-            let [x, y] = last.map(rounded);
-            let gap = rounded(gap);
-            return Err(DrawingError::Open { x, y, gap });
+        let [x, y] = last.map(rounded);
+        if self.branches && !self.closed {
+            return Err(DrawingError::Branch { x, y });
+        }
+        if found < 3 {
+            return Err(DrawingError::TooFewPoints { found });
+        }
+        if !self.is_whole() {
+            return Err(DrawingError::Open { x, y, gap: rounded(gap) });
         }
         let [width, height] = self.size();
         let times = self.rounding / WELD / width.max(height);
@@ -141,6 +158,25 @@ impl Contour {
             }
             None => Ok(gap),
         }
+    }
+}
+
+/// Number of segments of a flattened curve.
+const SEGMENTS: usize = 32;
+
+/// Appends a Bezier curve that starts at the last point, by de Casteljau's algorithm.
+pub(super) fn flatten(points: &mut Vec<[f64; 2]>, controls: &[[f64; 2]]) {
+    let start = points.last().copied();
+    let controls: Vec<[f64; 2]> = start.iter().chain(controls).copied().collect();
+    for i in 1..=SEGMENTS {
+        let t = i as f64 / SEGMENTS as f64;
+        let mut level = controls.clone();
+        while level.len() > 1 {
+            level = (level.windows(2))
+                .map(|pair| [0, 1].map(|c| (1.0 - t) * pair[0][c] + t * pair[1][c]))
+                .collect();
+        }
+        points.push(level[0]);
     }
 }
 

@@ -1,23 +1,32 @@
 //! The outline in a drawing, an SVG file (also compressed, SVGZ) or a DXF file: one of its
 //! contours, closed and free of crossings.
 //!
-//! Contours that are drawn twice, for the fill and for the stroke, count once, and open ones whose
-//! ends meet are joined. If several remain the outline is named by its number, the largest first.
+//! What is drawn twice, as for the fill and for the stroke, counts once, and open lines whose ends
+//! meet are joined. If several contours remain the outline is named by its number, the largest
+//! first.
 
 use crate::drawing::contour::{Contour, DrawingError, rounded};
 use crate::drawing::{dxf_contours, svg_path};
 use design::geometry::polygon;
+use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 use support::text_file;
 
 /// Distance of two ends that meet, over the size of the drawing.
 const JOINED: f64 = 1e-5;
-/// Maximum number of open contours, whose ends are compared in pairs.
-const MOST_PIECES: usize = 10_000;
 /// Number of contours that a message lists.
 const LISTED: usize = 5;
 /// First bytes of a file that is compressed by gzip.
 const GZIP: &[u8] = b"\x1F\x8B";
+/// How texts begin that are other drawings, and what they are.
+const OTHERS: [(&str, &str); 6] = [
+    ("IN;", "a plotter file (HPGL)"),
+    ("PU", "a plotter file (HPGL)"),
+    ("\u{1b}%", "a plotter file (HPGL)"),
+    ("G2", "a program of a machine (G-code)"),
+    ("G9", "a program of a machine (G-code)"),
+    ("ISO-10303", "a STEP file"),
+];
 
 /// The outline in a drawing.
 #[derive(Clone, Debug)]
@@ -28,6 +37,8 @@ pub(crate) struct Outline {
     pub gap: f64,
     /// Whether the vertices are in mm.
     pub has_unit: bool,
+    /// What of the drawing could not be read.
+    pub warnings: Vec<String>,
 }
 
 /// The file of a drawing and the number of its outline that stands behind it, as in
@@ -62,9 +73,17 @@ pub(super) fn of_text(text: &str, number: Option<usize>) -> Result<Outline, Draw
         let (contours, has_unit) = dxf_contours::read(text)?;
         return outline(contours, number, has_unit);
     }
-    let mut outline = outline(svg_path::contours(text)?, number, false)?;
+    if !first.starts_with('<') {
+        let known = OTHERS.iter().find(|(start, _)| first.starts_with(start));
+        let start: String = first.chars().take(20).collect();
+        let what = known.map_or("no drawing that is read", |(_, what)| what);
+        let what = format!("begins with `{}`: it is {what}", start.escape_debug());
+        return Err(DrawingError::OtherKind { what });
+    }
+    let (contours, warnings) = svg_path::contours(text)?;
+    let mut outline = outline(contours, number, false)?;
     (outline.vertices.iter_mut()).for_each(|vertex| vertex[1] = -vertex[1]);
-    Ok(outline)
+    Ok(Outline { warnings, ..outline })
 }
 
 fn outline(
@@ -72,7 +91,7 @@ fn outline(
     number: Option<usize>,
     has_unit: bool,
 ) -> Result<Outline, DrawingError> {
-    let mut contours = joined(distinct(contours))?;
+    let mut contours = joined(contours);
     let area = |contour: &Contour| {
         let [width, height] = contour.size();
         width * height
@@ -80,9 +99,13 @@ fn outline(
     contours.sort_by(|a, b| area(b).total_cmp(&area(a)));
     let found = contours.len();
     let chosen = match (number, found) {
-        (_, 0) => return Err(DrawingError::NoPath),
+        (_, 0) => return Err(DrawingError::NoPath { why: String::new() }),
         (None, 1) => 0,
         (None, _) => {
+            let branch = contours.iter().find(|contour| contour.branches);
+            if let Some(branch) = branch.filter(|_| !contours.iter().any(Contour::is_whole)) {
+                branch.check()?;
+            }
             let listed = listed(&contours);
             return Err(DrawingError::Several { found, listed });
         }
@@ -93,82 +116,134 @@ fn outline(
         (Some(number), _) => number - 1,
     };
     let gap = contours[chosen].check()?;
-    Ok(Outline { vertices: contours.swap_remove(chosen).points, gap, has_unit })
+    let vertices = contours.swap_remove(chosen).points;
+    Ok(Outline { vertices, gap, has_unit, warnings: Vec::new() })
 }
 
 /// Sizes and places of the largest contours.
-fn listed(contours: &[Contour]) -> String {
+pub(super) fn listed(contours: &[Contour]) -> String {
     let words = contours.iter().take(LISTED).enumerate().map(|(i, contour)| {
         let [width, height] = contour.size().map(rounded);
         let [x, y] = polygon::bounds(contour.points.iter().copied())[0].map(rounded);
-        let open = if contour.closed { "" } else { " (open)" };
+        let open = match (contour.closed, contour.branches) {
+            (true, _) => "",
+            (_, true) => " (branches)",
+            _ => " (open)",
+        };
         format!("#{} {width} x {height} at ({x}, {y}){open}", i + 1)
     });
     words.collect::<Vec<_>>().join(", ")
 }
 
-/// The contours without repeated points and without repetitions.
-fn distinct(contours: Vec<Contour>) -> Vec<Contour> {
+/// The contours, each once, and those that end where others begin as one. Lines that are open are
+/// followed from point to point, each line once; they end where more than two meet.
+pub(super) fn joined(contours: Vec<Contour>) -> Vec<Contour> {
+    let contours = contours.into_iter().map(Contour::merged);
+    let contours: Vec<_> = contours.filter(|contour| contour.points.len() > 1).collect();
+    let points = contours.iter().flat_map(|contour| &contour.points);
+    let [low, high] = polygon::bounds(points.copied());
+    let within = JOINED * f64::max(high[0] - low[0], high[1] - low[1]);
+    let mut nodes = Nodes { low, within, points: Vec::new(), cells: HashMap::new() };
+    let (whole, open): (Vec<_>, Vec<_>) = contours.into_iter().partition(Contour::is_whole);
+    let mut lines = HashSet::new();
+    let mut twins = HashMap::new();
     let mut kept: Vec<Contour> = Vec::new();
-    for contour in contours.into_iter().map(Contour::merged) {
-        match kept.iter_mut().find(|twin| twin.points == contour.points) {
-            Some(twin) => {
-                twin.filled |= contour.filled;
-                twin.closed |= contour.closed;
+    for contour in whole {
+        if !open.is_empty() {
+            lines.extend(nodes.lines(polygon::edges(&contour.points)));
+        }
+        // Only contours of one bounding box are compared.
+        let corners = polygon::bounds(contour.points.iter().copied()).map(|p| nodes.node(p));
+        let rivals: &mut Vec<usize> = twins.entry(corners).or_default();
+        let mut edges = |contour: &Contour| {
+            let mut edges = nodes.lines(polygon::edges(&contour.points));
+            edges.sort_unstable();
+            edges
+        };
+        let own = if rivals.is_empty() { Vec::new() } else { edges(&contour) };
+        match rivals.iter().find(|twin| own.len() > 2 && edges(&kept[**twin]) == own) {
+            Some(&twin) => {
+                kept[twin].filled |= contour.filled;
+                kept[twin].closed |= contour.closed;
             }
-            None => kept.push(contour),
+            None => {
+                rivals.push(kept.len());
+                kept.push(contour);
+            }
+        }
+    }
+    let rounding = open.iter().map(|contour| contour.rounding).fold(0.0, f64::max);
+    let mut links: Vec<Vec<usize>> = Vec::new();
+    for contour in &open {
+        let pairs = contour.points.windows(2).map(|pair| (pair[0], pair[1]));
+        for (a, b) in nodes.lines(pairs) {
+            if lines.insert((a, b)) {
+                links.resize_with(nodes.points.len(), Vec::new);
+                links[a].push(b);
+                links[b].push(a);
+            }
+        }
+    }
+    let meeting: Vec<usize> = links.iter().map(Vec::len).collect();
+    let ends = (0..links.len()).filter(|node| meeting[*node] != 2);
+    for first in ends.chain(0..links.len()) {
+        while let Some(mut next) = links[first].first().copied() {
+            let mut chain = vec![first];
+            loop {
+                let last = chain[chain.len() - 1];
+                links[last].retain(|node| *node != next);
+                links[next].retain(|node| *node != last);
+                chain.push(next);
+                match links[next][..] {
+                    [after] if meeting[next] == 2 => next = after,
+                    _ => break,
+                }
+            }
+            let closed = chain.len() > 3 && next == first;
+            chain.truncate(chain.len() - usize::from(closed));
+            if meeting[first] > meeting[next] {
+                chain.reverse();
+            }
+            let branches = meeting[first].max(meeting[next]) > 2;
+            let points = chain.into_iter().map(|node| nodes.points[node]).collect();
+            kept.push(Contour { points, closed, filled: false, branches, rounding });
         }
     }
     kept
 }
 
-/// The contours, those that end where others begin as one; an error where three ends meet.
-fn joined(contours: Vec<Contour>) -> Result<Vec<Contour>, DrawingError> {
-    let points = contours.iter().flat_map(|contour| &contour.points);
-    let [low, high] = polygon::bounds(points.copied());
-    let within = JOINED * f64::max(high[0] - low[0], high[1] - low[1]);
-    let meet = |p: &[f64; 2], q: &[f64; 2]| polygon::distance(*p, *q) <= within;
-    let (mut whole, mut open): (Vec<_>, Vec<_>) =
-        (contours.into_iter()).partition(|contour| contour.closed || contour.filled);
-    let found = open.len();
-    if found > MOST_PIECES {
-        return Err(DrawingError::TooManyPoints { found });
+/// Points, those as one that are nearer to each other than a distance.
+struct Nodes {
+    low: [f64; 2],
+    within: f64,
+    points: Vec<[f64; 2]>,
+    /// The point in a square of a grid.
+    cells: HashMap<[i64; 2], usize>,
+}
+
+impl Nodes {
+    fn node(&mut self, point: [f64; 2]) -> usize {
+        let [x, y] = [0, 1].map(|c| ((point[c] - self.low[c]) / self.within).floor() as i64);
+        let around = [0, -1, 1].into_iter().flat_map(|i| [0, -1, 1].map(|j| [x + i, y + j]));
+        let near = |node: &usize| {
+            let [dx, dy] = [0, 1].map(|c| (self.points[*node][c] - point[c]).abs());
+            dx.max(dy) <= self.within
+        };
+        let known = around.filter_map(|cell| self.cells.get(&cell).copied()).find(near);
+        known.unwrap_or_else(|| {
+            self.points.push(point);
+            self.cells.insert([x, y], self.points.len() - 1);
+            self.points.len() - 1
+        })
     }
-    while let Some(mut contour) = open.pop() {
-        let mut turns = 0;
-        while turns < 2 && !contour.closed {
-            let end = contour.points[contour.points.len() - 1];
-            let at_end = |part: &Contour| {
-                let points = &part.points;
-                meet(&points[0], &end) || meet(&points[points.len() - 1], &end)
-            };
-            let next: Vec<usize> = (0..open.len()).filter(|i| at_end(&open[*i])).collect();
-            let closes = contour.points.len() > 2 && meet(&contour.points[0], &end);
-            match next[..] {
-                [] if closes => {
-                    contour.points.pop();
-                    contour.closed = true;
-                }
-                [] => {
-                    contour.points.reverse();
-                    turns += 1;
-                }
-                [next] if !closes => {
-                    let mut part = open.swap_remove(next);
-                    if !meet(&part.points[0], &end) {
-                        part.points.reverse();
-                    }
-                    contour.points.extend_from_slice(&part.points[1..]);
-                }
-                _ => {
-                    let [x, y] = end.map(rounded);
-                    return Err(DrawingError::Branch { x, y });
-                }
-            }
-        }
-        whole.push(contour);
+
+    /// The lines between pairs of points, from the lower to the higher node; a line of no length is
+    /// left out.
+    fn lines(&mut self, pairs: impl Iterator<Item = ([f64; 2], [f64; 2])>) -> Vec<(usize, usize)> {
+        let ends = pairs.map(|(p, q)| (self.node(p), self.node(q)));
+        let ends = ends.filter(|(a, b)| a != b).map(|(a, b)| (a.min(b), a.max(b)));
+        ends.collect()
     }
-    Ok(whole)
 }
 
 #[cfg(test)]
@@ -180,12 +255,20 @@ mod tests {
         format!("<svg xmlns='http://www.w3.org/2000/svg' fill='none' stroke='#000'>{content}</svg>")
     }
 
+    /// A slot of 40 between its centres and 20 wide.
+    const SLOT: &str =
+        "0 LWPOLYLINE 8 CUT 90 4 70 1 10 0 20 0 10 40 20 0 42 1 10 40 20 20 10 0 20 20 42 1";
+
     /// A DXF file with a unit and entities, their pairs separated by blanks.
     fn dxf(unit: &str, entities: &str) -> String {
         let mut text = String::new();
         let all = format!(
             "0 SECTION 2 HEADER 9 $INSUNITS 70 {unit} 0 ENDSEC \
-             0 SECTION 2 TABLES 0 LAYER 2 OFF 70 0 62 -7 0 LAYER 2 FROZEN 70 1 62 7 0 ENDSEC \
+             0 SECTION 2 TABLES 0 LAYER 2 OFF 70 0 62 -7 0 LAYER 2 FROZEN 70 1 62 7 \
+             0 LAYER 2 UNPLOTTED 70 0 62 7 290 0 0 ENDSEC \
+             0 SECTION 2 BLOCKS 0 BLOCK 2 SLOT 10 5 20 0 {SLOT} 0 ENDBLK \
+             0 BLOCK 2 OUTER 10 0 20 0 0 INSERT 2 Slot 10 0 20 7 50 90 0 ENDBLK \
+             0 BLOCK 2 ENDLESS 10 0 20 0 0 INSERT 2 ENDLESS 10 0 20 0 0 ENDBLK 0 ENDSEC \
              0 SECTION 2 ENTITIES {entities} 0 ENDSEC 0 EOF"
         );
         for part in all.split_whitespace() {
@@ -206,7 +289,11 @@ mod tests {
         // Twice the same line is one line.
         assert_eq!(area(&svg(&format!("{pieces}<path d='M0 0H10'/>"))), 80.0);
         for (further, part) in [
-            ("<path d='M10 8L20 20'/>", "branch at (10, 8)"),
+            (
+                "<path d='M10 8L20 21'/>",
+                "2 contours, by size #1 10 x 13 at (10, 8) (branches), #2 10 x 8 at (0, 0)",
+            ),
+            ("<path d='M10 8L0 0'/>", "branch at (10, 8)"),
             (
                 "<path d='M30 0H40'/>",
                 "2 contours, by size #1 10 x 8 at (0, 0), #2 10 x 0 at (30, 0) (open)",
@@ -214,6 +301,66 @@ mod tests {
         ] {
             let error = of_text(&svg(&format!("{pieces}{further}")), None).unwrap_err();
             assert!(error.to_string().contains(part), "{error}");
+        }
+    }
+
+    /// A line of no length, a line twice, also backwards or along a closed contour, and what is
+    /// drawn elsewhere.
+    #[test]
+    fn lines_that_do_not_matter_do_not_stop_the_file() {
+        let pieces = "<path d='M0 0H10'/><path d='M10 0V8'/><path d='M10 8H0V0'/>";
+        for further in [
+            "<path d='M10 0H10'/>",
+            "<path d='M5 0l0.00001 0'/>",
+            "<path d='M4 4h0'/>",
+            "<path d='M10 0H0'/><path d='M10 8V0'/>",
+            "<path d='M0 0 L10 0 L10.00002 8'/>",
+            "<path d='M10 8H0V0H10Z'/>",
+        ] {
+            assert_eq!(area(&svg(&format!("{pieces}{further}"))), 80.0, "{further}");
+        }
+        let star = "<path d='M30 0H35'/><path d='M35 0V3'/><path d='M35 0L37 -3'/>";
+        let text = svg(&format!("{pieces}{star}"));
+        let named = of_text(&text, Some(1)).unwrap();
+        assert_eq!(polygon::area(&named.vertices).abs(), 80.0);
+        let branch = of_text(&text, Some(2)).unwrap_err().to_string();
+        assert!(branch.contains("branch at (35, 0)"), "{branch}");
+    }
+
+    #[test]
+    fn an_outline_of_many_pieces_is_joined_in_no_time() {
+        use std::f64::consts::{PI, TAU};
+        let count = 60_000;
+        let at = |i: usize| {
+            let (sin, cos) = (TAU * i as f64 / f64::from(count)).sin_cos();
+            [150.0 + 100.0 * cos, 150.0 + 100.0 * sin]
+        };
+        let mut lines: Vec<_> = (0..count as usize)
+            .map(|i| Contour { points: vec![at(i), at(i + 1)], ..Contour::default() })
+            .collect();
+        lines.sort_by(|a, b| a.points[0][0].total_cmp(&b.points[0][0]));
+        let start = std::time::Instant::now();
+        let found = joined(lines);
+        assert!(start.elapsed().as_secs() < 5);
+        assert!(found.len() == 1 && found[0].closed);
+        assert!((polygon::area(&found[0].points).abs() / 1e4 - PI).abs() < 1e-3);
+    }
+
+    #[test]
+    fn files_that_are_no_drawings_are_named_with_the_way_out() {
+        let light_burn = "<?xml version='1.0'?><LightBurnProject AppVersion='1.4'/>";
+        for (bytes, part) in [
+            (&b"\x89PNG\r\n\x1a\n\0\0"[..], "a picture (PNG): trace it"),
+            (b"\xFF\xD8\xFF\xE0\0", "a picture (JPEG)"),
+            (b"%!PS-Adobe-3.0 EPSF-3.0\n", "PostScript (EPS)"),
+            (b"AC1027\0", "a DWG drawing: save it as DXF"),
+            (b"IN;SP1;PU0,0;PD9,9;", "begins with `IN;SP1;PU0,0;PD9,9;`: it is a plotter file"),
+            (b"G21\nG90\n", "it is a program of a machine"),
+            (b"12,5\n", "it is no drawing that is read"),
+            (light_burn.as_bytes(), "a document of the kind `LightBurnProject`; export"),
+        ] {
+            let error = of_file(bytes, None).unwrap_err().to_string();
+            assert!(error.contains(part), "{error}");
         }
     }
 
@@ -262,8 +409,7 @@ mod tests {
     #[test]
     fn the_outline_of_a_dxf_file_has_its_area() {
         use std::f64::consts::PI;
-        let rounded =
-            "0 LWPOLYLINE 8 CUT 90 4 70 1 10 0 20 0 10 40 20 0 42 1 10 40 20 20 10 0 20 20 42 1";
+        let rounded = SLOT;
         let old = "0 POLYLINE 8 0 70 1 0 VERTEX 10 0 20 0 0 VERTEX 10 40 20 0 42 1 0 VERTEX 10 40 20 20 0 VERTEX 10 0 20 20 42 1 0 SEQEND";
         let pieces = "0 LINE 10 0 20 0 11 40 21 0 0 ARC 10 40 20 10 40 10 50 -90 51 90 \
                       0 LINE 10 0 20 20 11 40 21 20 0 ARC 10 0 20 10 40 10 50 90 51 270";
@@ -278,7 +424,11 @@ mod tests {
         // Seen from below: x and the sense of the arcs are reversed.
         let mirrored = "0 LINE 10 0 20 0 11 40 21 0 0 ARC 230 -1 10 -40 20 10 40 10 50 90 51 270 \
                         0 LINE 10 0 20 20 11 40 21 20 0 ARC 230 -1 10 0 20 10 40 10 50 -90 51 90";
-        let notes = "0 TEXT 10 0 20 0 40 3 1 Name 0 LINE 8 OFF 10 0 20 0 11 9 21 9 0 CIRCLE 8 FROZEN 10 0 20 0 40 1";
+        let notes = "0 TEXT 10 0 20 0 40 3 1 Name 0 LINE 8 OFF 10 0 20 0 11 9 21 9 0 CIRCLE 8 Frozen 10 0 20 0 40 1 \
+                     0 CIRCLE 8 UNPLOTTED 10 0 20 0 40 1 0 CIRCLE 8 Defpoints 10 0 20 0 40 1 0 XLINE 10 0 20 0 11 1 21 0 \
+                     0 LINE 10 3 20 3 11 3 21 3";
+        let around = |end: &str| format!("0 ELLIPSE 10 5 20 5 11 20 21 0 40 0.5 41 0 42 {end}");
+        let circle = "0 ARC 10 9 20 9 40 2 50 0 51 360";
         for (unit, entities, expected) in [
             ("4", rounded, slot),
             ("4", old, slot),
@@ -288,11 +438,68 @@ mod tests {
             ("1", "0 CIRCLE 10 9 20 9 40 2", 4.0 * PI * 25.4 * 25.4),
             ("5", ellipse, 100.0 * PI * 200.0),
             ("4", &spline, PI),
+            ("4", &around("6.28319"), 200.0 * PI),
+            ("4", &around("6.283"), 200.0 * PI),
+            ("4", circle, 4.0 * PI),
+            // A block scaled, mirrored, turned, in another one, seen from below, and in a row.
+            ("4", "0 INSERT 2 SLOT 10 3 20 4 41 2 42 -3 50 30", 6.0 * slot),
+            ("4", "0 INSERT 2 OUTER 10 3 20 4 41 2 42 0.5 230 -1", slot),
+            ("4", "0 INSERT 2 OUTER 10 3 20 4 70 3 71 2 44 0 45 0", slot),
+            ("8", rounded, slot * 2.54e-5 * 2.54e-5),
+            ("9", rounded, slot * 0.0254 * 0.0254),
+            ("10", rounded, slot * 914.4 * 914.4),
+            ("13", rounded, slot * 1e-6),
+            ("14", rounded, slot * 1e4),
+            ("21", rounded, slot * 304.800_609_6 * 304.800_609_6),
         ] {
             let found = area(&dxf(unit, entities));
             assert!((found / expected - 1.0).abs() < 1e-3, "{entities}: {found} {expected}");
         }
         assert!(!of_text(&dxf("0", rounded), None).unwrap().has_unit);
+        for around in ["\n\n", "\nwords\nand words\nmore\n"] {
+            let text = format!("\n{}{around}", dxf("4", rounded));
+            assert!(of_text(&text, None).unwrap().has_unit);
+        }
+    }
+
+    /// Blocks are where their insertion says: the lower left corners of their bounding boxes.
+    #[test]
+    fn inserted_blocks_are_in_their_places() {
+        for (insert, [x, y]) in [
+            ("2 SLOT 10 3 20 4", [-12.0, 4.0]),
+            ("2 OUTER 10 3 20 4", [-17.0, -4.0]),
+            ("2 OUTER 10 3 20 4 50 90", [-49.0, -16.0]),
+            ("2 SLOT 10 3 20 4 230 -1", [-48.0, 4.0]),
+        ] {
+            let text = dxf("4", &format!("0 INSERT {insert}"));
+            let outline = of_text(&text, None).unwrap();
+            let [low, _] = polygon::bounds(outline.vertices);
+            assert!(polygon::distance(low, [x, y]) < 0.02, "{insert}: {low:?}");
+        }
+        let row = dxf("4", "0 INSERT 2 SLOT 10 3 20 4 50 90 70 2 44 100");
+        let error = of_text(&row, None).unwrap_err().to_string();
+        assert!(error.contains("2 contours"), "{error}");
+    }
+
+    /// The spline through points of a circle with chords of different lengths, closed, and open
+    /// with straight ends.
+    #[test]
+    fn a_spline_through_points_is_read() {
+        use std::f64::consts::PI;
+        let points = |degrees: &[f64]| -> String {
+            let at = degrees.iter().map(|degrees| degrees.to_radians().sin_cos());
+            at.map(|(sin, cos)| format!(" 11 {} 21 {}", 100.0 * cos, 100.0 * sin)).collect()
+        };
+        let all: Vec<f64> = (0..=12).map(|i| f64::from(30 * i + 8 * (i % 2))).collect();
+        let closed = format!("0 SPLINE 70 9 71 3 74 13 {}", points(&all));
+        let half = format!("0 SPLINE 70 8 71 3 {}", points(&all[..7]));
+        let straight = "0 LINE 10 -100 20 0 11 100 21 0";
+        for (entities, expected, error) in
+            [(closed, 1e4 * PI, 3e-3), (format!("{half} {straight}"), 0.5e4 * PI, 8e-3)]
+        {
+            let found = area(&dxf("4", &entities));
+            assert!((found / expected - 1.0).abs() < error, "{found} {expected}");
+        }
     }
 
     #[test]
@@ -309,6 +516,16 @@ mod tests {
             (dxf("4", "0 CIRCLE 10 9 20 nine 40 2"), "`nine` is no number"),
             (dxf("4", circle).replace("EOF", "LINE"), "without EOF"),
             (dxf("4", "0 SPLINE 71 3 11 0 21 0"), "SPLINE without"),
+            (dxf("4", "0 REGION 8 PART"), "REGION on the layer `PART`"),
+            (
+                dxf("4", "0 INSERT 2 ENDLESS 10 0 20 0"),
+                "INSERT, in each other or repeated too often",
+            ),
+            (
+                dxf("4", "0 INSERT 2 SLOT 10 0 20 0 70 32000 71 32000"),
+                "INSERT, in each other or repeated too often",
+            ),
+            (dxf("4", &circle.replace("CIRCLE", "CIRCLE 8 OFF")), "a layer that is on"),
             (dxf("4", ""), "no visible path"),
             ("0\nSECTION\nx\n".into(), "without EOF"),
         ] {

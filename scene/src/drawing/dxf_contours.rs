@@ -2,26 +2,60 @@
 //! segments.
 //!
 //! A DXF file is a list of pairs of lines, a group code and a value; code 0 begins a record. Read
-//! are LINE, ARC, CIRCLE, ELLIPSE, SPLINE, LWPOLYLINE and POLYLINE on layers that are shown.
-//! Reference: Autodesk, DXF Reference (AutoCAD 2000).
+//! are LINE, ARC, CIRCLE, ELLIPSE, SPLINE, LWPOLYLINE, POLYLINE and the blocks of INSERT, on layers
+//! that are shown. Reference: Autodesk, DXF Reference (AutoCAD 2000).
 
 use crate::drawing::bulged::{Vertex, arc, flattened};
-use crate::drawing::contour::{Contour, DrawingError, WELD};
-use design::geometry::plane::{I, point};
+use crate::drawing::contour::{Contour, DrawingError, WELD, flatten};
+use design::geometry::plane::{I, complex, point};
 use design::geometry::polygon;
 use faer::c64;
+use std::collections::HashMap;
 use std::f64::consts::TAU;
+use std::ops::Range;
 
 /// Number of segments of a spline between two knots.
 const SPLINE_SEGMENTS: usize = 32;
-/// Values of `$INSUNITS` with their length (mm): inch, foot, mm, cm, m.
-const UNITS: [(&str, f64); 5] = [("1", 25.4), ("2", 304.8), ("4", 1.0), ("5", 10.0), ("6", 1000.0)];
+/// Iterations for the tangents of a spline through points, whose error each one halves or better.
+const SWEEPS: usize = 60;
+/// Difference of an angle from a full circle at which it is one, written with few digits (rad).
+const FULL: f64 = 1e-3;
+/// Maximum number of blocks in each other.
+const MOST_NESTED: usize = 16;
+/// Maximum number of records that are drawn, each as often as its block is inserted.
+const MOST_RECORDS: usize = 1_000_000;
+/// Lengths of the units of `$INSUNITS` (mm): none, inch, foot, mile, mm, cm, m, km, microinch, mil,
+/// yard, angstrom, nm, micron, dm, dam, hm.
+const UNITS: [f64; 17] = [
+    0.0,
+    25.4,
+    304.8,
+    1_609_344.0,
+    1.0,
+    10.0,
+    1e3,
+    1e6,
+    2.54e-5,
+    0.0254,
+    914.4,
+    1e-7,
+    1e-6,
+    1e-3,
+    1e2,
+    1e4,
+    1e5,
+];
+/// The US survey foot, the unit 21 (mm).
+const SURVEY_FOOT: f64 = 1_200_000.0 / 3937.0;
 /// Entities that are no part of an outline.
-const NOTES: [&str; 14] = [
+const NOTES: [&str; 22] = [
     "TEXT",
     "MTEXT",
     "ATTDEF",
+    "ATTRIB",
     "DIMENSION",
+    "ARC_DIMENSION",
+    "LARGE_RADIAL_DIMENSION",
     "LEADER",
     "MULTILEADER",
     "TOLERANCE",
@@ -30,6 +64,11 @@ const NOTES: [&str; 14] = [
     "VIEWPORT",
     "IMAGE",
     "WIPEOUT",
+    "OLE2FRAME",
+    "ACAD_TABLE",
+    "PDFUNDERLAY",
+    "RAY",
+    "XLINE",
     "SEQEND",
     "VERTEX",
 ];
@@ -37,37 +76,64 @@ const NOTES: [&str; 14] = [
 /// A record: its kind and its pairs.
 struct Record<'a> {
     kind: &'a str,
-    pairs: Vec<(u16, &'a str)>,
+    pairs: Vec<(i32, &'a str)>,
 }
 
 impl<'a> Record<'a> {
-    fn text(&self, code: u16) -> &'a str {
+    fn text(&self, code: i32) -> &'a str {
         let mut pairs = self.pairs.iter();
         pairs.find(|pair| pair.0 == code).map_or("", |pair| pair.1)
     }
 
+    /// The name of a layer or a block, whose case does not count.
+    fn name(&self, code: i32) -> String {
+        self.text(code).to_uppercase()
+    }
+
     /// All values of a code; [`records`] has checked that they are numbers.
-    fn numbers(&self, code: u16) -> impl Iterator<Item = f64> {
+    fn numbers(&self, code: i32) -> impl Iterator<Item = f64> {
         let pairs = self.pairs.iter().filter(move |pair| pair.0 == code);
         pairs.map(|pair| pair.1.parse().unwrap_or_default())
     }
 
-    fn number(&self, code: u16) -> f64 {
+    fn number(&self, code: i32) -> f64 {
         self.numbers(code).next().unwrap_or_default()
     }
 
-    fn flag(&self, code: u16, bit: i64) -> bool {
+    fn flag(&self, code: i32, bit: i64) -> bool {
         self.number(code) as i64 & bit != 0
     }
 
-    fn points(&self, code: u16) -> Vec<[f64; 2]> {
+    fn points(&self, code: i32) -> Vec<[f64; 2]> {
         let ordinates = self.numbers(code + 10);
         self.numbers(code).zip(ordinates).map(<[f64; 2]>::from).collect()
     }
 
     /// The first point of a code.
-    fn at(&self, code: u16) -> c64 {
+    fn at(&self, code: i32) -> c64 {
         c64::new(self.number(code), self.number(code + 10))
+    }
+
+    fn unread(&self, kind: &str) -> DrawingError {
+        DrawingError::Unread { kind: kind.into(), layer: self.text(8).into() }
+    }
+}
+
+/// Where the coordinates of a block are: the images of the unit vectors and of the origin.
+#[derive(Clone, Copy)]
+struct Place {
+    x: c64,
+    y: c64,
+    origin: c64,
+}
+
+impl Place {
+    fn along(self, p: c64) -> c64 {
+        self.x * p.re + self.y * p.im
+    }
+
+    fn of(self, p: c64) -> c64 {
+        self.along(p) + self.origin
     }
 }
 
@@ -76,76 +142,176 @@ impl<'a> Record<'a> {
 pub(super) fn read(text: &str) -> Result<(Vec<Contour>, bool), DrawingError> {
     let records = records(text)?;
     let mut section = "";
-    let mut unit = None;
-    let mut hidden = Vec::new();
-    let mut contours = Vec::new();
+    let mut unit = 0.0;
+    let mut drawing = Drawing {
+        // AutoCAD never plots it.
+        hidden: vec!["DEFPOINTS".into()],
+        blocks: HashMap::new(),
+        records: &records,
+        drawn: 0,
+        contours: Vec::new(),
+    };
+    let mut start = 0;
+    let mut entities = 0..0;
     for (i, record) in records.iter().enumerate() {
         match record.kind {
             "SECTION" => {
+                start = i + 1;
                 section = record.text(2);
-                let mut pairs = record.pairs.iter().skip_while(|pair| pair.1 != "$INSUNITS");
-                let stated = pairs.nth(1).map(|pair| pair.1);
-                let known = UNITS.iter().find(|(code, _)| Some(*code) == stated);
-                unit = unit.or(known.map(|(_, length)| *length));
-            }
-            "ENDSEC" => section = "",
-            // A layer that is off has a negative colour; flag 1 is frozen.
-            "LAYER" if section == "TABLES" && (record.number(62) < 0.0 || record.flag(70, 1)) => {
-                hidden.push(record.text(2));
-            }
-            _ if section == "ENTITIES" => {
-                let shown = !record.flag(60, 1) && !record.flag(67, 1);
-                if shown && !hidden.contains(&record.text(8)) {
-                    contours.extend(contour(record, &records[i + 1..])?);
+                if section == "ENTITIES" {
+                    entities = start..records.len();
                 }
+                let mut pairs = record.pairs.iter().skip_while(|pair| pair.1 != "$INSUNITS");
+                let code = pairs.nth(1).and_then(|pair| pair.1.parse().ok());
+                match code {
+                    Some(21) => unit = SURVEY_FOOT,
+                    Some(code) => unit = UNITS.get(code).copied().unwrap_or_default(),
+                    None => {}
+                }
+            }
+            "ENDSEC" if section == "ENTITIES" => entities = start..i,
+            // A layer that is off has a negative colour; flag 1 is frozen; 290 is plotted.
+            "LAYER"
+                if section == "TABLES"
+                    && (record.number(62) < 0.0
+                        || record.flag(70, 1)
+                        || record.text(290) == "0") =>
+            {
+                drawing.hidden.push(record.name(2));
+            }
+            "BLOCK" if section == "BLOCKS" => start = i,
+            "ENDBLK" if section == "BLOCKS" => {
+                drawing.blocks.insert(records[start].name(2), start..i);
             }
             _ => {}
         }
     }
+    let whole = Place { x: 1.0.into(), y: I, origin: 0.0.into() };
+    drawing.draw(entities, whole, 0)?;
+    let contours = drawing.contours;
     let all = contours.iter().flat_map(|(points, _)| points.iter().copied());
     let [low, high] = polygon::bounds(all);
-    let scale = unit.unwrap_or(1.0);
+    let scale = if unit > 0.0 { unit } else { 1.0 };
     let rounding = WELD * scale * f64::max(high[0] - low[0], high[1] - low[1]);
     let contours = contours.into_iter().map(|(points, closed)| Contour {
         points: points.into_iter().map(|p| p.map(|x| scale * x)).collect(),
         closed,
-        filled: false,
         rounding,
+        ..Contour::default()
     });
-    Ok((contours.collect(), unit.is_some()))
+    Ok((contours.collect(), unit > 0.0))
 }
 
-/// The records of a file, which must be whole.
+/// The records of a file, which must be whole; what follows its end is not read.
 fn records(text: &str) -> Result<Vec<Record<'_>>, DrawingError> {
     let mut records: Vec<Record> = Vec::new();
     let lines: Vec<&str> = text.lines().map(str::trim).collect();
-    for (i, pair) in lines.chunks_exact(2).enumerate() {
+    let blank = lines.iter().take_while(|line| line.is_empty()).count();
+    for (i, pair) in lines[blank..].chunks_exact(2).enumerate() {
+        let line = blank + 2 * i + 1;
         let refused = |line, what: String| Err(DrawingError::NotDxf { line, what });
         let [code, value] = [pair[0], pair[1]];
-        let Ok(group) = code.parse::<u16>() else {
-            return refused(2 * i + 1, format!("`{code}` is no group code"));
+        let Ok(group) = code.parse::<i32>() else {
+            return refused(line, format!("`{code}` is no group code"));
         };
         let number = matches!(group, 10..=79 | 210..=239);
         if number && !value.parse::<f64>().is_ok_and(f64::is_finite) {
-            return refused(2 * i + 2, format!("`{value}` is no number"));
+            return refused(line + 1, format!("`{value}` is no number"));
         }
-        if group == 0 {
-            records.push(Record { kind: value, pairs: Vec::new() });
-        } else if let Some(record) = records.last_mut() {
-            record.pairs.push((group, value));
+        match records.last_mut() {
+            _ if (group, value) == (0, "EOF") => return Ok(records),
+            _ if group == 0 => records.push(Record { kind: value, pairs: Vec::new() }),
+            Some(record) => record.pairs.push((group, value)),
+            None => {}
         }
     }
-    if records.last().is_none_or(|record| record.kind != "EOF") {
-        return Err(DrawingError::NotDxf {
-            line: lines.len(),
-            what: "the file ends without EOF; export it again".into(),
-        });
-    }
-    Ok(records)
+    Err(DrawingError::NotDxf {
+        line: lines.len(),
+        what: "the file ends without EOF; export it again".into(),
+    })
 }
 
 /// Points, and whether they are closed.
 type Points = (Vec<[f64; 2]>, bool);
+
+/// What is drawn of a file.
+struct Drawing<'a> {
+    records: &'a [Record<'a>],
+    /// Names of layers.
+    hidden: Vec<String>,
+    /// Where the records of a block are, from its name on.
+    blocks: HashMap<String, Range<usize>>,
+    /// Count of the records so far.
+    drawn: usize,
+    contours: Vec<Points>,
+}
+
+impl Drawing<'_> {
+    /// Adds the entities among records that are shown, `depth` blocks deep.
+    fn draw(
+        &mut self,
+        among: Range<usize>,
+        place: Place,
+        depth: usize,
+    ) -> Result<(), DrawingError> {
+        let records = self.records;
+        self.drawn += 1 + among.len();
+        for i in among {
+            let entity = &records[i];
+            let shown = !entity.flag(60, 1) && !entity.flag(67, 1);
+            if !shown || self.hidden.contains(&entity.name(8)) {
+                continue;
+            }
+            if depth > MOST_NESTED || self.drawn > MOST_RECORDS {
+                return Err(entity.unread("INSERT, in each other or repeated too often,"));
+            }
+            if entity.kind == "INSERT" {
+                self.insert(entity, place, depth)?;
+                continue;
+            }
+            let Some((points, closed)) = contour(entity, &records[i + 1..])? else {
+                continue;
+            };
+            let points: Vec<_> = points.into_iter().map(|p| point(place.of(complex(p)))).collect();
+            if !points.as_flattened().iter().all(|x| x.is_finite()) {
+                return Err(entity.unread(&format!("{} with infinite coordinates", entity.kind)));
+            }
+            self.contours.push((points, closed));
+        }
+        Ok(())
+    }
+
+    /// Adds a block, in rows and columns.
+    fn insert(&mut self, insert: &Record, place: Place, depth: usize) -> Result<(), DrawingError> {
+        let Some(block) = self.blocks.get(&insert.name(2)).cloned() else {
+            let name = insert.text(2);
+            return Err(
+                insert.unread(&format!("INSERT of the block `{name}`, which is not in the file,"))
+            );
+        };
+        let base = self.records[block.start].at(10);
+        let [sx, sy] = [41, 42].map(|code| insert.numbers(code).next().unwrap_or(1.0));
+        let [columns, rows] = [70, 71].map(|code| insert.number(code).max(1.0) as usize);
+        let turn = c64::cis(insert.number(50).to_radians());
+        for k in 0..columns.saturating_mul(rows) {
+            let cell = c64::new(
+                (k % columns) as f64 * insert.number(44),
+                (k / columns) as f64 * insert.number(45),
+            );
+            let mut own =
+                Place { x: turn * sx, y: turn * I * sy, origin: insert.at(10) + turn * cell };
+            own.origin -= own.along(base);
+            if insert.number(230) < 0.0 {
+                let [x, y, origin] = [own.x, own.y, own.origin].map(|z| -z.conj());
+                own = Place { x, y, origin };
+            }
+            let x = place.along(own.x);
+            let inner = Place { x, y: place.along(own.y), origin: place.of(own.origin) };
+            self.draw(block.start + 1..block.end, inner, depth + 1)?;
+        }
+        Ok(())
+    }
+}
 
 /// The points of an entity, and whether they are closed; `None` if it is a note. `further` are the
 /// records after it.
@@ -193,7 +359,7 @@ fn contour(entity: &Record, further: &[Record]) -> Result<Option<Points>, Drawin
         }
         "SPLINE" => (spline(entity)?, entity.flag(70, 1)),
         kind if NOTES.contains(&kind) => return Ok(None),
-        kind => return Err(DrawingError::Unread { kind: kind.into() }),
+        kind => return Err(entity.unread(kind)),
     };
     if below && !["LINE", "ELLIPSE", "SPLINE"].contains(&entity.kind) {
         points.iter_mut().for_each(|point| point[0] = -point[0]);
@@ -203,19 +369,63 @@ fn contour(entity: &Record, further: &[Record]) -> Result<Option<Points>, Drawin
 
 /// The angle from one direction counter-clockwise to another, above 0 (rad).
 fn turned(from: f64, to: f64) -> f64 {
-    let angle = (to - from).rem_euclid(TAU);
-    if angle < 1e-9 { TAU } else { angle }
+    let angle = to - from;
+    if angle == 0.0 || (angle.abs() - TAU).abs() < FULL { TAU } else { angle.rem_euclid(TAU) }
 }
 
-/// Points on a B-spline (de Boor), rational if its control points have weights.
+/// Points on a cubic spline through points (not repeated): its curvature is continuous, and zero at
+/// open ends, if the parameter is the length of the chords. Its tangents are found by Gauss-Seidel
+/// iterations.
+fn through(points: &[c64], closed: bool) -> Vec<[f64; 2]> {
+    let n = points.len();
+    let sides = |i: usize| {
+        let before = (closed || i > 0).then_some((i + n - 1) % n);
+        let after = (closed || i + 1 < n).then_some((i + 1) % n);
+        [(before, -1.0), (after, 1.0)].into_iter().filter_map(|(j, sign)| Some((j?, sign)))
+    };
+    let mut tangents = vec![c64::new(0.0, 0.0); n];
+    for _ in 0..SWEEPS {
+        for i in 0..n {
+            let (mut sum, mut weights) = (c64::new(0.0, 0.0), 0.0);
+            for (j, sign) in sides(i) {
+                let chord = sign * (points[j] - points[i]);
+                let weight = 1.0 / chord.norm();
+                sum += weight * (3.0 * weight * chord - tangents[j]);
+                weights += 2.0 * weight;
+            }
+            tangents[i] = sum / weights;
+        }
+    }
+    let mut found = vec![point(points[0])];
+    for i in 0..n - usize::from(!closed) {
+        let j = (i + 1) % n;
+        let third = (points[j] - points[i]).norm() / 3.0;
+        let [b, c] = [points[i] + third * tangents[i], points[j] - third * tangents[j]];
+        flatten(&mut found, &[b, c, points[j]].map(point));
+    }
+    found
+}
+
+/// Points on a B-spline (de Boor), rational if its control points have weights, or on the spline
+/// through points.
 fn spline(entity: &Record) -> Result<Vec<[f64; 2]>, DrawingError> {
     let degree = entity.number(71) as usize;
     let knots: Vec<f64> = entity.numbers(40).collect();
     let points = entity.points(10);
     let weights: Vec<f64> = entity.numbers(41).collect();
-    if degree == 0 || points.len() <= degree || knots.len() != points.len() + degree + 1 {
-        let kind = "SPLINE without control points and knots".into();
-        return Err(DrawingError::Unread { kind });
+    let mut fit: Vec<c64> = entity.points(11).into_iter().map(complex).collect();
+    if points.is_empty() && fit.len() > 1 {
+        fit.dedup();
+        let closed = entity.flag(70, 1);
+        if closed && fit.len() > 2 && fit[0] == fit[fit.len() - 1] {
+            fit.pop();
+        }
+        return Ok(through(&fit, closed && fit.len() > 2));
+    }
+    let sorted = knots.is_sorted() && weights.iter().all(|weight| *weight > 0.0);
+    if degree == 0 || points.len() <= degree || knots.len() != points.len() + degree + 1 || !sorted
+    {
+        return Err(entity.unread("SPLINE without fitting control points and knots"));
     }
     let controls = points.iter().enumerate().map(|(i, [x, y])| {
         let weight = weights.get(i).copied().unwrap_or(1.0);

@@ -2,30 +2,23 @@
 //! bits: a map in metres of a national grid has its outline at 5 600 000, where these bits end at
 //! half a metre.
 
+use crate::drawing::css_geometry::edited;
 use design::geometry::polygon;
 use std::fmt::Write;
 use svgtypes::{PointsParser, SimplePathSegment, SimplifyingPathParser};
-use usvg::roxmltree::{Document, Node, ParsingOptions};
+use usvg::roxmltree::{Document, Node};
 
 /// Largest coordinate over the size of an outline from which it is moved: nearer ones keep a
 /// millionth of their size.
 const FAR: f64 = 8.0;
 
 /// The text of a drawing with all its paths, polygons and polylines moved to the returned origin;
-/// `None` if no outline is far from zero or the text is no SVG.
-pub(super) fn moved(svg: &str) -> Option<(String, [f64; 2])> {
-    let options = ParsingOptions { allow_dtd: true, ..ParsingOptions::default() };
-    let document = Document::parse_with_options(svg, options).ok()?;
+/// `None` if no outline is far from zero.
+pub(super) fn moved(document: &Document) -> Option<(String, [f64; 2])> {
     let outlines: Vec<_> = document.descendants().filter_map(Outline::of).collect();
     let origin = outlines.iter().find_map(Outline::far_start)?;
-    let mut text = String::new();
-    let mut copied = 0;
-    for outline in &outlines {
-        text += &svg[copied..outline.written.start];
-        outline.write(&mut text, origin);
-        copied = outline.written.end;
-    }
-    Some((text + &svg[copied..], origin))
+    let edit = |outline: &Outline| (outline.written.clone(), outline.moved_by(origin));
+    Some((edited(document.input_text(), outlines.iter().map(edit).collect()), origin))
 }
 
 /// The largest coordinate of points over the longer side of their bounding box.
@@ -74,8 +67,10 @@ impl Outline {
         (distance_over_size(&ends) > FAR).then(|| ends[0])
     }
 
-    fn write(&self, text: &mut String, [x0, y0]: [f64; 2]) {
+    /// Its data, from another origin.
+    fn moved_by(&self, [x0, y0]: [f64; 2]) -> String {
         use SimplePathSegment::{ClosePath, CurveTo, LineTo, MoveTo, Quadratic};
+        let mut text = String::new();
         for segment in &self.segments {
             let (command, points) = match *segment {
                 MoveTo { x, y } => ("M", vec![[x, y]]),
@@ -85,11 +80,12 @@ impl Outline {
                 ClosePath => ("Z", Vec::new()),
             };
             if self.is_path {
-                *text += command;
+                text += command;
             }
             for [x, y] in points {
                 let _ = write!(text, "{} {} ", x - x0, y - y0);
             }
         }
+        text
     }
 }

@@ -1,9 +1,13 @@
 //! The vertices of an outline in a text with one point a line. Lines above the first point name the
 //! outline or its columns: without names the columns are x and y, behind a number that counts the
-//! lines or before a constant.
+//! lines or before a constant. Blank lines separate blocks, which are joined where their ends meet;
+//! a line above them may count their points, as in airfoils in the form of Lednicer.
 
+use crate::drawing::contour::Contour;
+use crate::drawing::drawn_outline::{joined, listed};
 use std::path::{Path, PathBuf};
 use support::file_error::FileError;
+use support::text_file;
 use support::text_table::{TextRow, TextTable};
 
 /// Units behind the names of columns, with their length (mm).
@@ -28,14 +32,16 @@ struct Columns {
 
 /// The points in a file (mm), in its order.
 pub(crate) fn read(path: &Path) -> Result<Vec<[f64; 2]>, PointsError> {
-    let table = TextTable::read(path)?;
-    points(&table).map_err(|(line, what)| PointsError::Line { path: path.to_owned(), line, what })
+    let text = text_file::read(path).map_err(FileError::at(path))?;
+    points(&text).map_err(|(line, what)| PointsError::Line { path: path.to_owned(), line, what })
 }
 
-/// The points of a table (mm); an error has the number of its line.
-fn points(table: &TextTable) -> Result<Vec<[f64; 2]>, (u64, String)> {
+/// The points of a text (mm); an error has the number of its line.
+fn points(text: &str) -> Result<Vec<[f64; 2]>, (u64, String)> {
+    let table = TextTable::parse(text);
     let number = |cell: &String| table.style.number(cell);
-    let rows = table.rows.iter().filter(|row| !row.is_comment());
+    let is_filled = |row: &&TextRow| row.cells.iter().any(|cell| !cell.is_empty());
+    let rows = table.rows.iter().filter(|row| !row.is_comment()).filter(is_filled);
     let is_point = |row: &TextRow| {
         let digit = |c: char| c.is_ascii_digit();
         let begins = row.cells[0].trim_start_matches(['-', '+', '.', ',']);
@@ -49,6 +55,27 @@ fn points(table: &TextTable) -> Result<Vec<[f64; 2]>, (u64, String)> {
             !found
         })
     };
+    let blank = |line: &str| line.trim_matches([' ', '\t', ',', ';']).is_empty();
+    let blank: Vec<bool> = text.lines().map(blank).collect();
+    // The reader of cells counts the line of a row from the blank ones above it.
+    let begins = |row: &TextRow| {
+        let line = row.line as usize;
+        (line.max(2) - 1..=line).any(|line| blank.get(line - 1) == Some(&true))
+    };
+    let numbers = |row: &TextRow| -> Vec<f64> { row.cells.iter().filter_map(number).collect() };
+    let counts = below.first().filter(|row| row.cells.iter().all(|cell| number(cell).is_some()));
+    let counts = counts.map(|row| numbers(row)).unwrap_or_default();
+    let whole = counts.iter().all(|count| *count >= 1.0 && count.fract() == 0.0);
+    let counted = whole && counts.iter().sum::<f64>() + 1.0 == below.len() as f64;
+    let nose = counts.first().map_or(1, |upper| (*upper as usize).saturating_add(1));
+    let is_count = counted
+        && match counts.len() {
+            1 => true,
+            2 => begins(below[nose]) || numbers(below[1]) == numbers(below[nose]),
+            _ => false,
+        };
+    let below = &below[usize::from(is_count)..];
+    let begins = |i: usize| i > 0 && (begins(below[i]) || (is_count && i + 1 == nose));
     let Some(first) = below.first() else {
         return Ok(Vec::new());
     };
@@ -62,7 +89,7 @@ fn points(table: &TextTable) -> Result<Vec<[f64; 2]>, (u64, String)> {
     let columns = match named {
         Some(columns) => columns,
         None => Columns {
-            places: unnamed(&below, table).map_err(|what| (first.line, what))?,
+            places: unnamed(below, &table).map_err(|what| (first.line, what))?,
             unit: 1.0,
         },
     };
@@ -76,7 +103,30 @@ fn points(table: &TextTable) -> Result<Vec<[f64; 2]>, (u64, String)> {
             (row.line, format!("`{written}` is no point: write x and y in mm, as in `12.5, 40`"))
         })
     };
-    below.iter().map(point).collect()
+    let points = below.iter().map(point).collect::<Result<Vec<_>, _>>()?;
+    let starts: Vec<usize> = (0..points.len()).filter(|i| *i == 0 || begins(*i)).collect();
+    let ends = starts[1..].iter().copied().chain([points.len()]);
+    let blocks: Vec<_> = std::iter::zip(starts.iter().copied(), ends).collect();
+    // Between single points and pairs blank lines have no meaning.
+    if blocks.len() == 1 || blocks.iter().all(|(from, to)| to - from < 3) {
+        return Ok(points);
+    }
+    if let Some((from, _)) = blocks.iter().find(|(from, to)| to - from == 1) {
+        return Err((below[*from].line, "a point stands alone between blank lines".into()));
+    }
+    let contour = |(from, to)| Contour { points: points[from..to].to_vec(), ..Contour::default() };
+    let blocks = blocks.into_iter().map(contour).collect();
+    let mut outlines = joined(blocks);
+    if let [outline] = &mut outlines[..] {
+        return Ok(std::mem::take(&mut outline.points));
+    }
+    outlines.iter_mut().for_each(|outline| outline.closed = true);
+    let what = format!(
+        "a blank line begins another outline: there are {}, {}; keep one, or delete blank lines within it",
+        outlines.len(),
+        listed(&outlines)
+    );
+    Err((below[starts[1]].line, what))
 }
 
 /// The columns that a head names x and y.
@@ -129,7 +179,7 @@ mod tests {
     use super::*;
 
     fn of(text: &str) -> Result<Vec<[f64; 2]>, (u64, String)> {
-        points(&TextTable::parse(text))
+        points(text)
     }
 
     #[test]
@@ -150,6 +200,35 @@ mod tests {
         ] {
             let found = of(text).unwrap();
             assert_eq!(found, [[0.0, 0.5], [20.0, 0.0], [20.0, 10.0]], "{text}");
+        }
+    }
+
+    #[test]
+    fn blocks_are_joined_where_their_ends_meet() {
+        let (upper, lower) = ("0 0\n1 2\n6 3\n20 0\n", "0 0\n1 -1\n20 0\n");
+        for text in [
+            format!("Wing 12\n4. 3.\n\n {upper}\n {lower}"),
+            format!("4 3\n{upper}{lower}"),
+            format!("4 3\n{upper}{}", lower.replacen("0 0", "0 -0.0", 1)),
+            format!("{upper}\n\n{lower}"),
+            format!("{upper}\n{lower}").replace(' ', ","),
+            format!("{upper} \n{lower}").replace(' ', ";"),
+            "# x\n7\n0 0\n1 2\n6 3\n20 0\n1 -1\n0 0\n0 0\n".to_owned(),
+            "0 0\n\n1 2\n\n6 3\n\n20 0\n\n1 -1\n".to_owned(),
+        ] {
+            let area = design::geometry::polygon::area(&of(&text).unwrap()).abs();
+            assert_eq!(area, 44.5, "{text}");
+        }
+        let two = "0,0\n9,0\n9,9\n\n1,1\n2,1\n2,2\n";
+        for (text, line, part) in [
+            (two.to_owned(), 4, "there are 2, #1 9 x 9 at (0, 0), #2 1 x 1 at (1, 1)"),
+            (two.replace(',', " "), 5, "begins another outline"),
+            (two.replace("\n\n", "\n;\n").replace(',', ";"), 5, "begins another outline"),
+            ("5 5\n\n0 0\n9 0\n9 9\n".into(), 1, "stands alone"),
+        ] {
+            let (found, what) = of(&text).unwrap_err();
+            assert!(what.contains(part), "{text}: {what}");
+            assert_eq!(found, line, "{text}: {what}");
         }
     }
 

@@ -4,23 +4,26 @@
 //! cubic curves, and it resolves styles, `<use>` and transforms. A clip may surround a path, and
 //! hides nothing of it.
 
-use crate::drawing::contour::{Contour, DrawingError, WELD};
-use crate::drawing::near_origin;
+use crate::drawing::contour::{Contour, DrawingError, WELD, flatten};
+use crate::drawing::css_geometry::edited;
+use crate::drawing::{css_geometry, near_origin, svg_warnings};
 use design::geometry::polygon;
+use usvg::roxmltree::{Document, ParsingOptions};
 use usvg::tiny_skia_path::{PathSegment, Point};
 use usvg::{ClipPath, Group, ImageHrefResolver, Node, Options, Path, Transform, Tree};
 
-/// Number of segments of a flattened curve.
-const SEGMENTS: usize = 32;
 /// How far a path may reach out of a clip around it, over the length of an edge of the clip:
 /// rounding.
 const FRAME: f64 = 1e-5;
-/// Removes the background colour of the root element and markers, which usvg would draw as paths.
+/// Removes the background colour of the root element and markers, which usvg would draw as paths,
+/// and draws lines of no width, which are hairlines of a laser.
 const OUTLINES_ALONE: &str = "svg { background-color: none !important } \
-    * { marker-start: none !important; marker-mid: none !important; marker-end: none !important }";
+    * { marker-start: none !important; marker-mid: none !important; marker-end: none !important; \
+    stroke-width: 1 !important }";
 
-/// The contours of the visible paths of an SVG text in the coordinates of its page, y downwards.
-pub(super) fn contours(svg: &str) -> Result<Vec<Contour>, DrawingError> {
+/// The contours of the visible paths of an SVG text in the coordinates of its page, y downwards,
+/// and the warnings about what of it is not read.
+pub(super) fn contours(svg: &str) -> Result<(Vec<Contour>, Vec<String>), DrawingError> {
     let options = Options {
         style_sheet: Some(OUTLINES_ALONE.to_owned()),
         // An image has no outline; its file is not opened.
@@ -30,23 +33,45 @@ pub(super) fn contours(svg: &str) -> Result<Vec<Contour>, DrawingError> {
         },
         ..Options::default()
     };
-    let moved = near_origin::moved(svg);
-    let (svg, origin) = match &moved {
-        Some((svg, origin)) => (svg.as_str(), *origin),
-        None => (svg, [0.0; 2]),
-    };
-    let tree = Tree::from_str(svg, &options).map_err(DrawingError::NotSvg)?;
+    let document = parsed(svg)?;
+    let root = document.root_element().tag_name().name();
+    if root != "svg" {
+        let what = format!("is a document of the kind `{root}`");
+        return Err(DrawingError::OtherKind { what });
+    }
+    let svg = edited(svg, css_geometry::edits(&document)?);
+    let moved = near_origin::moved(&parsed(&svg)?);
+    let (svg, origin) = moved.unwrap_or((svg, [0.0; 2]));
+    let (tree, warnings) = svg_warnings::of(|| Tree::from_str(&svg, &options));
+    let tree = tree.map_err(DrawingError::NotSvg)?;
     let mut paths = Vec::new();
     add_visible(tree.root(), &mut paths)?;
-    if paths.is_empty() && svg.contains("<text") {
-        return Err(DrawingError::Text);
+    if paths.is_empty() {
+        let has = |name: &str| document.descendants().any(|node| node.has_tag_name(name));
+        let alone = match () {
+            () if has("text") => {
+                ": it has text alone, which Inkscape converts (Path, Object to Path)"
+            }
+            () if has("image") => {
+                ": it has a picture alone, which Inkscape traces (Path, Trace Bitmap)"
+            }
+            () => "",
+        };
+        let warnings = warnings.iter().map(|warning| format!(": {warning}"));
+        return Err(DrawingError::NoPath { why: alone.to_owned() + &warnings.collect::<String>() });
     }
     let of_path = |path: &Path| -> Vec<Contour> {
         let (transform, filled) = (path.abs_transform(), is_filled(path));
         let parts = subpaths(path).into_iter();
         parts.map(|part| part.contour(transform, origin, filled)).collect()
     };
-    Ok(paths.into_iter().flat_map(of_path).collect())
+    Ok((paths.into_iter().flat_map(of_path).collect(), warnings))
+}
+
+fn parsed(svg: &str) -> Result<Document<'_>, DrawingError> {
+    let options = ParsingOptions { allow_dtd: true, ..ParsingOptions::default() };
+    let document = Document::parse_with_options(svg, options);
+    document.map_err(|error| DrawingError::NotSvg(usvg::Error::ParsingFailed(error)))
 }
 
 fn is_filled(path: &Path) -> bool {
@@ -155,28 +180,13 @@ impl Subpath {
             filled: filled && self.points.len() > 2,
             points: self.points.into_iter().map(at).collect(),
             rounding: WELD * largest * scale,
+            ..Contour::default()
         }
     }
 }
 
 fn pair(point: Point) -> [f64; 2] {
     [f64::from(point.x), f64::from(point.y)]
-}
-
-/// Appends a Bezier curve that starts at the last point, by de Casteljau's algorithm.
-fn flatten(points: &mut Vec<[f64; 2]>, controls: &[[f64; 2]]) {
-    let start = points.last().copied();
-    let controls: Vec<[f64; 2]> = start.iter().chain(controls).copied().collect();
-    for i in 1..=SEGMENTS {
-        let t = i as f64 / SEGMENTS as f64;
-        let mut level = controls.clone();
-        while level.len() > 1 {
-            level = (level.windows(2))
-                .map(|pair| [0, 1].map(|c| (1.0 - t) * pair[0][c] + t * pair[1][c]))
-                .collect();
-        }
-        points.push(level[0]);
-    }
 }
 
 fn transformed(transform: Transform, [x, y]: [f64; 2]) -> [f64; 2] {
@@ -345,6 +355,87 @@ mod tests {
         assert_refused(drawn(&two), "2 contours, by size #1 10 x 20 at (0, 0), #2 1 x 1 at (0, 0)");
     }
 
+    /// Widths and heights as browsers draw them.
+    #[test]
+    fn styles_of_geometry_are_drawn_or_refused_by_their_name() {
+        let styled = |style: &str| drawn(&LARGE.replace("/>", &format!(" style='{style}'/>")));
+        for (style, expected) in [
+            ("transform: scaleX(2)", [0.0, 20.0, -20.0, 0.0]),
+            ("fill: red; transform: scale(200%, .5)", [0.0, 20.0, -10.0, 0.0]),
+            ("transform: translate(1in, 0) rotate(-90deg)", [96.0, 116.0, 0.0, 10.0]),
+            ("transform:skewX(45deg)", [0.0, 30.0, -20.0, 0.0]),
+            ("transform:translateY(7px)scaleY(-1)", [0.0, 10.0, -7.0, 13.0]),
+            ("transform:matrix(1,0,0,2,3,4)", [3.0, 13.0, -44.0, -4.0]),
+            ("transform:rotate(.25turn);transform-origin:10px 0", [-10.0, 10.0, 0.0, 10.0]),
+            ("transform:none", [0.0, 10.0, -20.0, 0.0]),
+            ("scale: 2 1; translate: 5px; rotate: 90deg", [-15.0, 5.0, -20.0, 0.0]),
+            ("d: path(&quot;M0 0H3V4H0Z&quot;)", [0.0, 3.0, -4.0, 0.0]),
+        ] {
+            assert_near(bounds(styled(style)), expected);
+        }
+        let sheet = "<style>.a{transform:scaleX(9);rx:2px} path.a{transform:scaleX(2)} \
+                     rect{width:8px;height:2px} #b{width:6px !important}</style>";
+        for (content, expected) in [
+            (LARGE.replace("/>", " class='a' transform='scale(7)'/>"), [0.0, 20.0, -20.0, 0.0]),
+            ("<rect id='b' width='1' height='1' style='width:3px'/>".into(), [0.0, 6.0, -2.0, 0.0]),
+            ("<circle r='1' style='r:4px;cx:4px'/>".into(), [0.0, 8.0, -4.0, 4.0]),
+        ] {
+            assert_near(bounds(drawn(&format!("{sheet}{content}"))), expected);
+        }
+        let rounded = drawn("<rect width='4' height='2' style='rx:1px'/>").unwrap();
+        let area = polygon::area(&rounded).abs();
+        assert!((area / (4.0 + std::f64::consts::PI) - 1.0).abs() < 2e-3, "{area}");
+        for style in [
+            "transform: rotate(90)",
+            "transform: translate(5)",
+            "transform: scale3d(2, 1, 1)",
+            "transform: rotate(9deg) perspective(3px)",
+            "transform: scaleX(2) !important",
+            "transform-box: fill-box",
+            "rotate: x 45deg",
+            "width: calc(1px + 2px)",
+            "clip-path: circle(40%)",
+        ] {
+            assert_refused(
+                styled(style),
+                &format!("the style `{}`", style.replace(" !important", "")),
+            );
+        }
+        assert_refused(
+            drawn(&LARGE.replace("/>", " clip-path='inset(1px)'/>")),
+            "`clip-path: inset(1px)`",
+        );
+    }
+
+    #[test]
+    fn warnings_of_the_parser_are_kept() {
+        let of = |content: &str| {
+            of_text(&format!("<svg xmlns='http://www.w3.org/2000/svg'>{content}</svg>"), None)
+        };
+        let sheet =
+            "<style>@media print {path {fill: red}} path:nth-child(2) {display: none}</style>";
+        let warnings = of(&format!("{sheet}{LARGE}")).unwrap().warnings;
+        assert!(warnings.iter().any(|it| it.contains("@media")), "{warnings:?}");
+        assert!(of(LARGE).unwrap().warnings.is_empty());
+        let error = of("<rect width='ten' height='4'/>").unwrap_err().to_string();
+        assert!(
+            error.contains("no visible path in the file: ") && error.contains("'ten'"),
+            "{error}"
+        );
+    }
+
+    #[test]
+    fn lines_of_no_width_are_lines_and_pictures_are_named() {
+        for stroke in ["stroke-width='0'", "style='stroke-width:0;-inkscape-stroke:hairline'"] {
+            let line = LARGE.replace("/>", &format!(" fill='none' stroke='red' {stroke}/>"));
+            assert_near(bounds(drawn(&line)), [0.0, 10.0, -20.0, 0.0]);
+        }
+        assert_refused(
+            drawn("<image width='3' height='2' href='data:image/png;base64,AA=='/>"),
+            "a picture alone",
+        );
+    }
+
     #[test]
     fn what_hides_a_part_of_the_path_is_refused_by_its_name() {
         for (element, attribute) in [("clipPath", "clip-path"), ("mask", "mask")] {
@@ -432,7 +523,8 @@ mod tests {
         for (outline, part) in [
             (vertices(""), "the file is empty"),
             (vertices(" \n"), "the file is empty"),
-            (vertices("x,y\n0,0\n"), "not readable as SVG"),
+            (vertices("x,y\n0,0\n"), "begins with `x,y`"),
+            (vertices("<html/>"), "a document of the kind `html`"),
             (vertices("<svg><g></svg>"), "not readable as SVG"),
             (vertices("<svg/>"), "no visible path"),
             (drawn(&hidden), "no visible path"),
