@@ -30,7 +30,7 @@ impl DemoCommand {
         let mut times = Vec::new();
         for (what, command) in [
             (
-                "solve 40 hinge windows (gmsh, CalculiX)",
+                "solve the hinge windows (gmsh, CalculiX)",
                 format!("campaign run {CAMPAIGN} --folder {jobs}"),
             ),
             (

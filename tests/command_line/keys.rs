@@ -1,9 +1,12 @@
 //! docs/KEYS.md, the reference of every configuration file, is what the types say that read the
 //! files. With `KIRIGAMI_WRITE=1` the test writes the page instead.
 
+use crate::common::pages::root;
+use clap::{Command, CommandFactory};
 use dataset::ColumnMeaning;
 use fe_driver::Campaign;
 use hinge::SheetMaterial;
+use kirigami::cli::Cli;
 use scene::SceneConfig;
 use schemars::{Schema, schema_for};
 use serde_json::Value;
@@ -200,10 +203,10 @@ fn kind(schema: &Value) -> String {
 
 #[test]
 fn the_page_of_keys_is_what_the_types_say() {
-    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/KEYS.md");
+    let path = root().join("docs/KEYS.md");
     let page = page();
     if std::env::var_os("KIRIGAMI_WRITE").is_some() {
-        std::fs::write(path, &page).unwrap();
+        std::fs::write(&path, &page).unwrap();
     }
     let shipped = std::fs::read_to_string(path).unwrap();
     assert!(shipped == page, "run `KIRIGAMI_WRITE=1 cargo test --test command_line keys`");
@@ -218,20 +221,47 @@ fn column_table() -> String {
     table
 }
 
+/// The commands of docs/COMMANDS.md, as their help has them.
+fn command_table() -> String {
+    let mut table = "| command | what it does |\n|---|---|\n".to_owned();
+    let program = Cli::command();
+    program.get_subcommands().for_each(|command| commands(&mut table, "", command));
+    table
+}
+
+/// A row for a command, or for each of its subcommands.
+fn commands(table: &mut String, parent: &str, command: &Command) {
+    let name = format!("{parent}{}", command.get_name());
+    if command.has_subcommands() {
+        let parent = format!("{name} ");
+        command.get_subcommands().for_each(|command| commands(table, &parent, command));
+    } else {
+        writeln!(table, "| `{name}` | {} |", command.get_about().unwrap()).unwrap();
+    }
+}
+
+/// Asserts that a page has a table, which begins with the same heading.
+fn assert_table(page: &str, table: &str) {
+    let path = root().join(page);
+    let text = std::fs::read_to_string(&path).unwrap();
+    let begin = text.find(table.lines().next().unwrap()).unwrap();
+    let length = text[begin..].find("\n\n").unwrap() + 1;
+    if std::env::var_os("KIRIGAMI_WRITE").is_some() {
+        let mut text = text.clone();
+        text.replace_range(begin..begin + length, table);
+        std::fs::write(path, text).unwrap();
+    } else {
+        let run = "run `KIRIGAMI_WRITE=1 cargo test --test command_line keys`";
+        assert!(&text[begin..begin + length] == table, "{page}: {run}");
+    }
+}
+
 #[test]
 fn the_guide_has_the_columns_of_a_database() {
-    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/CAMPAIGN.md");
-    let guide = std::fs::read_to_string(path).unwrap();
-    let begin = guide.find("| column | unit | meaning |").unwrap();
-    let length = guide[begin..].find("\n\n").unwrap() + 1;
-    if std::env::var_os("KIRIGAMI_WRITE").is_some() {
-        let mut guide = guide.clone();
-        guide.replace_range(begin..begin + length, &column_table());
-        std::fs::write(path, &guide).unwrap();
-    } else {
-        assert!(
-            guide[begin..begin + length] == column_table(),
-            "run `KIRIGAMI_WRITE=1 cargo test --test command_line keys`"
-        );
-    }
+    assert_table("docs/CAMPAIGN.md", &column_table());
+}
+
+#[test]
+fn the_page_of_commands_has_every_command() {
+    assert_table("docs/COMMANDS.md", &command_table());
 }

@@ -2,6 +2,8 @@
 //! run.
 #![allow(dead_code)] // every test program uses only a part
 
+pub mod pages;
+
 use dataset::{Database, Row};
 use std::os::unix::fs::symlink;
 use std::path::{Path, PathBuf};

@@ -6,6 +6,7 @@ mod browser;
 mod common;
 #[path = "../../fe_driver/tests/common/fake_solver.rs"]
 mod fake_solver;
+mod figures;
 mod killed_runs;
 mod learned_material;
 mod main_job;
