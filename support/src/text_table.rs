@@ -107,14 +107,17 @@ impl NumberStyle {
         Self { comma, grouped }
     }
 
-    /// The finite number in a cell; `None` if it is none, or is written in another style.
+    /// The finite number in a cell; `None` if it is none, or is written in another style. It may be
+    /// a text of a spreadsheet, `="0.5"`, or have the exponent of Fortran, 1.0D-03.
     pub fn number(self, cell: &str) -> Option<f64> {
         let cell = cell.split('#').next().unwrap_or_default().trim();
+        let quoted = cell.strip_prefix("=\"").and_then(|cell| cell.strip_suffix("\""));
+        let cell = quoted.unwrap_or(cell).replace(['D', 'd'], "E");
         let [decimal, other] = if self.comma { [',', '.'] } else { ['.', ','] };
         let (whole, fraction) = match cell.split_once(decimal) {
             Some((_, "")) if self.comma => return None,
             Some((whole, fraction)) => (whole, Some(fraction)),
-            None => (cell, None),
+            None => (&*cell, None),
         };
         let whole = match self.grouped {
             true => joined(whole, other)?,
@@ -188,6 +191,8 @@ mod tests {
             "0;0\n0,5;1,25\n",
             "0\t0\n0,5\t1,25\n",
             "\"0\",\"0\"\n\"0,5\",\"1,25\"\n",
+            "=\"0\";=\"0\"\n=\"0,5\";=\"1,25\"\n",
+            "0.0D+00 0.0d0\n5.0D-01 0.125D+1\n",
             "# a, b\n0, 0\n\n0.5, 1.25 # the end\n",
             "  0   0.\n .5   1.25\n",
             "0,0 0,0\n0,5 1,25",
@@ -220,6 +225,8 @@ mod tests {
             (comma, "1.5"),
             (comma, "0,"),
             (comma, "1,5,2"),
+            (point, "0.5%"),
+            (point, "infD"),
             (grouped, "1,23"),
             (grouped, "0,001"),
             (grouped, "1,000,00"),

@@ -307,11 +307,14 @@ fn fracture(
         let drawn = !specimen.after.is_empty();
         last(if drawn { &specimen.after } else { &specimen.before })[1]
     };
-    Ok(Fracture {
-        strain: end,
-        scatter: Statistic::new(specimens.iter().map(reached)).deviation,
-        source,
-    })
+    let scatter = Statistic::new(specimens.iter().map(reached)).deviation;
+    if let Some(scatter) = scatter.filter(|scatter| *scatter > end) {
+        return Err(TensileError::Specimens(format!(
+            "the specimens have a fracture strain of {end:.4} ± {scatter:.4}, which is none: give --fracture-strain, or \
+             leave out specimens that broke early"
+        )));
+    }
+    Ok(Fracture { strain: end, scatter, source })
 }
 
 /// The rows of the table, rounded. A row that rounding moves onto the one before is left out.

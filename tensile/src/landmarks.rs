@@ -57,10 +57,18 @@ pub(super) enum RatioFault {
 pub(super) fn offset_yield(curve: &[[f64; 2]], young: f64, from: usize) -> Option<f64> {
     let above = |row: &[f64; 2]| row[1] - young * (row[0] - OFFSET);
     let after = &curve[from.min(curve.len())..];
-    let crossing = after.windows(2).find(|pair| above(&pair[1]) <= 0.0)?;
-    let [before, after] = [above(&crossing[0]), above(&crossing[1])];
-    let share = if before > 0.0 { before / (before - after) } else { 0.0 };
-    Some(crossing[0][1] + share * (crossing[1][1] - crossing[0][1]))
+    let at = after.windows(2).position(|pair| above(&pair[1]) <= 0.0)?;
+    let crossed = |[a, b]: [[f64; 2]; 2]| {
+        let [before, after] = [above(&a), above(&b)];
+        a[1] + before / (before - after) * (b[1] - a[1])
+    };
+    let [a, b] = [after[at], after[at + 1]];
+    let between = if above(&a) > 0.0 { crossed([a, b]) } else { a[1] };
+    // Rows before and after a sharp yield: it is where the curve after it begins.
+    let sharp = above(&a) > 0.5 * young * OFFSET;
+    let next = after.get(at + 2).filter(|next| sharp && above(next) < above(&b));
+    let begins = next.map_or(between, |next| crossed([b, *next]));
+    Some(begins.min(b[1]).max(between))
 }
 
 /// The draw of a curve after the row `from`; `None` if it does not neck or breaks in the neck.

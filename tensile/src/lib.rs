@@ -3,7 +3,7 @@
 //!
 //! | step | file |
 //! |---|---|
-//! | text, specimens, columns, units, dimensions | `number_table`, `quantity`, `preamble`, `record` |
+//! | text, specimens, columns, units, dimensions | `number_table`, `name`, `quantity`, `preamble`, `record` |
 //! | unloading, break, shaking strains | `cleaning`, `isotonic` |
 //! | Young's modulus and toe (ISO 527-1, ASTM D638) | `linear_part` |
 //! | yield, plateau, natural draw ratio, necking | `landmarks` |
@@ -25,6 +25,7 @@ mod landmarks;
 mod linear_part;
 mod local_curve;
 mod mean_curve;
+mod name;
 mod number_table;
 mod preamble;
 mod quantity;
@@ -41,7 +42,7 @@ pub use linear_part::LinearPart;
 pub use preamble::StatedDimension;
 pub use quantity::Quantity;
 pub use record::{ReadColumn, RecordOptions};
-pub use specimen::{End, Specimen, SpecimenOptions};
+pub use specimen::{End, Softening, Specimen, SpecimenOptions};
 
 use quantity::Quantity::PlasticStrain;
 use record::Record;

@@ -47,6 +47,8 @@ const SEED: f64 = 0.1;
 const STRAIGHT: f64 = 0.005;
 /// Minimum number of rows of the seed.
 const MIN_SEED: usize = 3;
+/// Half the 95 % interval of a slope from 3, 4, ... rows, over its standard error.
+const STUDENT: [f64; 5] = [12.7, 4.3, 3.2, 2.8, 2.6];
 /// Largest yield stress over modulus of a metal, and the stresses, over the yield stress, between
 /// which its line is fitted.
 const METAL: f64 = 0.008;
@@ -80,6 +82,11 @@ impl LinearPart {
             line = Line::fitted(curve, first, last).filter(|line| line.slope > 0.0)?;
         }
         Some(line.part(curve))
+    }
+
+    /// Whether the 95 % interval of the slope is above zero.
+    pub(super) fn is_known(&self) -> bool {
+        STUDENT[self.rows.saturating_sub(MIN_SEED).min(STUDENT.len() - 1)] * self.error < self.young
     }
 
     /// The line of a metal with the yield stress `yields` (MPa) through its `rows` [strain, stress

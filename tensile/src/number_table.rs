@@ -5,7 +5,8 @@
 //! above a row of units, names the columns. Lines that start with `#` are comments.
 
 use crate::error::TensileError;
-use crate::quantity::{Quantity, are_units, bare};
+use crate::name::Name;
+use crate::quantity::{are_units, bare};
 use std::collections::BTreeMap;
 use std::path::Path;
 use support::file_error::FileError;
@@ -163,10 +164,12 @@ fn has_units(row: &TextRow) -> bool {
 /// Name and unit of each column from the lines above the first row of numbers.
 fn labels(above: &[TextRow], width: usize, style: NumberStyle) -> Result<Vec<String>, String> {
     let mut lines = above.iter().rev().peekable();
-    let units = lines.next_if(|row| has_units(row)).map_or(Vec::new(), words);
+    let mut units = lines.next_if(|row| has_units(row)).map_or(Vec::new(), words);
     let mut names = lines.next().map_or(Vec::new(), words);
-    let known = |names: &[String]| names.iter().all(|name| Quantity::from_label(name).is_some());
-    if width == 2 * names.len() && known(&names) {
+    if units.is_empty() {
+        units = lines.next_if(|row| has_units(row)).map_or(Vec::new(), words);
+    }
+    if width == 2 * names.len() && names.iter().all(|name| Name::of(name).quantity().is_some()) {
         return Err(format!(
             "names {} columns, but the rows have {width} cells: if the comma is the decimal sign, save the \
              file with semicolons between the columns",
@@ -195,7 +198,18 @@ fn no_table(text: &str) -> String {
          commas, semicolons or tabs"
             .into()
     } else {
-        "has no rows of numbers: save the curve as text, in columns separated by commas, semicolons or tabs".into()
+        let last = text
+            .lines()
+            .zip(1..)
+            .filter(|(line, _)| line.contains(|c: char| c.is_ascii_digit()))
+            .last();
+        let quoted = last.map_or(String::new(), |(line, number)| {
+            format!(" (line {number} is `{}`)", line.escape_debug())
+        });
+        format!(
+            "has no rows of numbers{quoted}: save the curve as text, in columns of plain numbers separated by commas, \
+             semicolons or tabs, with the units in the names of the columns"
+        )
     }
 }
 

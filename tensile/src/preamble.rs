@@ -1,8 +1,10 @@
 //! The dimensions of a specimen that a testing machine writes above its table: `Width;10,0;mm`,
 //! `Largeur (mm): 10`.
 
-use crate::quantity::{Quantity, folded, unit_of};
+use crate::name::Name;
+use crate::quantity::{Quantity::Extension, bare};
 use serde::Serialize;
+use std::fmt;
 use support::text_table::{NumberStyle, TextRow};
 
 /// A dimension of a specimen that its file states.
@@ -16,36 +18,55 @@ pub struct StatedDimension {
     pub line: u64,
 }
 
-/// What the names of a dimension contain in English, German, French, Spanish, Italian and Turkish.
-const NAMES: [(&str, &str); 3] = [
-    ("width", "width|breite|largeur|ancho|larghezza|genislik"),
-    ("thickness", "thickness|dicke|epaisseur|espesor|spessore|kalinlik"),
-    (
-        "gauge-length",
-        "gauge length|gage length|l0|messlange|longueur initiale|longitud inicial|longitud calibrada|lunghezza iniziale",
-    ),
-];
+impl StatedDimension {
+    /// The name in words.
+    pub fn words(&self) -> String {
+        self.name.replace('-', " ")
+    }
+}
 
-/// The dimensions in the lines above a table; a line with several numbers states none.
-pub(super) fn dimensions(lines: &[TextRow], style: NumberStyle) -> Vec<StatedDimension> {
-    let stated = |row: &TextRow| {
-        let (name, values) = named_values(row)?;
-        let folded = folded(&name);
-        let has = |words: &str| words.split('|').any(|word| folded.contains(word));
-        let (kind, _) = NAMES.into_iter().find(|(_, words)| has(words))?;
-        let numbers = values.iter().enumerate();
-        let mut numbers = numbers.filter_map(|(at, value)| Some((at, style.number(value)?)));
-        let (at, number) = numbers.next().filter(|(_, number)| *number > 0.0)?;
-        let unit = values.get(at + 1).map(String::as_str).or(unit_of(&name));
-        let factor =
-            Quantity::Extension.factor(unit.filter(|unit| !unit.is_empty()).unwrap_or("mm"))?;
-        numbers.next().is_none().then_some(StatedDimension {
-            name: kind,
-            value: number * factor,
-            line: row.line,
-        })
+impl fmt::Display for StatedDimension {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        write!(f, "{} {} mm (line {})", self.words(), self.value, self.line)
+    }
+}
+
+/// The dimensions in the lines above a table, and the lines that name one and state none of the
+/// specimen: the width of a layer or of the grips, several numbers in a line, several values of one
+/// dimension.
+pub(super) fn dimensions(
+    lines: &[TextRow],
+    style: NumberStyle,
+) -> (Vec<StatedDimension>, Vec<String>) {
+    let (mut stated, mut others) = (Vec::<StatedDimension>::new(), Vec::new());
+    for row in lines {
+        let Some((text, values)) = named_values(row) else { continue };
+        let name = Name::of(&text);
+        match dimension(&name, &values, style) {
+            Some((name, value)) => stated.push(StatedDimension { name, value, line: row.line }),
+            None if name.is_near_dimension() => others.push(format!("line {} `{text}`", row.line)),
+            None => {}
+        }
+    }
+    let one_value = |one: &StatedDimension| {
+        stated.iter().all(|other| other.name != one.name || other.value == one.value)
     };
-    lines.iter().filter_map(stated).collect()
+    let (used, several): (Vec<_>, Vec<_>) = stated.iter().partition(|one| one_value(one));
+    others.extend(several.iter().map(|one| format!("{one}, one of several values")));
+    (used, others)
+}
+
+/// The dimension of a specimen that a line states (mm).
+fn dimension(name: &Name, values: &[String], style: NumberStyle) -> Option<(&'static str, f64)> {
+    let numbers = values.iter().enumerate();
+    let mut numbers = numbers.filter_map(|(at, value)| Some((at, style.number(value)?)));
+    let (at, number) = numbers.next().filter(|(_, number)| *number > 0.0)?;
+    let unit = match values.get(at + 1).filter(|unit| !unit.is_empty()) {
+        Some(unit) => bare(unit),
+        None => name.unit(Extension).ok()?.unwrap_or("mm"),
+    };
+    let value = number * Extension.factor(unit)?;
+    numbers.next().is_none().then_some((name.dimension()?, value))
 }
 
 /// The name in a line, and what stands behind it: in other cells, or behind a colon or an equals
@@ -68,7 +89,7 @@ mod tests {
     fn above_a_table(line: &str) -> Vec<StatedDimension> {
         let separator = if line.contains(';') { ";" } else { "," };
         let table = TextTable::parse(&format!("{line}\n1{separator}2\n3{separator}4\n"));
-        dimensions(&table.rows[..1], table.style)
+        dimensions(&table.rows[..1], table.style).0
     }
 
     #[test]
@@ -87,8 +108,34 @@ mod tests {
             assert_eq!((one.name, one.line), (name, 1), "{text}");
             assert!((one.value - value).abs() < 1e-12, "{text}: {one:?}");
         }
-        for text in ["Bandwidth,50,Hz", "Width,10,11,12", "Width", "Load,12,N", "Width,0"] {
+        for text in ["Width,10,11,12", "Width", "Load,12,N", "Width,0"] {
             assert_eq!(above_a_table(text), [], "{text}");
+        }
+    }
+
+    /// Each is named, and none is taken for the specimen's.
+    #[test]
+    fn dimensions_of_other_things_are_not_taken() {
+        for text in [
+            "Bandwidth,50,Hz",
+            "Layer thickness (mm),0.2",
+            "Wandstärke;1,2;mm",
+            "Enddicke;2,1;mm",
+            "Thickness tolerance,0.1,mm",
+            "Thickness of coating,12,um",
+            "Extrusion width: 0.42 mm",
+            "Grip width,25,mm",
+            "Largeur des mors,25,mm",
+            "Gauge length after fracture,72,mm",
+            "Grip length,90,mm",
+            "Spessore finale = 3",
+            "Width (furlongs),10",
+        ] {
+            let separator = if text.contains(';') { ";" } else { "," };
+            let table = TextTable::parse(&format!("{text}\n1{separator}2\n3{separator}4\n"));
+            let (stated, others) = dimensions(&table.rows[..1], table.style);
+            assert_eq!((stated.len(), others.len()), (0, 1), "{text}");
+            assert!(others[0].starts_with("line 1 `"), "{others:?}");
         }
     }
 }

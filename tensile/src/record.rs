@@ -1,12 +1,12 @@
 //! The record of one tensile test: load and deformation of every row, in MPa and as a ratio.
 
 use crate::error::TensileError;
+use crate::name::Name;
 use crate::number_table::NumberTable;
 use crate::preamble::{self, StatedDimension};
 use crate::quantity::Quantity::{
-    Extension, Force, PlasticStrain, Strain, Stress, TrueStrain, TrueStress,
+    self, Extension, Force, PlasticStrain, Strain, Stress, TrueStrain, TrueStress,
 };
-use crate::quantity::{Quantity, unit_of};
 use serde::Serialize;
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -24,7 +24,7 @@ pub struct RecordOptions {
     pub gauge_length: Option<f64>,
     /// Width of the specimen (mm); needed for a force.
     pub width: Option<f64>,
-    /// Thickness of the specimen (mm), unless its file states another; needed for a force.
+    /// Thickness of the specimen (mm); needed for a force.
     pub thickness: Option<f64>,
 }
 
@@ -54,6 +54,8 @@ pub(super) struct Record {
     pub read_as: [ReadColumn; 2],
     /// The dimensions that were read from the file.
     pub stated: Vec<StatedDimension>,
+    /// What was stated and is not used, in words.
+    pub unused: Vec<String>,
     /// BLAKE3 hash of the file, 16 hexadecimal digits.
     pub hash: String,
 }
@@ -64,6 +66,10 @@ const MAX_STRAIN: f64 = 10.0;
 const MAX_STRESS: f64 = 1e6;
 /// A strain without unit must be smaller: it could be in per cent.
 const MAX_STRAIN_WITHOUT_UNIT: f64 = 1.0;
+/// Largest relative difference between an option and the dimension in a file, and the difference
+/// from which on a note names it.
+const CONTRADICTION: f64 = 0.1;
+const SAME: f64 = 1e-3;
 /// What is wrong with `1,234`, and what to do.
 const THOUSANDS: &str = "has separators of thousands, or another decimal sign: save the file with one decimal sign and without \
                          separators of thousands";
@@ -112,8 +118,19 @@ impl Record {
         let [load, deformation] = pair(&columns, &table.labels).map_err(refuse)?;
         let load = &ReadColumn::new(load, &table.labels, options).map_err(refuse)?;
         let deformation = &ReadColumn::new(deformation, &table.labels, options).map_err(refuse)?;
-        let Sizes { area, length, stated } =
+        let Sizes { area, length, stated, mut unused } =
             Sizes::new([load.quantity, deformation.quantity], table, options).map_err(refuse)?;
+        let used = [load.quantity, deformation.quantity];
+        for (quantity, unit) in options.units.iter().filter(|(of, _)| !used.contains(of)) {
+            unused.push(format!("--units {quantity}={unit}"));
+        }
+        for (index, label) in table.labels.iter().enumerate() {
+            let read = [load.number, deformation.number].contains(&(index + 1));
+            let chosen = columns.iter().any(|(_, at)| *at == index);
+            if !read && (chosen || Name::of(label).is_near_quantity()) {
+                unused.push(format!("column {}", title(index, label)));
+            }
+        }
         let at =
             |row: &TextRow, what| TensileError::Row { path: path.to_owned(), line: row.line, what };
         for column in [load, deformation] {
@@ -139,7 +156,7 @@ impl Record {
                     refuse(if is_grouped(&text.to_string()) {
                         format!("{what}: it {THOUSANDS}")
                     } else {
-                        format!("{what}: correct the cell or delete the line")
+                        format!("{what}: correct the cell or delete the line; a unit belongs in the column's name")
                     })
                 })
             };
@@ -169,6 +186,7 @@ impl Record {
             deformation: deformation.quantity,
             read_as: [load.clone(), deformation.clone()],
             stated,
+            unused,
             hash: hash.to_owned(),
         })
     }
@@ -200,19 +218,25 @@ impl ReadColumn {
         labels: &[String],
         options: &RecordOptions,
     ) -> Result<Self, String> {
-        let name = labels[index].clone();
+        let label = &labels[index];
         let given = options.units.iter().find(|(of, _)| *of == quantity);
-        let unit = given.map(|(_, unit)| unit.as_str()).or(unit_of(&name));
-        let factor = unit.map_or(Ok(1.0), |unit| {
-            quantity.factor(unit).ok_or_else(|| {
-                format!(
-                    "has the {quantity} in column {}: `{unit}` is no unit of it that is known; state one of {} with \
-                     --units {quantity}=UNIT",
-                    title(index, &name),
-                    quantity.units()
-                )
-            })
-        })?;
+        let name = Name::of(label);
+        let unit = given.map_or_else(|| name.unit(quantity), |(_, unit)| Ok(Some(unit)));
+        let refuse = |unit: &str, why: &str| {
+            let (title, units) = (title(index, label), quantity.units());
+            format!(
+                "has the {quantity} in column {title}{unit}{why}; state one of {units} with --units {quantity}=UNIT"
+            )
+        };
+        let unknown =
+            |unit: &str| refuse(&format!(": `{unit}`"), " is no unit of it that is known");
+        let unit = unit.map_err(unknown)?;
+        let factor = match unit {
+            Some(unit) => quantity.factor(unit).ok_or_else(|| unknown(unit))?,
+            None if quantity == Force => return Err(refuse("", " without a unit")),
+            None => 1.0,
+        };
+        let name = label.clone();
         Ok(Self { quantity, number: index + 1, unit: unit.map(str::to_owned), name, factor })
     }
 
@@ -252,27 +276,48 @@ struct Sizes {
     length: f64,
     /// Those that are from the file.
     stated: Vec<StatedDimension>,
+    /// What is not used, in words.
+    unused: Vec<String>,
 }
 
 impl Sizes {
-    /// The options decide, but for the thickness, which is the sheet's.
+    /// The options decide; a file that contradicts them is refused.
     fn new(
         [load, deformation]: [Quantity; 2],
         table: &NumberTable,
         options: &RecordOptions,
     ) -> Result<Self, String> {
-        let in_file = preamble::dimensions(&table.preamble, table.style);
-        let in_file = |name: &str| in_file.iter().find(|it| it.name == name).copied();
+        let (in_file, mut unused) = preamble::dimensions(&table.preamble, table.style);
+        let near = match &unused[..] {
+            [] => String::new(),
+            lines => format!("; not taken for one: {}", lines.join(", ")),
+        };
         let (mut missing, mut stated) = (Vec::new(), Vec::new());
         let mut size = |needed: bool, name: &str, given: Option<f64>| {
-            let found = in_file(name).filter(|_| given.is_none() || name == "thickness");
-            match found.map(|it| it.value).or(given) {
-                _ if !needed => Ok(1.0),
-                Some(value) if value > 0.0 && value.is_finite() => {
-                    stated.extend(found);
+            let found = in_file.iter().find(|it| it.name == name).copied();
+            match given.or(found.map(|it| it.value)) {
+                _ if !needed => {
+                    unused.extend(found.iter().map(StatedDimension::to_string));
+                    // The thickness is the sheet's too.
+                    let option = given.filter(|_| name != "thickness");
+                    unused.extend(option.map(|_| format!("--{name}")));
+                    Ok(1.0)
+                }
+                Some(value) if !(value > 0.0 && value.is_finite()) => {
+                    Err(format!("needs a positive --{name} (mm), not {value}"))
+                }
+                Some(value) => {
+                    let apart = found.map_or(0.0, |it| (it.value / value - 1.0).abs());
+                    if let Some(found) = found.filter(|_| apart > CONTRADICTION) {
+                        let what = format!("states {found}, against --{name} {value}");
+                        return Err(format!("{what}: correct one of them"));
+                    }
+                    match found.filter(|_| apart > SAME) {
+                        Some(found) => unused.push(found.to_string()),
+                        None => stated.extend(found),
+                    }
                     Ok(value)
                 }
-                Some(value) => Err(format!("needs a positive --{name} (mm), not {value}")),
                 None => {
                     missing.push(format!("--{name}"));
                     Ok(1.0)
@@ -284,7 +329,7 @@ impl Sizes {
             size(force, "width", options.width)? * size(force, "thickness", options.thickness)?;
         let length = size(extension, "gauge-length", options.gauge_length)?;
         if missing.is_empty() {
-            return Ok(Self { area, length, stated });
+            return Ok(Self { area, length, stated, unused });
         }
         let contains = match (force, extension) {
             (true, true) => "a force and a length change",
@@ -292,16 +337,20 @@ impl Sizes {
             _ => "a length change",
         };
         let options = missing.join(", ");
-        Err(format!("contains {contains}: give {options} of the specimen (mm)"))
+        Err(format!("contains {contains}: give {options} of the specimen (mm){near}"))
     }
 }
 
-/// The columns that the options name, or else all that are recognised.
+/// The columns that the options name, or else all that are recognised; those with words that are not
+/// known only if there are no others.
 fn columns(labels: &[String], options: &RecordOptions) -> Result<Vec<(Quantity, usize)>, String> {
     if options.columns.is_empty() {
-        let recognised =
-            |(index, label): (usize, &String)| Some((Quantity::from_label(label)?, index));
-        return Ok(labels.iter().enumerate().filter_map(recognised).collect());
+        let names = || labels.iter().map(|label| Name::of(label)).enumerate();
+        let all =
+            || names().filter_map(|(index, name)| Some((name.quantity()?, index, name.is_known())));
+        let better = |load: bool| all().any(|(of, _, known)| known && of.is_load() == load);
+        let best = all().filter(|(of, _, known)| *known || !better(of.is_load()));
+        return Ok(best.map(|(quantity, index, _)| (quantity, index)).collect());
     }
     let named = |(quantity, text): &(Quantity, String)| {
         let by_name = (labels.iter()).position(|label| label.eq_ignore_ascii_case(text));

@@ -43,6 +43,15 @@ pub enum End {
     Drawing,
 }
 
+/// Rows after the maximum of the stress, which the law does not have.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Softening {
+    /// Number of rows.
+    pub rows: usize,
+    /// Nominal [strain, stress (MPa)] at the maximum and at the last row.
+    pub ends: [[f64; 2]; 2],
+}
+
 /// One evaluated specimen. Stresses are in MPa; strains are from the toe.
 #[derive(Clone, Debug, Serialize)]
 pub struct Specimen {
@@ -52,6 +61,10 @@ pub struct Specimen {
     pub read_as: [ReadColumn; 2],
     /// The dimensions that were read from the file.
     pub stated: Vec<StatedDimension>,
+    /// What the file and the options state and the evaluation does not use, in words.
+    pub unused: Vec<String>,
+    /// The rows after the maximum, if the specimen softens there.
+    pub softening: Option<Softening>,
     /// BLAKE3 hash of the file, 16 hexadecimal digits.
     pub hash: String,
     /// Number of rows of the specimen.
@@ -139,6 +152,14 @@ impl Specimen {
             (Some(draw), _) => draw_end(smooth, draw, noise[1]),
             (None, _) => uniform(uniform_end(smooth, elastic, noise[1])),
         };
+        let softening = (end == End::Neck).then(|| Softening {
+            rows: smooth.len() - 1 - last,
+            ends: [last, smooth.len() - 1].map(|row| smooth[row]),
+        });
+        let mut unused = record.unused.clone();
+        if let (Some(ratio), None) = (options.draw_ratio, draw) {
+            unused.push(format!("--draw-ratio {ratio}, as the record shows no draw"));
+        }
         let onset = ONSET.max(3.0 * f64::hypot(noise[0], noise[1] / young));
         let until = draw.map_or(last, |draw| draw.top);
         let before = first_part(&smooth[..=until], young, onset, draw.is_some()).ok_or_else(|| {
@@ -164,6 +185,8 @@ impl Specimen {
             path: record.path.clone(),
             read_as: record.read_as.clone(),
             stated: record.stated.clone(),
+            unused,
+            softening,
             hash: record.hash.clone(),
             rows: record.rows.len(),
             dropped,
@@ -239,15 +262,24 @@ impl Compensated {
         let half = half_window(curve, noise[1]);
         let noise = [noise[0], noise[1] / (2.0 * half as f64 + 1.0).sqrt()];
         let mut rows = smoothed(curve, half);
-        let (linear, toe) = linear_part(&mut rows, record, noise).ok_or(
+        let (mut linear, mut toe) = linear_part(&mut rows, record, noise).ok_or(
             "has no linear part: the stress does not rise with the strain; are the columns swapped?",
         )?;
         let young = check_modulus(record, &linear, options)?;
         let compliance = match linear.young / young {
+            _ if !linear.is_known() => 0.0,
             ratio if ratio >= EXTENSOMETER && record.deformation != Extension => 0.0,
             _ => 1.0 / linear.young - 1.0 / young,
         };
         rows.iter_mut().for_each(|row| row[0] -= row[1] * compliance);
+        if !linear.is_known() {
+            // The line of the given modulus through the first row of the part.
+            let first = rows.iter().find(|row| row[0] >= linear.strain[0]).unwrap_or(&rows[0]);
+            let zero = first[0] - first[1] / young;
+            linear.strain = [first[0] - zero; 2];
+            rows.iter_mut().for_each(|row| row[0] -= zero);
+            toe += zero;
+        }
         let end = linear.strain[1] * (1.0 - linear.young * compliance);
         let elastic = rows.iter().position(|row| row[0] >= end).unwrap_or(0);
         Ok(Self { rows, noise, linear, toe, young, compliance, elastic })
@@ -341,8 +373,17 @@ fn check_modulus(
             deformation.doubt("not in per cent", "1")
         ));
     }
-    let young = options.young.unwrap_or(measured);
-    if !(SOFTER * young..=STIFFER * young).contains(&measured) {
+    let young = match options.young {
+        None if !linear.is_known() => {
+            return Err(format!(
+                "has a modulus of {measured:.0} ± {:.0} MPa (standard error) from {} rows, whose 95 % interval reaches zero: state it with \
+                 --young, or export the record without thinning",
+                linear.error, linear.rows
+            ));
+        }
+        given => given.unwrap_or(measured),
+    };
+    if linear.is_known() && !(SOFTER * young..=STIFFER * young).contains(&measured) {
         return Err(format!(
             "has the initial slope {measured:.0} MPa, but Young's modulus is {young:.0} MPa: a machine's compliance lowers \
              the slope by less; {}, or {}?",

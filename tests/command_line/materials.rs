@@ -82,11 +82,39 @@ fn the_unit_of_every_column_is_printed() {
     assert!(!printed.contains("note: no unit"), "{printed}");
 
     work.edit("configs/tensile/strip-1.csv", &[("(s);(mm);(N)\n", "")]);
-    let printed = work.output(&format!("{FIT} --replace"));
-    let force = row(&printed, " force ");
-    assert_eq!(force[4..], ["not", "stated", "1", "N"]);
-    let note = "note: no unit of the force is stated in strip-1.csv: taken as N; --units force=UNIT states another";
+    let message = work.error(&format!("{FIT} --replace"));
+    assert!(message.contains("has the force in column 3 `Load` without a unit"), "{message}");
+    let printed = work.output(&format!("{FIT} --replace --units force=N"));
+    let extension = row(&printed, " extension ");
+    assert_eq!(extension[4..], ["not", "stated", "1", "mm"]);
+    let note = "note: no unit of the extension is stated in strip-1.csv: taken as mm; --units extension=UNIT states another";
     assert!(printed.contains(note), "{printed}");
+}
+
+/// A tough polymer whose stress falls after its maximum: what the table leaves out, and what that
+/// means for a hinge.
+#[test]
+fn what_a_fit_does_not_use_is_printed() {
+    let work = Workplace::new();
+    let rows = (0..1200).map(|i| 5e-4 * f64::from(i)).map(|e| {
+        let stress = 50.0 * (1.0 - (-50.0 * e).exp()) - 20.0 * (e - 0.06).max(0.0);
+        format!("{e},{stress}\n")
+    });
+    let text = format!(
+        "Width,10,mm\nLayer thickness,0.2,mm\nStrain (1),Stress (MPa)\n{}",
+        rows.collect::<String>()
+    );
+    std::fs::write(work.path("tough.csv"), text).unwrap();
+    let printed = work.output(
+        "material fit tough.csv --name tough --thickness 2 --density-kg-m3 1000 --draw-ratio 3 --gauge-length 50",
+    );
+    for note in [
+        "note: tough.csv, not used: line 2 `Layer thickness`; width 10 mm (line 1); --gauge-length; --draw-ratio 3",
+        "note: tough.csv softens from 48.87 MPa",
+        "is said to tear where the specimen begins to neck",
+    ] {
+        assert!(printed.contains(note), "{note}: {printed}");
+    }
 }
 
 #[test]

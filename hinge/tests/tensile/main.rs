@@ -409,11 +409,52 @@ fn steep_first_rows_of_a_metal_are_not_its_modulus() {
 
 #[test]
 fn few_rows_give_a_modulus_with_its_error() {
-    let fit = fit_text(&csv(HEADER, &VOCE.record(80)), &OPTIONS);
+    let fit = fit_text(&csv(HEADER, &VOCE.record(150)), &OPTIONS);
     let linear = &fit.specimens[0].linear;
     assert!(linear.rows < 5, "{linear:?}");
     let off = (linear.young - VOCE.young).abs();
     assert!(off < 2.0 * linear.error, "{linear:?}");
+}
+
+/// Three rows of which one is beyond yield: the 95 % interval of their slope reaches zero. The given
+/// modulus is the slope of the line to Rp0.2, and no compliance is made of the difference.
+#[test]
+fn a_modulus_that_is_not_known_is_refused_and_may_be_given() {
+    for rows in [20, 40, 80] {
+        let text = csv(HEADER, &VOCE.record(rows));
+        let folder = tempfile::tempdir().unwrap();
+        let records = [(write(folder.path(), "few.csv", &text), RecordOptions::default())];
+        let message = MaterialFit::new(&records, &OPTIONS).unwrap_err().to_string();
+        assert!(
+            message.contains("few.csv has a modulus") && message.contains("--young"),
+            "{message}"
+        );
+        let mut options = OPTIONS;
+        options.specimen.young = Some(VOCE.young);
+        let fit = MaterialFit::new(&records, &options).unwrap();
+        agrees(&fit, &VOCE, "few rows", [1e-12, 0.01, 0.01]);
+        assert_eq!(fit.specimens[0].compliance, 0.0);
+    }
+}
+
+/// A polymer that softens to its break without a plateau: what the law leaves out is stated.
+#[test]
+fn softening_and_a_ratio_without_a_draw_are_named() {
+    let rows: Vec<[f64; 2]> = (0..1200)
+        .map(|i| 5e-4 * f64::from(i))
+        .map(|e| [e, 50.0 * (1.0 - (-50.0 * e).exp()) - 20.0 * (e - 0.06).max(0.0)])
+        .collect();
+    let mut options = OPTIONS;
+    options.specimen.draw_ratio = Some(3.0);
+    let fit = fit_text(&csv(HEADER, &rows), &options);
+    let specimen = &fit.specimens[0];
+    assert_eq!(specimen.unused, ["--draw-ratio 3, as the record shows no draw"]);
+    let softening = specimen.softening.unwrap();
+    let [top, end] = softening.ends;
+    assert!((top[0] - 0.0966).abs() < 0.001 && (top[1] - 48.87).abs() < 0.01, "{softening:?}");
+    assert!((end[0] - 0.6).abs() < 0.01 && (end[1] - 39.2).abs() < 0.2, "{softening:?}");
+    assert!(softening.rows > 1000, "{softening:?}");
+    assert!(fit_text(&csv(HEADER, &VOCE.record(3000)), &OPTIONS).specimens[0].softening.is_none());
 }
 
 #[test]

@@ -178,6 +178,69 @@ fn an_unknown_unit_of_a_column_that_is_read_is_an_error() {
     is_polymer(&both, &RecordOptions::default());
 }
 
+/// Every sign that separates a unit from a name, and words in place of it; a force without a unit
+/// could be in any.
+#[test]
+fn a_unit_is_read_in_every_sign_or_refused() {
+    let rows = |header: &str| text(&STEEL, header, 1.0 / LENGTH, 1e3 / AREA);
+    for force in ["Force {kN}", "Force <kN>", "Force..kN.", "kN Force", "Force kilonewtons"] {
+        let fit = read(&rows(&format!("Time,Stroke (mm),{force},")), &specimen()).unwrap();
+        assert!((fit.young.mean / STEEL.young - 1.0).abs() < 0.01, "{force}: {:?}", fit.young);
+    }
+    let above = "s,mm,kN,\nTime,Stroke,Force,";
+    let fit = read(&rows(above), &specimen()).unwrap();
+    assert!((fit.young.mean / STEEL.young - 1.0).abs() < 0.01, "{:?}", fit.young);
+    for (force, part) in [
+        ("Force", " without a unit"),
+        ("Force kilopounds", ": `kilopounds`"),
+        ("Force (x10 N)", ": `x10`"),
+        ("Force (kN) N", ": `kN`"),
+        ("Force kN/s", ": `kN/s`"),
+    ] {
+        let message = message(&rows(&format!("Time,Stroke (mm),{force},")), &specimen());
+        assert!(message.contains(part) && message.contains("--units force=UNIT"), "{message}");
+    }
+    let message = message(&rows("Time,Stroke ells,Force (N),"), &specimen());
+    assert!(message.contains("`ells`"), "{message}");
+}
+
+/// A strain across the specimen, or one of unknown words, does not replace the extension.
+#[test]
+fn columns_of_other_things_are_named_and_not_read() {
+    for other in ["Transverse strain (1)", "Querdehnung (1)", "Rubidium strain (1)"] {
+        let header = format!("{other},Stroke (mm),Load (N),");
+        let text = text(&POLYMER, &header, 1.0 / LENGTH, 1.0 / AREA);
+        let options = RecordOptions { units: vec![(Quantity::Stress, "GPa".into())], ..specimen() };
+        is_polymer(&text, &options);
+        let fit = read(&text, &options).unwrap();
+        let expected = ["--units stress=GPa".to_owned(), format!("column 1 `{other}`")];
+        assert_eq!(fit.specimens[0].unused, expected);
+    }
+}
+
+#[test]
+fn a_chosen_column_that_is_not_read_is_named() {
+    let text = text(&POLYMER, "p,q,r,", 1.0, 1.0);
+    let columns = [(Quantity::Extension, "1"), (Quantity::Strain, "2"), (Quantity::Stress, "3")];
+    let columns = columns.map(|(quantity, number)| (quantity, number.to_owned())).to_vec();
+    let units = vec![(Quantity::Strain, "1".into()), (Quantity::Stress, "MPa".into())];
+    let options = RecordOptions { columns, units, ..RecordOptions::default() };
+    is_polymer(&text, &options);
+    assert_eq!(read(&text, &options).unwrap().specimens[0].unused, ["column 1 `p`"]);
+}
+
+#[test]
+fn a_cell_with_a_unit_is_quoted() {
+    let rows = "Strain,Stress\n0.0%,0 MPa\n0.1%,2.5 MPa\n";
+    assert!(message(rows, &specimen()).contains("line 3 is `0.1%,2.5 MPa`"));
+    let rows = "Time,Strain,Stress (MPa)\n0,0.0%,0\n1,0.1%,2.5\n";
+    let message = message(rows, &specimen());
+    assert!(
+        message.contains("`0.0%` in column 2") && message.contains("a unit belongs"),
+        "{message}"
+    );
+}
+
 #[test]
 fn the_record_says_how_each_column_was_read() {
     let folder = tempfile::tempdir().unwrap();
@@ -272,10 +335,15 @@ fn records_in_other_languages_state_the_dimensions_of_their_specimens() {
         let stated: Vec<_> = stated.map(|it| (it.name, it.value)).collect();
         let expected = [("width", 10.0), ("thickness", 0.5), ("gauge-length", 50.0)];
         assert_eq!(stated, expected, "{above}");
-        // An option decides.
+        // An option decides, and a file that contradicts it is refused.
+        let wider = RecordOptions { width: Some(10.5), ..RecordOptions::default() };
+        let fit = read(&text, &wider).unwrap();
+        assert!((fit.young.mean / (POLYMER.young / 1.05) - 1.0).abs() < 0.01);
+        let [unused] = &fit.specimens[0].unused[..] else { panic!() };
+        assert!(unused.starts_with("width 10 mm (line "), "{unused}");
         let wide = RecordOptions { width: Some(20.0), ..RecordOptions::default() };
-        let fit = read(&text, &wide).unwrap();
-        assert!((fit.young.mean / (0.5 * POLYMER.young) - 1.0).abs() < 0.01);
+        let message = message(&text, &wide);
+        assert!(message.contains("states width 10 mm (line ") && message.contains("--width 20"));
     }
 }
 

@@ -9,8 +9,8 @@ use hinge::{SheetFacts, SheetMaterial, material_file};
 use std::path::{Path, PathBuf};
 use support::table::{Cell, Table};
 use tensile::{
-    Cause, FitOptions, FractureSource, MaterialFit, Origin, Quantity, RecordOptions, Specimen,
-    SpecimenOptions, Statistic,
+    Cause, FitOptions, FractureSource, MaterialFit, Origin, Quantity, RecordOptions, Softening,
+    Specimen, SpecimenOptions, Statistic,
 };
 
 /// Fit a material to tensile tests: modulus, yield, hardening, fracture strain
@@ -31,7 +31,7 @@ pub struct FitCommand {
     /// Name of the material and of the files written
     #[arg(long, value_name = "NAME")]
     name: String,
-    /// Thickness of the sheet, and of specimens whose file states none (mm)
+    /// Thickness of the sheet and of the specimens (mm)
     #[arg(long, value_name = "MM")]
     thickness: f64,
     /// Density (kg/m^3)
@@ -214,7 +214,7 @@ fn column_table(specimens: &[Specimen]) -> Table {
                 column.number.to_string(),
                 column.name.clone(),
                 column.unit.clone().unwrap_or("not stated".into()),
-                match column.quantity.own_unit() {
+                match &*column.quantity.own_unit() {
                     "1" => column.factor.to_string(),
                     unit => format!("{} {unit}", column.factor),
                 },
@@ -298,7 +298,8 @@ fn law_table(fit: &MaterialFit) -> Table {
 /// What a user must know about the law, one sentence each.
 fn notes(fit: &MaterialFit) -> Vec<String> {
     let mut notes = units_taken(&fit.specimens);
-    notes.extend(fit.specimens.iter().flat_map(stated_sizes));
+    notes.extend(fit.specimens.iter().flat_map(stated));
+    notes.extend(fit.specimens.iter().filter_map(softens));
     notes.push(format!(
         "the table has {} rows and deviates from the mean curve by at most {:.2} %",
         fit.table.len(),
@@ -333,7 +334,7 @@ fn notes(fit: &MaterialFit) -> Vec<String> {
             if removed {
                 "the difference to the given modulus is removed as the compliance of the machine"
             } else {
-                "it is not corrected, as the strain of an extensometer, and the given modulus is the slope to Rp0.2"
+                "it is not corrected, as that of an extensometer or of too few rows, and the given modulus is the slope to Rp0.2"
             }
         ));
     }
@@ -348,14 +349,30 @@ fn notes(fit: &MaterialFit) -> Vec<String> {
     notes
 }
 
-/// The dimensions that the file of a specimen states, one note a specimen.
-fn stated_sizes(specimen: &Specimen) -> Option<String> {
-    let sizes = specimen.stated.iter();
-    let sizes =
-        sizes.map(|it| format!("{} {} mm (line {})", it.name.replace('-', " "), it.value, it.line));
-    let sizes: Vec<String> = sizes.collect();
-    let name = file_name(specimen);
-    (!sizes.is_empty()).then(|| format!("{name} states the dimensions used: {}", sizes.join(", ")))
+/// The dimensions that the file of a specimen states, and what is not used, one note each.
+fn stated(specimen: &Specimen) -> Vec<String> {
+    let sizes: Vec<String> = specimen.stated.iter().map(ToString::to_string).collect();
+    let note = |says: &str, what: &[String]| {
+        let name = file_name(specimen);
+        (!what.is_empty()).then(|| format!("{name}{says}: {}", what.join("; ")))
+    };
+    let notes = [note(" states the dimensions used", &sizes), note(", not used", &specimen.unused)];
+    notes.into_iter().flatten().collect()
+}
+
+/// What softening means for the hinge, which the law cannot have.
+fn softens(specimen: &Specimen) -> Option<String> {
+    let Softening { rows, ends: [top, end] } = specimen.softening?;
+    Some(format!(
+        "{} softens from {:.2} MPa at a strain of {:.2} % to {:.2} MPa at {:.2} %: these {rows} rows are not used, because a \
+         hardening table does not soften. A hinge of this law is too stiff there, and without --fracture-strain it is said to \
+         tear where the specimen begins to neck",
+        file_name(specimen),
+        top[1],
+        100.0 * top[0],
+        end[1],
+        100.0 * end[0]
+    ))
 }
 
 /// Fewest rows from which a modulus is taken without a word.
