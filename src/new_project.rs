@@ -9,7 +9,7 @@ mod template;
 
 use crate::commands::WHOLE_BUILD;
 use crate::new_project::cut_from::CutFrom;
-use crate::new_project::edited::{heading, scale, set};
+use crate::new_project::edited::{heading, map, scale, set};
 use crate::new_project::first_scene::FirstScene;
 use crate::new_project::silhouette::fitted_text;
 use crate::new_project::size_args::{length, size, stock};
@@ -22,7 +22,7 @@ use clap::Args;
 use hinge::{Regime, SheetMaterial};
 use scene::analysis::material_check::{Intended, MaterialCheck};
 use scene::fit::opening::{damage_of_turn, safe_opening};
-use scene::{Posture, Scene, Stock};
+use scene::{Posture, Scene, Stock, rounded};
 use std::path::{Path, PathBuf};
 use support::text_file;
 use surrogate::{Card, Surrogate};
@@ -118,8 +118,11 @@ impl NewProject {
             first.damage = Some(weights.damage);
         }
         let own = self.folder.join("weights.safetensors");
-        let weights = weights.map_or(&own, |weights| &weights.file);
-        let scene = first.text(&self.folder, weights, self.target.as_deref())?;
+        let file = weights.map_or(&own, |weights| &weights.file);
+        let mut scene = first.text(&self.folder, file, self.target.as_deref())?;
+        if let Some(weights) = weights {
+            scene = weights.known_part(&scene, sheet.thickness / measured.thickness)?;
+        }
         let name = self.folder.file_name().unwrap_or_default().to_string_lossy();
         // The hinges of a plate are solved in its thickness: in the thickness of a film they would
         // be too narrow.
@@ -206,6 +209,8 @@ impl NewProject {
                     regime,
                     opening,
                     damage: damage_of_turn(&surrogate, regime, w_lig, opening),
+                    widths: surrogate.domain().w_lig,
+                    holes: surrogate.holes(),
                 });
             } else if self.weights.is_some() {
                 bail!(
@@ -228,6 +233,26 @@ struct Weights {
     opening: f64,
     /// The damage term of ligaments opened so.
     damage: f64,
+    /// Interval of the ligament widths of the training (mm).
+    widths: [f64; 2],
+    /// Interval of the radius of their holes over the width.
+    holes: [f64; 2],
+}
+
+impl Weights {
+    /// The scene with the holes of the training, and its ligament widths, to a hundredth, in a
+    /// sheet that is `scale` times as thick.
+    fn known_part(&self, scene: &str, scale: f64) -> Result<String> {
+        let mut scene: DocumentMut = scene.parse()?;
+        let [least, most] = self.widths.map(|width| scale * width);
+        for key in ["start", "range"] {
+            let known = |width: f64| rounded(width.clamp(0.99 * least, 1.01 * most));
+            map(&mut scene["ligament"][key], known);
+        }
+        let [least, most] = self.holes;
+        map(&mut scene["process"]["fillet_ratio"], |hole| hole.clamp(least, most));
+        Ok(scene.to_string())
+    }
 }
 
 /// Files in a new folder.

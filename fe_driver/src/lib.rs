@@ -88,7 +88,7 @@ pub use campaign::retry::retry;
 pub use campaign::run::{Progress, RunOptions, run};
 pub use campaign::sampling::RayBox;
 pub use campaign::slurm::{
-    ArrayStates, SlurmError, Submission, array_states, slurm_folder, submit_array,
+    ArrayStates, JobId, SlurmError, Submission, array_states, slurm_folder, submit_array,
 };
 pub use campaign::solve_again::{Difference, SolvedAgain, solve_again};
 pub use campaign::spot_paths::{DrawnStates, SpotPath, random_paths};

@@ -14,7 +14,12 @@ pub(crate) fn set(item: &mut Item, value: impl Into<Value>) {
 
 /// Multiplies a number, or each number of a list, and keeps its comment.
 pub(super) fn scale(item: &mut Item, factor: f64) {
-    let scaled = |value: &Value| rounded(factor * value.as_float().unwrap_or(f64::NAN));
+    map(item, |number| rounded(factor * number));
+}
+
+/// Replaces a number, or each number of a list, and keeps its comment.
+pub(super) fn map(item: &mut Item, new: impl Fn(f64) -> f64) {
+    let scaled = |value: &Value| new(value.as_float().unwrap_or(f64::NAN));
     match item.as_array() {
         Some(list) => {
             let list: Array = list.iter().map(scaled).collect();

@@ -232,6 +232,54 @@ fn an_array_is_not_submitted_twice() {
     assert_eq!(slurm.submit().1, 2);
 }
 
+/// The queue of the default cluster does not know the jobs of another one.
+#[test]
+fn an_array_on_another_cluster_is_asked_for_there() {
+    let slurm = Scripted::new();
+    let submissions = slurm.work.path("submissions");
+    slurm.script("sbatch", &format!("echo \"$@\" >> {}; echo '105;alpha'", submissions.display()));
+    slurm.answer(
+        "case \"$*\" in *--clusters=alpha*) echo '105_1|RUNNING';; \
+         *--jobs=*) echo 'Invalid job id specified' >&2; exit 1;; esac",
+    );
+    let submit = format!("submit {CAMPAIGN} --shards 4 --time 1");
+    let submitted = slurm.campaign(&submit).output().unwrap();
+    assert!(submitted.status.success(), "{submitted:?}");
+    let message = failure(&mut slurm.campaign(&submit));
+    assert!(message.contains("array 105;alpha: 1 running"), "{message}");
+    assert!(message.contains("`scancel --clusters=alpha 105`"), "{message}");
+    let submissions = std::fs::read_to_string(submissions).unwrap();
+    let [array, collect] = submissions.lines().collect::<Vec<_>>().try_into().unwrap();
+    assert!(array.contains("--array=1-4") && !array.contains("--clusters"), "{array}");
+    assert!(collect.contains("--dependency=afterany:105 --clusters=alpha"), "{collect}");
+}
+
+#[test]
+fn an_answer_that_is_not_understood_is_quoted_and_submits_nothing() {
+    let slurm = Scripted::new();
+    slurm.answer("true");
+    let record = slurm.work.path("runs/demo/slurm/submission.json");
+    for answer in ["Welcome to the cluster", ""] {
+        slurm.script("sbatch", &format!("echo '{answer}'"));
+        let message =
+            failure(&mut slurm.campaign(&format!("submit {CAMPAIGN} --shards 4 --time 1")));
+        assert!(message.contains(&format!("sbatch printed \"{answer}\\n\"")), "{message}");
+        assert!(!record.exists());
+    }
+    slurm.script("sbatch", "echo 'Welcome to the cluster'; echo 7");
+    let submit = format!("submit {CAMPAIGN} --shards 4 --time 1");
+    assert!(slurm.campaign(&submit).status().unwrap().success());
+    // An array of which the queue says nothing has not ended.
+    slurm.answer("echo 'Welcome to the cluster'");
+    let message = failure(&mut slurm.campaign(&submit));
+    assert!(message.contains("squeue printed \"Welcome to the cluster\\n\""), "{message}");
+    assert!(message.contains("does not say whether array 7 has ended"), "{message}");
+    std::fs::remove_file(&record).unwrap();
+    let message = failure(&mut slurm.campaign(&submit));
+    assert!(message.contains("squeue printed"), "{message}");
+    assert!(!record.exists());
+}
+
 /// The campaign has 40 rays and the 3 of its spot check. A site that refuses an array says only
 /// that its specification is invalid.
 #[test]

@@ -12,8 +12,6 @@ use std::collections::BTreeMap;
 use std::fmt;
 use surrogate::Surrogate;
 
-/// Fewest rays of which other rays can be foretold.
-const LEAST_RAYS: usize = 6;
 /// Number of draws.
 const DRAWS: usize = 1000;
 /// The quantiles between which 95 % of the draws lie.
@@ -31,6 +29,9 @@ pub struct ErrorInterval {
 }
 
 impl ErrorInterval {
+    /// Fewest rays of which other rays can be foretold.
+    pub const LEAST_RAYS: usize = 6;
+
     /// The errors of W and of the three forces together at the rows, whose rays are their jobs;
     /// `None` below six rays, and if a force is not known or zero everywhere.
     pub fn of(surrogate: &Surrogate, rows: &[Row]) -> Option<[Self; 2]> {
@@ -47,7 +48,7 @@ impl ErrorInterval {
             }
         }
         let rays: Vec<Sums> = rays.into_values().collect();
-        let found = (rays.len() >= LEAST_RAYS).then(|| intervals(&rays))?;
+        let found = (rays.len() >= Self::LEAST_RAYS).then(|| intervals(&rays))?;
         let is_known = |found: &Self| found.error.is_finite() && found.interval[1].is_finite();
         found.iter().all(is_known).then_some(found)
     }

@@ -59,7 +59,8 @@ pub struct LearningRound {
     pub training_s: f64,
     /// Errors of the weights at the states of the spot check.
     pub check: SpotCheck,
-    /// The errors of W and of the forces there, with their intervals.
+    /// The errors of W and of the forces there, with their intervals; `None` if too few rays have
+    /// states in the training domain.
     pub intervals: Option<[ErrorInterval; 2]>,
 }
 
@@ -75,7 +76,7 @@ pub trait LearningSteps {
     fn train(&mut self, rays: usize, database: &Database) -> Result<(Surrogate, f64), Self::Error>;
 
     /// Takes a finished round with its weights. `is_latest` is false while the rays of the next
-    /// round are known from an earlier run.
+    /// round are known from an earlier run: only later weights end the rounds.
     fn round(
         &mut self,
         round: &LearningRound,
@@ -108,7 +109,8 @@ const LEAST_RAYS: usize = 6;
 /// round that the deadline ends early is trained on the rays that it has.
 pub fn learn<S: LearningSteps>(task: LearningTask, steps: &mut S) -> Result<LearningEnd, S::Error> {
     let solved = closed_before(task.folder)?;
-    let mut counts = counts(task.first_rays, task.campaign.rays()).peekable();
+    let counts = counts(task.first_rays, solved, task.campaign.rays());
+    let mut counts = counts.into_iter().peekable();
     let mut trained = 0;
     while let Some(rays) = counts.next() {
         if let Some(end) = solve_first(rays, task, steps)? {
@@ -124,10 +126,10 @@ pub fn learn<S: LearningSteps>(task: LearningTask, steps: &mut S) -> Result<Lear
             }
             return Ok(end);
         }
-        let is_latest = rays >= solved || counts.peek().is_none();
+        let is_latest = counts.peek().is_none_or(|next| *next > solved);
         let round = round(rays, task, is_latest, steps)?;
         trained = rays;
-        if !is_latest && counts.peek().is_some_and(|next| *next <= solved) {
+        if !is_latest {
             continue;
         }
         if round.is_within(task.accuracy) {
@@ -199,27 +201,34 @@ impl LearningRound {
         training_s: f64,
     ) -> Result<Self, VerificationError> {
         let tally = status(task.folder)?.tally;
+        let inside = |row: &&Row| weights.contains(&row.design, &row.sample.deformation());
+        let inside: Vec<Row> = task.spot.iter().filter(inside).cloned().collect();
+        let intervals = ErrorInterval::of(weights, &inside);
         Ok(Self {
             rays: tally.closed(),
             complete: tally.complete,
             cpu_s: tally.cpu_seconds,
             training_s,
             check: spot_check(weights, task.spot, &task.campaign.tier.to_string()),
-            intervals: ErrorInterval::of(weights, task.spot),
+            intervals: intervals.and_then(|_| ErrorInterval::of(weights, task.spot)),
         })
     }
 
     fn is_within(&self, accuracy: Accuracy) -> bool {
-        let errors = &self.check.errors;
-        let [energy, ..] = errors.percents();
-        energy <= accuracy.energy && errors.forces_percent() <= accuracy.forces
+        let errors = self.intervals.map(|both| both.map(|found| found.error));
+        errors.is_some_and(|[w, forces]| w <= accuracy.energy && forces <= accuracy.forces)
     }
 }
 
-/// Numbers of rays of the rounds: each twice the one before, the last with all.
-fn counts(first: usize, all: usize) -> impl Iterator<Item = usize> {
+/// Numbers of rays of the rounds: each twice the one before, the `solved` rays of earlier runs, and
+/// the last with all.
+fn counts(first: usize, solved: usize, all: usize) -> Vec<usize> {
     let doubled = std::iter::successors(Some(first), |count| Some(2 * count));
-    doubled.take_while(move |count| *count < all).chain(std::iter::once(all))
+    let doubled = doubled.take_while(|count| *count < all);
+    let mut counts: Vec<usize> = doubled.chain([solved.max(first).min(all), all]).collect();
+    counts.sort_unstable();
+    counts.dedup();
+    counts
 }
 
 #[cfg(test)]
@@ -228,9 +237,16 @@ mod tests {
 
     #[test]
     fn rounds_double_and_end_with_all_rays() {
-        let all = |first, all| counts(first, all).collect::<Vec<_>>();
-        assert_eq!(all(25, 160), [25, 50, 100, 160]);
-        assert_eq!(all(25, 50), [25, 50]);
-        assert_eq!(all(25, 6), [6]);
+        assert_eq!(counts(25, 0, 160), [25, 50, 100, 160]);
+        assert_eq!(counts(25, 0, 50), [25, 50]);
+        assert_eq!(counts(25, 0, 6), [6]);
+    }
+
+    #[test]
+    fn the_rays_of_a_round_that_was_stopped_are_a_round() {
+        assert_eq!(counts(25, 40, 160), [25, 40, 50, 100, 160]);
+        assert_eq!(counts(25, 50, 160), [25, 50, 100, 160]);
+        assert_eq!(counts(25, 7, 160), [25, 50, 100, 160]);
+        assert_eq!(counts(25, 200, 160), [25, 50, 100, 160]);
     }
 }

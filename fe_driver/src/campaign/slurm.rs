@@ -24,13 +24,15 @@ pub enum SlurmError {
         "{tasks} tasks: {message}; the site allows fewer than its MaxArraySize (`scontrol show config`): choose a smaller --shards"
     )]
     TooManyTasks { tasks: usize, message: String },
-    #[error("{0}: wait until it ends, or cancel it with `scancel {id}`", id = .0.array)]
+    #[error("{program} printed {answer:?}, not {what}")]
+    Unread { program: &'static str, answer: String, what: &'static str },
+    #[error("{0}: wait until it ends, or cancel it with `{cancel}`", cancel = .0.array.cancel())]
     Active(ArrayStates),
     #[error(
-        "Slurm does not say whether array {array} has ended: try again later; if it has ended, delete {record}",
+        "Slurm does not say whether array {array} has ended ({source}): try again later; if it has ended, delete {record}",
         record = .record.display()
     )]
-    Silent { array: String, record: PathBuf },
+    Silent { array: JobId, record: PathBuf, source: Box<SlurmError> },
     #[error(
         "job {job} runs the script {script} and has not ended, though its submission was stopped before it was recorded: \
          wait until it ends and run `kirigami campaign collect`, or cancel it with `scancel {job}`",
@@ -41,34 +43,85 @@ pub enum SlurmError {
     Busy(PathBuf),
     #[error(
         "array {array} is submitted, but not the job that collects the database: {source}. Run `kirigami campaign \
-         collect` when the array has ended, or cancel it with `scancel {array}`"
+         collect` when the array has ended, or cancel it with `{cancel}`",
+        cancel = .array.cancel()
     )]
-    NotCollected { array: String, source: Box<SlurmError> },
+    NotCollected { array: JobId, source: Box<SlurmError> },
     #[error(transparent)]
     File(#[from] FileError),
+}
+
+/// A job as sbatch prints it: its id, and its cluster if there are several (`105;alpha`).
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(try_from = "String")]
+pub struct JobId(String);
+
+impl JobId {
+    fn parts(&self) -> (&str, Option<&str>) {
+        self.0.split_once(';').map_or((&self.0, None), |(id, cluster)| (id, Some(cluster)))
+    }
+
+    /// The option that names the cluster to a program of Slurm.
+    fn clusters(&self) -> Option<String> {
+        self.parts().1.map(|cluster| format!("--clusters={cluster}"))
+    }
+
+    fn cancel(&self) -> String {
+        let clusters = self.clusters().map_or(String::new(), |option| option + " ");
+        format!("scancel {clusters}{}", self.parts().0)
+    }
+}
+
+impl TryFrom<String> for JobId {
+    type Error = SlurmError;
+
+    /// Reads the answer of sbatch, in which a site may print further lines.
+    fn try_from(answer: String) -> Result<Self, SlurmError> {
+        let is_job = |job: &Self| {
+            let (id, cluster) = job.parts();
+            let word = |c: char| c.is_ascii_alphanumeric() || "_-.".contains(c);
+            let is_name = |name: &str| !name.is_empty() && name.chars().all(word);
+            is_number(id) && !id.starts_with('0') && cluster.is_none_or(is_name)
+        };
+        let mut jobs = answer.lines().map(|line| Self(line.trim().to_owned())).filter(is_job);
+        match (jobs.next(), jobs.next()) {
+            (Some(job), None) => Ok(job),
+            _ => Err(SlurmError::Unread {
+                program: "sbatch",
+                answer,
+                what: "the id of a job: `squeue --me` shows whether it is submitted",
+            }),
+        }
+    }
+}
+
+impl fmt::Display for JobId {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str(&self.0)
+    }
 }
 
 /// The jobs of the last submission of a campaign.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Submission {
-    /// Id of the array.
-    pub array: String,
+    /// The array.
+    pub array: JobId,
     /// Number of tasks of the array.
     pub tasks: usize,
-    /// Id of the job that collects the database after the array; `None` if it was not submitted.
-    pub collect: Option<String>,
+    /// The job that collects the database after the array; `None` if it was not submitted.
+    pub collect: Option<JobId>,
 }
 
 /// The states of the last submission of a campaign.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct ArrayStates {
-    /// Id of the array.
-    pub array: String,
+    /// The array.
+    pub array: JobId,
     /// Number of tasks in each state, in Slurm's words; tasks that Slurm no longer knows are
     /// "unknown".
     pub tasks: BTreeMap<String, usize>,
-    /// Id of the job that collects the database; `None` if it was not submitted.
-    pub collect: Option<String>,
+    /// The job that collects the database; `None` if it was not submitted.
+    pub collect: Option<JobId>,
     /// State of this job; "unknown" if there is none, or if Slurm no longer knows it.
     pub collect_state: String,
 }
@@ -143,18 +196,16 @@ pub fn submit_array(
     whole_file::write(&path, script.as_bytes()).map_err(FileError::at(&path))?;
     let path = path.canonicalize().map_err(FileError::at(&path))?;
     refuse_unrecorded(&path)?;
-    let sbatch = |options: &str, argument: Option<&str>| {
+    let sbatch = |options: &[String], argument: Option<&str>| {
         let mut command = Command::new("sbatch");
-        command.arg("--parsable").arg(options);
+        command.arg("--parsable").args(options);
         command.arg(&path).args(argument);
         // It may outlive this process, and holds the lock until it has submitted.
         let held = lock.try_clone().map_err(FileError::at(&folder))?;
         command.stdin(held);
-        // The output is the id, followed by the name of the cluster if there are several.
-        let id = output("sbatch", &mut command)?;
-        Ok::<_, SlurmError>(id.trim().split(';').next().unwrap_or_default().to_owned())
+        JobId::try_from(output("sbatch", &mut command)?)
     };
-    let array = sbatch(&format!("--array=1-{tasks}"), None).map_err(|error| match error {
+    let array = sbatch(&[format!("--array=1-{tasks}")], None).map_err(|error| match error {
         SlurmError::Refused { message, .. } if message.contains("Invalid job array") => {
             SlurmError::TooManyTasks { tasks, message }
         }
@@ -163,8 +214,9 @@ pub fn submit_array(
     let mut submission = Submission { array, tasks, collect: None };
     // The array is recorded before anything else can fail: otherwise it would be submitted twice.
     write_json(&record_path(campaign_folder), &submission)?;
-    let after = format!("--dependency=afterany:{}", submission.array);
-    let collect = sbatch(&after, Some("collect")).map_err(|source| SlurmError::NotCollected {
+    let after = format!("--dependency=afterany:{}", submission.array.parts().0);
+    let options: Vec<_> = [after].into_iter().chain(submission.array.clusters()).collect();
+    let collect = sbatch(&options, Some("collect")).map_err(|source| SlurmError::NotCollected {
         array: submission.array.clone(),
         source: Box::new(source),
     })?;
@@ -184,8 +236,8 @@ fn hold(path: &Path) -> Result<File, SlurmError> {
 /// An error if a job that has not ended runs the script: its submission was not recorded.
 fn refuse_unrecorded(script: &Path) -> Result<(), SlurmError> {
     let mut squeue = Command::new("squeue");
-    squeue.args(["--noheader", "--states=all", "--format=%F|%T|%o"]);
-    let queue = output("squeue", &mut squeue)?;
+    squeue.args(["--noheader", "--federation", "--states=all", "--format=%F|%T|%o"]);
+    let queue = listed("squeue", &mut squeue)?;
     let name = script.to_string_lossy();
     let runs_script = |line: &&str| {
         let command = line.splitn(3, '|').nth(2).unwrap_or_default();
@@ -206,18 +258,18 @@ pub fn array_states(campaign_folder: &Path) -> Result<Option<ArrayStates>, Slurm
         return Ok(None);
     };
     let Submission { array, tasks, collect } = submission;
-    let jobs: Vec<&str> = std::iter::once(array.as_str()).chain(collect.as_deref()).collect();
-    let Some(known) = known_states(&jobs) else {
-        return Err(SlurmError::Silent { array, record });
+    let known = match known_states(&array, collect.as_ref()) {
+        Ok(known) => known,
+        Err(error) => return Err(SlurmError::Silent { array, record, source: Box::new(error) }),
     };
     let state = |job: &str| known.get(job).map_or(UNKNOWN, String::as_str).to_owned();
     let mut counts = BTreeMap::new();
     for task in 1..=tasks {
-        *counts.entry(state(&format!("{array}_{task}"))).or_default() += 1;
+        *counts.entry(state(&format!("{}_{task}", array.parts().0))).or_default() += 1;
     }
     Ok(Some(ArrayStates {
         tasks: counts,
-        collect_state: collect.as_deref().map_or(UNKNOWN.to_owned(), state),
+        collect_state: collect.as_ref().map_or(UNKNOWN.to_owned(), |job| state(job.parts().0)),
         array,
         collect,
     }))
@@ -225,42 +277,50 @@ pub fn array_states(campaign_folder: &Path) -> Result<Option<ArrayStates>, Slurm
 
 /// The states of jobs and tasks by their ids. A state in the queue, which forgets jobs minutes
 /// after their end, takes precedence over a state in the accounting, which not every site keeps,
-/// and which learns of jobs late. `None` if the queue does not answer and the accounting knows none
-/// of the jobs.
-fn known_states(jobs: &[&str]) -> Option<BTreeMap<String, String>> {
-    let jobs = format!("--jobs={}", jobs.join(","));
+/// and which learns of jobs late. The error of the queue if the accounting knows none of the jobs.
+fn known_states(
+    array: &JobId,
+    collect: Option<&JobId>,
+) -> Result<BTreeMap<String, String>, SlurmError> {
+    let ids: Vec<&str> = [array].into_iter().chain(collect).map(|job| job.parts().0).collect();
+    let jobs = [format!("--jobs={}", ids.join(","))].into_iter().chain(array.clusters());
+    let jobs: Vec<_> = jobs.collect();
     let mut squeue = Command::new("squeue");
-    squeue.args(["--noheader", "--array", "--states=all", "--format=%i|%T", &jobs]);
+    squeue.args(["--noheader", "--array", "--states=all", "--format=%i|%T"]).args(&jobs);
     let mut sacct = Command::new("sacct");
-    sacct.args([
-        "--noheader",
-        "--array",
-        "--allocations",
-        "--parsable2",
-        "--format=JobID,State",
-        &jobs,
-    ]);
-    let queue = match output("squeue", &mut squeue) {
-        Ok(text) => Some(text),
+    sacct.args(["--noheader", "--array", "--allocations", "--parsable2", "--format=JobID,State"]);
+    let accounting = listed("sacct", sacct.args(&jobs)).unwrap_or_default();
+    let queue = match listed("squeue", &mut squeue) {
         // The queue has forgotten all of the jobs.
         Err(SlurmError::Refused { message, .. }) if message.contains("Invalid job id") => {
-            Some(String::new())
+            String::new()
         }
-        Err(_) => None,
+        Err(_) if accounting.lines().any(|line| state(line).is_some()) => String::new(),
+        queue => queue?,
     };
-    let accounting = output("sacct", &mut sacct).ok();
-    let is_queue_known = queue.is_some();
-    let answers = [accounting, queue];
-    let lines = answers.iter().flatten().flat_map(|text| text.lines());
-    let states: BTreeMap<_, _> = lines.filter_map(state).collect();
-    (is_queue_known || !states.is_empty()).then_some(states)
+    Ok([accounting, queue].iter().flat_map(|text| text.lines()).filter_map(state).collect())
+}
+
+/// The list of jobs that a program of Slurm prints; an error if none of its lines is a job.
+fn listed(program: &'static str, command: &mut Command) -> Result<String, SlurmError> {
+    let answer = output(program, command)?;
+    if answer.trim().is_empty() || answer.lines().any(|line| state(line).is_some()) {
+        return Ok(answer);
+    }
+    Err(SlurmError::Unread { program, answer, what: "jobs with their states" })
 }
 
 /// The id and the state in a line like `12_3|CANCELLED by 1000` or `12|RUNNING|script`.
 fn state(line: &str) -> Option<(String, String)> {
     let (job, state) = line.trim().split_once('|')?;
     let state = state.split(['|', ' ']).find(|word| !word.is_empty())?;
-    Some((job.to_owned(), state.to_lowercase()))
+    let is_state = state.bytes().all(|byte| byte.is_ascii_uppercase() || byte == b'_');
+    (is_state && job.split(['_', '+']).all(is_number))
+        .then(|| (job.to_owned(), state.to_lowercase()))
+}
+
+fn is_number(text: &str) -> bool {
+    !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit())
 }
 
 /// What a program of Slurm prints.
@@ -272,4 +332,57 @@ fn output(program: &'static str, command: &mut Command) -> Result<String, SlurmE
         return Err(SlurmError::Refused { program, message });
     }
     Ok(String::from_utf8_lossy(&output.stdout).into_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_answer_of_sbatch_names_one_job_by_the_grammar_or_is_quoted() {
+        for (answer, written, cancel) in [
+            ("105\n", "105", "scancel 105"),
+            ("105;alpha\n", "105;alpha", "scancel --clusters=alpha 105"),
+            ("Welcome to the cluster\n\n105;a-1\n", "105;a-1", "scancel --clusters=a-1 105"),
+        ] {
+            let job = JobId::try_from(answer.to_owned()).unwrap();
+            assert_eq!((&*job.to_string(), &*job.cancel()), (written, cancel));
+            assert_eq!(JobId::try_from(job.to_string()).unwrap(), job);
+        }
+        let others = [
+            "",
+            "\n",
+            "Welcome",
+            "Submitted batch job 105",
+            "0",
+            "-1",
+            "+5",
+            "1_2",
+            "105;",
+            ";alpha",
+            "105;a;b",
+            "105;a b",
+            "105\n106",
+            "1.5",
+        ];
+        for answer in others {
+            let error = JobId::try_from(answer.to_owned()).unwrap_err().to_string();
+            assert!(error.contains(&format!("{answer:?}")), "{error}");
+        }
+    }
+
+    #[test]
+    fn a_line_is_a_job_with_its_state_or_none() {
+        let read = |line| state(line).map(|(job, state)| format!("{job} {state}"));
+        for (line, expected) in [
+            ("12_3|CANCELLED by 1000", "12_3 cancelled"),
+            ("12|OUT_OF_MEMORY|/a/array.sh collect", "12 out_of_memory"),
+            ("7+0|RUNNING", "7+0 running"),
+        ] {
+            assert_eq!(read(line).as_deref(), Some(expected));
+        }
+        for line in ["", "12", "| Welcome |", "12|", "12|see the news", "twelve|RUNNING"] {
+            assert_eq!(read(line), None, "{line}");
+        }
+    }
 }

@@ -65,7 +65,7 @@ impl SubmitCommand {
             duration(plan.seconds / (tasks * self.jobs.get()) as f64),
             tasks * self.jobs.get(),
             submission.array,
-            submission.collect.unwrap_or_default(),
+            submission.collect.map_or(String::new(), |job| job.to_string()),
             slurm_folder(&folder).display()
         );
         Ok(())

@@ -10,7 +10,7 @@ mod conclusion;
 mod fine_tuning;
 
 use crate::commands::campaign::RayProgress;
-use crate::commands::material::learn::conclusion::conclusion;
+use crate::commands::material::learn::conclusion::{MATERIAL, WEIGHTS, conclusion};
 use crate::commands::material::learn::fine_tuning::FineTuning;
 use crate::commands::solve_args::{FeSolver, SolveArgs, task_error};
 use crate::new_project::{self, edited};
@@ -19,7 +19,7 @@ use crate::ui::interrupt;
 use crate::ui::progress::duration;
 use crate::ui::run_folder;
 use crate::ui::with_unit::{percent, time};
-use ::train::{TrainingConfig, check_pretrained};
+use ::train::{ErrorInterval, TrainingConfig, check_pretrained};
 use anyhow::{Context, Result, bail, ensure};
 use clap::Args;
 use dataset::{Database, SplitPlan};
@@ -72,7 +72,7 @@ pub struct LearnCommand {
     /// Number of rays of the first round
     #[arg(long, value_name = "N", default_value_t = 25, value_parser = clap::value_parser!(u16).range(6..))]
     rays: u16,
-    /// Number of rays of the spot check, each with 4 states
+    /// Number of rays of the spot check, each with 4 states; an accuracy is stated from 6 rays on
     #[arg(long, value_name = "N", default_value_t = 16, value_parser = clap::value_parser!(u16).range(3..))]
     spot_rays: u16,
     /// Seed of the states of the spot check. Errors that led to a choice are measured again with
@@ -147,12 +147,11 @@ impl LearnCommand {
             deadline: began.checked_add(self.time),
             stop: interrupt::stop_flag()?,
         };
-        let mut steps = Steps { out: &self.out, fine_tuning, rounds: Vec::new(), progress: None };
+        let mut steps =
+            Steps { out: &self.out, fine_tuning, rounds: Vec::new(), domain: None, progress: None };
         let end = learn(task, &mut steps)?;
-        let workers = self.solve.workers();
-        let (material, weights) = (self.out.join("material.toml"), weights_file(&self.out));
-        let files = [&*material, &*weights];
-        println!("{}", conclusion(&steps.rounds, accuracy, workers, files));
+        let domains = (steps.domain.as_ref(), &region);
+        println!("{}", conclusion(steps.rounds.last(), accuracy, &self.out, domains));
         match end {
             LearningEnd::Accurate => {
                 let took = duration(began.elapsed().as_secs_f64());
@@ -161,8 +160,8 @@ impl LearnCommand {
             }
             LearningEnd::Unfinished { left, what } => bail!(Unfinished { left, what }),
             LearningEnd::AllRays => bail!(
-                "all {} rays of {} are solved, and the errors are above --accuracy or --forces: increase `count` there, \
-                 or choose a finer tier",
+                "all {} rays of {} are solved, and the errors are above --accuracy or --forces, or too few states of \
+                 the spot check are in the training domain: increase `count` there, or choose a finer tier",
                 campaign.rays(),
                 self.out.join("campaign.toml").display()
             ),
@@ -180,7 +179,7 @@ impl LearnCommand {
         }
         let name = self.out.file_name().unwrap_or_default().to_string_lossy();
         let text = new_project::material_text(&self.material, material.thickness)?;
-        run_folder::write(&self.out, "material.toml", &text)?;
+        run_folder::write(&self.out, MATERIAL, &text)?;
         let mut campaign: DocumentMut =
             new_project::campaign(&name, material.thickness, tier.regime())?.parse()?;
         edited::set(&mut campaign["tier"], tier.to_string());
@@ -226,6 +225,13 @@ impl LearnCommand {
         let states = check.rows.len();
         let database = Database::collect(check.rows, &SplitPlan::default())
             .context("the solver followed too few rays of the spot check: increase --spot-rays")?;
+        let rays = database.manifest().rays;
+        ensure!(
+            rays >= ErrorInterval::LEAST_RAYS,
+            "{} states on {rays} rays are too few to assess weights, which need {} rays: increase --spot-rays",
+            database.rows().len(),
+            ErrorInterval::LEAST_RAYS
+        );
         database.write(&self.out.join("spot-check.parquet"), true)?;
         println!(
             "spot check: {} rays, {states} of {count} states on rays followed to their end, {:.0} s of CPU time",
@@ -246,15 +252,13 @@ fn shipped_parents(regime: Regime) -> Vec<PathBuf> {
     PARENTS.map(file).to_vec()
 }
 
-fn weights_file(out: &Path) -> PathBuf {
-    out.join("weights.safetensors")
-}
-
 /// What the command does in every round.
 struct Steps<'a> {
     out: &'a Path,
     fine_tuning: FineTuning,
     rounds: Vec<LearningRound>,
+    /// Training domain of the saved weights.
+    domain: Option<TrainingDomain>,
     /// Progress of the rays of the round.
     progress: Option<RayProgress>,
 }
@@ -281,9 +285,9 @@ impl LearningSteps for Steps<'_> {
         let table = LearningRound::table(&self.rounds);
         println!("{table}\n");
         run_folder::write(self.out, "learn.csv", &table.csv())?;
-        // The saved weights are trained on all rays that an earlier command has solved.
         if is_latest {
-            weights.save(&weights_file(self.out))?;
+            weights.save(&self.out.join(WEIGHTS))?;
+            self.domain = Some(weights.domain().clone());
         }
         Ok(())
     }

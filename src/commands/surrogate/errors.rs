@@ -5,35 +5,28 @@ use dataset::{COMPARED, ComparedState, Row, reference_rms};
 use support::document::Document;
 use support::table::Table;
 use surrogate::Surrogate;
+use train::Parity;
 
 /// Number of states listed as the worst.
 const LISTED: usize = 5;
 
 /// States of a database inside the training domain of weights, with what the weights predict.
-pub struct StateErrors<'a> {
+pub struct StateErrors {
     /// Number of states outside the domain, which are not evaluated.
     outside: usize,
-    rows: Vec<&'a Row>,
+    rows: Vec<Row>,
     states: Vec<ComparedState>,
 }
 
-impl<'a> StateErrors<'a> {
-    pub fn new(surrogate: &Surrogate, rows: &'a [Row]) -> Self {
+impl StateErrors {
+    pub fn new(surrogate: &Surrogate, rows: &[Row]) -> Self {
         let inside = |row: &&Row| {
             let state = row.sample.deformation();
             surrogate.contains(&row.design, &state)
         };
-        let inside: Vec<&Row> = rows.iter().filter(inside).collect();
-        let (designs, deformations): (Vec<_>, Vec<_>) =
-            inside.iter().map(|row| (row.design, row.sample.deformation())).unzip();
-        let predicted = surrogate.samples(&designs, &deformations);
-        Self {
-            outside: rows.len() - inside.len(),
-            states: std::iter::zip(&predicted, &inside)
-                .map(|(value, row)| ComparedState::new(value, &row.sample))
-                .collect(),
-            rows: inside,
-        }
+        let inside: Vec<Row> = rows.iter().filter(inside).cloned().collect();
+        let outside = rows.len() - inside.len();
+        Self { outside, states: Parity::new(surrogate, &inside).states, rows: inside }
     }
 
     /// |error| of the quantity `i` divided by `scale`, over the states where it is known, in ascending order.
@@ -97,7 +90,7 @@ impl<'a> StateErrors<'a> {
             j.total_cmp(&i)
         });
         for (rank, &k) in order.iter().take(LISTED).enumerate() {
-            let (row, state) = (self.rows[k], &self.states[k]);
+            let (row, state) = (&self.rows[k], &self.states[k]);
             let [eta_a, eta_s] = row.eta();
             table.row([
                 format!("{}", rank + 1),

@@ -61,8 +61,9 @@ pub(crate) fn print_errors(surrogate: &Surrogate, database: &Database) {
         manifest.rays
     );
     print!("{}", StateErrors::new(surrogate, database.rows()).document());
-    if let Some([w, forces]) = ErrorInterval::of(surrogate, database.rows()) {
-        println!("all states: W {w}; forces {forces}");
+    match ErrorInterval::of(surrogate, database.rows()) {
+        Some([w, forces]) => println!("all states: W {w}; forces {forces}"),
+        None => println!("all states: too few for an interval"),
     }
 }
 

@@ -4,13 +4,14 @@
 #[path = "../../../fe_driver/tests/common/fake_solver.rs"]
 mod fake_solver;
 
+use dataset::Row;
 use design::hinge_law::Order;
 use design::objective::design_problem::Deployment;
 use design::pattern::design_vector::DesignVector;
 use fake_solver::{FakeSolver, Fault};
 use fe_driver::{
-    Campaign, DrawnStates, Progress, Solution, SolveError, SolveService, SolveStore, Solver,
-    ToolVersions, WindowSolve, random_paths,
+    Campaign, DrawnStates, Progress, RunOptions, Shard, Solution, SolveError, SolveService,
+    SolveStore, Solver, ToolVersions, WindowSolve, random_paths, run,
 };
 use hinge::Regime;
 use mesher::Tier;
@@ -364,7 +365,7 @@ fn a_spot_check_keeps_the_states_of_the_windows_that_are_solved() {
 struct Shipped {
     weights: Surrogate,
     trained: Vec<usize>,
-    saved: usize,
+    saved: Vec<usize>,
 }
 
 impl LearningSteps for Shipped {
@@ -390,7 +391,9 @@ impl LearningSteps for Shipped {
     ) -> Result<(), VerificationError> {
         assert_eq!(round.complete, round.rays);
         assert!(weights.card().spot_check.is_some());
-        self.saved += usize::from(is_latest);
+        if is_latest {
+            self.saved.push(round.rays);
+        }
         Ok(())
     }
 }
@@ -405,19 +408,21 @@ fn rays_are_solved_in_rounds_until_the_weights_are_accurate() {
     assert!(!distillation_states(campaign.drawn(&region)).is_empty());
     let solver = healthy();
     let windows = service(&solver, &folder);
-    let paths = random_paths(campaign.drawn(&region), 12, 4, 1);
-    let check = spot_check(&windows, &paths, &campaign.material, campaign.tier).unwrap();
+    let spot = |states: usize| {
+        let paths = random_paths(campaign.drawn(&region), states, 4, 1);
+        spot_check(&windows, &paths, &campaign.material, campaign.tier).unwrap().rows
+    };
     let rays = folder.path().join("campaign");
-    let learned = |accuracy: f64, deadline: Option<Instant>| {
-        let mut steps =
-            Shipped { weights: scene.surrogate().unwrap().clone(), trained: Vec::new(), saved: 0 };
+    let learned_at = |spot: &[Row], accuracy: f64, deadline: Option<Instant>| {
+        let weights = scene.surrogate().unwrap().clone();
+        let mut steps = Shipped { weights, trained: Vec::new(), saved: Vec::new() };
         let task = LearningTask {
             campaign: &campaign,
             folder: &rays,
             solver: &solver,
             workers: 1,
             first_rays: 3,
-            spot: &check.rows,
+            spot,
             accuracy: Accuracy { energy: accuracy, forces: accuracy },
             deadline,
             stop: &NEVER,
@@ -425,17 +430,35 @@ fn rays_are_solved_in_rounds_until_the_weights_are_accurate() {
         let end = learn(task, &mut steps).unwrap();
         (end, steps.trained, steps.saved)
     };
+    let many = spot(24);
+    let learned = |accuracy: f64, deadline: Option<Instant>| learned_at(&many, accuracy, deadline);
     // Without time nothing is solved.
     let (end, trained, _) = learned(1e9, Some(Instant::now()));
     let (left, what) = (3, "rays of this round");
     assert_eq!(end, LearningEnd::Unfinished { left, what });
     assert!(trained.is_empty());
-    assert_eq!(learned(1e9, None), (LearningEnd::Accurate, vec![3], 1));
+    assert_eq!(learned(1e9, None), (LearningEnd::Accurate, vec![3], vec![3]));
+    // The next round is stopped after two rays. Its weights are tested and kept, not the weights
+    // of three rays.
+    let five = campaign.first_rays(5);
+    let options = RunOptions { shard: Shard::WHOLE, workers: 1, time_limit: None };
+    run(&five, &rays, &solver, &options, &NEVER, &mut |_| ()).unwrap();
+    assert_eq!(learned(1e9, None), (LearningEnd::Accurate, vec![3, 5], vec![5]));
     // The errors of weights of another material are never zero.
     let all = learned(0.0, None);
-    assert_eq!(all, (LearningEnd::AllRays, vec![3, 6, 12], 3));
+    assert_eq!(all, (LearningEnd::AllRays, vec![3, 5, 6, 12], vec![5, 6, 12]));
     // What is solved is not solved again, and the weights of earlier rounds are not taken.
     let before = solver.attempts();
-    assert_eq!(learned(1e9, None), (LearningEnd::Accurate, vec![3, 6, 12], 1));
+    assert_eq!(learned(1e9, None), (LearningEnd::Accurate, vec![3, 6, 12], vec![12]));
+    // No weights are accurate by states on five rays, which have no interval, nor by states of
+    // which only three rays have some in the training domain.
+    let beyond = many.iter().enumerate().map(|(i, row)| {
+        let mut row = row.clone();
+        row.design.w_lig *= if i >= 11 { 9.0 } else { 1.0 };
+        row
+    });
+    for spot in [many[..20].to_vec(), beyond.collect()] {
+        assert_eq!(learned_at(&spot, 1e9, None).0, LearningEnd::AllRays);
+    }
     assert_eq!(solver.attempts(), before);
 }
