@@ -24,8 +24,6 @@ macro_rules! subcommands {
 #[cfg(feature = "pipeline")]
 pub mod campaign;
 pub mod compare;
-#[cfg(feature = "pipeline")]
-mod compared_states;
 pub mod completions;
 pub mod cut;
 #[cfg(feature = "pipeline")]

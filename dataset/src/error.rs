@@ -30,22 +30,6 @@ pub enum DatasetError {
     Shares { validation: f64, test: f64 },
     #[error("column `{column}` has no value in row {index}")]
     Gap { column: &'static str, index: usize },
-    #[error(
-        "there is no column `{column}`: give its name in the table under [columns], or its value \
-         under [constants]"
-    )]
-    NoColumn { column: String },
-    #[error("column `{column}`, row {index}: `{text}` is not a number")]
-    NotANumber { column: &'static str, index: usize, text: String },
-    #[error(
-        "column `{column}`, row {index}: {value} is no angle of a hinge in rad; for degrees, set \
-         `factors.{column} = 0.017453292519943295` in the column map"
-    )]
-    Degrees { column: &'static str, index: usize, value: f64 },
-    #[error(
-        "the column map contains `{key}`, which is not a column of a database, or a column of another type"
-    )]
-    ColumnMap { key: String },
     #[error("job {job}, lambda = {lambda}: the row contains a number that is not finite")]
     NotFinite { job: String, lambda: f64 },
     #[error(
@@ -94,6 +78,6 @@ pub enum DatasetError {
     In { path: PathBuf, source: Box<DatasetError> },
     #[error("the table is not a valid database: {0}")]
     Table(#[from] polars::error::PolarsError),
-    #[error("the table cannot be read or written as CSV: {0}")]
+    #[error("the table cannot be written as CSV: {0}")]
     Csv(#[from] csv::Error),
 }

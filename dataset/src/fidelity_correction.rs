@@ -477,7 +477,7 @@ mod tests {
         let twice = on_both(coarse(), spoilt);
         let rays = twice.on_both_meshes();
         let checked = left_out(&rays).unwrap().states;
-        let i = rays.iter().position(|ray| ray.end().job == "job-003").unwrap();
+        let i = rays.iter().position(|ray| ray.rows[0].job == "job-003").unwrap();
         let [corrected, solved] = [&checked[i], &rays[i].states()].map(|states| states[9].value[0]);
         assert!((corrected / solved - 1.0).abs() < 0.1, "{corrected} {solved}");
     }

@@ -46,7 +46,6 @@ mod summary;
 
 pub use check::Defect;
 pub use compare::{COMPARED, ComparedRay, ComparedState, compare, reference_rms, relative_rms};
-pub use csv::{ColumnMap, Constant, rows_from_csv};
 pub use database::Database;
 pub use error::DatasetError;
 pub use fidelity::Fidelity;

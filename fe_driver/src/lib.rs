@@ -80,17 +80,15 @@ pub use calculix::model::WindowModel;
 pub use calculix::sta::{Increment, read_sta};
 pub use campaign::array_script::{ArrayScript, SLURM, ScriptError};
 pub use campaign::definition::{Campaign, CampaignError, JobPart};
-pub use campaign::extra_rays::{Added, ExtraRaysError, add_extra_rays};
+pub use campaign::extra_rays::ExtraRaysError;
 pub use campaign::finished_windows::finished_windows;
 pub use campaign::plan::{Plan, plan, prepare};
 pub use campaign::restore::{CollectedWindow, Restored, restore};
-pub use campaign::retry::retry;
 pub use campaign::run::{Progress, RunOptions, run};
 pub use campaign::sampling::RayBox;
 pub use campaign::slurm::{
     ArrayStates, JobId, SlurmError, Submission, array_states, slurm_folder, submit_array,
 };
-pub use campaign::solve_again::{Difference, SolvedAgain, solve_again};
 pub use campaign::spot_paths::{DrawnStates, SpotPath, random_paths};
 pub use campaign::status::{Status, Tally, Throughput, known_parts, status};
 pub use sheet::invalid_sheet_problem::InvalidSheetProblem;

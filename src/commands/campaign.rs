@@ -1,12 +1,9 @@
 //! `kirigami campaign`: plan, run, monitor and collect a campaign of window solves.
 
 mod campaign_args;
-mod check;
 mod collect;
-mod extend;
 mod plan;
 mod restore;
-mod retry;
 mod run;
 mod status;
 mod submit;
@@ -33,11 +30,8 @@ subcommands! {
         Run(run::RunCommand),
         Submit(submit::SubmitCommand),
         Status(status::StatusCommand),
-        Retry(retry::RetryCommand),
-        Check(check::CheckCommand),
         Collect(collect::CollectCommand),
         Restore(restore::RestoreCommand),
-        Extend(extend::ExtendCommand),
     }
 }
 

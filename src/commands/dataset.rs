@@ -1,4 +1,4 @@
-//! `kirigami dataset`: summarise, check, compare hinge databases and exchange them as CSV.
+//! `kirigami dataset`: summarise, check, compare hinge databases and write them as CSV.
 
 mod compare;
 
@@ -7,10 +7,10 @@ pub(crate) use compare::correction;
 use crate::ui::output_file;
 use anyhow::{Result, ensure};
 use clap::Args;
-use dataset::{ColumnMap, Database, SplitPlan, rows_from_csv};
+use dataset::Database;
 use std::path::PathBuf;
 
-/// Summarise, check and compare hinge databases, and exchange them as CSV
+/// Summarise, check and compare hinge databases, and write them as CSV
 #[derive(Args)]
 pub struct DatasetCommand {
     #[command(subcommand)]
@@ -21,7 +21,6 @@ subcommands! {
     enum Action {
         Summary(SummaryCommand),
         Check(CheckCommand),
-        Import(ImportCommand),
         Export(ExportCommand),
         Compare(compare::CompareCommand),
     }
@@ -48,32 +47,12 @@ struct CheckCommand {
     database: PathBuf,
 }
 
-/// Make a database from a CSV file, written by `dataset export` or by any solver
-#[derive(Args)]
-struct ImportCommand {
-    /// Table (CSV), one hinge state per row
-    #[arg(value_name = "CSV")]
-    table: PathBuf,
-    /// Column names, unit factors and constants of the table (TOML); see configs/import
-    #[arg(long, value_name = "FILE")]
-    columns: Option<PathBuf>,
-    #[command(flatten)]
-    out: OutArgs,
-}
-
 /// Write the table of a database as CSV
 #[derive(Args)]
 struct ExportCommand {
     /// Database (Parquet with its manifest)
     #[arg(value_name = "DATABASE")]
     database: PathBuf,
-    #[command(flatten)]
-    out: OutArgs,
-}
-
-/// The file to write.
-#[derive(Args)]
-struct OutArgs {
     /// File to write
     #[arg(long, value_name = "FILE")]
     out: PathBuf,
@@ -119,36 +98,15 @@ impl CheckCommand {
     }
 }
 
-impl ImportCommand {
-    fn run(&self) -> Result<()> {
-        let map: ColumnMap = match &self.columns {
-            Some(path) => support::toml_file::read(path)?,
-            None => ColumnMap::default(),
-        };
-        let rows = rows_from_csv(&self.table, &map)?;
-        self.out.write(&Database::collect(rows, &SplitPlan::default())?)
-    }
-}
-
 impl ExportCommand {
     fn run(&self) -> Result<()> {
-        let OutArgs { out, replace } = &self.out;
-        if !replace {
-            output_file::refuse_existing(out)?;
+        if !self.replace {
+            output_file::refuse_existing(&self.out)?;
         }
         let csv = Database::read(&self.database)?.to_csv()?;
-        output_file::create_folder_of(out)?;
-        output_file::write(out, csv)?;
-        println!("written to {}", out.display());
-        Ok(())
-    }
-}
-
-impl OutArgs {
-    fn write(&self, database: &Database) -> Result<()> {
         output_file::create_folder_of(&self.out)?;
-        database.write(&self.out, self.replace)?;
-        println!("{database}\nwritten to {}", self.out.display());
+        output_file::write(&self.out, csv)?;
+        println!("written to {}", self.out.display());
         Ok(())
     }
 }

@@ -3,7 +3,6 @@
 
 mod whole_sheet;
 
-use crate::commands::compared_states;
 use crate::commands::inspect::scene_args::Inspected;
 use crate::commands::solve_args::{SolveArgs, task_error};
 use crate::ui::count::count;
@@ -28,7 +27,7 @@ use verification::{
 /// Solve the hinges of a design by finite elements, along their paths in the sheet
 ///
 /// Compares energy, forces and damage of the surrogate with CalculiX on the same paths, hinge by
-/// hinge: the error of the whole chain on one design. Writes replay.md, replay.csv and a chart.
+/// hinge: how true the weights are where this design goes. Writes replay.md.
 /// With --equilibrium the sheet is balanced with the forces of the finite elements: the error of
 /// its deployed shape. Writes equilibrium.md. With --sheet the whole sheet is solved: whether its
 /// panels stay in their plane, and what that changes. Writes sheet.md. Without --design the design
@@ -78,7 +77,7 @@ pub struct VerifyCommand {
     /// Print JSON instead of text
     #[arg(long, requires = "of_sheet")]
     json: bool,
-    /// Folder for the tables, the chart and the solutions
+    /// Folder for the tables and the solutions
     #[arg(long, value_name = "FOLDER", default_value = "runs/verify")]
     out: PathBuf,
     #[command(flatten)]
@@ -176,9 +175,6 @@ impl VerifyCommand {
         let replay = replay.map_err(task_error)?;
         let document = replay.document();
         run_folder::write(&self.out, "replay.md", &document.markdown())?;
-        run_folder::write(&self.out, "replay.csv", &replay.csv())?;
-        let axes = ["finite elements", "surrogate"];
-        compared_states::draw(&replay.groups(), axes, &self.out.join("replay"))?;
         self.print_text(&document);
         Ok(())
     }

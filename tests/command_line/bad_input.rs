@@ -90,7 +90,7 @@ fn counts_have_an_upper_bound() {
     let work = Workplace::new();
     for arguments in [
         format!("campaign run {DEMO} --jobs 1025"),
-        format!("campaign check {DEMO} --every 0"),
+        format!("campaign run {DEMO} --jobs 0"),
         format!("campaign submit {DEMO} --shards 1000001 --time 1"),
         format!("campaign submit {DEMO} --shards 1 --time 525601"),
         format!("verify {SCENE} --sample 1000001"),

@@ -18,8 +18,7 @@ use train::TrainingConfig;
 const HEADING: &str = "# Keys of the configuration files
 
 Written from the types that read the files (`KIRIGAMI_WRITE=1 cargo test --test command_line keys`). An unknown key is an error that names the nearest
-known one. Ranges are checked when a file is read; the error states them. The keys of the map of an
-import (`kirigami dataset import`) are explained in `configs/import/example.toml`.
+known one. Ranges are checked when a file is read; the error states them.
 ";
 
 fn page() -> String {

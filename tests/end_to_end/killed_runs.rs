@@ -383,30 +383,6 @@ fn time_in_which_the_run_is_suspended_does_not_count() {
 }
 
 #[test]
-fn a_ray_that_is_solved_differently_is_named() {
-    let replay = Replay::new();
-    assert!(replay.run("checked").status().unwrap().success());
-    let check = || replay.campaign("check", "checked", "--every 2");
-    let same = check().stdout(Stdio::piped()).output().unwrap();
-    let text = String::from_utf8(same.stdout).unwrap();
-    assert!(same.status.success() && text.contains("3 rays solved again"), "{text}");
-
-    // One digit of the first forces of a ray.
-    let index = std::fs::read_to_string(replay.work.path("checked/campaign.json")).unwrap();
-    let index: serde_json::Value = serde_json::from_str(&index).unwrap();
-    let job = index["jobs"][2].as_str().unwrap();
-    let output = replay.work.path(&format!("recorded/{job}.dat"));
-    let text = std::fs::read_to_string(&output).unwrap();
-    let place = text.find("E-").unwrap() - 3;
-    let digit = if &text[place..=place] == "5" { "6" } else { "5" };
-    std::fs::write(&output, [&text[..place], digit, &text[place + 1..]].concat()).unwrap();
-    let differs = check().stdout(Stdio::piped()).output().unwrap();
-    assert_eq!(differs.status.code(), Some(1));
-    let text = String::from_utf8(differs.stdout).unwrap();
-    assert!(text.contains("1 differ") && text.contains(job), "{text}");
-}
-
-#[test]
 fn a_stopped_solve_has_the_exit_code_of_stopped_runs() {
     let work = Workplace::new();
     let mut solve = work.program("solve --tier paper --theta-deg 60 --out one");

@@ -16,7 +16,6 @@ const RUN: &str = "campaign run configs/campaigns/demo.toml --folder runs/demo/c
 const COLLECT: &str = "campaign collect configs/campaigns/demo.toml --folder runs/demo/campaign --out runs/demo/hinges.parquet";
 const STATUS: &str = "campaign status configs/campaigns/demo.toml --folder runs/demo/campaign";
 /// The scene with the design of its run.
-const DESIGN: &str = "configs/scenes/demo.toml --design runs/demo/design/state.json";
 
 /// Runs the steps in order in one folder.
 macro_rules! story {
@@ -41,7 +40,7 @@ fn the_whole_chain_runs_resumes_and_refuses_to_overwrite() {
         the_design_is_balanced_by_finite_elements
         a_failed_round_keeps_the_rounds_before
         weights_are_tested_on_the_spot_check
-        rays_are_proposed_where_hinges_leave_the_domain
+        further_rays_are_planned
         a_folder_keeps_its_campaign_and_its_scene
     }
 }
@@ -143,10 +142,6 @@ fn hinges_of_the_design_are_solved_once(work: &Workplace) {
         &page,
         &["The design ", "runs/demo/design/state.json: ", "states of 12 hinges", " M_theta "],
     );
-    let states = std::fs::read_to_string(work.path("replay/replay.csv")).unwrap();
-    assert!(states.lines().count() > 12 * 5, "{states}");
-    // Of hinges that have left the domain of so few rays, D and D_peak are not known.
-    assert!(states.lines().any(|line| line.contains(",,")), "{states}");
     let again = Instant::now();
     assert_eq!(work.output(replay), page, "solved once");
     assert!(again.elapsed() < Duration::from_secs(5), "solved once");
@@ -216,18 +211,13 @@ fn weights_are_tested_on_the_spot_check(work: &Workplace) {
     assert!(rays.is_disjoint(&spot));
 }
 
-/// Six rays with small rotations do not cover the hinge states of a design.
-fn rays_are_proposed_where_hinges_leave_the_domain(work: &Workplace) {
-    let extend = format!("campaign extend {DESIGN} --rays configs/campaigns/further.csv");
-    assert_contains(&work.output(&extend), &["rays added"]);
-    let further = std::fs::read_to_string(work.path("configs/campaigns/further.csv")).unwrap();
-    let rays = further.lines().count() - 1;
-    assert!((1..=12).contains(&rays), "{further}");
+fn further_rays_are_planned(work: &Workplace) {
+    let rays = "w_lig,alpha_deg,eta_a,eta_s,theta_deg\n18,80,-0.3,0.1,20\n12,90,0.1,0,30\n";
+    std::fs::write(work.path("configs/campaigns/further.csv"), rays).unwrap();
     work.edit(CAMPAIGN, &[("spot_rays = 3", "extra_rays = \"further.csv\"\nspot_rays = 3")]);
     let plan =
         json(&work.output(&format!("campaign plan {CAMPAIGN} --folder runs/demo/campaign --json")));
-    let open = plan["tally"]["open"].as_u64().unwrap() as usize;
-    assert_eq!(open, rays, "{plan}");
+    assert_eq!(plan["tally"]["open"], 2, "{plan}");
     work.edit(CAMPAIGN, &[("extra_rays = \"further.csv\"\n", "")]);
 }
 

@@ -1,11 +1,12 @@
-//! Data of another solver: a CSV table becomes a database, a surrogate, and predictions.
+//! Data of a known law: a database becomes a surrogate, and predictions.
 //!
 //! ```text
 //! W = w (20 u^2 + 10 v^2 + 3 t^2 + 4 u t),   D = t^2 / 100,   u = a / w,  v = s / w,  t = theta
 //! ```
 
 use crate::common::Workplace;
-use dataset::{Database, Part};
+use dataset::{Database, Part, Row, SplitPlan};
+use hinge::{HingeConstants, HingeSample};
 use nix::sys::signal::{Signal, kill};
 use nix::unistd::Pid;
 use std::fmt::Write;
@@ -15,39 +16,42 @@ use std::time::{Duration, Instant};
 const DATABASE: &str = "own.parquet";
 const WEIGHTS: &str = "runs/own.safetensors";
 
-/// Thirty rays of ten states, with angles in degrees.
-fn table() -> String {
-    let mut csv = String::from(
-        "ray,width_mm,alpha_deg,a,s,theta_deg,lambda,energy_mJ,F_a,F_s,moment_Nmm,D\n",
-    );
-    for ray in 0..30 {
+/// Thirty rays of ten states, their energy, forces and damage times `stiffness`.
+fn database(stiffness: f64) -> Database {
+    let rays = (0..30).flat_map(|ray| {
         let spread = |step: f64| (step * f64::from(ray + 1)).fract();
-        let (w, alpha) = (8.0 + 12.0 * spread(0.7549), 60.0 + 30.0 * spread(0.5698));
+        let (w_lig, alpha) = (8.0 + 12.0 * spread(0.7549), 60.0 + 30.0 * spread(0.5698));
         let end = [spread(0.4142) - 0.5, 0.5 * spread(0.732) - 0.25, 1.0];
-        for k in 1..=10 {
+        (1..=10).map(move |k| {
             let lambda = 0.1 * f64::from(k);
             let [u, v, t] = end.map(|value| lambda * value);
-            let energy = w * (20.0 * u * u + 10.0 * v * v + 3.0 * t * t + 4.0 * u * t);
-            let (f_a, f_s, m) = (40.0 * u + 4.0 * t, 20.0 * v, w * (6.0 * t + 4.0 * u));
-            writeln!(
-                csv,
-                "{ray},{w},{alpha},{},{},{},{lambda},{energy},{f_a},{f_s},{m},{}",
-                u * w,
-                v * w,
-                t.to_degrees(),
-                0.01 * t * t
-            )
-            .unwrap();
-        }
-    }
-    csv
+            let energy = w_lig * (20.0 * u * u + 10.0 * v * v + 3.0 * t * t + 4.0 * u * t);
+            Row {
+                job: ray.to_string(),
+                design: HingeConstants::PAPER.hinge(w_lig, alpha.to_radians()),
+                material: "PET film 0.5 mm".into(),
+                sample: HingeSample {
+                    lambda,
+                    a: u * w_lig,
+                    s: v * w_lig,
+                    theta: t,
+                    w: stiffness * energy,
+                    f_a: stiffness * (40.0 * u + 4.0 * t),
+                    f_s: stiffness * 20.0 * v,
+                    m_theta: stiffness * w_lig * (6.0 * t + 4.0 * u),
+                    d: stiffness * 0.01 * t * t,
+                    ..HingeSample::default()
+                },
+                ..Row::default()
+            }
+        })
+    });
+    Database::collect(rays.collect(), &SplitPlan::default()).unwrap()
 }
 
 fn workplace() -> Workplace {
     let work = Workplace::new();
-    std::fs::write(work.path("own.csv"), table()).unwrap();
-    let import = "dataset import own.csv --columns configs/import/example.toml";
-    work.output(&format!("{import} --out {DATABASE}"));
+    database(1.0).write(&work.path(DATABASE), false).unwrap();
     work.edit(
         "configs/training/demo.toml",
         &[
@@ -60,7 +64,7 @@ fn workplace() -> Workplace {
 }
 
 #[test]
-fn a_table_becomes_weights_that_predict_it() {
+fn a_database_becomes_weights_that_predict_it() {
     let work = workplace();
     let summary = work.output(&format!("dataset summary {DATABASE}"));
     assert!(summary.contains("300 rows of 30 rays"), "{summary}");
@@ -71,7 +75,7 @@ fn a_table_becomes_weights_that_predict_it() {
     for expected in ["chosen", "theta_deg"] {
         assert!(output.contains(expected), "{output}");
     }
-    // The table has no D_peak.
+    // The rows have no D_peak.
     let card = work.output(&format!("surrogate card {WEIGHTS}"));
     let damage = card.lines().find(|line| line.contains("damage D_peak")).unwrap();
     assert!(damage.trim_end().ends_with('-') && !damage.contains('%'), "{damage}");
@@ -122,6 +126,7 @@ fn a_training_that_was_killed_before_it_saved_a_state_starts_again() {
 #[test]
 fn input_that_cannot_be_evaluated_gives_an_error() {
     let work = workplace();
+    std::fs::write(work.path("own.csv"), "job,W\n0,1.5\n").unwrap();
     let error = work.error("dataset summary own.csv");
     assert!(error.contains("own.csv is no Parquet file"), "{error}");
     let absolute = work.path("own.safetensors").display().to_string();
@@ -137,31 +142,13 @@ fn input_that_cannot_be_evaluated_gives_an_error() {
 #[test]
 fn a_database_is_compared_with_another_of_the_same_rays() {
     let work = workplace();
-    let stiffer: String = table()
-        .lines()
-        .enumerate()
-        .map(|(line, row)| {
-            let mut fields: Vec<String> = row.split(',').map(str::to_owned).collect();
-            for field in &mut fields[7..] {
-                if line > 0 {
-                    *field = (1.05 * field.parse::<f64>().unwrap()).to_string();
-                }
-            }
-            fields.join(",") + "\n"
-        })
-        .collect();
-    std::fs::write(work.path("stiff.csv"), stiffer).unwrap();
-    let import = "dataset import stiff.csv --columns configs/import/example.toml";
-    work.output(&format!("{import} --out stiff.parquet"));
+    database(1.05).write(&work.path("stiff.parquet"), false).unwrap();
     let output =
         work.output(&format!("dataset compare stiff.parquet {DATABASE} --out results/tiers"));
     assert!(output.contains("300 states of 30 rays"), "{output}");
     let page = std::fs::read_to_string(work.path("results/tiers/compare.md")).unwrap();
     let row = "| F_s | 5.00 % | 5.00 % | 5.00 % | 5.00 % |";
     assert!(page.contains(row), "{page}");
-    for name in ["compare.csv", "compare.md", "compare.png"] {
-        assert!(work.path("results/tiers").join(name).exists(), "{name}");
-    }
 }
 
 /// The tensile curve of a testing machine becomes the material of a campaign.

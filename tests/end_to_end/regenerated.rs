@@ -160,7 +160,7 @@ fn rays_on_a_finer_mesh_correct_the_others() {
         tiny: FakeSolver::new(stiffness.map(|k| 1.1 * k), |_| None),
         other: FakeSolver::new(stiffness, |_| None),
     };
-    let options = RunOptions { shard: Shard::WHOLE, workers: 1, time_limit: None };
+    let options = RunOptions { shard: Shard::WHOLE, workers: 1, time_limit: None, retry: false };
     let (folder, stop) = (work.path("runs/demo"), AtomicBool::new(false));
     run(&campaign, &folder, &solver, &options, &stop, &mut |_| {}).unwrap();
 

@@ -13,7 +13,7 @@ pub const SCALE: &str = "for all states together and for each group alone, the l
 
 /// The difference of each group, relative to its own reference or to a tenth of the reference of
 /// all groups, if larger.
-pub fn each_relative(groups: &[&[ComparedState]]) -> Vec<[f64; 6]> {
+fn each_relative(groups: &[&[ComparedState]]) -> Vec<[f64; 6]> {
     let min_scale = reference_rms(groups.iter().copied().flatten()).map(|rms| MIN_SCALE * rms);
     groups.iter().map(|states| relative_rms(states, min_scale)).collect()
 }

@@ -179,6 +179,7 @@ fn solve_first<S: LearningSteps>(
         workers: task.workers,
         time_limit: (task.deadline)
             .map(|deadline| deadline.saturating_duration_since(Instant::now())),
+        retry: false,
     };
     let first = task.campaign.first_rays(rays);
     let progress = &mut |progress: &Progress| steps.solving(progress);

@@ -9,7 +9,6 @@
 //! | a design searched for with finite elements for its hinges | [`final_design`] |
 //! | the whole sheet, every window and every panel | [`SheetTask`], [`SheetCheck`] |
 //! | errors of weights at random states | [`spot_check`], [`SpotStates`] |
-//! | rays where the training data is thin | [`rays_on_paths`] |
 //! | rays of a campaign solved in rounds until weights are accurate | [`learn`] |
 //!
 //! Windows are solved by a [`SolveService`](fe_driver::SolveService). One that fails ends no task:
@@ -50,7 +49,6 @@
 mod balanced_sheet;
 mod compared_states;
 mod distillation_states;
-mod extension;
 mod final_design;
 mod learning;
 mod networks;
@@ -73,9 +71,8 @@ mod whole_sheet;
 pub use balanced_sheet::{
     BALANCED, BALANCED_FORCES, BalanceEnd, Balanced, Round, balanced, movements, size,
 };
-pub use compared_states::{SCALE, each_relative, spread_table};
+pub use compared_states::{SCALE, spread_table};
 pub use distillation_states::distillation_states;
-pub use extension::rays_on_paths;
 pub use final_design::{final_design, most_cpu_seconds};
 pub use learning::{Accuracy, LearningEnd, LearningRound, LearningSteps, LearningTask, learn};
 pub use networks::verification_tier;

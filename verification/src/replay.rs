@@ -13,8 +13,6 @@ use surrogate::Surrogate;
 
 /// One hinge, by the surrogate and by finite elements.
 pub struct ReplayedHinge {
-    /// The hinge with its path.
-    pub path: RecordedPath,
     /// Its states, in the order of the load steps.
     pub states: Vec<ComparedState>,
     /// Fraction of the states inside the training domain.
@@ -115,19 +113,19 @@ impl Replay {
         let solved = windows.solve(&paths, material)?;
         let hinges = paths.into_iter().zip(solved.samples);
         let hinges = hinges
-            .filter_map(|(path, samples)| Some(ReplayedHinge::new(path, &samples?, surrogate)))
+            .filter_map(|(path, samples)| Some(ReplayedHinge::new(&path, &samples?, surrogate)))
             .collect();
         Ok(Self { name: name.to_owned(), tier: windows.tier, hinges, unsolved: solved.unsolved })
     }
 
     /// The states of each hinge.
-    pub fn groups(&self) -> Vec<&[ComparedState]> {
+    pub(crate) fn groups(&self) -> Vec<&[ComparedState]> {
         self.hinges.iter().map(|hinge| &hinge.states[..]).collect()
     }
 }
 
 impl ReplayedHinge {
-    fn new(path: RecordedPath, solved: &[HingeSample], surrogate: &Surrogate) -> Self {
+    fn new(path: &RecordedPath, solved: &[HingeSample], surrogate: &Surrogate) -> Self {
         let count = path.states.len();
         let computed = (1..=count).map(|k| HingeSample::at(solved, k as f64 / count as f64));
         let designs = vec![path.design; count];
@@ -147,7 +145,6 @@ impl ReplayedHinge {
             .collect();
         Self {
             inside: path.states.iter().filter(|state| inside(state)).count() as f64 / count as f64,
-            path,
             states,
         }
     }

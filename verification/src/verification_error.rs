@@ -84,7 +84,7 @@ pub enum VerificationError {
     #[error("the campaign has no region of rays")]
     NoRegion,
     #[error(
-        "every ray failed: read a job's log in {0}, fix the cause, then run `kirigami campaign retry`"
+        "every ray failed: read a job's log in {0}, fix the cause, then run `kirigami campaign run --retry`"
     )]
     EveryRayFailed(PathBuf),
 }

@@ -1,4 +1,4 @@
-//! Databases on disk, and their exchange as CSV.
+//! Databases on disk, and written as CSV.
 
 #[path = "../common/mod.rs"]
 mod common;

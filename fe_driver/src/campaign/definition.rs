@@ -53,8 +53,7 @@ pub struct Campaign {
     /// Time limit of one solve.
     #[serde(skip)]
     pub time_limit: Duration,
-    /// CSV file of rays in addition to the sampled ones, relative to this file; written by
-    /// `kirigami campaign extend`.
+    /// CSV file of rays in addition to the sampled ones, relative to this file.
     extra_rays: Option<PathBuf>,
     /// Rays in addition to the rays of the boxes, and solved after them.
     #[serde(skip)]

@@ -24,6 +24,9 @@ pub struct RunOptions {
     pub workers: usize,
     /// No attempt is started after this time; attempts in flight are finished.
     pub time_limit: Option<Duration>,
+    /// Closed jobs that failed are attempted from the beginning again. Their samples are kept until
+    /// an attempt reaches a larger lambda.
+    pub retry: bool,
 }
 
 /// The progress of a run.
@@ -60,12 +63,17 @@ pub fn run(
     let folder = CampaignFolder(folder.to_owned());
     let solves: Vec<WindowSolve> = campaign.solves(&solver.versions()).collect();
     let index = Index::new(&campaign.name, &solves);
-    let history = folder.enter(options.shard, &index)?;
+    let mut history = folder.enter(options.shard, &index)?;
     let store = folder.store();
     let jobs: Vec<Job> = (index.jobs.into_iter().zip(solves).enumerate())
         .filter(|(place, _)| options.shard.holds(*place))
         .map(|(_, (id, solve))| Job { folder: store.solve(&id), id, solve })
         .collect();
+    for job in jobs.iter().filter(|_| options.retry) {
+        if job.folder.reopen::<WindowSolve>(|_| true)? {
+            history.note(&job.id, Event::Reopened)?;
+        }
+    }
     let mut ledger = Ledger::new(history, &jobs)?;
     progress(&ledger.progress());
     workers.work_through(&jobs, stop, &mut |place, event| {

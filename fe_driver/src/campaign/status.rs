@@ -277,7 +277,8 @@ mod tests {
         // Nothing is known of jobs without a file.
         prepare(&campaign, folder.path(), &solver.versions()).unwrap();
         assert_eq!(known(&campaign).unwrap(), HashMap::new());
-        let options = RunOptions { shard: Shard::WHOLE, workers: 1, time_limit: None };
+        let options =
+            RunOptions { shard: Shard::WHOLE, workers: 1, time_limit: None, retry: false };
         let stop = AtomicBool::new(false);
         let progress = run(&campaign, folder.path(), &solver, &options, &stop, &mut |_| {});
         assert_eq!(progress.unwrap().tally.complete, campaign.size());

@@ -4,7 +4,7 @@
 use crate::common::{TWO_WORKERS, campaign, history, job_folder, jobs, run_with};
 use fe_driver::{
     CalculiX, Campaign, CampaignError, Ccx, CollectedWindow, FailureKind, Restored, RunOptions,
-    Shard, SolveListError, SolveRecord, Solved, Tally, plan, restore, retry, solve_again, status,
+    Shard, SolveListError, SolveRecord, Solved, Tally, plan, restore, run, status,
 };
 use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
@@ -150,16 +150,17 @@ fn a_solver_that_hangs_is_ended_and_tried_again_on_request() {
     assert_eq!(tally.failures[&FailureKind::TimedOut], RAYS);
     assert_eq!(left_running(folder.path()), Vec::<PathBuf>::new());
 
-    // Jobs that failed permanently are not run again until they are reopened.
+    // Jobs that failed permanently are not run again until it is asked for. Stopped before its first
+    // solve, the run has reopened them.
     campaign.time_limit = Duration::from_secs(120);
     let mended = replaying(folder.path(), "");
     assert_eq!(run_whole(&campaign, folder.path(), &mended).complete, 0);
-    let reopened = |kind| retry(folder.path(), Some(kind)).unwrap();
-    assert_eq!(reopened(FailureKind::InvalidInput), 0);
-    assert_eq!(reopened(FailureKind::TimedOut), RAYS);
+    let again = RunOptions { retry: true, ..TWO_WORKERS };
+    let stop = AtomicBool::new(true);
+    run(&campaign, folder.path(), &mended, &again, &stop, &mut |_| {}).unwrap();
     let planned = plan(&campaign, folder.path(), &mended.versions()).unwrap();
     assert_eq!(planned.reasons["timed-out, next requested"], RAYS);
-    assert_eq!(run_whole(&campaign, folder.path(), &mended).complete, RAYS);
+    assert_eq!(run_with(&again, &campaign, folder.path(), &mended).unwrap().complete, RAYS);
     assert_eq!(timeless(&jobs(folder.path())), timeless(&RECORDING.jobs));
 }
 
@@ -233,7 +234,6 @@ fn shards_run_in_parallel_and_complete_the_campaign() {
             let error = run(text).unwrap_err();
             assert!(matches!(error, CampaignError::Locked(_)), "{text}: {error}");
         }
-        assert!(matches!(retry(folder, None), Err(CampaignError::Locked(_))));
         assert_eq!(first.join().unwrap().unwrap().complete, 2);
         assert_eq!(second.join().unwrap().unwrap().complete, 1);
     });
@@ -251,6 +251,7 @@ fn after_the_time_limit_no_attempt_starts_and_no_result_is_lost() {
         shard: Shard::WHOLE,
         workers: 1,
         time_limit: Some(Duration::from_millis(100)),
+        retry: false,
     };
     for done in 1..=RAYS {
         let tally = run_with(&short, &campaign(RAYS), folder, &tools).unwrap();
@@ -288,26 +289,6 @@ fn collected_jobs_are_not_solved_again() {
     other.material.young += 1.0;
     let error = restore(&other, folder, &collected).unwrap_err();
     assert!(matches!(error, CampaignError::Foreign(_)), "{error}");
-}
-
-#[test]
-fn a_restored_ray_is_not_solved_again_to_compare() {
-    let replay = tempfile::tempdir().unwrap();
-    let tools = replaying(replay.path(), "");
-    let [here, restored] = [(); 2].map(|()| tempfile::tempdir().unwrap());
-    let campaign = campaign(RAYS);
-    run_whole(&campaign, here.path(), &tools);
-    restore(&campaign, restored.path(), &in_database(&jobs(here.path()))).unwrap();
-    let stop = AtomicBool::new(true);
-    // A stopped check names the number of rays to solve, and solves none.
-    let chosen = |folder: &Path| {
-        let mut chosen = 0;
-        let mut count = |_, all| chosen = all;
-        solve_again(&campaign, folder, &tools, 1, &stop, &mut count).unwrap();
-        chosen
-    };
-    assert_eq!(chosen(here.path()), RAYS);
-    assert_eq!(chosen(restored.path()), 0);
 }
 
 /// Every file of a job, damaged or deleted, makes the job open; nothing of it reaches the database,

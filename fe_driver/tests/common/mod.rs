@@ -58,7 +58,7 @@ pub fn history(folder: &Path, name: &str) -> PathBuf {
 }
 
 pub const TWO_WORKERS: RunOptions =
-    RunOptions { shard: Shard::WHOLE, workers: 2, time_limit: None };
+    RunOptions { shard: Shard::WHOLE, workers: 2, time_limit: None, retry: false };
 
 /// A run without a stop request.
 pub fn run_with(

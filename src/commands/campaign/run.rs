@@ -28,6 +28,10 @@ pub struct RunCommand {
     /// Start no solve after this time (minutes); running solves are finished
     #[arg(long, value_name = "MINUTES", value_parser = minutes)]
     time_limit: Option<Duration>,
+    /// Solve rays that failed or ended early again, after a change that is not a setting of the
+    /// job: more memory, a longer time limit per solve, a repaired solver
+    #[arg(long)]
+    retry: bool,
 }
 
 impl RunCommand {
@@ -37,6 +41,7 @@ impl RunCommand {
             shard: self.shard,
             workers: self.solve.workers(),
             time_limit: self.time_limit,
+            retry: self.retry,
         };
         let (campaign, solver) = (self.campaign.load()?, FeSolver::find()?);
         let (stop, bar) = (interrupt::stop_flag()?, RayProgress::new(campaign.size()));

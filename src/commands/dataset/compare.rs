@@ -1,19 +1,17 @@
 //! `kirigami dataset compare`: differences of a mesh from a finer one on the same rays.
 
-use crate::commands::compared_states;
 use crate::ui::{output_file, run_folder};
 use anyhow::{Result, ensure};
 use clap::Args;
-use dataset::{COMPARED, ComparedRay, ComparedState, Database, LeftOut, compare, left_out};
+use dataset::{ComparedRay, ComparedState, Database, LeftOut, compare, left_out};
 use std::path::PathBuf;
 use support::document::Document;
-use support::table::{Cell, Columns};
-use verification::{SCALE, each_relative, spread_table};
+use verification::{SCALE, spread_table};
 
 /// Compare the rays of a database with the same rays on its finer mesh, or in another database
 ///
-/// Writes compare.md, compare.csv (one row per ray) and a chart, and prints the differences
-/// that a training leaves, which corrects the rays to the finer mesh. Example: kirigami dataset
+/// Prints the differences, also those that a training leaves, which corrects the rays to the finer
+/// mesh, and writes them to compare.md. Example: kirigami dataset
 /// compare data/polypropylene-3mm/hinges.parquet
 #[derive(Args)]
 pub struct CompareCommand {
@@ -23,7 +21,7 @@ pub struct CompareCommand {
     /// Reference database (Parquet with its manifest) [default: the finer mesh of DATABASE]
     #[arg(value_name = "REFERENCE")]
     reference: Option<PathBuf>,
-    /// Folder for the tables and the chart
+    /// Folder of compare.md
     #[arg(long, value_name = "FOLDER", default_value = "runs/compare")]
     out: PathBuf,
 }
@@ -57,11 +55,7 @@ impl CompareCommand {
                 eprintln!("cannot evaluate what a correction would leave: {reason}")
             }
         }
-        let csv = columns().table(&ranked(&rays, &states)).csv();
-        run_folder::write(&self.out, "compare.csv", &csv)?;
         run_folder::write(&self.out, "compare.md", &page.markdown())?;
-        let axes = [tiers[1].as_str(), &tiers[0]];
-        compared_states::draw(&groups(&states), axes, &self.out.join("compare"))?;
         println!("{page}\nwritten to {}", self.out.display());
         Ok(())
     }
@@ -108,43 +102,4 @@ pub fn correction(checked: &LeftOut) -> Document {
 
 fn groups(states: &[Vec<ComparedState>]) -> Vec<&[ComparedState]> {
     states.iter().map(Vec::as_slice).collect()
-}
-
-/// A ray with its relative differences.
-type Ranked<'a> = (&'a ComparedRay<'a>, [f64; 6]);
-
-/// The rays with their differences, those with the largest in W first.
-fn ranked<'a>(rays: &'a [ComparedRay<'a>], states: &[Vec<ComparedState>]) -> Vec<Ranked<'a>> {
-    let mut ranked: Vec<Ranked> = rays.iter().zip(each_relative(&groups(states))).collect();
-    ranked.sort_by(|(_, x), (_, y)| y[0].total_cmp(&x[0]));
-    ranked
-}
-
-/// A ray a row.
-fn columns<'a>() -> Columns<'a, Ranked<'a>> {
-    let mut columns = Columns::new();
-    for (i, (name, decimals)) in PLACE.into_iter().enumerate() {
-        columns =
-            columns.column(name, move |(ray, _): &Ranked| Cell::fixed(place(ray)[i], decimals));
-    }
-    columns = columns
-        .column("W, N mm", |(ray, _)| Cell::fixed(ray.end().sample.w, 1))
-        .column("CPU s", |(ray, _)| Cell::fixed(ray.cpu_s[0], 1))
-        .column("CPU s of the reference", |(ray, _)| Cell::fixed(ray.cpu_s[1], 1));
-    for (i, name) in COMPARED.into_iter().enumerate() {
-        columns = columns.column(name, move |(_, differences)| Cell::percent(differences[i], 1));
-    }
-    columns
-}
-
-/// The names of [`place`], and their decimals on a page.
-const PLACE: [(&str, usize); 5] =
-    [("w_lig, mm", 1), ("alpha, deg", 0), ("eta_a", 2), ("eta_s", 2), ("theta, deg", 0)];
-
-/// w_lig (mm), alpha (deg), and the end of the ray: eta_a, eta_s, theta (deg).
-fn place(ray: &ComparedRay) -> [f64; 5] {
-    let end = ray.end();
-    let (design, sample) = (&end.design, &end.sample);
-    let [eta_a, eta_s] = end.eta();
-    [design.w_lig, design.alpha.to_degrees(), eta_a, eta_s, sample.theta.to_degrees()]
 }

@@ -319,9 +319,10 @@ fn a_replay_compares_every_state_and_names_what_failed() {
     let (hinges, unsolved) = replayed(&hangs);
     assert_eq!((hinges.len(), unsolved.len()), (paths.len() - 1, 1));
     assert_eq!(unsolved[0].hinge, 5);
-    for hinge in &hinges {
-        assert_eq!(hinge.states.len(), hinge.path.states.len());
-        let (k, end) = (STIFFNESS[2], hinge.path.end());
+    let solved = paths.iter().filter(|path| path.hinge != 5);
+    for (hinge, path) in hinges.iter().zip(solved) {
+        assert_eq!(hinge.states.len(), path.states.len());
+        let (k, end) = (STIFFNESS[2], path.end());
         let moment = hinge.states.last().unwrap().reference[3];
         assert!((moment - k * end.theta).abs() < 1e-9 * k);
     }
