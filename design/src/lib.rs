@@ -53,7 +53,6 @@
 //!     },
 //!     model: Model::Equilibrium(Box::new(Mechanics {
 //!         law: Arc::new(LinearLaw::uniform([400.0, 250.0, 300.0], grid.hinge_count())),
-//!         release: None,
 //!         contact: None,
 //!         solver,
 //!     })),

@@ -5,7 +5,6 @@ mod design_gradient;
 pub mod design_problem;
 pub mod hinge_measures;
 pub mod loss;
-mod released_sheet;
 pub mod response;
 pub mod scores;
 pub mod shape;

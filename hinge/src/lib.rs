@@ -57,5 +57,5 @@ pub use material::{Creep, InvalidMaterial, MaterialError, STANDARD_GRAVITY, Shee
 pub use material_file::{SheetFacts, material_file};
 pub use net_ligament::{NetLigament, NetLigamentJet};
 pub use regime::Regime;
-pub use released::{ReleasedHinge, ReleasedSample};
+pub use released::ReleasedHinge;
 pub use sample::HingeSample;

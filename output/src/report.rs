@@ -183,8 +183,7 @@ impl Report {
         let residual = by_elements.map(|search| search.difference.corners[1]);
         let errors = ErrorBudget::new(scene, &designed.problem, deployment, residual);
         let dead_loads = scene.config.has_loads() && scene.config.drive.is_none();
-        let budget = errors
-            .map(|errors| Budget::new(errors, &facts.self_weight, dead_loads, facts.target_state));
+        let budget = errors.map(|errors| Budget::new(errors, &facts.self_weight, dead_loads));
         let after = Scores::new(&designed.problem.objective, &designed.best);
         let warnings = rules::warnings(&RuleInput {
             scene,

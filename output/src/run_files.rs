@@ -95,7 +95,7 @@ pub const RUN_FILES: [RunFile; 18] = [
     result("deployed.dxf", "the panels in the state that is compared with the target", |run| {
         Ok(run.cut().map(|_| {
             let Deployment { sheet, .. } = run.best();
-            let configuration = placed(run.scene, sheet, &run.best().compared().configuration);
+            let configuration = placed(run.scene, sheet, &run.best().final_step().configuration);
             dxf(&deployed_panels(&deployed_corners(sheet, &configuration))).into()
         }))
     }),

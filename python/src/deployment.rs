@@ -113,18 +113,6 @@ impl Deployment {
         })
     }
 
-    /// Corners of the panels after the loads were taken off (mm), shape (panels, 4, 2); None unless
-    /// the target of the scene is for that state (`objective.target_state`).
-    #[getter]
-    fn corners_unloaded<'py>(&self, py: Python<'py>) -> PyResult<Option<Doubles<'py>>> {
-        if self.deployment.unloaded().is_none() {
-            return Ok(None);
-        }
-        let state = self.deployment.at_target_state().map_err(errors::design)?;
-        let corners = deployed_corners(&self.deployment.sheet, &state.configuration);
-        Ok(Some(quadrilaterals(py, &corners)))
-    }
-
     /// (a, s, theta) of the hinges (mm, mm, rad), shape (steps, hinges, 3).
     #[getter]
     fn deformation<'py>(&self, py: Python<'py>) -> Doubles<'py> {

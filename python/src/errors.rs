@@ -59,9 +59,7 @@ pub(crate) fn of_element(py: Python, element: usize, error: PyErr) -> PyErr {
 pub(crate) fn design(error: DesignError) -> PyErr {
     let message = error.to_string();
     match error {
-        DesignError::NoEquilibrium { .. } | DesignError::NotUnloaded => {
-            NoEquilibrium::new_err(message)
-        }
+        DesignError::NoEquilibrium { .. } => NoEquilibrium::new_err(message),
         DesignError::SingularTangent(_) => SingularTangent::new_err(message),
         _ => InvalidDesign::new_err(message),
     }

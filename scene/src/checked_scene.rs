@@ -7,9 +7,8 @@ use crate::loaded_hinge::LoadedHinge;
 use crate::posture::PostureConfig;
 use crate::scene_error::SceneError;
 use crate::solved_hinges::SolvedHinges;
-use crate::springback_file::{self, SpringbackMismatch};
+use crate::springback_file;
 use crate::target::{TARGET_POINTS, Target};
-use design::objective::shape::TargetState;
 use design::sheet::cut_sheet::SheetOptions;
 use hinge::SheetMaterial;
 use std::path::{Path, PathBuf};
@@ -26,8 +25,7 @@ use surrogate::{Springback, Surrogate};
 const MODEL_VERSION: u32 = 4;
 
 /// What the parts of [`Scene::model_hash`] identify, in their order.
-pub(super) const MODEL_PARTS: [&str; 5] =
-    ["version of kirigami", "material", "target", "weights", "law of released hinges"];
+pub(super) const MODEL_PARTS: [&str; 4] = ["version of kirigami", "material", "target", "weights"];
 
 /// A scene with checked values, its material and its sampled target.
 #[derive(Clone, Debug)]
@@ -117,11 +115,6 @@ impl Scene {
         self.config.clone().with_paths(moved)
     }
 
-    /// An error if a law of released hinges is not for the hinges of this scene.
-    pub fn check_springback(&self, law: &Springback) -> Result<(), SpringbackMismatch> {
-        springback_file::check(&self.config, &self.measured, law)
-    }
-
     /// The absolute path of a file that the scene names.
     fn absolute(&self, path: &Path) -> std::io::Result<PathBuf> {
         let file = self.file(path);
@@ -153,9 +146,8 @@ impl Scene {
     }
 
     /// Identifies what a run depends on besides the keys of the scene: the version of the model,
-    /// the material law, the target's points, the weights and, if the target is for the released
-    /// sheet, the law of released hinges. It is the same on every machine, whereas the loss differs
-    /// in its last digits.
+    /// the material law, the target's points and the weights. It is the same on every machine,
+    /// whereas the loss differs in its last digits.
     pub fn model_hash(&self) -> String {
         let read = match self.config.level {
             Level::Fine => usize::MAX,
@@ -171,17 +163,7 @@ impl Scene {
         } else {
             format!("{}/{}", self.material.law_hash(), self.material.density_kg_m3)
         };
-        let model = format!("{MODEL_VERSION}-{material}-{target}-{weights}");
-        match self.designed_for_release() {
-            Some(law) => format!("{model}-{}", law.hash()),
-            None => model,
-        }
-    }
-
-    /// The law of released hinges, if the target is for the released sheet.
-    pub(super) fn designed_for_release(&self) -> Option<&Springback> {
-        let released = self.config.objective.target_state == TargetState::Released;
-        self.springback.as_ref().filter(|_| released)
+        format!("{MODEL_VERSION}-{material}-{target}-{weights}")
     }
 
     /// The weight of a unit of area in the plane of the sheet (N/mm^2); zero unless it hangs and

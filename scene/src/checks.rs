@@ -12,7 +12,6 @@ use crate::sheet_config::SheetConfig;
 use crate::solved_hinges::SolvedHingesError;
 use crate::target::Target;
 use design::geometry::polygon::{contains, distance, edges, mean};
-use design::objective::shape::TargetState;
 use design::pattern::cut_pattern::CutPattern;
 use design::pattern::pattern_error::PatternError;
 use design::sheet::topology::panel_endpoints;
@@ -305,9 +304,6 @@ fn objective(scene: &SceneConfig) -> Result<(), InvalidScene> {
     let (key, width) = ("objective.min_panel_width", scene.objective.min_panel_width);
     let side = scene.sheet.mean_panel_area().sqrt();
     within(key, width, [0.0, side / 3.0], "mm")?;
-    if scene.objective.target_state == TargetState::Released && scene.springback().is_none() {
-        return Err(InvalidScene::ReleasedWithoutLaw);
-    }
     Ok(())
 }
 

@@ -46,9 +46,8 @@ pub struct SurrogateFile {
     /// and the level `fine` takes their mean.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub ensemble: Vec<PathBuf>,
-    /// The law of released hinges (`kirigami surrogate release`), from which the report states the
-    /// residual opening when the loads are taken off. Unless `objective.target_state` is
-    /// `released`, a run continues under another one, which changes its report only.
+    /// The law of released hinges, from which the report states the residual opening when the loads
+    /// are taken off. A run continues under another one, which changes its report only.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub springback: Option<PathBuf>,
     /// The hinges of this sheet by finite elements, written by `kirigami design --level final`, to

@@ -182,11 +182,6 @@ pub enum InvalidScene {
          inside"
     )]
     TargetWithoutArea,
-    #[error(
-        "objective.target_state = \"released\" needs the law of released hinges: level = \"standard\" and surrogate.springback, a file \
-         that `kirigami surrogate release` writes"
-    )]
-    ReleasedWithoutLaw,
     #[error("objective.domain needs level = \"standard\": no other law has a domain")]
     NoDomain,
     #[error(

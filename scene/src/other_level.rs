@@ -7,7 +7,6 @@ use crate::keys::SceneConfig;
 use crate::level::Level;
 use crate::loaded_hinge::springs_at_start;
 use crate::scene_error::SceneError;
-use design::objective::shape::TargetState;
 
 /// The opening of pins at the start (deg), where a scene names none.
 const PIN_OPENING: f64 = 25.0;
@@ -30,9 +29,7 @@ impl Scene {
         let mut config = self.config.clone();
         config.level = level;
         if !level.is_learned() {
-            let objective = &mut config.objective;
-            (objective.damage, objective.domain) = (0.0, 0.0);
-            objective.target_state = TargetState::Loaded;
+            (config.objective.damage, config.objective.domain) = (0.0, 0.0);
         }
         match level {
             Level::Pin => {

@@ -26,7 +26,7 @@ pub fn placed(scene: &Scene, sheet: &Sheet, configuration: &[[f64; 3]]) -> Confi
 /// it (mm).
 pub fn deployed_outline(scene: &Scene, deployment: &Deployment) -> Vec<[f64; 2]> {
     let sheet = &deployment.sheet;
-    let configuration = placed(scene, sheet, &deployment.compared().configuration);
+    let configuration = placed(scene, sheet, &deployment.final_step().configuration);
     corners(sheet, sheet.outline_corners(), &configuration)
 }
 

@@ -6,7 +6,6 @@ use crate::loaded_hinge::HingeBehaviour;
 use crate::scene_error::SceneError;
 use crate::sheet_config::StartConfig;
 use design::equilibrium::solver::{EquilibriumError, EquilibriumSolver};
-use design::hinge_law::Release;
 use design::objective::design_problem::{DesignProblem, Mechanics, Model};
 use design::objective::loss::Objective;
 use design::objective::terms::Setting;
@@ -94,13 +93,7 @@ impl Scene {
             HingeBehaviour::Elastic { law, contact } => (law.clone(), *contact),
         };
         let solver = self.solver().map_err(SceneError::at(&self.path))?;
-        Ok(Model::Equilibrium(Box::new(Mechanics {
-            law,
-            contact: Some(contact),
-            solver,
-            release: (self.designed_for_release())
-                .map(|law| Release::new(law.clone(), self.scale())),
-        })))
+        Ok(Model::Equilibrium(Box::new(Mechanics { law, contact: Some(contact), solver })))
     }
 
     fn solver(&self) -> Result<EquilibriumSolver, EquilibriumError> {

@@ -11,23 +11,18 @@ use surrogate::{Springback, SpringbackError};
 #[allow(missing_docs, reason = "the message of a variant is its documentation")]
 pub enum SpringbackMismatch {
     #[error(
-        "the law of released hinges is for {law}, and the sheet is of another material law, {sheet}: unload hinges of its material by \
-         `kirigami surrogate release`"
+        "the law of released hinges is for {law}, and the sheet is of another material law, {sheet}"
     )]
     Material { law: String, sheet: String },
     #[error(
         "the law of released hinges is for holes with a radius of {law} w_lig, but the sheet has {sheet:.3} w_lig: set \
-         process.fillet_ratio = {law}, or unload hinges with these holes by `kirigami surrogate release`"
+         process.fillet_ratio = {law}"
     )]
     Hole { law: f64, sheet: f64 },
     #[error(
         "the law of released hinges is for windows with a radius of {law} mm at this thickness, but the sheet has {sheet} mm"
     )]
     Window { law: f64, sheet: f64 },
-    #[error(
-        "the residual deformation of a hinge follows from the forces of a learned law: set level = \"standard\""
-    )]
-    NotLearned,
 }
 
 /// Why a scene cannot use the law that it names.
@@ -47,7 +42,9 @@ pub(super) fn load(
     measured: &SheetMaterial,
     path: &Path,
 ) -> Result<Option<Springback>, SpringbackFileError> {
-    let Some(file) = config.springback() else {
+    // A residual deformation follows from the forces of a learned law.
+    let learned = config.surrogate.as_ref().filter(|_| config.level.is_learned());
+    let Some(file) = learned.and_then(|learned| learned.springback.as_ref()) else {
         return Ok(None);
     };
     let law = Springback::load(&resolved(path, file))?;
@@ -56,16 +53,8 @@ pub(super) fn load(
     Ok(Some(law))
 }
 
-impl SceneConfig {
-    /// The law that the scene names, if its hinges are learned.
-    pub(super) fn springback(&self) -> Option<&PathBuf> {
-        let learned = (self.surrogate.as_ref()).filter(|_| self.level.is_learned())?;
-        learned.springback.as_ref()
-    }
-}
-
 /// An error if a law is not for the hinges of a scene.
-pub(super) fn check(
+fn check(
     config: &SceneConfig,
     measured: &SheetMaterial,
     law: &Springback,
@@ -73,9 +62,6 @@ pub(super) fn check(
     /// Relative difference of two radii that rounding may cause.
     const ROUNDED: f64 = 1e-6;
     let differ = |x: f64, y: f64| (x / y - 1.0).abs() > ROUNDED;
-    if !config.level.is_learned() {
-        return Err(SpringbackMismatch::NotLearned);
-    }
     if law.material_hash != measured.law_hash() {
         return Err(SpringbackMismatch::Material {
             law: law.material.clone(),

@@ -64,11 +64,6 @@ impl CompareCommand {
             return self.write_template(&scene, &sheet);
         }
         let deployment = problem.deploy(&design)?;
-        if deployment.released.is_some() {
-            eprintln!(
-                "note: the target of this scene is for the unloaded sheet; the points are compared with the sheet under load, on its way to full load"
-            );
-        }
         let path = ShapePath::new(&problem, &deployment);
         if path.end() == 0.0 {
             deployment.at_full_load()?;

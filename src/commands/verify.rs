@@ -18,10 +18,9 @@ use std::collections::BTreeSet;
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 use support::document::Document;
-use surrogate::{Springback, Surrogate};
+use surrogate::Surrogate;
 use verification::{
-    ElementWindows, ReleasedByElements, Replay, SheetErrors, balanced, recorded_paths,
-    released_by_elements, verification_tier,
+    ElementWindows, Replay, SheetErrors, balanced, recorded_paths, verification_tier,
 };
 
 /// Solve the hinges of a design by finite elements, along their paths in the sheet
@@ -52,10 +51,6 @@ pub struct VerifyCommand {
     /// and `plate-reference` the sheet is balanced on the cheaper `default` and `plate`
     #[arg(long, value_name = "N", default_value_t = 6, requires = "equilibrium", value_parser = count::<usize>)]
     rounds: usize,
-    /// Then take the loads off, with the law of released hinges (JSON, `kirigami surrogate
-    /// release`) and finite elements. Writes released.md
-    #[arg(long, value_name = "LAW", requires = "equilibrium")]
-    released: Option<PathBuf>,
     /// Solve the whole sheet, every window and every panel: minutes to an hour. Compares corners,
     /// load, openings and energies, and says whether the panels stay in their plane. Writes
     /// sheet.md, sheet.vtu and pictures from above and from the side. Of the design of a run,
@@ -84,13 +79,6 @@ pub struct VerifyCommand {
     solve: SolveArgs,
 }
 
-/// A sheet balanced by finite elements, and unloaded.
-#[derive(Serialize)]
-struct Released {
-    equilibrium: SheetErrors,
-    released: ReleasedByElements,
-}
-
 impl VerifyCommand {
     pub(crate) fn run(&self) -> Result<()> {
         let (scene, design, name) = self.inspected.read()?;
@@ -108,7 +96,7 @@ impl VerifyCommand {
         }
     }
 
-    /// The equilibrium with finite elements, and the sheet unloaded from there.
+    /// The equilibrium with finite elements.
     fn balance(
         &self,
         scene: &Scene,
@@ -119,28 +107,15 @@ impl VerifyCommand {
         let _held = run_folder::hold(&self.out)?;
         let service = &self.solve.service(&self.out)?;
         let windows = ElementWindows { tier, service };
-        let law = self.released.as_deref().map(Springback::load).transpose()?;
-        if let Some(law) = &law {
-            scene.check_springback(law)?;
-        }
         let found = balanced(scene, design, &windows, self.rounds);
-        let (found, problem) = found.map_err(task_error)?;
+        let (found, _) = found.map_err(task_error)?;
         let picture = drawing::deployed(scene, found.by_elements());
         run_folder::write(&self.out, "deployed.svg", &picture)?;
         let budget = found.budget(scene)?;
         let equilibrium = SheetErrors::new(&found, name, budget.as_ref());
-        let mut document = equilibrium.document();
+        let document = equilibrium.document();
         run_folder::write(&self.out, "equilibrium.md", &document.markdown())?;
-        let Some(law) = law else {
-            return self.print(&equilibrium, &document);
-        };
-        let released = released_by_elements(scene, &found, &problem, &law, &windows, self.rounds);
-        let released = released.map_err(task_error)?;
-        let page = released.document();
-        run_folder::write(&self.out, "released.md", &page.markdown())?;
-        document.append(page);
-        let released = Released { equilibrium, released };
-        self.print(&released, &document)
+        self.print(&equilibrium, &document)
     }
 
     fn print(&self, found: &impl Serialize, document: &Document) -> Result<()> {

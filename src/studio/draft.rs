@@ -89,6 +89,6 @@ pub(super) fn draft(
         Some(_) => problem.draft(design, known)?.deployment,
         None => problem.deploy(design)?,
     };
-    deployment.at_target_state()?;
+    deployment.at_full_load()?;
     Ok(deployment)
 }

@@ -60,8 +60,6 @@ pub use features::{FEATURE_NAMES, Standardisation, feature_names, features};
 pub use hinge_energy::{HingeEnergy, Order};
 pub use model::{Layers, Surrogate};
 pub use network::{InvalidWeights, Layer, Network, Tensor};
-pub use springback::{
-    ByReleased, FEWEST, ReleasedGradient, Springback, SpringbackError, SpringbackErrors,
-};
+pub use springback::{Springback, SpringbackError, SpringbackErrors};
 pub use tanh::tanh_in_place;
 pub use weights::WeightsError;

@@ -59,7 +59,7 @@ fn picture(scene: &Path) -> String {
     let deployment = scene.problem().unwrap().deploy(&scene.start()).unwrap();
     let sheet = &deployment.sheet;
     let flat = vec![[0.0; 3]; sheet.panels.len()];
-    let states = [&flat, &deployment.compared().configuration];
+    let states = [&flat, &deployment.final_step().configuration];
     let [flat, opened] = states.map(|state| deployed_corners(sheet, state));
     let target = scene.target.points.iter().step_by(4).copied().collect::<Vec<_>>();
     let path = |corners: &[[f64; 2]]| -> String {

@@ -1,32 +1,37 @@
-//! Residual opening of a sheet of polypropylene, in its thickness and in twice that, and laws that
-//! do not fit.
+//! Residual opening of a sheet of polypropylene, in its thickness and in twice that.
 
 use crate::common::Workplace;
 use serde_json::Value;
-use surrogate::Springback;
 
+/// What turns the scene of four panels of film into a scene of plate.
+const PLATE: [(&str, &str); 11] = [
+    ("pet-0.5mm.toml", "polypropylene-3mm.toml"),
+    ("thickness = 0.1 ", "thickness = 3.0 "),
+    ("runs/whole-sheets/four-panels", "run"),
+    ("140.0", "120.0"),
+    ("70.0", "60.0"),
+    ("start = 3.6", "start = 1.6"),
+    ("[2.0, 5.0]", "[1.0, 2.8]"),
+    ("kerf = 0.1", "kerf = 0.2"),
+    ("r_win = 20.0", "r_win = 12.0"),
+    ("pet-0.5mm", "polypropylene-3mm"),
+    ("stroke = 30.0", "stroke = 22.0"),
+];
 /// The law of released hinges of the shipped plate.
-const LAW: &str = "data/polypropylene-3mm/springback.json";
-/// Weights in the scene of four panels.
-const WEIGHTS: &str = "data/polypropylene-3mm/medium.safetensors\"\n";
+const WITH_LAW: (&str, &str) =
+    ("[surrogate]", "[surrogate]\nspringback = \"data/polypropylene-3mm/springback.json\"");
 
-/// Copies the scene of four panels, with some of its text replaced.
+/// A scene of four panels of plate, with some of its text replaced.
 fn four_panels(work: &Workplace, name: &str, replacements: &[(&str, &str)]) {
-    let shipped = work.path("configs/sheets/four-panels-springback.toml");
-    std::fs::copy(shipped, work.path(name)).unwrap();
+    std::fs::copy(work.path("configs/sheets/four-panels.toml"), work.path(name)).unwrap();
     let paths = [("\"../../", "\""), ("\"../materials", "\"configs/materials")];
-    work.edit(name, &[&paths, replacements].concat());
-}
-
-/// The weights with a law of released hinges.
-fn with_law(law: &str) -> String {
-    format!("{WEIGHTS}springback = \"{law}\"\n")
+    work.edit(name, &[&paths[..], &PLATE, replacements].concat());
 }
 
 #[test]
 fn a_plate_springs_back_and_one_of_twice_the_thickness_twice_as_far() {
     let work = Workplace::new();
-    four_panels(&work, "three.toml", &[(WEIGHTS, &with_law(LAW))]);
+    four_panels(&work, "three.toml", &[WITH_LAW]);
     let doubled = [
         ("thickness = 3.0 ", "thickness = 6.0 "),
         ("[120.0, 120.0]", "[240.0, 240.0]"),
@@ -36,7 +41,7 @@ fn a_plate_springs_back_and_one_of_twice_the_thickness_twice_as_far() {
         ("slit_width = 0.2", "slit_width = 0.4"),
         ("r_win = 12.0", "r_win = 24.0"),
         ("stroke = 22.0", "stroke = 44.0"),
-        (WEIGHTS, &with_law(LAW)),
+        WITH_LAW,
     ];
     four_panels(&work, "six.toml", &doubled);
     let [three, six] = ["three", "six"].map(|name| {
@@ -63,7 +68,7 @@ fn a_plate_springs_back_and_one_of_twice_the_thickness_twice_as_far() {
 fn what_stays_of_a_sheet_outside_the_domain_is_not_known() {
     let work = Workplace::new();
     let further = ("stroke = 22.0", "stroke = 62.0");
-    four_panels(&work, "far.toml", &[further, (WEIGHTS, &with_law(LAW))]);
+    four_panels(&work, "far.toml", &[further, WITH_LAW]);
     let outside = "4 hinges are outside the training domain at full load";
     let listed = work.output("design far.toml --steps 1 --force --out run");
     let mut rows = listed.lines();
@@ -93,9 +98,8 @@ fn share(released: &Value) -> f64 {
 #[test]
 fn the_report_says_what_stays_by_the_law_that_the_scene_names() {
     let work = Workplace::new();
-    let output = ("runs/springback/four-panels", "run");
-    four_panels(&work, "with.toml", &[output, (WEIGHTS, &with_law(LAW))]);
-    four_panels(&work, "without.toml", &[output]);
+    four_panels(&work, "with.toml", &[WITH_LAW]);
+    four_panels(&work, "without.toml", &[]);
     let found = report(&work, "with.toml");
     // The run has a copy of the law.
     assert_eq!(released(&report(&work, "run")), released(&found));
@@ -114,61 +118,16 @@ fn the_report_says_what_stays_by_the_law_that_the_scene_names() {
     assert!(text().contains(unknown), "{}", text());
 }
 
+/// The figures of the start design of a shipped scene.
 #[test]
-fn a_scene_with_a_law_for_another_sheet_is_refused() {
+fn the_reported_figures_do_not_change() {
     let work = Workplace::new();
-    let mut other = Springback::load(&work.path(LAW)).unwrap();
-    other.material_hash = "0123456789abcdef".into();
-    other.save(&work.path("other.json")).unwrap();
-    four_panels(&work, "scene.toml", &[(WEIGHTS, &with_law("other.json"))]);
-    let error = work.error("design scene.toml");
-    assert!(error.contains("the sheet is of another material law"), "{error}");
-}
-
-/// The search moves the sheet without loads to its target, and everything that it writes is of that
-/// state.
-#[test]
-fn a_design_for_the_shape_that_stays() {
-    let work = Workplace::new();
-    let law = with_law(LAW);
-    let released = [
-        ("runs/springback/four-panels", "run"),
-        (WEIGHTS, &*law),
-        ("size = [120.0, 120.0]\nrotation", "size = [140.0, 135.0]\nrotation"),
-        ("[optimiser]", "[objective]\ntarget_state = \"released\"\n\n[optimiser]"),
-        ("steps = 1\n", "steps = 6\n"),
-    ];
-    four_panels(&work, "scene.toml", &released);
-    let found = report(&work, "scene.toml");
-    let number = |place: &str| found.pointer(place).unwrap().as_f64().unwrap();
-    assert_eq!(found["facts"]["target_state"], "released");
-    let (before, after) = (number("/before/outline_error"), number("/after/outline_error"));
-    assert!(after < 0.9 * before, "{before} {after}");
-    let [loaded, free] =
-        [0, 1].map(|i| number(&format!("/facts/creep_and_springback/released/outline_error/{i}")));
-    assert!((free / after - 1.0).abs() < 1e-9, "{free} {after}");
-    assert!((loaded / free - 1.0).abs() > 0.1, "{loaded} {free}");
-    for (file, text) in [
-        ("deployed.svg", "Loads taken off"),
-        ("report.txt", "after the loads were taken off; the target is for that state"),
-        ("run.html", "\"unloaded\":true"),
+    let text = work.output("design configs/scenes/a4-plate.toml --steps 0 --force --out run");
+    let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
+    for row in [
+        "springback of a mean opening of 25.7 deg 18.1 stay when the load is taken off, 70 %; corners move by 14.4 mm (root mean square), 26.8 mm at most; the law of released hinges is off by 0.13 deg (root mean square at 30 hinges",
+        "its hinges hold with 64 % of their moments",
     ] {
-        let written = std::fs::read_to_string(work.path("run").join(file)).unwrap();
-        assert!(written.contains(text), "{file}");
+        assert!(text.contains(row), "{row}: {text}");
     }
-    // Another law has other sheets: the run does not continue with it.
-    let mut other = Springback::load(&work.path(LAW)).unwrap();
-    other.tier = "plate-tiny".into();
-    other.save(&work.path("other.json")).unwrap();
-    let renamed = |law| released.map(|(from, to)| (from, if from == WEIGHTS { law } else { to }));
-    let other = with_law("other.json");
-    four_panels(&work, "scene.toml", &renamed(&*other));
-    let error = work.error("design scene.toml");
-    assert!(error.contains("the law of released hinges"), "{error}");
-    four_panels(&work, "scene.toml", &renamed(WEIGHTS));
-    let error = work.error("design scene.toml");
-    assert!(
-        error.contains("objective.target_state") && error.contains("surrogate.springback"),
-        "{error}"
-    );
 }

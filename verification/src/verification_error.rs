@@ -5,7 +5,6 @@ use design::objective::design_problem::DesignError;
 use fe_driver::{CampaignError, SolveListError};
 use mesher::Tier;
 use scene::SceneError;
-use scene::analysis::springback::UnloadError;
 use scene::design_run::InverseDesignError;
 use std::path::PathBuf;
 use support::file_error::FileError;
@@ -34,10 +33,6 @@ pub enum VerificationError {
     NoStates(usize),
     #[error("at least one round is needed")]
     NoRounds,
-    #[error(transparent)]
-    Unload(#[from] UnloadError),
-    #[error("an unloaded hinge has no positive stiffness by the law of released hinges")]
-    NotElastic,
     #[error("finite elements solved no hinge: {0}. Try another mesh with --tier")]
     NoHinge(String),
     #[error(

@@ -14,27 +14,9 @@ use crate::equilibrium::supports::Support;
 use crate::hinge_law::Order;
 use crate::sheet::cut_sheet::Sheet;
 use crate::sheet::kinematics::Configuration;
-use hinge::ReleasedHinge;
 
 /// Number of steps in which the loads are taken off.
 const STEPS: usize = 10;
-
-/// A sheet without loads, after they have opened it.
-#[derive(Clone)]
-pub struct ReleasedSheet {
-    /// The hinges.
-    pub hinges: Vec<ReleasedHinge>,
-    /// The load steps from the deployed sheet to that without loads. Their load factor is the part
-    /// of the holding forces that is left.
-    pub path: Vec<LoadStep>,
-}
-
-impl ReleasedSheet {
-    /// The state without loads, or that at which the path ended before.
-    pub fn last(&self) -> &LoadStep {
-        self.path.last().expect("a path has at least one step")
-    }
-}
 
 impl EquilibriumSolver {
     /// The load steps from the configuration `start`, of which the last one is without loads. Their
@@ -54,7 +36,7 @@ impl EquilibriumSolver {
     }
 
     /// The same problem without loads, and without the supports that moved the sheet.
-    pub(crate) fn unloaded(&self, sheet: &Sheet) -> Result<Self, EquilibriumError> {
+    fn unloaded(&self, sheet: &Sheet) -> Result<Self, EquilibriumError> {
         let resting = self.supports.iter().filter(|support| support.value == 0.0);
         let resting: Vec<Support> = resting.copied().collect();
         let free = Self {

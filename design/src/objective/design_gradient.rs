@@ -14,7 +14,6 @@ use crate::sheet::cut_sheet::{Sheet, SheetGradient};
 use crate::sheet::ideal_deployment::ideal_deployment_pullback;
 use crate::sheet::kinematics::deployed_pullback;
 use crate::sheet::topology::PanelCorner;
-use std::borrow::Cow;
 
 /// The partial derivatives of a function of a deployment.
 pub(super) struct Partials<'a> {
@@ -100,7 +99,7 @@ impl DesignProblem {
         let sheet = &deployment.sheet;
         let Partials { outline, by_outline, mut by_sheet, .. } = partials;
         let outline = std::iter::zip(outline, by_outline);
-        let by_compared = outline_pullback(sheet, deployment.compared(), outline, &mut by_sheet);
+        let by_compared = outline_pullback(sheet, deployment.final_step(), outline, &mut by_sheet);
         let (mut by_opening, mut adjoint_residual) = (None, 0.0);
         let mut virtual_motion = Vec::new();
         let mut sensitivities = Sensitivities::default();
@@ -111,37 +110,19 @@ impl DesignProblem {
             }
             (None, None) => return Err(DesignError::NoMechanics),
             (None, Some((mechanics, law))) => {
-                let mut by_states = Cow::Borrowed(partials.by_states);
-                let mut by_last = by_compared;
-                if let Some(released) = &deployment.released {
-                    let by_free =
-                        std::mem::replace(&mut by_last, vec![[0.0; 3]; sheet.panels.len()]);
-                    let (by_loaded, residual) = mechanics.released_pullback(
-                        law,
-                        deployment,
-                        released,
-                        by_free,
-                        &mut by_sheet,
-                    )?;
-                    adjoint_residual = residual;
-                    for (by_path, by_loaded) in std::iter::zip(by_states.to_mut(), by_loaded) {
-                        let by_last = by_path.last_mut().expect("a path has at least one step");
-                        *by_last += by_loaded;
-                    }
-                }
                 let sums = adjoint(
                     &mechanics.solver,
                     mechanics.hinged(sheet, law, true),
                     partials.path,
                     PathGradient {
-                        by_states: &by_states,
+                        by_states: partials.by_states,
                         by_load_factor: partials.by_load_factor,
-                        by_last,
+                        by_last: by_compared,
                         by_reactions: partials.by_reactions,
                     },
                     &mut by_sheet,
                 )?;
-                adjoint_residual = f64::max(adjoint_residual, sums.residual);
+                adjoint_residual = sums.residual;
                 sensitivities.loads = sums.loads;
                 sensitivities.constants = sums.constants;
                 virtual_motion = sums.virtual_motion;

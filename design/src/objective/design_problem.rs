@@ -5,9 +5,8 @@ use crate::equilibrium::adjoint::SingularTangent;
 use crate::equilibrium::hinged_sheet::HingedSheet;
 use crate::equilibrium::load_step::{DescentEnd, LoadStep, Status, residual_in_words};
 use crate::equilibrium::solver::{EquilibriumError, EquilibriumSolver};
-use crate::equilibrium::unloading::ReleasedSheet;
 use crate::equilibrium::warm_start::WarmStart;
-use crate::hinge_law::{Contact, DamageMeasure, HingeLaw, PreparedLaw, Release};
+use crate::hinge_law::{Contact, DamageMeasure, HingeLaw, PreparedLaw};
 use crate::objective::loss::{Objective, ObjectiveValue, TermValues};
 use crate::objective::term::Deployed;
 use crate::pattern::cut_pattern::{CutPattern, Outline};
@@ -55,10 +54,6 @@ pub enum DesignError {
         end.map(|end| format!(": {end}")).unwrap_or_default()
     )]
     NoEquilibrium { reached: f64, residual: f64, end: Option<DescentEnd> },
-    #[error(
-        "no equilibrium was found when the loads are taken off, and objective.target_state = \"released\" is for that: open the sheet less"
-    )]
-    NotUnloaded,
     #[error(transparent)]
     SingularTangent(#[from] SingularTangent),
 }
@@ -71,9 +66,6 @@ pub struct Mechanics {
     pub contact: Option<Contact>,
     /// Supports, loads and load steps, with the settings of the equilibrium solver.
     pub solver: EquilibriumSolver,
-    /// What becomes of the hinges when the loads are taken off, if the target is the shape that
-    /// stays; `None` if it is that under load.
-    pub release: Option<Release>,
 }
 
 /// How the deployed state of a sheet is computed.
@@ -130,9 +122,6 @@ pub struct Deployment {
     /// Whether the path was followed from the flat sheet; `false` if it was corrected from the path
     /// of a design near it.
     pub followed: bool,
-    /// The sheet after its loads were taken off at the end of the path, if the target is the shape
-    /// that stays.
-    pub released: Option<ReleasedSheet>,
     /// How the sheet is fitted to its target.
     pub fit: Option<FitVariables>,
 }
@@ -191,26 +180,9 @@ impl Deployment {
         converged(self.final_step())
     }
 
-    /// The state that is compared with the target: at full load, or after the loads were taken off.
-    pub fn compared(&self) -> &LoadStep {
-        self.unloaded().unwrap_or_else(|| self.final_step())
-    }
-
-    /// The same, or an error if there is no equilibrium in that state.
-    pub fn at_target_state(&self) -> Result<&LoadStep, DesignError> {
-        self.at_full_load()?;
-        let compared = self.compared();
-        (compared.status != Status::Diverged).then_some(compared).ok_or(DesignError::NotUnloaded)
-    }
-
-    /// The state after the loads were taken off, if the target is for that.
-    pub fn unloaded(&self) -> Option<&LoadStep> {
-        self.released.as_ref().map(ReleasedSheet::last)
-    }
-
-    /// Positions of panel corners in the state that is compared with the target (mm).
+    /// Positions of panel corners at full load (mm).
     pub fn outline(&self, corners: &[PanelCorner]) -> Vec<[f64; 2]> {
-        self.outline_at(self.compared(), corners)
+        self.outline_at(self.final_step(), corners)
     }
 
     /// Positions of panel corners in a state of the sheet (mm).
@@ -314,14 +286,14 @@ impl DesignProblem {
         known: Option<&WarmStart>,
     ) -> Result<(Deployment, Option<Box<dyn PreparedLaw + '_>>), DesignError> {
         let (pattern, sheet) = self.cut(design)?;
-        let (path, followed, law, released) = match &self.model {
+        let (path, followed, law) = match &self.model {
             Model::Ideal { opening } => {
                 let theta = design.opening.unwrap_or(*opening);
                 if !theta.is_finite() {
                     return Err(DesignError::Opening(theta));
                 }
                 let ideal = LoadStep::ideal(&sheet, ideal_deployment(&sheet, theta));
-                (vec![ideal], true, None, None)
+                (vec![ideal], true, None)
             }
             Model::Equilibrium(mechanics) => {
                 mechanics.solver.check_supports(&sheet)?;
@@ -329,11 +301,10 @@ impl DesignProblem {
                 let hinged = mechanics.hinged(&sheet, &*law, gradient);
                 let (path, followed) = mechanics.path(hinged, known);
                 path.iter().for_each(|step| verbose::note(|| step.to_string()));
-                let released = mechanics.released(&*law, &sheet, &path)?;
-                (path, followed, Some(law), released)
+                (path, followed, Some(law))
             }
         };
-        let deployment = Deployment { pattern, sheet, path, followed, released, fit: design.fit };
+        let deployment = Deployment { pattern, sheet, path, followed, fit: design.fit };
         Ok((deployment, law))
     }
 
@@ -357,7 +328,7 @@ impl DesignProblem {
         if self.objective.shape.target.is_empty() {
             return Err(DesignError::EmptyTarget);
         }
-        deployment.at_target_state()?;
+        deployment.at_full_load()?;
         Ok(self.objective.evaluate(&Deployed {
             sheet: &deployment.sheet,
             path: &deployment.path,
@@ -386,17 +357,11 @@ impl Mechanics {
         if !(thickness > 0.0 && stress > 0.0 && thickness.is_finite() && stress.is_finite()) {
             return Err(DesignError::ImpossibleSheet);
         }
-        let mut similar = Self {
-            law: Arc::clone(&self.law),
-            contact: self.contact,
-            solver: self.solver.clone(),
-            release: self.release.clone(),
-        };
+        let mut similar =
+            Self { law: Arc::clone(&self.law), contact: self.contact, solver: self.solver.clone() };
         if (thickness, stress) != (1.0, 1.0) {
             let law = self.law.scaled(thickness, stress);
             similar.law = law.ok_or(DesignError::NoSimilarLaw)?;
-            let release = self.release.as_ref();
-            similar.release = release.map(|release| release.scaled(thickness, stress));
             similar.solver.weight = self.solver.weight.map(|weight| thickness * weight);
         }
         Ok(similar)

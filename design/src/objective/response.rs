@@ -126,26 +126,20 @@ impl DesignProblem {
         })
     }
 
-    /// A draft of the equilibrium of a design at full load, unloaded if the target is the shape
-    /// that stays, next to the last state of a `known` path; without one, or if there is none next
-    /// to it, at the end of the path from the flat sheet. The path may end on another branch than a
-    /// draft next to another.
+    /// A draft of the equilibrium of a design at full load next to the last state of a `known`
+    /// path; without one, or if there is none next to it, at the end of the path from the flat
+    /// sheet. The path may end on another branch than a draft next to another.
     pub fn draft(
         &self,
         design: &DesignVector,
         known: Option<&WarmStart>,
     ) -> Result<Response, DesignError> {
-        let mut response = self.responded(design, |solver, hinged| {
+        self.responded(design, |solver, hinged| {
             match known.and_then(|known| solver.full_load_near(hinged, known)) {
                 Some(step) => (vec![step], false),
                 None => (solver.readings(hinged, &FULL_LOAD), true),
             }
-        })?;
-        let mechanics = self.model.mechanics().ok_or(DesignError::NoMechanics)?;
-        let Deployment { sheet, path, .. } = &response.deployment;
-        let law = mechanics.law.prepare(&sheet.designs());
-        response.deployment.released = mechanics.released(&*law, sheet, path)?;
-        Ok(response)
+        })
     }
 
     /// The response of a design whose configuration at full load is known.
@@ -174,14 +168,7 @@ impl DesignProblem {
         let reactions = mechanics.solver.reactions(hinged, &converged(state)?.configuration);
         drop(law);
         Ok(Response {
-            deployment: Deployment {
-                pattern,
-                sheet,
-                path,
-                followed,
-                released: None,
-                fit: design.fit,
-            },
+            deployment: Deployment { pattern, sheet, path, followed, fit: design.fit },
             reactions,
         })
     }

@@ -39,7 +39,7 @@ impl Scores {
 /// coverage, also depends on the spacing of the points P, and stays large for a coarse sheet that
 /// matches its target.
 pub fn outline_error(objective: &Objective, deployment: &Deployment) -> f64 {
-    outline_error_at(objective, deployment, deployment.compared())
+    outline_error_at(objective, deployment, deployment.final_step())
 }
 
 /// The same for a state of the sheet.

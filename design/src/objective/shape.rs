@@ -7,19 +7,6 @@ use crate::objective::centre;
 use crate::objective::term::{Deployed, Term, TermGradient};
 use crate::pattern::fit_variables::FitVariables;
 use faer::c64;
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
-
-/// The state of the sheet that its target is for.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum TargetState {
-    /// At full load.
-    #[default]
-    Loaded,
-    /// After the loads were taken off: the shape that stays.
-    Released,
-}
 
 /// The distance of the deployed outline to a target.
 #[derive(Clone, Debug, PartialEq)]

@@ -22,7 +22,7 @@ pub use symmetric_difference::SymmetricDifference;
 
 use crate::hinge_law::{DamageMeasure, HingeLaw};
 use crate::objective::loss::Objective;
-use crate::objective::shape::{Shape, TargetState};
+use crate::objective::shape::Shape;
 use crate::objective::term::Weighted;
 use crate::sheet::cut_sheet::AttachmentPoint;
 use schemars::JsonSchema;
@@ -39,9 +39,6 @@ const FASTENINGS: f64 = 10.0;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct ObjectiveConfig {
-    /// The state of the sheet that the target is for: `loaded`, at full load, or `released`, after
-    /// the loads were taken off, which needs `surrogate.springback`.
-    pub target_state: TargetState,
     /// Weight of the area inside the polygon through the compared corners and outside the target,
     /// or the reverse, over the area of the target.
     #[schemars(range(min = 0.0, max = 1e9))]
@@ -182,7 +179,6 @@ mod tests {
     /// The objective with all terms.
     fn objective(damage_measure: DamageMeasure) -> Objective {
         let config = ObjectiveConfig {
-            target_state: TargetState::Loaded,
             symmetric_difference: 0.9,
             damage: 0.7,
             damage_measure,

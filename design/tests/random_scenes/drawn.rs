@@ -235,7 +235,6 @@ impl Drawn {
             options: SheetOptions { hinge_point: self.hinge_point, process: self.process.into() },
             model: Model::Equilibrium(Box::new(Mechanics {
                 law: self.law(),
-                release: None,
                 contact: contact.map(Result::unwrap),
                 solver,
             })),

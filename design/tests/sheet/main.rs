@@ -19,7 +19,6 @@ mod pattern;
 mod prelude;
 mod pullbacks;
 mod random;
-mod released;
 mod response;
 mod sensitivities;
 mod taylor;

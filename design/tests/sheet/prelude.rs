@@ -116,12 +116,7 @@ pub fn drawn(random: &mut Random, grid: Grid, size: f64) -> PatternCoordinates {
 
 /// A sheet whose equilibria are followed without release and contact.
 pub fn mechanics(law: impl HingeLaw + 'static, solver: EquilibriumSolver) -> Model {
-    Model::Equilibrium(Box::new(Mechanics {
-        law: Arc::new(law),
-        release: None,
-        contact: None,
-        solver,
-    }))
+    Model::Equilibrium(Box::new(Mechanics { law: Arc::new(law), contact: None, solver }))
 }
 
 /// The mechanics of a model, to be changed.

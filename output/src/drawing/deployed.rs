@@ -16,35 +16,26 @@ use scene::Scene;
 use scene::design_run::Designed;
 use scene::placement::placed;
 
-/// What a state without loads is called.
-const UNLOADED: &str = "Loads taken off";
-
 /// The sheet of a scene in the state that is compared with the target, with the loads there.
 pub fn deployed(scene: &Scene, deployment: &Deployment) -> String {
-    let state = State::new(scene, &deployment.sheet, deployment.compared());
+    let state = State::new(scene, &deployment.sheet, deployment.final_step());
     let openings_deg = &state.openings_deg;
     let mean = openings_deg.iter().sum::<f64>() / openings_deg.len() as f64;
     let max = openings_deg.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let actuation = if scene.hinge.carries_load() { ". Panels in the plane" } else { "" };
     let subtitle = format!(
-        "{}: mean hinge opening {mean:.1}\u{b0}, maximum {max:.1}\u{b0}{actuation}. Target dashed",
-        match deployment.released {
-            Some(_) => UNLOADED,
-            None => "Deployed",
-        }
+        "Deployed: mean hinge opening {mean:.1}\u{b0}, maximum {max:.1}\u{b0}{actuation}. Target dashed"
     );
     let scale = ColourScale::covering(openings_deg.iter().copied());
     state.drawn(state.extent(), &subtitle, &scale)
 }
 
 /// The frames of the deployment of a run: at most `most` states from the flat sheet to the last
-/// one, and without its loads if the target is for that, on the same page and in the same colours.
+/// one, on the same page and in the same colours.
 pub fn deployment_frames(scene: &Scene, designed: &Designed, most: usize) -> Vec<String> {
     let deployment = &designed.best.deployment;
     let before = states_before(&designed.problem, deployment);
-    let loaded = before.iter().chain(&deployment.path);
-    let all: Vec<&LoadStep> = loaded.chain(deployment.unloaded()).collect();
-    let steps = before.len() + deployment.path.len();
+    let all: Vec<&LoadStep> = before.iter().chain(&deployment.path).collect();
     let index = kept(all.len(), most);
     let states: Vec<State> =
         (index.iter()).map(|&i| State::new(scene, &deployment.sheet, all[i])).collect();
@@ -52,10 +43,8 @@ pub fn deployment_frames(scene: &Scene, designed: &Designed, most: usize) -> Vec
     let openings = states.iter().flat_map(|state| state.openings_deg.iter().copied());
     let scale = ColourScale::covering(openings);
     let frame = |(&i, state): (&usize, &State)| {
-        let place = if i == steps {
-            UNLOADED.to_lowercase()
-        } else if scene.hinge.carries_load() {
-            format!("load step {i} of {}, load factor {:.2}", steps - 1, all[i].load_factor)
+        let place = if scene.hinge.carries_load() {
+            format!("load step {i} of {}, load factor {:.2}", all.len() - 1, all[i].load_factor)
         } else {
             format!("opening {:.1}\u{b0}", state.openings_deg[0])
         };

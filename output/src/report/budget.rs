@@ -1,7 +1,6 @@
 //! The error budget of a run as a table, and what it leaves out.
 
 use crate::report::self_weight::SelfWeight;
-use design::objective::shape::TargetState;
 use scene::analysis::error_budget::{Effect, ErrorBudget};
 use serde::Serialize;
 use support::table::{Cell, Table};
@@ -27,24 +26,13 @@ const NEVER_MODELLED: [&str; 4] = [
     "the error of the finest mesh",
 ];
 
-/// What the model leaves out of an unloaded sheet.
-const UNDER_LOAD: &str =
-    "the law of released hinges: the errors apply to the sheet under load, before it was unloaded";
-
 /// What the page and the report say above the table.
 pub(crate) const BUDGET_HEADING: &str = "error budget of the deployed sheet: standard deviations";
 
 impl Budget {
-    pub(super) fn new(
-        errors: ErrorBudget,
-        weight: &SelfWeight,
-        dead_loads: bool,
-        target_state: TargetState,
-    ) -> Self {
-        let by_posture = weight.left_out();
-        let released = (target_state == TargetState::Released).then_some(UNDER_LOAD);
-        let left_out = by_posture.into_iter().chain(released);
-        Self { errors, not_modelled: left_out.chain(NEVER_MODELLED).collect(), dead_loads }
+    pub(super) fn new(errors: ErrorBudget, weight: &SelfWeight, dead_loads: bool) -> Self {
+        let not_modelled = weight.left_out().into_iter().chain(NEVER_MODELLED).collect();
+        Self { errors, not_modelled, dead_loads }
     }
 
     /// One row a cause, and the sum.

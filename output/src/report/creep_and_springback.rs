@@ -5,7 +5,7 @@ use design::objective::design_problem::{Deployment, DesignProblem};
 use hinge::Creep;
 use scene::Scene;
 use scene::analysis::springback::{
-    ResidualShape, TOO_FAR, UnloadError, moment_after_overshoot, unload_in_domain,
+    ResidualShape, TOO_FAR, UnloadError, moment_after_overshoot, unload,
 };
 use serde::Serialize;
 use surrogate::SpringbackErrors;
@@ -85,8 +85,8 @@ impl Released {
         deployment: &Deployment,
     ) -> Option<Result<Self, UnloadError>> {
         let law = scene.springback.as_ref()?;
-        let found = unload_in_domain(scene, problem, law, deployment);
-        Some(found.map(|(_, stays)| Self {
+        let found = unload(scene, problem, law, deployment);
+        Some(found.map(|stays| Self {
             stays,
             law: law.errors,
             after_overshoot: moment_after_overshoot(scene, problem, law, deployment),

@@ -8,7 +8,6 @@ use crate::report::self_weight::SelfWeight;
 use design::equilibrium::load_step::Status;
 use design::geometry::polygon::{area, bounds};
 use design::objective::design_problem::{Deployment, DesignProblem};
-use design::objective::shape::TargetState;
 use design::sheet::cut_sheet::AttachmentPoint;
 use design::sheet::kinematics::deployed_corners;
 use scene::analysis::actuation_curve::{ActuationCurve, LimitPoint, LoadPeak, Mover};
@@ -45,9 +44,7 @@ pub struct FactSheet {
     pub panels: [usize; 2],
     /// Extent of the flat sheet along x and y (mm).
     pub flat_size: [f64; 2],
-    /// The state of the sheet that the target is for.
-    pub target_state: TargetState,
-    /// Extent of the sheet in that state along x and y with all panels in the plane (mm).
+    /// Extent of the deployed sheet along x and y with all panels in the plane (mm).
     pub deployed_size: [f64; 2],
     /// Load and stroke at the end of the path; `None` without equilibrium, or if nothing moves the
     /// sheet.
@@ -132,7 +129,7 @@ impl FactSheet {
     ) -> Self {
         let material = &scene.material;
         let flat = &deployment.sheet.outline.corners;
-        let corners = deployed_corners(&deployment.sheet, &deployment.compared().configuration);
+        let corners = deployed_corners(&deployment.sheet, &deployment.final_step().configuration);
         let mass_kg = material.mass_by_area() * area(flat).abs();
         let reached = Reached::new(scene, problem, deployment);
         Self {
@@ -148,7 +145,6 @@ impl FactSheet {
             creep_and_springback: CreepAndSpringback::new(scene, problem, deployment),
             panels: scene.config.sheet.panels,
             flat_size: extent(flat.iter().copied()),
-            target_state: scene.config.objective.target_state,
             deployed_size: extent(corners.into_iter().flatten()),
             reached,
             gamma_min: (hinges.iter()).filter_map(|row| row.gamma).min_by(f64::total_cmp),
@@ -176,16 +172,7 @@ impl FactSheet {
             ("mass", format!("{} kg, uncut", rounded(self.mass_kg, 4))),
             ("panels", format!("{columns} x {rows}")),
             ("flat size", size(self.flat_size)),
-            (
-                "deployed size",
-                size(self.deployed_size)
-                    + match self.target_state {
-                        TargetState::Loaded => ", panels in the plane",
-                        TargetState::Released => {
-                            ", panels in the plane, after the loads were taken off; the target is for that state"
-                        }
-                    },
-            ),
+            ("deployed size", size(self.deployed_size) + ", panels in the plane"),
             ("level", format!("{}, {}", self.level, self.level.hinges())),
         ];
         if let Some(reached) = &self.reached {

@@ -143,7 +143,7 @@ fn about(concern: Concern, hinges: Vec<usize>, message: String) -> Option<Warnin
 fn panels_overlap(input: &RuleInput) -> Option<Warning> {
     let deployment = input.deployment;
     let of = |step: &LoadStep| overlap(&deployment.sheet, &step.configuration);
-    let at_the_end = of(deployment.compared());
+    let at_the_end = of(deployment.final_step());
     let openings = input.hinges.iter().map(|row| row.theta_deg.to_radians());
     let mean = openings.sum::<f64>() / input.hinges.len() as f64;
     let lie = |most: f64| {

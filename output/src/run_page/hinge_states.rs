@@ -4,8 +4,9 @@ use crate::deployment_states::{kept, states_before};
 use crate::report::force_spreads;
 use crate::run_page::packed::Packed;
 use design::equilibrium::load_step::{LoadStep, Status};
-use design::hinge_law::{DamageMeasure, Order, PreparedLaw, ReleasedLaw};
+use design::hinge_law::{DamageMeasure, Order};
 use design::objective::design_problem::{Deployment, DesignProblem, Mechanics};
+use design::sheet::cut_sheet::Sheet;
 use scene::Scene;
 use scene::analysis::actuation_curve::ActuationCurve;
 use scene::placement::placed;
@@ -27,8 +28,6 @@ pub(super) struct HingeStates {
     of: usize,
     index: Vec<usize>,
     load_factor: Vec<f64>,
-    /// Whether the last state is the state after the loads were taken off.
-    unloaded: bool,
     /// Number of load steps in which the weight comes on, before the steps of the loads.
     weight_steps: usize,
     status: Vec<Status>,
@@ -71,9 +70,7 @@ impl HingeStates {
     ) -> Self {
         let sheet = &deployment.sheet;
         let before = states_before(problem, deployment);
-        let loaded = before.iter().chain(&deployment.path);
-        let all: Vec<&LoadStep> = loaded.chain(deployment.unloaded()).collect();
-        let steps = before.len() + deployment.path.len();
+        let all: Vec<&LoadStep> = before.iter().chain(&deployment.path).collect();
         let size = OF_PANEL * sheet.panels.len() + OF_HINGE * sheet.hinges.len();
         let index = kept(all.len(), MOST_NUMBERS / size);
         let shown: Vec<&LoadStep> = index.iter().map(|&i| all[i]).collect();
@@ -86,10 +83,8 @@ impl HingeStates {
             let known = known_damage(deployment, before.len(), measure)?;
             Some(by_hinge(&|i, h| known[i][h]))
         };
-        let of_mechanics = mechanics.map(|mechanics| {
-            let states = index.iter().map(|&i| (all[i], i >= steps));
-            forces_and_reactions(scene, mechanics, deployment, states)
-        });
+        let of_mechanics = mechanics
+            .map(|mechanics| forces_and_reactions(scene, mechanics, &deployment.sheet, &shown));
         let (forces, reactions) = of_mechanics.unzip();
         let weight_steps = deployment.weight_steps().len();
         let curve = mechanics.and_then(|mechanics| ActuationCurve::new(mechanics, deployment));
@@ -97,7 +92,6 @@ impl HingeStates {
             of: all.len(),
             load_factor: shown.iter().map(|state| state.load_factor).collect(),
             status: shown.iter().map(|state| state.status).collect(),
-            unloaded: deployment.released.is_some(),
             weight_steps,
             curve: curve.map(|curve| {
                 let before = std::iter::repeat_n(None, weight_steps);
@@ -111,11 +105,7 @@ impl HingeStates {
                 .flat_map(|state| state.deformations.iter().flat_map(|eps| eps.to_array()))
                 .collect(),
             inside: by_hinge(&|i, h| f64::from(u8::from(all[i].inside[h]))),
-            energy: mechanics.map(|_| {
-                by_hinge(&|i, h| {
-                    if i < steps { all[i].energies[h] } else { f64::NAN }
-                })
-            }),
+            energy: mechanics.map(|_| by_hinge(&|i, h| all[i].energies[h])),
             forces,
             damage: damage(DamageMeasure::Mean),
             damage_peak: damage(DamageMeasure::Peak),
@@ -132,22 +122,18 @@ impl HingeStates {
     }
 }
 
-/// (F_a, F_s, M_theta) of every hinge and (F_x, F_y, M) of every support of the scene in states, of
-/// which some are `unloaded`.
-fn forces_and_reactions<'a>(
+/// (F_a, F_s, M_theta) of every hinge and (F_x, F_y, M) of every support of the scene in states.
+fn forces_and_reactions(
     scene: &Scene,
     mechanics: &Mechanics,
-    deployment: &Deployment,
-    states: impl Iterator<Item = (&'a LoadStep, bool)>,
+    sheet: &Sheet,
+    states: &[&LoadStep],
 ) -> (Packed, Packed) {
     let supports = scene.actuation().supports;
-    let law = mechanics.law.prepare(&deployment.sheet.designs());
-    let released = deployment.released.as_ref();
-    let released = ReleasedLaw(released.map_or(&[], |released| &released.hinges));
+    let law = mechanics.law.prepare(&sheet.designs());
+    let hinged = mechanics.hinged(sheet, &*law, false);
     let (mut forces, mut reactions) = (Vec::new(), Vec::new());
-    for (state, unloaded) in states {
-        let law: &dyn PreparedLaw = if unloaded { &released } else { &*law };
-        let hinged = mechanics.hinged(&deployment.sheet, law, false);
+    for state in states {
         let energies = hinged.energies(&state.deformations, Order::Forces);
         forces.extend(energies.iter().flat_map(|energy| energy.forces));
         let on_panels = mechanics.solver.holding_forces(hinged, state.weight, &state.configuration);
@@ -160,8 +146,7 @@ fn forces_and_reactions<'a>(
 }
 
 /// The damage of every hinge in every state: zero in the states before the path, NaN from the state
-/// in which the hinge is first outside the training domain, and without loads that at their end;
-/// `None` if the law predicts none.
+/// in which the hinge is first outside the training domain; `None` if the law predicts none.
 fn known_damage(
     deployment: &Deployment,
     before: usize,
@@ -180,9 +165,6 @@ fn known_damage(
             }
         };
         states.push((0..earlier.len()).map(of_hinge).collect());
-    }
-    if deployment.released.is_some() {
-        states.push(states[states.len() - 1].clone());
     }
     Some(states)
 }

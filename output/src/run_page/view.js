@@ -6,15 +6,13 @@ const shownNow = { state: 0, quantity: "rotation", hinge: 0 };
 function stateName(i) {
   if (states.index[i] === 0) return "the flat sheet";
   if (!run.carries_load) return `an opening of ${fixed(deformation(i, 0)[2] * DEG, 1)} deg`;
-  const last = states.of - 1 - (states.unloaded ? 1 : 0);
-  if (states.index[i] > last) return "the sheet after its loads were taken off";
-  const [step, all] = [states.index[i] - states.weight_steps, last - states.weight_steps];
+  const [step, all] = [states.index[i] - states.weight_steps, states.of - 1 - states.weight_steps];
   return step > 0 ? `load step ${step} of ${all}` : `weight step ${states.index[i]} of ${states.weight_steps}`;
 }
 
 function stateText(i) {
   const parts = [stateName(i)];
-  if (run.carries_load && !(states.unloaded && i === stateCount - 1)) parts.push(`load factor ${shown(states.load_factor[i])}`);
+  if (run.carries_load) parts.push(`load factor ${shown(states.load_factor[i])}`);
   if (states.curve?.[states.index[i]]) {
     const [displacement, load] = states.curve[states.index[i]];
     const [length, force] = run.stroke[1];

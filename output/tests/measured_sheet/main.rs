@@ -43,7 +43,6 @@ fn deployed() -> (DesignProblem, Deployment) {
         },
         model: Model::Equilibrium(Box::new(Mechanics {
             law: Arc::new(law),
-            release: None,
             contact: None,
             solver,
         })),

@@ -42,7 +42,7 @@ pub fn deployed(
 ) -> Result<(DesignProblem, Deployment), LevelError> {
     let problem = scene.problem()?;
     let deployment = problem.deploy(design).and_then(|deployment| {
-        deployment.at_target_state()?;
+        deployment.at_full_load()?;
         Ok(deployment)
     });
     let level = scene.config.level;
@@ -53,7 +53,7 @@ pub fn deployed(
 impl AtLevel {
     /// A deployed sheet of a design problem at a level.
     pub fn new(level: Level, problem: &DesignProblem, deployment: &Deployment) -> Self {
-        let configuration = &deployment.compared().configuration;
+        let configuration = &deployment.final_step().configuration;
         let corners = deployed_corners(&deployment.sheet, configuration);
         let hinges = 0..deployment.sheet.hinges.len();
         let mut peaks = hinges.map(|hinge| deployment.damage_max(DamageMeasure::Peak, hinge));

@@ -1,9 +1,9 @@
 //! A deployed sheet that is unloaded: its equilibrium without loads, with hinges that are elastic
 //! about their residual deformations.
 
+use crate::Scene;
 use crate::analysis::actuation_curve::{ActuationCurve, Mover};
-use crate::{Scene, SpringbackMismatch};
-use design::equilibrium::unloading::ReleasedSheet;
+use design::equilibrium::load_step::LoadStep;
 use design::hinge_law::{Order, PreparedLaw, Release, ReleasedLaw};
 use design::objective::design_problem::{Deployment, DesignError, DesignProblem, converged};
 use design::objective::scores::outline_error_at;
@@ -23,12 +23,9 @@ pub enum UnloadError {
     )]
     OutsideDomain { hinges: usize },
     #[error(
-        "without its loads the sheet would open further, from {loaded:.1} to {free:.1} deg: the law of released hinges does not hold \
-         here; check by `kirigami verify --equilibrium --released`"
+        "without its loads the sheet would open further, from {loaded:.1} to {free:.1} deg: the law of released hinges does not hold here"
     )]
     OpensFurther { loaded: f64, free: f64 },
-    #[error(transparent)]
-    Law(#[from] SpringbackMismatch),
     #[error(transparent)]
     Design(#[from] DesignError),
 }
@@ -54,14 +51,15 @@ pub struct ResidualShape {
 }
 
 impl ResidualShape {
-    /// The residual opening of a sheet that was unloaded.
-    pub fn new(
+    /// The residual opening of a sheet with these hinges at the end of the path of its unloading.
+    fn new(
         problem: &DesignProblem,
         deployment: &Deployment,
-        released: &ReleasedSheet,
+        hinges: &[ReleasedHinge],
+        path: &[LoadStep],
     ) -> Result<Self, DesignError> {
         let loaded = deployment.at_full_load()?;
-        let free = converged(released.last())?;
+        let free = converged(path.last().expect("a path has at least one step"))?;
         let sheet = &deployment.sheet;
         let moved = corner_distances(sheet, &loaded.configuration, &free.configuration);
         let curve = problem.model.mechanics().and_then(|mechanics| {
@@ -73,13 +71,13 @@ impl ResidualShape {
         let rotations = std::iter::zip(&loaded.deformations, &free.deformations);
         Ok(Self {
             rotations: rotations.map(|(on, off)| [on.theta, off.theta]).collect(),
-            rest_rotations: released.hinges.iter().map(|hinge| hinge.rest.theta).collect(),
+            rest_rotations: hinges.iter().map(|hinge| hinge.rest.theta).collect(),
             displacement_unit: match &curve {
                 Some(curve) if !curve.translational => "rad",
                 _ => "mm",
             },
             displacement: curve.map(|curve| [curve.points[0][0], curve.points[1][0]]),
-            snaps: released.path.iter().any(|step| step.jumps > 0),
+            snaps: path.iter().any(|step| step.jumps > 0),
             corners: rms_and_maximum(moved),
             outline_error: [loaded, free]
                 .map(|step| outline_error_at(&problem.objective, deployment, step)),
@@ -99,63 +97,38 @@ impl ResidualShape {
     }
 }
 
-/// The hinges of a deployed sheet of a scene and its problem after they were unloaded, with the
-/// forces of the problem's hinge law.
+/// The residual opening of a deployed sheet of a scene and its problem when it is unloaded, where
+/// the law of released hinges is known to hold.
 ///
 /// # Errors
-/// As [`Scene::check_springback`], or if the sheet has no equilibrium at full load.
-pub fn released_hinges(
-    scene: &Scene,
-    problem: &DesignProblem,
-    law: &Springback,
-    deployment: &Deployment,
-) -> Result<Vec<ReleasedHinge>, UnloadError> {
-    scene.check_springback(law)?;
-    let mechanics = problem.model.mechanics().ok_or(DesignError::NoMechanics)?;
-    let release = Release::new(law.clone(), scene.scale());
-    let designs = deployment.sheet.designs();
-    let prepared = mechanics.law.prepare(&designs);
-    let states = &deployment.at_full_load()?.deformations;
-    Ok(release.hinges(&*prepared, &designs, states))
-}
-
-/// A deployed sheet of a scene and its problem after it was unloaded, and its residual opening.
-///
-/// # Errors
-/// As [`released_hinges`], or if the sheet has no equilibrium without loads.
+/// If hinges are outside the training domain at full load, if the sheet has no equilibrium with or
+/// without loads, or if it would open further without them.
 pub fn unload(
     scene: &Scene,
     problem: &DesignProblem,
     law: &Springback,
     deployment: &Deployment,
-) -> Result<(ReleasedSheet, ResidualShape), UnloadError> {
-    let hinges = released_hinges(scene, problem, law, deployment)?;
-    let released = problem.unload(deployment, hinges)?;
-    let stays = ResidualShape::new(problem, deployment, &released)?;
-    Ok((released, stays))
-}
-
-/// As [`unload`], where the law of released hinges is known to hold.
-///
-/// # Errors
-/// As [`unload`], if hinges are outside the training domain at full load, or if the sheet would
-/// open further without its loads.
-pub fn unload_in_domain(
-    scene: &Scene,
-    problem: &DesignProblem,
-    law: &Springback,
-    deployment: &Deployment,
-) -> Result<(ReleasedSheet, ResidualShape), UnloadError> {
-    let hinges = deployment.hinges_outside();
-    if hinges > 0 {
-        return Err(UnloadError::OutsideDomain { hinges });
+) -> Result<ResidualShape, UnloadError> {
+    let outside = deployment.hinges_outside();
+    if outside > 0 {
+        return Err(UnloadError::OutsideDomain { hinges: outside });
     }
-    let (released, stays) = unload(scene, problem, law, deployment)?;
+    let mechanics = problem.model.mechanics().ok_or(DesignError::NoMechanics)?;
+    let loaded = deployment.at_full_load()?;
+    let (sheet, designs) = (&deployment.sheet, deployment.sheet.designs());
+    let prepared = mechanics.law.prepare(&designs);
+    let hinges =
+        Release { law, scale: scene.scale() }.hinges(&*prepared, &designs, &loaded.deformations);
+    let released = ReleasedLaw(&hinges);
+    let hinged = mechanics.hinged(sheet, &released, false);
+    let path = mechanics.solver.unload(hinged, loaded.configuration.clone());
+    let path = path.map_err(DesignError::from)?;
+    let stays = ResidualShape::new(problem, deployment, &hinges, &path)?;
     let [loaded, free] = stays.mean_rotations().map(f64::to_degrees);
     if free > loaded {
         return Err(UnloadError::OpensFurther { loaded, free });
     }
-    Ok((released, stays))
+    Ok(stays)
 }
 
 /// By how much a person opens a sheet too far, in parts of its opening.
@@ -192,7 +165,7 @@ pub fn moment_after_overshoot(
     if prepared.inside(&over).contains(&false) {
         return None;
     }
-    let hinges = Release::new(law.clone(), scene.scale()).hinges(&*prepared, &designs, &over);
+    let hinges = Release { law, scale: scene.scale() }.hinges(&*prepared, &designs, &over);
     let holds = |law: &dyn PreparedLaw| -> f64 {
         let energies = law.energies(&last.deformations, Order::Forces);
         let hinges = std::iter::zip(&energies, &last.deformations);

@@ -120,10 +120,6 @@ const groups = {
     checkField(box, "the stroke is prescribed", "drive", Boolean(scene.drive), (checked) => {
       scene.drive = checked ? { stroke: Number(strokeNow().toPrecision(4)) } : null;
     });
-    if (scene.surrogate?.springback)
-      checkField(box, "the target is for the sheet after its loads were taken off", "objective.target_state", scene.objective.target_state === "released", (checked) => {
-        scene.objective.target_state = checked ? "released" : "loaded";
-      });
   },
 
   ligament(box) {

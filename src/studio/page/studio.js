@@ -222,7 +222,7 @@ function showDraft({ sheet }) {
   const quantity = quantities[shownNow.quantity];
   drawSheet(shownNow.state, quantity, shownNow.hinge);
   drawScale(quantity);
-  byId("state").textContent = `${states.unloaded ? "Loads taken off" : "At full load"} (draft)`;
+  byId("state").textContent = "At full load (draft)";
   writeMiss();
   setStale(true);
 }

@@ -1,5 +1,4 @@
 //! Sheets, weights and rays checked by finite elements, of a fake solver and of CalculiX.
 
 mod fake_windows;
-mod released;
 mod sheet_checks;
