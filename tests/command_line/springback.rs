@@ -12,7 +12,7 @@ const PLATE: [(&str, &str); 11] = [
     ("70.0", "60.0"),
     ("start = 3.6", "start = 1.6"),
     ("[2.0, 5.0]", "[1.0, 2.8]"),
-    ("kerf = 0.1", "kerf = 0.2"),
+    ("slit_width = 0.1", "slit_width = 0.2"),
     ("r_win = 20.0", "r_win = 12.0"),
     ("pet-0.5mm", "polypropylene-3mm"),
     ("stroke = 30.0", "stroke = 22.0"),

@@ -334,7 +334,7 @@ fn notes(fit: &MaterialFit) -> Vec<String> {
             if removed {
                 "the difference to the given modulus is removed as the compliance of the machine"
             } else {
-                "it is not corrected, as that of an extensometer or of too few rows, and the given modulus is the slope to Rp0.2"
+                "it is not corrected (an extensometer, or too few rows), and the given modulus is the slope to Rp0.2"
             }
         ));
     }
