@@ -15,7 +15,6 @@ const CAMPAIGN: &str = "configs/campaigns/demo.toml";
 const RUN: &str = "campaign run configs/campaigns/demo.toml --folder runs/demo/campaign";
 const COLLECT: &str = "campaign collect configs/campaigns/demo.toml --folder runs/demo/campaign --out runs/demo/hinges.parquet";
 const STATUS: &str = "campaign status configs/campaigns/demo.toml --folder runs/demo/campaign";
-/// The scene with the design of its run.
 
 /// Runs the steps in order in one folder.
 macro_rules! story {

@@ -442,7 +442,7 @@ fn rays_are_solved_in_rounds_until_the_weights_are_accurate() {
     // The next round is stopped after two rays. Its weights are tested and kept, not the weights
     // of three rays.
     let five = campaign.first_rays(5);
-    let options = RunOptions { shard: Shard::WHOLE, workers: 1, time_limit: None };
+    let options = RunOptions { shard: Shard::WHOLE, workers: 1, time_limit: None, retry: false };
     run(&five, &rays, &solver, &options, &NEVER, &mut |_| ()).unwrap();
     assert_eq!(learned(1e9, None), (LearningEnd::Accurate, vec![3, 5], vec![5]));
     // The errors of weights of another material are never zero.
