@@ -117,7 +117,7 @@ fn a_stopped_run_is_continued_and_its_folder_belongs_to_one_material() {
     let next = printed.lines().find_map(|line| line.strip_prefix("next:    kirigami "));
     work.output(next.unwrap());
     let scene = std::fs::read_to_string(work.path("learned/sheet/scene.toml")).unwrap();
-    assert!(scene.contains("learned/weights.safetensors"), "{scene}");
+    assert!(scene.contains("weights = \"../weights.safetensors\""), "{scene}");
     assert_eq!(std::fs::metadata(&fits).unwrap().modified().unwrap(), before);
     // Accurate enough are also the weights of six rays, but more are solved.
     let card = std::fs::read_to_string(work.path("learned/weights.json")).unwrap();
