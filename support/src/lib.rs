@@ -18,6 +18,7 @@
 pub mod caught_panic;
 pub mod csv_table;
 pub mod document;
+pub mod fault;
 pub mod file_error;
 pub mod key_limits;
 pub mod lock_file;
