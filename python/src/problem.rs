@@ -142,7 +142,7 @@ impl Problem {
     /// Panels along x and y.
     #[getter]
     fn panels(&self) -> (usize, usize) {
-        (self.problem.grid.m, self.problem.grid.n)
+        (self.problem.topology.grid.m, self.problem.topology.grid.n)
     }
 
     /// Thickness of the sheet (mm).
@@ -331,7 +331,7 @@ impl Problem {
         let design = self.design_of(x)?;
         let configuration = self.by_panel(configuration, "configuration")?;
         let load_factor = finite("load_factor", load_factor)?;
-        let panels = problem.grid.panel_count();
+        let panels = problem.topology.panel_count();
         let expected = tuple(&[panels, 4, 2]);
         let corners = shaped(corners, "corners", &[Some(panels), Some(4), Some(2)], &expected)?;
         let by = ResponseCotangent {
@@ -458,7 +458,7 @@ impl Problem {
     }
 
     fn __repr__(&self) -> String {
-        let grid = self.problem.grid;
+        let grid = self.problem.topology.grid;
         format!("Problem({:?}, {} x {} panels)", self.scene.config.title, grid.m, grid.n)
     }
 }
@@ -491,7 +491,7 @@ impl Problem {
     }
 
     fn by_panel(&self, argument: &Bound<PyAny>, name: &str) -> PyResult<Vec<[f64; 3]>> {
-        let panels = self.problem.grid.panel_count();
+        let panels = self.problem.topology.panel_count();
         let given = shaped(argument, name, &[Some(panels), Some(3)], &tuple(&[panels, 3]))?;
         Ok(given.values.as_chunks::<3>().0.to_vec())
     }
@@ -541,7 +541,7 @@ impl Problem {
         };
         let given = [
             ("x", Some(numbers(x, "x")?), vec![self.size()]),
-            ("loads", read(loads, "loads")?, vec![self.problem.grid.panel_count(), 3]),
+            ("loads", read(loads, "loads")?, vec![self.problem.topology.panel_count(), 3]),
             ("thickness", read(thickness, "thickness")?, vec![]),
             ("stress", read(stress, "stress")?, vec![]),
         ];

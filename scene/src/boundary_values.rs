@@ -9,9 +9,10 @@ use design::equilibrium::supports::{Dof, Load, Support};
 use design::geometry::polygon::distance;
 use design::pattern::grid::{EDGES, Grid};
 use design::sheet::cut_sheet::AttachmentPoint;
-use design::sheet::topology::{HingeSite, hinge_sites};
+use design::sheet::topology::{HingeSite, Topology};
 use serde::Serialize;
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 /// Supports and loads at full load.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -196,7 +197,7 @@ impl OpeningCoupleConfig {
     fn on(&self, grid: Grid, turns: impl Fn(usize) -> bool) -> AppliedLoad {
         let mut couples = vec![0.0; grid.panel_count()];
         let pair = (self.panels).map(|pair| pair.map(|[column, row]| grid.panel(column, row)));
-        for HingeSite { a, b, .. } in hinge_sites(grid) {
+        for HingeSite { a, b, .. } in &Arc::<Topology>::from(grid).sites {
             if pair.is_none_or(|pair| pair.contains(&a.0) && pair.contains(&b.0)) {
                 couples[a.0] -= self.couple;
                 couples[b.0] += self.couple;

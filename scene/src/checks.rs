@@ -14,7 +14,8 @@ use crate::target::Target;
 use design::geometry::polygon::{contains, distance, edges, mean};
 use design::pattern::cut_pattern::CutPattern;
 use design::pattern::pattern_error::PatternError;
-use design::sheet::topology::panel_endpoints;
+use design::sheet::topology::Topology;
+use std::sync::Arc;
 use hinge::InvalidDesign;
 use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::FRAC_PI_2;
@@ -238,7 +239,7 @@ fn inside(scene: &SceneConfig, key: String, panel: [usize; 2], at: At) -> Result
     let start = scene.start.pattern(grid).map_err(InvalidScene::Start)?;
     let pattern = CutPattern::new(grid, scene.sheet.outline(), &start);
     let pattern = pattern.map_err(InvalidScene::Start)?;
-    let endpoints = panel_endpoints(grid)[grid.panel(panel[0], panel[1])];
+    let endpoints = Arc::<Topology>::from(grid).endpoints[grid.panel(panel[0], panel[1])];
     let corners = endpoints.map(|endpoint| pattern.points[endpoint]);
     if contains(&corners, at) {
         return Ok(());

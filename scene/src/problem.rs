@@ -24,7 +24,7 @@ impl Scene {
     pub fn problem(&self) -> Result<DesignProblem, SceneError> {
         let model = self.model()?;
         Ok(DesignProblem {
-            grid: self.grid(),
+            topology: self.grid().into(),
             outline: self.config.sheet.outline(),
             widths: self.width_chart(),
             options: self.sheet_options(),

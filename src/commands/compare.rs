@@ -74,7 +74,7 @@ impl CompareCommand {
             Some(file) => Some(self.fit(file, &ShapePath::flat(path.sheet))?.best),
             None => None,
         };
-        let grid = path.sheet.grid;
+        let grid = path.sheet.topology.grid;
         let supports = scene.config.supports.iter();
         let supported: BTreeSet<usize> =
             supports.map(|support| grid.panel(support.panel[0], support.panel[1])).collect();

@@ -26,7 +26,7 @@ impl SheetPart {
 
     /// The panel [column, row] with those around it, and all their hinges.
     pub fn around(sheet: &Sheet, [column, row]: [usize; 2]) -> Result<Self, VerificationError> {
-        let Grid { m, n } = sheet.grid;
+        let Grid { m, n } = sheet.topology.grid;
         if column >= m || row >= n {
             return Err(VerificationError::NoSuchPanel { column, row, m, n });
         }

@@ -179,7 +179,7 @@ fn on_finished_edge(sheet: &Sheet, panel: usize, point: [f64; 2]) -> [f64; 2] {
 /// The corners of a panel between its finished edges: the edges of cuts are half a slit inside of
 /// their lines.
 fn finished_corners(sheet: &Sheet, panel: usize) -> [[f64; 2]; 4] {
-    let Grid { m, n } = sheet.grid;
+    let Grid { m, n } = sheet.topology.grid;
     let (column, row) = (panel % m, panel / m);
     let on_outline = [row == 0, column == m - 1, row == n - 1, column == 0];
     let corners = sheet.panels[panel].corners;

@@ -407,7 +407,7 @@ impl<'a> Branch<'a> {
             let stroke = solver.drive.as_ref().map_or(0.0, |(_, stroke)| *stroke);
             (solver.support_motions(), stroke)
         } else {
-            (vec![[0.0; 3]; solver.grid.panel_count()], 0.0)
+            (vec![[0.0; 3]; solver.topology.panel_count()], 0.0)
         };
         let mut b = potential.driving(state);
         if supports.as_flattened().iter().any(|motion| *motion != 0.0) {

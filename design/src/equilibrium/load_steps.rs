@@ -202,8 +202,11 @@ impl EquilibriumSolver {
         stage: Stage,
         start: Configuration,
     ) -> Option<Follower<'a>> {
-        assert_eq!(self.grid, sheet.sheet.grid, "the grids of solver and sheet must be the same");
-        assert_eq!(start.len(), self.grid.panel_count(), "one motion per panel");
+        assert_eq!(
+            self.topology, sheet.sheet.topology,
+            "the topologies of solver and sheet must be the same"
+        );
+        assert_eq!(start.len(), self.topology.panel_count(), "one motion per panel");
         Follower::new(self, sheet, stage, start)
     }
 }

@@ -94,6 +94,8 @@ fn backward_error(remainder: &[f64], bound: &[f64], b: &[f64]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::sheet::topology::Topology;
+    use std::sync::Arc;
     use crate::pattern::grid::Grid;
 
     const GRIDS: [Grid; 2] = [Grid { m: 3, n: 3 }, Grid { m: 12, n: 12 }];
@@ -101,7 +103,7 @@ mod tests {
     /// Panel 0 clamped.
     fn pattern(grid: Grid) -> TangentPattern {
         let supported: Vec<bool> = (0..3 * grid.panel_count()).map(|i| i < 3).collect();
-        TangentPattern::new(grid, &supported)
+        TangentPattern::new(&Arc::<Topology>::from(grid), &supported)
     }
 
     /// One block v v' - e w w' per hinge.

@@ -13,7 +13,7 @@ use crate::equilibrium::settings::SolverSettings;
 use crate::equilibrium::supports::{Dof, Load, Support, hold_rigid_body};
 use crate::equilibrium::tangent::TangentPattern;
 use crate::equilibrium::weight::hung_from;
-use crate::pattern::grid::Grid;
+use crate::sheet::topology::Topology;
 use crate::sheet::cut_sheet::{AttachmentPoint, Sheet};
 use crate::sheet::kinematics::Configuration;
 use std::sync::Arc;
@@ -60,7 +60,7 @@ const WEIGHT_STEPS: usize = 2;
 /// Supports and loads of a sheet, with everything that depends on its topology alone.
 #[derive(Clone, Debug)]
 pub struct EquilibriumSolver {
-    pub(crate) grid: Grid,
+    pub(crate) topology: Arc<Topology>,
     pub(crate) settings: SolverSettings,
     pub(crate) steps: usize,
     /// Prescribed motions at full load.
@@ -85,17 +85,18 @@ pub struct EquilibriumSolver {
 impl EquilibriumSolver {
     /// Equilibria at the load factors i/steps, i = 1..=steps.
     pub fn new(
-        grid: Grid,
+        topology: impl Into<Arc<Topology>>,
         supports: &[Support],
         loads: &[Load],
         steps: usize,
         settings: SolverSettings,
     ) -> Result<Self, EquilibriumError> {
+        let topology = topology.into();
         if steps == 0 {
             return Err(EquilibriumError::NoSteps(steps));
         }
         let check = |what, panel, value: f64| {
-            let panels = grid.panel_count();
+            let panels = topology.panel_count();
             if panel >= panels {
                 return Err(EquilibriumError::NoSuchPanel { what, panel, panels });
             }
@@ -104,14 +105,14 @@ impl EquilibriumSolver {
             }
             Ok(())
         };
-        let mut supported = vec![[false; 3]; grid.panel_count()];
+        let mut supported = vec![[false; 3]; topology.panel_count()];
         for &Support { panel, dof, value } in supports {
             check("a support", panel, value)?;
             if std::mem::replace(&mut supported[panel][dof.index()], true) {
                 return Err(EquilibriumError::SupportedTwice { panel, dof });
             }
         }
-        let mut total = vec![[0.0; 3]; grid.panel_count()];
+        let mut total = vec![[0.0; 3]; topology.panel_count()];
         for &Load { panel, dof, value } in loads {
             check("a load", panel, value)?;
             if supported[panel][dof.index()] {
@@ -120,10 +121,10 @@ impl EquilibriumSolver {
             total[panel][dof.index()] += value;
         }
         Ok(Self {
-            grid,
             settings,
             steps,
-            pattern: Arc::new(TangentPattern::new(grid, supported.as_flattened())),
+            pattern: Arc::new(TangentPattern::new(&topology, supported.as_flattened())),
+            topology,
             supports: supports.into(),
             weight: [0.0; 2],
             attachment_points: Box::default(),
@@ -294,6 +295,6 @@ impl EquilibriumSolver {
 
     /// The configuration of the flat sheet.
     pub fn flat(&self) -> Configuration {
-        vec![[0.0; 3]; self.grid.panel_count()]
+        vec![[0.0; 3]; self.topology.panel_count()]
     }
 }

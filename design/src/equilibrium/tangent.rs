@@ -3,8 +3,7 @@
 //! numbered in elimination order.
 
 use crate::equilibrium::sparse_ldl::{SparseLdl, elimination_ranks};
-use crate::pattern::grid::Grid;
-use crate::sheet::topology::hinge_sites;
+use crate::sheet::topology::Topology;
 use faer::sparse::SymbolicSparseColMat;
 use std::collections::BTreeSet;
 
@@ -36,10 +35,9 @@ pub struct Factor {
 }
 
 /// The indices of the six degrees of freedom of each hinge.
-fn at_hinges(grid: Grid, free: &[Option<usize>]) -> Vec<[Option<usize>; 6]> {
+fn at_hinges(topology: &Topology, free: &[Option<usize>]) -> Vec<[Option<usize>; 6]> {
     let numbers = |panels: [usize; 2]| std::array::from_fn(|d| free[3 * panels[d / 3] + d % 3]);
-    let sites = hinge_sites(grid);
-    sites.iter().map(|site| numbers([site.a.0, site.b.0])).collect()
+    topology.sites.iter().map(|site| numbers([site.a.0, site.b.0])).collect()
 }
 
 /// The sparsity of the lower triangle; it always contains the diagonal, for the shift.
@@ -60,16 +58,16 @@ fn sparsity(at_hinges: &[[Option<usize>; 6]], dimension: usize) -> SymbolicSpars
 }
 
 impl TangentPattern {
-    /// The tangent of a grid; `supported` has three entries per panel.
-    pub fn new(grid: Grid, supported: &[bool]) -> Self {
+    /// The tangent of a sheet; `supported` has three entries per panel.
+    pub fn new(topology: &Topology, supported: &[bool]) -> Self {
         let mut numbers = 0..;
         let mut free: Vec<Option<usize>> = (supported.iter())
             .map(|&supported| if supported { None } else { numbers.next() })
             .collect();
         let dimension = free.iter().flatten().count();
-        let ranks = elimination_ranks(&sparsity(&at_hinges(grid, &free), dimension));
+        let ranks = elimination_ranks(&sparsity(&at_hinges(topology, &free), dimension));
         (free.iter_mut().flatten()).for_each(|number| *number = ranks[*number]);
-        let at_hinges = at_hinges(grid, &free);
+        let at_hinges = at_hinges(topology, &free);
         let ldl = SparseLdl::new(sparsity(&at_hinges, dimension));
         let (starts, rows) = ldl.entries();
         let slot = |row: usize, column: usize| {
@@ -234,6 +232,8 @@ impl TangentPattern {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::pattern::grid::Grid;
+    use std::sync::Arc;
 
     const GRIDS: [Grid; 4] =
         [Grid { m: 2, n: 1 }, Grid { m: 1, n: 9 }, Grid { m: 3, n: 3 }, Grid { m: 25, n: 20 }];
@@ -242,7 +242,7 @@ mod tests {
     fn pattern(grid: Grid) -> TangentPattern {
         let supported = |i: usize| i < 3 || (i > 5 && i % 17 < 2);
         let supported: Vec<bool> = (0..3 * grid.panel_count()).map(supported).collect();
-        TangentPattern::new(grid, &supported)
+        TangentPattern::new(&Arc::<Topology>::from(grid), &supported)
     }
 
     /// A positive definite matrix: a full block v v^T of each hinge plus a diagonal.

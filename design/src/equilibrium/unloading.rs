@@ -42,7 +42,7 @@ impl EquilibriumSolver {
         let free = Self {
             weight: self.weight,
             attachment_points: self.attachment_points.clone(),
-            ..Self::new(self.grid, &resting, &[], STEPS, self.settings)?
+            ..Self::new(self.topology.clone(), &resting, &[], STEPS, self.settings)?
         };
         match free.check_supports(sheet) {
             Ok(()) => Ok(free),

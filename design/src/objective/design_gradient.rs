@@ -153,11 +153,14 @@ fn outline_pullback<'a>(
 ) -> Vec<[f64; 3]> {
     let mut by_compared = vec![[0.0; 3]; sheet.panels.len()];
     for (&(panel, corner), &gradient) in outline {
-        let flat = sheet.panels[panel].corners[corner];
+        let flat = sheet.panels[panel].boundary[corner];
         let (by_motion, by_flat, by_reference) =
             deployed_pullback(&sheet.panels[panel], compared.configuration[panel], flat, gradient);
         (0..3).for_each(|c| by_compared[panel][c] += by_motion[c]);
-        add(&mut by_sheet.corners[panel][corner], by_flat);
+        let by_corners = sheet.panels[panel].corner_pullback(corner, by_flat);
+        for (sum, by_corner) in std::iter::zip(&mut by_sheet.corners[panel], by_corners) {
+            add(sum, by_corner);
+        }
         add(&mut by_sheet.references[panel], by_reference);
     }
     by_compared

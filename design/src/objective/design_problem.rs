@@ -12,12 +12,11 @@ use crate::objective::term::Deployed;
 use crate::pattern::cut_pattern::{CutPattern, Outline};
 use crate::pattern::design_vector::{DesignVector, WidthChart};
 use crate::pattern::fit_variables::FitVariables;
-use crate::pattern::grid::Grid;
 use crate::pattern::pattern_error::PatternError;
 use crate::sheet::cut_sheet::{Sheet, SheetError, SheetOptions};
 use crate::sheet::ideal_deployment::ideal_deployment;
 use crate::sheet::kinematics::deployed;
-use crate::sheet::topology::PanelCorner;
+use crate::sheet::topology::{PanelCorner, Topology};
 use hinge::TrainingDomain;
 use serde::Serialize;
 use std::sync::Arc;
@@ -96,8 +95,8 @@ impl Model {
 
 /// A design problem: everything that is constant during the design.
 pub struct DesignProblem {
-    /// Numbers of panels.
-    pub grid: Grid,
+    /// Panels and hinges.
+    pub topology: Arc<Topology>,
     /// Outline of the flat sheet.
     pub outline: Outline,
     /// Interval of the ligament widths.
@@ -189,7 +188,7 @@ impl Deployment {
     pub(crate) fn outline_at(&self, step: &LoadStep, corners: &[PanelCorner]) -> Vec<[f64; 2]> {
         let configuration = &step.configuration;
         let deployed = |&(panel, corner): &PanelCorner| {
-            let flat = self.sheet.panels[panel].corners[corner];
+            let flat = self.sheet.panels[panel].boundary[corner];
             deployed(&self.sheet.panels[panel], configuration[panel], flat)
         };
         corners.iter().map(deployed).collect()
@@ -237,7 +236,7 @@ impl DesignProblem {
 
     /// Lines 2-4 of Algorithm 1: cut pattern and flat sheet.
     pub fn cut(&self, design: &DesignVector) -> Result<(CutPattern, Sheet), DesignError> {
-        let pattern = CutPattern::new(self.grid, self.outline_of(design), &design.pattern)?;
+        let pattern = CutPattern::new(self.topology.grid, self.outline_of(design), &design.pattern)?;
         let w_lig: Vec<f64> =
             (design.omega.iter()).map(|&omega| self.widths.width(omega)).collect();
         let sheet = self.sheet(&pattern, &w_lig)?;
@@ -255,7 +254,7 @@ impl DesignProblem {
     /// The sheet of a pattern with the given ligament widths (mm), held and pulled where the
     /// problem's sheet is.
     pub(crate) fn sheet(&self, pattern: &CutPattern, w_lig: &[f64]) -> Result<Sheet, SheetError> {
-        let sheet = Sheet::new(pattern, w_lig, self.options)?;
+        let sheet = Sheet::of_cells(pattern, self.topology.clone(), w_lig, self.options)?;
         Ok(match self.model.mechanics() {
             Some(mechanics) => sheet.attached_at(mechanics.solver.attachment_points()),
             None => sheet,

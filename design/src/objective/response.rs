@@ -107,6 +107,7 @@ impl DesignProblem {
         Ok(Self {
             model: Model::Equilibrium(Box::new(mechanics)),
             objective: self.objective.clone(),
+            topology: self.topology.clone(),
             ..*self
         })
     }
@@ -196,7 +197,7 @@ impl DesignProblem {
             by_outline: by.corners.as_flattened(),
             by_states: &vec![vec![HingeGradient::default()]; sheet.hinges.len()],
             by_load_factor: by.load_factor,
-            by_sheet: SheetGradient::zeros(sheet.grid),
+            by_sheet: SheetGradient::zeros(&sheet.topology),
             by_fit: [0.0; 2],
             by_reactions: of_supports.then_some(reactions),
         };

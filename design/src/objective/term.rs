@@ -87,7 +87,7 @@ impl TermGradient {
             by_outline: vec![[0.0; 2]; at.outline.len()],
             by_measures: vec![vec![[0.0; 4]; steps]; hinges],
             by_states: vec![vec![HingeGradient::default(); steps]; hinges],
-            by_sheet: SheetGradient::zeros(at.sheet.grid),
+            by_sheet: SheetGradient::zeros(&at.sheet.topology),
             by_fit: [0.0; 2],
         }
     }

@@ -73,7 +73,7 @@ mod tests {
     fn problem() -> DesignProblem {
         let process = HingeConstants { kerf: 0.01, r_win: 0.3, ..HingeConstants::PAPER };
         DesignProblem {
-            grid: GRID,
+            topology: GRID.into(),
             outline: Outline::rectangle(2.0, 2.0),
             widths: WidthChart { w_minus: 0.05, w_plus: 0.1 },
             options: SheetOptions { hinge_point: HingePoint::Corner, process: process.into() },

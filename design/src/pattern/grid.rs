@@ -22,6 +22,11 @@ pub enum Endpoint {
     XPrime,
 }
 
+impl Endpoint {
+    /// x, then x'.
+    pub(crate) const BOTH: [Self; 2] = [Self::X, Self::XPrime];
+}
+
 /// The corners of a panel or of the outline, counter-clockwise.
 pub(crate) const SW: usize = 0;
 pub(crate) const SE: usize = 1;

@@ -14,11 +14,12 @@ use crate::geometry::plane::{I, add, complex, cross, dot, point};
 use crate::pattern::cut_pattern::{CutPattern, Outline};
 use crate::pattern::grid::{Grid, NE, NW, SE, SW};
 use crate::sheet::cutting_process::CuttingProcess;
-use crate::sheet::topology::{HingeSite, PanelCorner, hinge_sites, panel_endpoints};
+use crate::sheet::topology::{HingeSite, PanelCorner, Topology, Trim};
 use faer::c64;
 use hinge::HingeDesign;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use std::sync::Arc;
 
 /// Why a pattern and its ligament widths do not define a sheet.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -85,10 +86,13 @@ pub struct SheetOptions {
 }
 
 /// A rigid panel in the flat sheet.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Panel {
-    /// SW, SE, NE, NW (mm).
+    /// SW, SE, NE, NW of its cell (mm).
     pub corners: [[f64; 2]; 4],
+    /// The polygon that it is, counter-clockwise: the corners, unless it is trimmed (mm).
+    pub boundary: Vec<[f64; 2]>,
+    pub(crate) trim: Option<Trim>,
     /// The point whose motion is (u_x, u_y), where the panel is held or pulled.
     pub point: PanelPoint,
     /// Its position (mm).
@@ -128,9 +132,9 @@ pub struct Hinge {
 /// The flat sheet: rigid panels joined by hinges.
 #[derive(Clone, Debug)]
 pub struct Sheet {
-    /// Numbers of panels.
-    pub grid: Grid,
-    /// Outline of the sheet.
+    /// Its panels and hinges.
+    pub topology: Arc<Topology>,
+    /// Outline of the pattern.
     pub outline: Outline,
     /// Options with which the sheet was computed.
     pub options: SheetOptions,
@@ -138,7 +142,6 @@ pub struct Sheet {
     pub panels: Vec<Panel>,
     /// Ordered by vertex, row by row; at each vertex x before x'.
     pub hinges: Vec<Hinge>,
-    panel_endpoints: Vec<[usize; 4]>,
     /// Cut endpoints of the pattern.
     points: Vec<[f64; 2]>,
 }
@@ -172,8 +175,8 @@ pub struct SheetGradient {
 
 impl SheetGradient {
     /// A zero gradient.
-    pub fn zeros(grid: Grid) -> Self {
-        let (panels, hinges) = (grid.panel_count(), grid.hinge_count());
+    pub fn zeros(topology: &Topology) -> Self {
+        let (panels, hinges) = (topology.panel_count(), topology.hinge_count());
         Self {
             corners: vec![[[0.0; 2]; 4]; panels],
             references: vec![[0.0; 2]; panels],
@@ -190,43 +193,50 @@ impl SheetGradient {
 }
 
 impl Sheet {
-    /// The sheet of `pattern` with one ligament width (mm) per hinge.
+    /// The sheet of all cells of `pattern` with one ligament width (mm) per hinge.
     pub fn new(
         pattern: &CutPattern,
         w_lig: &[f64],
         options: SheetOptions,
     ) -> Result<Self, SheetError> {
-        let grid = pattern.grid;
-        if w_lig.len() != grid.hinge_count() {
+        Self::of_cells(pattern, pattern.grid.into(), w_lig, options)
+    }
+
+    /// The sheet of some cells of `pattern` with one ligament width (mm) per hinge.
+    pub fn of_cells(
+        pattern: &CutPattern,
+        topology: Arc<Topology>,
+        w_lig: &[f64],
+        options: SheetOptions,
+    ) -> Result<Self, SheetError> {
+        if w_lig.len() != topology.hinge_count() {
             return Err(SheetError::WidthCount {
                 found: w_lig.len(),
-                expected: grid.hinge_count(),
+                expected: topology.hinge_count(),
             });
         }
-        let panel_endpoints = panel_endpoints(grid);
-        let panels = std::iter::zip(0.., &panel_endpoints)
-            .map(|(k, endpoints)| {
+        let shapes = std::iter::zip(&topology.endpoints, &topology.trims);
+        let panels = std::iter::zip(0.., shapes)
+            .map(|(k, (endpoints, trim))| {
                 let corners = endpoints.map(|endpoint| pattern.points[endpoint]);
-                Panel::new(k, corners)
+                Panel::new(k, corners, trim.clone())
             })
             .collect::<Result<_, _>>()?;
-        let hinges = std::iter::zip(hinge_sites(grid), w_lig)
+        let hinges = std::iter::zip(&topology.sites, w_lig)
             .enumerate()
             .map(|(h, (site, &w_lig))| {
-                let [i, j] = site.vertex;
-                let interior = grid.is_interior(i, j);
-                let half_slit = if interior { 0.5 * options.process.slit_width } else { 0.0 };
+                let slit = topology.has_far_flank(site);
+                let half_slit = if slit { 0.5 * options.process.slit_width } else { 0.0 };
                 let widths = [w_lig, w_lig + half_slit];
-                Hinge::new(h, site, &pattern.points, widths, options)
+                Hinge::new(h, *site, &pattern.points, widths, options)
             })
             .collect::<Result<_, _>>()?;
         Ok(Self {
-            grid,
+            topology,
             outline: pattern.outline,
             options,
             panels,
             hinges,
-            panel_endpoints,
             points: pattern.points.clone(),
         })
     }
@@ -257,17 +267,17 @@ impl Sheet {
         self.hinges.iter().map(design).collect()
     }
 
-    /// The panel corners on the outline, counter-clockwise from the south-west: (panel, corner).
+    /// The panel corners on the outline of a sheet of all cells, counter-clockwise from the
+    /// south-west: (panel, corner).
     pub fn outline_corners(&self) -> Vec<PanelCorner> {
-        let Grid { m, n } = self.grid;
-        let bottom = (0..m).map(|p| (self.grid.panel(p, 0), [SW, SE]));
-        let right = (0..n).map(|q| (self.grid.panel(m - 1, q), [SE, NE]));
-        let top = (0..m).rev().map(|p| (self.grid.panel(p, n - 1), [NE, NW]));
-        let left = (0..n).rev().map(|q| (self.grid.panel(0, q), [NW, SW]));
-        let mut ring: Vec<_> = bottom
-            .chain(right)
-            .chain(top)
-            .chain(left)
+        let Grid { m, n } = self.topology.grid;
+        let bottom = (0..m).map(|p| (p, 0, [SW, SE]));
+        let right = (0..n).map(|q| (m - 1, q, [SE, NE]));
+        let top = (0..m).rev().map(|p| (p, n - 1, [NE, NW]));
+        let left = (0..n).rev().map(|q| (0, q, [NW, SW]));
+        let cells = bottom.chain(right).chain(top).chain(left);
+        let mut ring: Vec<_> = cells
+            .filter_map(|(p, q, ends)| Some((self.topology.panel(p, q)?, ends)))
             .flat_map(|(panel, ends)| ends.map(|corner| (panel, corner)))
             .collect();
         ring.dedup();
@@ -275,8 +285,18 @@ impl Sheet {
         ring
     }
 
-    /// The outline corners that belong to no hinge.
+    /// The corners of the boundaries of panels that belong to no hinge and are on the outline.
     pub fn free_outline_corners(&self) -> Vec<PanelCorner> {
+        let in_cell = |[x, y]: [f64; 2]| [x, y].iter().all(|x| *x == 0.0 || *x == 1.0);
+        let trimmed = self.topology.trims.iter().enumerate().flat_map(|(panel, trim)| {
+            let points = trim.iter().flat_map(|trim| trim.iter().enumerate());
+            let points = points.filter(move |(_, at)| !in_cell(**at));
+            points.map(move |(point, _)| (panel, point))
+        });
+        let trimmed: Vec<_> = trimmed.collect();
+        if !trimmed.is_empty() {
+            return trimmed;
+        }
         let mut corners = self.outline_corners();
         corners.retain(|corner| {
             let belongs = |hinge: &Hinge| [hinge.site.a, hinge.site.b].contains(corner);
@@ -295,7 +315,7 @@ impl Sheet {
                 panel.pullback(PanelPoint::Centroid, gradient.centroids[k]),
                 panel.area_pullback(gradient.areas[k]),
             ];
-            for (corner, &endpoint) in self.panel_endpoints[k].iter().enumerate() {
+            for (corner, &endpoint) in self.topology.endpoints[k].iter().enumerate() {
                 let by_corner = by_parts.iter().map(|by_corners| by_corners[corner]);
                 add(&mut points[endpoint], by_corner.sum::<c64>());
             }
@@ -335,17 +355,34 @@ impl Sheet {
 }
 
 impl Panel {
-    fn new(panel: usize, corners: [[f64; 2]; 4]) -> Result<Self, SheetError> {
-        let mean = corners.map(complex).iter().sum::<c64>() / 4.0;
-        let arms = corners.map(|corner| complex(corner) - mean);
+    fn new(
+        panel: usize,
+        corners: [[f64; 2]; 4],
+        trim: Option<Trim>,
+    ) -> Result<Self, SheetError> {
+        let boundary = match &trim {
+            None => corners.to_vec(),
+            Some(trim) => trim.iter().map(|at| in_cell(&corners, *at)).collect(),
+        };
+        let mean = boundary.iter().copied().map(complex).sum::<c64>() / boundary.len() as f64;
+        let arms: Vec<c64> = boundary.iter().map(|corner| complex(*corner) - mean).collect();
         let sectors = sectors(&arms);
         let area = 0.5 * sectors.iter().sum::<f64>();
         if !(area > 0.0 && area.is_finite()) {
             return Err(SheetError::PanelArea { panel, area });
         }
-        let moment: c64 = (0..4).map(|j| (arms[j] + arms[(j + 1) % 4]) * sectors[j]).sum();
+        let next = |j: usize| (j + 1) % arms.len();
+        let moment: c64 = (0..arms.len()).map(|j| (arms[j] + arms[next(j)]) * sectors[j]).sum();
         let centroid = point(mean + moment / (6.0 * area));
-        Ok(Self { corners, point: PanelPoint::Centroid, reference: centroid, centroid, area })
+        Ok(Self {
+            corners,
+            boundary,
+            trim,
+            point: PanelPoint::Centroid,
+            reference: centroid,
+            centroid,
+            area,
+        })
     }
 
     /// The position of a point of the panel in the flat sheet (mm).
@@ -359,9 +396,27 @@ impl Panel {
         }
     }
 
-    /// Centroid-to-corner vectors.
-    fn arms(&self) -> [c64; 4] {
-        self.corners.map(|corner| complex(corner) - complex(self.centroid))
+    /// The gradient in the corners of a function with the given gradient in one point of the
+    /// boundary.
+    pub(crate) fn corner_pullback(&self, point: usize, gradient: c64) -> [c64; 4] {
+        let [south_east, north_west] = match &self.trim {
+            None => return std::array::from_fn(|corner| f64::from(corner == point) * gradient),
+            Some(trim) => trim[point],
+        };
+        let mut corners = [c64::ZERO; 4];
+        corners[SW] = gradient * (1.0 - south_east - north_west);
+        corners[SE] = gradient * south_east;
+        corners[NW] = gradient * north_west;
+        corners
+    }
+
+    /// The same with a gradient in each point of the boundary.
+    fn boundary_pullback(&self, gradients: &[c64]) -> [c64; 4] {
+        let by_points = gradients.iter().enumerate();
+        by_points.fold([c64::ZERO; 4], |sum, (point, gradient)| {
+            let corners = self.corner_pullback(point, *gradient);
+            std::array::from_fn(|corner| sum[corner] + corners[corner])
+        })
     }
 
     /// The gradient in the corners of a function with the given gradient in a point.
@@ -381,8 +436,12 @@ impl Panel {
 
     /// The gradient in the corners of a function with the given derivative in the area.
     fn area_pullback(&self, derivative: f64) -> [c64; 4] {
-        let corner = |j: usize| complex(self.corners[j % 4]);
-        std::array::from_fn(|j| -0.5 * derivative * I * (corner(j + 1) - corner(j + 3)))
+        let count = self.boundary.len();
+        let corner = |j: usize| complex(self.boundary[j % count]);
+        let along = |j: usize| corner(j + 1) - corner(j + count - 1);
+        let by_boundary: Vec<c64> =
+            (0..count).map(|j| -0.5 * derivative * I * along(j)).collect();
+        self.boundary_pullback(&by_boundary)
     }
 
     /// The gradient in the corners of a function with the given gradient in the centroid.
@@ -391,23 +450,30 @@ impl Panel {
     /// sum_j [(dp_j + dp_(j+1)) S_j + (p_j + p_(j+1)) dS_j] / (3 sum_j S_j).
     fn centroid_pullback(&self, gradient: [f64; 2]) -> [c64; 4] {
         let gradient = complex(gradient);
-        let arms = self.arms();
+        let arm = |corner: &[f64; 2]| complex(*corner) - complex(self.centroid);
+        let arms: Vec<c64> = self.boundary.iter().map(arm).collect();
         let sectors = sectors(&arms);
         let scaled = gradient / (3.0 * sectors.iter().sum::<f64>());
-        let mut corners = [c64::ZERO; 4];
-        for j in 0..4 {
-            let next = (j + 1) % 4;
+        let mut by_boundary = vec![c64::ZERO; arms.len()];
+        for j in 0..arms.len() {
+            let next = (j + 1) % arms.len();
             let by_sector = dot(scaled, arms[j] + arms[next]);
-            corners[j] += scaled * sectors[j] - I * arms[next] * by_sector;
-            corners[next] += scaled * sectors[j] + I * arms[j] * by_sector;
+            by_boundary[j] += scaled * sectors[j] - I * arms[next] * by_sector;
+            by_boundary[next] += scaled * sectors[j] + I * arms[j] * by_sector;
         }
-        corners
+        self.boundary_pullback(&by_boundary)
     }
 }
 
+/// The point SW + x (SE - SW) + y (NW - SW) of a cell.
+fn in_cell(corners: &[[f64; 2]; 4], [x, y]: [f64; 2]) -> [f64; 2] {
+    let along = |c: usize, to: usize| corners[to][c] - corners[SW][c];
+    [0, 1].map(|c| corners[SW][c] + x * along(c, SE) + y * along(c, NW))
+}
+
 /// Twice the signed areas of the triangles between the origin and the panel's edges.
-fn sectors(arms: &[c64; 4]) -> [f64; 4] {
-    std::array::from_fn(|j| cross(arms[j], arms[(j + 1) % 4]))
+fn sectors(arms: &[c64]) -> Vec<f64> {
+    (0..arms.len()).map(|j| cross(arms[j], arms[(j + 1) % arms.len()])).collect()
 }
 
 impl Hinge {

@@ -137,6 +137,8 @@ mod tests {
     fn a_window_that_extends_beyond_its_panels_is_detected() {
         let panel = |x: f64, width: f64| Panel {
             corners: [[x, -300.0], [x + width, -300.0], [x + width, 0.0], [x, 0.0]],
+            boundary: Vec::new(),
+            trim: None,
             point: PanelPoint::Centroid,
             reference: [x + width / 2.0, -150.0],
             centroid: [x + width / 2.0, -150.0],

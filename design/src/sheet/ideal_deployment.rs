@@ -13,7 +13,6 @@
 use crate::geometry::plane::{I, add, complex, dot, turn};
 use crate::sheet::cut_sheet::{Sheet, SheetGradient};
 use crate::sheet::kinematics::Configuration;
-use crate::sheet::topology::is_even;
 use faer::c64;
 
 /// The configuration with every hinge open by `theta` (rad).
@@ -67,7 +66,7 @@ pub fn ideal_deployment_pullback(
 }
 
 fn rotation(sheet: &Sheet, panel: usize, theta: f64) -> f64 {
-    if is_even(sheet.grid, panel) { -0.5 * theta } else { 0.5 * theta }
+    if sheet.topology.is_even(panel) { -0.5 * theta } else { 0.5 * theta }
 }
 
 /// A hinge that connects a panel to its parent in the tree.

@@ -12,6 +12,7 @@
 //! and at theta = pi and at no angle between.
 
 use crate::geometry::plane::{I, complex};
+use crate::pattern::grid::Grid;
 use crate::sheet::cut_sheet::Sheet;
 use crate::sheet::ideal_deployment::ideal_deployment;
 use faer::c64;
@@ -56,15 +57,14 @@ impl Span {
         }
     }
 
-    /// The spans from the middle of the west edge to the middle of the east edge, and from south to
-    /// north.
+    /// The spans between the first and the last panel of the middle row, and of the middle column.
     pub fn of_sheet(sheet: &Sheet) -> [Self; 2] {
-        let grid = sheet.grid;
-        let (p, q) = (grid.m / 2, grid.n / 2);
-        [
-            Self::between(sheet, grid.panel(0, q), grid.panel(grid.m - 1, q)),
-            Self::between(sheet, grid.panel(p, 0), grid.panel(p, grid.n - 1)),
-        ]
+        let Grid { m, n } = sheet.topology.grid;
+        let (row, column) = ((0..m).map(|p| (p, n / 2)), (0..n).map(|q| (m / 2, q)));
+        let ends = |panels: Vec<usize>| [panels[0], panels[panels.len() - 1]];
+        let panel = |(p, q)| sheet.topology.panel(p, q);
+        let lines = [row.filter_map(panel).collect(), column.filter_map(panel).collect()];
+        lines.map(ends).map(|[from, to]| Self::between(sheet, from, to))
     }
 
     /// lambda of (6) at the opening angle theta (rad).

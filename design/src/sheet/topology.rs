@@ -1,7 +1,8 @@
-//! The cut endpoints of each panel and each hinge: the connectivity, which is the same for all
+//! The panels, the hinges and their cut endpoints: the connectivity, which is the same for all
 //! designs.
 
 use crate::pattern::grid::{Endpoint, Grid, NE, NW, SE, SW};
+use std::sync::Arc;
 
 /// A corner of a panel: (panel, corner), corners counter-clockwise from the south-west.
 pub type PanelCorner = (usize, usize);
@@ -25,69 +26,162 @@ pub struct HingeSite {
     pub main_end: usize,
 }
 
-/// The cut endpoints at the corners SW, SE, NE, NW of every panel.
-pub fn panel_endpoints(grid: Grid) -> Vec<[usize; 4]> {
-    let endpoint = |i, j, even, odd| {
-        let flank = if Grid::horizontal(i, j) { even } else { odd };
-        grid.endpoint(i, j, flank)
-    };
-    let panels = (0..grid.n).flat_map(|q| (0..grid.m).map(move |p| (p, q)));
-    panels
-        .map(|(p, q)| {
-            [
-                endpoint(p, q, Endpoint::XPrime, Endpoint::X),
-                endpoint(p + 1, q, Endpoint::XPrime, Endpoint::XPrime),
-                endpoint(p + 1, q + 1, Endpoint::X, Endpoint::XPrime),
-                endpoint(p, q + 1, Endpoint::X, Endpoint::X),
-            ]
+/// The panels of a sheet and the hinges that join them: cells of a grid.
+///
+/// A void and the four panels around it are a loop of four hinges, and loops that share two panels
+/// open together. The voids that are kept therefore say which cells are panels, and which
+/// neighbours hang together: those that are on one loop.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Topology {
+    /// All cells.
+    pub grid: Grid,
+    /// Column and row of each panel, row by row.
+    pub places: Vec<[usize; 2]>,
+    /// Ordered by vertex, row by row; at each vertex x before x'.
+    pub sites: Vec<HingeSite>,
+    /// The cut endpoints at the corners SW, SE, NE, NW of every panel.
+    pub endpoints: Vec<[usize; 4]>,
+    /// The shape of each panel that is not its cell.
+    pub trims: Vec<Option<Trim>>,
+    /// The panel of each cell.
+    numbers: Vec<Option<usize>>,
+}
+
+/// The boundary of a panel that is not its cell: counter-clockwise points SW + x (SE - SW) + y (NW -
+/// SW), which move with the corners of the cell.
+pub type Trim = Arc<[[f64; 2]]>;
+
+impl From<Grid> for Arc<Topology> {
+    /// Every cell is a panel.
+    fn from(grid: Grid) -> Self {
+        Self::new(Topology::with_loops(grid, |_, _| true))
+    }
+}
+
+impl Topology {
+    /// The panels around the `kept` voids of a grid, one entry per interior vertex, row by row.
+    pub fn of_voids(grid: Grid, kept: &[bool]) -> Self {
+        let at = |i: usize, j: usize| {
+            grid.is_interior(i, j) && kept[(j - 1) * (grid.m - 1) + i - 1]
+        };
+        Self::with_loops(grid, at)
+    }
+
+    fn with_loops(grid: Grid, kept: impl Fn(usize, usize) -> bool) -> Self {
+        let all = (0..grid.n).flat_map(|q| (0..grid.m).map(move |p| [p, q]));
+        let on_loop = |&[p, q]: &[usize; 2]| {
+            let vertices = [(p, q), (p + 1, q), (p, q + 1), (p + 1, q + 1)];
+            vertices.into_iter().any(|(i, j)| kept(i, j))
+        };
+        let places: Vec<_> = all.filter(on_loop).collect();
+        let mut numbers = vec![None; grid.panel_count()];
+        for (panel, [p, q]) in places.iter().enumerate() {
+            numbers[grid.panel(*p, *q)] = Some(panel);
+        }
+        let mut topology = Self {
+            endpoints: places.iter().map(|place| endpoints(grid, *place)).collect(),
+            trims: vec![None; places.len()],
+            grid,
+            places,
+            sites: Vec::new(),
+            numbers,
+        };
+        let sites = grid.vertices().flat_map(|(i, j)| Endpoint::BOTH.map(|endpoint| (i, j, endpoint)));
+        topology.sites = sites.filter_map(|(i, j, end)| topology.hinge_site(i, j, end, &kept)).collect();
+        topology
+    }
+
+    /// Number of panels.
+    pub fn panel_count(&self) -> usize {
+        self.places.len()
+    }
+
+    /// Number of hinges.
+    pub fn hinge_count(&self) -> usize {
+        self.sites.len()
+    }
+
+    /// The panel in a column and a row, if there is one.
+    pub fn panel(&self, p: usize, q: usize) -> Option<usize> {
+        (p < self.grid.m && q < self.grid.n).then(|| self.numbers[self.grid.panel(p, q)])?
+    }
+
+    /// Whether a panel has even column + row, so that it turns by -theta/2 in the ideal deployment.
+    pub fn is_even(&self, panel: usize) -> bool {
+        let [p, q] = self.places[panel];
+        (p + q).is_multiple_of(2)
+    }
+
+    /// Whether the sheet continues beyond the secondary cut of a hinge.
+    pub(crate) fn has_far_flank(&self, site: &HingeSite) -> bool {
+        let [i, j] = site.vertex;
+        let far = match site.endpoint {
+            Endpoint::X => Endpoint::XPrime,
+            Endpoint::XPrime => Endpoint::X,
+        };
+        flank(i, j, far).into_iter().any(|corner| self.with_corner(i, j, corner).is_some())
+    }
+
+    /// The hinge at an endpoint of C_ij; `None` if its panels are not on one loop.
+    fn hinge_site(
+        &self,
+        i: usize,
+        j: usize,
+        endpoint: Endpoint,
+        kept: impl Fn(usize, usize) -> bool,
+    ) -> Option<HingeSite> {
+        let [first, second] = flank(i, j, endpoint).map(|corner| self.with_corner(i, j, corner));
+        let (first, second) = (first?, second?);
+        let (far_i, far_j, _) = main_vertex(i, j, endpoint);
+        if !(kept(i, j) || kept(far_i, far_j)) {
+            return None;
+        }
+        let (a, b) = if self.is_even(first.0) { (first, second) } else { (second, first) };
+        let [from, to] = slit(self.grid, i, j);
+        Some(HingeSite {
+            vertex: [i, j],
+            endpoint,
+            a,
+            b,
+            corner: self.grid.endpoint(i, j, endpoint),
+            secondary: match endpoint {
+                Endpoint::X => [from, to],
+                Endpoint::XPrime => [to, from],
+            },
+            main_end: main_end(self.grid, i, j, endpoint),
         })
-        .collect()
+    }
+
+    /// The panel whose given corner lies at vertex (i, j), if there is one.
+    fn with_corner(&self, i: usize, j: usize, corner: usize) -> Option<PanelCorner> {
+        let p = i.checked_sub(usize::from(corner == SE || corner == NE))?;
+        let q = j.checked_sub(usize::from(corner == NE || corner == NW))?;
+        Some((self.panel(p, q)?, corner))
+    }
 }
 
-/// All hinges, ordered by vertex, row by row; at each vertex x before x'.
-pub fn hinge_sites(grid: Grid) -> Vec<HingeSite> {
-    grid.vertices()
-        .flat_map(|(i, j)| [(i, j, Endpoint::X), (i, j, Endpoint::XPrime)])
-        .filter_map(|(i, j, endpoint)| hinge_site(grid, i, j, endpoint))
-        .collect()
-}
-
-/// The hinge at an endpoint of C_ij; `None` if a panel is missing, at outline slits and corners.
-fn hinge_site(grid: Grid, i: usize, j: usize, endpoint: Endpoint) -> Option<HingeSite> {
-    let corners = match (Grid::horizontal(i, j), endpoint) {
+/// The corners, at vertex (i, j), of the two cells on a flank of its cut.
+fn flank(i: usize, j: usize, endpoint: Endpoint) -> [usize; 2] {
+    match (Grid::horizontal(i, j), endpoint) {
         (true, Endpoint::X) => [NE, NW],
         (true, Endpoint::XPrime) => [SE, SW],
         (false, Endpoint::X) => [SW, NW],
         (false, Endpoint::XPrime) => [SE, NE],
+    }
+}
+
+/// The cut endpoints at the corners SW, SE, NE, NW of a cell.
+fn endpoints(grid: Grid, [p, q]: [usize; 2]) -> [usize; 4] {
+    let endpoint = |i, j, even, odd| {
+        let flank = if Grid::horizontal(i, j) { even } else { odd };
+        grid.endpoint(i, j, flank)
     };
-    let [first, second] = corners.map(|corner| panel_with_corner(grid, i, j, corner));
-    let (first, second) = (first?, second?);
-    let (a, b) = if is_even(grid, first.0) { (first, second) } else { (second, first) };
-    let [from, to] = slit(grid, i, j);
-    Some(HingeSite {
-        vertex: [i, j],
-        endpoint,
-        a,
-        b,
-        corner: grid.endpoint(i, j, endpoint),
-        secondary: match endpoint {
-            Endpoint::X => [from, to],
-            Endpoint::XPrime => [to, from],
-        },
-        main_end: main_end(grid, i, j, endpoint),
-    })
-}
-
-/// The panel whose given corner lies at vertex (i, j), if there is one.
-fn panel_with_corner(grid: Grid, i: usize, j: usize, corner: usize) -> Option<PanelCorner> {
-    let p = i.checked_sub(usize::from(corner == SE || corner == NE))?;
-    let q = j.checked_sub(usize::from(corner == NE || corner == NW))?;
-    (p < grid.m && q < grid.n).then(|| (grid.panel(p, q), corner))
-}
-
-/// Whether panel k has even column + row, so that it turns by -theta/2 in the ideal deployment.
-pub fn is_even(grid: Grid, panel: usize) -> bool {
-    (panel % grid.m + panel / grid.m).is_multiple_of(2)
+    [
+        endpoint(p, q, Endpoint::XPrime, Endpoint::X),
+        endpoint(p + 1, q, Endpoint::XPrime, Endpoint::XPrime),
+        endpoint(p + 1, q + 1, Endpoint::X, Endpoint::XPrime),
+        endpoint(p, q + 1, Endpoint::X, Endpoint::X),
+    ]
 }
 
 /// The ends of the slit of C_ij: [A, B] of (3), or the ends of its outline edge.
@@ -99,16 +193,22 @@ fn slit(grid: Grid, i: usize, j: usize) -> [usize; 2] {
     ends.map(|(i, j)| grid.endpoint(i, j, Endpoint::X))
 }
 
-/// The far end of the cut that ends at this endpoint of C_ij.
-fn main_end(grid: Grid, i: usize, j: usize, endpoint: Endpoint) -> usize {
+/// The vertex in the middle of the cut that ends at this endpoint of C_ij, and which of the
+/// endpoints that face it is at its far end.
+fn main_vertex(i: usize, j: usize, endpoint: Endpoint) -> (usize, usize, usize) {
     // South of a horizontal and west of a vertical cut the main cut ends in its B, so its far end
     // is A; north and east it is the reverse.
-    let (i, j, far) = match (Grid::horizontal(i, j), endpoint) {
+    match (Grid::horizontal(i, j), endpoint) {
         (true, Endpoint::X) => (i, j - 1, 0),
         (true, Endpoint::XPrime) => (i, j + 1, 1),
         (false, Endpoint::X) => (i + 1, j, 1),
         (false, Endpoint::XPrime) => (i - 1, j, 0),
-    };
+    }
+}
+
+/// The far end of the cut that ends at this endpoint of C_ij.
+fn main_end(grid: Grid, i: usize, j: usize, endpoint: Endpoint) -> usize {
+    let (i, j, far) = main_vertex(i, j, endpoint);
     if grid.is_interior(i, j) {
         grid.facing_endpoints(i, j)[far]
     } else {

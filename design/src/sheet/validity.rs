@@ -3,7 +3,6 @@
 
 use crate::geometry::polygon::{area, common, distance};
 use crate::pattern::cut_pattern::CutPattern;
-use crate::pattern::grid::Grid;
 use crate::sheet::cut_sheet::Sheet;
 use crate::sheet::kinematics::deployed_corners;
 use hinge::{HingeDesign, TrainingDomain};
@@ -76,21 +75,14 @@ pub const OVERLAP: f64 = 0.01;
 /// panel area. Panels that do not even share a corner are not compared.
 pub fn overlap(sheet: &Sheet, configuration: &[[f64; 3]]) -> f64 {
     let mean = sheet.outline.area() / sheet.panels.len() as f64;
-    let Grid { m, n } = sheet.grid;
     let corners = deployed_corners(sheet, configuration);
-    let panels = (0..n).flat_map(|q| (0..m).map(move |p| (p, q)));
-    let pairs = panels.flat_map(|(p, q)| {
-        let east = (p + 1 < m).then(|| (p + 1, q));
-        let north = (q + 1 < n).then(|| (p, q + 1));
-        let north_east = (p + 1 < m && q + 1 < n).then(|| (p + 1, q + 1));
-        let north_west = (p > 0 && q + 1 < n).then(|| (p - 1, q + 1));
-        let others = [east, north, north_east, north_west].into_iter().flatten();
-        others.map(move |other| ((p, q), other))
+    let pairs = sheet.topology.places.iter().enumerate().flat_map(|(panel, &[p, q])| {
+        let west = p.checked_sub(1);
+        let others = [(Some(p + 1), q), (Some(p), q + 1), (Some(p + 1), q + 1), (west, q + 1)];
+        let others = others.into_iter().filter_map(|(p, q)| sheet.topology.panel(p?, q));
+        others.map(move |other| (panel, other))
     });
-    let shared = pairs.map(|((p, q), (s, t))| {
-        let [one, other] = [(p, q), (s, t)].map(|(p, q)| &corners[sheet.grid.panel(p, q)]);
-        area(&common(one, other))
-    });
+    let shared = pairs.map(|(one, other)| area(&common(&corners[one], &corners[other])));
     shared.fold(0.0, f64::max) / mean
 }
 

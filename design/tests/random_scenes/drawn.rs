@@ -13,7 +13,7 @@ use design::pattern::cut_pattern::Outline;
 use design::pattern::design_vector::{DesignVector, WidthChart};
 use design::pattern::grid::{Endpoint, Grid};
 use design::sheet::cut_sheet::{HingePoint, SheetOptions};
-use design::sheet::topology::{HingeSite, hinge_sites};
+use design::sheet::topology::{HingeSite, Topology};
 use hinge::HingeConstants;
 use rand::{RngExt as _, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -229,7 +229,7 @@ impl Drawn {
             [centre[0] + radii[0] * x, centre[1] + radii[1] * y]
         });
         DesignProblem {
-            grid: self.grid,
+            topology: self.grid.into(),
             outline: self.outline,
             widths: self.chart(),
             options: SheetOptions { hinge_point: self.hinge_point, process: self.process.into() },
@@ -300,7 +300,7 @@ impl Drawn {
         other.pattern.z =
             (self.pattern.z.chunks(m - 1)).flat_map(|row| row.iter().rev().map(|z| -z)).collect();
         other.pattern.ell = [reversed(bottom), left.clone(), reversed(top), right.clone()];
-        let sites = hinge_sites(self.grid);
+        let sites = &Arc::<Topology>::from(self.grid).sites;
         let hinges = sites.iter().map(|site| {
             let [i, j] = site.vertex;
             let endpoint = match ((i + j) % 2 == 0, site.endpoint) {

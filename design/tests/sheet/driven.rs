@@ -10,7 +10,7 @@ fn driven(
     steps: usize,
     stroke: f64,
 ) -> Vec<LoadStep> {
-    let solver = solver(sheet.grid, supports, loads, steps);
+    let solver = solver(sheet.topology.grid, supports, loads, steps);
     follow(&solver.driven(stroke).unwrap(), sheet, law, None)
 }
 
@@ -59,7 +59,7 @@ fn the_stiffness_is_the_slope_of_the_load_over_its_stroke() {
         };
         let step = 1e-3;
         let slope = 2.0 * step * size / (stroke(1.0 + step) - stroke(1.0 - step));
-        let solver = solver(sheet.grid, &clamp(3), &loads, 4);
+        let solver = solver(sheet.topology.grid, &clamp(3), &loads, 4);
         let path = follow(&solver, &sheet, &law, None);
         assert_ratio(path[3].stiffness(&solver).unwrap(), slope, 1e-5);
     }

@@ -81,7 +81,7 @@ fn a_sheet_pulled_past_its_maximum_stretch_stiffens() {
     let sheet = sheet_of("p0_3x3_uniform");
     let law = uniform(SPRINGS, &sheet);
     let stroke = 2.0 * (1.25 * SQRT_2 - 1.0);
-    let solver = solver(sheet.grid, &clamp(3), &[pull(5, 1.0)], 12);
+    let solver = solver(sheet.topology.grid, &clamp(3), &[pull(5, 1.0)], 12);
     let driven = follow(&solver.driven(stroke).unwrap(), &sheet, &law, None);
     assert_finite(&driven);
     assert!(converged(&driven));

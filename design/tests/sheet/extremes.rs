@@ -80,7 +80,7 @@ fn a_load_that_no_wall_can_carry_diverges_and_keeps_the_last_equilibrium() {
     let law = uniform([100.0, 100.0, 1.0], &sheet);
     let loads = opening_moments(&sheet, 4, -1e18);
     let contact = Contact::new(1.0, -0.2, -0.01).unwrap();
-    let solver = solver(sheet.grid, &clamp(4), &loads, 4);
+    let solver = solver(sheet.topology.grid, &clamp(4), &loads, 4);
     let path = follow(&solver, &sheet, &law, Some(&contact));
     assert_finite(&path);
     let last = path.last().unwrap();
@@ -95,7 +95,7 @@ fn contact_carries_a_load_that_closes_the_sheet() {
     let law = uniform([100.0, 100.0, 1.0], &sheet);
     let contact = Contact::new(10.0, -0.2, -0.01).unwrap();
     let loads = opening_moments(&sheet, 4, -5.0);
-    let solver = solver(sheet.grid, &clamp(4), &loads, 5);
+    let solver = solver(sheet.topology.grid, &clamp(4), &loads, 5);
     for step in follow(&solver, &sheet, &law, Some(&contact)) {
         assert_eq!(step.status, Status::Converged);
         for deformation in &step.deformations {
@@ -201,7 +201,7 @@ fn supports_are_judged_by_the_places_of_the_panels() {
     let turned = sheet([[0.0, -4.0], [4.0, 0.0], [0.0, 4.0], [-4.0, 0.0]]);
     let holds = |sheet: &Sheet, supports: &[(usize, Dof)]| {
         let supports = (supports.iter()).map(|&(panel, dof)| support(panel, dof, 0.0));
-        let solver = solver(sheet.grid, &supports.collect::<Vec<_>>(), &[], 1);
+        let solver = solver(sheet.topology.grid, &supports.collect::<Vec<_>>(), &[], 1);
         let checked = solver.check_supports(sheet);
         assert!(matches!(checked, Ok(()) | Err(EquilibriumError::Unsupported)));
         checked.is_ok()
@@ -307,8 +307,8 @@ fn assert_voids_open_as_parallelograms(sheet: &Sheet, theta: f64) {
         Some(a)
     };
     let mut voids = 0;
-    for j in 1..sheet.grid.n {
-        for i in 1..sheet.grid.m {
+    for j in 1..sheet.topology.grid.n {
+        for i in 1..sheet.topology.grid.m {
             let ends = match (i + j) % 2 == 0 {
                 true => [([i - 1, j], Endpoint::X), ([i + 1, j], Endpoint::XPrime)],
                 false => [([i, j - 1], Endpoint::XPrime), ([i, j + 1], Endpoint::X)],
@@ -322,7 +322,7 @@ fn assert_voids_open_as_parallelograms(sheet: &Sheet, theta: f64) {
             }
         }
     }
-    assert!(voids > 0 || sheet.grid.m.min(sheet.grid.n) < 4);
+    assert!(voids > 0 || sheet.topology.grid.m.min(sheet.topology.grid.n) < 4);
 }
 
 fn shoelace(corners: &[[f64; 2]; 4]) -> f64 {

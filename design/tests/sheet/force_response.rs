@@ -144,7 +144,7 @@ fn a_stiffer_law_under_dead_loads_is_a_smaller_load() {
     let law = uniform(SPRINGS, &sheet);
     let prepared = law.prepare(&sheet.designs());
     let hinged = hinged(&sheet, &*prepared);
-    let of = |value: f64| solver(sheet.grid, &clamp(3), &[pull(5, value)], 4);
+    let of = |value: f64| solver(sheet.topology.grid, &clamp(3), &[pull(5, value)], 4);
     let end = |value: f64| of(value).path(hinged).pop().unwrap();
     let (size, step) = (1.5, 1e-4);
     let last = end(size);

@@ -66,7 +66,7 @@ fn a_pulled_sheet_with_path_functionals() {
     let law = LinearLaw::uniform(get(&case, "k_a_k_s_k_theta"), grid.hinge_count());
     let (supports, loads) = (cases::supports(&case), cases::loads(&case));
     let problem = DesignProblem {
-        grid,
+        topology: grid.into(),
         outline: cases::outline(&case),
         widths: WidthChart { w_minus, w_plus },
         options: AT_CORNER,

@@ -74,7 +74,7 @@ pub fn path(
     loads: &[Load],
     steps: usize,
 ) -> Vec<LoadStep> {
-    follow(&solver(sheet.grid, supports, loads, steps), sheet, law, None)
+    follow(&solver(sheet.topology.grid, supports, loads, steps), sheet, law, None)
 }
 
 pub fn converged(path: &[LoadStep]) -> bool {

@@ -122,7 +122,7 @@ fn the_ideal_deployment_is_pulled_back_to_the_design_and_the_opening() {
         dot(configuration.as_flattened(), weights.as_flattened())
     };
     let (pattern, sheet) = cut(&design, given, AT_CORNER);
-    let mut by_sheet = SheetGradient::zeros(sheet.grid);
+    let mut by_sheet = SheetGradient::zeros(&sheet.topology);
     let by_opening = ideal_deployment_pullback(&sheet, 0.9, &weights, &mut by_sheet);
     let found = DesignVector {
         opening: Some(by_opening),

@@ -73,7 +73,7 @@ pub fn problem(model: Model, hinge_point: HingePoint) -> DesignProblem {
     };
     let shape = PanelShape { min_distance: 200.0 };
     DesignProblem {
-        grid: GRID,
+        topology: GRID.into(),
         outline: Outline::rectangle(SIDE, SIDE),
         widths: WidthChart { w_minus: 8.0, w_plus: 24.0 },
         options: SheetOptions { hinge_point, ..AT_TIP },

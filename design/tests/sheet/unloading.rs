@@ -42,7 +42,7 @@ const PULL: [Load; 1] = [pull(5, 2.0)];
 fn an_elastic_sheet_hangs_as_before_its_loads() {
     let sheet = sheet_of("p1_3x3_random");
     let hangs = |loads: &[Load]| {
-        let solver = solver(sheet.grid, &clamp(3), loads, 5);
+        let solver = solver(sheet.topology.grid, &clamp(3), loads, 5);
         solver.with_weight([0.05, -0.2]).unwrap()
     };
     for pulled in [hangs(&PULL), hangs(&PULL).driven(0.8).unwrap()] {
@@ -58,7 +58,7 @@ fn an_elastic_sheet_hangs_as_before_its_loads() {
 #[test]
 fn a_sheet_of_hinges_that_stay_does_not_move() {
     let sheet = sheet_of("p1_3x3_random");
-    let pulled = solver(sheet.grid, &clamp(3), &PULL, 5);
+    let pulled = solver(sheet.topology.grid, &clamp(3), &PULL, 5);
     let under_load = loaded(&pulled, &sheet);
     let free = unload(&pulled, &sheet, &under_load, |h| under_load.deformations[h]);
     assert!(difference(&free.configuration, &under_load.configuration) < 1e-8);
@@ -69,7 +69,7 @@ fn supports_that_moved_the_sheet_let_it_go() {
     let sheet = sheet_of("p1_3x3_random");
     let moved = support(5, Dof::UX, 0.4);
     let supports = [clamp(3).as_slice(), &[moved]].concat();
-    let pulled = solver(sheet.grid, &supports, &[], 5);
+    let pulled = solver(sheet.topology.grid, &supports, &[], 5);
     let under_load = loaded(&pulled, &sheet);
     let free = unload(&pulled, &sheet, &under_load, unstrained);
     let flat = vec![[0.0; 3]; sheet.panels.len()];

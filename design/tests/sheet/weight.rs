@@ -78,10 +78,10 @@ fn balance([a_x, a_y]: [f64; 2], [f_x, f_y]: [f64; 2]) -> f64 {
 #[test]
 fn a_pendulum_of_two_panels() {
     let hung = pendulum(&[]);
-    let panel = hung.sheet.panels[1];
+    let panel = &hung.sheet.panels[1];
     let arm = [0, 1].map(|c| panel.centroid[c] - hung.pivot[c]);
     for by_area in [[0.0, -1.0], [0.7, -0.4], [0.0, 2.0]] {
-        let solver = solver(hung.sheet.grid, &hung.supports, &[], 1);
+        let solver = solver(hung.sheet.topology.grid, &hung.supports, &[], 1);
         let solver = solver.with_weight(by_area).unwrap();
         let path = path_with(&solver, &hung.sheet, &hung.law);
         assert_eq!((path.len(), solver.weight_steps()), (3, 2));
@@ -100,7 +100,7 @@ fn a_force_at_the_middle_of_an_edge() {
         let moved = pendulum(&[attached(1, point)]);
         let arm = [0, 1].map(|c| moved.sheet.panels[1].reference[c] - moved.pivot[c]);
         let loads = [pull(1, 0.3), load(1, Dof::UY, -0.7)];
-        let solver = solver(moved.sheet.grid, &moved.supports, &loads, 4);
+        let solver = solver(moved.sheet.topology.grid, &moved.supports, &loads, 4);
         for step in path_with(&solver, &moved.sheet, &moved.law) {
             let force = [0.3, -0.7].map(|force| step.load_factor * force);
             assert_close(step.configuration[1][2], balance(arm, force), 2e-6);
@@ -115,7 +115,7 @@ fn a_sheet_hangs_from_a_nail() {
     let sheet = sheet_of("p1_3x3_random").attached_at(&[attached(6, point)]);
     let nail = sheet.panels[6].reference;
     for by_area in [[0.0, -1.0], [0.8, 0.6], [-0.1, 1.0]] {
-        let solver = solver(sheet.grid, &pin(6), &[], 1);
+        let solver = solver(sheet.topology.grid, &pin(6), &[], 1);
         let unsupported = Err(EquilibriumError::Unsupported);
         assert_eq!(solver.check_supports(&sheet), unsupported);
         let solver = solver.with_weight(by_area).unwrap();
@@ -130,7 +130,7 @@ fn a_sheet_hangs_from_a_nail() {
     // At its centre of gravity a sheet hangs in no definite position.
     let point = PanelPoint::Fixed(centre_of_gravity(&sheet, &[[0.0; 3]; 9]));
     let sheet = sheet.attached_at(&[attached(4, point)]);
-    let balanced = solver(sheet.grid, &pin(4), &[], 1).with_weight([0.0, -1.0]);
+    let balanced = solver(sheet.topology.grid, &pin(4), &[], 1).with_weight([0.0, -1.0]);
     let checked = balanced.unwrap().check_supports(&sheet);
     assert_eq!(checked, Err(EquilibriumError::Unsupported));
 }
@@ -144,7 +144,7 @@ fn the_reference_point_of_a_panel_is_a_convention() {
         attached(7, PanelPoint::Fixed([5.0, -3.0])),
     ]);
     let corners = [plain, moved].map(|sheet| {
-        let solver = solver(sheet.grid, &clamp(3), &[pull(5, 2.0)], 3);
+        let solver = solver(sheet.topology.grid, &clamp(3), &[pull(5, 2.0)], 3);
         let solver = solver.with_weight([0.1, -0.2]).unwrap();
         let path = path_with(&solver, &sheet, &uniform(SPRINGS, &sheet)).into_iter();
         let corners = path.flat_map(|step| deployed_corners(&sheet, &step.configuration));
@@ -160,7 +160,7 @@ fn the_work_of_weight_and_loads_is_stored() {
     let by_area = [0.05, -0.2];
     let point = PanelPoint::Middle([1, 2]);
     let sheet = sheet_of("p1_3x3_random").attached_at(&[attached(5, point)]);
-    let loaded = solver(sheet.grid, &clamp(3), &[pull(5, 2.0)], 400);
+    let loaded = solver(sheet.topology.grid, &clamp(3), &[pull(5, 2.0)], 400);
     for solver in [loaded.clone(), loaded.driven(0.8).unwrap()] {
         let solver = solver.with_weight(by_area).unwrap();
         let path = path_with(&solver, &sheet, &uniform(SPRINGS, &sheet));
@@ -195,6 +195,6 @@ fn the_work_of_weight_and_loads_is_stored() {
 #[test]
 fn a_weight_that_is_no_number_is_refused() {
     let sheet = sheet_of("p0_3x3_uniform");
-    let result = solver(sheet.grid, &clamp(0), &[], 1).with_weight([0.0, f64::NAN]);
+    let result = solver(sheet.topology.grid, &clamp(0), &[], 1).with_weight([0.0, f64::NAN]);
     assert!(matches!(result, Err(EquilibriumError::Weight(_))));
 }

@@ -29,7 +29,6 @@ use design::objective::design_problem::Deployment;
 use design::pattern::cut_pattern::CutPattern;
 use design::sheet::cut_sheet::AttachmentPoint;
 use design::sheet::cut_sheet::Sheet;
-use design::sheet::topology::hinge_sites;
 use scene::{CuttingConfig, Scene};
 use std::collections::BTreeMap;
 
@@ -269,7 +268,7 @@ fn slits(
     sheet: &Sheet,
     holes: &[Hole],
 ) -> Result<Vec<Slit>, FabricationError> {
-    let sites = hinge_sites(sheet.grid);
+    let sites = &sheet.topology.sites;
     let at_corner: BTreeMap<usize, usize> =
         sites.iter().enumerate().map(|(hinge, site)| (site.corner, hinge)).collect();
     let mut slits = Vec::new();

@@ -57,8 +57,8 @@ impl SheetDrawing {
                 material.name,
                 material.thickness,
                 sheet.panels.len() - 1,
-                sheet.grid.m,
-                sheet.grid.n,
+                sheet.topology.grid.m,
+                sheet.topology.grid.n,
                 sheet.hinges.len() - 1
             ),
             format!("Kerf {kerf} mm: {paths}, {} mm off the finished edge.", 0.5 * kerf),

@@ -11,7 +11,6 @@ use design::sheet::hinge_window::Window;
 use design::sheet::kinematics::{
     Configuration, deployed as moved, deployed_corners, hinge_deformations,
 };
-use design::sheet::topology::is_even;
 use scene::Scene;
 use scene::design_run::Designed;
 use scene::placement::placed;
@@ -103,7 +102,7 @@ impl<'a> State<'a> {
     fn panels(&self, sketch: &mut Sketch) {
         let corners = deployed_corners(self.sheet, &self.configuration);
         for (k, corners) in corners.iter().enumerate() {
-            let fill = PANELS[usize::from(!is_even(self.sheet.grid, k))];
+            let fill = PANELS[usize::from(!self.sheet.topology.is_even(k))];
             let style = sketch.stroke(INK, 1.1).filled(fill);
             sketch.canvas.polygon(corners, style);
         }

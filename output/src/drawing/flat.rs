@@ -5,7 +5,6 @@ use crate::display::{Anchor, Style};
 use crate::drawing::page::{ACCENT, INK, MUTED, PANELS, Page, Sketch, TEAL};
 use design::sheet::cut_sheet::{Hinge, Sheet};
 use design::sheet::hinge_window::Window;
-use design::sheet::topology::is_even;
 
 /// The flat sheet with its cuts.
 pub fn flat(title: &str, sheet: &Sheet, cuts: &CutLines) -> String {
@@ -13,8 +12,8 @@ pub fn flat(title: &str, sheet: &Sheet, cuts: &CutLines) -> String {
     let (min, max) = (widths.clone().fold(f64::INFINITY, f64::min), widths.fold(0.0, f64::max));
     let subtitle = format!(
         "Flat cut pattern: {} \u{d7} {} panels, {} hinges, ligaments {min:.1} to {max:.1} mm",
-        sheet.grid.m,
-        sheet.grid.n,
+        sheet.topology.grid.m,
+        sheet.topology.grid.n,
         sheet.hinges.len()
     );
     let mut page = Page::around(sheet.outline.corners, title, &subtitle, false);
@@ -28,7 +27,7 @@ pub fn flat(title: &str, sheet: &Sheet, cuts: &CutLines) -> String {
 fn panels(sketch: &mut Sketch, sheet: &Sheet) {
     let muted = Style::fill(MUTED).opacity(0.6, 1.0);
     for (k, panel) in sheet.panels.iter().enumerate() {
-        let parity = usize::from(!is_even(sheet.grid, k));
+        let parity = usize::from(!sheet.topology.is_even(k));
         let fill = Style::fill(PANELS[parity]);
         sketch.canvas.polygon(&panel.corners, fill);
         let height = f64::min(16.0 * sketch.unit, 0.1 * panel.area.sqrt());

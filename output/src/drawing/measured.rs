@@ -9,7 +9,6 @@ use crate::measurement::MeasurementReport;
 use design::geometry::polygon::bounds;
 use design::sheet::cut_sheet::Sheet;
 use design::sheet::kinematics::deployed_corners;
-use design::sheet::topology::is_even;
 use scene::analysis::measured_openings::MeasuredOpening;
 use scene::analysis::measured_points::FittedPoint;
 use scene::analysis::path_fit::Fit;
@@ -51,7 +50,7 @@ pub fn measured(sheet: &Sheet, fit: &Fit, report: &MeasurementReport) -> String 
     let mut page = Page::around(whole, &report.title, &subtitle, false);
     let sketch = &mut page.sketch;
     for (k, corners) in corners.iter().enumerate() {
-        let fill = PANELS[usize::from(!is_even(sheet.grid, k))];
+        let fill = PANELS[usize::from(!sheet.topology.is_even(k))];
         let style = sketch.stroke(MUTED, 1.2).filled(fill);
         sketch.canvas.polygon(corners, style);
     }

@@ -3,7 +3,6 @@
 use crate::display::{Anchor, Style};
 use crate::drawing::page::{ACCENT, INK, MUTED, PANELS, Page, TEAL};
 use design::sheet::cut_sheet::Sheet;
-use design::sheet::topology::is_even;
 
 /// Distance of a corner's number from the corner, as a fraction of the distance to the centre.
 const INSET: f64 = 0.24;
@@ -15,7 +14,7 @@ pub fn numbering(title: &str, sheet: &Sheet) -> String {
     let sketch = &mut page.sketch;
     let edge = sketch.stroke(INK, 1.0);
     for (k, panel) in sheet.panels.iter().enumerate() {
-        let fill = PANELS[usize::from(!is_even(sheet.grid, k))];
+        let fill = PANELS[usize::from(!sheet.topology.is_even(k))];
         sketch.canvas.polygon(&panel.corners, Style::fill(fill));
         sketch.canvas.polygon(&panel.corners, edge);
         let size = panel.area.sqrt();

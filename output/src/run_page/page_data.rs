@@ -210,7 +210,7 @@ impl Panels {
     fn new(sheet: &Sheet) -> Self {
         let panels = || sheet.panels.iter();
         Self {
-            grid: [sheet.grid.m, sheet.grid.n],
+            grid: [sheet.topology.grid.m, sheet.topology.grid.n],
             corners: panels().flat_map(|panel| panel.corners).flatten().collect(),
             references: panels().flat_map(|panel| panel.reference).collect(),
         }

@@ -34,7 +34,7 @@ fn deployed() -> (DesignProblem, Deployment) {
     let solver = EquilibriumSolver::new(GRID, &clamp, &[pull], 8, settings).unwrap();
     let law = LinearLaw::uniform([400.0, 250.0, 300.0], GRID.hinge_count());
     let problem = DesignProblem {
-        grid: GRID,
+        topology: GRID.into(),
         outline: Outline::rectangle(500.0, 1000.0),
         widths: WidthChart { w_minus: 5.0, w_plus: 15.0 },
         options: SheetOptions {

@@ -159,7 +159,7 @@ pub fn out_of_plane(
         let clipped = support.kind == SupportKind::Clamp || attachment.clip.is_some();
         tilts.iter_mut().for_each(|held| *held |= clipped);
     }
-    let pattern = TangentPattern::new(sheet.grid, supported.as_flattened());
+    let pattern = TangentPattern::new(&sheet.topology, supported.as_flattened());
     let of_step = |step: &LoadStep| {
         let elastic = law.energies(&step.deformations, Order::Tangent);
         // Contact carries forces, but does not stiffen ligaments.
@@ -408,6 +408,8 @@ impl Ligament {
 mod tests {
     use super::*;
     use design::pattern::grid::Grid;
+    use design::sheet::topology::Topology;
+    use std::sync::Arc;
     use std::path::Path;
     use testkit::derivatives::assert_close;
 
@@ -432,7 +434,7 @@ mod tests {
         };
         let stiffness = Stiffness { height: 1e6, bend, twist: 0.1 * bend };
         let pattern =
-            TangentPattern::new(Grid { m: 2, n: 1 }, &[true, true, true, false, false, false]);
+            TangentPattern::new(&Arc::<Topology>::from(Grid { m: 2, n: 1 }), &[true, true, true, false, false, false]);
         let [elastic, geometric] = [ligament.elastic(&stiffness), ligament.geometric()]
             .map(|block| pattern.assemble(std::iter::once(block)));
         let found = margin(&pattern, &elastic, &geometric).unwrap();
@@ -441,7 +443,7 @@ mod tests {
         let pulled: Vec<f64> = geometric.iter().map(|entry| -entry).collect();
         assert_eq!(margin(&pattern, &elastic, &pulled), Some(MOST));
         // Nothing holds it.
-        let free = TangentPattern::new(Grid { m: 2, n: 1 }, &[false; 6]);
+        let free = TangentPattern::new(&Arc::<Topology>::from(Grid { m: 2, n: 1 }), &[false; 6]);
         let loose = free.assemble(std::iter::once(ligament.elastic(&stiffness)));
         assert_eq!(margin(&free, &loose, &loose), None);
     }
@@ -453,7 +455,7 @@ mod tests {
         let (load, arm, bend, w_lig, thickness) = (3.0, 40.0, 500.0, 2.0, 3.0);
         let along = turn(0.4);
         let pattern =
-            TangentPattern::new(Grid { m: 2, n: 1 }, &[true, true, true, false, false, false]);
+            TangentPattern::new(&Arc::<Topology>::from(Grid { m: 2, n: 1 }), &[true, true, true, false, false, false]);
         let of = |share: f64| {
             let ligament = Ligament {
                 along,
@@ -510,7 +512,7 @@ mod tests {
             assert_eq!(between, mirrored);
         }
         let held: Vec<usize> = (scene.config.supports.iter())
-            .map(|support| support.panel[1] * sheet.grid.m + support.panel[0])
+            .map(|support| support.panel[1] * sheet.topology.grid.m + support.panel[0])
             .collect();
         let free = (0..turning.len()).filter(|panel| !held.contains(panel));
         for panel in free {

@@ -174,7 +174,7 @@ impl Search {
         let turn = c64::cis(rotation) * scale;
         let problem = making.problem(making.grid(sides, side), turned(turn).collect(), sheet);
         let corner = [0, 1].map(|c| logit(sides[c] / making.stock[c]));
-        let mut start = DesignVector::uniform(problem.grid);
+        let mut start = DesignVector::uniform(problem.topology.grid);
         start.fit = Some(FitVariables { ln_size: 0.0, rotation: 0.0, corners: [corner; 4] });
         let first = problem.evaluate(&start)?;
         let state = SearchState::new(&problem, start, &first, SearchMethod::Lbfgs, FIRST_STEP);
@@ -195,7 +195,7 @@ impl Search {
         let end = self.problem.evaluate(&design)?;
         let variables = design.fit.unwrap_or_default();
         Ok(Fitted {
-            grid: self.problem.grid,
+            grid: self.problem.topology.grid,
             outline: self.problem.outline_of(&design),
             outline_error: outline_error(&self.problem.objective, &end.deployment),
             pattern: design.pattern,
@@ -218,7 +218,7 @@ impl Making {
             Weighted::new(ANGLES * panel_area, CutAngles { least: self.least_angle }),
         ];
         DesignProblem {
-            grid,
+            topology: grid.into(),
             outline: Outline::rectangle(self.stock[0], self.stock[1]),
             widths: self.widths,
             options: self.options,

@@ -101,6 +101,8 @@ mod tests {
     fn panel(corners: [[f64; 2]; 4]) -> Panel {
         Panel {
             corners,
+            boundary: corners.to_vec(),
+            trim: None,
             point: PanelPoint::Centroid,
             reference: [0.0; 2],
             centroid: [0.0; 2],
