@@ -15,10 +15,10 @@ use design::geometry::polygon::{contains, distance, edges, mean};
 use design::pattern::cut_pattern::CutPattern;
 use design::pattern::pattern_error::PatternError;
 use design::sheet::topology::Topology;
-use std::sync::Arc;
 use hinge::InvalidDesign;
 use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::FRAC_PI_2;
+use std::sync::Arc;
 use support::key_limits::{self, within};
 
 /// Checks everything that needs no other file.

@@ -94,9 +94,9 @@ fn backward_error(remainder: &[f64], bound: &[f64], b: &[f64]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::pattern::grid::Grid;
     use crate::sheet::topology::Topology;
     use std::sync::Arc;
-    use crate::pattern::grid::Grid;
 
     const GRIDS: [Grid; 2] = [Grid { m: 3, n: 3 }, Grid { m: 12, n: 12 }];
 

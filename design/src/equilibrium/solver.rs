@@ -13,9 +13,9 @@ use crate::equilibrium::settings::SolverSettings;
 use crate::equilibrium::supports::{Dof, Load, Support, hold_rigid_body};
 use crate::equilibrium::tangent::TangentPattern;
 use crate::equilibrium::weight::hung_from;
-use crate::sheet::topology::Topology;
 use crate::sheet::cut_sheet::{AttachmentPoint, Sheet};
 use crate::sheet::kinematics::Configuration;
+use crate::sheet::topology::Topology;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 

@@ -236,7 +236,8 @@ impl DesignProblem {
 
     /// Lines 2-4 of Algorithm 1: cut pattern and flat sheet.
     pub fn cut(&self, design: &DesignVector) -> Result<(CutPattern, Sheet), DesignError> {
-        let pattern = CutPattern::new(self.topology.grid, self.outline_of(design), &design.pattern)?;
+        let pattern =
+            CutPattern::new(self.topology.grid, self.outline_of(design), &design.pattern)?;
         let w_lig: Vec<f64> =
             (design.omega.iter()).map(|&omega| self.widths.width(omega)).collect();
         let sheet = self.sheet(&pattern, &w_lig)?;

@@ -355,11 +355,7 @@ impl Sheet {
 }
 
 impl Panel {
-    fn new(
-        panel: usize,
-        corners: [[f64; 2]; 4],
-        trim: Option<Trim>,
-    ) -> Result<Self, SheetError> {
+    fn new(panel: usize, corners: [[f64; 2]; 4], trim: Option<Trim>) -> Result<Self, SheetError> {
         let boundary = match &trim {
             None => corners.to_vec(),
             Some(trim) => trim.iter().map(|at| in_cell(&corners, *at)).collect(),
@@ -439,8 +435,7 @@ impl Panel {
         let count = self.boundary.len();
         let corner = |j: usize| complex(self.boundary[j % count]);
         let along = |j: usize| corner(j + 1) - corner(j + count - 1);
-        let by_boundary: Vec<c64> =
-            (0..count).map(|j| -0.5 * derivative * I * along(j)).collect();
+        let by_boundary: Vec<c64> = (0..count).map(|j| -0.5 * derivative * I * along(j)).collect();
         self.boundary_pullback(&by_boundary)
     }
 

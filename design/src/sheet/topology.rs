@@ -61,9 +61,8 @@ impl From<Grid> for Arc<Topology> {
 impl Topology {
     /// The panels around the `kept` voids of a grid, one entry per interior vertex, row by row.
     pub fn of_voids(grid: Grid, kept: &[bool]) -> Self {
-        let at = |i: usize, j: usize| {
-            grid.is_interior(i, j) && kept[(j - 1) * (grid.m - 1) + i - 1]
-        };
+        let at =
+            |i: usize, j: usize| grid.is_interior(i, j) && kept[(j - 1) * (grid.m - 1) + i - 1];
         Self::with_loops(grid, at)
     }
 
@@ -86,8 +85,10 @@ impl Topology {
             sites: Vec::new(),
             numbers,
         };
-        let sites = grid.vertices().flat_map(|(i, j)| Endpoint::BOTH.map(|endpoint| (i, j, endpoint)));
-        topology.sites = sites.filter_map(|(i, j, end)| topology.hinge_site(i, j, end, &kept)).collect();
+        let sites =
+            grid.vertices().flat_map(|(i, j)| Endpoint::BOTH.map(|endpoint| (i, j, endpoint)));
+        topology.sites =
+            sites.filter_map(|(i, j, end)| topology.hinge_site(i, j, end, &kept)).collect();
         topology
     }
 

@@ -409,8 +409,8 @@ mod tests {
     use super::*;
     use design::pattern::grid::Grid;
     use design::sheet::topology::Topology;
-    use std::sync::Arc;
     use std::path::Path;
+    use std::sync::Arc;
     use testkit::derivatives::assert_close;
 
     fn deployed_scene(name: &str) -> (Scene, Deployment) {
@@ -433,8 +433,10 @@ mod tests {
             moment: 0.0,
         };
         let stiffness = Stiffness { height: 1e6, bend, twist: 0.1 * bend };
-        let pattern =
-            TangentPattern::new(&Arc::<Topology>::from(Grid { m: 2, n: 1 }), &[true, true, true, false, false, false]);
+        let pattern = TangentPattern::new(
+            &Arc::<Topology>::from(Grid { m: 2, n: 1 }),
+            &[true, true, true, false, false, false],
+        );
         let [elastic, geometric] = [ligament.elastic(&stiffness), ligament.geometric()]
             .map(|block| pattern.assemble(std::iter::once(block)));
         let found = margin(&pattern, &elastic, &geometric).unwrap();
@@ -454,8 +456,10 @@ mod tests {
     fn a_bump_tilts_a_pulled_panel() {
         let (load, arm, bend, w_lig, thickness) = (3.0, 40.0, 500.0, 2.0, 3.0);
         let along = turn(0.4);
-        let pattern =
-            TangentPattern::new(&Arc::<Topology>::from(Grid { m: 2, n: 1 }), &[true, true, true, false, false, false]);
+        let pattern = TangentPattern::new(
+            &Arc::<Topology>::from(Grid { m: 2, n: 1 }),
+            &[true, true, true, false, false, false],
+        );
         let of = |share: f64| {
             let ligament = Ligament {
                 along,

@@ -1,0 +1,225 @@
+//! Polygons of any shape, with holes: union, difference, intersection, offset, area.
+
+use crate::geometry::polygon;
+use i_overlay::core::fill_rule::FillRule;
+use i_overlay::core::overlay_rule::OverlayRule;
+use i_overlay::float::simplify::SimplifyShape;
+use i_overlay::float::single::SingleFloatOverlay;
+use i_overlay::mesh::float::outline::offset::OutlineOffset;
+use i_overlay::mesh::float::style::{LineJoin, OutlineStyle};
+use std::f64::consts::FRAC_PI_8;
+
+/// Angle of the pieces of an arc (rad).
+const ARC: f64 = 0.2;
+
+/// The corners of a closed polygon.
+pub type Contour = Vec<[f64; 2]>;
+
+/// Disjoint polygons. The contours of each are its outline, counter-clockwise, and its holes,
+/// clockwise.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Region {
+    /// The contours of each polygon.
+    pub polygons: Vec<Vec<Contour>>,
+}
+
+/// How an offset region turns about its corners.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Corners {
+    /// In arcs.
+    Round,
+    /// In points.
+    Sharp,
+}
+
+impl Region {
+    /// The points around which contours in any order and direction go an odd number of times.
+    pub fn even_odd(contours: Vec<Contour>) -> Self {
+        Self { polygons: contours.simplify_shape(FillRule::EvenOdd) }
+    }
+
+    /// The union of polygons without holes, counter-clockwise.
+    pub fn union_of(contours: Vec<Contour>) -> Self {
+        Self { polygons: contours.simplify_shape(FillRule::NonZero) }
+    }
+
+    /// The points of this or of another region.
+    pub fn union(&self, other: &Self) -> Self {
+        self.overlay(other, OverlayRule::Union)
+    }
+
+    /// The points of this region that are not in another.
+    pub fn minus(&self, other: &Self) -> Self {
+        self.overlay(other, OverlayRule::Difference)
+    }
+
+    /// The points that are in both regions.
+    pub fn common(&self, other: &Self) -> Self {
+        self.overlay(other, OverlayRule::Intersect)
+    }
+
+    fn overlay(&self, other: &Self, rule: OverlayRule) -> Self {
+        Self { polygons: self.polygons.overlay(&other.polygons, rule, FillRule::NonZero) }
+    }
+
+    /// All points nearer than a distance, or, if it is negative, the points that are as far from
+    /// the outside.
+    pub fn offset(&self, distance: f64, corners: Corners) -> Self {
+        let join = match corners {
+            Corners::Round => LineJoin::Round(ARC),
+            Corners::Sharp => LineJoin::Miter(FRAC_PI_8),
+        };
+        let style = OutlineStyle::new(distance).line_join(join);
+        Self { polygons: self.polygons.outline(&style) }
+    }
+
+    /// Without gaps narrower than twice a distance.
+    pub fn closed(&self, distance: f64) -> Self {
+        self.offset(distance, Corners::Round).offset(-distance, Corners::Round)
+    }
+
+    /// Without the parts narrower than twice a distance.
+    pub fn opened(&self, distance: f64) -> Self {
+        self.offset(-distance, Corners::Sharp).offset(distance, Corners::Sharp)
+    }
+
+    /// Without holes.
+    pub fn filled(&self) -> Self {
+        let outer = |contours: &Vec<Contour>| contours[..1].to_vec();
+        Self { polygons: self.polygons.iter().map(outer).collect() }
+    }
+
+    /// All contours.
+    pub fn contours(&self) -> impl Iterator<Item = &Contour> {
+        self.polygons.iter().flatten()
+    }
+
+    /// mm^2
+    pub fn area(&self) -> f64 {
+        self.contours().map(|contour| polygon::area(contour)).sum()
+    }
+
+    /// Lower left and upper right corner of the bounding box.
+    pub fn bounds(&self) -> [[f64; 2]; 2] {
+        polygon::bounds(self.contours().flatten().copied())
+    }
+
+    /// Whether the region contains a point; the border belongs to one of its sides.
+    pub fn contains(&self, [x, y]: [f64; 2]) -> bool {
+        let edges = self.contours().flat_map(|contour| polygon::edges(contour));
+        let passed = edges.filter(|(p, q)| {
+            (p[1] > y) != (q[1] > y) && x < p[0] + (y - p[1]) / (q[1] - p[1]) * (q[0] - p[0])
+        });
+        passed.count() % 2 == 1
+    }
+
+    /// The image under a map that keeps the orientation.
+    pub fn map(&self, map: impl Fn([f64; 2]) -> [f64; 2]) -> Self {
+        let contour = |contour: &Contour| contour.iter().map(|point| map(*point)).collect();
+        let polygons = self.polygons.iter();
+        Self { polygons: polygons.map(|contours| contours.iter().map(contour).collect()).collect() }
+    }
+
+    /// Without the corners that are nearer than `tolerance` to the line between their neighbours
+    /// (Douglas and Peucker, Cartographica 10, 1973, 112).
+    pub fn simplified(&self, tolerance: f64) -> Self {
+        let polygons = self.polygons.iter();
+        let simplified = |contour: &Contour| simplified(contour, tolerance);
+        Self {
+            polygons: polygons.map(|contours| contours.iter().map(simplified).collect()).collect(),
+        }
+    }
+}
+
+/// Intersection over union of what one sees of opened panels and a drawing with its holes: gaps up
+/// to 8 % of the longer side of the drawing are closed.
+pub fn seen(panels: &Region, drawing: &Region) -> f64 {
+    let closed = as_seen(panels, drawing);
+    closed.common(drawing).area() / closed.union(drawing).area()
+}
+
+/// What one sees of opened panels: without the gaps between them.
+pub fn as_seen(panels: &Region, drawing: &Region) -> Region {
+    const GAP: f64 = 0.04;
+    let [low, high] = drawing.bounds();
+    panels.closed(GAP * f64::max(high[0] - low[0], high[1] - low[1]))
+}
+
+fn simplified(contour: &[[f64; 2]], tolerance: f64) -> Contour {
+    let from_first = |i: &usize| polygon::distance(contour[*i], contour[0]);
+    let all = 0..contour.len();
+    let Some(far) = all.max_by(|i, j| from_first(i).total_cmp(&from_first(j))) else {
+        return Contour::new();
+    };
+    let ring: Contour = contour.iter().chain(contour.first()).copied().collect();
+    let mut kept = Contour::new();
+    keep(&ring[..=far], tolerance, &mut kept);
+    keep(&ring[far..], tolerance, &mut kept);
+    kept
+}
+
+/// Adds the kept points of a line but its last.
+fn keep(line: &[[f64; 2]], tolerance: f64, kept: &mut Contour) {
+    let (first, last) = (line[0], line[line.len() - 1]);
+    let off = |i: &usize| polygon::distance_to_segment(line[*i], first, last);
+    let farthest = (1..line.len() - 1).max_by(|i, j| off(i).total_cmp(&off(j)));
+    match farthest.filter(|i| off(i) > tolerance) {
+        Some(i) => {
+            keep(&line[..=i], tolerance, kept);
+            keep(&line[i..], tolerance, kept);
+        }
+        None => kept.push(first),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn square(at: f64, side: f64) -> Contour {
+        vec![[at, at], [at + side, at], [at + side, at + side], [at, at + side]]
+    }
+
+    fn close(found: f64, expected: f64) {
+        assert!((found - expected).abs() < 1e-6 * expected, "{found} {expected}");
+    }
+
+    #[test]
+    fn areas_of_a_square_with_a_hole() {
+        let ring = Region::even_odd(vec![square(0.0, 10.0), square(3.0, 4.0)]);
+        close(ring.area(), 84.0);
+        assert!(ring.contains([1.0, 5.0]) && !ring.contains([5.0, 5.0]));
+        let other = Region::union_of(vec![square(5.0, 10.0)]);
+        close(ring.common(&other).area(), 21.0);
+        close(ring.minus(&other).area(), 63.0);
+        close(ring.union(&other).area(), 163.0);
+        close(ring.offset(-1.0, Corners::Sharp).area(), 64.0 - 36.0);
+        assert!((ring.closed(2.5).area() - 100.0).abs() < 0.1);
+        assert!(ring.opened(1.6).polygons.is_empty());
+    }
+
+    #[test]
+    fn points_on_a_straight_edge_are_left_out() {
+        let edge = (0..100).map(|i| [0.1 * f64::from(i), 1e-3 * f64::from(i % 2)]);
+        let contour: Contour = edge.chain([[10.0, 0.0], [10.0, 10.0], [0.0, 10.0]]).collect();
+        let simple = Region { polygons: vec![vec![contour]] }.simplified(0.01);
+        assert_eq!(simple.polygons[0][0].len(), 4);
+        close(simple.area(), 100.0);
+    }
+
+    #[test]
+    fn panels_with_narrow_gaps_are_seen_as_one() {
+        let row = (0..3).flat_map(|i| (0..3).map(move |j| (f64::from(i), f64::from(j))));
+        let panels = row.map(|(x, y)| {
+            square(0.0, 9.6).iter().map(|p| [p[0] + 10.0 * x, p[1] + 10.0 * y]).collect()
+        });
+        let panels = Region::union_of(panels.collect());
+        let drawing = Region::union_of(vec![square(0.0, 29.6)]);
+        assert!(seen(&panels, &drawing) > 0.9999);
+        let right = |p: [f64; 2]| p[0] > 15.0;
+        let half = panels.minus(&Region::union_of(vec![
+            square(0.0, 40.0).into_iter().map(|[x, y]| [x + 14.8, y]).collect(),
+        ]));
+        assert!(right([16.0, 0.0]) && (seen(&half, &drawing) - 0.5).abs() < 1e-3);
+    }
+}

@@ -1,0 +1,255 @@
+//! The panels of a drawing: squares of the even pattern, laid over the drawing while open, with
+//! rigid parts added where squares are missing at its edge, trimmed to it.
+//!
+//! A hinge counts if its window is in the drawing. Kept are the loops of four squares whose hinges
+//! count, and of them the largest set joined by pairs: a mechanism with one degree of freedom.
+//! Lengths are in sides of a square.
+
+use super::even_pattern::{
+    Cell, Pair, centre, corners, hinge, motion, moved, neighbours, pairs, pitch, relative_motion,
+    squares,
+};
+use design::geometry::plane::{complex, point};
+use design::geometry::region::{Contour, Corners, Region};
+use std::collections::{BTreeMap, BTreeSet};
+use std::f64::consts::FRAC_PI_2;
+
+/// Openings at which a panel may not meet another one.
+const OPENINGS: u32 = 24;
+/// How far the squares are apart at most whose panels may meet.
+const NEAR: i32 = 5;
+/// Rows of missing squares that become parts of panels.
+const RINGS: usize = 2;
+/// The smallest area of the drawing for which a missing square becomes a part.
+const LEAST_PART: f64 = 0.02;
+/// By how much the edges of a panel are simplified.
+const TOLERANCE: f64 = 3e-3;
+/// Overlap of a panel with what passes through it that is a rounding error, over its square.
+const FILLED: f64 = 1e-4;
+/// Points on the arc of a window in a square.
+const ARC: u32 = 4;
+
+/// What bounds the panels.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Limits {
+    /// The opening of every hinge (rad).
+    pub opening: f64,
+    /// Radius of a window.
+    pub window: f64,
+    /// Smallest width of a part of a panel.
+    pub width: f64,
+    /// Smallest distance of two panels where they do not hang together.
+    pub gap: f64,
+}
+
+/// The largest set of loops, joined by pairs of squares, whose windows are in an opened drawing.
+pub(super) fn loops(
+    bounds: [[f64; 2]; 2],
+    limits: &Limits,
+    inside: &impl Fn([f64; 2]) -> bool,
+) -> BTreeSet<Cell> {
+    let cells = |x: f64| (x / pitch(limits.opening)).floor() as i32;
+    let [from, to] = bounds.map(|corner| corner.map(cells));
+    let all = (from[1] - 1..=to[1]).flat_map(|j| (from[0] - 1..=to[0]).map(move |i| [i, j]));
+    let counts = |pair: &Pair| {
+        let corner = hinge(*pair);
+        pair.iter().all(|cell| window(*cell, corner, limits).into_iter().all(inside))
+    };
+    let mut left: BTreeSet<Cell> = all.filter(|at| pairs(*at).iter().all(counts)).collect();
+    let mut largest = BTreeSet::new();
+    while let Some(first) = left.pop_first() {
+        let (mut joined, mut next) = (BTreeSet::from([first]), vec![first]);
+        while let Some(at) = next.pop() {
+            let found: Vec<Cell> = neighbours(at).into_iter().filter(|c| left.remove(c)).collect();
+            joined.extend(&found);
+            next.extend(found);
+        }
+        if joined.len() > largest.len() {
+            largest = joined;
+        }
+    }
+    largest
+}
+
+/// Points around the part of a window in one of its squares when the pattern is open.
+fn window(cell: Cell, corner: Cell, limits: &Limits) -> Vec<[f64; 2]> {
+    let (corner, centre) = (corner.map(f64::from), centre(cell));
+    let side = [0, 1].map(|c| limits.window * (centre[c] - corner[c]).signum());
+    let arc = (0..=ARC).map(|k| {
+        let (sin, cos) = (FRAC_PI_2 * f64::from(k) / f64::from(ARC)).sin_cos();
+        [corner[0] + side[0] * cos, corner[1] + side[1] * sin]
+    });
+    let motion = motion(cell, limits.opening);
+    arc.chain([corner]).map(|at| moved(motion, at)).collect()
+}
+
+/// The flat panels of the squares of `loops`, trimmed to an opened drawing.
+pub(super) fn panels(
+    drawing: &Region,
+    loops: &BTreeSet<Cell>,
+    limits: &Limits,
+) -> BTreeMap<Cell, Region> {
+    let edge = Edge::new(drawing, loops, limits);
+    let parts: BTreeMap<Cell, Region> = edge.parts();
+    // Small parts first: they leave the large ones less, and parts of one size, as a mirror
+    // exchanges them, leave each other what both want.
+    let size = |cell: &Cell| (1e3 * parts[cell].area()).round() as i64;
+    let mut order: Vec<Cell> = edge.squares.iter().copied().collect();
+    order.sort_by_key(size);
+    let mut done: BTreeMap<Cell, Region> = BTreeMap::new();
+    for cell in order {
+        let square = Region::union_of(vec![corners(cell)]).common(&edge.drawing[&cell]);
+        let part = &parts[&cell];
+        let panel = if part.polygons.is_empty() {
+            square.clone()
+        } else {
+            let of_other = |other: Cell| match done.get(&other) {
+                _ if size(&other) == size(&cell) => {
+                    Region::union_of(vec![corners(other)]).union(&parts[&other])
+                }
+                Some(panel) => panel.clone(),
+                None => Region::union_of(vec![corners(other)]),
+            };
+            let taken = edge.passed(cell, part, of_other).offset(limits.gap, Corners::Round);
+            let whole = square.union(&part.minus(&taken));
+            let wide = square.union(&whole.opened(0.5 * limits.width).common(&whole));
+            let filled = with_most_of(wide, &square).filled();
+            // A hole that another panel passes through cannot be filled.
+            if filled.common(&taken).area() > FILLED * square.area() {
+                square.clone()
+            } else {
+                filled
+            }
+        };
+        let panel = with_most_of(panel, &square).filled();
+        done.insert(cell, panel.simplified(TOLERANCE));
+    }
+    done
+}
+
+/// The polygon of a region that has the most of another.
+fn with_most_of(region: Region, other: &Region) -> Region {
+    let single = |polygon| Region { polygons: vec![polygon] };
+    let shared = |region: &Region| region.common(other).area();
+    let polygons = region.polygons.into_iter().map(single);
+    let most = polygons.max_by(|one, two| shared(one).total_cmp(&shared(two)));
+    most.unwrap_or_default()
+}
+
+/// The squares of a drawing and what its edge needs.
+struct Edge<'a> {
+    limits: &'a Limits,
+    squares: BTreeSet<Cell>,
+    hinges: BTreeSet<Pair>,
+    /// The drawing as each square sees it when the pattern is open.
+    drawing: BTreeMap<Cell, Region>,
+}
+
+impl<'a> Edge<'a> {
+    fn new(drawing: &Region, loops: &BTreeSet<Cell>, limits: &'a Limits) -> Self {
+        let squares = squares(loops);
+        let seen = |cell: &Cell| {
+            let motion = motion(*cell, limits.opening);
+            (*cell, drawing.map(|at| point(motion.back(complex(at)))))
+        };
+        Self {
+            limits,
+            hinges: loops.iter().flat_map(|at| pairs(*at)).collect(),
+            drawing: squares.iter().map(seen).collect(),
+            squares,
+        }
+    }
+
+    /// The hinges of a square.
+    fn hinges_of(&self, cell: Cell) -> impl Iterator<Item = &Pair> {
+        let pairs = neighbours(cell).map(|other| [cell.min(other), cell.max(other)]);
+        pairs.into_iter().filter_map(|pair| self.hinges.get(&pair))
+    }
+
+    /// The parts of every panel: missing squares, row by row, in the neighbour that has the most of
+    /// the drawing there.
+    fn parts(&self) -> BTreeMap<Cell, Region> {
+        let mut owner: BTreeMap<Cell, Cell> = self.squares.iter().map(|c| (*c, *c)).collect();
+        for _ in 0..RINGS {
+            let around: BTreeSet<Cell> = owner.keys().flat_map(|cell| neighbours(*cell)).collect();
+            let missing = around.into_iter().filter(|cell| !owner.contains_key(cell));
+            let found: Vec<(Cell, Cell)> = missing
+                .filter_map(|cell| {
+                    let square = Region::union_of(vec![corners(cell)]);
+                    let owners = neighbours(cell).into_iter().filter_map(|n| owner.get(&n));
+                    let fits = owners.filter(|of| !self.is_beyond_hinge(**of, cell));
+                    let area = |of: &Cell| self.drawing[of].common(&square).area();
+                    let best = fits.map(|of| (area(of), *of));
+                    let (area, of) = best.max_by(|one, two| one.0.total_cmp(&two.0))?;
+                    (area > LEAST_PART).then_some((cell, of))
+                })
+                .collect();
+            owner.extend(found);
+        }
+        let part = |cell: &Cell| {
+            let own = owner.iter().filter(|(at, of)| *of == cell && *at != cell);
+            let squares = own.map(|(at, _)| corners(*at)).collect();
+            (*cell, Region::union_of(squares).common(&self.drawing[cell]))
+        };
+        self.squares.iter().map(part).collect()
+    }
+
+    /// Whether a missing square is on the far side of a hinge of a panel from its partner: it would
+    /// close the cut along the window.
+    fn is_beyond_hinge(&self, panel: Cell, missing: Cell) -> bool {
+        self.hinges_of(panel).any(|pair| {
+            let partner = if pair[0] == panel { pair[1] } else { pair[0] };
+            let across = usize::from(pair[1][0] > pair[0][0]);
+            let mut far = partner;
+            let above = f64::from(hinge(*pair)[across]) > centre(partner)[across];
+            far[across] += if above { 1 } else { -1 };
+            far == missing
+        })
+    }
+
+    /// What other panels pass through as a panel sees it, and the cuts along the windows of its
+    /// hinges.
+    fn passed(&self, cell: Cell, part: &Region, of_other: impl Fn(Cell) -> Region) -> Region {
+        let [low, high] = part.bounds();
+        let mut passed: Vec<Contour> =
+            self.hinges_of(cell).map(|pair| self.slit(cell, pair)).collect();
+        let is_near =
+            |other: &&Cell| **other != cell && (0..2).all(|c| (other[c] - cell[c]).abs() <= NEAR);
+        for other in self.squares.iter().filter(is_near) {
+            let panel = of_other(*other);
+            for step in 0..=OPENINGS {
+                let opening = self.limits.opening * f64::from(step) / f64::from(OPENINGS);
+                let motion = relative_motion(*other, cell, opening);
+                let there = panel.map(|at| moved(motion, at));
+                let [from, to] = there.bounds();
+                if (0..2).all(|c| from[c] < high[c] && to[c] > low[c]) {
+                    passed
+                        .extend(there.polygons.into_iter().map(|mut contours| contours.remove(0)));
+                }
+            }
+        }
+        Region::union_of(passed)
+    }
+
+    /// The cut along the flat side of a window, on the side without material.
+    fn slit(&self, cell: Cell, pair: &Pair) -> Contour {
+        let along = usize::from(pair[1][0] == pair[0][0]);
+        let (at, out) = (hinge(*pair).map(f64::from), 1 - along);
+        let beyond = if at[out] > centre(cell)[out] { self.limits.gap } else { -self.limits.gap };
+        let (mut from, mut to) = (at, at);
+        from[along] -= self.limits.window;
+        to[along] += self.limits.window;
+        from[out] = at[out].min(at[out] + beyond);
+        to[out] = at[out].max(at[out] + beyond);
+        vec![from, [to[0], from[1]], to, [from[0], to[1]]]
+    }
+}
+
+/// What opened panels cover.
+pub(super) fn opened(panels: &BTreeMap<Cell, Region>, opening: f64) -> Region {
+    let contours = panels.iter().flat_map(|(cell, panel)| {
+        let motion = motion(*cell, opening);
+        panel.map(|at| moved(motion, at)).polygons.into_iter().flatten()
+    });
+    Region::union_of(contours.collect())
+}
