@@ -9,7 +9,7 @@ use crate::drawing;
 use crate::report::{Report, Warning};
 use crate::run_page::run_page;
 use design::objective::design_problem::Deployment;
-use design::sheet::kinematics::deployed_corners;
+use design::sheet::kinematics::deployed_boundaries;
 use scene::Scene;
 use scene::analysis::design_checks::CHECKS_FILE;
 use scene::design_run::Designed;
@@ -96,7 +96,7 @@ pub const RUN_FILES: [RunFile; 18] = [
         Ok(run.cut().map(|_| {
             let Deployment { sheet, .. } = run.best();
             let configuration = placed(run.scene, sheet, &run.best().final_step().configuration);
-            dxf(&deployed_panels(&deployed_corners(sheet, &configuration))).into()
+            dxf(&deployed_panels(&deployed_boundaries(sheet, &configuration))).into()
         }))
     }),
     result("flat.svg", FLAT, |run| {

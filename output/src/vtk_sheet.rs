@@ -7,8 +7,8 @@
 use design::equilibrium::load_step::LoadStep;
 use design::hinge_law::DamageMeasure;
 use design::objective::design_problem::Deployment;
-use design::sheet::cut_sheet::Sheet;
-use design::sheet::kinematics::{deployed, deployed_corners};
+use design::sheet::cut_sheet::{Panel, Sheet};
+use design::sheet::kinematics::{deployed, deployed_boundaries};
 use support::vtk::{CellKind, Field, UnstructuredGrid};
 
 /// A state of the deployment.
@@ -50,12 +50,14 @@ fn time(step: &LoadStep) -> f64 {
 }
 
 fn panels(sheet: &Sheet, configuration: &[[f64; 3]]) -> UnstructuredGrid {
-    let points = sheet.panels.iter().flat_map(|panel| panel.corners);
-    let moved = deployed_corners(sheet, configuration);
+    let points = sheet.panels.iter().flat_map(|panel| panel.boundary.iter().copied());
+    let moved = deployed_boundaries(sheet, configuration);
     let displacements = std::iter::zip(points.clone(), moved.into_iter().flatten());
+    let mut next = 0..;
+    let cell = |panel: &Panel| next.by_ref().take(panel.boundary.len()).collect();
     UnstructuredGrid {
-        kind: CellKind::Quad,
-        cells: (0..sheet.panels.len()).map(|k| (4 * k..4 * k + 4).collect()).collect(),
+        kind: CellKind::Polygon,
+        cells: sheet.panels.iter().map(cell).collect(),
         point_data: vec![displacement(displacements)],
         cell_data: vec![
             Field::scalar("panel", (0..sheet.panels.len()).map(|k| k as f64)),

@@ -1,6 +1,7 @@
 //! Supports and loads as written in a scene, with panels named by [column, row].
 
 use design::pattern::grid::{EDGES, Grid};
+use design::sheet::topology::Topology;
 use design::sheet::cut_sheet::PanelPoint;
 use hinge::STANDARD_GRAVITY;
 use schemars::JsonSchema;
@@ -292,13 +293,14 @@ impl LoadConfig {
 
 impl SheetEdge {
     /// The panels along the edge.
-    pub(super) fn panels(self, grid: Grid) -> Vec<usize> {
-        let row = |q| (0..grid.m).map(|p| grid.panel(p, q)).collect();
-        let column = |p| (0..grid.n).map(|q| grid.panel(p, q)).collect();
+    pub(super) fn panels(self, topology: &Topology) -> Vec<usize> {
+        let Grid { m, n } = topology.grid;
+        let row = |q| (0..m).filter_map(|p| topology.panel(p, q)).collect();
+        let column = |p| (0..n).filter_map(|q| topology.panel(p, q)).collect();
         match self {
             Self::Bottom => row(0),
-            Self::Right => column(grid.m - 1),
-            Self::Top => row(grid.n - 1),
+            Self::Right => column(m - 1),
+            Self::Top => row(n - 1),
             Self::Left => column(0),
         }
     }

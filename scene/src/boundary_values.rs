@@ -7,12 +7,11 @@ use crate::actuation::{
 use crate::checked_scene::Scene;
 use design::equilibrium::supports::{Dof, Load, Support};
 use design::geometry::polygon::distance;
-use design::pattern::grid::{EDGES, Grid};
+use design::pattern::grid::EDGES;
 use design::sheet::cut_sheet::AttachmentPoint;
 use design::sheet::topology::{HingeSite, Topology};
 use serde::Serialize;
 use std::collections::BTreeMap;
-use std::sync::Arc;
 
 /// Supports and loads at full load.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -66,21 +65,21 @@ const SUMS: &str = "Curved arrows on panels: sums of the opening couples of thei
 impl Scene {
     /// Supports and loads on the panels of the sheet.
     pub fn actuation(&self) -> Actuation {
-        let (config, grid) = (&self.config, self.grid());
+        let (config, topology) = (&self.config, &*self.topology);
         let supports: Vec<SupportedPanel> =
-            (config.supports.iter()).map(|support| support.on(grid)).collect();
+            (config.supports.iter()).map(|support| support.on(topology)).collect();
         let turns = |panel: usize| {
             let mut held = supports.iter().filter(|support| support.panel == panel);
             held.all(|support| support.motion[2].is_none())
         };
         let corners = config.sheet.outline().corners;
         let down = config.posture.and_then(|posture| posture.down());
-        let panels = config.loads.iter().map(|load| load.on(grid, down));
+        let panels = config.loads.iter().map(|load| load.on(topology, down));
         let edges = config.edge_loads.iter();
-        let edges = edges.map(|load| load.on(grid, EDGES[load.edge as usize].map(|k| corners[k])));
-        let openings = config.opening_couples.iter().map(|load| load.on(grid, turns));
+        let edges = edges.map(|load| load.on(topology, EDGES[load.edge as usize].map(|k| corners[k])));
+        let openings = config.opening_couples.iter().map(|load| load.on(topology, turns));
         Actuation {
-            attachments: config.attached().map(|it| it.on(grid)).collect(),
+            attachments: config.attached().map(|it| it.on(topology)).collect(),
             loads: panels.chain(edges).chain(openings).collect(),
             legend: if config.opening_couples.is_empty() {
                 SYMBOLS.to_owned()
@@ -127,18 +126,17 @@ impl Actuation {
 
 /// A panel [column, row] by its number in the drawings, which counts from 0, and its place, which
 /// counts from 1.
-pub fn panel_name(grid: Grid, [column, row]: [usize; 2]) -> String {
-    let number = grid.panel(column, row);
+pub fn panel_name(topology: &Topology, [column, row]: [usize; 2]) -> String {
+    let number = topology.number([column, row]);
     format!("panel P{number} (column {}, row {})", column + 1, row + 1)
 }
 
 impl SupportConfig {
-    fn on(&self, grid: Grid) -> SupportedPanel {
-        let [column, row] = self.panel;
+    fn on(&self, topology: &Topology) -> SupportedPanel {
         let (holds, motion) = (self.kind.holds(), self.motion());
         SupportedPanel {
-            name: format!("{}, {}", name(self.kind), panel_name(grid, self.panel)),
-            panel: grid.panel(column, row),
+            name: format!("{}, {}", name(self.kind), panel_name(topology, self.panel)),
+            panel: topology.number(self.panel),
             motion: std::array::from_fn(|d| holds[d].then_some(motion[d])),
             symbol: self.kind.symbol(),
             rail: self.kind.rail(),
@@ -147,11 +145,10 @@ impl SupportConfig {
 }
 
 impl Attached {
-    fn on(&self, grid: Grid) -> AttachmentPoint {
-        let [column, row] = self.panel;
+    fn on(&self, topology: &Topology) -> AttachmentPoint {
         AttachmentPoint {
-            name: format!("{}, {}", self.kind, panel_name(grid, self.panel)),
-            panel: grid.panel(column, row),
+            name: format!("{}, {}", self.kind, panel_name(topology, self.panel)),
+            panel: topology.number(self.panel),
             point: self.at.point(),
             hole: self.hole,
             clip: self.clip,
@@ -161,13 +158,12 @@ impl Attached {
 
 impl LoadConfig {
     /// `down` is the direction of gravity in the plane of the sheet.
-    fn on(&self, grid: Grid, down: Option<[f64; 2]>) -> AppliedLoad {
-        let [column, row] = self.panel;
+    fn on(&self, topology: &Topology, down: Option<[f64; 2]>) -> AppliedLoad {
         let load = self.values(down);
         AppliedLoad {
-            name: format!("load, {}", panel_name(grid, self.panel)),
+            name: format!("load, {}", panel_name(topology, self.panel)),
             place: Some(self.panel),
-            on_panels: vec![(grid.panel(column, row), load)],
+            on_panels: vec![(topology.number(self.panel), load)],
             total: load,
             label: None,
         }
@@ -176,10 +172,10 @@ impl LoadConfig {
 
 impl EdgeLoadConfig {
     /// `from` and `to` are the ends of the edge in the flat sheet.
-    fn on(&self, grid: Grid, [from, to]: [[f64; 2]; 2]) -> AppliedLoad {
+    fn on(&self, topology: &Topology, [from, to]: [[f64; 2]; 2]) -> AppliedLoad {
         let length = distance(from, to);
         let resultant = self.traction.map(|traction| traction * length);
-        let panels = self.edge.panels(grid);
+        let panels = self.edge.panels(topology);
         let [x, y] = resultant.map(|force| force / panels.len() as f64);
         let edge = format!("{} edge", name(self.edge));
         AppliedLoad {
@@ -194,10 +190,10 @@ impl EdgeLoadConfig {
 
 impl OpeningCoupleConfig {
     /// The sums of the couples on panels that may turn.
-    fn on(&self, grid: Grid, turns: impl Fn(usize) -> bool) -> AppliedLoad {
-        let mut couples = vec![0.0; grid.panel_count()];
-        let pair = (self.panels).map(|pair| pair.map(|[column, row]| grid.panel(column, row)));
-        for HingeSite { a, b, .. } in &Arc::<Topology>::from(grid).sites {
+    fn on(&self, topology: &Topology, turns: impl Fn(usize) -> bool) -> AppliedLoad {
+        let mut couples = vec![0.0; topology.panel_count()];
+        let pair = (self.panels).map(|pair| pair.map(|place| topology.number(place)));
+        for HingeSite { a, b, .. } in &topology.sites {
             if pair.is_none_or(|pair| pair.contains(&a.0) && pair.contains(&b.0)) {
                 couples[a.0] -= self.couple;
                 couples[b.0] += self.couple;
@@ -206,7 +202,7 @@ impl OpeningCoupleConfig {
         let loaded = couples.into_iter().enumerate();
         let loaded = loaded.filter(|(k, couple)| *couple != 0.0 && turns(*k));
         let place = match self.panels {
-            Some(pair) => pair.map(|panel| panel_name(grid, panel)).join(" and "),
+            Some(pair) => pair.map(|panel| panel_name(topology, panel)).join(" and "),
             None => "every hinge".to_owned(),
         };
         AppliedLoad {

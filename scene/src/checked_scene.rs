@@ -1,5 +1,6 @@
 //! A scene that was read and checked, together with the files that it names.
 
+use crate::cells_file;
 use crate::checks;
 use crate::keys::{SceneConfig, folder, resolved};
 use crate::level::Level;
@@ -10,8 +11,10 @@ use crate::solved_hinges::SolvedHinges;
 use crate::springback_file;
 use crate::target::{TARGET_POINTS, Target};
 use design::sheet::cut_sheet::SheetOptions;
+use design::sheet::topology::Topology;
 use hinge::SheetMaterial;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use support::relative_path;
 use surrogate::{Springback, Surrogate};
 
@@ -32,6 +35,8 @@ pub(super) const MODEL_PARTS: [&str; 4] = ["version of kirigami", "material", "t
 pub struct Scene {
     /// The keys of the scene file.
     pub config: SceneConfig,
+    /// The panels and hinges of the sheet.
+    pub topology: Arc<Topology>,
     /// The material of the sheet, in its thickness.
     pub material: SheetMaterial,
     /// The material in the thickness of its file, at which learned laws were trained.
@@ -77,7 +82,9 @@ impl Scene {
         path: &Path,
         known: Option<&[Surrogate]>,
     ) -> Result<Self, SceneError> {
-        checks::config(&config).map_err(SceneError::at(path))?;
+        checks::keys(&config).map_err(SceneError::at(path))?;
+        let topology = cells_file::topology(&config, path)?;
+        checks::config(&config, &topology).map_err(SceneError::at(path))?;
         let material_path = resolved(path, &config.material);
         let measured = SheetMaterial::load(&material_path)?;
         let material = SheetMaterial {
@@ -88,10 +95,11 @@ impl Scene {
         let target = Target::sample(&config.target, folder(path), TARGET_POINTS);
         let target = target.map_err(SceneError::at(path))?;
         checks::target(&target, &config).map_err(SceneError::at(path))?;
-        let hinge = LoadedHinge::load(&config, &measured, path, known)?;
+        let hinge = LoadedHinge::load(&config, &topology, &measured, path, known)?;
         let springback = springback_file::load(&config, &measured, path);
         let springback = springback.map_err(SceneError::at(path))?;
-        Ok(Self { config, material, measured, target, hinge, springback, path: path.to_owned() })
+        let path = path.to_owned();
+        Ok(Self { config, topology, material, measured, target, hinge, springback, path })
     }
 
     /// The learned hinge law, if the scene uses one.

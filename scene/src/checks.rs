@@ -18,21 +18,24 @@ use design::sheet::topology::Topology;
 use hinge::InvalidDesign;
 use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::FRAC_PI_2;
-use std::sync::Arc;
 use support::key_limits::{self, within};
 
-/// Checks everything that needs no other file.
-pub(super) fn config(scene: &SceneConfig) -> Result<(), InvalidScene> {
+/// Checks the keys that say which files are read.
+pub(super) fn keys(scene: &SceneConfig) -> Result<(), InvalidScene> {
     key_limits::check::<SceneConfig>(scene)?;
     level(scene)?;
     title(scene)?;
-    sheet(scene)?;
+    sheet(scene)
+}
+
+/// Checks everything else that needs no file but the cells of the sheet.
+pub(super) fn config(scene: &SceneConfig, topology: &Topology) -> Result<(), InvalidScene> {
     ligament(scene)?;
-    start(scene)?;
+    start(scene, topology)?;
     posture(scene)?;
-    supports(scene)?;
-    loads(scene)?;
-    attachments(scene)?;
+    supports(scene, topology)?;
+    loads(scene, topology)?;
+    attachments(scene, topology)?;
     objective(scene)
 }
 
@@ -89,7 +92,7 @@ fn title(scene: &SceneConfig) -> Result<(), InvalidScene> {
 }
 
 fn sheet(scene: &SceneConfig) -> Result<(), InvalidScene> {
-    let SheetConfig { size, corners, .. } = scene.sheet;
+    let SheetConfig { size, corners, .. } = &scene.sheet;
     if size.is_some() == corners.is_some() {
         return Err(InvalidScene::SizeOrCorners);
     }
@@ -145,13 +148,13 @@ fn ligament(scene: &SceneConfig) -> Result<(), InvalidScene> {
     Ok(())
 }
 
-fn start(scene: &SceneConfig) -> Result<(), InvalidScene> {
-    let (start, grid) = (&scene.start, scene.sheet.grid());
-    start.pattern(grid).map_err(InvalidScene::Start)?;
+fn start(scene: &SceneConfig, topology: &Topology) -> Result<(), InvalidScene> {
+    let start = &scene.start;
+    start.pattern(topology.grid).map_err(InvalidScene::Start)?;
     let Some(w_lig) = &start.w_lig else {
         return Ok(());
     };
-    let (found, hinges) = (w_lig.len(), grid.hinge_count());
+    let (found, hinges) = (w_lig.len(), topology.hinge_count());
     if found != hinges {
         return Err(InvalidScene::StartWidths { found, hinges });
     }
@@ -178,7 +181,7 @@ fn posture(scene: &SceneConfig) -> Result<(), InvalidScene> {
 
 /// The points at which panels are held or pulled: one for each panel, inside it in the start
 /// pattern, with one hole or clip.
-fn attachments(scene: &SceneConfig) -> Result<(), InvalidScene> {
+fn attachments(scene: &SceneConfig, topology: &Topology) -> Result<(), InvalidScene> {
     let (mut points, mut fastened) = (BTreeMap::new(), BTreeSet::new());
     for attached in scene.attached() {
         let Attached { panel, at, .. } = attached;
@@ -189,14 +192,12 @@ fn attachments(scene: &SceneConfig) -> Result<(), InvalidScene> {
         if has_fastening && !fastened.insert(panel) {
             return Err(InvalidScene::TwoFastenings { panel });
         }
-        fastening(scene, &attached)?;
-        inside(scene, attached.key, panel, at)?;
+        fastening(scene, topology, &attached)?;
+        inside(scene, topology, attached.key, panel, at)?;
     }
-    let grid = scene.sheet.grid();
     for (panel, at) in points {
         let loaded = |edge: &EdgeLoadConfig| {
-            let panels = edge.edge.panels(grid);
-            panels.contains(&grid.panel(panel[0], panel[1]))
+            edge.edge.panels(topology).contains(&topology.number(panel))
         };
         if at != At::default() && scene.edge_loads.iter().any(loaded) {
             return Err(InvalidScene::EdgeAndPoint { panel });
@@ -206,16 +207,18 @@ fn attachments(scene: &SceneConfig) -> Result<(), InvalidScene> {
 }
 
 /// A clip is on an edge of the sheet, a hole inside its panel and wider than the kerf.
-fn fastening(scene: &SceneConfig, attached: &Attached) -> Result<(), InvalidScene> {
-    let (key, grid) = (attached.key.clone(), scene.sheet.grid());
+fn fastening(
+    scene: &SceneConfig,
+    topology: &Topology,
+    attached: &Attached) -> Result<(), InvalidScene> {
+    let key = attached.key.clone();
     let edge = attached.at.edge();
     if attached.clip.is_some() {
         let panel = attached.panel;
         let Some(edge) = edge else {
             return Err(InvalidScene::ClipOffEdge { key });
         };
-        let outer = edge.panels(grid);
-        if !outer.contains(&grid.panel(panel[0], panel[1])) {
+        if !edge.panels(topology).contains(&topology.number(panel)) {
             return Err(InvalidScene::ClipInside { key, panel });
         }
     }
@@ -231,15 +234,18 @@ fn fastening(scene: &SceneConfig, attached: &Attached) -> Result<(), InvalidScen
     Ok(())
 }
 
-fn inside(scene: &SceneConfig, key: String, panel: [usize; 2], at: At) -> Result<(), InvalidScene> {
+fn inside(
+    scene: &SceneConfig,
+    topology: &Topology,
+    key: String, panel: [usize; 2], at: At) -> Result<(), InvalidScene> {
     let At::Point(at) = at else {
         return Ok(());
     };
-    let grid = scene.sheet.grid();
+    let grid = topology.grid;
     let start = scene.start.pattern(grid).map_err(InvalidScene::Start)?;
     let pattern = CutPattern::new(grid, scene.sheet.outline(), &start);
     let pattern = pattern.map_err(InvalidScene::Start)?;
-    let endpoints = Arc::<Topology>::from(grid).endpoints[grid.panel(panel[0], panel[1])];
+    let endpoints = topology.endpoints[topology.number(panel)];
     let corners = endpoints.map(|endpoint| pattern.points[endpoint]);
     if contains(&corners, at) {
         return Ok(());
@@ -248,13 +254,13 @@ fn inside(scene: &SceneConfig, key: String, panel: [usize; 2], at: At) -> Result
     Err(InvalidScene::PointOutside { key, at, panel, corners })
 }
 
-fn supports(scene: &SceneConfig) -> Result<(), InvalidScene> {
+fn supports(scene: &SceneConfig, topology: &Topology) -> Result<(), InvalidScene> {
     if scene.supports.is_empty() && scene.level != Level::Pin {
         return Err(InvalidScene::NoSupports);
     }
     for (i, support) in scene.supports.iter().enumerate() {
         let at = support.panel;
-        panel(scene, || format!("supports[{i}].panel"), at)?;
+        panel(topology, || format!("supports[{i}].panel"), at)?;
         if scene.supports[..i].iter().any(|other| other.panel == at) {
             return Err(InvalidScene::SupportedTwice { i, panel: at });
         }
@@ -269,9 +275,9 @@ fn supports(scene: &SceneConfig) -> Result<(), InvalidScene> {
     Ok(())
 }
 
-fn loads(scene: &SceneConfig) -> Result<(), InvalidScene> {
+fn loads(scene: &SceneConfig, topology: &Topology) -> Result<(), InvalidScene> {
     for (i, load) in scene.loads.iter().enumerate() {
-        panel(scene, || format!("loads[{i}].panel"), load.panel)?;
+        panel(topology, || format!("loads[{i}].panel"), load.panel)?;
         let down = scene.posture.and_then(|posture| posture.down());
         if load.mass_g.is_some() && down.is_none() {
             return Err(InvalidScene::NoGravity { i });
@@ -291,7 +297,7 @@ fn loads(scene: &SceneConfig) -> Result<(), InvalidScene> {
             continue;
         };
         for at in panels {
-            panel(scene, || format!("opening_couples[{i}].panels"), at)?;
+            panel(topology, || format!("opening_couples[{i}].panels"), at)?;
         }
         let [first, second] = panels;
         if first[0].abs_diff(second[0]) + first[1].abs_diff(second[1]) != 1 {
@@ -310,14 +316,13 @@ fn objective(scene: &SceneConfig) -> Result<(), InvalidScene> {
 
 /// A panel that a key names must be one of the sheet.
 fn panel(
-    scene: &SceneConfig,
+    topology: &Topology,
     key: impl Fn() -> String,
     panel: [usize; 2],
 ) -> Result<(), InvalidScene> {
-    let grid = scene.sheet.panels;
-    if panel[0] < grid[0] && panel[1] < grid[1] {
+    if topology.panel(panel[0], panel[1]).is_some() {
         return Ok(());
     }
-    let key = key();
+    let (key, grid) = (key(), [topology.grid.m, topology.grid.n]);
     Err(InvalidScene::NoPanel { key, panel, grid })
 }

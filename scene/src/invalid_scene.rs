@@ -10,6 +10,7 @@ use design::hinge_law::InvalidContact;
 use design::pattern::pattern_error::PatternError;
 use hinge::{InvalidDesign, InvalidMaterial};
 use std::path::PathBuf;
+use support::fault::Fault;
 use support::key_limits::OutOfRange;
 
 /// A value of a scene that is outside its range or that other values exclude; the message names the
@@ -17,6 +18,8 @@ use support::key_limits::OutOfRange;
 #[derive(Debug, thiserror::Error)]
 #[allow(missing_docs, reason = "the message of a variant is its documentation")]
 pub enum InvalidScene {
+    #[error(transparent)]
+    Fault(#[from] Fault),
     #[error(transparent)]
     OutOfRange(#[from] OutOfRange),
     #[error("{source} (the outline of the flat sheet is {perimeter:.0} mm long)")]

@@ -11,6 +11,7 @@
 mod actuation;
 pub mod analysis;
 mod boundary_values;
+mod cells_file;
 mod checked_scene;
 mod checks;
 mod coarse_search;

@@ -11,6 +11,7 @@ use design::hinge_law::{
     Contact, DamageMeasure, HingeLaw, LinearLaw, MeanLaw, Order, SurrogateLaw,
 };
 use design::sheet::cut_sheet::HingePoint;
+use design::sheet::topology::Topology;
 use hinge::{HingeDeformation, Regime, SheetMaterial};
 use std::f64::consts::FRAC_PI_2;
 use std::fmt;
@@ -66,6 +67,7 @@ impl LoadedHinge {
     /// `known` the networks if they were loaded for it before.
     pub(super) fn load(
         config: &SceneConfig,
+        topology: &Topology,
         measured: &SheetMaterial,
         path: &Path,
         known: Option<&[Surrogate]>,
@@ -76,10 +78,11 @@ impl LoadedHinge {
         };
         let hinge = match config.level {
             Level::Pin => pinned(config),
-            Level::Linear => linear(config),
+            Level::Linear => linear(config, topology),
             Level::Draft | Level::Standard | Level::Fine => learned(config, networks, None),
             Level::Final => {
-                let solved = SolvedHinges::load(config, path).map_err(SceneError::at(path))?;
+                let solved = SolvedHinges::load(config, topology, path);
+                let solved = solved.map_err(SceneError::at(path))?;
                 learned(config, networks, Some(solved))
             }
         };
@@ -268,18 +271,17 @@ fn pinned(config: &SceneConfig) -> Result<LoadedHinge, InvalidScene> {
     })
 }
 
-fn linear(config: &SceneConfig) -> Result<LoadedHinge, InvalidScene> {
+fn linear(config: &SceneConfig, topology: &Topology) -> Result<LoadedHinge, InvalidScene> {
     let constants = config.linear.ok_or(InvalidScene::NoSection("linear"))?;
     let LinearConstants { k_a, k_s, k_theta } = constants;
-    let grid = config.sheet.grid();
-    let panel = config.sheet.outline().area().abs() / grid.panel_count() as f64;
+    let panel = config.sheet.mean_panel_area().abs();
     let ratio = k_theta / (k_a.max(k_s) * panel);
     if ratio < MIN_PIVOT_RATIO {
         return Err(InvalidScene::Soft { ratio });
     }
     Ok(LoadedHinge {
         behaviour: HingeBehaviour::Elastic {
-            law: Arc::new(LinearLaw::uniform([k_a, k_s, k_theta], grid.hinge_count())),
+            law: Arc::new(LinearLaw::uniform([k_a, k_s, k_theta], topology.hinge_count())),
             contact: contact(k_theta, CONTACT_WALL)?,
         },
         hinge_point: HingePoint::Corner,

@@ -24,7 +24,7 @@ impl Scene {
     pub fn problem(&self) -> Result<DesignProblem, SceneError> {
         let model = self.model()?;
         Ok(DesignProblem {
-            topology: self.grid().into(),
+            topology: self.topology.clone(),
             outline: self.config.sheet.outline(),
             widths: self.width_chart(),
             options: self.sheet_options(),
@@ -55,7 +55,7 @@ impl Scene {
     /// The start design, with the seeded noise of the scene.
     pub fn start(&self) -> DesignVector {
         let (start, grid, widths) = (&self.config.start, self.grid(), self.width_chart());
-        let uniform = vec![self.config.ligament.start; grid.hinge_count()];
+        let uniform = vec![self.config.ligament.start; self.topology.hinge_count()];
         let w_lig = start.w_lig.as_ref().unwrap_or(&uniform);
         let mut design = DesignVector {
             pattern: start.pattern(grid).expect("the scene has been checked"),
@@ -102,7 +102,7 @@ impl Scene {
         let actuation = self.actuation();
         let (supports, loads) = (actuation.boundary_supports(), actuation.boundary_loads());
         let steps = level.load_steps(self.config.load_steps);
-        let solver = EquilibriumSolver::new(self.grid(), &supports, &loads, steps, settings)?;
+        let solver = EquilibriumSolver::new(self.topology.clone(), &supports, &loads, steps, settings)?;
         let solver =
             solver.attached_at(actuation.attachments).with_weight(self.weight_by_area())?;
         match self.config.drive {

@@ -3,6 +3,7 @@
 
 use crate::keys::{SceneConfig, resolved};
 use design::hinge_law::{CorrectedLaw, Correction, HingeLaw, MissingForces, Order};
+use design::sheet::topology::Topology;
 use hinge::{HingeDeformation, HingeDesign};
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
@@ -52,7 +53,11 @@ pub enum SolvedHingesError {
 
 impl SolvedHinges {
     /// The solved hinges that the scene at `path` names.
-    pub(super) fn load(config: &SceneConfig, path: &Path) -> Result<Self, SolvedHingesError> {
+    pub(super) fn load(
+        config: &SceneConfig,
+        topology: &Topology,
+        path: &Path,
+    ) -> Result<Self, SolvedHingesError> {
         let named = (config.surrogate.as_ref()).and_then(|files| files.solved_hinges.as_ref());
         let file = resolved(path, named.ok_or(SolvedHingesError::NoFile)?);
         let text = regular_file::read(&file).map_err(FileError::at(&file))?;
@@ -60,7 +65,7 @@ impl SolvedHinges {
             Ok(solved) => solved,
             Err(source) => return Err(SolvedHingesError::Other { file, source }),
         };
-        let (found, expected) = (solved.hinges.len(), config.sheet.grid().hinge_count());
+        let (found, expected) = (solved.hinges.len(), topology.hinge_count());
         if found != expected {
             return Err(SolvedHingesError::OtherSheet { file, found, expected });
         }

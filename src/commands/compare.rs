@@ -74,10 +74,10 @@ impl CompareCommand {
             Some(file) => Some(self.fit(file, &ShapePath::flat(path.sheet))?.best),
             None => None,
         };
-        let grid = path.sheet.topology.grid;
+        let topology = &path.sheet.topology;
         let supports = scene.config.supports.iter();
         let supported: BTreeSet<usize> =
-            supports.map(|support| grid.panel(support.panel[0], support.panel[1])).collect();
+            supports.map(|support| topology.number(support.panel)).collect();
         let supported: Vec<usize> = supported.into_iter().collect();
         let title = &scene.config.title;
         let closed = closed.as_ref();

@@ -15,8 +15,6 @@ pub enum CellKind {
     Vertex = 1,
     /// Three corners or more, counter-clockwise.
     Polygon = 7,
-    /// Four corners, counter-clockwise.
-    Quad = 9,
     /// 20 nodes: lower corners, upper corners, middles of the lower, the upper and the vertical
     /// edges.
     QuadraticHexahedron = 25,
@@ -160,7 +158,7 @@ mod tests {
                 [0.0, 1.0, 0.0],
                 [2.0; 3],
             ],
-            kind: CellKind::Quad,
+            kind: CellKind::Polygon,
             cells: vec![vec![0, 1, 2, 3], vec![1, 4, 2, 3]],
             point_data: vec![Field::vector("u (mm)", [[1e-300, -2.5, 3.0]; 5])],
             cell_data: vec![Field::scalar("D", [0.25, f64::NAN])],

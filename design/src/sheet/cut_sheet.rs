@@ -11,6 +11,7 @@
 //! ```
 
 use crate::geometry::plane::{I, add, complex, cross, dot, point};
+use crate::geometry::region::{Contour, Corners, Region};
 use crate::pattern::cut_pattern::{CutPattern, Outline};
 use crate::pattern::grid::{Grid, NE, NW, SE, SW};
 use crate::sheet::cutting_process::CuttingProcess;
@@ -241,6 +242,20 @@ impl Sheet {
         })
     }
 
+    /// The edge of the flat sheet: its outer contours, counter-clockwise, and those of its holes,
+    /// clockwise (mm).
+    pub fn outlines(&self) -> Vec<Contour> {
+        /// Gaps between panels that are rounding errors (mm).
+        const ROUNDING: f64 = 1e-3;
+        if self.topology.is_full() {
+            return vec![self.outline.corners.to_vec()];
+        }
+        let panels = self.panels.iter().map(|panel| panel.boundary.clone()).collect();
+        let joined = Region::union_of(panels).offset(ROUNDING, Corners::Sharp);
+        let joined = joined.offset(-ROUNDING, Corners::Sharp).simplified(ROUNDING);
+        joined.polygons.into_iter().flatten().collect()
+    }
+
     /// The same sheet, held or pulled at other points than the centroids of its panels.
     ///
     /// # Panics
@@ -379,6 +394,11 @@ impl Panel {
             centroid,
             area,
         })
+    }
+
+    /// Whether the panel is not its cell.
+    pub fn is_trimmed(&self) -> bool {
+        self.trim.is_some()
     }
 
     /// The position of a point of the panel in the flat sheet (mm).

@@ -36,6 +36,14 @@ pub fn deployed_corners(sheet: &Sheet, configuration: &[[f64; 3]]) -> Vec<[[f64;
         .collect()
 }
 
+/// The deployed boundary of every panel (mm).
+pub fn deployed_boundaries(sheet: &Sheet, configuration: &[[f64; 3]]) -> Vec<Vec<[f64; 2]>> {
+    let moved = |(panel, motion): (&Panel, &[f64; 3])| {
+        panel.boundary.iter().map(|point| deployed(panel, *motion, *point)).collect()
+    };
+    std::iter::zip(&sheet.panels, configuration).map(moved).collect()
+}
+
 /// Distance of every panel corner between two configurations (mm).
 pub fn corner_distances(sheet: &Sheet, from: &[[f64; 3]], to: &[[f64; 3]]) -> Vec<f64> {
     let [from, to] = [from, to].map(|configuration| deployed_corners(sheet, configuration));

@@ -2,6 +2,7 @@
 //! designs.
 
 use crate::pattern::grid::{Endpoint, Grid, NE, NW, SE, SW};
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 /// A corner of a panel: (panel, corner), corners counter-clockwise from the south-west.
@@ -24,6 +25,8 @@ pub struct HingeSite {
     pub(crate) secondary: [usize; 2],
     /// The far end of the main cut.
     pub main_end: usize,
+    /// The middle of the main cut, where it ends unless another hinge is at its far end.
+    pub main_middle: usize,
 }
 
 /// The panels of a sheet and the hinges that join them: cells of a grid.
@@ -45,6 +48,8 @@ pub struct Topology {
     pub trims: Vec<Option<Trim>>,
     /// The panel of each cell.
     numbers: Vec<Option<usize>>,
+    /// Whether the void at each interior vertex is kept, row by row.
+    voids: Vec<bool>,
 }
 
 /// The boundary of a panel that is not its cell: counter-clockwise points SW + x (SE - SW) + y (NW -
@@ -61,8 +66,7 @@ impl From<Grid> for Arc<Topology> {
 impl Topology {
     /// The panels around the `kept` voids of a grid, one entry per interior vertex, row by row.
     pub fn of_voids(grid: Grid, kept: &[bool]) -> Self {
-        let at =
-            |i: usize, j: usize| grid.is_interior(i, j) && kept[(j - 1) * (grid.m - 1) + i - 1];
+        let at = |i: usize, j: usize| grid.is_interior(i, j) && kept[void(grid, i, j)];
         Self::with_loops(grid, at)
     }
 
@@ -84,12 +88,41 @@ impl Topology {
             places,
             sites: Vec::new(),
             numbers,
+            voids: grid.interior_vertices().map(|(i, j)| kept(i, j)).collect(),
         };
         let sites =
             grid.vertices().flat_map(|(i, j)| Endpoint::BOTH.map(|endpoint| (i, j, endpoint)));
         topology.sites =
             sites.filter_map(|(i, j, end)| topology.hinge_site(i, j, end, &kept)).collect();
         topology
+    }
+
+    /// Whether every cell is a panel and no panel is trimmed.
+    pub fn is_full(&self) -> bool {
+        self.panel_count() == self.grid.panel_count() && self.trims.iter().all(Option::is_none)
+    }
+
+    /// Whether the void at vertex (i, j) is kept.
+    pub fn has_void(&self, i: usize, j: usize) -> bool {
+        self.grid.is_interior(i, j) && self.voids[void(self.grid, i, j)]
+    }
+
+    /// Whether the sheet is one piece that opens as one: all kept voids are joined by neighbours in
+    /// rows and columns, which share two panels.
+    pub fn is_mechanism(&self) -> bool {
+        let all = || self.grid.interior_vertices().filter(|(i, j)| self.has_void(*i, *j));
+        let Some(first) = all().next() else {
+            return false;
+        };
+        let (mut joined, mut next) = (BTreeSet::from([first]), vec![first]);
+        while let Some((i, j)) = next.pop() {
+            for (i, j) in [(i + 1, j), (i - 1, j), (i, j + 1), (i, j - 1)] {
+                if self.has_void(i, j) && joined.insert((i, j)) {
+                    next.push((i, j));
+                }
+            }
+        }
+        joined.len() == all().count()
     }
 
     /// Number of panels.
@@ -105,6 +138,14 @@ impl Topology {
     /// The panel in a column and a row, if there is one.
     pub fn panel(&self, p: usize, q: usize) -> Option<usize> {
         (p < self.grid.m && q < self.grid.n).then(|| self.numbers[self.grid.panel(p, q)])?
+    }
+
+    /// The panel at a place that is known to have one.
+    ///
+    /// # Panics
+    /// If it has none.
+    pub fn number(&self, [p, q]: [usize; 2]) -> usize {
+        self.panel(p, q).expect("the place has a panel")
     }
 
     /// Whether a panel has even column + row, so that it turns by -theta/2 in the ideal deployment.
@@ -150,6 +191,7 @@ impl Topology {
                 Endpoint::XPrime => [to, from],
             },
             main_end: main_end(self.grid, i, j, endpoint),
+            main_middle: self.grid.endpoint(far_i, far_j, Endpoint::X),
         })
     }
 
@@ -159,6 +201,11 @@ impl Topology {
         let q = j.checked_sub(usize::from(corner == NE || corner == NW))?;
         Some((self.panel(p, q)?, corner))
     }
+}
+
+/// The number of the void at an interior vertex.
+fn void(grid: Grid, i: usize, j: usize) -> usize {
+    (j - 1) * (grid.m - 1) + i - 1
 }
 
 /// The corners, at vertex (i, j), of the two cells on a flank of its cut.

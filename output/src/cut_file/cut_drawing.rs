@@ -2,6 +2,7 @@
 
 use crate::display::{Colour, Shape, Style, Text};
 use design::geometry::polygon::{area, mean};
+use design::geometry::region::Contour;
 use serde::{Deserialize, Serialize};
 
 /// The tool or the purpose of a shape, in the order of cutting: what is cut later holds what is cut
@@ -146,10 +147,10 @@ impl CutDrawing {
 }
 
 /// The panels of a deployed sheet with the given corners (mm), and their numbers, at 1:1.
-pub fn deployed_panels(panels: &[[[f64; 2]; 4]]) -> CutDrawing {
+pub fn deployed_panels(panels: &[Contour]) -> CutDrawing {
     let mut drawing = CutDrawing::default();
     for corners in panels {
-        drawing.add(Layer::Panels, Shape::Polygon(corners.to_vec()));
+        drawing.add(Layer::Panels, Shape::Polygon(corners.clone()));
     }
     for (k, corners) in panels.iter().enumerate() {
         let height = 0.1 * area(corners).sqrt();

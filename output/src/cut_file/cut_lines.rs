@@ -22,6 +22,7 @@ use crate::cut_file::cut_drawing::{CutDrawing, Layer};
 use crate::cut_file::fabrication_error::FabricationError;
 use crate::cut_file::gaps::{self, Cut};
 use crate::display::Shape;
+use design::geometry::region::Contour;
 use design::geometry::polygon::{
     distance, distance_between_segments, distance_to_segment, edges, side,
 };
@@ -32,6 +33,8 @@ use design::sheet::cut_sheet::Sheet;
 use scene::{CuttingConfig, Scene};
 use std::collections::BTreeMap;
 
+/// The least 1 + cos of the turn of an outline at a corner that moves in full with its edges.
+const SHARPEST: f64 = 0.1;
 /// Rounding of lengths (mm).
 const ROUNDING: f64 = 1e-6;
 
@@ -60,8 +63,8 @@ pub struct CutLines {
     pub slits: Vec<Slit>,
     /// One per hinge.
     pub holes: Vec<Hole>,
-    /// Corners of the sheet, counter-clockwise (mm).
-    pub outline: [[f64; 2]; 4],
+    /// Contours of the sheet: outer ones counter-clockwise, those of holes clockwise (mm).
+    pub outlines: Vec<Contour>,
     /// Width of the slits (mm).
     pub slit_width: f64,
     /// How the sheet is cut.
@@ -105,7 +108,7 @@ impl CutLines {
         let cuts = Self {
             slits: slits(pattern, sheet, &holes)?,
             holes,
-            outline: sheet.outline.corners,
+            outlines: sheet.outlines(),
             slit_width: process.slit_width,
             cutting,
             attachments: (attachments.iter())
@@ -113,7 +116,7 @@ impl CutLines {
                 .collect::<Result<_, _>>()?,
         };
         cuts.reach_what_they_cut(sheet)?;
-        gaps::check(cuts.finished(), &cuts.outline, cuts.slit_width)?;
+        gaps::check(cuts.finished(), &cuts.outlines, cuts.slit_width)?;
         Ok(cuts)
     }
 
@@ -127,10 +130,15 @@ impl CutLines {
             }
         }
         let slits = self.slits.iter().map(|slit| slit.ends);
-        let lines: Vec<_> = slits.chain(edges(&self.outline).map(|(p, q)| [p, q])).collect();
+        let lines: Vec<_> = slits.chain(self.outline_edges()).collect();
         for (panel, of) in sheet.panels.iter().enumerate() {
             let is_cut = |edge: [[f64; 2]; 2]| lines.iter().any(|line| carries(line, edge));
-            if !edges(&of.corners).all(|(p, q)| is_cut([p, q])) {
+            // A trimmed panel has another edge where it has no neighbour.
+            let [p, q] = sheet.topology.places[panel];
+            let beyond = [(Some(p), q.checked_sub(1)), (Some(p + 1), Some(q)), (Some(p), Some(q + 1)), (p.checked_sub(1), Some(q))];
+            let joined = beyond.map(|(p, q)| sheet.topology.panel(p?, q?));
+            let mut cut = edges(&of.corners).zip(joined).filter(|(_, joined)| !of.is_trimmed() || joined.is_some());
+            if !cut.all(|((p, q), _)| is_cut([p, q])) {
                 return Err(FabricationError::EdgeNotCut { panel });
             }
         }
@@ -194,8 +202,9 @@ impl CutLines {
         for slit in &self.slits {
             drawing.add(Layer::Cut, Shape::Line(self.tool_slit(slit)));
         }
-        let outline = self.outline_at(0.5 * kerf).to_vec();
-        drawing.add(Layer::Outline, Shape::Polygon(outline));
+        for outline in self.outlines_at(0.5 * kerf) {
+            drawing.add(Layer::Outline, Shape::Polygon(outline));
+        }
         drawing
     }
 
@@ -220,24 +229,18 @@ impl CutLines {
     }
 
     /// The path of the tool's centre around the sheet (mm).
-    pub fn tool_outline(&self) -> [[f64; 2]; 4] {
-        self.outline_at(0.5 * self.kerf())
+    pub fn tool_outlines(&self) -> Vec<Contour> {
+        self.outlines_at(0.5 * self.kerf())
     }
 
-    /// The outline moved outwards by a distance (mm).
-    pub(super) fn outline_at(&self, off: f64) -> [[f64; 2]; 4] {
-        let outward = |k: usize| {
-            let (p, q) = (self.outline[k % 4], self.outline[(k + 1) % 4]);
-            let (dx, dy) = (q[0] - p[0], q[1] - p[1]);
-            [dy / dx.hypot(dy), -dx / dx.hypot(dy)]
-        };
-        std::array::from_fn(|k| {
-            // The corner moves so that both of its edges move by the distance.
-            let (a, b) = (outward(k + 3), outward(k));
-            let shift = off / (1.0 + a[0] * b[0] + a[1] * b[1]);
-            let corner = self.outline[k];
-            [corner[0] + shift * (a[0] + b[0]), corner[1] + shift * (a[1] + b[1])]
-        })
+    /// The edges of the outlines.
+    fn outline_edges(&self) -> impl Iterator<Item = [[f64; 2]; 2]> {
+        self.outlines.iter().flat_map(|outline| edges(outline)).map(|(p, q)| [p, q])
+    }
+
+    /// The outlines moved outwards by a distance (mm).
+    pub(super) fn outlines_at(&self, off: f64) -> Vec<Contour> {
+        self.outlines.iter().map(|outline| moved_outwards(outline, off)).collect()
     }
 
     /// Material between the tip O of a hinge and the nearest cut other than its own (mm).
@@ -250,9 +253,27 @@ impl CutLines {
             self.slits.iter().filter(|slit| !slit.hinges.contains(&Some(hinge))).map(|slit| {
                 distance_to_segment(tip, slit.ends[0], slit.ends[1]) - 0.5 * self.slit_width
             });
-        let to_outline = edges(&self.outline).map(|(p, q)| distance_to_segment(tip, p, q));
+        let to_outline = self.outline_edges().map(|[p, q]| distance_to_segment(tip, p, q));
         to_slits.chain(to_outline).fold(f64::INFINITY, f64::min)
     }
+}
+
+/// A contour moved outwards by a distance (mm).
+fn moved_outwards(outline: &[[f64; 2]], off: f64) -> Contour {
+    let count = outline.len();
+    let outward = |k: usize| {
+        let (p, q) = (outline[k % count], outline[(k + 1) % count]);
+        let (dx, dy) = (q[0] - p[0], q[1] - p[1]);
+        [dy / dx.hypot(dy), -dx / dx.hypot(dy)]
+    };
+    let moved = |k: usize| {
+        // The corner moves so that both of its edges move by the distance; a sharp one less.
+        let (a, b) = (outward(k + count - 1), outward(k));
+        let shift = off / (1.0 + a[0] * b[0] + a[1] * b[1]).max(SHARPEST);
+        let corner = outline[k];
+        [corner[0] + shift * (a[0] + b[0]), corner[1] + shift * (a[1] + b[1])]
+    };
+    (0..count).map(moved).collect()
 }
 
 /// Whether an edge lies along a line, at least in part.
@@ -281,7 +302,7 @@ fn slits(
             continue;
         }
         let tip = holes[hinge].centre;
-        let end = other.map_or(pattern.points[site.main_end], |other| holes[other].centre);
+        let end = other.map_or(pattern.points[site.main_middle], |other| holes[other].centre);
         let main = sheet.hinges[hinge].main;
         let length = main[0] * (end[0] - tip[0]) + main[1] * (end[1] - tip[1]);
         let drilled = holes[hinge].radius + other.map_or(0.0, |other| holes[other].radius);

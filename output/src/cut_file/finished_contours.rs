@@ -6,7 +6,8 @@
 use crate::cut_file::cut_drawing::{CutDrawing, Layer};
 use crate::cut_file::cut_lines::{CutLines, Slit};
 use crate::display::Shape;
-use design::geometry::polygon::{distance, edges, side};
+use design::geometry::polygon::{distance, distance_to_segment, edges};
+use design::geometry::region::Contour;
 use scene::drawing::bulged::Vertex;
 use std::f64::consts::PI;
 
@@ -35,8 +36,9 @@ impl CutLines {
             .filter(|slit| slit.hinges[1].is_none())
             .filter_map(|slit| end(slit, 0))
             .collect();
-        let outline = notched(&self.outline_at(inset), &open);
-        drawing.add(Layer::Outline, Shape::Contour(outline));
+        for outline in notched(&self.outlines_at(inset), &open) {
+            drawing.add(Layer::Outline, Shape::Contour(outline));
+        }
     }
 }
 
@@ -86,13 +88,14 @@ impl End {
     }
 }
 
-/// A counter-clockwise outline with a notch for each open slit.
-fn notched(outline: &[[f64; 2]; 4], open: &[End]) -> Vec<Vertex> {
-    let sides: Vec<[[f64; 2]; 2]> = edges(outline).map(|(p, q)| [p, q]).collect();
+/// The outlines of a sheet with a notch for each open slit.
+fn notched(outlines: &[Contour], open: &[End]) -> Vec<Vec<Vertex>> {
+    let all = outlines.iter().flat_map(|outline| edges(outline));
+    let sides: Vec<[[f64; 2]; 2]> = all.map(|(p, q)| [p, q]).collect();
     let mut notches: Vec<Vec<(f64, [Vertex; 5])>> = vec![Vec::new(); sides.len()];
     for end in open {
-        // The side on whose line the slit ends.
-        let off = |&[p, q]: &[[f64; 2]; 2]| (side((p, q), end.towards) / distance(p, q)).abs();
+        // The side on which the slit ends.
+        let off = |&[p, q]: &[[f64; 2]; 2]| distance_to_segment(end.towards, p, q);
         let nearest = (0..sides.len()).min_by(|&i, &j| off(&sides[i]).total_cmp(&off(&sides[j])));
         let at = nearest.expect("an outline has sides");
         let [first, second] = end.on_edge(sides[at]);
@@ -101,13 +104,17 @@ fn notched(outline: &[[f64; 2]; 4], open: &[End]) -> Vec<Vertex> {
         let notch = [(first, 0.0), (to, -bulge), (back, -bulge), (from, 0.0), (second, 0.0)];
         notches[at].push((distance(sides[at][0], first), notch));
     }
-    let mut contour = Vec::new();
-    for ([corner, _], mut notches) in sides.into_iter().zip(notches) {
-        contour.push((corner, 0.0));
-        notches.sort_by(|a, b| a.0.total_cmp(&b.0));
-        contour.extend(notches.into_iter().flat_map(|(_, notch)| notch));
-    }
-    contour
+    let mut sides = sides.into_iter().zip(notches);
+    let notched = |outline: &Contour| {
+        let mut contour = Vec::new();
+        for ([corner, _], mut notches) in sides.by_ref().take(outline.len()) {
+            contour.push((corner, 0.0));
+            notches.sort_by(|a, b| a.0.total_cmp(&b.0));
+            contour.extend(notches.into_iter().flat_map(|(_, notch)| notch));
+        }
+        contour
+    };
+    outlines.iter().map(notched).collect()
 }
 
 #[cfg(test)]
@@ -139,13 +146,13 @@ mod tests {
 
     #[test]
     fn a_notch_removes_its_area_from_the_outline() {
-        let outline = [[0.0, 0.0], [40.0, 0.0], [40.0, 30.0], [0.0, 30.0]];
+        let outline = vec![[0.0, 0.0], [40.0, 0.0], [40.0, 30.0], [0.0, 30.0]];
         let open = [
             end([10.0, 8.0], [10.0, 0.0]),
             end([25.0, 8.0], [25.0, 0.0]),
             end([30.0, 20.0], [40.0, 20.0]),
         ];
-        let contour = notched(&outline, &open);
+        let contour = notched(&[outline], &open).remove(0);
         let exact = 1200.0 - 2.0 * removed(8.0) - removed(10.0);
         let found = area(&flattened(&contour, true));
         assert!((found - exact).abs() < 0.05, "{found} {exact}");

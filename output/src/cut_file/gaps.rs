@@ -5,6 +5,7 @@
 
 use crate::cut_file::fabrication_error::FabricationError;
 use design::geometry::polygon::{distance_between_segments, distance_to_outline};
+use design::geometry::region::Contour;
 
 /// A cut with the width of the tool: the points nearer than `radius` to the segment `ends`, which
 /// is a point for a hole.
@@ -18,11 +19,12 @@ pub(super) struct Cut {
 /// An error if cuts leave less than `least` (mm) between them, or a hole and the outline do.
 pub(super) fn check(
     mut cuts: Vec<Cut>,
-    outline: &[[f64; 2]],
+    outlines: &[Contour],
     least: f64,
 ) -> Result<(), FabricationError> {
     for hole in cuts.iter().filter(|cut| cut.ends[0] == cut.ends[1]) {
-        let gap = distance_to_outline(hole.ends[0], outline) - hole.radius;
+        let to_outlines = outlines.iter().map(|outline| distance_to_outline(hole.ends[0], outline));
+        let gap = to_outlines.fold(f64::INFINITY, f64::min) - hole.radius;
         if gap < least {
             let hinge = hole.hinges[0];
             return Err(FabricationError::CutMeetsOutline { hinge, gap, least });
@@ -57,7 +59,7 @@ mod tests {
 
     #[test]
     fn a_slit_through_another_and_a_hole_at_the_outline_are_refused() {
-        let outline = [[0.0, 0.0], [9.0, 0.0], [9.0, 9.0], [0.0, 9.0]];
+        let outline = vec![vec![[0.0, 0.0], [9.0, 0.0], [9.0, 9.0], [0.0, 9.0]]];
         let of = |ends| {
             let cut = |ends: [[f64; 2]; 2], hinge| Cut { ends, radius: 0.1, hinges: vec![hinge] };
             check(vec![cut([[1.0, 5.0], [8.0, 5.0]], 0), cut(ends, 1)], &outline, 0.2)

@@ -156,7 +156,7 @@ impl Machine {
     /// The drawing of a sheet for this machine, in cutting order; an error if the paths do not
     /// exist.
     pub fn drawing(&self, cuts: &CutLines) -> Result<CutDrawing, FabricationError> {
-        let mut drawing = self.paths(cuts)?.in_cutting_order(cuts.outline[0]);
+        let mut drawing = self.paths(cuts)?.in_cutting_order(cuts.outlines[0][0]);
         if self.marks {
             registration_marks(&mut drawing, self.over_run(cuts));
         }
@@ -193,8 +193,11 @@ impl CutLines {
     /// The smallest features of the sheet.
     pub fn features(&self) -> Features {
         let least = |values: &mut dyn Iterator<Item = f64>| values.fold(f64::INFINITY, f64::min);
-        let [low, high] = bounds(self.outline);
-        let to_edge = |centre: [f64; 2]| distance_to_outline(centre, &self.outline);
+        let [low, high] = bounds(self.outlines.iter().flatten().copied());
+        let to_edge = |centre: [f64; 2]| {
+            let all = self.outlines.iter().map(|outline| distance_to_outline(centre, outline));
+            all.fold(f64::INFINITY, f64::min)
+        };
         let attached = (self.attachments.iter())
             .filter_map(|attachment| Some((attachment.at, 0.5 * attachment.hole?)));
         let holes: Vec<([f64; 2], f64)> =

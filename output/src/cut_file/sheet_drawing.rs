@@ -30,7 +30,7 @@ impl SheetDrawing {
     /// The drawing of the cuts of `sheet`, cut from `material`.
     pub fn new(cuts: &CutLines, sheet: &Sheet, material: &SheetMaterial) -> Self {
         let unordered = cuts.drawing();
-        let home = cuts.tool_outline()[0];
+        let home = cuts.tool_outlines()[0][0];
         let mut numbered = unordered.in_cutting_order(home);
         let totals = Totals::new(&numbered, &unordered, home);
         let (panels, hinges) = numbers(cuts, sheet);

@@ -9,7 +9,7 @@ use design::objective::design_problem::Deployment;
 use design::sheet::cut_sheet::Sheet;
 use design::sheet::hinge_window::Window;
 use design::sheet::kinematics::{
-    Configuration, deployed as moved, deployed_corners, hinge_deformations,
+    Configuration, deployed as moved, deployed_boundaries, hinge_deformations,
 };
 use scene::Scene;
 use scene::design_run::Designed;
@@ -77,7 +77,9 @@ impl<'a> State<'a> {
         let mut page = Page::around(extent, &self.scene.config.title, subtitle, true);
         let sketch = &mut page.sketch;
         let ghost = sketch.dashed(MUTED, 0.8, 3.0);
-        sketch.canvas.polygon(&self.sheet.outline.corners, ghost);
+        for outline in self.sheet.outlines() {
+            sketch.canvas.polygon(&outline, ghost);
+        }
         self.panels(sketch);
         self.windows(sketch, scale);
         self.target(sketch);
@@ -93,14 +95,14 @@ impl<'a> State<'a> {
 
     /// Points that enclose everything drawn.
     fn extent(&self) -> Vec<[f64; 2]> {
-        let mut points = deployed_corners(self.sheet, &self.configuration).concat();
+        let mut points = deployed_boundaries(self.sheet, &self.configuration).concat();
         points.extend(&self.scene.target.points);
         points.extend(load_marks::extent(self.scene, self.sheet, self.step));
         points
     }
 
     fn panels(&self, sketch: &mut Sketch) {
-        let corners = deployed_corners(self.sheet, &self.configuration);
+        let corners = deployed_boundaries(self.sheet, &self.configuration);
         for (k, corners) in corners.iter().enumerate() {
             let fill = PANELS[usize::from(!self.sheet.topology.is_even(k))];
             let style = sketch.stroke(INK, 1.1).filled(fill);

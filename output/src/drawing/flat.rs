@@ -16,7 +16,7 @@ pub fn flat(title: &str, sheet: &Sheet, cuts: &CutLines) -> String {
         sheet.topology.grid.n,
         sheet.hinges.len()
     );
-    let mut page = Page::around(sheet.outline.corners, title, &subtitle, false);
+    let mut page = Page::around(cuts.outlines.concat(), title, &subtitle, false);
     panels(&mut page.sketch, sheet);
     windows(&mut page.sketch, sheet);
     cut_lines(&mut page.sketch, cuts);
@@ -29,7 +29,7 @@ fn panels(sketch: &mut Sketch, sheet: &Sheet) {
     for (k, panel) in sheet.panels.iter().enumerate() {
         let parity = usize::from(!sheet.topology.is_even(k));
         let fill = Style::fill(PANELS[parity]);
-        sketch.canvas.polygon(&panel.corners, fill);
+        sketch.canvas.polygon(&panel.boundary, fill);
         let height = f64::min(16.0 * sketch.unit, 0.1 * panel.area.sqrt());
         let [x, y] = panel.centroid;
         let at = [x, y - 0.35 * height];
@@ -51,7 +51,7 @@ fn cut_lines(sketch: &mut Sketch, cuts: &CutLines) {
     for slit in &cuts.slits {
         sketch.canvas.line(slit.ends[0], slit.ends[1], stroke);
     }
-    sketch.canvas.polygon(&cuts.outline, stroke);
+    cuts.outlines.iter().for_each(|outline| sketch.canvas.polygon(outline, stroke));
     let hole = Style::stroke(INK, 0.9 * sketch.unit).filled([255; 3]);
     for drilled in &cuts.holes {
         sketch.canvas.circle(drilled.centre, drilled.radius, hole);

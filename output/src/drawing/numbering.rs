@@ -10,13 +10,13 @@ const INSET: f64 = 0.24;
 /// The flat sheet with the number of every panel, its corners 0 to 3 and its centre.
 pub fn numbering(title: &str, sheet: &Sheet) -> String {
     let subtitle = "Numbers of the panels and corners in a measurement; + marks the centre";
-    let mut page = Page::around(sheet.outline.corners, title, subtitle, false);
+    let mut page = Page::around(sheet.outlines().concat(), title, subtitle, false);
     let sketch = &mut page.sketch;
     let edge = sketch.stroke(INK, 1.0);
     for (k, panel) in sheet.panels.iter().enumerate() {
         let fill = PANELS[usize::from(!sheet.topology.is_even(k))];
-        sketch.canvas.polygon(&panel.corners, Style::fill(fill));
-        sketch.canvas.polygon(&panel.corners, edge);
+        sketch.canvas.polygon(&panel.boundary, Style::fill(fill));
+        sketch.canvas.polygon(&panel.boundary, edge);
         let size = panel.area.sqrt();
         let height = f64::min(22.0 * sketch.unit, 0.16 * size);
         let [x, y] = panel.centroid;

@@ -373,7 +373,7 @@ fn stroke_of(scene: &Scene, curve: &ActuationCurve) -> String {
     };
     match place {
         Some((panel, at)) => {
-            let panel = panel_name(scene.grid(), panel);
+            let panel = panel_name(&scene.topology, panel);
             format!("{way} of {at}{panel} along its {load}")
         }
         None => format!("mean {way} along the loads, weighted by their {load}s"),

@@ -335,7 +335,7 @@ fn a_tool_cuts_around_slits_that_are_wider() {
         // A sheet whose finished edges are the paths.
         let mut paths = cuts.clone();
         paths.slit_width -= kerf;
-        paths.outline = cuts.tool_outline();
+        paths.outlines = cuts.tool_outlines();
         paths.holes.iter_mut().for_each(|hole| hole.radius -= 0.5 * kerf);
         for drawn in [drawing("ponoko", &cuts), drawing("lightburn", &cuts), Ok(cuts.drawing())] {
             std::fs::write(&path, dxf(&drawn.unwrap())).unwrap();

@@ -134,7 +134,7 @@ fn the_uniform_sheet_has_eight_slits_and_twelve_holes_at_their_positions() {
         let Shape::Circle { radius, .. } = path else { panic!("{path:?}") };
         assert_close(*radius, 2.78, 1e-12);
     }
-    let outline = cuts.tool_outline();
+    let outline = cuts.tool_outlines().remove(0);
     assert!((outline[0][0] + 0.1).abs() < 1e-12 && (outline[2][1] - 1200.1).abs() < 1e-9);
 }
 

@@ -100,7 +100,7 @@ fn the_idle_travel_of_sheets_is_reduced() {
         let totals = &drawing.totals;
         assert!(totals.idle_m <= totals.idle_unordered_m);
         assert_eq!(totals.pierces, cuts.holes.len() + cuts.slits.len() + 1);
-        let home = cuts.tool_outline()[0];
+        let home = cuts.tool_outlines()[0][0];
         assert_eq!(1e-3 * drawing.numbered.idle_travel(home), totals.idle_m);
     }
 }

@@ -21,7 +21,7 @@ impl DesignCommand {
         )?)?;
         let arguments = SolveArgs::default();
         let service = &arguments.service(&scene.output())?;
-        let (hinges, workers) = (scene.grid().hinge_count(), arguments.workers());
+        let (hinges, workers) = (scene.topology.hinge_count(), arguments.workers());
         let cpu = most_cpu_seconds(tier, hinges);
         announce(&format!(
             "{hinges} hinges on the mesh `{tier}`: at most about {} of CPU time, {} on {workers} processors; after Ctrl-C the same \

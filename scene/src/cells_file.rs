@@ -1,0 +1,121 @@
+//! The file of the cells of a sheet: which voids of its pattern are kept, and the shapes of the
+//! panels that are trimmed.
+
+use crate::keys::{SceneConfig, resolved};
+use crate::scene_error::SceneError;
+use design::geometry::polygon::{area, self_crossing};
+use design::pattern::grid::Grid;
+use design::sheet::topology::Topology;
+use serde::{Deserialize, Serialize};
+use std::path::Path;
+use std::sync::Arc;
+use support::fault::{Fault, fault};
+use support::file_error::FileError;
+use support::{regular_file, whole_file};
+
+/// A kept void in a row of the file.
+const KEPT: char = 'o';
+/// A void that is not kept.
+const LEFT_OUT: char = '.';
+
+/// The contents of the file.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct CellsFile {
+    /// Rows of the voids between the cells from above, one character each: `o` is kept, `.` is not.
+    pub voids: Vec<String>,
+    /// The panels that are not their cells.
+    pub trimmed: Vec<TrimmedPanel>,
+}
+
+/// The shape of a panel.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct TrimmedPanel {
+    /// [column, row], counted from [0, 0] at the lower left.
+    pub panel: [usize; 2],
+    /// Its corners in sides of its cell from the lower left corner of the cell, counter-clockwise.
+    pub corners: Vec<[f64; 2]>,
+}
+
+impl From<&Topology> for CellsFile {
+    fn from(topology: &Topology) -> Self {
+        let Grid { m, n } = topology.grid;
+        let row = |j: usize| {
+            let symbol = |i| if topology.has_void(i, j) { KEPT } else { LEFT_OUT };
+            (1..m).map(symbol).collect()
+        };
+        let shapes = std::iter::zip(&topology.places, &topology.trims);
+        Self {
+            voids: (1..n).rev().map(row).collect(),
+            trimmed: shapes
+                .filter_map(|(panel, trim)| {
+                    Some(TrimmedPanel { panel: *panel, corners: trim.as_ref()?.to_vec() })
+                })
+                .collect(),
+        }
+    }
+}
+
+impl CellsFile {
+    /// Writes it to a file.
+    pub fn write(&self, file: &Path) -> Result<(), FileError> {
+        let text = serde_json::to_vec(self).expect("numbers and texts have a JSON");
+        whole_file::write(file, &text).map_err(FileError::at(file))
+    }
+
+    /// The panels and hinges that it describes.
+    fn topology(&self, grid: Grid) -> Result<Topology, Fault> {
+        let wrong = |what: String| fault("", what, "write it again by `kirigami init --target`");
+        let fits = |row: &String| {
+            row.chars().count() == grid.m - 1 && row.chars().all(|c| c == KEPT || c == LEFT_OUT)
+        };
+        if self.voids.len() != grid.n - 1 || !self.voids.iter().all(fits) {
+            return Err(wrong(format!(
+                "`voids` are not {} rows of {} characters `{KEPT}` and `{LEFT_OUT}`, the voids between {} x {} cells",
+                grid.n - 1, grid.m - 1, grid.m, grid.n
+            )));
+        }
+        let rows = self.voids.iter().rev();
+        let kept: Vec<bool> = rows.flat_map(|row| row.chars().map(|c| c == KEPT)).collect();
+        let mut topology = Topology::of_voids(grid, &kept);
+        if !topology.is_mechanism() {
+            return Err(wrong(
+                "the kept `voids` are no mechanism of one piece: each must have a kept neighbour in its row or column, and \
+                 all must be joined"
+                    .to_owned(),
+            ));
+        }
+        for TrimmedPanel { panel: [p, q], corners } in &self.trimmed {
+            let Some(number) = topology.panel(*p, *q) else {
+                return Err(wrong(format!("`trimmed` names the cell [{p}, {q}], which is no panel")));
+            };
+            let simple = corners.len() > 2 && corners.iter().flatten().all(|x| x.abs() < 100.0);
+            if !simple || area(corners) <= 0.0 || self_crossing(corners).is_some() {
+                return Err(wrong(format!(
+                    "the corners of panel [{p}, {q}] are no polygon, counter-clockwise, that does not cross itself"
+                )));
+            }
+            topology.trims[number] = Some(corners.as_slice().into());
+        }
+        Ok(topology)
+    }
+}
+
+/// The panels and hinges of the scene at `path`.
+pub(crate) fn topology(config: &SceneConfig, path: &Path) -> Result<Arc<Topology>, SceneError> {
+    let grid = config.sheet.grid();
+    let Some(file) = &config.sheet.cells else {
+        return Ok(grid.into());
+    };
+    let file = resolved(path, file);
+    let text = regular_file::read(&file).map_err(FileError::at(&file));
+    let text = text.map_err(|error| fault("sheet.cells", error.to_string(), ""));
+    let cells = text.and_then(|text| {
+        let cells: CellsFile = serde_json::from_slice(&text)
+            .map_err(|error| fault("", format!("it has no cells: {error}"), ""))?;
+        cells.topology(grid)
+    });
+    let cells = cells.map_err(|error| fault(format!("sheet.cells = {}", file.display()), error.to_string(), ""));
+    Ok(Arc::new(cells.map_err(SceneError::at(path))?))
+}
