@@ -1,12 +1,9 @@
-//! A silhouette becomes a sheet: the place and the size of the target, the outline of the sheet,
-//! its cuts and its pulls, which the kinematics decide before any force is computed.
+//! A drawing becomes a sheet: an even pattern laid over it, and the panels that it keeps, which the
+//! kinematics decide before any force is computed.
 
 mod even_pattern;
 pub mod even_sheet;
 pub mod opening;
-pub mod placement;
-pub mod pulls;
 mod raster;
 pub mod scene;
-pub mod silhouette;
 pub mod trimmed;

@@ -3,6 +3,7 @@
 use crate::actuation::{
     Attached, DriveConfig, EdgeLoadConfig, LoadConfig, OpeningCoupleConfig, SupportConfig, name,
 };
+use crate::cells::CellsConfig;
 use crate::cutting::CuttingConfig;
 use crate::hinge_model::{LinearConstants, PinConfig, SurrogateFile};
 use crate::level::Level;
@@ -44,6 +45,9 @@ pub struct SceneConfig {
     pub output: PathBuf,
     /// The flat sheet.
     pub sheet: SheetConfig,
+    /// The cells that are panels, and the shapes of those that are trimmed, as `init --target`
+    /// writes them; by default every cell is a panel.
+    pub cells: Option<CellsConfig>,
     /// The ligament widths.
     pub ligament: LigamentConfig,
     /// The start of the search; by default the uniform sheet.

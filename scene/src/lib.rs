@@ -11,7 +11,7 @@
 mod actuation;
 pub mod analysis;
 mod boundary_values;
-mod cells_file;
+mod cells;
 mod checked_scene;
 mod checks;
 mod coarse_search;
@@ -44,6 +44,7 @@ pub use actuation::{
     SupportConfig, SupportKind,
 };
 pub use boundary_values::{Actuation, AppliedLoad, SupportedPanel, panel_name};
+pub use cells::CellsConfig;
 pub use checked_scene::Scene;
 pub use coarse_search::{CoarseSearch, LevelDifference};
 pub use cutting::CuttingConfig;

@@ -6,7 +6,6 @@
 //! | `scene.toml` | the keys of the run; its paths name the files below |
 //! | `inputs/material.toml` | the material, with its measured curve as `plastic` |
 //! | `inputs/target.csv`, `.svg`, `.dxf` | the target, if the scene names a file |
-//! | `inputs/cells.json` | the cells of the sheet, if the scene names them |
 //! | `inputs/weights.safetensors`, `.json` | weights and card, if the hinge law reads them |
 //! | `inputs/ensemble-N.safetensors`, `inputs/draft.safetensors`, their `.json` | the further networks, from 1, and the network of drafts |
 //! | `inputs/springback.json` | the law of released hinges, if the scene names one |
@@ -155,7 +154,6 @@ impl SceneConfig {
     pub(crate) fn inputs_mut(&mut self) -> Vec<(String, &mut PathBuf)> {
         let target = self.target.file_mut().into_iter();
         let mut inputs: Vec<_> = target.map(|(name, file)| (name.to_owned(), file)).collect();
-        inputs.extend(self.sheet.cells.as_mut().map(|file| ("cells.json".to_owned(), file)));
         if let Some(learned) = &mut self.surrogate {
             let mut add = |name: &str, file| inputs.push((name.to_owned(), file));
             add("weights.safetensors", &mut learned.weights);

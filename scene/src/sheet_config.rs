@@ -6,11 +6,10 @@ use design::pattern::grid::Grid;
 use design::pattern::pattern_error::PatternError;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use std::path::PathBuf;
 
 /// The flat sheet: a rectangle with a corner at the origin, or any convex quadrilateral, cut into
 /// `panels` = [columns M, rows N].
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SheetConfig {
     /// Sides [along x, along y] of a rectangle (mm).
@@ -21,9 +20,6 @@ pub struct SheetConfig {
     /// [columns M, rows N]; at most 100 000 panels.
     #[schemars(inner(range(min = 2, max = 50_000)))]
     pub panels: [usize; 2],
-    /// A file of the cells that are panels, and of the shapes of those that are trimmed, as `init
-    /// --target` writes it; by default every cell is a panel.
-    pub cells: Option<PathBuf>,
 }
 
 /// The ligament widths: their start value, and the interval of their chart.

@@ -506,7 +506,7 @@ impl Opened {
     /// The last equilibrium, if a scene's may be near it: of the same sheet with the same
     /// supports.
     fn known_near(&self, scene: &Scene) -> Option<&WarmStart> {
-        let held = |scene: &Scene| (scene.config.sheet.clone(), scene.config.supports.clone());
+        let held = |scene: &Scene| (scene.config.sheet, scene.config.supports.clone());
         self.known.as_ref().filter(|_| held(scene) == held(&self.scene))
     }
 

@@ -10,7 +10,7 @@
 //! Because every void is a parallelogram, the result is the same along every sequence of hinges
 //! through the sheet. Pitches follow (6).
 
-use crate::geometry::plane::{I, add, complex, dot, turn};
+use crate::geometry::plane::{I, add, complex, dot, point, turn};
 use crate::sheet::cut_sheet::{Sheet, SheetGradient};
 use crate::sheet::kinematics::Configuration;
 use faer::c64;
@@ -31,6 +31,20 @@ pub fn ideal_deployment(sheet: &Sheet, theta: f64) -> Configuration {
         .enumerate()
         .map(|(panel, u)| [u.re, u.im, rotation(sheet, panel, theta)])
         .collect()
+}
+
+/// The opened sheet on pins while a panel stays where it is.
+pub fn opened_about(sheet: &Sheet, held: usize, theta: f64) -> Configuration {
+    let free = ideal_deployment(sheet, theta);
+    let [x, y, phi] = free[held];
+    let (back, fixed) = (turn(-phi), complex(sheet.panels[held].reference));
+    let moved = |(panel, [px, py, pphi]): (usize, &[f64; 3])| {
+        let flat = complex(sheet.panels[panel].reference);
+        let at = flat + c64::new(*px, *py) - fixed - c64::new(x, y);
+        let [ux, uy] = point(back * at + fixed - flat);
+        [ux, uy, pphi - phi]
+    };
+    free.iter().enumerate().map(moved).collect()
 }
 
 /// Gradients with respect to the sheet (added to `by_sheet`) and theta (returned) of a function

@@ -1,10 +1,11 @@
 //! The sheet of a drawing from an even pattern: where the drawing lies on the opened pattern, and
 //! the panels there.
 
-use super::even_pattern::{Cell, moved, pitch, squares};
+use super::even_pattern::{Cell, motion, moved, pitch, squares};
 use super::raster::Raster;
 use super::trimmed::{Limits, loops, opened, panels};
 use design::geometry::plane::{complex, point};
+use design::objective::centre;
 use design::geometry::region::{Contour, Region, seen};
 use design::geometry::similarity::Similarity;
 use design::pattern::grid::Grid;
@@ -101,7 +102,7 @@ impl EvenSheet {
 
     /// Columns and rows of the pattern, and the first cell of it: the kept squares and what is
     /// between them.
-    fn cells(&self) -> (Grid, Cell) {
+    pub(super) fn cells(&self) -> (Grid, Cell) {
         let squares = squares(&self.loops);
         let least = |c: usize| squares.iter().map(|cell| cell[c]).min().unwrap_or_default();
         let most = |c: usize| squares.iter().map(|cell| cell[c]).max().unwrap_or_default();
@@ -110,6 +111,19 @@ impl EvenSheet {
         first[0] -= (first[0] + first[1]).rem_euclid(2);
         let count = |c: usize| (most(c) - first[c] + 1) as usize;
         (Grid { m: count(0), n: count(1) }, first)
+    }
+
+    /// The centroid of every panel in the flat and in the opened pattern, in the order of its
+    /// topology.
+    pub(super) fn centres(&self) -> Vec<[[f64; 2]; 2]> {
+        let first = self.cells().1;
+        let places = self.topology().places.into_iter();
+        let centres = places.map(|place| {
+            let cell = [0, 1].map(|c| place[c] as i32 + first[c]);
+            let centroid = centre::of(&self.panels[&cell].polygons[0][0]);
+            [centroid, moved(motion(cell, self.limits.opening), centroid)]
+        });
+        centres.collect()
     }
 
     /// Its panels and hinges.

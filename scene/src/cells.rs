@@ -1,27 +1,24 @@
-//! The file of the cells of a sheet: which voids of its pattern are kept, and the shapes of the
-//! panels that are trimmed.
+//! The cells of a sheet: which voids of its pattern are kept, and the shapes of the panels that are
+//! trimmed.
 
-use crate::keys::{SceneConfig, resolved};
-use crate::scene_error::SceneError;
+use crate::keys::SceneConfig;
 use design::geometry::polygon::{area, self_crossing};
 use design::pattern::grid::Grid;
 use design::sheet::topology::Topology;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use std::path::Path;
 use std::sync::Arc;
 use support::fault::{Fault, fault};
-use support::file_error::FileError;
-use support::{regular_file, whole_file};
 
-/// A kept void in a row of the file.
+/// A kept void in a row of the voids.
 const KEPT: char = 'o';
 /// A void that is not kept.
 const LEFT_OUT: char = '.';
 
-/// The contents of the file.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+/// The cells that are panels.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct CellsFile {
+pub struct CellsConfig {
     /// Rows of the voids between the cells from above, one character each: `o` is kept, `.` is not.
     pub voids: Vec<String>,
     /// The panels that are not their cells.
@@ -29,7 +26,7 @@ pub struct CellsFile {
 }
 
 /// The shape of a panel.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TrimmedPanel {
     /// [column, row], counted from [0, 0] at the lower left.
@@ -38,7 +35,7 @@ pub struct TrimmedPanel {
     pub corners: Vec<[f64; 2]>,
 }
 
-impl From<&Topology> for CellsFile {
+impl From<&Topology> for CellsConfig {
     fn from(topology: &Topology) -> Self {
         let Grid { m, n } = topology.grid;
         let row = |j: usize| {
@@ -57,16 +54,10 @@ impl From<&Topology> for CellsFile {
     }
 }
 
-impl CellsFile {
-    /// Writes it to a file.
-    pub fn write(&self, file: &Path) -> Result<(), FileError> {
-        let text = serde_json::to_vec(self).expect("numbers and texts have a JSON");
-        whole_file::write(file, &text).map_err(FileError::at(file))
-    }
-
+impl CellsConfig {
     /// The panels and hinges that it describes.
     fn topology(&self, grid: Grid) -> Result<Topology, Fault> {
-        let wrong = |what: String| fault("", what, "write it again by `kirigami init --target`");
+        let wrong = |what: String| fault("cells", what, "write them again by `kirigami init --target`");
         let fits = |row: &String| {
             row.chars().count() == grid.m - 1 && row.chars().all(|c| c == KEPT || c == LEFT_OUT)
         };
@@ -102,20 +93,8 @@ impl CellsFile {
     }
 }
 
-/// The panels and hinges of the scene at `path`.
-pub(crate) fn topology(config: &SceneConfig, path: &Path) -> Result<Arc<Topology>, SceneError> {
+/// The panels and hinges of a scene.
+pub(crate) fn topology(config: &SceneConfig) -> Result<Arc<Topology>, Fault> {
     let grid = config.sheet.grid();
-    let Some(file) = &config.sheet.cells else {
-        return Ok(grid.into());
-    };
-    let file = resolved(path, file);
-    let text = regular_file::read(&file).map_err(FileError::at(&file));
-    let text = text.map_err(|error| fault("sheet.cells", error.to_string(), ""));
-    let cells = text.and_then(|text| {
-        let cells: CellsFile = serde_json::from_slice(&text)
-            .map_err(|error| fault("", format!("it has no cells: {error}"), ""))?;
-        cells.topology(grid)
-    });
-    let cells = cells.map_err(|error| fault(format!("sheet.cells = {}", file.display()), error.to_string(), ""));
-    Ok(Arc::new(cells.map_err(SceneError::at(path))?))
+    config.cells.as_ref().map_or(Ok(grid.into()), |cells| Ok(Arc::new(cells.topology(grid)?)))
 }
