@@ -1,6 +1,5 @@
 //! A campaign of window solves: definition, plan, run, ledger, results.
 
-pub(crate) mod array_script;
 pub(crate) mod campaign_folder;
 pub(crate) mod definition;
 pub(crate) mod extra_rays;

@@ -78,7 +78,6 @@ pub use calculix::dat::{DatError, Frame, Layout, read_dat};
 pub use calculix::deck::deck;
 pub use calculix::model::WindowModel;
 pub use calculix::sta::{Increment, read_sta};
-pub use campaign::array_script::{ArrayScript, SLURM, ScriptError};
 pub use campaign::definition::{Campaign, CampaignError, JobPart};
 pub use campaign::extra_rays::ExtraRaysError;
 pub use campaign::finished_windows::finished_windows;
@@ -87,7 +86,7 @@ pub use campaign::restore::{CollectedWindow, Restored, restore};
 pub use campaign::run::{Progress, RunOptions, run};
 pub use campaign::sampling::RayBox;
 pub use campaign::slurm::{
-    ArrayStates, JobId, SlurmError, Submission, array_states, slurm_folder, submit_array,
+    ArrayStates, ArrayTasks, Submission, array_states, slurm_folder, submit_array,
 };
 pub use campaign::spot_paths::{DrawnStates, SpotPath, random_paths};
 pub use campaign::status::{Status, Tally, Throughput, known_parts, status};
