@@ -74,12 +74,11 @@ mod solve;
 
 pub use calculix::calculix_solver::{CalculiX, reached};
 pub use calculix::ccx::{CCX, Ccx, CcxRun};
-pub use calculix::dat::{DatError, Frame, Layout, read_dat};
+pub use calculix::dat::{Frame, Layout, read_dat};
 pub use calculix::deck::deck;
 pub use calculix::model::WindowModel;
 pub use calculix::sta::{Increment, read_sta};
 pub use campaign::definition::{Campaign, CampaignError, JobPart};
-pub use campaign::extra_rays::ExtraRaysError;
 pub use campaign::finished_windows::finished_windows;
 pub use campaign::plan::{Plan, plan, prepare};
 pub use campaign::restore::{CollectedWindow, Restored, restore};
@@ -90,15 +89,14 @@ pub use campaign::slurm::{
 };
 pub use campaign::spot_paths::{DrawnStates, SpotPath, random_paths};
 pub use campaign::status::{Status, Tally, Throughput, known_parts, status};
-pub use sheet::invalid_sheet_problem::InvalidSheetProblem;
 pub use sheet::sheet_problem::{
     DrivenRim, Held, History, Keeping, Place, Pulled, SheetProblem, SheetSolve,
 };
 pub use sheet::sheet_solver::sheet_reached;
 pub use sheet::sheet_states::{HingeState, PanelState, SheetState, SheetStates, SheetSurface};
 pub use solve::attempts::SolveListError;
-pub use solve::deformation_path::{DeformationPath, PathError};
-pub use solve::failure::{Cause, FailureKind, UnknownFailure};
+pub use solve::deformation_path::DeformationPath;
+pub use solve::failure::{Cause, FailureKind};
 pub use solve::hinge_path::{HingePath, Ray};
 pub use solve::ladder::AttemptKind;
 pub use solve::problem::{Solve, SolvedPath};

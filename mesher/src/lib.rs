@@ -47,13 +47,11 @@ pub use frame::Frame;
 pub use gmsh::{GMSH, Gmsh};
 pub use mesh::WindowMesh;
 pub use meshing::{MeshError, WindowShape};
-pub use msh::{Boundary, MshError, PlaneMesh, read_msh};
-pub use quality::{MeshDefect, MeshQuality};
+pub use msh::{Boundary, PlaneMesh, read_msh};
+pub use quality::MeshQuality;
 pub use sheet_mesh::{Part, SheetMesh};
-pub use sheet_shape::{InvalidSheet, PanelShape, PlacedWindow, SheetShape};
+pub use sheet_shape::{PanelShape, PlacedWindow, SheetShape};
 pub use svg::plane_mesh_svg;
-pub use tier::{
-    Imperfection, MeshRecipe, PlaneRecipe, Structured, Tier, UnknownTier, Unstructured,
-};
+pub use tier::{Imperfection, MeshRecipe, PlaneRecipe, Structured, Tier, Unstructured};
 pub use vtk_cells::vtk_grid;
 pub use window::{Side, Window};

@@ -4,6 +4,7 @@
 
 use crate::element::ElementKind;
 use std::collections::HashMap;
+use support::fault::{Fault, fault};
 
 /// The named boundary curves of the window.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -64,20 +65,6 @@ pub(crate) fn sides(face: &[usize]) -> impl Iterator<Item = [usize; 3]> + Clone 
     (0..corners).map(move |i| [face[i], face[(i + 1) % corners], face[corners + i]])
 }
 
-/// Why a mesh file is rejected.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[allow(missing_docs, reason = "the message of a variant is its documentation")]
-pub enum MshError {
-    #[error("the mesh file is not a text file: byte {0} is not UTF-8")]
-    NotText(usize),
-    #[error("the mesh file has no section ${0}: gmsh did not finish writing it")]
-    NoSection(&'static str),
-    #[error("line {line} of the mesh file: {what}")]
-    Line { line: usize, what: &'static str },
-    #[error("the mesh file contains no faces")]
-    Empty,
-}
-
 /// gmsh's element number of the 3-node line.
 const LINE_3: u32 = 8;
 
@@ -91,8 +78,11 @@ fn face_number(element: ElementKind) -> u32 {
 
 /// Reads the bytes of a .msh file with faces for `elements`; nodes that belong to no face are
 /// dropped.
-pub fn read_msh(bytes: &[u8], elements: &[ElementKind]) -> Result<PlaneMesh, MshError> {
-    let text = std::str::from_utf8(bytes).map_err(|e| MshError::NotText(e.valid_up_to()))?;
+pub fn read_msh(bytes: &[u8], elements: &[ElementKind]) -> Result<PlaneMesh, Fault> {
+    let text = std::str::from_utf8(bytes).map_err(|error| {
+        let byte = error.valid_up_to();
+        fault("", format!("the mesh file is not a text file: byte {byte} is not UTF-8"), "")
+    })?;
     let lines: Vec<_> = text.lines().enumerate().collect();
     let mut positions = HashMap::new();
     for (number, line) in section(&lines, "Nodes")? {
@@ -147,12 +137,11 @@ pub fn read_msh(bytes: &[u8], elements: &[ElementKind]) -> Result<PlaneMesh, Msh
         }
     }
     if mesh.faces.is_empty() {
-        return Err(MshError::Empty);
+        return Err(fault("", "the mesh file contains no faces", ""));
     }
     for (boundary, ids, line) in edges {
         let [Some(a), Some(b), Some(c)] = ids.map(|id| indices.get(&id).copied()) else {
-            let what = "the boundary edge belongs to no face";
-            return Err(MshError::Line { line, what });
+            return Err(at_line(line, "the boundary edge belongs to no face"));
         };
         mesh.edges.push((boundary, [a, b, c]));
     }
@@ -163,19 +152,20 @@ pub fn read_msh(bytes: &[u8], elements: &[ElementKind]) -> Result<PlaneMesh, Msh
 fn section<'a, 't>(
     lines: &'a [(usize, &'t str)],
     name: &'static str,
-) -> Result<&'a [(usize, &'t str)], MshError> {
+) -> Result<&'a [(usize, &'t str)], Fault> {
+    let missing = || {
+        let what = format!("the mesh file has no section ${name}");
+        fault("", what, "gmsh did not finish writing it")
+    };
     let find = |marker: String| lines.iter().position(|(_, line)| line.trim() == marker);
     let (Some(start), Some(end)) = (find(format!("${name}")), find(format!("$End{name}"))) else {
-        return Err(MshError::NoSection(name));
+        return Err(missing());
     };
     let [(number, count), rows @ ..] = lines.get(start + 1..end).unwrap_or_default() else {
-        return Err(MshError::NoSection(name));
+        return Err(missing());
     };
     if count.trim().parse() != Ok(rows.len()) {
-        return Err(MshError::Line {
-            line: number + 1,
-            what: "the section does not have the announced number of lines",
-        });
+        return Err(at_line(number + 1, "the section does not have the announced number of lines"));
     }
     Ok(rows)
 }
@@ -191,15 +181,18 @@ impl<'t> Fields<'t> {
         Self { line: number + 1, fields: line.split_whitespace() }
     }
 
-    fn next<T: std::str::FromStr>(&mut self) -> Result<T, MshError> {
+    fn next<T: std::str::FromStr>(&mut self) -> Result<T, Fault> {
         let field = self.fields.next().and_then(|field| field.parse().ok());
         field.ok_or_else(|| self.error("a number is missing or malformed"))
     }
 
-    fn error(&self, what: &'static str) -> MshError {
-        let line = self.line;
-        MshError::Line { line, what }
+    fn error(&self, what: &str) -> Fault {
+        at_line(self.line, what)
     }
+}
+
+fn at_line(line: usize, what: &str) -> Fault {
+    fault(format!("line {line} of the mesh file"), what, "")
 }
 
 #[cfg(test)]
@@ -211,7 +204,7 @@ mod tests {
         1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n5 .5 0 0\n6 1 .5 0\n7 .5 1 0\n8 0 .5 0\n$EndNodes\n\
         $Elements\n2\n1 8 2 2 7 2 3 6\n2 16 2 100 1 1 2 3 4 5 6 7 8\n$EndElements\n";
 
-    fn read(bytes: &[u8]) -> Result<PlaneMesh, MshError> {
+    fn read(bytes: &[u8]) -> Result<PlaneMesh, Fault> {
         read_msh(bytes, &[ElementKind::Brick])
     }
 
@@ -221,7 +214,7 @@ mod tests {
         let mesh = read_msh(triangle.as_bytes(), &[ElementKind::Wedge]).unwrap();
         assert_eq!(mesh.faces, [[0, 1, 2, 3, 4, 5]]);
         let error = read_msh(SQUARE.as_bytes(), &[ElementKind::Wedge]).unwrap_err();
-        assert!(matches!(error, MshError::Line { line: 18, .. }), "{error}");
+        assert_eq!(error.place, "line 18 of the mesh file", "{error}");
     }
 
     #[test]
@@ -244,7 +237,7 @@ mod tests {
         ];
         for (old, new, expected) in cases {
             let error = read(SQUARE.replace(old, new).as_bytes()).unwrap_err();
-            assert!(matches!(error, MshError::Line { line, .. } if line == expected), "{error}");
+            assert_eq!(error.place, format!("line {expected} of the mesh file"), "{error}");
         }
     }
 

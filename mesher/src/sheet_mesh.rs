@@ -2,11 +2,12 @@
 
 use crate::extrusion::{Extrusion, Levels};
 use crate::msh::PlaneMesh;
-use crate::quality::{MAX_AREA_ERROR, MeshDefect, check_elements};
+use crate::quality::{MAX_AREA_ERROR, check_elements, wrong_area};
 use crate::sheet_shape::{PlacedWindow, SheetShape};
 use crate::tier::Imperfection;
 use crate::vectors::{cross, dot, minus, unit};
 use crate::window::{Side, Window};
+use support::fault::Fault;
 
 /// Largest distance of a node from the arc of its window, over r_win.
 const ON_RIM: f64 = 1e-6;
@@ -47,7 +48,7 @@ pub struct SheetMesh {
 }
 
 impl SheetMesh {
-    pub(crate) fn new(shape: &SheetShape, plane: PlaneMesh) -> Result<Self, MeshDefect> {
+    pub(crate) fn new(shape: &SheetShape, plane: PlaneMesh) -> Result<Self, Fault> {
         let panels = shape.panels.len();
         let parts: Vec<Part> = (plane.surfaces.iter())
             .map(|tag| match (*tag as usize).saturating_sub(1) {
@@ -69,7 +70,7 @@ impl SheetMesh {
         let volume: f64 = solid.gauss_volumes.iter().flatten().sum();
         let (area, exact) = (volume / shape.thickness, shape.area());
         if (area - exact).abs() > MAX_AREA_ERROR * exact {
-            return Err(MeshDefect::Area { area, exact });
+            return Err(wrong_area(area, exact));
         }
         Ok(Self {
             middle: solid.levels.level(shape.layers),

@@ -71,22 +71,3 @@ impl PanelShape {
         }
     }
 }
-
-/// Why a sheet has no mesh.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[allow(missing_docs, reason = "the message of a variant is its documentation")]
-pub enum InvalidSheet {
-    #[error(
-        "panel {panel} is too small for its windows: its {edge} edge is {short} mm too short; use a smaller r_win or \
-         larger panels"
-    )]
-    SmallPanel { panel: usize, edge: &'static str, short: f64 },
-    #[error(
-        "the window of hinge {window} does not end on the edges of panel {panel}: it is {off} mm away from them"
-    )]
-    BesideEdge { window: usize, panel: usize, off: f64 },
-    #[error(
-        "the point ({x:.3}, {y:.3}) mm at which panel {panel} is held or pulled {what}: move it"
-    )]
-    Mark { panel: usize, x: f64, y: f64, what: &'static str },
-}

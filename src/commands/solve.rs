@@ -8,7 +8,7 @@ use crate::ui::progress::watched;
 use crate::ui::{interrupt, run_folder};
 use anyhow::{Error, Result, bail};
 use clap::Args;
-use fe_driver::{DeformationPath, HingePath, Solver, WindowProblem, WindowSolve, reached};
+use fe_driver::{Cause, DeformationPath, HingePath, Solver, WindowProblem, WindowSolve, reached};
 use hinge::{HingeDeformation, HingeSample, SheetMaterial};
 use mesher::Tier;
 use serde_json::json;
@@ -80,7 +80,7 @@ impl SolveCommand {
         let limit = Duration::from_secs(self.time_limit_s);
         let solution =
             watched(1, || reached(&self.out), || solver.attempt(&solve, &self.out, limit, stop))
-                .map_err(|error| match error.is_stop() {
+                .map_err(|error| match error.cause == Cause::Stop {
                     true => Unfinished { left: 1, what: "ray" }.into(),
                     false => Error::from(error),
                 })?;

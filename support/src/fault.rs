@@ -23,6 +23,13 @@ pub fn fault(
     Fault { place: place.into(), what: what.into(), remedy: remedy.into() }
 }
 
+impl From<String> for Fault {
+    /// A mistake in words, without a place.
+    fn from(what: String) -> Self {
+        fault("", what, "")
+    }
+}
+
 impl fmt::Display for Fault {
     fn fmt(&self, text: &mut fmt::Formatter) -> fmt::Result {
         let Self { place, what, remedy } = self;

@@ -364,7 +364,7 @@ fn an_array_whose_submission_was_killed_is_not_submitted_again() {
 #[test]
 fn hostile_names_reach_slurm_as_they_are() {
     let cluster = Cluster::up();
-    let name = "a 'b' \"$HOME\" `c` #;&(x) ~*%j\n#SBATCH --hold";
+    let name = "a 'b' \"$HOME\" `c` #;&(x) ~*%j";
     let (campaign, folder) = (format!("configs/campaigns/{name}.toml"), format!("runs/{name}"));
     std::fs::rename(cluster.work.path(CAMPAIGN), cluster.work.path(&campaign)).unwrap();
     let submit = || {
@@ -388,11 +388,16 @@ fn hostile_names_reach_slurm_as_they_are() {
     cluster.output("scontrol update nodename=n1,n2 state=resume");
     cluster.until("the task starts", || cluster.process(1).is_some());
     let log = || {
-        std::fs::read_dir(&logs)
-            .unwrap()
-            .any(|file| file.unwrap().path().extension() == Some("log".as_ref()))
+        let mut files = std::fs::read_dir(&logs).unwrap();
+        files.any(|file| file.unwrap().path().extension().is_some_and(|it| it == "log"))
     };
     cluster.until("its log is in the folder", log);
+
+    let broken = "configs/campaigns/a\n#SBATCH --hold.toml";
+    std::fs::copy(cluster.work.path(&campaign), cluster.work.path(broken)).unwrap();
+    let mut command = cluster.command("kirigami campaign submit");
+    let message = failure(command.args([broken, "--shards=1", "--time=1"]));
+    assert!(message.contains("cannot list this name"), "{message}");
 }
 
 #[test]

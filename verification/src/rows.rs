@@ -3,12 +3,11 @@
 
 use crate::verification_error::VerificationError;
 use dataset::{Database, Row, SplitPlan};
-use fe_driver::{
-    CollectedWindow, FailureKind, Solved, ToolVersions, UnknownFailure, finished_windows,
-};
+use fe_driver::{CollectedWindow, FailureKind, Solved, ToolVersions, finished_windows};
 use hinge::HingeSample;
-use mesher::{Tier, UnknownTier};
+use mesher::Tier;
 use std::path::Path;
+use support::fault::Fault;
 
 /// Rows with these samples of a solved window.
 pub fn rows(
@@ -50,15 +49,7 @@ pub fn collected(folder: &Path) -> Result<Database, VerificationError> {
 #[error("job {job}: {reason}")]
 pub struct InvalidRow {
     job: String,
-    reason: UnknownName,
-}
-
-#[derive(Debug, thiserror::Error)]
-enum UnknownName {
-    #[error(transparent)]
-    Failure(#[from] UnknownFailure),
-    #[error(transparent)]
-    Tier(#[from] UnknownTier),
+    reason: Fault,
 }
 
 /// The solves that the rows come from; `rows` must be sorted by job and lambda.
@@ -71,7 +62,7 @@ pub fn collected_windows(rows: &[Row]) -> Result<Vec<CollectedWindow>, InvalidRo
 }
 
 /// The solve that the rows come from; `rows` must not be empty.
-fn collected_window(rows: &[Row]) -> Result<CollectedWindow, UnknownName> {
+fn collected_window(rows: &[Row]) -> Result<CollectedWindow, Fault> {
     let row = &rows[0];
     let failure: Option<FailureKind> = match row.failure.as_str() {
         "" => None,

@@ -9,7 +9,8 @@ use crate::calculix::deck::deck;
 use crate::calculix::deck_run::{DeckRun, read_if_there, time_reached};
 use crate::calculix::model::WindowModel;
 use crate::calculix::response::samples;
-use crate::solve::solve_error::{MAX_ENERGY_RESIDUAL, SolveError};
+use crate::solve::failure::{Cause, FailureKind};
+use crate::solve::solve_error::SolveError;
 use crate::solve::solver::{Solution, Solver};
 use crate::solve::tool_versions::ToolVersions;
 use crate::solve::window_solve::WindowSolve;
@@ -36,6 +37,10 @@ pub struct CalculiX {
 
 /// Name of the deck and its output in the folder of an attempt.
 const JOB: &str = "window";
+
+/// Maximum |W - work| / W accepted at the end of a complete path. A partial path is not checked;
+/// its samples contain the residual.
+const MAX_ENERGY_RESIDUAL: f64 = 0.01;
 
 /// The lambda that the running attempt in `folder` has reached.
 pub fn reached(folder: &Path) -> f64 {
@@ -119,10 +124,12 @@ impl WindowModel<'_> {
         limit: Duration,
         stop: &AtomicBool,
     ) -> Result<Solution, SolveError> {
-        self.material.validate()?;
+        let invalid = Cause::Problem(FailureKind::InvalidInput);
+        self.material.validate().map_err(|error| invalid.error(error))?;
         let end = self.path.at(1.0);
         if !end.to_array().iter().all(|x| x.is_finite()) {
-            return Err(SolveError::Ray(end));
+            let what = "the end of the ray contains a number that is not finite";
+            return Err(invalid.error(format!("{what}: {end:?}")));
         }
         let run = DeckRun::new(ccx, &deck(self), folder, JOB, limit, stop)?;
         let costs = run.costs();
@@ -133,14 +140,15 @@ impl WindowModel<'_> {
     /// The printed increments of an attempt in `folder`.
     fn frames(&self, folder: &Path) -> Result<Vec<Frame>, SolveError> {
         let output = folder.join(JOB).with_extension("dat");
-        Ok(read_dat(&read_if_there(&output)?, self.layout())?)
+        let output = read_if_there(&output)?;
+        read_dat(&output, self.layout()).map_err(|error| Cause::Machine.error(error))
     }
 
     /// The valid samples, and why they are not the samples of the whole path.
     fn outcome(&self, run: DeckRun) -> (Vec<HingeSample>, Option<SolveError>) {
         let frames = match read_dat(&run.output, self.layout()) {
             Ok(frames) => frames,
-            Err(error) => return (Vec::new(), Some(error.into())),
+            Err(error) => return (Vec::new(), Some(Cause::Machine.error(error))),
         };
         if let Err(error) = run.check_increments(frames.iter().map(|frame| frame.lambda)) {
             return (Vec::new(), Some(error));
@@ -150,7 +158,11 @@ impl WindowModel<'_> {
         match run.stopped_at(last.lambda) {
             None if last.energy_residual > MAX_ENERGY_RESIDUAL => {
                 let residual = last.energy_residual;
-                (Vec::new(), Some(SolveError::EnergyImbalance { residual }))
+                let error = Cause::Problem(FailureKind::EnergyImbalance).error(format!(
+                    "the energy and the work of the whole ray differ by {residual:.2e} of the energy (limit \
+                     {MAX_ENERGY_RESIDUAL})"
+                ));
+                (Vec::new(), Some(error))
             }
             stopped => (samples, stopped),
         }

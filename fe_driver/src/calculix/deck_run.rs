@@ -5,6 +5,7 @@
 
 use crate::calculix::ccx::{Ccx, CcxRun};
 use crate::calculix::sta::{Increment, read_sta};
+use crate::solve::failure::{Cause, FailureKind};
 use crate::solve::problem::Solve;
 use crate::solve::solve_error::SolveError;
 use crate::solve::solver::Solution;
@@ -12,7 +13,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 use support::file_error::FileError;
-use support::program::{ToolError, output_file, remove_stale, tail};
+use support::program::{ToolEnd, ToolError, output_file, remove_stale, tail};
 
 /// The word with which CalculiX begins its message on a problem that it cannot solve, at the end of
 /// its log.
@@ -47,11 +48,14 @@ impl DeckRun {
             remove_stale(stale).map_err(FileError::at(stale))?;
         }
         let run = match ccx.run(folder, job, limit, stop) {
-            Err(
-                error @ (ToolError::TimedOut { .. }
-                | ToolError::Killed { .. }
-                | ToolError::TooMuchOutput { .. }),
-            ) => Err(error),
+            Err(error)
+                if matches!(
+                    error.end,
+                    ToolEnd::TimedOut | ToolEnd::Killed | ToolEnd::TooMuchOutput
+                ) =>
+            {
+                Err(error)
+            }
             other => Ok(other?),
         };
         Ok(Self {
@@ -66,7 +70,7 @@ impl DeckRun {
     pub fn costs<S: Solve>(&self) -> Solution<S> {
         let (cpu_seconds, solver_seconds, peak_memory_mib) = match &self.run {
             Ok(CcxRun { run, .. }) => (run.cpu_seconds, run.wall_seconds, run.peak_memory_mib),
-            Err(error) => (error.cpu_seconds(), 0.0, None),
+            Err(error) => (error.cpu_seconds, 0.0, None),
         };
         let iterations = self.increments.iter().map(|increment| increment.iterations);
         Solution {
@@ -82,7 +86,9 @@ impl DeckRun {
     /// those in the output.
     pub fn check_increments(&self, times: impl Iterator<Item = f64>) -> Result<(), SolveError> {
         match skipped(times, &self.increments) {
-            Some(lambda) => Err(SolveError::Skipped { lambda }),
+            Some(lambda) => Err(Cause::Machine.error(format!(
+                "the solver's output and its status file disagree on the increment at lambda = {lambda}"
+            ))),
             None => Ok(()),
         }
     }
@@ -94,14 +100,25 @@ impl DeckRun {
             Ok(run) => run,
         };
         if finished {
-            return (lambda < 1.0).then_some(SolveError::Truncated { lambda });
+            let what = "the solver reports success, but its output ends at lambda";
+            return (lambda < 1.0).then(|| Cause::Machine.error(format!("{what} = {lambda}")));
         }
         let (status, tail) = (run.status, tail(&self.log));
-        Some(match (tail.contains(ERROR), self.increments.is_empty()) {
-            (false, _) => SolveError::Silent { status, tail },
-            (true, true) => SolveError::NotStarted { status, tail },
-            (true, false) => SolveError::Diverged { lambda, tail },
-        })
+        let (cause, what) = match (tail.contains(ERROR), self.increments.is_empty()) {
+            (false, _) => {
+                let what = "says neither that it has finished nor why not";
+                (Cause::Machine, format!("the solver ended with {status} and {what}"))
+            }
+            (true, true) => {
+                let what = format!("the solver refused its input ({status})");
+                (Cause::Problem(FailureKind::NotStarted), what)
+            }
+            (true, false) => {
+                let what = format!("the solver diverged at lambda = {lambda}");
+                (Cause::Problem(FailureKind::Diverged), what)
+            }
+        };
+        Some(cause.of_solver(what, &tail))
     }
 }
 

@@ -10,7 +10,7 @@
 //! same job twice; it is counted once.
 
 use crate::campaign::definition::CampaignError;
-use crate::campaign::history::{History, history_name, overlaps};
+use crate::campaign::history::{EventLog, history_name, overlaps};
 use crate::record_file::{entries, read_json, write_json};
 use crate::solve::host::host;
 use crate::solve::problem::Solve;
@@ -19,6 +19,7 @@ use crate::solve::tool_versions::ToolVersions;
 use crate::solve::window_solve::WindowSolve;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
+use support::fault::{Fault, fault};
 use support::file_error::FileError;
 use support::shard::Shard;
 use support::{lock_file, whole_file};
@@ -59,17 +60,19 @@ impl CampaignFolder {
 
     /// Reads `campaign.json`.
     pub fn index(&self) -> Result<Index, CampaignError> {
-        read_json(&self.index_path())?.ok_or_else(|| CampaignError::NoCampaign(self.0.clone()))
+        let what = || format!("{} contains no campaign", self.0.display());
+        let index = read_json(&self.index_path())?;
+        Ok(index.ok_or_else(|| fault("", what(), "run a campaign there first"))?)
     }
 
     /// Rejects a folder that belongs to a campaign with another name.
     pub fn belongs_to(&self, name: &str) -> Result<(), CampaignError> {
         match read_json::<Index>(&self.index_path())? {
-            Some(index) if index.name != name => Err(CampaignError::OtherCampaign {
-                folder: self.0.clone(),
-                found: index.name,
-                requested: name.to_owned(),
-            }),
+            Some(Index { name: found, .. }) if found != name => {
+                let folder = self.0.display();
+                let what = format!("{folder} contains the campaign `{found}`, not `{name}`");
+                Err(fault("", what, "choose another folder").into())
+            }
             _ => Ok(()),
         }
     }
@@ -79,7 +82,7 @@ impl CampaignFolder {
     ///
     /// It is an error if a shard that may overlap with this one is locked on this host, or if this
     /// is a part of a campaign whose other parts are solved with other versions of gmsh and ccx.
-    pub fn enter(&self, shard: Shard, index: &Index) -> Result<History, CampaignError> {
+    pub fn enter(&self, shard: Shard, index: &Index) -> Result<EventLog, CampaignError> {
         let home = self.0.join("hosts").join(host());
         whole_file::create_folder(&home).map_err(FileError::at(&home))?;
         // Shards that start at the same time enter one after the other. Otherwise each would find
@@ -92,11 +95,11 @@ impl CampaignFolder {
         }
         for entry in entries(&home)? {
             if overlaps(shard, &entry.file_name().to_string_lossy()) {
-                History::open(&entry.path())?;
+                EventLog::open(&entry.path())?;
             }
         }
         write_json(&self.index_path(), index)?;
-        History::open(&home.join(history_name(shard)))
+        EventLog::open(&home.join(history_name(shard)))
     }
 
     /// Rejects versions of gmsh and ccx other than those with which the campaign was last run. Only
@@ -104,12 +107,16 @@ impl CampaignFolder {
     fn refuse_other_versions(&self, index: &Index) -> Result<(), CampaignError> {
         let known = read_json::<Index>(&self.index_path())?.and_then(|known| known.tools);
         match (known, &index.tools) {
-            (Some(known), Some(here)) if known != *here => Err(CampaignError::OtherVersions {
-                index: self.index_path(),
-                host: host(),
-                here: Box::new(here.clone()),
-                known: Box::new(known),
-            }),
+            (Some(known), Some(here)) if known != *here => {
+                let (host, index) = (host(), self.index_path());
+                let index = index.display();
+                Err(Fault::from(format!(
+                    "{host} has {here}, but the campaign is solved with {known}: rows of different versions are not \
+                     collected together. Use the same versions on every host; or delete {index}, and all rays are \
+                     solved again with the versions of the next run (no file of a job is lost)"
+                ))
+                .into())
+            }
             _ => Ok(()),
         }
     }

@@ -5,21 +5,23 @@
 //! again, and the rays of the spot check on the finer of the two, on which weights are tested. The
 //! spot check is drawn in the region that the rays cover.
 
-use crate::campaign::extra_rays::{ExtraRaysError, read_extra_rays};
+use crate::campaign::extra_rays::read_extra_rays;
 use crate::campaign::sampling::RayBox;
 use crate::campaign::spot_paths::{DrawnStates, SpotPath, random_paths};
 use crate::solve::attempts::SolveListError;
 use crate::solve::hinge_path::{HingePath, Ray};
 use crate::solve::tool_versions::ToolVersions;
 use crate::solve::window_solve::{WindowProblem, WindowSolve};
-use hinge::{HingeConstants, InvalidDesign, MaterialError, Regime, SheetMaterial, TrainingDomain};
+use hinge::{HingeConstants, Regime, SheetMaterial, TrainingDomain};
 use mesher::Tier;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use std::fmt::Display;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
+use support::fault::{Fault, fault};
 use support::file_error::FileError;
-use support::toml_file::{self, ConfigError};
+use support::toml_file;
 
 /// A campaign with its material, from a TOML file of `configs/campaigns/`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -67,51 +69,16 @@ pub struct Campaign {
 
 /// Why a campaign cannot be read, planned, run or collected.
 #[derive(Debug, thiserror::Error)]
-#[allow(missing_docs, reason = "the message of a variant is its documentation")]
 pub enum CampaignError {
+    /// What a person must put right.
     #[error(transparent)]
-    Config(#[from] ConfigError),
-    #[error("{path}: {reason}", path = .path.display())]
-    Invalid { path: PathBuf, reason: String },
-    #[error(transparent)]
-    Material(#[from] MaterialError),
-    #[error(transparent)]
-    FurtherRays(#[from] ExtraRaysError),
+    Fault(#[from] Fault),
+    /// A file cannot be read or written.
     #[error(transparent)]
     File(#[from] FileError),
+    /// A solve has ended the run.
     #[error(transparent)]
     Solve(#[from] SolveListError),
-    #[error(
-        "{folder} contains the campaign `{found}`, not `{requested}`: choose another folder",
-        folder = .folder.display()
-    )]
-    OtherCampaign { folder: PathBuf, found: String, requested: String },
-    #[error(
-        "the campaign has changed since it was run in {folder} ({changes}): run it again first",
-        folder = .folder.display()
-    )]
-    Changed { folder: PathBuf, changes: String },
-    #[error("{0} contains no campaign: run a campaign there first")]
-    NoCampaign(PathBuf),
-    #[error("another run has locked {0}: wait until it ends, or stop it")]
-    Locked(PathBuf),
-    #[error(
-        "{host} has {here}, but the campaign is solved with {known}: rows of different versions are not collected \
-         together. Use the same versions on every host; or delete {index}, and all rays are solved again with the \
-         versions of the next run (no file of a job is lost)",
-        index = .index.display()
-    )]
-    OtherVersions {
-        index: PathBuf,
-        host: String,
-        here: Box<ToolVersions>,
-        known: Box<ToolVersions>,
-    },
-    #[error(
-        "none of the jobs belongs to the campaign (the first is {0}): they were solved with other settings, \
-         with another version of gmsh or ccx, or for another campaign"
-    )]
-    Foreign(String),
 }
 
 /// Number of states on a ray of the spot check: more need fewer solves but cover fewer hinges.
@@ -150,12 +117,17 @@ impl Campaign {
             }
             _ => {}
         }
-        self.boxes.iter().find_map(RayBox::defect).or_else(|| {
-            Some(format!(
-                "a corner of the box is not a valid design: {}",
-                self.impossible_design()?
-            ))
-        })
+        // The narrowest or the widest hinge, with the smallest hole: all others lie between them.
+        let impossible = |rays: &RayBox| {
+            let constants = HingeConstants { fillet_ratio: rays.fillet_ratio[0], ..self.design };
+            rays.w_lig.into_iter().find_map(|w_lig| {
+                let design = constants.hinge(w_lig, rays.alpha_deg[0].to_radians());
+                let error = design.validate().err()?;
+                Some(format!("a corner of the box is not a valid design: {error}"))
+            })
+        };
+        let mut boxes = self.boxes.iter();
+        boxes.clone().find_map(RayBox::defect).or_else(|| boxes.find_map(impossible))
     }
 
     /// What is wrong if the tier is not for all ligaments of the box.
@@ -172,31 +144,20 @@ impl Campaign {
         ))
     }
 
-    /// The defect of the narrowest or the widest hinge of a box, with the smallest hole; all others
-    /// lie between them.
-    fn impossible_design(&self) -> Option<InvalidDesign> {
-        let defect = |rays: &RayBox| {
-            let constants = HingeConstants { fillet_ratio: rays.fillet_ratio[0], ..self.design };
-            rays.w_lig.into_iter().find_map(|w_lig| {
-                let design = constants.hinge(w_lig, rays.alpha_deg[0].to_radians());
-                design.validate().err()
-            })
-        };
-        self.boxes.iter().find_map(defect)
-    }
-
     /// Reads a campaign, its material and its further rays.
     pub fn load(path: &Path) -> Result<Self, CampaignError> {
-        let mut campaign: Self = toml_file::read(path)?;
-        let invalid = |reason| CampaignError::Invalid { path: path.to_owned(), reason };
+        let other = |error: &dyn Display| Fault::from(error.to_string());
+        let mut campaign: Self = toml_file::read(path).map_err(|error| other(&error))?;
+        let invalid = |reason: String| Err(fault(path.display().to_string(), reason, "").into());
         if let Some(reason) = campaign.defect() {
-            return Err(invalid(reason));
+            return invalid(reason);
         }
         let folder = path.parent().unwrap_or(Path::new(""));
-        campaign.material = SheetMaterial::load(&folder.join(&campaign.material_file))?;
+        let material = SheetMaterial::load(&folder.join(&campaign.material_file));
+        campaign.material = material.map_err(|error| other(&error))?;
         campaign.time_limit = campaign.tier_of(JobPart::Finer).time_limit();
         if let Some(reason) = campaign.other_regime() {
-            return Err(invalid(reason));
+            return invalid(reason);
         }
         let named = campaign.training.iter_mut();
         for file in named.chain(&mut campaign.pretrained) {

@@ -8,6 +8,7 @@ use serde::Serialize;
 use std::fs::File;
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
+use support::fault::fault;
 use support::file_error::FileError;
 use support::lock_file;
 use support::shard::Shard;
@@ -35,19 +36,22 @@ struct Line<'a> {
 /// The open history of a shard. The shard stays locked until this value is dropped or the process
 /// exits.
 #[derive(Debug)]
-pub(crate) struct History {
+pub(crate) struct EventLog {
     path: PathBuf,
     file: File,
 }
 
-impl History {
+impl EventLog {
     /// Opens the history and locks it; an error if another process has locked it.
     pub fn open(path: &Path) -> Result<Self, CampaignError> {
         let held = lock_file::try_hold(path);
         let path = path.to_owned();
         match held {
             Ok(file) => Ok(Self { path, file }),
-            Err(error) if error.kind() == ErrorKind::WouldBlock => Err(CampaignError::Locked(path)),
+            Err(error) if error.kind() == ErrorKind::WouldBlock => {
+                let what = format!("another run has locked {}", path.display());
+                Err(fault("", what, "wait until it ends, or stop it").into())
+            }
             Err(source) => Err(FileError { path, source }.into()),
         }
     }
@@ -62,7 +66,7 @@ impl History {
     }
 }
 
-impl Drop for History {
+impl Drop for EventLog {
     /// Unlocks the shard immediately. Without the explicit unlock, a solver process between fork
     /// and exec would share the open file and keep the lock.
     fn drop(&mut self) {

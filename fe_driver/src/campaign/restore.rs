@@ -12,6 +12,7 @@ use hinge::HingeSample;
 use mesher::Tier;
 use std::collections::{HashMap, HashSet};
 use std::path::Path;
+use support::fault::fault;
 use support::shard::Shard;
 
 /// What a database contains of a solve.
@@ -70,7 +71,10 @@ pub fn restore(
         known.then_some((index, solves))
     };
     let Some((index, solves)) = tools.into_iter().find_map(solves_with) else {
-        return Err(CampaignError::Foreign(first.id.clone()));
+        let id = &first.id;
+        let why = "they were solved with other settings, with another version of gmsh or ccx, or for another campaign";
+        let what = format!("none of the jobs belongs to the campaign (the first is {id})");
+        return Err(fault("", what, why).into());
     };
     let solves: HashMap<_, _> = index.jobs.iter().zip(solves).collect();
     let folder = CampaignFolder(folder.to_owned());

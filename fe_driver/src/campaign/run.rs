@@ -2,7 +2,7 @@
 
 use crate::campaign::campaign_folder::{CampaignFolder, Index};
 use crate::campaign::definition::{Campaign, CampaignError};
-use crate::campaign::history::{Event, History};
+use crate::campaign::history::{Event, EventLog};
 use crate::campaign::status::Tally;
 use crate::solve::attempts::{Job, SolveEvent, Workers};
 use crate::solve::solve_folder::SolveRecord;
@@ -91,13 +91,13 @@ struct Ledger<'a> {
     records: Vec<Option<SolveRecord>>,
     /// [`Progress::disturbed`].
     disturbed: BTreeMap<String, String>,
-    history: History,
+    history: EventLog,
     start: Instant,
     closed_before: usize,
 }
 
 impl<'a> Ledger<'a> {
-    fn new(history: History, jobs: &'a [Job]) -> Result<Self, FileError> {
+    fn new(history: EventLog, jobs: &'a [Job]) -> Result<Self, FileError> {
         let records = jobs.iter().map(|job| job.folder.ended::<WindowSolve>());
         let records = records.collect::<Result<Vec<_>, _>>()?;
         Ok(Self {

@@ -153,6 +153,11 @@ pub fn submit_array(
     let path = folder.join("array.sh");
     let script = whole_file::write(&path, SCRIPT.as_bytes()).and_then(|()| path.canonicalize());
     let script = script.map_err(FileError::at(&path))?;
+    if script.to_str().is_none_or(|name| name.contains(char::is_control)) {
+        let what =
+            "squeue cannot list this name, because of a line break or bytes that are no UTF-8";
+        return Err(fault(format!("{script:?}"), what, "choose another with --folder"));
+    }
     refuse_unrecorded(&script)?;
     let sbatch = |options: Vec<String>, verb: &str| {
         let mut command = Command::new("sbatch");

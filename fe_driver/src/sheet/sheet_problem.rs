@@ -4,12 +4,12 @@
 //! The path leads from the flat sheet, lambda = 0, to full load or the full stroke, lambda = 1. How
 //! the weight comes on depends on what keeps the panels in their plane ([`SheetProblem::history`]).
 
-use crate::sheet::invalid_sheet_problem::InvalidSheetProblem;
 use crate::solve::step_control::StepControl;
 use crate::solve::tool_versions::ToolVersions;
 use hinge::SheetMaterial;
 use mesher::{SheetShape, Side, Tier};
 use serde::{Deserialize, Serialize};
+use support::fault::{Fault, fault};
 
 /// Version of the geometry, the input deck and the evaluation of sheets. It is increased when a
 /// change of the code changes results; solves of an older version are then stale.
@@ -160,19 +160,20 @@ impl SheetProblem {
     }
 
     /// An error if the problem has no solution.
-    pub fn validate(&self) -> Result<(), InvalidSheetProblem> {
+    pub fn validate(&self) -> Result<(), Fault> {
         if self.total_load() == 0.0 && self.rims.is_empty() {
-            return Err(InvalidSheetProblem::NoLoad);
+            return Err(fault("", "nothing pulls the sheet", "it needs a load"));
         }
         if self.held.is_empty() && self.rims.is_empty() {
-            return Err(InvalidSheetProblem::NothingHeld);
+            return Err(fault("", "no panel is held", "the sheet is free to move"));
         }
         let clamped = |held: &Held| !matches!(held.place, Place::Point(_));
         if self.keeping == Keeping::Nothing
             && self.rims.is_empty()
             && !self.held.iter().any(clamped)
         {
-            return Err(InvalidSheetProblem::Falls);
+            let what = "nothing keeps the sheet in its plane, and no panel is clamped";
+            return Err(fault("", what, "it would fall out of it; clamp a panel, or hold it flat"));
         }
         Ok(())
     }

@@ -9,7 +9,7 @@ use crate::sheet::sheet_output::{SheetFrame, SheetLayout};
 use crate::sheet::sheet_problem::{SECONDS, SheetProblem, SheetSolve};
 use crate::sheet::sheet_response::states;
 use crate::sheet::sheet_states::SheetStates;
-use crate::solve::failure::FailureKind;
+use crate::solve::failure::{Cause, FailureKind};
 use crate::solve::ladder::AttemptKind;
 use crate::solve::problem::Solve;
 use crate::solve::solve_error::SolveError;
@@ -17,6 +17,7 @@ use crate::solve::solve_folder::SolveFolder;
 use crate::solve::solver::{Solution, Solver};
 use crate::solve::tool_versions::ToolVersions;
 use mesher::Tier;
+use std::fmt::Display;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
@@ -91,10 +92,11 @@ impl Solver<SheetSolve> for CalculiX {
     ) -> Result<Solution<SheetSolve>, SolveError> {
         let start = Instant::now();
         let problem = &solve.problem;
-        problem.material.validate()?;
-        problem.validate()?;
+        let invalid = |error: &dyn Display| Cause::Problem(FailureKind::InvalidInput).error(error);
+        problem.material.validate().map_err(|error| invalid(&error))?;
+        problem.validate().map_err(|error| invalid(&error))?;
         let mesh = problem.shape.mesh(work, &self.gmsh, limit, stop)?;
-        let nodes = SheetNodes::new(problem, &mesh)?;
+        let nodes = SheetNodes::new(problem, &mesh).map_err(|error| invalid(&error))?;
         let model = SheetModel { problem, mesh: &mesh, nodes: &nodes };
         let run = DeckRun::new(&self.ccx, &model.deck(), work, JOB, limit, stop)?;
         let mut solution: Solution<SheetSolve> =
@@ -102,7 +104,7 @@ impl Solver<SheetSolve> for CalculiX {
         let frames: Result<Vec<SheetFrame>, _> =
             read_printed(&run.output, &SheetLayout::new(&model));
         solution.stopped = match frames {
-            Err(error) => Some(error.into()),
+            Err(error) => Some(Cause::Machine.error(error)),
             Ok(frames) => match run.check_increments(frames.iter().map(|frame| frame.time)) {
                 Err(error) => Some(error),
                 Ok(()) => {

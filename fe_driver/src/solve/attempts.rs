@@ -165,12 +165,12 @@ impl<S: Solve> Workers<'_, S> {
         };
         let failure = match error {
             None => None,
-            Some(error) if error.is_stop() => return Ok(Outcome::Stopped),
-            Some(error) => match Cause::of(&error) {
-                Cause::Problem(kind) => Some((kind, error.to_string())),
+            Some(error) => match error.cause {
+                Cause::Stop => return Ok(Outcome::Stopped),
+                Cause::Problem(kind) => Some((kind, error.message)),
                 Cause::Machine => {
                     job.folder.keep_work()?;
-                    return Ok(Outcome::Disturbed(error.to_string()));
+                    return Ok(Outcome::Disturbed(error.message));
                 }
                 Cause::Run => {
                     let (job, source) = (job.id.clone(), Box::new(error));

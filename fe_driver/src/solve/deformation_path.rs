@@ -12,9 +12,9 @@
 
 use hinge::{HingeDeformation, Regime};
 use serde::{Deserialize, Serialize};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use support::csv_table;
-use support::file_error::FileError;
+use support::fault::{Fault, fault};
 
 /// A piecewise linear path from the undeformed state at lambda = 0 to its end at lambda = 1.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -45,18 +45,6 @@ impl TryFrom<Vec<Knot>> for DeformationPath {
             _ => Err("a path leads from lambda = 0 to lambda = 1"),
         }
     }
-}
-
-/// Why a file is not a valid deformation path.
-#[derive(Debug, thiserror::Error)]
-#[allow(missing_docs, reason = "the message of a variant is its documentation")]
-pub enum PathError {
-    #[error(transparent)]
-    Read(#[from] FileError),
-    #[error("{path}:{line}: {what}", path = .path.display())]
-    Row { path: PathBuf, line: u64, what: &'static str },
-    #[error("{path}: no row has a deformed state; add at least one", path = .path.display())]
-    Empty { path: PathBuf },
 }
 
 /// One row of a recorded path.
@@ -105,7 +93,7 @@ impl DeformationPath {
     }
 
     /// Reads a recorded path of a hinge with the ligament width `w_lig` (mm).
-    pub fn read(path: &Path, w_lig: f64) -> Result<Self, PathError> {
+    pub fn read(path: &Path, w_lig: f64) -> Result<Self, Fault> {
         let (_, rows) = csv_table::read(path)?;
         // The undeformed state is knot 0, whether the file contains it or not.
         let undeformed = |row: &Row| [row.eta_a, row.eta_s, row.theta_deg] == [0.0; 3];
@@ -116,15 +104,17 @@ impl DeformationPath {
             let share = (i + 1) as f64 / rows.len() as f64;
             let lambda = row.lambda.unwrap_or(share);
             if let Some(what) = row.defect(lambda, knots[i].0, i + 1 == rows.len()) {
-                let (path, line) = (path.to_owned(), *line);
-                return Err(PathError::Row { path, line, what });
+                return Err(fault(format!("{}:{line}", path.display()), what, ""));
             }
             let theta = row.theta_deg.to_radians();
             let state = HingeDeformation::from_eta(row.eta_a, row.eta_s, theta, w_lig);
             knots.push((lambda, state));
         }
         match knots.len() {
-            1 => Err(PathError::Empty { path: path.to_owned() }),
+            1 => {
+                let what = "no row has a deformed state; add at least one";
+                Err(fault(path.display().to_string(), what, ""))
+            }
             _ => Ok(Self { knots }),
         }
     }
@@ -218,7 +208,7 @@ mod tests {
         }
     }
 
-    fn read(text: &str) -> Result<DeformationPath, PathError> {
+    fn read(text: &str) -> Result<DeformationPath, Fault> {
         let file = tempfile::NamedTempFile::new().unwrap();
         std::fs::write(file.path(), text).unwrap();
         DeformationPath::read(file.path(), 20.0)

@@ -332,8 +332,7 @@ mod tests {
         ) -> Result<Solution<Bar>, SolveError> {
             let steps = f64::from(bar.steps);
             if bar.steps < 4 {
-                let (lambda, tail) = (0.0, String::new());
-                return Err(SolveError::Diverged { lambda, tail });
+                return Err(crate::Cause::Problem(FailureKind::Diverged).error("diverged"));
             }
             let force = |step| bar.stiffness * f64::from(step) / steps;
             Ok(Solution {

@@ -300,5 +300,5 @@ fn sheets_that_cannot_be_solved_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     let stop = AtomicBool::new(false);
     let error = thin.mesh(folder.path(), &calculix.gmsh, LIMIT, &stop);
-    assert!(matches!(error, Err(MeshError::Thickness(_))));
+    assert!(matches!(error, Err(MeshError::Invalid(_))));
 }

@@ -4,7 +4,7 @@
 use super::Script;
 use super::structured::{self, Rim};
 use crate::frame::Frame;
-use crate::sheet_shape::{InvalidSheet, PlacedWindow, SheetShape};
+use crate::sheet_shape::{PlacedWindow, SheetShape};
 use crate::vectors::{cross, dot, minus, unit};
 use crate::window::Window;
 
@@ -19,7 +19,7 @@ const COARSEST: f64 = 1.1;
 
 /// The script of a sheet. Its faces are named after the panels, 1 and those after it, and then
 /// after the windows.
-pub(crate) fn sheet_script(shape: &SheetShape) -> Result<String, InvalidSheet> {
+pub(crate) fn sheet_script(shape: &SheetShape) -> Result<String, String> {
     let mut geo = Script::default();
     let size = COARSEST * shape.element_size;
     geo.add(format_args!("Mesh.MeshSizeMax = {size:?};"));
@@ -73,7 +73,7 @@ struct PanelOutline<'a> {
 
 impl PanelOutline<'_> {
     /// Adds the panel as one surface, and returns its number.
-    fn add(&self, geo: &mut Script) -> Result<i32, InvalidSheet> {
+    fn add(&self, geo: &mut Script) -> Result<i32, String> {
         let panel = &self.shape.panels[self.panel];
         // Where the outline reaches and leaves each corner, counter-clockwise: one point, or the
         // ends of an arc, which is passed clockwise.
@@ -117,7 +117,7 @@ impl PanelOutline<'_> {
         corner: usize,
         [from, to]: [(i32, [f64; 2]); 2],
         marks: &mut Vec<[f64; 2]>,
-    ) -> Result<Vec<i32>, InvalidSheet> {
+    ) -> Result<Vec<i32>, String> {
         let panel = &self.shape.panels[self.panel];
         let direction = unit(panel.corners[corner], panel.corners[(corner + 1) % 4]);
         let along = |point: [f64; 2]| dot(minus(point, from.1), direction);
@@ -126,11 +126,11 @@ impl PanelOutline<'_> {
             .map(|arc| self.shape.windows[arc.number].design.r_win);
         let least = radius.map_or(0.0, |radius| LEAST * radius);
         if length <= least {
-            return Err(InvalidSheet::SmallPanel {
-                panel: self.panel,
-                edge: EDGES[corner],
-                short: least - length,
-            });
+            let (panel, edge, short) = (self.panel, EDGES[corner], least - length);
+            return Err(format!(
+                "panel {panel} is too small for its windows: its {edge} edge is {short} mm too short; use a smaller \
+                 r_win or larger panels"
+            ));
         }
         let across = |point: [f64; 2]| cross(direction, minus(point, from.1)).abs();
         let mut stops: Vec<f64> = Vec::new();
@@ -160,25 +160,25 @@ impl PanelOutline<'_> {
     }
 
     /// The arc about a corner ends on the two edges that meet there.
-    fn check_arc(&self, corner: usize, arc: &Arc) -> Result<(), InvalidSheet> {
+    fn check_arc(&self, corner: usize, arc: &Arc) -> Result<(), String> {
         let corners = &self.shape.panels[self.panel].corners;
         let edges = [(corner + 3) % 4, corner];
         for (edge, end) in std::iter::zip(edges, [arc.ends[1], arc.ends[0]]) {
             let direction = unit(corners[edge], corners[(edge + 1) % 4]);
             let off = cross(direction, minus(end, corners[edge])).abs();
             if off > ON_EDGE {
-                return Err(InvalidSheet::BesideEdge {
-                    window: arc.number,
-                    panel: self.panel,
-                    off,
-                });
+                let (window, panel) = (arc.number, self.panel);
+                return Err(format!(
+                    "the window of hinge {window} does not end on the edges of panel {panel}: it is {off} mm away \
+                     from them"
+                ));
             }
         }
         Ok(())
     }
 
     /// A mark in the interior lies in the panel and outside of its windows.
-    fn check_mark(&self, mark: [f64; 2]) -> Result<(), InvalidSheet> {
+    fn check_mark(&self, mark: [f64; 2]) -> Result<(), String> {
         let corners = &self.shape.panels[self.panel].corners;
         let inside = (0..4).all(|corner| {
             let direction = unit(corners[corner], corners[(corner + 1) % 4]);
@@ -198,6 +198,8 @@ impl PanelOutline<'_> {
         };
         let [x, y] = mark;
         let panel = self.panel;
-        Err(InvalidSheet::Mark { panel, x, y, what })
+        Err(format!(
+            "the point ({x:.3}, {y:.3}) mm at which panel {panel} is held or pulled {what}: move it"
+        ))
     }
 }
