@@ -72,6 +72,28 @@ mod record_file;
 mod sheet;
 mod solve;
 
+pub(crate) use calculix::cards::{
+    real, write_amplitude, write_element, write_increments, write_material, write_nodes, write_set,
+};
+pub(crate) use calculix::dat::{Block, Printed, at_node, numbers, read_printed};
+pub(crate) use calculix::deck_run::{DeckRun, read_if_there, time_reached};
+pub(crate) use calculix::driven_arc::{DrivenArc, even_lambdas};
+pub(crate) use calculix::panel_motion::{PanelMotion, rotated};
+pub(crate) use calculix::response::{Damage, samples};
+pub(crate) use campaign::campaign_folder::{CampaignFolder, Index};
+pub(crate) use campaign::extra_rays::read_extra_rays;
+pub(crate) use campaign::history::{Event, EventLog, history_name, overlaps};
+pub(crate) use record_file::{entries, or_damage, read_json, short_hash, write_json};
+pub(crate) use sheet::rigid_motion::RigidMotion;
+pub(crate) use sheet::sheet_deck::{SheetModel, hinge_set};
+pub(crate) use sheet::sheet_nodes::SheetNodes;
+pub(crate) use sheet::sheet_output::{SheetFrame, SheetLayout};
+pub(crate) use sheet::sheet_problem::{SECONDS, interpolated};
+pub(crate) use sheet::sheet_response::states;
+pub(crate) use solve::attempts::{Job, SolveEvent, Workers, now};
+pub(crate) use solve::host::host;
+pub(crate) use solve::solve_folder::SolveState;
+
 pub use calculix::calculix_solver::{CalculiX, reached};
 pub use calculix::ccx::{CCX, Ccx, CcxRun};
 pub use calculix::dat::{Frame, Layout, read_dat};

@@ -1,7 +1,6 @@
 //! A plane mesh extruded to layers of solid elements.
 
-use crate::element::ElementKind;
-use crate::msh::PlaneMesh;
+use crate::{ElementKind, PlaneMesh};
 
 /// Solid elements above the faces of a plane mesh; indices count from 0.
 #[derive(Clone, Debug)]

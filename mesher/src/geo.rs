@@ -6,10 +6,7 @@ mod unstructured;
 
 pub(crate) use sheet_script::sheet_script;
 
-use crate::frame::Frame;
-use crate::msh::Boundary;
-use crate::tier::PlaneRecipe;
-use crate::window::Window;
+use crate::{Boundary, Frame, PlaneRecipe, Window};
 use std::fmt::Write;
 use std::ops::RangeInclusive;
 

@@ -42,6 +42,12 @@ mod vectors;
 mod vtk_cells;
 mod window;
 
+pub(crate) use extrusion::{Extrusion, Levels};
+pub(crate) use msh::sides;
+pub(crate) use quality::{MAX_AREA_ERROR, check_elements, wrong_area};
+pub(crate) use vectors::{cross, dot, minus, unit};
+pub(crate) use window::polar_angle;
+
 pub use element::ElementKind;
 pub use frame::Frame;
 pub use gmsh::{GMSH, Gmsh};

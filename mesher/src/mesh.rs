@@ -5,9 +5,7 @@
 //! thickness is the value that the paper measured on a cut hinge (section 4.1). The recipe sets the
 //! amplitude and the widths of the bump.
 
-use crate::extrusion::Extrusion;
-use crate::msh::{Boundary, PlaneMesh};
-use crate::tier::MeshRecipe;
+use crate::{Boundary, Extrusion, MeshRecipe, PlaneMesh};
 use hinge::HingeDesign;
 
 /// A window of solid elements of one kind; indices count from 0.

@@ -1,14 +1,9 @@
 //! Meshes the window of a hinge design, or a whole sheet, with gmsh, and checks the mesh.
 
-use crate::element::ElementKind;
 use crate::geo;
-use crate::gmsh::Gmsh;
-use crate::mesh::WindowMesh;
-use crate::msh::{PlaneMesh, read_msh};
-use crate::sheet_mesh::SheetMesh;
-use crate::sheet_shape::SheetShape;
-use crate::tier::MeshRecipe;
-use crate::window::Window;
+use crate::{
+    ElementKind, Gmsh, MeshRecipe, PlaneMesh, SheetMesh, SheetShape, Window, WindowMesh, read_msh,
+};
 use hinge::HingeDesign;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;

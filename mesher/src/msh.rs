@@ -2,7 +2,7 @@
 //! their surfaces, and named boundary curves. Any input gives either a mesh or an error that names
 //! the line.
 
-use crate::element::ElementKind;
+use crate::ElementKind;
 use std::collections::HashMap;
 use support::fault::{Fault, fault};
 

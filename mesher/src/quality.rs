@@ -1,9 +1,6 @@
 //! The checks that a mesh must pass before it is solved.
 
-use crate::element::ElementKind;
-use crate::mesh::WindowMesh;
-use crate::msh::{Boundary, PlaneMesh, sides};
-use crate::window::Window;
+use crate::{Boundary, ElementKind, PlaneMesh, Window, WindowMesh, sides};
 use support::fault::{Fault, fault};
 
 /// Maximum accepted ratio of the longest to the shortest in-plane edge of an element.

@@ -1,12 +1,9 @@
 //! A sheet as solid elements: its plane mesh extruded to layers, with a bump at every hinge.
 
-use crate::extrusion::{Extrusion, Levels};
-use crate::msh::PlaneMesh;
-use crate::quality::{MAX_AREA_ERROR, check_elements, wrong_area};
-use crate::sheet_shape::{PlacedWindow, SheetShape};
-use crate::tier::Imperfection;
-use crate::vectors::{cross, dot, minus, unit};
-use crate::window::{Side, Window};
+use crate::{
+    Extrusion, Imperfection, Levels, MAX_AREA_ERROR, PlacedWindow, PlaneMesh, SheetShape, Side,
+    Window, check_elements, cross, dot, minus, unit, wrong_area,
+};
 use support::fault::Fault;
 
 /// Largest distance of a node from the arc of its window, over r_win.

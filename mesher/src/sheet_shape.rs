@@ -3,8 +3,7 @@
 //! A panel is bounded by finished edges, half a kerf inside of the lines of its cuts, and ends at
 //! the arcs of its windows.
 
-use crate::frame::Frame;
-use crate::tier::Structured;
+use crate::{Frame, Structured};
 use hinge::HingeDesign;
 use serde::{Deserialize, Serialize};
 

@@ -1,6 +1,6 @@
 //! Named mesh tiers: mesh fineness of the window, with CPU time and errors.
 
-use crate::element::ElementKind;
+use crate::ElementKind;
 use hinge::{HingeDesign, Regime};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

@@ -3,8 +3,7 @@
 //! VTK orders the nodes of its quadratic hexahedron and wedge as CalculiX orders the nodes of
 //! C3D20R and C3D15: lower corners, upper corners, middles of the lower, upper and vertical edges.
 
-use crate::element::ElementKind;
-use crate::mesh::WindowMesh;
+use crate::{ElementKind, WindowMesh};
 use support::vtk::{CellKind, UnstructuredGrid};
 
 /// The undeformed window, without data.

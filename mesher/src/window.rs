@@ -4,7 +4,7 @@
 //! Arc A runs from (-r_win, 0) to the kerf face on panel A, arc B from the kerf face on panel B
 //! to (r_win, 0). All coordinates are in the hinge frame, in mm.
 
-use crate::vectors::{cross, dot};
+use crate::{cross, dot};
 use hinge::HingeDesign;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;

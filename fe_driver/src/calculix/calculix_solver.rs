@@ -3,17 +3,10 @@
 //! An attempt is successful if its run is ([`DeckRun`]) and the internal energy agrees with the
 //! work of the reactions.
 
-use crate::calculix::ccx::Ccx;
-use crate::calculix::dat::{Frame, Layout, read_dat};
-use crate::calculix::deck::deck;
-use crate::calculix::deck_run::{DeckRun, read_if_there, time_reached};
-use crate::calculix::model::WindowModel;
-use crate::calculix::response::samples;
-use crate::solve::failure::{Cause, FailureKind};
-use crate::solve::solve_error::SolveError;
-use crate::solve::solver::{Solution, Solver};
-use crate::solve::tool_versions::ToolVersions;
-use crate::solve::window_solve::WindowSolve;
+use crate::{
+    Cause, Ccx, DeckRun, FailureKind, Frame, Layout, Solution, SolveError, Solver, ToolVersions,
+    WindowModel, WindowSolve, deck, read_dat, read_if_there, samples, time_reached,
+};
 use hinge::HingeSample;
 use mesher::{Gmsh, WindowMesh, WindowShape};
 use std::path::Path;

@@ -1,7 +1,7 @@
 //! Cards of CalculiX input decks that windows and sheets have in common. Nodes and elements count
 //! from 0 here and from 1 in a deck.
 
-use crate::solve::step_control::StepControl;
+use crate::StepControl;
 use hinge::SheetMaterial;
 use std::fmt::{self, Write};
 

@@ -5,14 +5,10 @@
 //! state. All output is printed in every increment, because CalculiX accumulates the total internal
 //! energy between *printed* increments and it would otherwise be wrong.
 
-use crate::calculix::cards::{
-    write_element, write_increments, write_material, write_nodes, write_set,
+use crate::{
+    DeformationPath, DrivenArc, PanelMotion, StepControl, WindowModel, even_lambdas, write_element,
+    write_increments, write_material, write_nodes, write_set,
 };
-use crate::calculix::driven_arc::{DrivenArc, even_lambdas};
-use crate::calculix::model::WindowModel;
-use crate::calculix::panel_motion::PanelMotion;
-use crate::solve::deformation_path::DeformationPath;
-use crate::solve::step_control::StepControl;
 use std::fmt::{self, Write};
 
 /// The deck that drives the window along its path.

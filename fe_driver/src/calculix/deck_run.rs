@@ -3,12 +3,7 @@
 //! A run is successful if the exit status is zero, the log contains the end marker, the output
 //! contains every converged increment of the .sta file, and it ends at lambda = 1.
 
-use crate::calculix::ccx::{Ccx, CcxRun};
-use crate::calculix::sta::{Increment, read_sta};
-use crate::solve::failure::{Cause, FailureKind};
-use crate::solve::problem::Solve;
-use crate::solve::solve_error::SolveError;
-use crate::solve::solver::Solution;
+use crate::{Cause, Ccx, CcxRun, FailureKind, Increment, Solution, Solve, SolveError, read_sta};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;

@@ -4,8 +4,7 @@
 //! Two control nodes without elements carry the four amplitudes of the motion ([`PanelMotion`]);
 //! linear constraint equations couple the arc to them.
 
-use crate::calculix::cards::{real, write_amplitude};
-use crate::calculix::panel_motion::PanelMotion;
+use crate::{PanelMotion, real, write_amplitude};
 use std::fmt::{self, Write};
 
 /// Number of intervals of the amplitude tables. Between entries the motion is linear: the chord

@@ -1,7 +1,6 @@
 //! A meshed window and all other data of its input deck.
 
-use crate::solve::deformation_path::DeformationPath;
-use crate::solve::step_control::StepControl;
+use crate::{DeformationPath, StepControl};
 use hinge::SheetMaterial;
 use mesher::WindowMesh;
 

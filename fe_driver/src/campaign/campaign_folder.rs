@@ -9,14 +9,10 @@
 //! only prevent that two runs on one host do the same work. Runs on different hosts may solve the
 //! same job twice; it is counted once.
 
-use crate::campaign::definition::CampaignError;
-use crate::campaign::history::{EventLog, history_name, overlaps};
-use crate::record_file::{entries, read_json, write_json};
-use crate::solve::host::host;
-use crate::solve::problem::Solve;
-use crate::solve::solve_folder::SolveStore;
-use crate::solve::tool_versions::ToolVersions;
-use crate::solve::window_solve::WindowSolve;
+use crate::{
+    CampaignError, EventLog, Solve, SolveStore, ToolVersions, WindowSolve, entries, history_name,
+    host, overlaps, read_json, write_json,
+};
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 use support::fault::{Fault, fault};

@@ -5,13 +5,10 @@
 //! again, and the rays of the spot check on the finer of the two, on which weights are tested. The
 //! spot check is drawn in the region that the rays cover.
 
-use crate::campaign::extra_rays::read_extra_rays;
-use crate::campaign::sampling::RayBox;
-use crate::campaign::spot_paths::{DrawnStates, SpotPath, random_paths};
-use crate::solve::attempts::SolveListError;
-use crate::solve::hinge_path::{HingePath, Ray};
-use crate::solve::tool_versions::ToolVersions;
-use crate::solve::window_solve::{WindowProblem, WindowSolve};
+use crate::{
+    DrawnStates, HingePath, Ray, RayBox, SolveListError, SpotPath, ToolVersions, WindowProblem,
+    WindowSolve, random_paths, read_extra_rays,
+};
 use hinge::{HingeConstants, Regime, SheetMaterial, TrainingDomain};
 use mesher::Tier;
 use schemars::JsonSchema;

@@ -6,7 +6,7 @@
 //! the campaign's `[design]`. The campaign's key `extra_rays` is the path of the file. Lines that
 //! start with `#` are comments.
 
-use crate::solve::hinge_path::Ray;
+use crate::Ray;
 use hinge::{HingeConstants, HingeDeformation};
 use serde::Deserialize;
 use std::f64::consts::FRAC_PI_2;

@@ -1,8 +1,6 @@
 //! The finished solves of a campaign, from which the database is collected.
 
-use crate::campaign::campaign_folder::CampaignFolder;
-use crate::campaign::definition::CampaignError;
-use crate::solve::solved::Solved;
+use crate::{CampaignError, CampaignFolder, Solved};
 use std::path::Path;
 use support::file_error::FileError;
 

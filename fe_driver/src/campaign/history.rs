@@ -1,9 +1,6 @@
 //! The history of a shard: an append-only file of events, locked by the process that writes it.
 
-use crate::campaign::definition::CampaignError;
-use crate::solve::attempts::now;
-use crate::solve::ladder::AttemptKind;
-use crate::solve::solve_folder::SolveRecord;
+use crate::{AttemptKind, CampaignError, SolveRecord, now};
 use serde::Serialize;
 use std::fs::File;
 use std::io::{ErrorKind, Write};

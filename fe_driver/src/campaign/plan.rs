@@ -1,13 +1,9 @@
 //! The plan of a run: the jobs that it would solve, and why.
 
-use crate::campaign::campaign_folder::{CampaignFolder, Index};
-use crate::campaign::definition::{Campaign, CampaignError};
-use crate::campaign::status::Tally;
-use crate::record_file::{or_damage, short_hash};
-use crate::solve::problem::Solve;
-use crate::solve::solve_folder::{SolveRecord, SolveState, SolveStore};
-use crate::solve::tool_versions::ToolVersions;
-use crate::solve::window_solve::WindowSolve;
+use crate::{
+    Campaign, CampaignError, CampaignFolder, Index, Solve, SolveRecord, SolveState, SolveStore,
+    Tally, ToolVersions, WindowSolve, or_damage, short_hash,
+};
 use mesher::Tier;
 use serde::Serialize;
 use std::collections::{BTreeMap, HashMap, HashSet};

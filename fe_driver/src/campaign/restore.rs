@@ -1,13 +1,9 @@
 //! Recreates job folders from collected samples, so that collected jobs are not solved again.
 
-use crate::campaign::campaign_folder::{CampaignFolder, Index};
-use crate::campaign::definition::{Campaign, CampaignError};
-use crate::campaign::history::Event;
-use crate::solve::attempts::now;
-use crate::solve::failure::FailureKind;
-use crate::solve::solve_folder::SolveRecord;
-use crate::solve::tool_versions::ToolVersions;
-use crate::solve::window_solve::WindowSolve;
+use crate::{
+    Campaign, CampaignError, CampaignFolder, Event, FailureKind, Index, SolveRecord, ToolVersions,
+    WindowSolve, now,
+};
 use hinge::HingeSample;
 use mesher::Tier;
 use std::collections::{HashMap, HashSet};

@@ -1,13 +1,9 @@
 //! Running a campaign: the list of its solves, and a ledger of them.
 
-use crate::campaign::campaign_folder::{CampaignFolder, Index};
-use crate::campaign::definition::{Campaign, CampaignError};
-use crate::campaign::history::{Event, EventLog};
-use crate::campaign::status::Tally;
-use crate::solve::attempts::{Job, SolveEvent, Workers};
-use crate::solve::solve_folder::SolveRecord;
-use crate::solve::solver::Solver;
-use crate::solve::window_solve::WindowSolve;
+use crate::{
+    Campaign, CampaignError, CampaignFolder, Event, EventLog, Index, Job, SolveEvent, SolveRecord,
+    Solver, Tally, WindowSolve, Workers,
+};
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;

@@ -21,7 +21,7 @@
 //! from its axial opening there, 0.5 theta + 0.16 theta^2. For the paper's film and w_full = 8 mm
 //! no ray end stores more than about 500 N mm, five times the energy of a deployed hinge.
 
-use crate::solve::hinge_path::Ray;
+use crate::Ray;
 use hinge::{HingeConstants, HingeDeformation, NetLigament, Regime};
 use rand::seq::SliceRandom;
 use rand::{RngExt, SeedableRng};

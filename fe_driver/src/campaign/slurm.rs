@@ -4,7 +4,7 @@
 //! The script of both jobs is `configs/cluster/slurm.sh`. Names are arguments of it, never a part of
 //! its text: neither a shell nor Slurm reads them as commands.
 
-use crate::record_file::{read_json, write_json};
+use crate::{read_json, write_json};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::fmt;

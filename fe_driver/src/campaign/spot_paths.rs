@@ -6,7 +6,7 @@
 //! it and u uniform in (0, 1), the state at the distance R u^(1/3) is again uniform. Several states
 //! can therefore lie on one ray.
 
-use crate::solve::hinge_path::{HingePath, Ray};
+use crate::{HingePath, Ray};
 use hinge::{HingeConstants, Regime, TrainingDomain};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;

@@ -1,12 +1,9 @@
 //! The state of a campaign: counts, costs, throughput.
 
-use crate::campaign::campaign_folder::{CampaignFolder, Index};
-use crate::campaign::definition::{Campaign, CampaignError, JobPart};
-use crate::solve::attempts::Job;
-use crate::solve::failure::FailureKind;
-use crate::solve::problem::Solve;
-use crate::solve::solve_folder::{SolveRecord, SolveState};
-use crate::solve::window_solve::WindowSolve;
+use crate::{
+    Campaign, CampaignError, CampaignFolder, FailureKind, Index, Job, JobPart, Solve, SolveRecord,
+    SolveState, WindowSolve,
+};
 use mesher::Tier;
 use serde::Serialize;
 use std::collections::{BTreeMap, HashMap};

@@ -4,13 +4,10 @@
 //! displacement of a control node without elements is the stroke. All output is printed in every
 //! increment, because CalculiX accumulates the total internal energy between *printed* increments.
 
-use crate::calculix::cards::{
+use crate::{
+    DrivenArc, Held, PanelMotion, SECONDS, SheetNodes, SheetProblem, even_lambdas, interpolated,
     real, write_amplitude, write_element, write_increments, write_material, write_nodes, write_set,
 };
-use crate::calculix::driven_arc::{DrivenArc, even_lambdas};
-use crate::calculix::panel_motion::PanelMotion;
-use crate::sheet::sheet_nodes::SheetNodes;
-use crate::sheet::sheet_problem::{Held, SECONDS, SheetProblem, interpolated};
 use hinge::STANDARD_GRAVITY;
 use mesher::{ElementKind, Part, SheetMesh, SheetShape, Side};
 use std::fmt::{self, Write};

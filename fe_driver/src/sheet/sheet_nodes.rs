@@ -1,6 +1,6 @@
 //! The nodes of a meshed sheet at which it is held, pulled and supported by a table.
 
-use crate::sheet::sheet_problem::{Held, Keeping, Place, SheetProblem};
+use crate::{Held, Keeping, Place, SheetProblem};
 use mesher::{Part, SheetMesh};
 use std::collections::BTreeSet;
 use support::fault::{Fault, fault};

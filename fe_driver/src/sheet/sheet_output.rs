@@ -1,7 +1,6 @@
 //! What CalculiX prints of a sheet in an increment.
 
-use crate::calculix::dat::{Block, Printed, at_node, numbers};
-use crate::sheet::sheet_deck::{SheetModel, hinge_set};
+use crate::{Block, Printed, SheetModel, at_node, hinge_set, numbers};
 use mesher::{ElementKind, Part};
 
 /// What a complete increment of a sheet prints.

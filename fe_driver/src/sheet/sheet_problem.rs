@@ -4,8 +4,7 @@
 //! The path leads from the flat sheet, lambda = 0, to full load or the full stroke, lambda = 1. How
 //! the weight comes on depends on what keeps the panels in their plane ([`SheetProblem::history`]).
 
-use crate::solve::step_control::StepControl;
-use crate::solve::tool_versions::ToolVersions;
+use crate::{StepControl, ToolVersions};
 use hinge::SheetMaterial;
 use mesher::{SheetShape, Side, Tier};
 use serde::{Deserialize, Serialize};

@@ -1,10 +1,9 @@
 //! From the printed increments of a sheet to its states.
 
-use crate::calculix::response::Damage;
-use crate::sheet::rigid_motion::RigidMotion;
-use crate::sheet::sheet_deck::SheetModel;
-use crate::sheet::sheet_output::SheetFrame;
-use crate::sheet::sheet_states::{HingeState, PanelState, SheetState, SheetStates, SheetSurface};
+use crate::{
+    Damage, HingeState, PanelState, RigidMotion, SheetFrame, SheetModel, SheetState, SheetStates,
+    SheetSurface,
+};
 use mesher::Part;
 use std::collections::HashMap;
 

@@ -1,21 +1,10 @@
 //! CalculiX as a solver of sheets: mesh, input deck, process, states.
 
-use crate::calculix::calculix_solver::CalculiX;
-use crate::calculix::dat::read_printed;
-use crate::calculix::deck_run::{DeckRun, time_reached};
-use crate::sheet::sheet_deck::SheetModel;
-use crate::sheet::sheet_nodes::SheetNodes;
-use crate::sheet::sheet_output::{SheetFrame, SheetLayout};
-use crate::sheet::sheet_problem::{SECONDS, SheetProblem, SheetSolve};
-use crate::sheet::sheet_response::states;
-use crate::sheet::sheet_states::SheetStates;
-use crate::solve::failure::{Cause, FailureKind};
-use crate::solve::ladder::AttemptKind;
-use crate::solve::problem::Solve;
-use crate::solve::solve_error::SolveError;
-use crate::solve::solve_folder::SolveFolder;
-use crate::solve::solver::{Solution, Solver};
-use crate::solve::tool_versions::ToolVersions;
+use crate::{
+    AttemptKind, CalculiX, Cause, DeckRun, FailureKind, SECONDS, SheetFrame, SheetLayout,
+    SheetModel, SheetNodes, SheetProblem, SheetSolve, SheetStates, Solution, Solve, SolveError,
+    SolveFolder, Solver, ToolVersions, read_printed, states, time_reached,
+};
 use mesher::Tier;
 use std::fmt::Display;
 use std::path::Path;

@@ -1,7 +1,7 @@
 //! What is kept of a sheet solve: the motion of every panel and the energy of every hinge at each
 //! increment, and the surface at the last one.
 
-use crate::solve::problem::SolvedPath;
+use crate::SolvedPath;
 use serde::{Deserialize, Serialize};
 use std::io;
 use support::vtk::{CellKind, Field, UnstructuredGrid};

@@ -6,13 +6,10 @@
 //! decides nothing of a result: the same attempt is made again, a few times, and the solve then
 //! stays open.
 
-use crate::solve::failure::Cause;
-use crate::solve::ladder::AttemptKind;
-use crate::solve::problem::{Solve, SolvedPath};
-use crate::solve::solve_error::SolveError;
-use crate::solve::solve_folder::{SolveFolder, SolveRecord};
-use crate::solve::solver::{Solution, Solver};
-use crate::solve::window_solve::WindowSolve;
+use crate::{
+    AttemptKind, Cause, Solution, Solve, SolveError, SolveFolder, SolveRecord, SolvedPath, Solver,
+    WindowSolve,
+};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 use support::file_error::FileError;

@@ -1,6 +1,6 @@
 //! One hinge design with the path along which its window is driven.
 
-use crate::solve::deformation_path::DeformationPath;
+use crate::DeformationPath;
 use hinge::{HingeDeformation, HingeDesign, Regime};
 use serde::{Deserialize, Serialize};
 

@@ -1,9 +1,7 @@
 //! What a kind of finite-element problem must state, so that it can be solved, attempted again and
 //! kept.
 
-use crate::record_file::short_hash;
-use crate::solve::failure::FailureKind;
-use crate::solve::ladder::AttemptKind;
+use crate::{AttemptKind, FailureKind, short_hash};
 use mesher::Tier;
 use serde::Serialize;
 use serde::de::DeserializeOwned;

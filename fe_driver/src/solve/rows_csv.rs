@@ -1,6 +1,6 @@
 //! The samples of a window solve as the file `rows.csv`.
 
-use crate::solve::problem::SolvedPath;
+use crate::SolvedPath;
 use hinge::HingeSample;
 use std::io;
 

@@ -1,13 +1,10 @@
 //! Lists of solves whose results are needed at once: a replay, a spot check, a round of an
 //! equilibrium, a study.
 
-use crate::solve::attempts::{Job, SolveEvent, SolveListError, Workers};
-use crate::solve::problem::Solve;
-use crate::solve::solve_folder::SolveStore;
-use crate::solve::solved::Solved;
-use crate::solve::solver::Solver;
-use crate::solve::tool_versions::ToolVersions;
-use crate::solve::window_solve::WindowSolve;
+use crate::{
+    Job, Solve, SolveEvent, SolveListError, SolveStore, Solved, Solver, ToolVersions, WindowSolve,
+    Workers,
+};
 use std::collections::HashMap;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;

@@ -1,6 +1,6 @@
 //! Why an attempt at a solve has failed.
 
-use crate::solve::failure::{Cause, FailureKind};
+use crate::{Cause, FailureKind};
 use mesher::MeshError;
 use support::file_error::FileError;
 use support::program::{ToolEnd, ToolError};

@@ -7,12 +7,10 @@
 //! its own, `work-<host>-<process>`. The deck and the log of the last attempt that failed remain in
 //! `work`; the decks and logs of other attempts do not: the deck follows from `job.json`.
 
-use crate::record_file::{entries, or_damage, read_json, write_json};
-use crate::solve::failure::FailureKind;
-use crate::solve::host::host;
-use crate::solve::ladder::AttemptKind;
-use crate::solve::problem::{Solve, SolvedPath};
-use crate::solve::window_solve::WindowSolve;
+use crate::{
+    AttemptKind, FailureKind, Solve, SolvedPath, WindowSolve, entries, host, or_damage, read_json,
+    write_json,
+};
 use mesher::Tier;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;

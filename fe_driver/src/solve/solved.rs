@@ -1,8 +1,6 @@
 //! The result of a solve: its samples, or why and where it failed.
 
-use crate::solve::problem::Solve;
-use crate::solve::solve_folder::{SolveFolder, SolveRecord, SolveState};
-use crate::solve::window_solve::WindowSolve;
+use crate::{Solve, SolveFolder, SolveRecord, SolveState, WindowSolve};
 use std::fmt;
 use std::path::PathBuf;
 use support::file_error::FileError;

@@ -1,9 +1,6 @@
 //! What a program that solves must do; CalculiX is one, the fake of the tests another.
 
-use crate::solve::problem::Solve;
-use crate::solve::solve_error::SolveError;
-use crate::solve::tool_versions::ToolVersions;
-use crate::solve::window_solve::WindowSolve;
+use crate::{Solve, SolveError, ToolVersions, WindowSolve};
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;

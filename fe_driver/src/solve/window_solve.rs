@@ -1,12 +1,6 @@
 //! A window solve: its identity, and its ladder of attempts.
 
-use crate::record_file::short_hash;
-use crate::solve::failure::FailureKind;
-use crate::solve::hinge_path::HingePath;
-use crate::solve::ladder::AttemptKind;
-use crate::solve::problem::Solve;
-use crate::solve::step_control::StepControl;
-use crate::solve::tool_versions::ToolVersions;
+use crate::{AttemptKind, FailureKind, HingePath, Solve, StepControl, ToolVersions, short_hash};
 use hinge::{HingeSample, SheetMaterial};
 use mesher::{MeshRecipe, Tier};
 use serde::{Deserialize, Serialize};

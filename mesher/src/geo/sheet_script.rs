@@ -3,10 +3,7 @@
 
 use super::Script;
 use super::structured::{self, Rim};
-use crate::frame::Frame;
-use crate::sheet_shape::{PlacedWindow, SheetShape};
-use crate::vectors::{cross, dot, minus, unit};
-use crate::window::Window;
+use crate::{Frame, PlacedWindow, SheetShape, Window, cross, dot, minus, unit};
 
 /// Names of the edges of a panel, each from its corner to the next.
 const EDGES: [&str; 4] = ["lower", "right", "upper", "left"];

@@ -7,8 +7,7 @@
 //! fold elements at small alpha.
 
 use super::Script;
-use crate::tier::Structured;
-use crate::window::{Side, Window, polar_angle};
+use crate::{Side, Structured, Window, polar_angle};
 use std::f64::consts::PI;
 
 /// Radius of block 1 over w_lig. It is only slightly larger than the hole, so that the rings of

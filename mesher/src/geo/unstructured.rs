@@ -5,9 +5,7 @@
 //! only bend.
 
 use super::Script;
-use crate::msh::Boundary;
-use crate::tier::Unstructured;
-use crate::window::{Side, Window};
+use crate::{Boundary, Side, Unstructured, Window};
 
 /// Adds the window as one surface, and the sizes of its triangles.
 pub(super) fn add(geo: &mut Script, window: &Window, recipe: &Unstructured) {
