@@ -3,7 +3,6 @@
 pub(crate) mod campaign_folder;
 pub(crate) mod definition;
 pub(crate) mod extra_rays;
-pub(crate) mod finished_windows;
 pub(crate) mod history;
 pub(crate) mod plan;
 pub(crate) mod restore;

@@ -6,9 +6,11 @@
 //! energy between *printed* increments and it would otherwise be wrong.
 
 use crate::{
-    DeformationPath, DrivenArc, PanelMotion, StepControl, WindowModel, even_lambdas, write_element,
+    DeformationPath, DrivenArc, PanelMotion, StepControl, even_lambdas, write_element,
     write_increments, write_material, write_nodes, write_set,
 };
+use hinge::SheetMaterial;
+use mesher::WindowMesh;
 use std::fmt::{self, Write};
 
 /// The deck that drives the window along its path.
@@ -77,4 +79,21 @@ fn lambdas(path: &DeformationPath) -> Vec<f64> {
     // Entries closer than the written precision would give one time with two values.
     lambdas.dedup_by(|next, kept| *next - *kept < 1e-9);
     lambdas
+}
+
+/// A meshed window with its path, material and step control.
+#[derive(Clone, Copy, Debug)]
+pub struct WindowModel<'a> {
+    /// The mesh of the window.
+    pub mesh: &'a WindowMesh,
+    /// The path along which arc B is driven.
+    pub path: &'a DeformationPath,
+    /// The sheet material.
+    pub material: &'a SheetMaterial,
+    /// The increments of the solve.
+    pub step: &'a StepControl,
+    /// Whether the displacements of all nodes are printed, for
+    /// [`CalculiX::fields`](crate::CalculiX::fields); if not, only the displacements of the lower
+    /// face are printed, which are a small part of the output.
+    pub print_all: bool,
 }

@@ -3,12 +3,12 @@
 //! A run is successful if the exit status is zero, the log contains the end marker, the output
 //! contains every converged increment of the .sta file, and it ends at lambda = 1.
 
-use crate::{Cause, Ccx, CcxRun, FailureKind, Increment, Solution, Solve, SolveError, read_sta};
+use crate::{Cause, FailureKind, Increment, Solution, Solve, SolveError, read_sta};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 use support::file_error::FileError;
-use support::program::{ToolEnd, ToolError, output_file, remove_stale, tail};
+use support::program::{Run, Tool, ToolEnd, ToolError, ToolKind, output_file, remove_stale, tail};
 
 /// The word with which CalculiX begins its message on a problem that it cannot solve, at the end of
 /// its log.
@@ -142,8 +142,66 @@ pub(crate) fn read_if_there(path: &Path) -> Result<Vec<u8>, FileError> {
     output_file(path).map_err(FileError::at(path))
 }
 
+/// How to find ccx.
+pub static CCX: ToolKind = ToolKind {
+    name: "ccx",
+    variable: "KIRIGAMI_CCX",
+    version_flag: "-v",
+    // It ends as after any run, by the `stop 201` of its Fortran; wrappers end with 0.
+    version_statuses: &[0, 201],
+    version_in: |printed| {
+        let (_, version) = printed.split_once("This is Version ")?;
+        version.split_whitespace().next()
+    },
+    install: "apt-get install calculix-ccx",
+};
+
+/// The last line that ccx prints when it has reached the end of the deck.
+const END_MARKER: &str = "Job finished";
+
+/// The CalculiX program.
+#[derive(Clone, Debug)]
+pub struct Ccx(pub Tool);
+
+/// Result of a completed run of ccx.
+#[derive(Debug)]
+pub struct CcxRun {
+    /// Exit status, times and memory of the process.
+    pub run: Run,
+    /// Whether the log contains the end marker and the exit status is zero.
+    pub finished: bool,
+}
+
+impl Ccx {
+    /// Finds ccx by `KIRIGAMI_CCX` or on PATH.
+    pub fn find() -> Result<Self, ToolError> {
+        Tool::find(&CCX).map(Self)
+    }
+
+    /// The program at a path.
+    pub fn at(program: &Path) -> Result<Self, ToolError> {
+        Tool::at(&CCX, program).map(Self)
+    }
+
+    /// Runs `folder/<job>.inp`. The output is in `folder/<job>.dat`, the log in `folder/<job>.log`.
+    pub fn run(
+        &self,
+        folder: &Path,
+        job: &str,
+        limit: Duration,
+        stop: &AtomicBool,
+    ) -> Result<CcxRun, ToolError> {
+        let log = folder.join(job).with_extension("log");
+        let run = self.0.run(&["-i", job], folder, &log, limit, stop)?;
+        let bytes = output_file(&log).unwrap_or_default();
+        let text = String::from_utf8_lossy(&bytes);
+        Ok(CcxRun { finished: run.status.success() && text.contains(END_MARKER), run })
+    }
+}
+
 #[cfg(test)]
 mod tests {
+    use super::CCX;
     use super::*;
 
     #[test]
@@ -156,5 +214,19 @@ mod tests {
         assert_eq!(skipped(&[0.25, 1.0 / 3.0]), None);
         assert_eq!(skipped(&[0.25, 1.0]), Some(0.333333));
         assert_eq!(skipped(&[0.25, 0.3, 1.0 / 3.0, 1.0]), Some(0.3));
+    }
+
+    #[test]
+    fn releases_and_builds_between_them_have_a_version() {
+        for (printed, version) in [
+            ("\nThis is Version 2.20\n\n", Some("2.20")),
+            ("\nThis is Version 2.23\n", Some("2.23")),
+            ("This is Version DEVELOPMENT\n", Some("DEVELOPMENT")),
+            ("This is Version \n", None),
+            ("ccx: error while loading shared libraries: libspooles.so.2.2", None),
+            ("", None),
+        ] {
+            assert_eq!((CCX.version_in)(printed), version, "{printed}");
+        }
     }
 }

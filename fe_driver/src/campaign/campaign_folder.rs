@@ -10,11 +10,11 @@
 //! same job twice; it is counted once.
 
 use crate::{
-    CampaignError, EventLog, Solve, SolveStore, ToolVersions, WindowSolve, entries, history_name,
-    host, overlaps, read_json, write_json,
+    CampaignError, EventLog, Solve, SolveStore, Solved, ToolVersions, WindowSolve, entries,
+    history_name, host, overlaps, read_json, write_json,
 };
 use serde::{Deserialize, Serialize};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use support::fault::{Fault, fault};
 use support::file_error::FileError;
 use support::shard::Shard;
@@ -116,4 +116,20 @@ impl CampaignFolder {
             _ => Ok(()),
         }
     }
+}
+
+/// The solves of the campaign in `folder` that are closed and have samples, in the order of their
+/// ids, as in a database.
+///
+/// Stale jobs are omitted. Neither gmsh nor ccx needs to be installed.
+pub fn finished_windows(
+    folder: &Path,
+) -> Result<impl Iterator<Item = Result<Solved, FileError>>, CampaignError> {
+    let folder = CampaignFolder(folder.to_owned());
+    let mut ids = folder.index()?.jobs;
+    ids.sort_unstable();
+    let store = folder.store();
+    let windows = ids.into_iter().map(move |id| store.solve(&id).result());
+    let has_samples = |window: &Solved| !window.samples.is_empty();
+    Ok(windows.filter_map(move |window| window.map(|found| found.filter(has_samples)).transpose()))
 }

@@ -97,10 +97,10 @@ impl<S: Solve> SolveService<'_, S> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::solve::failure::AttemptKind;
     use crate::solve::failure::FailureKind;
-    use crate::solve::ladder::AttemptKind;
+    use crate::solve::failure::SolveError;
     use crate::solve::problem::SolvedPath;
-    use crate::solve::solve_error::SolveError;
     use crate::solve::solver::Solution;
     use crate::solve::step_control::StepControl;
     use crate::solve::tests::{FakeSolver, Fault, STIFFNESS, healthy, solve_to};

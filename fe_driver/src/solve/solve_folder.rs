@@ -8,7 +8,7 @@
 //! `work`; the decks and logs of other attempts do not: the deck follows from `job.json`.
 
 use crate::{
-    AttemptKind, FailureKind, Solve, SolvedPath, WindowSolve, entries, host, or_damage, read_json,
+    AttemptKind, FailureKind, Solve, SolvedPath, WindowSolve, entries, or_damage, read_json,
     write_json,
 };
 use mesher::Tier;
@@ -315,6 +315,14 @@ fn remove_folder(folder: &Path) -> Result<(), FileError> {
         Err(error) if error.kind() != io::ErrorKind::NotFound => Err(FileError::at(folder)(error)),
         _ => Ok(()),
     }
+}
+
+/// The name of this host, by which the runs that share a folder are distinguished. `KIRIGAMI_HOST`
+/// replaces it where host names are not unique.
+pub(crate) fn host() -> String {
+    let name = std::env::var_os("KIRIGAMI_HOST").or_else(|| nix::unistd::gethostname().ok());
+    let name = name.unwrap_or_else(|| "localhost".into());
+    name.to_string_lossy().replace('/', "_")
 }
 
 #[cfg(test)]

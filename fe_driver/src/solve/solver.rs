@@ -1,6 +1,7 @@
 //! What a program that solves must do; CalculiX is one, the fake of the tests another.
 
-use crate::{Solve, SolveError, ToolVersions, WindowSolve};
+use crate::{Solve, SolveError, WindowSolve};
+use serde::{Deserialize, Serialize};
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
@@ -74,5 +75,20 @@ impl<S: Solve> Default for Solution<S> {
             peak_memory_mib: None,
             iterations: 0,
         }
+    }
+}
+
+/// Versions of the external programs that determine a result.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct ToolVersions {
+    /// Version of gmsh.
+    pub gmsh: String,
+    /// Version of CalculiX.
+    pub ccx: String,
+}
+
+impl std::fmt::Display for ToolVersions {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        write!(f, "gmsh {} and ccx {}", self.gmsh, self.ccx)
     }
 }
