@@ -109,7 +109,7 @@ pub use campaign::slurm::{
 pub use campaign::spot_paths::{DrawnStates, SpotPath, random_paths};
 pub use campaign::status::{Status, Tally, Throughput, known_parts, status};
 pub use sheet::sheet_problem::{
-    DrivenRim, Held, History, Keeping, Place, Pulled, SheetProblem, SheetSolve,
+    DrivenRim, Held, History, OutOfPlaneRestraint, Place, Pulled, SheetProblem, SheetSolve,
 };
 pub use sheet::sheet_solver::sheet_reached;
 pub use sheet::sheet_states::{HingeState, PanelState, SheetState, SheetStates, SheetSurface};
@@ -119,7 +119,7 @@ pub use solve::failure::{AttemptKind, Cause, FailureKind, SolveError};
 pub use solve::problem::{Solve, SolvedPath};
 pub use solve::service::SolveService;
 pub use solve::solve_folder::{SolveFolder, SolveRecord, SolveStore};
-pub use solve::solved::{Solved, Unsolved};
+pub use solve::solved::Solved;
 pub use solve::solver::{Solution, Solver, ToolVersions};
 pub use solve::step_control::StepControl;
 pub use solve::window_solve::{WindowProblem, WindowSolve};

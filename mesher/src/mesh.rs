@@ -65,7 +65,8 @@ impl WindowMesh {
     }
 }
 
-/// The undeformed window, without data.
+/// The undeformed window as a VTK grid, without data. VTK orders the nodes of its quadratic
+/// hexahedron and wedge as CalculiX orders the nodes of C3D20R and C3D15.
 pub fn vtk_grid(mesh: &WindowMesh) -> UnstructuredGrid {
     UnstructuredGrid {
         points: mesh.nodes.clone(),

@@ -4,6 +4,7 @@
 
 use crate::ElementKind;
 use std::collections::HashMap;
+use std::str::FromStr;
 use support::fault::{Fault, fault};
 
 /// The named boundary curves of the window.
@@ -66,10 +67,10 @@ pub(crate) fn sides(face: &[usize]) -> impl Iterator<Item = [usize; 3]> + Clone 
 }
 
 /// gmsh's element number of the 3-node line.
-const LINE_3: u32 = 8;
+const LINE_3: u64 = 8;
 
 /// gmsh's element number of the face from which elements of this kind are extruded.
-fn face_number(element: ElementKind) -> u32 {
+fn face_number(element: ElementKind) -> u64 {
     match element {
         ElementKind::Brick => 16,
         ElementKind::Wedge => 9,
@@ -81,63 +82,59 @@ fn face_number(element: ElementKind) -> u32 {
 pub fn read_msh(bytes: &[u8], elements: &[ElementKind]) -> Result<PlaneMesh, Fault> {
     let text = std::str::from_utf8(bytes).map_err(|error| {
         let byte = error.valid_up_to();
-        fault("", format!("the mesh file is not a text file: byte {byte} is not UTF-8"), "")
+        Fault::from(format!("the mesh file is not a text file: byte {byte} is not UTF-8"))
     })?;
-    let lines: Vec<_> = text.lines().enumerate().collect();
+    let lines: Vec<_> = (1..).zip(text.lines()).collect();
     let mut positions = HashMap::new();
-    for (number, line) in section(&lines, "Nodes")? {
-        let mut fields = Fields::new(*number, line);
-        let id: u64 = fields.next()?;
-        let position: [f64; 2] = [fields.next()?, fields.next()?];
+    for (line, fields) in section(&lines, "Nodes")? {
+        let mut fields = fields.split_whitespace();
+        let id: u64 = number(fields.next(), line)?;
+        let position: [f64; 2] = [number(fields.next(), line)?, number(fields.next(), line)?];
         if !position.iter().all(|x| x.is_finite()) {
-            return Err(fields.error("a coordinate is not a finite number"));
+            return Err(at_line(line, "a coordinate is not a finite number"));
         }
         if positions.insert(id, position).is_some() {
-            return Err(fields.error("the node number occurs twice"));
+            return Err(at_line(line, "the node number occurs twice"));
         }
     }
     let mut mesh = PlaneMesh::default();
     let mut indices = HashMap::new();
     let mut edges = Vec::new();
-    for (number, line) in section(&lines, "Elements")? {
-        let mut fields = Fields::new(*number, line);
-        let _id: u64 = fields.next()?;
-        let kind: u32 = fields.next()?;
-        let tags: u32 = fields.next()?;
-        if tags < 1 {
-            return Err(fields.error("the element has no physical tag"));
-        }
-        let physical: u32 = fields.next()?;
-        for _ in 1..tags {
-            fields.next::<u64>()?;
-        }
-        let element = elements.iter().find(|element| kind == face_number(**element));
-        if let Some(element) = element {
-            let mut face = vec![0; 2 * element.corners()];
-            for node in &mut face {
-                let id: u64 = fields.next()?;
-                let Some(position) = positions.get(&id) else {
-                    return Err(fields.error("the element refers to an undefined node"));
-                };
-                *node = *indices.entry(id).or_insert_with(|| {
+    for (line, fields) in section(&lines, "Elements")? {
+        let fields = fields.split_whitespace().map(|field| number(Some(field), line));
+        let fields: Vec<u64> = fields.collect::<Result<_, _>>()?;
+        // Number, kind, count of tags, the physical tag and others, nodes.
+        let (kind, tag, nodes) = match &fields[..] {
+            [_, kind, tags @ (1..=9), tag, rest @ ..] if rest.len() as u64 + 1 >= *tags => {
+                (*kind, *tag, &rest[*tags as usize - 1..])
+            }
+            _ => return Err(at_line(line, "the element has no physical tag")),
+        };
+        let corners = elements.iter().find(|element| face_number(**element) == kind);
+        let size = corners.map_or(3, |element| 2 * element.corners());
+        let nodes = nodes.get(..size).ok_or_else(|| at_line(line, MALFORMED))?;
+        if corners.is_some() {
+            let node = |id: &u64| {
+                let undefined = || at_line(line, "the element refers to an undefined node");
+                let position = positions.get(id).ok_or_else(undefined)?;
+                Ok(*indices.entry(*id).or_insert_with(|| {
                     mesh.nodes.push(*position);
                     mesh.nodes.len() - 1
-                });
-            }
-            mesh.faces.push(face);
-            mesh.surfaces.push(physical);
-        } else if kind == LINE_3 {
-            let Some(boundary) = Boundary::ALL.into_iter().find(|b| b.tag() == physical) else {
-                return Err(fields.error("the boundary curve has an unknown physical tag"));
+                }))
             };
-            let ids: [u64; 3] = [fields.next()?, fields.next()?, fields.next()?];
-            edges.push((boundary, ids, fields.line));
+            mesh.faces.push(nodes.iter().map(node).collect::<Result<_, Fault>>()?);
+            mesh.surfaces.push(tag as u32);
+        } else if kind == LINE_3 {
+            let boundary = Boundary::ALL.into_iter().find(|b| u64::from(b.tag()) == tag);
+            let unknown = || at_line(line, "the boundary curve has an unknown physical tag");
+            edges.push((boundary.ok_or_else(unknown)?, [nodes[0], nodes[1], nodes[2]], line));
         } else {
-            return Err(fields.error("the element is neither the expected face nor a 3-node line"));
+            let what = "the element is neither the expected face nor a 3-node line";
+            return Err(at_line(line, what));
         }
     }
     if mesh.faces.is_empty() {
-        return Err(fault("", "the mesh file contains no faces", ""));
+        return Err(Fault::from("the mesh file contains no faces".to_owned()));
     }
     for (boundary, ids, line) in edges {
         let [Some(a), Some(b), Some(c)] = ids.map(|id| indices.get(&id).copied()) else {
@@ -149,46 +146,28 @@ pub fn read_msh(bytes: &[u8], elements: &[ElementKind]) -> Result<PlaneMesh, Fau
 }
 
 /// The numbered lines of $NAME ... $EndNAME, whose count must equal the number in the first line.
-fn section<'a, 't>(
-    lines: &'a [(usize, &'t str)],
-    name: &'static str,
-) -> Result<&'a [(usize, &'t str)], Fault> {
-    let missing = || {
-        let what = format!("the mesh file has no section ${name}");
-        fault("", what, "gmsh did not finish writing it")
-    };
+fn section<'t>(
+    lines: &[(usize, &'t str)],
+    name: &str,
+) -> Result<impl Iterator<Item = (usize, &'t str)>, Fault> {
     let find = |marker: String| lines.iter().position(|(_, line)| line.trim() == marker);
-    let (Some(start), Some(end)) = (find(format!("${name}")), find(format!("$End{name}"))) else {
-        return Err(missing());
-    };
-    let [(number, count), rows @ ..] = lines.get(start + 1..end).unwrap_or_default() else {
-        return Err(missing());
+    let (start, end) = (find(format!("${name}")), find(format!("$End{name}")));
+    let rows = start.zip(end).and_then(|(start, end)| lines.get(start + 1..end)?.split_first());
+    let Some(((line, count), rows)) = rows else {
+        let what = format!("the mesh file has no section ${name}");
+        return Err(fault("", what, "gmsh did not finish writing it"));
     };
     if count.trim().parse() != Ok(rows.len()) {
-        return Err(at_line(number + 1, "the section does not have the announced number of lines"));
+        return Err(at_line(*line, "the section does not have the announced number of lines"));
     }
-    Ok(rows)
+    Ok(rows.to_vec().into_iter())
 }
 
-/// The fields of one line.
-struct Fields<'t> {
-    line: usize,
-    fields: std::str::SplitWhitespace<'t>,
-}
+const MALFORMED: &str = "a number is missing or malformed";
 
-impl<'t> Fields<'t> {
-    fn new(number: usize, line: &'t str) -> Self {
-        Self { line: number + 1, fields: line.split_whitespace() }
-    }
-
-    fn next<T: std::str::FromStr>(&mut self) -> Result<T, Fault> {
-        let field = self.fields.next().and_then(|field| field.parse().ok());
-        field.ok_or_else(|| self.error("a number is missing or malformed"))
-    }
-
-    fn error(&self, what: &str) -> Fault {
-        at_line(self.line, what)
-    }
+/// The number in a field of a line.
+fn number<T: FromStr>(field: Option<&str>, line: usize) -> Result<T, Fault> {
+    field.and_then(|field| field.parse().ok()).ok_or_else(|| at_line(line, MALFORMED))
 }
 
 fn at_line(line: usize, what: &str) -> Fault {

@@ -28,7 +28,7 @@ impl WindowMesh {
     pub fn quality(&self) -> Result<MeshQuality, Fault> {
         for boundary in [Boundary::ArcA, Boundary::ArcB] {
             if self.plane.edges.iter().all(|(of, _)| *of != boundary) {
-                return Err(fault("", format!("the mesh has no edge on {boundary:?}"), ""));
+                return Err(Fault::from(format!("the mesh has no edge on {boundary:?}")));
             }
         }
         let (jacobian_ratio, largest_aspect) = check_elements(&self.plane, &self.gauss_volumes)?;
@@ -42,8 +42,7 @@ impl WindowMesh {
 }
 
 pub(crate) fn wrong_area(area: f64, exact: f64) -> Fault {
-    let what = format!("the area of the mesh is {area} mm^2, but its shape has {exact} mm^2");
-    fault("", what, "")
+    Fault::from(format!("the area of the mesh is {area} mm^2, but its shape has {exact} mm^2"))
 }
 
 /// The minimum ratio of Jacobians and the maximum aspect ratio of solid elements, layers of the

@@ -20,6 +20,7 @@ pub mod csv_table;
 pub mod document;
 pub mod fault;
 pub mod file_error;
+pub mod interpolation;
 pub mod key_limits;
 pub mod lock_file;
 #[cfg(unix)]

@@ -1,6 +1,6 @@
 //! What a whole sheet costs, from its mesh.
 
-use fe_driver::Keeping;
+use fe_driver::OutOfPlaneRestraint;
 use mesher::SheetMesh;
 
 /// Estimates from sheets of 13 000 and 51 000 unknowns on one core of a busy machine.
@@ -24,13 +24,13 @@ const NOT_HELD: f64 = 3.5;
 
 impl SheetCost {
     /// The cost of a meshed sheet.
-    pub fn of(mesh: &SheetMesh, keeping: Keeping) -> Self {
+    pub fn of(mesh: &SheetMesh, restraint: OutOfPlaneRestraint) -> Self {
         let unknowns = 3 * mesh.nodes.len();
         let [reference, seconds, memory] = REFERENCE;
         let ratio = unknowns as f64 / reference;
-        let paths = match keeping {
-            Keeping::HeldFlat => 1.0,
-            Keeping::Table | Keeping::Nothing => NOT_HELD,
+        let paths = match restraint {
+            OutOfPlaneRestraint::HeldFlat => 1.0,
+            OutOfPlaneRestraint::Table | OutOfPlaneRestraint::Nothing => NOT_HELD,
         };
         Self {
             unknowns,

@@ -4,7 +4,7 @@ use crate::verification_error::VerificationError;
 use design::pattern::grid::Grid;
 use design::sheet::cut_sheet::{AttachmentPoint, PanelPoint, Sheet};
 use design::sheet::hinge_window::Window;
-use fe_driver::{Held, Keeping, Place, Pulled, SheetProblem};
+use fe_driver::{Held, OutOfPlaneRestraint, Place, Pulled, SheetProblem};
 use hinge::{HingeDesign, Regime};
 use mesher::{Frame, Imperfection, PanelShape, PlacedWindow, PlaneRecipe, SheetShape, Tier};
 use scene::{Posture, PostureConfig, Scene, SupportKind};
@@ -64,10 +64,10 @@ pub fn sheet_problem(
             (length > 0.0).then(|| [x / length, y / length, 0.0])
         }
     };
-    let keeping = match support {
-        Posture::HeldFlat => Keeping::HeldFlat,
-        Posture::Lying => Keeping::Table,
-        Posture::Hanging | Posture::Free => Keeping::Nothing,
+    let restraint = match support {
+        Posture::HeldFlat => OutOfPlaneRestraint::HeldFlat,
+        Posture::Lying => OutOfPlaneRestraint::Table,
+        Posture::Hanging | Posture::Free => OutOfPlaneRestraint::Nothing,
     };
     let mut shape = sheet_shape(sheet, scene.material.thickness, tier)?;
     for pulled in &pulled {
@@ -85,13 +85,13 @@ pub fn sheet_problem(
         shape,
         tier,
         material: scene.material.as_solved(),
-        keeping,
+        restraint,
         held,
         pulled,
         rims: Vec::new(),
         stroke: scene.config.drive.map(|drive| drive.stroke),
         down,
-        step: SheetProblem::usual_step(keeping, contact),
+        step: SheetProblem::usual_step(restraint, contact),
         contact,
         dynamic: false,
     })

@@ -140,7 +140,7 @@ pub(crate) fn read_printed<F: Printed>(bytes: &[u8], layout: &F::Layout) -> Resu
             let what = format!(
                 "the solver's output is incomplete at lambda = {lambda}, which is not the last increment"
             );
-            Err(fault("", what, ""))
+            Err(Fault::from(what))
         }
         None => Ok(frames),
     }

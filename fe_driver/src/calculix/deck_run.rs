@@ -3,7 +3,10 @@
 //! A run is successful if the exit status is zero, the log contains the end marker, the output
 //! contains every converged increment of the .sta file, and it ends at lambda = 1.
 
-use crate::{Cause, FailureKind, Increment, Solution, Solve, SolveError, read_sta};
+use crate::{
+    Cause, FailureKind, Increment, Printed, Solution, SolveError, SolvedPath, read_printed,
+    read_sta,
+};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
@@ -22,7 +25,7 @@ pub(crate) struct DeckRun {
     /// The increments in the .sta file.
     increments: Vec<Increment>,
     /// The printed output.
-    pub output: Vec<u8>,
+    output: Vec<u8>,
     log: PathBuf,
 }
 
@@ -42,54 +45,60 @@ impl DeckRun {
         for stale in [&output, &status] {
             remove_stale(stale).map_err(FileError::at(stale))?;
         }
-        let run = match ccx.run(folder, job, limit, stop) {
-            Err(error)
-                if matches!(
-                    error.end,
-                    ToolEnd::TimedOut | ToolEnd::Killed | ToolEnd::TooMuchOutput
-                ) =>
-            {
-                Err(error)
-            }
-            other => Ok(other?),
-        };
+        use ToolEnd::{Killed, TimedOut, TooMuchOutput};
+        let run = ccx.run(folder, job, limit, stop);
         Ok(Self {
-            run,
+            run: match run {
+                Err(error) if !matches!(error.end, TimedOut | Killed | TooMuchOutput) => {
+                    return Err(error.into());
+                }
+                run => run,
+            },
             increments: read_sta(&read_if_there(&status)?),
             output: read_if_there(&output)?,
             log,
         })
     }
 
-    /// A solution without samples that says what the run has cost.
-    pub fn costs<S: Solve>(&self) -> Solution<S> {
+    /// The solution of the printed increments, whose layout and samples are given: without samples
+    /// if the output is damaged, or does not have the converged increments of the .sta file.
+    pub fn solution<F: Printed, P: SolvedPath>(
+        self,
+        layout: &F::Layout,
+        samples: impl FnOnce(&[F]) -> P,
+    ) -> Solution<P> {
         let (cpu_seconds, solver_seconds, peak_memory_mib) = match &self.run {
             Ok(CcxRun { run, .. }) => (run.cpu_seconds, run.wall_seconds, run.peak_memory_mib),
             Err(error) => (error.cpu_seconds, 0.0, None),
         };
-        let iterations = self.increments.iter().map(|increment| increment.iterations);
-        Solution {
+        let mut solution = Solution {
             cpu_seconds,
             solver_seconds,
             peak_memory_mib,
-            iterations: iterations.sum(),
+            iterations: self.increments.iter().map(|increment| increment.iterations).sum(),
             ..Solution::default()
-        }
-    }
-
-    /// An error if the output does not have the converged increments of the .sta file; `times` are
-    /// those in the output.
-    pub fn check_increments(&self, times: impl Iterator<Item = f64>) -> Result<(), SolveError> {
-        match skipped(times, &self.increments) {
-            Some(lambda) => Err(Cause::Machine.error(format!(
-                "the solver's output and its status file disagree on the increment at lambda = {lambda}"
-            ))),
-            None => Ok(()),
-        }
+        };
+        let frames = read_printed(&self.output, layout).map_err(|error| error.to_string());
+        let frames = frames.and_then(|frames: Vec<F>| {
+            let what =
+                "the solver's output and its status file disagree on the increment at lambda";
+            match skipped(frames.iter().map(F::time), &self.increments) {
+                Some(lambda) => Err(format!("{what} = {lambda}")),
+                None => Ok(frames),
+            }
+        });
+        solution.stopped = match frames {
+            Err(damage) => Some(Cause::Machine.error(damage)),
+            Ok(frames) => {
+                solution.samples = samples(&frames);
+                self.stopped_at(solution.samples.reached())
+            }
+        };
+        solution
     }
 
     /// Why the path ends at `lambda`; `None` if that is its end.
-    pub fn stopped_at(self, lambda: f64) -> Option<SolveError> {
+    fn stopped_at(self, lambda: f64) -> Option<SolveError> {
         let CcxRun { run, finished } = match self.run {
             Err(error) => return Some(error.into()),
             Ok(run) => run,

@@ -77,7 +77,15 @@ pub(crate) fn even_lambdas() -> impl Iterator<Item = f64> {
     (0..=AMPLITUDE_INTERVALS).map(|i| i as f64 / AMPLITUDE_INTERVALS as f64)
 }
 
-/// The motion of panel B relative to A that corresponds to a deformation in the mean frame.
+/// The prescribed motion of a panel. Panel A is fixed. Panel B rotates by theta about O, and O on B
+/// moves by du = R(theta/2) (a, s), so that (a, s, theta) are measured in the mean frame of (8). A
+/// point of arc B at the position (X, Y) relative to O therefore moves by
+///
+/// u_x = X q1 - Y q2 + q3,   u_y = Y q1 + X q2 + q4,   q = (cos theta - 1, sin theta, du_x, du_y),
+///
+/// which is linear in the four numbers q at any rotation. These depend only on lambda.
+///
+/// It is the motion of panel B relative to A that corresponds to a deformation in the mean frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PanelMotion {
     /// Rotation about O (rad).

@@ -154,43 +154,35 @@ impl RayBox {
 
     /// The first inequality that the box violates; `None` if it is valid.
     pub(crate) fn defect(&self) -> Option<String> {
+        let Self { w_lig, alpha_deg, fillet_ratio, eta_a, eta_s, .. } = *self;
+        let [minimum, maximum] = self.theta_deg;
+        let theta = [-30.0, minimum, self.median_deg, maximum, 120.0];
         let rules = [
             ((1..=MAX_COUNT).contains(&self.count), "1 <= count <= 1000000"),
             (self.finer <= self.count, "finer <= count"),
-            (0.0 < self.w_lig[0] && self.w_lig[0] <= self.w_lig[1], "0 < w_lig[0] <= w_lig[1]"),
+            (0.0 < w_lig[0] && w_lig.is_sorted(), "0 < w_lig[0] <= w_lig[1]"),
             (
-                0.0 < self.alpha_deg[0]
-                    && self.alpha_deg[0] <= self.alpha_deg[1]
-                    && self.alpha_deg[1] <= 90.0,
+                0.0 < alpha_deg[0] && alpha_deg.is_sorted() && alpha_deg[1] <= 90.0,
                 "0 < alpha_deg[0] <= alpha_deg[1] <= 90 (mirroring gives the rest)",
             ),
             (
-                0.0 < self.fillet_ratio[0]
-                    && self.fillet_ratio[0] <= self.fillet_ratio[1]
-                    && self.fillet_ratio[1] < 1.0,
+                0.0 < fillet_ratio[0] && fillet_ratio.is_sorted() && fillet_ratio[1] < 1.0,
                 "0 < fillet_ratio[0] <= fillet_ratio[1] < 1",
             ),
-            (self.alpha_deg[1] >= 5.0, "alpha_deg[1] >= 5: angles are in degrees, not radians"),
+            (alpha_deg[1] >= 5.0, "alpha_deg[1] >= 5: angles are in degrees, not radians"),
+            (maximum >= 2.5, "theta_deg[1] >= 2.5: rotations are in degrees, not radians"),
             (
-                self.theta_deg[1] >= 2.5,
-                "theta_deg[1] >= 2.5: rotations are in degrees, not radians",
-            ),
-            (
-                -1.0 < self.eta_a[0] && self.eta_a[0] <= 0.0 && 0.0 <= self.eta_a[1],
+                -1.0 < eta_a[0] && [eta_a[0], 0.0, eta_a[1]].is_sorted(),
                 "-1 < eta_a[0] <= 0 <= eta_a[1]",
             ),
-            (self.eta_a[1] < 1.0, "eta_a[1] < 1"),
-            ((0.0..1.0).contains(&self.eta_s), "0 <= eta_s < 1"),
+            (eta_a[1] < 1.0, "eta_a[1] < 1"),
+            ((0.0..1.0).contains(&eta_s), "0 <= eta_s < 1"),
             (
-                -30.0 <= self.theta_deg[0]
-                    && self.theta_deg[0] <= self.median_deg
-                    && self.median_deg <= self.theta_deg[1]
-                    && self.theta_deg[1] > 0.0
-                    && self.theta_deg[1] <= 120.0,
+                theta.is_sorted() && maximum > 0.0,
                 "-30 <= theta_deg[0] <= median_deg <= theta_deg[1] <= 120, theta_deg[1] > 0",
             ),
             (
-                0.0 <= self.full_range_w_lig && self.full_range_w_lig.is_finite(),
+                (0.0..f64::INFINITY).contains(&self.full_range_w_lig),
                 "0 <= full_range_w_lig < infinity (mm)",
             ),
             (

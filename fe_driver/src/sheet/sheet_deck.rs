@@ -258,12 +258,8 @@ impl SheetModel<'_> {
         let [turner, mover] = arc.drivers;
         writeln!(d, "*NODE\n{turner},0.,0.,0.\n{mover},0.,0.,0.")?;
         arc.write_equations(d, &self.mesh.nodes)?;
-        let path = &self.problem.rims[rim].path;
-        let column =
-            |i: usize| -> Vec<[f64; 2]> { path.iter().map(|state| [state[0], state[i]]).collect() };
-        let columns = [1, 2, 3].map(column);
         let motion = |lambda: f64| {
-            let [x, y, theta] = [0, 1, 2].map(|i| interpolated(&columns[i], lambda));
+            let [_, x, y, theta] = interpolated(&self.problem.rims[rim].path, lambda);
             PanelMotion { theta, du: [x, y] }
         };
         let lambdas: Vec<f64> = even_lambdas().collect();

@@ -1,9 +1,9 @@
 //! The nodes of a meshed sheet at which it is held, pulled and supported by a table.
 
-use crate::{Held, Keeping, Place, SheetProblem};
+use crate::{Held, OutOfPlaneRestraint, Place, SheetProblem};
 use mesher::{Part, SheetMesh};
 use std::collections::BTreeSet;
-use support::fault::{Fault, fault};
+use support::fault::Fault;
 
 /// Largest distance of a node from the line on which a panel is held (mm).
 const ON_LINE: f64 = 1e-6;
@@ -50,13 +50,13 @@ impl SheetNodes {
         };
         let unless_fixed = |nodes: BTreeSet<usize>| nodes.difference(&fixed).copied().collect();
         let mut found = Self { held, pulled, rims, flat: Vec::new(), on_table: Vec::new() };
-        match problem.keeping {
-            Keeping::HeldFlat => {
+        match problem.restraint {
+            OutOfPlaneRestraint::HeldFlat => {
                 let plane: BTreeSet<usize> = panels().collect();
                 let plane: Vec<usize> = plane.into_iter().collect();
                 found.flat = unless_fixed(mesh.through(&plane).into_iter().collect());
             }
-            Keeping::Table => {
+            OutOfPlaneRestraint::Table => {
                 let corners: BTreeSet<usize> = (mesh.plane.faces.iter())
                     .flat_map(|face| face[..face.len() / 2].iter().copied())
                     .collect();
@@ -72,14 +72,14 @@ impl SheetNodes {
                 let supported = supported.filter(|node| corners.contains(node));
                 found.on_table = unless_fixed(supported.map(|node| mesh.bottom[node]).collect());
             }
-            Keeping::Nothing => {}
+            OutOfPlaneRestraint::Nothing => {}
         }
         Ok(found)
     }
 }
 
 fn no_nodes(panel: usize) -> Fault {
-    fault("", format!("panel {panel} has no nodes where it is held or pulled"), "")
+    Fault::from(format!("panel {panel} has no nodes where it is held or pulled"))
 }
 
 /// The plane nodes of a support.

@@ -9,6 +9,7 @@ use hinge::SheetMaterial;
 use mesher::{SheetShape, Side, Tier};
 use serde::{Deserialize, Serialize};
 use support::fault::{Fault, fault};
+use support::interpolation::piece;
 
 /// Version of the geometry, the input deck and the evaluation of sheets. It is increased when a
 /// change of the code changes results; solves of an older version are then stale.
@@ -17,7 +18,7 @@ const RECIPE_VERSION: u32 = 2;
 /// What keeps the panels in their plane.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Keeping {
+pub enum OutOfPlaneRestraint {
     /// The panels cannot leave it; the ligaments can.
     HeldFlat,
     /// A table, from below, without friction.
@@ -85,7 +86,8 @@ pub struct SheetProblem {
     /// The sheet material.
     pub material: SheetMaterial,
     /// What keeps the panels in their plane.
-    pub keeping: Keeping,
+    #[serde(rename = "keeping")]
+    pub restraint: OutOfPlaneRestraint,
     /// Supports.
     pub held: Vec<Held>,
     /// Loads.
@@ -148,11 +150,13 @@ impl SheetProblem {
             weight: vec![[0.0, 0.0], [part, 1.0], [1.0, 1.0]],
             loads: vec![[0.0, 0.0], [part, 0.0], [1.0, 1.0]],
         };
-        match (self.keeping, self.down) {
-            (Keeping::Table, _) if self.dynamic => first(TABLE_FIRST),
-            (Keeping::Table, _) => History { weight: vec![[0.0, 1.0], [1.0, 1.0]], loads: even() },
-            (Keeping::HeldFlat, Some(_)) => first(WEIGHT_FIRST),
-            (Keeping::HeldFlat, None) | (Keeping::Nothing, _) => {
+        match (self.restraint, self.down) {
+            (OutOfPlaneRestraint::Table, _) if self.dynamic => first(TABLE_FIRST),
+            (OutOfPlaneRestraint::Table, _) => {
+                History { weight: vec![[0.0, 1.0], [1.0, 1.0]], loads: even() }
+            }
+            (OutOfPlaneRestraint::HeldFlat, Some(_)) => first(WEIGHT_FIRST),
+            (OutOfPlaneRestraint::HeldFlat, None) | (OutOfPlaneRestraint::Nothing, _) => {
                 History { weight: even(), loads: even() }
             }
         }
@@ -167,7 +171,7 @@ impl SheetProblem {
             return Err(fault("", "no panel is held", "the sheet is free to move"));
         }
         let clamped = |held: &Held| !matches!(held.place, Place::Point(_));
-        if self.keeping == Keeping::Nothing
+        if self.restraint == OutOfPlaneRestraint::Nothing
             && self.rims.is_empty()
             && !self.held.iter().any(clamped)
         {
@@ -187,17 +191,17 @@ impl SheetProblem {
     }
 
     /// The increments of a sheet: short at first where it may leave its plane.
-    pub fn usual_step(keeping: Keeping, contact: bool) -> StepControl {
+    pub fn usual_step(restraint: OutOfPlaneRestraint, contact: bool) -> StepControl {
         StepControl {
-            initial: match keeping {
-                Keeping::HeldFlat => 0.004,
-                Keeping::Table | Keeping::Nothing => 0.001,
+            initial: match restraint {
+                OutOfPlaneRestraint::HeldFlat => 0.004,
+                OutOfPlaneRestraint::Table | OutOfPlaneRestraint::Nothing => 0.001,
             },
             // A panel that snaps on a table has no static path beyond: shorter increments do not
             // find one.
-            least: match keeping {
-                Keeping::Table => 1e-5,
-                Keeping::HeldFlat | Keeping::Nothing => 1e-6,
+            least: match restraint {
+                OutOfPlaneRestraint::Table => 1e-5,
+                OutOfPlaneRestraint::HeldFlat | OutOfPlaneRestraint::Nothing => 1e-6,
             },
             // Flanks that meet in a longer increment rarely converge.
             greatest: if contact { 0.015 } else { 0.04 },
@@ -221,7 +225,7 @@ impl SheetProblem {
 impl History {
     /// The fraction of the loads at `lambda`.
     pub fn load_fraction(&self, lambda: f64) -> f64 {
-        interpolated(&self.loads, lambda)
+        interpolated(&self.loads, lambda)[1]
     }
 
     /// The lambda at which a fraction of the loads is on, or of the weight if that comes on before
@@ -233,19 +237,14 @@ impl History {
         // Of the lambdas at which nothing is on, the last.
         let from = inverse.iter().rposition(|[fraction, _]| *fraction == 0.0);
         let wanted = if weight < 1.0 { weight } else { loads };
-        interpolated(&inverse[from.unwrap_or(0)..], wanted)
+        interpolated(&inverse[from.unwrap_or(0)..], wanted)[1]
     }
 }
 
-/// The value at `x` of a table of (x, value), with straight lines between.
-pub(crate) fn interpolated(table: &[[f64; 2]], x: f64) -> f64 {
-    let after = table.partition_point(|[at, _]| *at < x);
-    let (from, to) = (table[after.saturating_sub(1)], table[after.min(table.len() - 1)]);
-    if to[0] > from[0] {
-        from[1] + (x - from[0]) / (to[0] - from[0]) * (to[1] - from[1])
-    } else {
-        to[1]
-    }
+/// The values at `x` of a table of (x, values), with straight lines between.
+pub(crate) fn interpolated<const N: usize>(table: &[[f64; N]], x: f64) -> [f64; N] {
+    let (from, to, share) = piece(table, |row| row[0], x);
+    std::array::from_fn(|i| from[i] + share * (to[i] - from[i]))
 }
 
 impl SheetSolve {

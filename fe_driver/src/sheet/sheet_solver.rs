@@ -33,9 +33,9 @@ impl Solve for SheetSolve {
     }
 
     fn description(&self) -> String {
-        let SheetProblem { shape, keeping, .. } = &self.problem;
+        let SheetProblem { shape, restraint, .. } = &self.problem;
         format!(
-            "sheet of {} panels and {} hinges, {keeping:?}, tier {}",
+            "sheet of {} panels and {} hinges, {restraint:?}, tier {}",
             shape.panels.len(),
             shape.windows.len(),
             self.problem.tier
@@ -78,7 +78,7 @@ impl Solver<SheetSolve> for CalculiX {
         work: &Path,
         limit: Duration,
         stop: &AtomicBool,
-    ) -> Result<Solution<SheetSolve>, SolveError> {
+    ) -> Result<Solution<SheetStates>, SolveError> {
         let start = Instant::now();
         let problem = &solve.problem;
         let invalid = |error: &dyn Display| Cause::Problem(FailureKind::InvalidInput).error(error);
@@ -88,21 +88,9 @@ impl Solver<SheetSolve> for CalculiX {
         let nodes = SheetNodes::new(problem, &mesh).map_err(|error| invalid(&error))?;
         let model = SheetModel { problem, mesh: &mesh, nodes: &nodes };
         let run = DeckRun::new(&self.ccx, &model.deck(), work, JOB, limit, stop)?;
-        let mut solution: Solution<SheetSolve> =
-            Solution { elements: mesh.elements.len(), ..run.costs() };
-        let frames: Result<Vec<SheetFrame>, _> =
-            read_printed(&run.output, &SheetLayout::new(&model));
-        solution.stopped = match frames {
-            Err(error) => Some(Cause::Machine.error(error)),
-            Ok(frames) => match run.check_increments(frames.iter().map(|frame| frame.time)) {
-                Err(error) => Some(error),
-                Ok(()) => {
-                    solution.samples = states(&model, &frames);
-                    let last = solution.samples.states.last();
-                    run.stopped_at(last.map_or(0.0, |state| state.lambda))
-                }
-            },
-        };
+        let layout = SheetLayout::new(&model);
+        let mut solution = run.solution(&layout, |frames| states(&model, frames));
+        solution.elements = mesh.elements.len();
         solution.wall_seconds = start.elapsed().as_secs_f64();
         Ok(solution)
     }

@@ -206,7 +206,7 @@ impl<S: Solve> Workers<'_, S> {
 
 impl SolveRecord {
     /// Adds what an attempt that has just ended has cost.
-    fn add_cost<S: Solve>(&mut self, solution: &Solution<S>, wall: Duration) {
+    fn add_cost<P>(&mut self, solution: &Solution<P>, wall: Duration) {
         self.iterations += solution.iterations;
         self.cpu_seconds += solution.cpu_seconds.unwrap_or(0.0);
         self.wall_seconds += wall.as_secs_f64();

@@ -4,17 +4,10 @@
 //! like the free turn of a ligament. Paths recorded from deployed sheets measure the error of
 //! ignoring the loading path (section 5.2). All are piecewise linear and start at the undeformed
 //! state.
-//!
-//! A recorded path is a CSV file with the columns `eta_a`, `eta_s`, `theta_deg`, one state per row.
-//! Lines that start with `#` are comments. An optional column `lambda`, which increases to 1, gives
-//! the position of each state along the path; without it the states are equally spaced in lambda.
-//! The undeformed state may be omitted: every path starts there.
 
 use hinge::{HingeDeformation, HingeDesign, Regime};
 use serde::{Deserialize, Serialize};
-use std::path::Path;
-use support::csv_table;
-use support::fault::{Fault, fault};
+use support::interpolation::piece;
 
 /// A piecewise linear path from the undeformed state at lambda = 0 to its end at lambda = 1.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -45,16 +38,6 @@ impl TryFrom<Vec<Knot>> for DeformationPath {
             _ => Err("a path leads from lambda = 0 to lambda = 1"),
         }
     }
-}
-
-/// One row of a recorded path.
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Row {
-    lambda: Option<f64>,
-    eta_a: f64,
-    eta_s: f64,
-    theta_deg: f64,
 }
 
 impl DeformationPath {
@@ -92,33 +75,6 @@ impl DeformationPath {
         (knots.len() > 1).then_some(Self { knots })
     }
 
-    /// Reads a recorded path of a hinge with the ligament width `w_lig` (mm).
-    pub fn read(path: &Path, w_lig: f64) -> Result<Self, Fault> {
-        let (_, rows) = csv_table::read(path)?;
-        // The undeformed state is knot 0, whether the file contains it or not.
-        let undeformed = |row: &Row| [row.eta_a, row.eta_s, row.theta_deg] == [0.0; 3];
-        let skipped = usize::from(rows.first().is_some_and(|(_, row)| undeformed(row)));
-        let rows = &rows[skipped..];
-        let mut knots = vec![(0.0, HingeDeformation::default())];
-        for (i, (line, row)) in rows.iter().enumerate() {
-            let share = (i + 1) as f64 / rows.len() as f64;
-            let lambda = row.lambda.unwrap_or(share);
-            if let Some(what) = row.defect(lambda, knots[i].0, i + 1 == rows.len()) {
-                return Err(fault(format!("{}:{line}", path.display()), what, ""));
-            }
-            let theta = row.theta_deg.to_radians();
-            let state = HingeDeformation::from_eta(row.eta_a, row.eta_s, theta, w_lig);
-            knots.push((lambda, state));
-        }
-        match knots.len() {
-            1 => {
-                let what = "no row has a deformed state; add at least one";
-                Err(fault(path.display().to_string(), what, ""))
-            }
-            _ => Ok(Self { knots }),
-        }
-    }
-
     /// The values of lambda at which the path may have a corner, including its ends.
     pub fn corners(&self) -> impl Iterator<Item = f64> {
         self.knots.iter().map(|(lambda, _)| *lambda)
@@ -153,28 +109,9 @@ impl DeformationPath {
 
     /// The state at `lambda` in [0, 1].
     pub fn at(&self, lambda: f64) -> HingeDeformation {
-        let after = self.knots.partition_point(|(at, _)| *at < lambda);
-        let (from, to) = (after.saturating_sub(1), after.min(self.knots.len() - 1));
-        let ((l0, x), (l1, y)) = (self.knots[from], self.knots[to]);
-        let share = if l1 > l0 { (lambda - l0) / (l1 - l0) } else { 1.0 };
-        let (x, y) = (x.to_array(), y.to_array());
+        let ((_, from), (_, to), share) = piece(&self.knots, |(at, _)| *at, lambda);
+        let (x, y) = (from.to_array(), to.to_array());
         std::array::from_fn(|i| x[i] + share * (y[i] - x[i])).into()
-    }
-}
-
-impl Row {
-    /// The defect of this row at `lambda`, which follows a row at `before`; `None` if it is valid.
-    fn defect(&self, lambda: f64, before: f64, is_last: bool) -> Option<&'static str> {
-        let numbers = [self.eta_a, self.eta_s, self.theta_deg, lambda];
-        if !numbers.iter().all(|x| x.is_finite()) {
-            Some("a number is not finite")
-        } else if lambda <= before {
-            Some("`lambda` must increase from row to row, from 0 at the undeformed state")
-        } else if is_last != (lambda == 1.0) {
-            Some("`lambda` must be 1 in the last row and smaller in all others")
-        } else {
-            None
-        }
     }
 }
 
@@ -270,12 +207,6 @@ mod tests {
         }
     }
 
-    fn read(text: &str) -> Result<DeformationPath, Fault> {
-        let file = tempfile::NamedTempFile::new().unwrap();
-        std::fs::write(file.path(), text).unwrap();
-        DeformationPath::read(file.path(), 20.0)
-    }
-
     fn state(eta_a: f64, eta_s: f64, theta_deg: f64) -> HingeDeformation {
         HingeDeformation::from_eta(eta_a, eta_s, theta_deg.to_radians(), 20.0)
     }
@@ -311,9 +242,9 @@ mod tests {
     }
 
     #[test]
-    fn rows_without_lambda_are_equally_spaced_from_the_undeformed_state() {
-        let text = "theta_deg, eta_a, eta_s\n# folds first\n30, 0, 0\n60, -0.2, 0.1\n";
-        let path = read(text).unwrap();
+    fn states_are_equally_spaced_from_the_undeformed_state() {
+        let path = DeformationPath::through(&[state(0.0, 0.0, 30.0), state(-0.2, 0.1, 60.0)]);
+        let path = path.unwrap();
         assert_eq!(path.corners().collect::<Vec<_>>(), [0.0, 0.5, 1.0]);
         assert_eq!(path.at(0.5), state(0.0, 0.0, 30.0));
         assert_eq!(path.at(1.0), state(-0.2, 0.1, 60.0));
@@ -321,41 +252,7 @@ mod tests {
         for (x, y) in middle.iter().zip(state(-0.1, 0.05, 45.0).to_array()) {
             assert!((x - y).abs() < 1e-14);
         }
-        let from_rest = text.replace("30, 0, 0", "0, 0, 0\n30, 0, 0");
-        assert_eq!(read(&from_rest).unwrap(), path);
-        assert_eq!(read(&format!("{text}# end")).unwrap(), path);
-    }
-
-    #[test]
-    fn a_given_lambda_is_kept() {
-        let path = read("lambda,eta_a,eta_s,theta_deg\n0,0,0,0\n0.2,0,0,50\n1,0,0,60\n").unwrap();
-        assert_eq!(path.corners().collect::<Vec<_>>(), [0.0, 0.2, 1.0]);
-    }
-
-    #[test]
-    fn errors_name_the_line_and_the_rule() {
-        let rows = |rows: &str| {
-            let text = format!("lambda,eta_a,eta_s,theta_deg\n{rows}");
-            read(&text).unwrap_err().to_string()
-        };
-        let cases = [
-            ("0.5,0,0,10\n0.4,0,0,20\n", ":3: `lambda` must increase"),
-            ("0.5,0,0,10\n0.9,0,0,20\n", ":3: `lambda` must be 1"),
-            ("1,0,0,10\n2,0,0,20\n", ":2: `lambda` must be 1"),
-            ("1,nan,0,10\n", ":2: a number is not finite"),
-            ("1,ten,0,10\n", "line 2: "),
-            ("1,0,0\n", "line 2: "),
-            ("", "no row has a deformed state"),
-            ("0,0,0,0\n", "no row has a deformed state"),
-        ];
-        for (text, expected) in cases {
-            let message = rows(text);
-            assert!(message.contains(expected), "{text}: {message}");
-        }
-        let unknown = read("eta_a,eta_s,theta\n0,0,1\n").unwrap_err().to_string();
-        assert!(unknown.contains("unknown field `theta`"), "{unknown}");
-        let absent = DeformationPath::read(Path::new("/no/such.csv"), 1.0).unwrap_err();
-        assert!(absent.to_string().starts_with("/no/such.csv: "));
+        assert_eq!(DeformationPath::through(&[]), None);
     }
 
     #[test]

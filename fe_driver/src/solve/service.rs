@@ -326,7 +326,7 @@ mod tests {
             _: &Path,
             _: Duration,
             _: &AtomicBool,
-        ) -> Result<Solution<Bar>, SolveError> {
+        ) -> Result<Solution<Forces>, SolveError> {
             let steps = f64::from(bar.steps);
             if bar.steps < 4 {
                 return Err(crate::Cause::Problem(FailureKind::Diverged).error("diverged"));

@@ -1,6 +1,7 @@
 //! What a program that solves must do; CalculiX is one, the fake of the tests another.
 
 use crate::{Solve, SolveError, WindowSolve};
+use hinge::HingeSample;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
@@ -23,7 +24,7 @@ pub trait Solver<S: Solve = WindowSolve>: Sync {
         work: &Path,
         limit: Duration,
         stop: &AtomicBool,
-    ) -> Result<Solution<S>, SolveError>;
+    ) -> Result<Solution<S::Samples>, SolveError>;
 }
 
 impl<S: Solve, T: Solver<S> + ?Sized> Solver<S> for &T {
@@ -37,16 +38,16 @@ impl<S: Solve, T: Solver<S> + ?Sized> Solver<S> for &T {
         work: &Path,
         limit: Duration,
         stop: &AtomicBool,
-    ) -> Result<Solution<S>, SolveError> {
+    ) -> Result<Solution<S::Samples>, SolveError> {
         (**self).attempt(solve, work, limit, stop)
     }
 }
 
 /// The result of an attempt: samples, and whether they reach the end of the path.
-#[derive(Debug)]
-pub struct Solution<S: Solve = WindowSolve> {
+#[derive(Debug, Default)]
+pub struct Solution<P = Vec<HingeSample>> {
     /// The converged increments, in order of lambda; empty if the output is not valid.
-    pub samples: S::Samples,
+    pub samples: P,
     /// Why the samples are not the samples of a valid complete path; `None` for a complete path.
     pub stopped: Option<SolveError>,
     /// Number of elements of the mesh.
@@ -61,21 +62,6 @@ pub struct Solution<S: Solve = WindowSolve> {
     pub peak_memory_mib: Option<f64>,
     /// Newton iterations, including the iterations of cut-back increments.
     pub iterations: usize,
-}
-
-impl<S: Solve> Default for Solution<S> {
-    fn default() -> Self {
-        Self {
-            samples: S::Samples::default(),
-            stopped: None,
-            elements: 0,
-            cpu_seconds: None,
-            wall_seconds: 0.0,
-            solver_seconds: 0.0,
-            peak_memory_mib: None,
-            iterations: 0,
-        }
-    }
 }
 
 /// Versions of the external programs that determine a result.

@@ -99,11 +99,9 @@ fn a_path_that_rotates_first_stores_more_energy_than_its_ray() {
     // With one layer of bricks the ligament snaps and the solve stops; with two layers it
     // continues.
     let asked = WindowProblem { tier: Tier::Small, ..problem(90.0, [-0.1, 0.1], 60.0) };
-    let folder = tempfile::tempdir().unwrap();
-    let file = folder.path().join("path.csv");
-    std::fs::write(&file, "eta_a,eta_s,theta_deg\n0,0,60\n-0.1,0.1,60\n").unwrap();
     let design = asked.hinge.design;
-    let path = DeformationPath::read(&file, design.w_lig).unwrap();
+    let folded = HingeDeformation { theta: 60f64.to_radians(), ..HingeDeformation::default() };
+    let path = DeformationPath::through(&[folded, asked.hinge.path.at(1.0)]).unwrap();
     let bent = solve(&along(HingePath { design, path }, &asked));
     let (bent, straight) = (bent.samples.last().unwrap(), solve(&asked).samples);
     let straight = straight.last().unwrap();
