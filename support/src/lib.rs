@@ -15,6 +15,15 @@
 
 #![warn(missing_docs)]
 
+/// Appends a formatted line to a string.
+#[macro_export]
+macro_rules! add_line {
+    ($text:expr, $($part:tt)*) => {{
+        use std::fmt::Write;
+        writeln!($text, $($part)*).expect("a string takes every line")
+    }};
+}
+
 pub mod caught_panic;
 pub mod csv_table;
 pub mod document;

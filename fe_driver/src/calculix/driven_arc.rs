@@ -6,7 +6,7 @@
 
 use crate::{real, write_amplitude};
 use hinge::{HingeDeformation, HingeForces};
-use std::fmt::{self, Write};
+use support::add_line;
 
 /// Number of intervals of the amplitude tables. Between entries the motion is linear: the chord
 /// shortens the lever arm of an arc by r dtheta^2 / 8. Intervals of 0.1 deg keep the energy error
@@ -27,21 +27,20 @@ pub(crate) struct DrivenArc<'a> {
 
 impl DrivenArc<'_> {
     /// The two constraint equations of every node of the arc.
-    pub fn write_equations(&self, d: &mut String, positions: &[[f64; 3]]) -> fmt::Result {
+    pub fn write_equations(&self, d: &mut String, positions: &[[f64; 3]]) {
         let [turner, mover] = self.drivers;
-        writeln!(d, "*EQUATION")?;
+        add_line!(d, "*EQUATION");
         for index in self.nodes {
             let node = index + 1;
             let [x, y] = [0, 1].map(|i| positions[*index][i] - self.about[i]);
             for (freedom, by_q1, by_q2) in [(1, -x, y), (2, -y, -x)] {
                 let (by_q1, by_q2) = (real(by_q1), real(by_q2));
-                writeln!(
+                add_line!(
                     d,
                     "4\n{node},{freedom},1.,{turner},1,{by_q1},{turner},2,{by_q2},{mover},{freedom},-1."
-                )?;
+                );
             }
         }
-        Ok(())
     }
 
     /// The motion at given lambdas, in a step of the given duration.
@@ -51,24 +50,22 @@ impl DrivenArc<'_> {
         lambdas: &[f64],
         duration: f64,
         motion: impl Fn(f64) -> PanelMotion,
-    ) -> fmt::Result {
+    ) {
         for i in 0..4 {
             let pairs =
                 (lambdas.iter()).map(|lambda| [duration * lambda, motion(*lambda).amplitudes()[i]]);
-            write_amplitude(d, &format!("{}{}", self.amplitudes, i + 1), pairs)?;
+            write_amplitude(d, &format!("{}{}", self.amplitudes, i + 1), pairs);
         }
-        Ok(())
     }
 
     /// The boundary conditions of the control nodes in the plane.
-    pub fn write_boundary(&self, d: &mut String) -> fmt::Result {
+    pub fn write_boundary(&self, d: &mut String) {
         let [turner, mover] = self.drivers;
         let freedoms = [(turner, 1), (turner, 2), (mover, 1), (mover, 2)];
         for (i, (node, freedom)) in freedoms.into_iter().enumerate() {
-            writeln!(d, "*BOUNDARY,AMPLITUDE={}{}", self.amplitudes, i + 1)?;
-            writeln!(d, "{node},{freedom},{freedom},1.")?;
+            add_line!(d, "*BOUNDARY,AMPLITUDE={}{}", self.amplitudes, i + 1);
+            add_line!(d, "{node},{freedom},{freedom},1.");
         }
-        Ok(())
     }
 }
 
@@ -144,7 +141,7 @@ mod tests {
         let arc = DrivenArc { nodes: &[], about: [0.0; 2], drivers: [1, 2], amplitudes: "Q" };
         let lambdas: Vec<f64> = even_lambdas().collect();
         let motion = |lambda| PanelMotion::new(&path.at(lambda));
-        arc.write_amplitudes(&mut text, &lambdas, 1.0, motion).unwrap();
+        arc.write_amplitudes(&mut text, &lambdas, 1.0, motion);
         let tables: Vec<Vec<f64>> = text
             .split("*AMPLITUDE,NAME=Q")
             .skip(1)

@@ -1,9 +1,9 @@
 //! CalculiX as a solver of sheets: mesh, input deck, process, states.
 
 use crate::{
-    AttemptKind, CalculiX, Cause, DeckRun, FailureKind, SECONDS, SheetFrame, SheetLayout,
-    SheetModel, SheetNodes, SheetProblem, SheetSolve, SheetStates, Solution, Solve, SolveError,
-    SolveFolder, Solver, ToolVersions, read_printed, states, time_reached,
+    AttemptKind, CalculiX, Cause, DeckRun, FailureKind, SECONDS, SheetLayout, SheetModel,
+    SheetNodes, SheetProblem, SheetSolve, SheetStates, Solution, Solve, SolveError, SolveFolder,
+    Solver, ToolVersions, states, time_reached,
 };
 use mesher::Tier;
 use std::fmt::Display;

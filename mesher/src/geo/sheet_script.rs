@@ -4,6 +4,7 @@
 use super::Script;
 use super::structured::{self, Rim};
 use crate::{Frame, PlacedWindow, SheetShape, Window, cross, dot, minus, unit};
+use support::add_line;
 
 /// Names of the edges of a panel, each from its corner to the next.
 const EDGES: [&str; 4] = ["lower", "right", "upper", "left"];
@@ -19,10 +20,10 @@ const COARSEST: f64 = 1.1;
 pub(crate) fn sheet_script(shape: &SheetShape) -> Result<String, String> {
     let mut geo = Script::default();
     let size = COARSEST * shape.element_size;
-    geo.add(format_args!("Mesh.MeshSizeMax = {size:?};"));
+    add_line!(geo.text, "Mesh.MeshSizeMax = {size:?};");
     // The frontal-Delaunay algorithm, whose triangles recombine to good quadrilaterals.
-    geo.add(format_args!("Mesh.Algorithm = 6;"));
-    geo.add(format_args!("Mesh.RecombinationAlgorithm = 1;"));
+    add_line!(geo.text, "Mesh.Algorithm = 6;");
+    add_line!(geo.text, "Mesh.RecombinationAlgorithm = 1;");
     let mut rims = vec![[const { None }; 4]; shape.panels.len()];
     let mut faces = Vec::new();
     for (number, window) in shape.windows.iter().enumerate() {
@@ -100,8 +101,8 @@ impl PanelOutline<'_> {
         for mark in marks {
             self.check_mark(mark)?;
             let id = geo.point(mark);
-            geo.add(format_args!("MeshSize {{{id}}} = {size:?};"));
-            geo.add(format_args!("Point{{{id}}} In Surface{{{surface}}};"));
+            add_line!(geo.text, "MeshSize {{{id}}} = {size:?};");
+            add_line!(geo.text, "Point{{{id}}} In Surface{{{surface}}};");
         }
         Ok(surface)
     }
