@@ -8,6 +8,7 @@ pub(crate) mod plan;
 pub(crate) mod restore;
 pub(crate) mod run;
 pub(crate) mod sampling;
+pub(crate) mod shard;
 pub(crate) mod slurm;
 pub(crate) mod spot_paths;
 pub(crate) mod status;

@@ -81,7 +81,7 @@ pub(crate) use calculix::driven_arc::{DrivenArc, PanelMotion, even_lambdas, rota
 pub(crate) use calculix::response::{Damage, samples};
 pub(crate) use campaign::campaign_folder::{CampaignFolder, Index};
 pub(crate) use campaign::extra_rays::read_extra_rays;
-pub(crate) use campaign::history::{Event, EventLog, history_name, overlaps};
+pub(crate) use campaign::history::{EventLog, history_name, overlaps};
 pub(crate) use record_file::{entries, or_damage, read_json, short_hash, write_json};
 pub(crate) use sheet::rigid_motion::RigidMotion;
 pub(crate) use sheet::sheet_deck::{SheetModel, hinge_set};
@@ -89,7 +89,7 @@ pub(crate) use sheet::sheet_nodes::SheetNodes;
 pub(crate) use sheet::sheet_output::{SheetFrame, SheetLayout};
 pub(crate) use sheet::sheet_problem::{SECONDS, interpolated};
 pub(crate) use sheet::sheet_response::states;
-pub(crate) use solve::attempts::{Job, SolveEvent, Workers, now};
+pub(crate) use solve::attempts::{Event, Job, Workers, now};
 pub(crate) use solve::solve_folder::{SolveState, host};
 
 pub use calculix::calculix_solver::{CalculiX, reached};
@@ -103,6 +103,7 @@ pub use campaign::plan::{Plan, plan, prepare};
 pub use campaign::restore::{CollectedWindow, Restored, restore};
 pub use campaign::run::{Progress, RunOptions, run};
 pub use campaign::sampling::RayBox;
+pub use campaign::shard::Shard;
 pub use campaign::slurm::{
     ArrayStates, ArrayTasks, Submission, array_states, slurm_folder, submit_array,
 };
@@ -124,4 +125,3 @@ pub use solve::solver::{Solution, Solver, ToolVersions};
 pub use solve::step_control::StepControl;
 pub use solve::window_solve::{WindowProblem, WindowSolve};
 pub use support::file_error::FileError;
-pub use support::shard::Shard;

@@ -1,7 +1,7 @@
 //! Domain-independent utilities: configuration files, ranges of their keys, misspelt names, input
 //! files, CSV tables, VTK files, atomic file writes, lock files, external programs, temporary
 //! folders, notes of what a command does, a pool of threads, panics of libraries, tables and
-//! reports for people, shards of a list of jobs, memory of the machine, the severity of findings.
+//! reports for people, memory of the machine, the severity of findings.
 //!
 //! ```
 //! use support::table::{Cell, Columns};
@@ -45,7 +45,6 @@ pub mod relative_path;
 pub mod scratch;
 pub mod sealed_json;
 pub mod severity;
-pub mod shard;
 pub mod statistics;
 pub mod table;
 pub mod text_file;

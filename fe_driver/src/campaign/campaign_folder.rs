@@ -10,14 +10,13 @@
 //! same job twice; it is counted once.
 
 use crate::{
-    CampaignError, EventLog, Solve, SolveStore, Solved, ToolVersions, WindowSolve, entries,
+    CampaignError, EventLog, Shard, Solve, SolveStore, Solved, ToolVersions, WindowSolve, entries,
     history_name, host, overlaps, read_json, write_json,
 };
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 use support::fault::{Fault, fault};
 use support::file_error::FileError;
-use support::shard::Shard;
 use support::{lock_file, whole_file};
 
 /// The folder of a campaign.

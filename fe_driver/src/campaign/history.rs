@@ -1,34 +1,13 @@
 //! The history of a shard: an append-only file of events, locked by the process that writes it.
 
-use crate::{AttemptKind, CampaignError, SolveRecord, now};
-use serde::Serialize;
+use crate::{CampaignError, Event, Shard, now};
+use serde_json::json;
 use std::fs::File;
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use support::fault::fault;
 use support::file_error::FileError;
 use support::lock_file;
-use support::shard::Shard;
-
-/// An event in the history of a job.
-#[derive(Clone, Copy, Debug, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub(crate) enum Event<'a> {
-    Started { attempt: AttemptKind },
-    Disturbed { attempt: AttemptKind, reason: &'a str },
-    Ended { attempt: AttemptKind, record: &'a SolveRecord },
-    Reopened,
-    Restored,
-}
-
-/// A line of the history.
-#[derive(Serialize)]
-struct Line<'a> {
-    /// Seconds since 1970.
-    time: u64,
-    job: &'a str,
-    event: Event<'a>,
-}
 
 /// The open history of a shard. The shard stays locked until this value is dropped or the process
 /// exits.
@@ -54,12 +33,9 @@ impl EventLog {
     }
 
     /// Appends an event of `job`.
-    pub fn note(&mut self, job: &str, event: Event) -> Result<(), FileError> {
-        let time = now();
-        let mut line =
-            serde_json::to_vec(&Line { time, job, event }).map_err(FileError::at(&self.path))?;
-        line.push(b'\n');
-        self.file.write_all(&line).map_err(FileError::at(&self.path))
+    pub fn note(&mut self, job: &str, event: &Event) -> Result<(), FileError> {
+        let line = json!({ "time": now(), "job": job, "event": event });
+        self.file.write_all(format!("{line}\n").as_bytes()).map_err(FileError::at(&self.path))
     }
 }
 

@@ -1,14 +1,13 @@
 //! The plan of a run: the jobs that it would solve, and why.
 
 use crate::{
-    Campaign, CampaignError, CampaignFolder, Index, Solve, SolveRecord, SolveState, SolveStore,
-    Tally, ToolVersions, WindowSolve, or_damage, short_hash,
+    Campaign, CampaignError, CampaignFolder, Index, Shard, Solve, SolveRecord, SolveState,
+    SolveStore, Tally, ToolVersions, WindowSolve, or_damage, short_hash,
 };
 use mesher::Tier;
 use serde::Serialize;
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::path::Path;
-use support::shard::Shard;
 
 /// The work that a run would do.
 #[derive(Clone, Debug, PartialEq, Serialize)]

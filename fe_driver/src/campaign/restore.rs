@@ -1,15 +1,14 @@
 //! Recreates job folders from collected samples, so that collected jobs are not solved again.
 
 use crate::{
-    Campaign, CampaignError, CampaignFolder, Event, FailureKind, Index, SolveRecord, ToolVersions,
-    WindowSolve, now,
+    Campaign, CampaignError, CampaignFolder, Event, FailureKind, Index, Shard, SolveRecord,
+    ToolVersions, WindowSolve, now,
 };
 use hinge::HingeSample;
 use mesher::Tier;
 use std::collections::{HashMap, HashSet};
 use std::path::Path;
 use support::fault::fault;
-use support::shard::Shard;
 
 /// What a database contains of a solve.
 #[derive(Clone, Debug, PartialEq)]
@@ -88,7 +87,7 @@ pub fn restore(
         home.write_solve(solve)?;
         let rows_hash = home.write_samples(&window.samples)?;
         home.write_record(&record(window, rows_hash))?;
-        history.note(&window.id, Event::Restored)?;
+        history.note(&window.id, &Event::Restored)?;
         restored.written += 1;
     }
     Ok(restored)

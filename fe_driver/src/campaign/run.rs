@@ -1,7 +1,7 @@
 //! Running a campaign: the list of its solves, and a ledger of them.
 
 use crate::{
-    Campaign, CampaignError, CampaignFolder, Event, EventLog, Index, Job, SolveEvent, SolveRecord,
+    Campaign, CampaignError, CampaignFolder, Event, EventLog, Index, Job, Shard, SolveRecord,
     Solver, Tally, WindowSolve, Workers,
 };
 use std::collections::BTreeMap;
@@ -9,7 +9,6 @@ use std::path::Path;
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 use support::file_error::FileError;
-use support::shard::Shard;
 
 /// Which jobs a run works on, and how.
 #[derive(Clone, Copy, Debug)]
@@ -67,7 +66,7 @@ pub fn run(
         .collect();
     for job in jobs.iter().filter(|_| options.retry) {
         if job.folder.reopen::<WindowSolve>(|_| true)? {
-            history.note(&job.id, Event::Reopened)?;
+            history.note(&job.id, &Event::Reopened)?;
         }
     }
     let mut ledger = Ledger::new(history, &jobs)?;
@@ -106,21 +105,21 @@ impl<'a> Ledger<'a> {
         })
     }
 
-    fn note(&mut self, place: usize, event: SolveEvent) -> Result<(), FileError> {
+    fn note(&mut self, place: usize, event: Event) -> Result<(), FileError> {
         let id = &self.jobs[place].id;
+        if !matches!(event, Event::Found(_)) {
+            self.history.note(id, &event)?;
+        }
         match event {
-            SolveEvent::Found(record) => self.records[place] = record,
-            SolveEvent::Started(attempt) => self.history.note(id, Event::Started { attempt })?,
-            SolveEvent::Disturbed(attempt, reason) => {
-                let event = Event::Disturbed { attempt, reason: &reason };
-                self.history.note(id, event)?;
+            Event::Found(record) => self.records[place] = record,
+            Event::Disturbed { reason, .. } => {
                 self.disturbed.insert(id.clone(), reason);
             }
-            SolveEvent::Ended(attempt, record) => {
+            Event::Ended { record, .. } => {
                 self.disturbed.remove(id);
-                let record = self.records[place].insert(record);
-                self.history.note(id, Event::Ended { attempt, record })?;
+                self.records[place] = Some(record);
             }
+            Event::Started { .. } | Event::Reopened | Event::Restored => {}
         }
         Ok(())
     }

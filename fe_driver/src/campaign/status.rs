@@ -58,27 +58,25 @@ impl Tally {
     ) -> Self {
         let mut tally = Self::default();
         for (job, record) in jobs {
-            match record {
-                Some(record) => tally.add(&job.id, job.solve.tier(), record),
-                None => tally.open += 1,
-            }
+            tally.add(&job.id, job.solve.tier(), record.as_ref());
         }
         tally
     }
 
     /// Counts the job with this id and state.
     pub(crate) fn add_state(&mut self, id: &str, state: &SolveState) {
+        self.damaged += usize::from(matches!(state, SolveState::Damaged(_)));
         match state {
-            SolveState::Open { .. } => self.open += 1,
-            SolveState::Ended(ended) => self.add(id, ended.0.tier(), &ended.1),
-            SolveState::Damaged(_) => {
-                self.open += 1;
-                self.damaged += 1;
-            }
+            SolveState::Ended(ended) => self.add(id, ended.0.tier(), Some(&ended.1)),
+            SolveState::Open { .. } | SolveState::Damaged(_) => self.open += 1,
         }
     }
 
-    fn add(&mut self, id: &str, tier: Tier, record: &SolveRecord) {
+    fn add(&mut self, id: &str, tier: Tier, record: Option<&SolveRecord>) {
+        let Some(record) = record else {
+            self.open += 1;
+            return;
+        };
         if record.rows > 0 && record.tier != tier {
             self.other_tiers.insert(id.to_owned(), record.tier);
         }
@@ -216,6 +214,7 @@ pub fn status(folder: &Path) -> Result<Status, CampaignError> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Shard;
     use crate::campaign::definition::tests::of_two_boxes;
     use crate::campaign::plan::prepare;
     use crate::campaign::run::{RunOptions, run};
@@ -223,7 +222,6 @@ mod tests {
     use crate::solve::solver::Solver;
     use crate::solve::tests::{healthy, solve_on};
     use std::sync::atomic::AtomicBool;
-    use support::shard::Shard;
 
     fn solved(cpu_seconds: f64, wall_seconds: f64) -> Option<SolveRecord> {
         Some(SolveRecord {

@@ -2,7 +2,7 @@
 //! equilibrium, a study.
 
 use crate::{
-    Job, Solve, SolveEvent, SolveListError, SolveStore, Solved, Solver, ToolVersions, WindowSolve,
+    Event, Job, Solve, SolveListError, SolveStore, Solved, Solver, ToolVersions, WindowSolve,
     Workers,
 };
 use std::collections::HashMap;
@@ -67,13 +67,11 @@ impl<S: Solve> SolveService<'_, S> {
         (self.progress)(done, all);
         workers.work_through(&jobs, self.stop, &mut |place, event| {
             match event {
-                SolveEvent::Found(Some(record)) | SolveEvent::Ended(_, record)
-                    if record.is_closed() =>
-                {
+                Event::Found(Some(record)) | Event::Ended { record, .. } if record.is_closed() => {
                     done += 1;
                     (self.progress)(done, all);
                 }
-                SolveEvent::Disturbed(_, reason) => disturbed = Some((place, reason)),
+                Event::Disturbed { reason, .. } => disturbed = Some((place, reason)),
                 _ => {}
             }
             Ok(())

@@ -3,12 +3,12 @@
 //! The shards of one list may run at the same time, on one machine or on several machines that
 //! share the folder. Together they do the same jobs as one run of the whole list.
 
-use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::str::FromStr;
+use support::fault::{Fault, fault};
 
 /// The part of the jobs that one run works on; written `2/4` for the second of four.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Shard {
     /// From 1 to `count`.
     index: usize,
@@ -31,21 +31,17 @@ impl fmt::Display for Shard {
     }
 }
 
-/// A text that is not a shard.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("`{0}` is not a shard: write i/n with 1 <= i <= n, for example 2/4")]
-pub struct InvalidShard(String);
-
 impl FromStr for Shard {
-    type Err = InvalidShard;
+    type Err = Fault;
 
-    fn from_str(text: &str) -> Result<Self, InvalidShard> {
+    fn from_str(text: &str) -> Result<Self, Fault> {
         let parse = || {
             let (index, count) = text.split_once('/')?;
             let (index, count) = (index.parse().ok()?, count.parse().ok()?);
             (1..=count).contains(&index).then_some(Self { index, count })
         };
-        parse().ok_or_else(|| InvalidShard(text.to_owned()))
+        let what = format!("`{text}` is not a shard");
+        parse().ok_or_else(|| fault("", what, "write i/n with 1 <= i <= n, for example 2/4"))
     }
 }
 
