@@ -261,9 +261,9 @@ impl Imperfection {
 
     /// Height (mm) of the bump at (x, y).
     pub(crate) fn height(&self, design: &HingeDesign, thickness: f64, x: f64, y: f64) -> f64 {
-        let [x_share, y_share] = [x / self.widths[0], y / self.widths[1]].map(|v| v / design.w_lig);
+        let [x_ratio, y_ratio] = [x / self.widths[0], y / self.widths[1]].map(|v| v / design.w_lig);
         let decay = 1.0 - ((x * x + y * y) / design.r_win.powi(2)).powi(2);
-        self.amplitude * thickness * (-x_share * x_share - y_share * y_share).exp() * decay
+        self.amplitude * thickness * (-x_ratio * x_ratio - y_ratio * y_ratio).exp() * decay
     }
 }
 

@@ -20,8 +20,8 @@ mod tests {
     fn a_position_is_between_its_neighbours_or_at_an_end() {
         let table = [(0.0, 'a'), (1.0, 'b'), (3.0, 'c')];
         let at = |x| {
-            let (from, to, share) = piece(&table, |entry| entry.0, x);
-            (from.1, to.1, share)
+            let (from, to, fraction) = piece(&table, |entry| entry.0, x);
+            (from.1, to.1, fraction)
         };
         assert_eq!(at(2.0), ('b', 'c', 0.5));
         assert_eq!(at(1.0), ('a', 'b', 1.0));

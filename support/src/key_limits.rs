@@ -1,4 +1,4 @@
-//! The limits of the keys of configuration files. The range of a number stands once, as
+//! The limits of the keys of configuration files. The range of a number is stated once, as
 //! `schemars(range(..))` of its field, and its unit in the first parentheses of the field's
 //! documentation, as in "Thickness of the sheet (mm)".
 
@@ -135,7 +135,7 @@ impl Range {
 }
 
 impl fmt::Display for Range {
-    /// In words, as in `0.02 to 10`; empty without limits.
+    /// The limits in words, as in `0.02 to 10`; empty without limits.
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let short = |x: f64| {
             if x == 0.0 || (1e-3..1e5).contains(&x.abs()) {

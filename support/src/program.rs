@@ -334,7 +334,7 @@ mod tests {
         let mut command = Command::new("setsid");
         command.args(["sh", "-c", "sleep 1000; true"]);
         let mut left = command.env(FOLDER, folder.path()).spawn().unwrap();
-        // Until exec, it has the environment of this test.
+        // The process has the environment of this test until exec.
         std::thread::sleep(Duration::from_millis(200));
         let log = folder.path().join("log");
         let never = AtomicBool::new(false);

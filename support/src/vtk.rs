@@ -2,7 +2,7 @@
 //! ParaView and meshio.
 //!
 //! Numbers are stored inline in binary: base64 of a 64-bit length followed by the values, little
-//! endian. They are therefore exact, and may be NaN where a value is not known.
+//! endian. They are therefore exact, and may be NaN where a value is unknown.
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;

@@ -73,7 +73,7 @@ const HEADINGS: [(&str, Block); 7] = [
 pub(crate) trait Printed: Sized {
     /// What a complete increment prints.
     type Layout;
-    /// An increment of which nothing is known but its time.
+    /// An increment with only its time.
     fn begin(time: f64) -> Self;
     /// Its time.
     fn time(&self) -> f64;
@@ -322,10 +322,10 @@ mod tests {
     proptest! {
         /// However a killed solver truncated its output, the frames read are complete and correct.
         #[test]
-        fn a_truncated_output_gives_its_complete_frames(share in 0.0..1.0f64) {
+        fn a_truncated_output_gives_its_complete_frames(fraction in 0.0..1.0f64) {
             let text = two_increments();
             let whole = read_dat(text.as_bytes(), LAYOUT).unwrap();
-            let cut = (share * text.len() as f64) as usize;
+            let cut = (fraction * text.len() as f64) as usize;
             let frames = read_dat(&text.as_bytes()[..cut], LAYOUT).unwrap();
             prop_assert_eq!(&frames[..], &whole[..frames.len()]);
             prop_assert_eq!(frames.len(), usize::from(cut >= printed(0.5).len()));

@@ -101,7 +101,7 @@ pub(crate) struct Damage {
 }
 
 impl Damage {
-    /// From (strain, volume) at the Gauss points of its window.
+    /// Evaluates (strain, volume) at the Gauss points of the window.
     pub fn new(
         mut points: Vec<(f64, f64)>,
         design: &HingeDesign,

@@ -61,7 +61,7 @@ pub fn run(
     let mut history = folder.enter(options.shard, &index)?;
     let store = folder.store();
     let jobs: Vec<Job> = (index.jobs.into_iter().zip(solves).enumerate())
-        .filter(|(place, _)| options.shard.holds(*place))
+        .filter(|(index, _)| options.shard.holds(*index))
         .map(|(_, (id, solve))| Job { folder: store.solve(&id), id, solve })
         .collect();
     for job in jobs.iter().filter(|_| options.retry) {
@@ -71,8 +71,8 @@ pub fn run(
     }
     let mut ledger = Ledger::new(history, &jobs)?;
     progress(&ledger.progress());
-    workers.work_through(&jobs, stop, &mut |place, event| {
-        let noted = ledger.note(place, event);
+    workers.work_through(&jobs, stop, &mut |index, event| {
+        let noted = ledger.note(index, event);
         progress(&ledger.progress());
         noted
     })?;
@@ -105,19 +105,19 @@ impl<'a> Ledger<'a> {
         })
     }
 
-    fn note(&mut self, place: usize, event: Event) -> Result<(), FileError> {
-        let id = &self.jobs[place].id;
+    fn note(&mut self, index: usize, event: Event) -> Result<(), FileError> {
+        let id = &self.jobs[index].id;
         if !matches!(event, Event::Found(_)) {
             self.history.note(id, &event)?;
         }
         match event {
-            Event::Found(record) => self.records[place] = record,
+            Event::Found(record) => self.records[index] = record,
             Event::Disturbed { reason, .. } => {
                 self.disturbed.insert(id.clone(), reason);
             }
             Event::Ended { record, .. } => {
                 self.disturbed.remove(id);
-                self.records[place] = Some(record);
+                self.records[index] = Some(record);
             }
             Event::Started { .. } | Event::Reopened | Event::Restored => {}
         }

@@ -35,7 +35,7 @@ const BLOCK: usize = 40;
 const ROTATION_EVERY: usize = 8;
 /// Fraction of the other rays that end in tension; compared to compression, its range is narrower
 /// and its forces are larger.
-const TENSION_SHARE: f64 = 0.4;
+const TENSION_FRACTION: f64 = 0.4;
 /// Maximum number of rays; a larger number is a typing error.
 const MAX_COUNT: usize = 1_000_000;
 /// Coordinates of the hypercube: log w_lig, alpha, theta, eta_a, eta_s, fillet_ratio.
@@ -104,7 +104,7 @@ impl RayBox {
         pure_rotation: bool,
     ) -> Ray {
         let [log_w, alpha, theta, eta_a, eta_s, hole] = point;
-        let between = |[from, to]: [f64; 2], share: f64| from + (to - from) * share;
+        let between = |[from, to]: [f64; 2], fraction: f64| from + (to - from) * fraction;
         let mut design = common.hinge(
             between(self.w_lig.map(f64::ln), log_w).exp(),
             between(self.alpha_deg, alpha).to_radians(),
@@ -118,9 +118,9 @@ impl RayBox {
             let theta = self.theta_at(theta);
             let range = self.range(w_lig, theta);
             let tension = self.eta_a[1] * range;
-            let eta_a = match eta_a / TENSION_SHARE {
-                share @ ..1.0 => tension * (1.0 - share),
-                _ => self.eta_a[0] * (eta_a - TENSION_SHARE) / (1.0 - TENSION_SHARE),
+            let eta_a = match eta_a / TENSION_FRACTION {
+                fraction @ ..1.0 => tension * (1.0 - fraction),
+                _ => self.eta_a[0] * (eta_a - TENSION_FRACTION) / (1.0 - TENSION_FRACTION),
             };
             let pull = if eta_a > 0.0 { eta_a / tension } else { 0.0 };
             let stretched = self.eta_s * (range * (1.0 - pull * pull)).sqrt();
@@ -135,11 +135,11 @@ impl RayBox {
         Ray { design, end: ligament.actual(&end) }
     }
 
-    /// The quantile of the rotation (degrees): the fraction `share` of the rays ends below it.
-    fn theta_at(&self, share: f64) -> f64 {
+    /// The quantile of the rotation (degrees): this fraction of the rays ends below it.
+    fn theta_at(&self, fraction: f64) -> f64 {
         let [minimum, maximum] = self.theta_deg;
         let median = self.median_deg;
-        match 2.0 * share {
+        match 2.0 * fraction {
             lower @ ..1.0 => minimum + (median - minimum) * lower,
             upper => median + (maximum - median) * (upper - 1.0),
         }
@@ -264,15 +264,15 @@ mod tests {
             assert!(eta_a >= -0.8 && eta_s.abs() <= 0.4 && theta > -5.0);
             assert_eq!(i % 8 == 0, eta_a == 0.0 && eta_s == 0.0 && theta > 74.9);
         }
-        let share = |is: &dyn Fn([f64; 2], f64) -> bool| {
+        let fraction = |is: &dyn Fn([f64; 2], f64) -> bool| {
             let met = rays.iter().filter(|ray| is(ray.end.eta(ray.design.w_lig), ray.end.theta));
             met.count() as f64 / rays.len() as f64
         };
         // 7/8 of the rays are not pure rotations: 1/2 of these end below 25 deg, 4/10 in tension.
         // One in twelve of the rays below 25 deg closes the cut.
-        assert!((share(&|_, theta| theta < 25f64.to_radians()) - 0.44).abs() < 0.03);
-        assert!((share(&|[eta_a, _], _| eta_a > 0.0) - 0.35).abs() < 0.03);
-        assert!((share(&|_, theta| theta < 0.0) - 0.07).abs() < 0.03);
+        assert!((fraction(&|_, theta| theta < 25f64.to_radians()) - 0.44).abs() < 0.03);
+        assert!((fraction(&|[eta_a, _], _| eta_a > 0.0) - 0.35).abs() < 0.03);
+        assert!((fraction(&|_, theta| theta < 0.0) - 0.07).abs() < 0.03);
     }
 
     /// Rays of a plate end around the axial opening of a ligament that turns freely.

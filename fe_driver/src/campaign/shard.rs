@@ -10,7 +10,7 @@ use support::fault::{Fault, fault};
 /// The part of the jobs that one run works on; written `2/4` for the second of four.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Shard {
-    /// From 1 to `count`.
+    /// Number of the shard, 1 to `count`.
     index: usize,
     count: usize,
 }
@@ -19,9 +19,9 @@ impl Shard {
     /// All jobs.
     pub const WHOLE: Self = Self { index: 1, count: 1 };
 
-    /// Whether the job at index `place` of the list belongs to the shard.
-    pub fn holds(self, place: usize) -> bool {
-        place % self.count == self.index - 1
+    /// Whether the job at an index of the list belongs to the shard.
+    pub fn holds(self, job: usize) -> bool {
+        job % self.count == self.index - 1
     }
 }
 
@@ -52,9 +52,9 @@ mod tests {
     #[test]
     fn every_job_is_in_exactly_one_shard() {
         let shards = ["1/3", "2/3", "3/3"].map(|text| text.parse::<Shard>().unwrap());
-        for place in 0..10 {
-            assert!(Shard::WHOLE.holds(place));
-            assert_eq!(shards.iter().filter(|s| s.holds(place)).count(), 1);
+        for index in 0..10 {
+            assert!(Shard::WHOLE.holds(index));
+            assert_eq!(shards.iter().filter(|s| s.holds(index)).count(), 1);
         }
     }
 

@@ -114,7 +114,7 @@ fn job(answer: &str) -> Result<String, Fault> {
 }
 
 fn unread(program: &str, answer: &str, what: &str) -> Fault {
-    fault("", format!("{program} printed {answer:?}, not {what}"), "")
+    Fault::from(format!("{program} printed {answer:?}, not {what}"))
 }
 
 /// The folder of script, logs and the record of the last submission, in the folder of a campaign.
@@ -122,9 +122,8 @@ pub fn slurm_folder(campaign_folder: &Path) -> PathBuf {
     campaign_folder.join("slurm")
 }
 
-fn record_path(campaign_folder: &Path) -> PathBuf {
-    slurm_folder(campaign_folder).join("submission.json")
-}
+/// Name of the record.
+const RECORD: &str = "submission.json";
 
 /// Submits the script twice: as an array of tasks that solve the campaign of the file `campaign`,
 /// and as the job that collects the database when all tasks have ended, in any state.
@@ -186,16 +185,18 @@ pub fn submit_array(
     })?;
     let mut submission = Submission { array, tasks: count, collect: None };
     // The array is recorded before anything else can fail: otherwise it would be submitted twice.
-    write_json(&record_path(campaign_folder), &submission)?;
+    write_json(&folder.join(RECORD), &submission)?;
     let (id, cluster) = parts(&submission.array);
     let options = [format!("--dependency=afterany:{id}")].into_iter().chain(cluster);
     let collect = sbatch(options.collect(), "collect").map_err(|error| {
         let (array, cancel) = (&submission.array, cancel(&submission.array));
-        let what = "the job that collects the database";
-        fault("", format!("array {array} is submitted, but not {what}: {error}. Run `kirigami campaign collect` when the array has ended, or cancel it with {cancel}"), "")
+        Fault::from(format!(
+            "array {array} is submitted, but not the job that collects the database: {error}. Run `kirigami campaign \
+             collect` when the array has ended, or cancel it with {cancel}"
+        ))
     })?;
     submission.collect = Some(collect);
-    write_json(&record_path(campaign_folder), &submission)?;
+    write_json(&folder.join(RECORD), &submission)?;
     Ok(submission)
 }
 
@@ -256,7 +257,7 @@ fn refuse_unrecorded(script: &Path) -> Result<(), Fault> {
 
 /// The states of the last submission of a campaign; `None` if it was never submitted.
 pub fn array_states(campaign_folder: &Path) -> Result<Option<ArrayStates>, Fault> {
-    let record = record_path(campaign_folder);
+    let record = slurm_folder(campaign_folder).join(RECORD);
     let Some(Submission { array, tasks, collect }) = read_json(&record)? else {
         return Ok(None);
     };
@@ -328,7 +329,7 @@ fn output(command: &mut Command) -> Result<String, Fault> {
     let output = command.output();
     let program = command.get_program().to_string_lossy();
     let output = output.map_err(|source| {
-        fault("", format!("cannot start {program}: {source}; is Slurm installed on this host?"), "")
+        Fault::from(format!("cannot start {program}: {source}; is Slurm installed on this host?"))
     })?;
     if !output.status.success() {
         let message = String::from_utf8_lossy(&output.stderr);
@@ -351,23 +352,8 @@ mod tests {
             let job = job(answer).unwrap();
             assert_eq!((&*job, &*cancel(&job)), (written, cancels));
         }
-        let others = [
-            "",
-            "\n",
-            "Welcome",
-            "Submitted batch job 105",
-            "0",
-            "-1",
-            "+5",
-            "1_2",
-            "105;",
-            ";alpha",
-            "105;a;b",
-            "105;a b",
-            "105\n106",
-            "1.5",
-        ];
-        for answer in others {
+        let others = "|\n|Welcome|Submitted batch job 105|0|-1|+5|1_2|105;|;alpha|105;a;b|105;a b|105\n106|1.5";
+        for answer in others.split('|') {
             let error = job(answer).unwrap_err().to_string();
             assert!(error.contains(&format!("{answer:?}")), "{error}");
         }
@@ -436,34 +422,19 @@ mod tests {
             let words = std::fs::read_to_string(&recorded).unwrap();
             words.split_terminator('\0').map(str::to_owned).collect()
         };
-        for (name, minutes, limit) in
-            HOSTILE.iter().zip([1, 10, 60, 240].into_iter().cycle()).map(|(name, minutes)| {
-                // Slurm checks its time limits every 30 s: even the shortest leaves time for solves.
-                (
-                    name,
-                    minutes,
-                    if minutes == 1 {
-                        0.9
-                    } else {
-                        minutes as f64 - f64::min(0.1 * minutes as f64, 10.0)
-                    },
-                )
-            })
-        {
+        // Slurm checks its time limits every 30 s: even the shortest leaves time for solves.
+        let limits = [(1, "0.9"), (10, "9"), (240, "230")].into_iter().cycle();
+        for (name, (minutes, limit)) in std::iter::zip(HOSTILE, limits) {
             let path = absolute(name).unwrap().to_str().unwrap().to_owned();
             let tasks = ArrayTasks { count: 32, cores: 4, minutes };
             let campaign = |verb| ["campaign", verb, &path, "--folder", &path].map(str::to_owned);
-            let limit = limit.to_string();
-            let options = ["--jobs", "4", "--time-limit", &limit, "--shard", "3/32"];
+            let options = ["--jobs", "4", "--time-limit", limit, "--shard", "3/32"];
             let run = [&campaign("run")[..], &options.map(str::to_owned)].concat();
             assert_eq!(words(name, "run", tasks), run);
             let collect = [&campaign("collect")[..], &["--replace".to_owned()]].concat();
             assert_eq!(words(name, "collect", tasks), collect);
-            assert_eq!(
-                std::fs::read_dir(root.path()).unwrap().count(),
-                4,
-                "{name:?} ran a command"
-            );
+            let files = std::fs::read_dir(root.path()).unwrap().count();
+            assert_eq!(files, 4, "{name:?} ran a command");
         }
     }
 }

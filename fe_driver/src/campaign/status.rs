@@ -130,7 +130,7 @@ impl Tally {
         }
     }
 
-    /// The throughput so far; `None` before there are samples of jobs solved in this folder.
+    /// The throughput; `None` before there are samples of jobs solved in this folder.
     fn throughput(&self) -> Option<Throughput> {
         let hours = self.wall_seconds / 3600.0;
         (self.rows_solved_here > 0).then(|| Throughput {
@@ -163,7 +163,7 @@ pub struct Status {
     pub name: String,
     /// Numbers of jobs by their state.
     pub tally: Tally,
-    /// The throughput so far; `None` before a job solved in this folder has samples.
+    /// The throughput; `None` before a job solved in this folder has samples.
     pub throughput: Option<Throughput>,
 }
 
@@ -270,7 +270,7 @@ mod tests {
         let known = |campaign: &Campaign| known_parts(campaign, folder.path());
         let error = known(&campaign).unwrap_err();
         assert!(error.to_string().contains("contains no campaign"), "{error}");
-        // Nothing is known of jobs without a file.
+        // Jobs without a file are unknown.
         prepare(&campaign, folder.path(), &solver.versions()).unwrap();
         assert_eq!(known(&campaign).unwrap(), HashMap::new());
         let options =

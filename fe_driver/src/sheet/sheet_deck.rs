@@ -203,7 +203,7 @@ impl SheetModel<'_> {
         let pulled = std::iter::zip(&self.nodes.pulled, &self.problem.pulled);
         pulled
             .flat_map(|(node, pulled)| [0, 1].map(|i| (node + 1, i + 1, pulled.force[i] / total)))
-            .filter(|(.., share)| *share != 0.0)
+            .filter(|(.., fraction)| *fraction != 0.0)
             .collect()
     }
 
@@ -217,8 +217,8 @@ impl SheetModel<'_> {
         // The first term is eliminated: the largest is the safest.
         terms.sort_by(|one, other| other.2.abs().total_cmp(&one.2.abs()));
         add_line!(d, "*EQUATION\n{}", terms.len() + 1);
-        for (node, freedom, share) in terms {
-            add_line!(d, "{node},{freedom},{}", real(share));
+        for (node, freedom, fraction) in terms {
+            add_line!(d, "{node},{freedom},{}", real(fraction));
         }
         add_line!(d, "{control},1,-1.")
     }
@@ -291,8 +291,8 @@ impl SheetModel<'_> {
         if self.problem.stroke.is_none() && !self.nodes.pulled.is_empty() {
             let total = self.problem.total_load();
             add_line!(d, "*CLOAD,AMPLITUDE=LOADS");
-            for (node, freedom, share) in self.loaded() {
-                add_line!(d, "{node},{freedom},{}", real(total * share));
+            for (node, freedom, fraction) in self.loaded() {
+                add_line!(d, "{node},{freedom},{}", real(total * fraction));
             }
         }
         if let Some([x, y, z]) = self.problem.down {

@@ -20,7 +20,7 @@ pub(crate) struct SheetNodes {
     pub pulled: Vec<usize>,
     /// The nodes of each driven rim, in the order of the problem.
     pub rims: Vec<Vec<usize>>,
-    /// Nodes that cannot leave the plane, besides the nodes of supports.
+    /// Nodes that cannot leave the plane, other than the nodes of supports.
     pub flat: Vec<usize>,
     /// Nodes of the lower face that a table supports.
     pub on_table: Vec<usize>,

@@ -57,7 +57,7 @@ impl SheetLayout {
     }
 
     /// The place of a set of elements in [`SheetFrame::energies`].
-    fn place(&self, set: &str) -> Option<usize> {
+    fn index(&self, set: &str) -> Option<usize> {
         if set == "PANELS" {
             return Some(self.hinges);
         }
@@ -109,7 +109,7 @@ impl Printed for SheetFrame {
             Block::Energy => {
                 let [energy] = numbers(fields)?;
                 self.energies.resize(layout.hinges + 1, None);
-                self.energies[layout.place(set)?] = Some(energy);
+                self.energies[layout.index(set)?] = Some(energy);
             }
             Block::KineticEnergy => self.kinetic_energy = Some(numbers::<1>(fields)?[0]),
             Block::PlasticStrain => {

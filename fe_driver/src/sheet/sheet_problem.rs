@@ -31,11 +31,11 @@ pub enum OutOfPlaneRestraint {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Place {
-    /// Outside of its windows.
+    /// All of it outside of its windows.
     Panel,
-    /// At a point, through the thickness (mm).
+    /// A point, through the thickness (mm).
     Point([f64; 2]),
-    /// Along a straight line between two points of an edge (mm).
+    /// A straight line between two points of an edge (mm).
     Line([[f64; 2]; 2]),
 }
 
@@ -128,9 +128,9 @@ pub(crate) const SECONDS: f64 = 10.0;
 /// between.
 #[derive(Clone, Debug, PartialEq)]
 pub struct History {
-    /// Of the weight.
+    /// Fraction of the weight.
     pub weight: Vec<[f64; 2]>,
-    /// Of the loads, the stroke and the motions of supports.
+    /// Fraction of the loads, the stroke and the motions of supports.
     pub loads: Vec<[f64; 2]>,
 }
 
@@ -234,7 +234,7 @@ impl History {
         let table = if weight < 1.0 { &self.weight } else { &self.loads };
         let inverse: Vec<[f64; 2]> =
             (table.iter()).map(|[lambda, fraction]| [*fraction, *lambda]).collect();
-        // Of the lambdas at which nothing is on, the last.
+        // The last lambda at which no load is on.
         let from = inverse.iter().rposition(|[fraction, _]| *fraction == 0.0);
         let wanted = if weight < 1.0 { weight } else { loads };
         interpolated(&inverse[from.unwrap_or(0)..], wanted)[1]
@@ -243,8 +243,8 @@ impl History {
 
 /// The values at `x` of a table of (x, values), with straight lines between.
 pub(crate) fn interpolated<const N: usize>(table: &[[f64; N]], x: f64) -> [f64; N] {
-    let (from, to, share) = piece(table, |row| row[0], x);
-    std::array::from_fn(|i| from[i] + share * (to[i] - from[i]))
+    let (from, to, fraction) = piece(table, |row| row[0], x);
+    std::array::from_fn(|i| from[i] + fraction * (to[i] - from[i]))
 }
 
 impl SheetSolve {

@@ -20,7 +20,7 @@ pub struct SheetStates {
 /// A converged increment of a sheet.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct SheetState {
-    /// Place on the path, from 0 to 1.
+    /// Position on the path, from 0 to 1.
     pub lambda: f64,
     /// Fraction of the loads or of the stroke that is on.
     pub fraction: f64,

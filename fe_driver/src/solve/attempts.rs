@@ -93,14 +93,14 @@ impl<S: Solve> Workers<'_, S> {
         stop: &AtomicBool,
         note: &mut dyn FnMut(usize, Event) -> Result<(), FileError>,
     ) -> Result<(), SolveListError> {
-        let work = |place: usize, reports: &Reports<_>| {
-            let report = |event| reports.send((place, Ok(event)));
-            if let Err(error) = self.solve(&jobs[place], reports.halt(), &report) {
-                reports.send((place, Err(error)));
+        let work = |index: usize, reports: &Reports<_>| {
+            let report = |event| reports.send((index, Ok(event)));
+            if let Err(error) = self.solve(&jobs[index], reports.halt(), &report) {
+                reports.send((index, Err(error)));
             }
         };
-        work_through(jobs.len(), self.count, stop, &work, &mut |(place, event)| {
-            Ok(note(place, event?)?)
+        work_through(jobs.len(), self.count, stop, &work, &mut |(index, event)| {
+            Ok(note(index, event?)?)
         })
     }
 

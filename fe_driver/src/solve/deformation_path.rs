@@ -68,10 +68,10 @@ impl DeformationPath {
 
     /// The path through `states`, equally spaced in lambda; `None` without a state.
     pub fn through(states: &[HingeDeformation]) -> Option<Self> {
-        let share = |i: usize| (i + 1) as f64 / states.len() as f64;
+        let fraction = |i: usize| (i + 1) as f64 / states.len() as f64;
         let recorded = states.iter().enumerate();
         let mut knots = vec![(0.0, HingeDeformation::default())];
-        knots.extend(recorded.map(|(i, state)| (share(i), *state)));
+        knots.extend(recorded.map(|(i, state)| (fraction(i), *state)));
         (knots.len() > 1).then_some(Self { knots })
     }
 
@@ -109,9 +109,9 @@ impl DeformationPath {
 
     /// The state at `lambda` in [0, 1].
     pub fn at(&self, lambda: f64) -> HingeDeformation {
-        let ((_, from), (_, to), share) = piece(&self.knots, |(at, _)| *at, lambda);
+        let ((_, from), (_, to), fraction) = piece(&self.knots, |(at, _)| *at, lambda);
         let (x, y) = (from.to_array(), to.to_array());
-        std::array::from_fn(|i| x[i] + share * (y[i] - x[i])).into()
+        std::array::from_fn(|i| x[i] + fraction * (y[i] - x[i])).into()
     }
 }
 

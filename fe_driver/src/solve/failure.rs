@@ -48,7 +48,7 @@ pub enum FailureKind {
 /// What ended an attempt before the end of its path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Cause {
-    /// The problem, as far as its solver says: the next step of the ladder may help.
+    /// The problem, according to its solver: the next attempt may help.
     Problem(FailureKind),
     /// The machine: the solver was killed, or its output is damaged or missing. The same attempt
     /// may succeed.
@@ -85,7 +85,7 @@ pub enum AttemptKind {
     ShorterIncrements,
     /// Shorter increments on the next finer mesh.
     FinerTier,
-    /// With inertia, which carries a sheet over a snap that has no static path.
+    /// Inertia is added, which carries a sheet over a snap that has no static path.
     Dynamic,
 }
 

@@ -33,7 +33,7 @@ impl<S: Solve> SolveService<'_, S> {
     }
 
     /// The results of `solves`, in the same order; equal solves are made once. A solve that fails
-    /// is a result too, after all attempts of the ladder.
+    /// is a result too, after all of its attempts.
     ///
     /// A result of an earlier list is read from the store. A failure that the mechanics did not
     /// cause, as a time limit, is tried again.
@@ -42,14 +42,14 @@ impl<S: Solve> SolveService<'_, S> {
     /// [`SolveListError::Stopped`] if `stop` becomes true before the last solve is done,
     /// [`SolveListError::Disturbed`] if the machine ended every attempt at one of them.
     pub fn solve(&self, solves: &[S]) -> Result<Vec<Solved<S>>, SolveListError> {
-        let mut places = HashMap::new();
+        let mut indices = HashMap::new();
         let mut jobs: Vec<Job<S>> = Vec::new();
         let mut order = Vec::with_capacity(solves.len());
         for solve in solves {
             let id = solve.id();
-            let place = *places.entry(id.clone()).or_insert(jobs.len());
-            order.push(place);
-            if place == jobs.len() {
+            let index = *indices.entry(id.clone()).or_insert(jobs.len());
+            order.push(index);
+            if index == jobs.len() {
                 let folder = self.store.solve(&id);
                 folder.reopen::<S>(|failure| !failure.is_repeatable())?;
                 let solve = solve.clone();
@@ -65,13 +65,13 @@ impl<S: Solve> SolveService<'_, S> {
         let (mut done, all) = (0, jobs.len());
         let mut disturbed = None;
         (self.progress)(done, all);
-        workers.work_through(&jobs, self.stop, &mut |place, event| {
+        workers.work_through(&jobs, self.stop, &mut |index, event| {
             match event {
                 Event::Found(Some(record)) | Event::Ended { record, .. } if record.is_closed() => {
                     done += 1;
                     (self.progress)(done, all);
                 }
-                Event::Disturbed { reason, .. } => disturbed = Some((place, reason)),
+                Event::Disturbed { reason, .. } => disturbed = Some((index, reason)),
                 _ => {}
             }
             Ok(())
@@ -81,14 +81,14 @@ impl<S: Solve> SolveService<'_, S> {
         let left = solved.iter().filter(|result| result.is_none()).count();
         if left > 0 {
             return Err(match disturbed {
-                Some((place, reason)) if !self.stop.load(Ordering::Relaxed) => {
-                    let job = jobs[place].id.clone();
+                Some((index, reason)) if !self.stop.load(Ordering::Relaxed) => {
+                    let job = jobs[index].id.clone();
                     SolveListError::Disturbed { left, job, reason }
                 }
                 _ => SolveListError::Stopped { left },
             });
         }
-        Ok((order.into_iter()).filter_map(|place| solved[place].clone()).collect())
+        Ok((order.into_iter()).filter_map(|index| solved[index].clone()).collect())
     }
 }
 
@@ -146,7 +146,7 @@ mod tests {
         let complete: Vec<bool> = windows.iter().map(|window| window.complete().is_ok()).collect();
         assert_eq!(complete, [true, false, true]);
         assert_eq!(windows[0].samples.len(), 10);
-        // As requested, with shorter increments, on a finer mesh; the increments that converged are
+        // Three attempts: as requested, shorter increments, a finer mesh; converged increments are
         // kept.
         let failed = windows[1].complete().unwrap_err();
         assert_eq!((windows[1].record.attempts, windows[1].samples.len()), (3, 3));

@@ -231,7 +231,7 @@ impl SolveFolder {
         })
     }
 
-    /// Starts the ladder of a closed solve again if it failed in one of the ways that `may`
+    /// Starts the attempts of a closed solve again if it failed in one of the ways that `may`
     /// accepts; returns whether it did. Its samples are kept until an attempt reaches a larger
     /// lambda.
     pub(crate) fn reopen<S: Solve>(

@@ -1,4 +1,4 @@
-//! A window solve: its identity, and its ladder of attempts.
+//! A window solve: its identity, and its attempts.
 
 use crate::{AttemptKind, FailureKind, HingePath, Solve, StepControl, ToolVersions, short_hash};
 use hinge::{HingeSample, SheetMaterial};
@@ -164,7 +164,7 @@ mod tests {
     use strum::VariantNames;
 
     #[test]
-    fn every_retry_ladder_ends() {
+    fn the_attempts_of_every_solve_end() {
         let next = |tier, lambda| {
             let shorter = AttemptKind::ShorterIncrements;
             solve_on(tier).next_attempt(shorter, FailureKind::Diverged, lambda)

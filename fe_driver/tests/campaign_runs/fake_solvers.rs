@@ -38,7 +38,7 @@ fn the_error_of_a_failed_solver_quotes_the_end_of_its_log() {
     }
 }
 
-/// The next step of the ladder is taken only if the solver refuses the problem.
+/// The next kind of attempt is made only if the solver refuses the problem.
 #[test]
 fn a_solver_that_says_nothing_of_the_problem_was_ended_by_the_machine() {
     let real = Ccx::find().unwrap().0.program;

@@ -1,5 +1,5 @@
 //! A deterministic solver without a program: a hinge of known stiffness, and failures on request.
-//! For tests.
+//! It is used by tests.
 //!
 //! W = (k_a a^2 + k_s s^2 + k_theta theta^2) / 2, D = theta^2 / 100, D_peak = 10 D, in ten equal
 //! increments. Nothing is written to the folder of an attempt.
@@ -33,7 +33,7 @@ pub struct FakeSolver<F> {
     stiffness: [f64; 3],
     /// The fault of an attempt at a solve.
     fault: F,
-    /// Number of attempts so far.
+    /// Number of attempts until now.
     attempts: AtomicUsize,
 }
 
@@ -44,7 +44,7 @@ impl<F: Fn(&WindowSolve) -> Option<Fault>> FakeSolver<F> {
         Self { stiffness, fault, attempts: AtomicUsize::new(0) }
     }
 
-    /// Number of attempts so far.
+    /// Number of attempts until now.
     pub fn attempts(&self) -> usize {
         self.attempts.load(Ordering::Relaxed)
     }

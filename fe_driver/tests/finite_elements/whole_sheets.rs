@@ -287,7 +287,7 @@ fn sheets_that_cannot_be_solved_are_refused() {
     for (problem, expected) in [
         (small, "panel 1 is too small for its windows"),
         (beside, "does not end on the edges"),
-        (in_window, "lies in the window of a hinge"),
+        (in_window, "is in the window of a hinge"),
         (outside, "is not inside the panel"),
         (unheld, "no panel is held"),
         (still, "nothing pulls the sheet"),

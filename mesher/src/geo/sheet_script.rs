@@ -8,7 +8,7 @@ use support::add_line;
 
 /// Names of the edges of a panel, each from its corner to the next.
 const EDGES: [&str; 4] = ["lower", "right", "upper", "left"];
-/// Largest distance of a point that lies on the edge of a panel from it (mm).
+/// Largest distance of a point on the edge of a panel from it (mm).
 const ON_EDGE: f64 = 1e-6;
 /// Shortest part of an edge over r_win: a shorter one would give slivers.
 const LEAST: f64 = 0.02;
@@ -107,7 +107,7 @@ impl PanelOutline<'_> {
         Ok(surface)
     }
 
-    /// Adds the straight edge from a corner to the next, divided at the marks that lie on it, which
+    /// Adds the straight edge from a corner to the next, divided at the marks on it, which
     /// are removed.
     fn edge(
         &self,
@@ -175,7 +175,7 @@ impl PanelOutline<'_> {
         Ok(())
     }
 
-    /// A mark in the interior lies in the panel and outside of its windows.
+    /// A mark in the interior is in the panel and outside of its windows.
     fn check_mark(&self, mark: [f64; 2]) -> Result<(), String> {
         let corners = &self.shape.panels[self.panel].corners;
         let inside = (0..4).all(|corner| {
@@ -190,7 +190,7 @@ impl PanelOutline<'_> {
         let what = if !inside {
             "is not inside the panel"
         } else if self.rims.iter().flatten().any(in_window) {
-            "lies in the window of a hinge"
+            "is in the window of a hinge"
         } else {
             return Ok(());
         };

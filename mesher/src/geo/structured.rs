@@ -224,8 +224,8 @@ fn circle_points(window: &Window, outer: &[[f64; 2]], rho: f64) -> Vec<[f64; 2]>
         .map(|c| {
             let direction = (directions[c] - directions[0]) / range;
             let uniform = c as f64 / last as f64;
-            let share = blend * direction + (1.0 - blend) * uniform;
-            let angle = from + span * share;
+            let fraction = blend * direction + (1.0 - blend) * uniform;
+            let angle = from + span * fraction;
             [tip[0] + rho * angle.cos(), tip[1] + rho * angle.sin()]
         })
         .collect()

@@ -78,7 +78,7 @@ fn every_tier_covers_the_window_without_folded_elements() {
 
 #[test]
 fn holes_of_2_to_40_percent_of_the_ligament_are_meshed() {
-    // At 0.079 a collar would be a ring of slivers.
+    // A collar at 0.079 would be a ring of slivers.
     for fillet_ratio in [0.02, 0.039, 0.05, 0.058, 0.079, 0.3, 0.4] {
         for (tier, alpha) in Tier::all().flat_map(|tier| [60.0, 90.0].map(|alpha| (tier, alpha))) {
             let design = HingeDesign { fillet_ratio, ..design(12.0, alpha) };

@@ -1,6 +1,6 @@
 //! `kirigami campaign status`
 
-use crate::commands::campaign::campaign_args::{CampaignArgs, print_tally};
+use super::campaign_args::{CampaignArgs, print_tally};
 use anyhow::Result;
 use clap::Args;
 use fe_driver::{ArrayStates, Status};

@@ -1,6 +1,6 @@
 //! `kirigami campaign submit`
 
-use crate::commands::campaign::campaign_args::CampaignArgs;
+use super::campaign_args::CampaignArgs;
 use crate::commands::solve_args::FeSolver;
 use crate::ui::count::{count, jobs};
 use crate::ui::progress::duration;
