@@ -60,15 +60,15 @@ impl CampaignFolder {
         Ok(index.ok_or_else(|| fault("", what(), "run a campaign there first"))?)
     }
 
-    /// Rejects a folder that belongs to a campaign with another name.
-    pub fn belongs_to(&self, name: &str) -> Result<(), CampaignError> {
+    /// Reads `campaign.json` if it exists; an error if it is of a campaign with another name.
+    pub fn known(&self, name: &str) -> Result<Option<Index>, CampaignError> {
         match read_json::<Index>(&self.index_path())? {
             Some(Index { name: found, .. }) if found != name => {
                 let folder = self.0.display();
                 let what = format!("{folder} contains the campaign `{found}`, not `{name}`");
                 Err(fault("", what, "choose another folder").into())
             }
-            _ => Ok(()),
+            known => Ok(known),
         }
     }
 
@@ -84,9 +84,19 @@ impl CampaignFolder {
         // the lock of the other.
         let door = home.join("lock");
         let _held = lock_file::hold(&door).map_err(FileError::at(&door))?;
-        self.belongs_to(&index.name)?;
-        if shard != Shard::WHOLE {
-            self.refuse_other_versions(index)?;
+        let known = self.known(&index.name)?.and_then(|known| known.tools);
+        // Only the rows of one pair of versions are collected.
+        if shard != Shard::WHOLE
+            && let (Some(known), Some(here)) = (known, &index.tools)
+            && known != *here
+        {
+            let (host, index) = (host(), self.index_path());
+            let index = index.display();
+            Err(Fault::from(format!(
+                "{host} has {here}, but the campaign is solved with {known}: rows of different versions are not \
+                 collected together. Use the same versions on every host; or delete {index}, and all rays are \
+                 solved again with the versions of the next run (no file of a job is lost)"
+            )))?;
         }
         for entry in entries(&home)? {
             if overlaps(shard, &entry.file_name().to_string_lossy()) {
@@ -95,25 +105,6 @@ impl CampaignFolder {
         }
         write_json(&self.index_path(), index)?;
         EventLog::open(&home.join(history_name(shard)))
-    }
-
-    /// Rejects versions of gmsh and ccx other than those with which the campaign was last run. Only
-    /// the rows of one pair of versions are collected.
-    fn refuse_other_versions(&self, index: &Index) -> Result<(), CampaignError> {
-        let known = read_json::<Index>(&self.index_path())?.and_then(|known| known.tools);
-        match (known, &index.tools) {
-            (Some(known), Some(here)) if known != *here => {
-                let (host, index) = (host(), self.index_path());
-                let index = index.display();
-                Err(Fault::from(format!(
-                    "{host} has {here}, but the campaign is solved with {known}: rows of different versions are not \
-                     collected together. Use the same versions on every host; or delete {index}, and all rays are \
-                     solved again with the versions of the next run (no file of a job is lost)"
-                ))
-                .into())
-            }
-            _ => Ok(()),
-        }
     }
 }
 

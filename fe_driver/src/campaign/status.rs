@@ -176,7 +176,7 @@ pub fn known_parts(
     folder: &Path,
 ) -> Result<HashMap<String, JobPart>, CampaignError> {
     let folder = CampaignFolder(folder.to_owned());
-    folder.belongs_to(&campaign.name)?;
+    folder.known(&campaign.name)?;
     let ids = folder.index()?.jobs;
     let store = folder.store();
     let mut known = ids.iter().map(|id| store.solve(id).solve::<WindowSolve>());
