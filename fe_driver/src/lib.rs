@@ -82,7 +82,7 @@ pub(crate) use calculix::response::{Damage, samples};
 pub(crate) use campaign::campaign_folder::{CampaignFolder, Index};
 pub(crate) use campaign::extra_rays::read_extra_rays;
 pub(crate) use campaign::history::{EventLog, history_name, overlaps};
-pub(crate) use record_file::{entries, or_damage, read_json, short_hash, write_json};
+pub(crate) use record_file::{damaged, entries, read_json, short_hash, unless_damaged, write_json};
 pub(crate) use sheet::rigid_motion::RigidMotion;
 pub(crate) use sheet::sheet_deck::{SheetModel, hinge_set};
 pub(crate) use sheet::sheet_nodes::SheetNodes;

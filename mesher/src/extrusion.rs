@@ -40,7 +40,7 @@ impl Extrusion {
             .iter()
             .map(|element| {
                 let positions: Vec<_> = element.iter().map(|node| nodes[*node]).collect();
-                ElementKind::of_element(element).gauss_volumes(&positions)
+                ElementKind::of(element).gauss_volumes(&positions)
             })
             .collect();
         Self { nodes, elements, gauss_volumes, levels }

@@ -53,7 +53,7 @@ pub(crate) fn check_elements(
 ) -> Result<(f64, f64), Fault> {
     let mut jacobian_ratio = 1.0_f64;
     for (element, volumes) in gauss_volumes.iter().enumerate() {
-        let kind = ElementKind::of_face(&plane.faces[element % plane.faces.len()]);
+        let kind = ElementKind::of(&plane.faces[element % plane.faces.len()]);
         let jacobians = (0..).zip(volumes).map(|(point, v)| v / kind.gauss_weight(point));
         let minimum = jacobians.clone().fold(f64::INFINITY, f64::min);
         let maximum = jacobians.fold(0.0, f64::max);

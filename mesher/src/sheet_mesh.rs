@@ -189,16 +189,22 @@ impl SheetShape {
 
     /// Area of the sheet (mm^2): windows, and panels without the sectors of their windows.
     fn area(&self) -> f64 {
-        let windows = self.windows.iter().map(|window| {
-            let of_window = Window(&window.design).area();
+        let windows = self.windows.iter().map(|placed| {
+            let (window, radius) = (Window(&placed.design), placed.design.r_win);
             // What the finished panels have in the half-disc is not theirs: the two sectors from
-            // the crossing of their edges to the arcs.
-            let in_panels =
-                std::iter::zip(Side::BOTH, window.panels).filter_map(|(side, place)| {
-                    let (panel, corner) = place?;
-                    Some(Self::sector(window, side, self.panels[panel].corners[corner]))
-                });
-            of_window - in_panels.sum::<f64>()
+            // the crossing of their edges, at the corner of a panel, to the arcs.
+            let sector = |(side, place): (Side, Option<(usize, usize)>)| {
+                let (panel, corner) = place?;
+                let apex = placed.frame.local(self.panels[panel].corners[corner]);
+                let kerf = window.kerf_at_radius(side, radius);
+                let free = [radius * side.sign(), 0.0];
+                let angle = window.arc_angle(side);
+                let triangle = 0.5 * cross(minus(kerf, apex), minus(free, apex)).abs();
+                let segment = 0.5 * radius * radius * (angle - angle.sin());
+                Some(triangle + segment)
+            };
+            let sectors = std::iter::zip(Side::BOTH, placed.panels).filter_map(sector);
+            window.area() - sectors.sum::<f64>()
         });
         let panels = self.panels.iter().map(|panel| {
             let corners = panel.corners;
@@ -206,17 +212,5 @@ impl SheetShape {
             0.5 * twice.sum::<f64>()
         });
         windows.sum::<f64>() + panels.sum::<f64>()
-    }
-
-    /// Area (mm^2) between the corner of a panel and the arc of its window.
-    fn sector(placed: &PlacedWindow, side: Side, corner: [f64; 2]) -> f64 {
-        let (window, radius) = (Window(&placed.design), placed.design.r_win);
-        let kerf = window.kerf_at_radius(side, radius);
-        let free = [radius * side.sign(), 0.0];
-        let apex = placed.frame.local(corner);
-        let angle = window.arc_angle(side);
-        let triangle = 0.5 * cross(minus(kerf, apex), minus(free, apex)).abs();
-        let segment = 0.5 * radius * radius * (angle - angle.sin());
-        triangle + segment
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::{
     Campaign, CampaignError, CampaignFolder, Index, Shard, Solve, SolveState, Tally, ToolVersions,
-    WindowSolve, or_damage, short_hash,
+    WindowSolve, short_hash, unless_damaged,
 };
 use mesher::Tier;
 use serde::Serialize;
@@ -45,7 +45,7 @@ pub fn plan(
     let (mut stale, mut old_rays) = (0, HashMap::new());
     for id in store.ids()?.iter().filter(|id| !requested.contains(id)) {
         // A damaged job of another campaign is ignored.
-        if let Ok(Some(solve)) = or_damage(store.solve(id).solve::<WindowSolve>())? {
+        if let Some(Some(solve)) = unless_damaged(store.solve(id).solve::<WindowSolve>())? {
             stale += 1;
             old_rays.insert(short_hash(&solve.problem.hinge), solve);
         }

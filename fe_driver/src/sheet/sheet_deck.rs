@@ -107,7 +107,7 @@ impl SheetModel<'_> {
         let mesh = self.mesh;
         for kind in [ElementKind::Brick, ElementKind::Wedge] {
             let mut of_kind = (mesh.elements.iter().enumerate())
-                .filter(|(_, nodes)| ElementKind::of_element(nodes) == kind)
+                .filter(|(_, nodes)| ElementKind::of(nodes) == kind)
                 .peekable();
             if of_kind.peek().is_some() {
                 add_line!(d, "*ELEMENT,TYPE={},ELSET=EALL", kind.name());

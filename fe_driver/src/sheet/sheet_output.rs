@@ -48,7 +48,7 @@ impl SheetLayout {
             is_held: !model.nodes.held.is_empty(),
             points: points
                 .map(|(element, nodes)| match mesh.part(element) {
-                    Part::Window(_) => ElementKind::of_element(nodes).gauss_points(),
+                    Part::Window(_) => ElementKind::of(nodes).gauss_points(),
                     Part::Panel(_) => 0,
                 })
                 .collect(),

@@ -8,8 +8,8 @@
 //! `work`; the decks and logs of other attempts do not: the deck follows from `job.json`.
 
 use crate::{
-    AttemptKind, FailureKind, Solve, SolvedPath, WindowSolve, entries, or_damage, read_json,
-    write_json,
+    AttemptKind, FailureKind, Solve, SolvedPath, WindowSolve, damaged, entries, read_json,
+    unless_damaged, write_json,
 };
 use mesher::Tier;
 use serde::{Deserialize, Serialize};
@@ -130,28 +130,26 @@ impl SolveFolder {
     /// The state of the solve. The consistency of its files is checked: the name of the folder must
     /// be the hash of `job.json`, and `result.json` contains the hash of the file of the samples.
     pub(crate) fn state<S: Solve>(&self) -> Result<SolveState<S>, FileError> {
-        let damaged = |reason: &str| Ok(SolveState::Damaged(reason.to_owned()));
-        let solve = match or_damage(self.solve::<S>())? {
-            Ok(solve) => solve,
-            Err(_) => return damaged("job.json cannot be read"),
+        let flaw = |reason: &str| Ok(SolveState::Damaged(reason.to_owned()));
+        let Some(solve) = unless_damaged(self.solve::<S>())? else {
+            return flaw("job.json cannot be read");
         };
-        let record = match or_damage(self.record())? {
-            Ok(record) => record,
-            Err(_) => return damaged("result.json cannot be read, or belongs to another job"),
+        let Some(record) = unless_damaged(self.record())? else {
+            return flaw("result.json cannot be read, or belongs to another job");
         };
         if solve.as_ref().is_some_and(|solve| solve.id() != self.id()) {
-            return damaged("job.json has changed: its hash is not the name of its folder");
+            return flaw("job.json has changed: its hash is not the name of its folder");
         }
         match (solve, record) {
             (solve, None) => Ok(SolveState::Open { started: solve.is_some() }),
-            (None, Some(_)) => damaged("job.json is missing"),
+            (None, Some(_)) => flaw("job.json is missing"),
             (Some(solve), Some(record)) => {
                 let name = S::Samples::FILE;
                 if record.rows > 0 && !self.0.join(name).exists() {
-                    return damaged(&format!("{name} is missing"));
+                    return flaw(&format!("{name} is missing"));
                 }
-                if record.rows > 0 && or_damage(self.bytes(name, &record))?.is_err() {
-                    return damaged(&format!("{name} does not match result.json"));
+                if record.rows > 0 && unless_damaged(self.bytes(name, &record))?.is_none() {
+                    return flaw(&format!("{name} does not match result.json"));
                 }
                 Ok(SolveState::Ended(Box::new((solve, record))))
             }
@@ -170,9 +168,7 @@ impl SolveFolder {
         match read_json::<Named<SolveRecord>>(&path)? {
             Some(named) if named.job != self.id() => {
                 let (other, hint) = (named.job, "delete it, and the next run solves this one");
-                let damage = format!("it is the record of the solve {other}: {hint}");
-                let damage = io::Error::new(io::ErrorKind::InvalidData, damage);
-                Err(FileError::at(&path)(damage))
+                Err(damaged(&path, format!("it is the record of the solve {other}: {hint}")))
             }
             named => Ok(named.map(|named| named.record)),
         }
@@ -196,10 +192,9 @@ impl SolveFolder {
         let path = self.0.join(name);
         let bytes = regular_file::read(&path).map_err(FileError::at(&path))?;
         if blake3::hash(&bytes).to_hex().as_str() != record.rows_hash {
-            let changed =
-                "the rows do not match the hash in result.json: run the same command again";
-            let damage = io::Error::new(io::ErrorKind::InvalidData, changed);
-            return Err(FileError::at(&path)(damage));
+            let hint = "run the same command again";
+            let what = format!("the rows do not match the hash in result.json: {hint}");
+            return Err(damaged(&path, what));
         }
         Ok(bytes)
     }
