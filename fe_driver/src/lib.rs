@@ -52,7 +52,9 @@
 //! };
 //! let film = SheetMaterial::load(Path::new("configs/materials/pet-0.5mm.toml"))?;
 //! let solver = CalculiX::find()?;
-//! let solve = WindowSolve::new(WindowProblem::new(ray.driven(Tier::Default.regime()), &film, Tier::Default), &solver.versions());
+//! let tier = Tier::Default;
+//! let problem = WindowProblem::new(ray.driven(tier.regime()), &film, tier);
+//! let solve = WindowSolve::new(problem, &solver.versions());
 //! let (limit, stop) = (Duration::from_secs(600), AtomicBool::new(false));
 //! let solution = solver.attempt(&solve, Path::new("runs/solve"), limit, &stop)?;
 //! for sample in &solution.samples {

@@ -17,10 +17,10 @@ use support::table::{Cell, Table};
 
 /// Solve one hinge window by finite elements and print its ray
 ///
-/// Panel A is fixed. Panel B is driven from the undeformed state straight to the given deformation. Every
-/// converged increment is one row. Writes window.vtu for ParaView
-/// and meshio: displacements, plastic strain and stress of the last increment. Example, the paper's
-/// hinge folded to 45 degrees: kirigami solve --theta-deg 45 --tier tiny
+/// Panel A is fixed. Panel B is driven from the undeformed state straight to the given deformation.
+/// Every converged increment is one row. Writes window.vtu for ParaView and meshio: displacements,
+/// plastic strain and stress of the last increment. Example, the paper's hinge folded to 45
+/// degrees: kirigami solve --theta-deg 45 --tier tiny
 #[derive(Args)]
 #[command(allow_negative_numbers = true)]
 pub struct SolveCommand {

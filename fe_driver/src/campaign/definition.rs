@@ -6,10 +6,9 @@
 //! spot check is drawn in the region that the rays cover.
 
 use crate::{
-    DrawnStates, HingePath, Ray, RayBox, SolveListError, SpotPath, ToolVersions, WindowProblem,
-    WindowSolve, random_paths, read_extra_rays,
+    Ray, RayBox, SolveListError, ToolVersions, WindowProblem, WindowSolve, read_extra_rays,
 };
-use hinge::{HingeConstants, Regime, SheetMaterial, TrainingDomain};
+use hinge::{HingeConstants, Regime, SheetMaterial};
 use mesher::Tier;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -78,11 +77,6 @@ pub enum CampaignError {
     Solve(#[from] SolveListError),
 }
 
-/// Number of states on a ray of the spot check: more need fewer solves but cover fewer hinges.
-const STATES_PER_RAY: usize = 4;
-/// Seed of the spot check.
-const SPOT_SEED: u64 = 5;
-
 /// What a job of a campaign is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum JobPart {
@@ -95,20 +89,20 @@ pub enum JobPart {
 }
 
 impl Campaign {
-    /// The first defect of the file; `None` if it is valid.
-    fn defect(&self) -> Option<String> {
+    /// An error if the file has a defect.
+    fn check(&self) -> Result<(), String> {
         if self.name.is_empty() || self.name.chars().any(char::is_control) {
-            return Some("name is empty or holds a control character".to_owned());
+            return Err("name is empty or holds a control character".to_owned());
         }
         if self.boxes.is_empty() {
-            return Some("it has no [[rays]]".to_owned());
+            return Err("it has no [[rays]]".to_owned());
         }
         let needs_finer = self.boxes.iter().any(|rays| rays.finer > 0);
         match self.finer_tier {
-            None if needs_finer => return Some("finer needs finer_tier".to_owned()),
+            None if needs_finer => return Err("finer needs finer_tier".to_owned()),
             Some(finer) if finer.regime() != self.tier.regime() || finer <= self.tier => {
                 let tier = self.tier;
-                return Some(format!(
+                return Err(format!(
                     "finer_tier = \"{finer}\" is no finer mesh than tier = \"{tier}\""
                 ));
             }
@@ -124,17 +118,20 @@ impl Campaign {
             })
         };
         let mut boxes = self.boxes.iter();
-        boxes.clone().find_map(RayBox::defect).or_else(|| boxes.find_map(impossible))
+        let defect = boxes.clone().find_map(RayBox::defect).or_else(|| boxes.find_map(impossible));
+        defect.map_or(Ok(()), Err)
     }
 
-    /// What is wrong if the tier is not for all ligaments of the box.
-    fn other_regime(&self) -> Option<String> {
+    /// An error if the tier is not for all ligaments of the box.
+    fn check_regime(&self) -> Result<(), String> {
         let (regime, material) = (self.tier.regime(), &self.material);
         let other = |w_lig: &f64| material.regime(*w_lig) != regime;
-        let w_lig = (self.boxes.iter().flat_map(|rays| rays.w_lig)).find(other)?;
+        let Some(w_lig) = self.boxes.iter().flat_map(|rays| rays.w_lig).find(other) else {
+            return Ok(());
+        };
         let (tier, thickness) = (self.tier, material.thickness);
         let bound = Regime::WIDEST_PLATE * thickness;
-        Some(format!(
+        Err(format!(
             "tier = \"{tier}\" is for ligaments of a {regime}, but rays.w_lig contains {w_lig} mm: ligaments of up to \
              {bound} mm bend in the plane of a sheet of {thickness} mm (tier \"plate\"), wider ones buckle (tier \
              \"default\"), and no energy holds for both"
@@ -145,17 +142,13 @@ impl Campaign {
     pub fn load(path: &Path) -> Result<Self, CampaignError> {
         let other = |error: &dyn Display| Fault::from(error.to_string());
         let mut campaign: Self = toml_file::read(path).map_err(|error| other(&error))?;
-        let invalid = |reason: String| Err(fault(path.display().to_string(), reason, "").into());
-        if let Some(reason) = campaign.defect() {
-            return invalid(reason);
-        }
+        let invalid = |reason: String| fault(path.display().to_string(), reason, "");
+        campaign.check().map_err(invalid)?;
         let folder = path.parent().unwrap_or(Path::new(""));
         let material = SheetMaterial::load(&folder.join(&campaign.material_file));
         campaign.material = material.map_err(|error| other(&error))?;
         campaign.time_limit = campaign.tier_of(JobPart::Finer).time_limit();
-        if let Some(reason) = campaign.other_regime() {
-            return invalid(reason);
-        }
+        campaign.check_regime().map_err(invalid)?;
         let named = campaign.training.iter_mut();
         for file in named.chain(&mut campaign.pretrained) {
             *file = folder.join(&*file);
@@ -188,40 +181,6 @@ impl Campaign {
         first.further.truncate(left);
         first.spot_rays = 0;
         first
-    }
-
-    /// The states that the rays pass through if they are solved to their ends. They do not depend
-    /// on the number of rays, so that the spot check remains the same when the campaign is
-    /// enlarged. `None` if no ray passes through a state.
-    pub fn region(&self) -> Option<TrainingDomain> {
-        const RAYS: usize = 1500;
-        const STATES: u32 = 10;
-        let regime = self.tier.regime();
-        let of_box = |rays: &RayBox| rays.rays(&self.design, regime, RAYS);
-        let rays = self.boxes.iter().flat_map(of_box);
-        let rays = rays.flat_map(|ray| [ray, ray.mirrored()]);
-        let states = rays.flat_map(|ray| {
-            let HingePath { design, path } = ray.driven(regime);
-            (1..=STATES).map(move |k| (design, path.at(f64::from(k) / f64::from(STATES))))
-        });
-        TrainingDomain::covering(states.collect::<Vec<_>>())
-    }
-
-    /// The states of its region.
-    pub fn drawn<'a>(&'a self, region: &'a TrainingDomain) -> DrawnStates<'a> {
-        DrawnStates { domain: region, constants: &self.design, regime: self.tier.regime() }
-    }
-
-    /// The paths of the spot check.
-    pub fn spot_paths(&self) -> Vec<SpotPath> {
-        let region = (self.spot_rays > 0).then(|| self.region()).flatten();
-        match region {
-            Some(region) => {
-                let states = STATES_PER_RAY * self.spot_rays;
-                random_paths(self.drawn(&region), states, STATES_PER_RAY, SPOT_SEED)
-            }
-            None => Vec::new(),
-        }
     }
 
     /// The jobs in the order in which they are run. Any prefix of them gives a usable database.
@@ -330,7 +289,7 @@ pub(crate) mod tests {
             .collect()
     }
 
-    fn hinges(jobs: &[(JobPart, WindowSolve)]) -> Vec<&HingePath> {
+    fn hinges(jobs: &[(JobPart, WindowSolve)]) -> Vec<&crate::HingePath> {
         jobs.iter().map(|(_, solve)| &solve.problem.hinge).collect()
     }
 
@@ -353,7 +312,7 @@ pub(crate) mod tests {
         let spot = campaign.spot_paths();
         assert_eq!(spot.iter().map(|path| &path.hinge).collect::<Vec<_>>(), all[12..]);
         for path in &spot {
-            assert_eq!(path.fractions.len(), STATES_PER_RAY);
+            assert_eq!(path.fractions.len(), crate::campaign::spot_paths::STATES_PER_RAY);
             let mut states = path.fractions.iter().map(|at| path.hinge.path.at(*at));
             assert!(states.all(|state| region.contains(&path.hinge.design, &state)));
         }

@@ -1,7 +1,7 @@
 //! Slurm: submits the array of a campaign with the job that collects it, and reports the states of
 //! both.
 //!
-//! The script of both jobs is `configs/cluster/slurm.sh`. Names are arguments of it, never a part of
+//! The script of both jobs is `configs/cluster/slurm.sh`. Names are its arguments, never a part of
 //! its text: neither a shell nor Slurm reads them as commands.
 
 use crate::{read_json, write_json};

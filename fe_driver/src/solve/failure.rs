@@ -112,7 +112,7 @@ impl Cause {
         SolveError { cause: self, message: message.to_string() }
     }
 
-    /// The error of a solver that ended by itself. The end of its log decides: a full disk or a full
+    /// The error of a solver that ended by itself. The end of its log decides: a full disk or
     /// memory is no fault of the problem.
     pub fn of_solver(self, what: String, tail: &str) -> SolveError {
         let cause = match self {

@@ -5,7 +5,7 @@ use crate::{
     Event, Job, Solve, SolveListError, SolveStore, Solved, Solver, ToolVersions, WindowSolve,
     Workers,
 };
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
@@ -42,18 +42,13 @@ impl<S: Solve> SolveService<'_, S> {
     /// [`SolveListError::Stopped`] if `stop` becomes true before the last solve is done,
     /// [`SolveListError::Disturbed`] if the machine ended every attempt at one of them.
     pub fn solve(&self, solves: &[S]) -> Result<Vec<Solved<S>>, SolveListError> {
-        let mut indices = HashMap::new();
-        let mut jobs: Vec<Job<S>> = Vec::new();
-        let mut order = Vec::with_capacity(solves.len());
-        for solve in solves {
-            let id = solve.id();
-            let index = *indices.entry(id.clone()).or_insert(jobs.len());
-            order.push(index);
-            if index == jobs.len() {
-                let folder = self.store.solve(&id);
+        let ids: Vec<String> = solves.iter().map(S::id).collect();
+        let (mut known, mut jobs) = (HashSet::new(), Vec::new());
+        for (id, solve) in std::iter::zip(&ids, solves) {
+            if known.insert(id) {
+                let folder = self.store.solve(id);
                 folder.reopen::<S>(|failure| !failure.is_repeatable())?;
-                let solve = solve.clone();
-                jobs.push(Job { id, solve, folder });
+                jobs.push(Job { id: id.clone(), solve: solve.clone(), folder });
             }
         }
         let workers = Workers {
@@ -76,9 +71,11 @@ impl<S: Solve> SolveService<'_, S> {
             }
             Ok(())
         })?;
-        let solved = jobs.iter().map(|job| job.folder.result());
-        let solved: Vec<Option<Solved<S>>> = solved.collect::<Result<_, _>>()?;
-        let left = solved.iter().filter(|result| result.is_none()).count();
+        let mut solved: HashMap<&String, Solved<S>> = HashMap::new();
+        for job in &jobs {
+            solved.extend(job.folder.result()?.map(|result| (&job.id, result)));
+        }
+        let left = jobs.len() - solved.len();
         if left > 0 {
             return Err(match disturbed {
                 Some((index, reason)) if !self.stop.load(Ordering::Relaxed) => {
@@ -88,7 +85,7 @@ impl<S: Solve> SolveService<'_, S> {
                 _ => SolveListError::Stopped { left },
             });
         }
-        Ok((order.into_iter()).filter_map(|index| solved[index].clone()).collect())
+        Ok(ids.iter().map(|id| solved[id].clone()).collect())
     }
 }
 
