@@ -144,8 +144,7 @@ impl Specimen {
         let draw = if is_local {
             None
         } else {
-            draw(smooth, elastic, noise[1], options.draw_ratio)
-                .map_err(|fault| file(fault.to_string()))?
+            draw(smooth, elastic, noise[1], options.draw_ratio).map_err(file)?
         };
         let (last, end) = match (&draw, is_local) {
             (_, true) => (smooth.len() - 1, End::Uniform),
