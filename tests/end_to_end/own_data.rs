@@ -162,17 +162,18 @@ fn a_measured_curve_is_a_material() {
         writeln!(curve, "{strain},{stress}").unwrap();
     }
     std::fs::write(work.path("curve.csv"), curve).unwrap();
-    let fit = "material fit curve.csv --name steel --thickness 1.5 --density-kg-m3 7850 --out .";
+    let fit =
+        "material fit curve.csv --name steel --thickness 1.5 --density-kg-m3 7850 --young 210000";
     work.output(fit);
-    let solve = "solve --material steel.toml --tier tiny --theta-deg 3";
+    let solve = "solve --material runs/material/steel.toml --tier tiny --theta-deg 3";
     let json = work.output(&format!("{solve} --json"));
     let solved: serde_json::Value = serde_json::from_str(&json).unwrap();
     let yields = solved["material"]["plastic"][0][0].as_f64().unwrap();
     assert!((235.0..245.0).contains(&yields), "{yields}");
 
-    let text = std::fs::read_to_string(work.path("steel.toml")).unwrap();
+    let text = std::fs::read_to_string(work.path("runs/material/steel.toml")).unwrap();
     let (head, _) = text.split_once("plastic = [").unwrap();
-    std::fs::write(work.path("steel.toml"), head).unwrap();
+    std::fs::write(work.path("runs/material/steel.toml"), head).unwrap();
     let error = work.error(solve);
     assert!(error.contains("plastic"), "{error}");
 }
