@@ -84,7 +84,7 @@ fn with<'a>(rays: &[&'a [Row]], condition: fn(&[Row]) -> bool) -> Vec<&'a Row> {
 pub(crate) fn repeated(rows: &[Row]) -> Vec<&Row> {
     let mut seen: BTreeMap<_, &str> = BTreeMap::new();
     let earlier = rows.iter().filter(|row| {
-        let solved = (state(row), &row.tier, &row.material_hash);
+        let solved = (state(row), row.tier, &row.material_hash);
         *seen.entry(solved).or_insert(&row.job) != row.job
     });
     earlier.collect()
@@ -129,8 +129,10 @@ fn forces_without_work(rays: &[&[Row]]) -> Option<Defect> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::rows::Fidelity;
     use crate::rows::tests::rows;
     use crate::split::SplitPlan;
+    use mesher::Tier;
 
     fn found(change: impl Fn(&mut Vec<Row>)) -> Vec<&'static str> {
         let mut rows = rows(12);
@@ -156,7 +158,7 @@ mod tests {
             repeated(&both).len()
         };
         assert_eq!(other(|_| ()), rows(12).len());
-        assert_eq!(other(|row| row.tier = "fine".into()), 0);
+        assert_eq!(other(|row| row.tier = Fidelity::Solved(Tier::Fine)), 0);
         assert_eq!(other(|row| row.material_hash = "57ee1".into()), 0);
     }
 

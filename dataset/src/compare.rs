@@ -71,14 +71,14 @@ impl Database {
         let Some(finer) = &manifest.finer else {
             return Vec::new();
         };
-        compare_rows(self.on_tier(&manifest.tier), self.on_tier(&finer.tier))
+        compare_rows(self.on_tier(manifest.tier), self.on_tier(finer.tier))
     }
 }
 
 /// The rays that both databases contain, in the order of their designs; of a database with a finer
 /// mesh, those on the other one.
 pub fn compare<'a>(candidate: &'a Database, reference: &'a Database) -> Vec<ComparedRay<'a>> {
-    let rays = |database: &'a Database| database.on_tier(&database.manifest().tier);
+    let rays = |database: &'a Database| database.on_tier(database.manifest().tier);
     compare_rows(rays(candidate), rays(reference))
 }
 
@@ -155,6 +155,7 @@ fn rays<'a>(rows: impl IntoIterator<Item = &'a Row>) -> BTreeMap<(RayKey, &'a st
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::rows::Fidelity;
     use crate::rows::tests::{finer, rows};
     use crate::split::SplitPlan;
 
@@ -214,7 +215,7 @@ mod tests {
         let rays = both.on_both_meshes();
         assert_eq!(rays.len(), 4);
         for ray in rays {
-            assert!(ray.rows.iter().all(|row| row.tier == "default"));
+            assert!(ray.rows.iter().all(|row| row.tier == Fidelity::default()));
             assert_eq!((ray.rows.len(), ray.cpu_s), (10, [10.0, 70.0]));
         }
     }

@@ -4,7 +4,7 @@ use crate::digest::{Digest, by_job_and_lambda};
 use crate::error::DatasetError;
 use crate::manifest::Manifest;
 use crate::parquet;
-use crate::rows::Row;
+use crate::rows::{Fidelity, Row};
 use crate::split::{Part, SplitPlan, geometry};
 use std::collections::BTreeSet;
 
@@ -65,11 +65,11 @@ impl Database {
     /// after a failure.
     pub fn rays_on_other_tiers(&self) -> Vec<&Row> {
         let first = self.rays().into_iter().filter_map(<[Row]>::first);
-        first.filter(|row| !row.is_as_asked()).collect()
+        first.filter(|row| !row.at_requested_tier()).collect()
     }
 
     /// The rows on a mesh.
-    pub(crate) fn on_tier<'a>(&'a self, tier: &'a str) -> impl Iterator<Item = &'a Row> {
+    pub(crate) fn on_tier(&self, tier: Fidelity) -> impl Iterator<Item = &Row> {
         self.rows.iter().filter(move |row| row.tier == tier)
     }
 

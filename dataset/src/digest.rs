@@ -1,7 +1,7 @@
 //! What the manifest and the summary need of the rows of a database, gathered ray by ray: the rows
 //! themselves need not be in memory at the same time.
 
-use crate::error::DatasetError;
+use crate::error::{DatasetError, refused};
 use crate::gates::{Gates, Rejection};
 use crate::manifest::{FORMAT_VERSION, FinerMesh, Manifest};
 use crate::meshes::Meshes;
@@ -31,7 +31,7 @@ pub(crate) struct Digest {
 
 /// The columns of text whose values the manifest lists.
 const TEXTS: [fn(&Row) -> &String; 4] =
-    [|row| &row.material, |row| &row.material_hash, |row| &row.gmsh, |row| &row.ccx];
+    [|row| &row.material, |row| &row.material_hash, |row| &row.tools.gmsh, |row| &row.tools.ccx];
 
 impl Digest {
     pub fn new() -> Self {
@@ -76,8 +76,9 @@ impl Digest {
         let (job, lambda) = (&row.job, row.sample.lambda);
         let by_lambda = || self.last.1.total_cmp(&lambda);
         if self.last.0.cmp(job).then_with(by_lambda) != Ordering::Less {
-            let job = job.clone();
-            return Err(DatasetError::Duplicate { job, lambda });
+            return Err(refused(format!(
+                "job {job}: lambda = {lambda} occurs twice; was the job collected twice?"
+            )));
         }
         self.last.0.clone_from(job);
         self.last.1 = lambda;
@@ -86,7 +87,7 @@ impl Digest {
 
     /// The manifest of the rows, whose Parquet file has the given hash.
     pub fn manifest(self, hash: String, plan: &SplitPlan) -> Result<Manifest, DatasetError> {
-        let no_rows = |rejected| DatasetError::NoRows { why: reasons(rejected) };
+        let no_rows = |rejected| refused(format!("no rows: {}", reasons(rejected)));
         let bent_rays = self.meshes.bent_rays.unwrap_or_default();
         let Some((rays, finer)) = self.meshes.sorted()? else {
             return Err(no_rows(&self.rejected));
@@ -94,7 +95,7 @@ impl Digest {
         let Some(domain) = TrainingDomain::covering(rays.states()) else {
             return Err(no_rows(&self.rejected));
         };
-        let mut hinge = rays.first_design().constants();
+        let mut hinge = rays.first.design.constants();
         if domain.holes.is_some() {
             hinge.fillet_ratio = HingeConstants::PAPER.fillet_ratio;
         }
@@ -111,17 +112,17 @@ impl Digest {
             cpu_s: rays.cpu_s,
             bent_rays,
             finer: finer.map(|finer| FinerMesh {
-                tier: finer.tier().to_owned(),
+                tier: finer.first.tier,
                 rays: finer.rays,
                 cpu_s: finer.cpu_s,
             }),
             gates: Gates::default(),
             rejected: self.rejected,
             material: Vec::from_iter(material).join(" + "),
-            tier: rays.tier().to_owned(),
+            tier: rays.first.tier,
             hinge,
             material_hashes,
-            settings_hashes: [rays.settings_hash().to_owned()].into(),
+            settings_hashes: [rays.first.settings_hash].into(),
             gmsh,
             ccx,
             domain,

@@ -16,9 +16,8 @@
 
 use crate::compare::{COMPARED, ComparedRay, ComparedState};
 use crate::database::Database;
-use crate::error::DatasetError;
-use crate::fidelity::Fidelity;
-use crate::rows::Row;
+use crate::error::{DatasetError, refused};
+use crate::rows::{Fidelity, Row};
 use faer::Side;
 use faer::linalg::solvers::{Llt, Solve};
 use faer::prelude::*;
@@ -72,7 +71,7 @@ impl Bridge {
     fn fit(rays: &[ComparedRay]) -> Self {
         let pairs = || {
             let pairs = rays.iter().flat_map(ComparedRay::pairs);
-            pairs.filter(|(row, _)| row.is_as_asked())
+            pairs.filter(|(row, _)| row.at_requested_tier())
         };
         let blank = [0.0; TERMS.len()];
         let unfitted = Self {
@@ -135,7 +134,7 @@ impl Bridge {
     /// are unchanged, including the work of the reaction forces and the energy residual. A row that
     /// was solved on a finer tier than the requested one is also unchanged.
     fn corrected(&self, row: &Row) -> HingeSample {
-        if !row.is_as_asked() {
+        if !row.at_requested_tier() {
             return row.sample;
         }
         let (terms, slopes) = self.terms(row);
@@ -186,17 +185,16 @@ impl Database {
         let rays = self.on_both_meshes();
         let checked = left_out(&rays)?;
         let corrected = checked.corrected();
-        let from = self.manifest().tier.clone();
+        let from = self.manifest().tier;
         let tier = if corrected[0] {
-            let to = finer.tier.clone();
-            Fidelity::Corrected { from, to }
+            Fidelity::Corrected { from: from.mesh(), to: finer.tier.mesh() }
         } else {
-            Fidelity::Solved(from)
+            from
         };
         let bridge = Bridge::fit(&rays).only(corrected);
-        let rows = self.on_tier(&self.manifest().tier).map(|row| Row {
+        let rows = self.on_tier(from).map(|row| Row {
             sample: bridge.corrected(row),
-            tier: tier.to_string(),
+            tier,
             ..row.clone()
         });
         Ok((self.with_rows(rows.collect())?, Some(checked)))
@@ -238,7 +236,10 @@ pub fn left_out(rays: &[ComparedRay]) -> Result<LeftOut, DatasetError> {
     let (found, needed) = (rays.len(), TERMS.len() + 1);
     if found < needed {
         // Too few to fit every term when one ray is left out.
-        return Err(DatasetError::TooFewRays { found, needed });
+        return Err(refused(format!(
+            "{found} rays are solved on the finer mesh too, but the correction needs at least \
+             {needed}: increase `finer` in the campaign"
+        )));
     }
     let bridges: Vec<Bridge> =
         (0..rays.len()).map(|i| Bridge::fit(&[&rays[..i], &rays[i + 1..]].concat())).collect();
@@ -366,7 +367,7 @@ mod tests {
 
     /// The rows of the rays themselves, without the rows of the finer mesh.
     fn of_rays(database: &Database) -> Vec<Row> {
-        database.on_tier("default").cloned().collect()
+        database.on_tier(Fidelity::default()).cloned().collect()
     }
 
     /// The [`rows`] with the errors of a coarse mesh, by a known q.
@@ -416,7 +417,7 @@ mod tests {
         assert_eq!(manifest.cpu_s, 10.0 * RAYS as f64);
         assert_eq!((manifest.rays, manifest.rows), (RAYS, 10 * RAYS));
         assert_eq!(manifest.finer, None);
-        assert_eq!(manifest.tier, "default corrected to reference");
+        assert_eq!(manifest.tier.to_string(), "default corrected to reference");
         assert_eq!(manifest.split, split);
         let after = errors(&corrected);
         // 1/(1 + q) is not a polynomial of degree two. The remaining error is largest in forces
@@ -508,7 +509,7 @@ mod tests {
     #[test]
     fn rows_solved_on_a_finer_tier_are_unchanged() {
         let mut retried = coarse();
-        retried[0].solved_tier = "fine".into();
+        retried[0].solved_tier = mesher::Tier::Fine;
         let (corrected, _) = on_both(retried, rows(TWICE)).corrected().unwrap();
         let same = |i: usize| corrected.rows()[i].sample == coarse()[i].sample;
         assert!(same(0) && !same(1));

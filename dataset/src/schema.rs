@@ -1,7 +1,8 @@
 //! The columns of the database, their units and their meanings.
 
-use crate::error::DatasetError;
+use crate::error::{DatasetError, refused};
 use crate::rows::Row;
+use fe_driver::UnknownFailure;
 use polars::prelude::{Column, DataFrame, IntoColumn, NamedFrom, Series};
 
 /// What a column of a database holds.
@@ -28,8 +29,8 @@ pub(crate) struct Number {
 pub(crate) struct Text {
     pub name: &'static str,
     pub meaning: &'static str,
-    pub get: fn(&Row) -> &str,
-    pub set: fn(&mut Row, String),
+    pub get: fn(&Row) -> String,
+    pub set: fn(&mut Row, &str) -> Result<(), String>,
 }
 
 macro_rules! numbers {
@@ -44,14 +45,18 @@ macro_rules! numbers {
     };
 }
 
-macro_rules! texts {
-    ($($name:ident, $meaning:literal;)*) => {
-        [$(Text {
-            name: stringify!($name),
+/// A column of text, of a field that is a text or has one.
+macro_rules! text {
+    ($name:literal = $first:ident $(. $rest:ident)*, $meaning:literal) => {
+        Text {
+            name: $name,
             meaning: $meaning,
-            get: |row| &row.$name,
-            set: |row, value| row.$name = value,
-        }),*]
+            get: |row| row.$first $(.$rest)*.to_string(),
+            set: |row, text| {
+                row.$first $(.$rest)* = text.parse().map_err(|error| format!("{error}"))?;
+                Ok(())
+            },
+        }
     };
 }
 
@@ -78,17 +83,26 @@ pub(crate) const NUMBERS: [Number; 20] = numbers! {
     "cpu_s" ["s"] = cpu_s, "CPU time of the whole ray, repeated in each of its rows";
 };
 
-pub(crate) const TEXTS: [Text; 9] = texts! {
-    job, "id of the ray: one geometry, one end";
-    failure, "why the ray stopped before its end; empty if it did not";
-    material, "name of the material";
-    material_hash, "hash of the law of the material";
-    settings_hash, "hash of the settings that all rays of the campaign share";
-    tier, "requested mesh";
-    solved_tier, "mesh of the row";
-    gmsh, "version of gmsh";
-    ccx, "version of ccx";
-};
+pub(crate) const TEXTS: [Text; 9] = [
+    text!("job" = job, "id of the ray: one geometry, one end"),
+    Text {
+        name: "failure",
+        meaning: "why the ray stopped before its end; empty if it did not",
+        get: |row| row.failure.map_or(String::new(), |kind| kind.to_string()),
+        set: |row, text| {
+            let kind = (!text.is_empty()).then(|| text.parse()).transpose();
+            row.failure = kind.map_err(|error: UnknownFailure| error.to_string())?;
+            Ok(())
+        },
+    },
+    text!("material" = material, "name of the material"),
+    text!("material_hash" = material_hash, "hash of the law of the material"),
+    text!("settings_hash" = settings_hash, "hash of the settings that all rays of the campaign share"),
+    text!("tier" = tier, "requested mesh"),
+    text!("solved_tier" = solved_tier, "mesh of the row"),
+    text!("gmsh" = tools.gmsh, "version of gmsh"),
+    text!("ccx" = tools.ccx, "version of ccx"),
+];
 
 /// The only column of numbers that may have gaps.
 pub(crate) const D_PEAK: ColumnMeaning = ColumnMeaning {
@@ -155,7 +169,7 @@ pub(crate) fn units() -> impl Iterator<Item = (&'static str, &'static str)> {
 pub(crate) fn to_frame(rows: &[Row]) -> Result<DataFrame, DatasetError> {
     let mut columns: Vec<Column> = Vec::new();
     for column in &TEXTS {
-        let values: Vec<&str> = rows.iter().map(column.get).collect();
+        let values: Vec<String> = rows.iter().map(column.get).collect();
         columns.push(Series::new(column.name.into(), values).into_column());
     }
     for column in &NUMBERS {
@@ -179,31 +193,34 @@ pub(crate) fn from_frame(frame: &DataFrame, most_text: usize) -> Result<Vec<Row>
     for column in TEXTS.iter().map(|column| column.name) {
         for (index, text) in frame.column(column)?.str()?.iter().enumerate() {
             let length = text.map_or(0, str::len);
-            left = left.checked_sub(length).ok_or(DatasetError::LongText {
-                column,
-                index,
-                most: most_text,
+            left = left.checked_sub(length).ok_or_else(|| {
+                refused(format!(
+                    "the texts of the table exceed {most_text} bytes at row {index} of the column \
+                     `{column}`: the file is damaged, or made to fill the memory"
+                ))
             })?;
         }
     }
     let mut rows = vec![Row::default(); frame.height()];
     for column in &TEXTS {
-        let texts = frame.column(column.name)?.str()?.iter();
-        let owned = texts.map(|text| text.map(str::to_owned));
-        fill(&mut rows, column.name, owned, column.set)?;
+        fill(&mut rows, column.name, frame.column(column.name)?.str()?.iter(), column.set)?;
     }
     for column in &NUMBERS {
         let series = frame.column(column.name)?;
-        fill(&mut rows, column.name, series.f64()?.iter(), column.set)?;
+        fill(&mut rows, column.name, series.f64()?.iter(), |row, value| {
+            (column.set)(row, value);
+            Ok(())
+        })?;
     }
     let peaks = frame.column(D_PEAK.name)?.f64()?.iter();
     for (row, peak) in rows.iter_mut().zip(peaks) {
         row.sample.d_peak = peak;
     }
     match rows.iter().find(|row| !is_finite(row)) {
-        Some(row) => {
-            Err(DatasetError::NotFinite { job: row.job.clone(), lambda: row.sample.lambda })
-        }
+        Some(Row { job, sample, .. }) => Err(refused(format!(
+            "job {job}, lambda = {}: the row contains a number that is not finite",
+            sample.lambda
+        ))),
         None => Ok(rows),
     }
 }
@@ -218,10 +235,12 @@ fn fill<T>(
     rows: &mut [Row],
     column: &'static str,
     values: impl IntoIterator<Item = Option<T>>,
-    set: impl Fn(&mut Row, T),
+    set: impl Fn(&mut Row, T) -> Result<(), String>,
 ) -> Result<(), DatasetError> {
     for (index, (row, value)) in rows.iter_mut().zip(values).enumerate() {
-        set(row, value.ok_or(DatasetError::Gap { column, index })?);
+        let gap = || refused(format!("column `{column}` has no value in row {index}"));
+        set(row, value.ok_or_else(gap)?)
+            .map_err(|error| refused(format!("column `{column}`, row {index}: {error}")))?;
     }
     Ok(())
 }

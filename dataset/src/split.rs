@@ -3,7 +3,7 @@
 //! All rays of one (w_lig, alpha) and of its mirror image belong to the same part. The test part
 //! therefore contains only geometries that are not in the training part.
 
-use crate::error::DatasetError;
+use crate::error::{DatasetError, refused};
 use crate::rows::Row;
 use rand::SeedableRng;
 use rand::seq::SliceRandom;
@@ -58,12 +58,18 @@ impl Split {
     pub(crate) fn deal(geometries: &Geometries, plan: &SplitPlan) -> Result<Self, DatasetError> {
         let SplitPlan { validation, test, .. } = *plan;
         if ![validation, test].iter().all(|share| (0.0..0.5).contains(share) && *share > 0.0) {
-            return Err(DatasetError::Shares { validation, test });
+            return Err(refused(format!(
+                "the fractions validation = {validation} and test = {test} violate \
+                 0 < fraction < 0.5"
+            )));
         }
         let mut geometries: Vec<&Vec<String>> = geometries.0.values().collect();
         let count = geometries.len();
         if count < 3 {
-            return Err(DatasetError::TooFewGeometries { found: count });
+            return Err(refused(format!(
+                "{count} geometries cannot be split into training, validation and test: at least \
+                 3 are needed"
+            )));
         }
         geometries.shuffle(&mut ChaCha8Rng::seed_from_u64(plan.seed));
         // Rounding leaves every part at least one geometry.
@@ -206,13 +212,13 @@ mod tests {
     fn too_few_geometries_and_impossible_fractions_are_rejected() {
         let plan = SplitPlan::default();
         let error = Split::deal(&geometries(&rows(2)), &plan).unwrap_err();
-        assert!(matches!(error, DatasetError::TooFewGeometries { found: 2 }));
+        assert!(error.to_string().starts_with("2 geometries"), "{error}");
         let three = Split::deal(&geometries(&rows(3)), &plan).unwrap();
         assert_eq!(three.training.len(), 1);
         for (validation, test) in [(0.0, 0.1), (0.1, 0.5), (0.1, f64::NAN)] {
             let plan = SplitPlan { validation, test, ..plan };
             let error = Split::deal(&geometries(&rows(9)), &plan).unwrap_err();
-            assert!(matches!(error, DatasetError::Shares { .. }));
+            assert!(error.to_string().starts_with("the fractions"), "{error}");
         }
     }
 }

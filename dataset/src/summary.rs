@@ -6,6 +6,7 @@ use crate::rows::Row;
 use crate::schema;
 use crate::split::Part;
 use std::collections::{BTreeMap, BTreeSet};
+use mesher::Tier;
 use std::fmt;
 use support::table::Table;
 
@@ -16,7 +17,7 @@ pub(crate) struct Contents {
     ranges: [[f64; 2]; schema::NUMERIC],
     /// The rays that were solved on another tier than the tier of their campaign, each with the
     /// tier on which it was solved.
-    other_tiers: BTreeMap<String, String>,
+    other_tiers: BTreeMap<String, Tier>,
 }
 
 impl Default for Contents {
@@ -37,8 +38,8 @@ impl Contents {
                 *minimum = minimum.min(value);
                 *maximum = maximum.max(value);
             }
-            if !row.is_as_asked() {
-                (self.other_tiers).insert(row.job.clone(), row.solved_tier.clone());
+            if !row.at_requested_tier() {
+                (self.other_tiers).insert(row.job.clone(), row.solved_tier);
             }
         }
     }
@@ -142,13 +143,13 @@ fn limit(value: f64) -> String {
     if value.is_finite() { format!("{value:.6}") } else { "-".into() }
 }
 
-/// Every text with the number of times that it occurs.
-fn counted<'a>(texts: impl Iterator<Item = &'a String>) -> String {
-    let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
-    for text in texts {
-        *counts.entry(text).or_default() += 1;
+/// Every tier with the number of times that it occurs.
+fn counted<'a>(tiers: impl Iterator<Item = &'a Tier>) -> String {
+    let mut counts: BTreeMap<&Tier, usize> = BTreeMap::new();
+    for tier in tiers {
+        *counts.entry(tier).or_default() += 1;
     }
-    let counts = counts.iter().map(|(text, count)| format!("{text} ({count})"));
+    let counts = counts.iter().map(|(tier, count)| format!("{tier} ({count})"));
     Vec::from_iter(counts).join(", ")
 }
 
@@ -187,11 +188,11 @@ mod tests {
 
     #[test]
     fn rays_on_another_mesh_are_counted_by_its_tier() {
-        let retried = |tiers: &[(&str, &str)]| {
+        let retried = |tiers: &[(&str, Tier)]| {
             let mut rows = rows(10);
             for row in &mut rows {
                 if let Some((_, tier)) = tiers.iter().find(|(job, _)| row.job == *job) {
-                    row.solved_tier = (*tier).into();
+                    row.solved_tier = *tier;
                 }
             }
             let text = summary(rows);
@@ -200,10 +201,10 @@ mod tests {
         };
         assert_eq!(retried(&[]), None);
         assert_eq!(
-            retried(&[("job-007", "fine")]).unwrap(),
+            retried(&[("job-007", Tier::Fine)]).unwrap(),
             "1 ray was solved on another mesh after a failure: fine (1)"
         );
-        let three = [("job-002", "fine"), ("job-005", "plate"), ("job-007", "fine")];
+        let three = [("job-002", Tier::Fine), ("job-005", Tier::Plate), ("job-007", Tier::Fine)];
         assert_eq!(
             retried(&three).unwrap(),
             "3 rays were solved on another mesh after a failure: fine (2), plate (1)"

@@ -1,9 +1,10 @@
 //! The card of a weight file: units, scaling, training domain, provenance, test errors.
 
 use crate::features::{LOG_WIDTH, Standardisation, feature_names};
-use crate::network::InvalidWeights;
+use crate::network::{finite, other_shape};
 use hinge::{HingeConstants, TrainingDomain};
 use serde::{Deserialize, Deserializer, Serialize};
+use support::fault::{Fault, fault};
 
 /// Format version of the weight file and its card; no other version is read.
 pub const FORMAT_VERSION: u32 = 9;
@@ -237,14 +238,15 @@ impl Card {
 
     /// Rejects other units or features, scales that are not positive, and means that are not
     /// finite.
-    pub(crate) fn validate(&self) -> Result<(), InvalidWeights> {
+    pub(crate) fn validate(&self) -> Result<(), Fault> {
         let names = feature_names(self.domain.holes.is_some());
         for (key, found, expected) in [
             ("units", self.units.clone(), UNITS.into()),
             ("features", self.features.join(", "), names.join(", ")),
         ] {
             if found != expected {
-                return Err(InvalidWeights::OtherConvention { key, expected, found });
+                let what = format!("the {key} of the card are {found}, expected {expected}");
+                return Err(fault("", what, ""));
             }
         }
         let damages = self.damage_scales().into_iter();
@@ -257,28 +259,19 @@ impl Card {
         let Standardisation { mean, std } = &self.standardisation;
         for (tensor, values) in [("feat_mean", mean), ("feat_std", std)] {
             if values.len() != names.len() {
-                return Err(InvalidWeights::Shape {
-                    tensor: tensor.into(),
-                    expected: format!("[{}]", names.len()),
-                    found: vec![values.len()],
-                });
+                let expected = format!("[{}]", names.len());
+                return Err(other_shape(tensor, &expected, &[values.len()]));
             }
         }
         let deviations = names.iter().zip(std.iter().copied());
         let deviations = deviations.map(|(name, std)| (format!("feat_std of {name}"), std));
         for (name, value) in scales.chain(deviations) {
             if !(value > 0.0 && value.is_finite()) {
-                return Err(InvalidWeights::NotPositive { name, value });
+                let what = format!("`{name}` = {value} violates 0 < {name} < infinity");
+                return Err(fault("", what, ""));
             }
         }
-        if let Some(index) = mean.iter().position(|value| !value.is_finite()) {
-            return Err(InvalidWeights::NotFinite {
-                tensor: "feat_mean".into(),
-                index,
-                value: mean[index],
-            });
-        }
-        Ok(())
+        finite("feat_mean", mean)
     }
 }
 

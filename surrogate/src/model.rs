@@ -4,11 +4,12 @@ use crate::card::{Card, ErrorBin, SpotCheck, TestErrors};
 use crate::damage::{self, HingeDamage};
 use crate::energy::{self, Prepared};
 use crate::hinge_energy::{HingeEnergy, Order};
-use crate::network::{InvalidWeights, Layer, Network};
+use crate::network::{Layer, Network, missing};
 use crate::reference_ligament;
 use hinge::{
     HingeDeformation, HingeDesign, HingeSample, NetLigament, Regime, SheetMaterial, TrainingDomain,
 };
+use support::fault::Fault;
 
 /// The networks of (14), with the card that contains their scaling and provenance.
 #[derive(Clone, Debug)]
@@ -50,7 +51,7 @@ impl Surrogate {
     ///
     /// The input of the networks is the standardised features. Each head has one output. There must
     /// be a head of D_peak if, and only if, the card has a scale for it.
-    pub fn from_parts(layers: Layers, card: Card) -> Result<Self, InvalidWeights> {
+    pub fn from_parts(layers: Layers, card: Card) -> Result<Self, Fault> {
         card.validate()?;
         let Layers { chi, chi_d, chi_p } = layers;
         let network =
@@ -60,9 +61,7 @@ impl Surrogate {
         let chi_p = match (chi_p, card.peak_scale) {
             (None, None) => None,
             (layers, Some(_)) => Some(network("chi_p", layers.unwrap_or_default(), Some(1))?),
-            (Some(_), None) => {
-                return Err(InvalidWeights::Missing { tensor: "d_scale of chi_p".into() });
-            }
+            (Some(_), None) => return Err(missing("d_scale of chi_p")),
         };
         Ok(Self { chi, chi_d, chi_p, card })
     }

@@ -38,12 +38,11 @@ mod state;
 mod training;
 mod validation;
 
-pub use config::{InvalidConfig, TrainingConfig};
+pub use config::TrainingConfig;
 pub use distillation::{Distillation, TrainingData};
 pub use epoch::Epoch;
 pub use error::TrainError;
 pub use error_interval::ErrorInterval;
 pub use fine_tuning::check_pretrained;
-pub use state::StateError;
 pub use training::{Start, Trained, Training, train};
 pub use validation::{Parity, spot_check};

@@ -5,7 +5,7 @@ use crate::bins::error_bins;
 use crate::config::{DAMAGE_SHARPNESS, TrainingConfig};
 use crate::distillation::TrainingData;
 use crate::epoch::Epoch;
-use crate::error::TrainError;
+use crate::error::{TrainError, failed};
 use crate::export::layers;
 use crate::fine_tuning::{Initial, check_pretrained, inherit};
 use crate::loss::loss;
@@ -108,7 +108,7 @@ impl Training {
         config: &TrainingConfig,
         start: Start,
     ) -> Result<Self, TrainError> {
-        config.validate()?;
+        config.validate().map_err(|error| failed(format!("training configuration: {error}")))?;
         let began = Instant::now();
         let data: TrainingData = data.into();
         let parts = Parts::new(data.database)?;
@@ -190,15 +190,19 @@ impl Training {
         let epoch = self.history.len() + 1;
         let training_loss = self.descend(epoch)?;
         let learning_rate = self.learning_rate(epoch * self.steps_per_epoch());
-        let diverged = TrainError::Diverged { epoch, learning_rate };
+        let diverged = || {
+            Err(failed(format!(
+                "the loss is not finite in epoch {epoch}; lower `learning_rate` = {learning_rate}"
+            )))
+        };
         if !training_loss.is_finite() {
-            return Err(diverged);
+            return diverged();
         }
         let surrogate = export(&self.networks, &self.card)?;
         let validation = Parity::new(&surrogate, &self.parts.validation);
         let validation_loss = validation.loss(&self.scales);
         if !validation_loss.is_finite() {
-            return Err(diverged);
+            return diverged();
         }
         let errors = validation.network_errors();
         let better = [0, 1, 2].map(|network| {
@@ -302,7 +306,7 @@ impl Training {
 impl Parts {
     fn new(database: &Database) -> Result<Self, TrainError> {
         let part = |part, name| match database.part(part) {
-            rows if rows.is_empty() => Err(TrainError::NoRows { part: name }),
+            rows if rows.is_empty() => Err(no_rows(name)),
             rows => Ok(rows),
         };
         Ok(Self {
@@ -311,6 +315,10 @@ impl Parts {
             test: part(Part::Test, "test")?,
         })
     }
+}
+
+fn no_rows(part: &str) -> TrainError {
+    failed(format!("the {part} part of the split has no rows; collect more geometries"))
 }
 
 /// The card before training; the test errors are added at the end.
@@ -336,12 +344,12 @@ fn card(
         damage_scale: scales.damage,
         peak_scale: scales.peak,
         damage_sharpness: DAMAGE_SHARPNESS,
-        domain: domain.ok_or(TrainError::NoRows { part: "training" })?,
+        domain: domain.ok_or_else(|| no_rows("training"))?,
         hinge: manifest.hinge,
         material: manifest.material.clone(),
         material_hash: the_only(&manifest.material_hashes),
         settings_hash: the_only(&manifest.settings_hashes),
-        tier: manifest.tier.clone(),
+        tier: manifest.tier.to_string(),
         bent_rays: manifest.bent_rays,
         dataset_hash: manifest.hash.clone(),
         fine_tuned_from: None,
@@ -367,5 +375,6 @@ fn the_only(hashes: &BTreeSet<String>) -> Option<String> {
 }
 
 fn export(networks: &Networks, card: &Card) -> Result<Surrogate, TrainError> {
-    Ok(Surrogate::from_parts(layers(networks)?, card.clone())?)
+    Surrogate::from_parts(layers(networks)?, card.clone())
+        .map_err(|error| failed(format!("the weights cannot be exported: {error}")))
 }

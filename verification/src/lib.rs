@@ -76,7 +76,7 @@ pub use learning::{Accuracy, LearningEnd, LearningRound, LearningSteps, Learning
 pub use networks::verification_tier;
 pub use recorded_path::{RecordedPath, paths_of, recorded_paths};
 pub use replay::{ElementWindows, Replay, ReplayedHinge, UnsolvedHinge};
-pub use rows::{InvalidRow, collected, collected_windows, rows};
+pub use rows::{collected, collected_windows, rows};
 pub use sheet_check::{HingeCheck, PanelCheck, SheetCheck, SheetTask, StateCheck};
 pub use sheet_cost::SheetCost;
 pub use sheet_errors::SheetErrors;

@@ -1,18 +1,17 @@
 //! Databases of two meshes: some of the rays are there on a finer one too.
 
 use crate::common::{collect, finer, on_tier, row, rows};
-use dataset::{Collected, Database, DatasetError, FinerMesh, Part, Row, SplitPlan};
+use dataset::{Collected, Database, DatasetError, Fidelity, FinerMesh, Part, Row, SplitPlan};
+use mesher::Tier;
 
 fn both() -> Database {
     collect([rows(), finer(4)].concat()).unwrap()
 }
 
 /// The column in which rows must not differ, but do.
-fn mixed(rows: Vec<Row>) -> &'static str {
-    match collect(rows).unwrap_err() {
-        DatasetError::Mixed { column, .. } => column,
-        other => panic!("{other}"),
-    }
+fn mixed(rows: Vec<Row>) -> String {
+    let error = collect(rows).unwrap_err().to_string();
+    error.split([' ', '=']).nth(2).unwrap().to_owned()
 }
 
 #[test]
@@ -83,7 +82,7 @@ fn the_finer_mesh_has_fewer_rays_or_longer_solves() {
     let finer_rays = |rows: Vec<Row>| {
         let database = collect(rows).unwrap();
         let finer = database.manifest().finer.clone().unwrap();
-        assert_eq!(finer.tier, "reference");
+        assert_eq!(finer.tier, Fidelity::Solved(Tier::Reference));
         (finer.rays, database.on_both_meshes().len())
     };
     // A ray that failed on the other mesh has no use.
@@ -117,12 +116,12 @@ fn the_rays_of_both_meshes_are_straight_or_bend_alike() {
 
 #[test]
 fn the_rows_of_a_ray_are_of_one_mesh() {
-    for change in ["default", "reference"] {
+    for change in [Tier::Default, Tier::Reference].map(Fidelity::Solved) {
         let mut both = [rows(), finer(4)].concat();
         let other = both.iter_mut().find(|row| row.tier != change).unwrap();
-        other.tier = change.into();
+        other.tier = change;
         let column = mixed(both);
-        assert!(["tier", "settings_hash"].contains(&column), "{column}");
+        assert!(["tier", "settings_hash"].contains(&&*column), "{column}");
     }
 }
 

@@ -4,7 +4,7 @@
 #[path = "../../../fe_driver/tests/common/fake_solver.rs"]
 mod fake_solver;
 
-use dataset::Row;
+use dataset::{Fidelity, Row};
 use design::hinge_law::Order;
 use design::objective::design_problem::Deployment;
 use design::pattern::design_vector::DesignVector;
@@ -358,7 +358,7 @@ fn a_spot_check_keeps_the_states_of_the_windows_that_are_solved() {
     assert_eq!(check.unsolved[0].solve.problem.hinge, first);
     assert_eq!(check.unsolved[0].attempts, 3);
     let row = &check.rows[0];
-    assert_eq!((row.tier.as_str(), row.ccx.as_str()), ("tiny", "fake"));
+    assert_eq!((row.tier, row.tools.ccx.as_str()), (Fidelity::Solved(Tier::Tiny), "fake"));
     assert_eq!(row.material_hash, scene.material.law_hash());
 }
 
