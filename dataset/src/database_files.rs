@@ -127,8 +127,7 @@ fn read_manifest(path: &Path) -> Result<Manifest, DatasetError> {
         format_version: u64,
     }
     let bytes = read_bytes(path)?;
-    let Version { format_version } =
-        serde_json::from_slice(&bytes).map_err(no_manifest(path))?;
+    let Version { format_version } = serde_json::from_slice(&bytes).map_err(no_manifest(path))?;
     if format_version != u64::from(FORMAT_VERSION) {
         return Err(refused(format!(
             "{} has the format version {format_version}, but this program reads only version \

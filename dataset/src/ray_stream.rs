@@ -36,7 +36,8 @@ impl Collected {
         replace: bool,
     ) -> Result<Self, E> {
         refuse_existing(path, replace)?;
-        let mut file = Unnamed::next_to(path).map_err(unwritten(path)).map_err(DatasetError::from)?;
+        let mut file =
+            Unnamed::next_to(path).map_err(unwritten(path)).map_err(DatasetError::from)?;
         let failed = |error: DatasetError| unwritten(path)(error).into();
         let mut digest = Digest::new();
         let mut contents = Contents::default();
@@ -94,8 +95,7 @@ mod tests {
         }
         assert_eq!(collected.to_string(), database.to_string());
 
-        let refusal =
-            |rows: &[Row], replace| write(rows, replace).unwrap_err().to_string();
+        let refusal = |rows: &[Row], replace| write(rows, replace).unwrap_err().to_string();
         assert!(refusal(&rows, false).contains("already exists"));
         // A ray that is given twice, or no ray that can be used, leaves the old files.
         let twice = [&rows[..20], &rows[10..]].concat();

@@ -97,7 +97,10 @@ pub(crate) const TEXTS: [Text; 9] = [
     },
     text!("material" = material, "name of the material"),
     text!("material_hash" = material_hash, "hash of the law of the material"),
-    text!("settings_hash" = settings_hash, "hash of the settings that all rays of the campaign share"),
+    text!(
+        "settings_hash" = settings_hash,
+        "hash of the settings that all rays of the campaign share"
+    ),
     text!("tier" = tier, "requested mesh"),
     text!("solved_tier" = solved_tier, "mesh of the row"),
     text!("gmsh" = tools.gmsh, "version of gmsh"),

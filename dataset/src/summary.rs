@@ -5,8 +5,8 @@ use crate::manifest::{FinerMesh, Manifest};
 use crate::rows::Row;
 use crate::schema;
 use crate::split::Part;
-use std::collections::{BTreeMap, BTreeSet};
 use mesher::Tier;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 use support::table::Table;
 

@@ -119,9 +119,8 @@ impl Card {
         let text = regular_file::read(path).map_err(|error| match error.kind() {
             io::ErrorKind::NotFound => {
                 let card = path.display();
-                let what = format!(
-                    "has no card: {card} is missing; copy both files from the same place"
-                );
+                let what =
+                    format!("has no card: {card} is missing; copy both files from the same place");
                 other_file(weights, what)
             }
             _ => unread(path)(error),
@@ -221,10 +220,7 @@ fn scaling(card: &Card) -> [(&'static str, Tensor); 4] {
 }
 
 /// Layers 0, 1, ... of a network, up to the highest number in the file.
-fn take_layers(
-    tensors: &mut BTreeMap<String, Tensor>,
-    network: &str,
-) -> Result<Vec<Layer>, Fault> {
+fn take_layers(tensors: &mut BTreeMap<String, Tensor>, network: &str) -> Result<Vec<Layer>, Fault> {
     let layer_of = |name: &String| -> Option<usize> {
         let (layer, _) = name.strip_prefix(network)?.strip_prefix('.')?.split_once('.')?;
         layer.parse().ok()

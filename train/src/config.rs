@@ -63,8 +63,7 @@ impl TrainingConfig {
 
     /// Rejects impossible values; the error names the key and the rule.
     pub fn validate(&self) -> Result<(), Fault> {
-        key_limits::check::<Self>(self)
-            .map_err(|error| fault("", error.to_string(), ""))?;
+        key_limits::check::<Self>(self).map_err(|error| fault("", error.to_string(), ""))?;
         let checks = [
             (
                 "embedding",

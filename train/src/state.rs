@@ -99,10 +99,8 @@ impl State {
         if blake3::hash(body) != *hash {
             return Err(malformed(&"its hash does not match"));
         }
-        let tensors =
-            SafeTensors::deserialize(body).map_err(|error| malformed(&error))?;
-        let (_, metadata) =
-            SafeTensors::read_metadata(body).map_err(|error| malformed(&error))?;
+        let tensors = SafeTensors::deserialize(body).map_err(|error| malformed(&error))?;
+        let (_, metadata) = SafeTensors::read_metadata(body).map_err(|error| malformed(&error))?;
         let progress = metadata.metadata().as_ref().and_then(|map| map.get("progress"));
         let progress = progress.ok_or_else(|| malformed(&"it contains no progress"))?;
         let progress: Progress =

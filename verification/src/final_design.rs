@@ -7,7 +7,7 @@
 //! or all rounds are made.
 
 use crate::balanced_sheet::{BALANCED, Balanced, DRAFT_ROUNDS, balanced};
-use crate::replay::ElementWindows;
+use crate::element_windows::ElementWindows;
 use crate::verification_error::VerificationError;
 use design::optimise::outer_loop::Ended;
 use mesher::Tier;

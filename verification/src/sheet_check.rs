@@ -1,8 +1,8 @@
 //! A whole sheet by finite elements compared with the deployment that the hinge law predicts.
 
 use crate::patch::SheetPart;
-use crate::verification_error::VerificationError;
-use crate::whole_sheet::{sheet_problem, with_support};
+use crate::verification_error::{VerificationError, refused};
+use crate::whole_sheet::{no_posture, sheet_problem, with_support};
 use design::geometry::polygon::distance;
 use design::hinge_law::{DamageMeasure, Order};
 use design::objective::design_problem::{Deployment, DesignProblem};
@@ -181,13 +181,15 @@ impl SheetTask {
         let scene = with_support(scene, support)?;
         let posture = scene.config.posture.map(|posture| posture.kind);
         let problem = scene.problem()?;
-        let mechanics = (problem.model.mechanics()).ok_or(VerificationError::NoLoads)?;
+        let no_loads =
+            || refused("whole sheets need supports and loads: the scene has level = \"pin\"");
+        let mechanics = problem.model.mechanics().ok_or_else(no_loads)?;
         let deployment = problem.deploy(design)?;
         deployment.at_full_load()?;
         let curve = ActuationCurve::new(mechanics, &deployment);
-        let curve = curve.ok_or(VerificationError::NoLoads)?.points;
+        let curve = curve.ok_or_else(no_loads)?.points;
         Ok(Self {
-            support: support.or(posture).ok_or(VerificationError::NoPosture)?,
+            support: support.or(posture).ok_or_else(no_posture)?,
             tier,
             contact: false,
             part: match patch {

@@ -48,12 +48,12 @@ fn counts_split_and_domain_are_of_the_rays_alone() {
     // One of the rays on the finer mesh is partial, and one goes on beyond its end, where it would
     // widen the domain.
     let beyond = row(3, 1.2);
-    let further = on_tier("reference", std::slice::from_ref(&beyond));
+    let further = on_tier(Tier::Reference, std::slice::from_ref(&beyond));
     let database = collect([rows(), finer(4), further].concat()).unwrap();
     let (manifest, alone) = (database.manifest(), collect(rows()).unwrap());
     let wide = collect([rows(), vec![beyond]].concat()).unwrap();
     assert_ne!(wide.manifest().domain, alone.manifest().domain);
-    let expected = FinerMesh { tier: "reference".into(), rays: 4, cpu_s: 160.0 };
+    let expected = FinerMesh { tier: Fidelity::Solved(Tier::Reference), rays: 4, cpu_s: 160.0 };
     assert_eq!(manifest.finer, Some(expected));
     assert_eq!(alone.manifest().finer, None);
     assert_eq!((manifest.rows, database.rows().len()), (71, 71));
@@ -86,12 +86,12 @@ fn the_finer_mesh_has_fewer_rays_or_longer_solves() {
         (finer.rays, database.on_both_meshes().len())
     };
     // A ray that failed on the other mesh has no use.
-    let one_more = || on_tier("reference", &[row(10, 1.0)]);
+    let one_more = || on_tier(Tier::Reference, &[row(10, 1.0)]);
     assert_eq!(finer_rays([rows(), finer(4), one_more()].concat()), (5, 4));
     assert_eq!(finer_rays([rows(), finer(10)].concat()), (10, 10));
 
     assert_eq!(mixed([rows(), one_more()].concat()), "tier");
-    let third = on_tier("tiny", &rows()[..5]);
+    let third = on_tier(Tier::Tiny, &rows()[..5]);
     assert_eq!(mixed([rows(), finer(4), third].concat()), "tier");
     let as_long = finer(10).into_iter().map(|row| Row { cpu_s: 9.5, ..row });
     assert_eq!(mixed(rows().into_iter().chain(as_long).collect()), "tier");

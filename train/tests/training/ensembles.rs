@@ -4,9 +4,7 @@ use crate::closed_form::{config, database, energies, finished, rows};
 use dataset::Row;
 use hinge::{HingeDeformation, HingeDesign};
 use surrogate::Surrogate;
-use train::{
-    Distillation, Parity, Start, Training, TrainingConfig, TrainingData, train,
-};
+use train::{Distillation, Parity, Start, Training, TrainingConfig, TrainingData, train};
 
 #[test]
 fn an_outlier_is_an_error_that_names_job_and_target() {
@@ -21,7 +19,10 @@ fn an_outlier_is_an_error_that_names_job_and_target() {
         // Every second ray has an outlier, so that the training part contains some.
         rows.iter_mut().step_by(20).for_each(change);
         let error = train(&database(rows), &config(1), &mut |_| {}).unwrap_err().to_string();
-        assert!(error.starts_with("job job-") && error.contains(&format!(": {name} = ")), "{error}");
+        assert!(
+            error.starts_with("job job-") && error.contains(&format!(": {name} = ")),
+            "{error}"
+        );
     }
 }
 
