@@ -1,10 +1,11 @@
 //! A database: consistent rows, their Parquet file and its manifest.
 
 use crate::digest::{Digest, by_job_and_lambda};
-use crate::error::DatasetError;
+use crate::error::{DatasetError, refused};
 use crate::manifest::Manifest;
 use crate::parquet;
 use crate::rows::{Fidelity, Row};
+use crate::schema::COLUMNS;
 use crate::split::{Part, SplitPlan, geometry};
 use std::collections::BTreeSet;
 
@@ -88,5 +89,19 @@ impl Database {
         let jobs = self.manifest.split.jobs(part);
         let rows = self.rows.iter().filter(|row| jobs.contains(&row.job));
         rows.cloned().collect()
+    }
+
+    /// The table as CSV, in full precision.
+    pub fn to_csv(&self) -> Result<Vec<u8>, DatasetError> {
+        self.csv().map_err(|error| refused(format!("the table cannot be written as CSV: {error}")))
+    }
+
+    fn csv(&self) -> csv::Result<Vec<u8>> {
+        let mut writer = csv::Writer::from_writer(Vec::new());
+        writer.write_record(COLUMNS.iter().map(|column| column.name))?;
+        for row in &self.rows {
+            writer.write_record(COLUMNS.iter().map(|column| column.text(row)))?;
+        }
+        Ok(writer.into_inner().expect("a vector takes every byte"))
     }
 }

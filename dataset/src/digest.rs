@@ -6,7 +6,7 @@ use crate::gates::{Gates, Rejection};
 use crate::manifest::{FORMAT_VERSION, FinerMesh, Manifest};
 use crate::meshes::Meshes;
 use crate::rows::Row;
-use crate::schema;
+use crate::schema::COLUMNS;
 use crate::split::{Split, SplitPlan};
 use hinge::{HingeConstants, TrainingDomain};
 use std::cmp::Ordering;
@@ -104,7 +104,11 @@ impl Digest {
         Ok(Manifest {
             format_version: FORMAT_VERSION,
             hash,
-            units: schema::units().map(|(name, unit)| (name.to_owned(), unit.to_owned())).collect(),
+            units: COLUMNS
+                .iter()
+                .filter(|column| !column.unit.is_empty())
+                .map(|column| (column.name.to_owned(), column.unit.to_owned()))
+                .collect(),
             rows: self.rows,
             rays: rays.rays,
             partial_rays: rays.partial_rays,

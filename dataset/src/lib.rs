@@ -23,9 +23,9 @@
 
 #![warn(missing_docs)]
 
+mod bridge;
 mod check;
 mod compare;
-mod csv;
 mod database;
 mod database_files;
 mod digest;
@@ -34,10 +34,8 @@ mod fidelity_correction;
 mod gates;
 mod manifest;
 mod meshes;
-mod mirror;
 mod parquet;
 mod ray_stream;
-mod rays;
 mod rows;
 mod schema;
 mod split;
@@ -50,8 +48,7 @@ pub use error::DatasetError;
 pub use fidelity_correction::{LeftOut, left_out};
 pub use gates::{Gates, Rejection};
 pub use manifest::{FORMAT_VERSION, FinerMesh, Manifest};
-pub use mirror::with_mirrored;
 pub use ray_stream::Collected;
-pub use rows::{Fidelity, Row};
-pub use schema::{ColumnMeaning, columns};
+pub use rows::{Fidelity, Row, with_mirrored};
+pub use schema::{COLUMNS, ColumnMeaning};
 pub use split::{Part, Split, SplitPlan};

@@ -9,7 +9,7 @@ use crate::manifest::Manifest;
 use crate::parquet::{Hashing, Table};
 use crate::rows::Row;
 use crate::split::SplitPlan;
-use crate::summary::{Contents, Summary};
+use crate::summary::Contents;
 use std::fmt;
 use std::path::Path;
 use support::fault::unwritten;
@@ -59,8 +59,7 @@ impl Collected {
 
 impl fmt::Display for Collected {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        let (manifest, contents) = (&self.manifest, &self.contents);
-        Summary { manifest, contents }.fmt(f)
+        self.contents.summary(&self.manifest, f)
     }
 }
 

@@ -160,8 +160,8 @@ pub(crate) fn state(row: &Row) -> ([i64; 2], [i64; 3]) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mirror::with_mirrored;
     use crate::rows::tests::rows;
+    use crate::rows::with_mirrored;
 
     fn geometries(rows: &[Row]) -> Geometries {
         let mut geometries = Geometries::default();

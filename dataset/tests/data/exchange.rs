@@ -1,7 +1,7 @@
 //! Databases written as CSV.
 
 use crate::common::{collect, finer, rows};
-use dataset::columns;
+use dataset::COLUMNS;
 
 #[test]
 fn every_row_is_written_as_csv_in_full_precision() {
@@ -10,7 +10,7 @@ fn every_row_is_written_as_csv_in_full_precision() {
         let table = database.to_csv().unwrap();
         let mut reader = csv::Reader::from_reader(&table[..]);
         let head: Vec<String> = reader.headers().unwrap().iter().map(str::to_owned).collect();
-        let names: Vec<&str> = columns().map(|column| column.name).collect();
+        let names: Vec<&str> = COLUMNS.iter().map(|column| column.name).collect();
         assert_eq!(head, names);
         let records: Vec<csv::StringRecord> = reader.records().map(Result::unwrap).collect();
         assert_eq!(records.len(), database.rows().len());
