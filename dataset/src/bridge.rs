@@ -158,7 +158,7 @@ fn coordinates(row: &Row) -> [f64; 5] {
     [design.w_lig, design.alpha - FRAC_PI_2, eta_a, eta_s, row.sample.theta]
 }
 
-/// Middle and half of the range of each coordinate. The middle is 0 except for the width, so that
+/// Middle and half of the range of each coordinate. The middle is 0 except for the width, so
 /// the mirror image has the opposite alpha and eta_s. A constant coordinate is not scaled.
 fn ranges<'a>(rows: impl Iterator<Item = &'a Row>) -> [[f64; 2]; 5] {
     let mut minimum = [f64::INFINITY; 5];

@@ -62,7 +62,7 @@ impl Database {
         let trained = self.geometries(Part::Training);
         let mut jobs = BTreeSet::new();
         let held_out =
-            |row: &&Row| matches!(split.part(&row.job), Some(Part::Validation | Part::Test));
+            |row: &&Row| split.validation.contains(&row.job) || split.test.contains(&row.job);
         (self.rows().iter().filter(held_out))
             .filter(|row| trained.contains(&geometry(row)) && jobs.insert(&row.job))
             .collect()

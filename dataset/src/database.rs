@@ -23,7 +23,7 @@ impl Database {
     /// Rows of different materials or hinge constants are an error, and rows of two tiers without a
     /// common ray.
     pub fn collect(rows: Vec<Row>, plan: &SplitPlan) -> Result<Self, DatasetError> {
-        let mut digest = Digest::new();
+        let mut digest = Digest::default();
         let mut rows = digest.accepted(rows);
         rows.sort_by(by_job_and_lambda);
         for ray in rows.chunk_by(|left, right| left.job == right.job) {

@@ -19,10 +19,11 @@ pub(crate) fn by_job_and_lambda(left: &Row, right: &Row) -> Ordering {
 }
 
 /// What is known of the rows so far.
+#[derive(Default)]
 pub(crate) struct Digest {
     rejected: BTreeMap<Rejection, usize>,
     /// Job and lambda of the last accepted row.
-    last: (String, f64),
+    last: Option<(String, f64)>,
     rows: usize,
     meshes: Meshes,
     /// The different values of every column of text, in the order of [`TEXTS`].
@@ -34,16 +35,6 @@ const TEXTS: [fn(&Row) -> &String; 4] =
     [|row| &row.material, |row| &row.material_hash, |row| &row.tools.gmsh, |row| &row.tools.ccx];
 
 impl Digest {
-    pub fn new() -> Self {
-        Self {
-            rejected: BTreeMap::new(),
-            last: (String::new(), f64::NEG_INFINITY),
-            rows: 0,
-            meshes: Meshes::default(),
-            texts: Default::default(),
-        }
-    }
-
     /// The rows that pass the gates; the others are counted.
     pub fn accepted(&mut self, mut rows: Vec<Row>) -> Vec<Row> {
         rows.retain(|row| match Gates::default().rejection(row) {
@@ -74,14 +65,14 @@ impl Digest {
     /// Rejects a row that does not come after the last one: one with the same job and lambda.
     fn refuse_duplicate(&mut self, row: &Row) -> Result<(), DatasetError> {
         let (job, lambda) = (&row.job, row.sample.lambda);
-        let by_lambda = || self.last.1.total_cmp(&lambda);
-        if self.last.0.cmp(job).then_with(by_lambda) != Ordering::Less {
+        if let Some((last, before)) = &self.last
+            && last.cmp(job).then_with(|| before.total_cmp(&lambda)) != Ordering::Less
+        {
             return Err(refused(format!(
                 "job {job}: lambda = {lambda} occurs twice; was the job collected twice?"
             )));
         }
-        self.last.0.clone_from(job);
-        self.last.1 = lambda;
+        self.last = Some((job.clone(), lambda));
         Ok(())
     }
 

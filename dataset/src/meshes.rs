@@ -13,6 +13,7 @@ use std::cmp::Reverse;
 use std::collections::BTreeSet;
 
 /// The rows of one mesh.
+#[derive(Default)]
 pub(crate) struct MeshRows {
     /// The first of them.
     pub first: Row,
@@ -27,19 +28,6 @@ pub(crate) struct MeshRows {
 }
 
 impl MeshRows {
-    fn new(first: &Row) -> Self {
-        Self {
-            first: first.clone(),
-            keys: BTreeSet::new(),
-            rays: 0,
-            partial_rays: 0,
-            cpu_s: 0.0,
-            geometries: Geometries::default(),
-            designs: Vec::new(),
-            deformations: Vec::new(),
-        }
-    }
-
     fn add(&mut self, ray: &[Row]) {
         for row in ray {
             self.geometries.add(row);
@@ -102,7 +90,7 @@ impl Meshes {
         };
         let known = self.meshes.iter().position(|mesh| mesh.first.tier == first.tier);
         let place = known.unwrap_or_else(|| {
-            self.meshes.push(MeshRows::new(first));
+            self.meshes.push(MeshRows { first: first.clone(), ..MeshRows::default() });
             self.meshes.len() - 1
         });
         for row in ray {

@@ -39,7 +39,7 @@ impl Collected {
         let mut file =
             Unnamed::next_to(path).map_err(unwritten(path)).map_err(DatasetError::from)?;
         let failed = |error: DatasetError| unwritten(path)(error).into();
-        let mut digest = Digest::new();
+        let mut digest = Digest::default();
         let mut contents = Contents::default();
         let mut hashing = Hashing::new(file.file());
         let mut table = Table::new(&mut hashing).map_err(failed)?;

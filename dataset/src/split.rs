@@ -96,15 +96,11 @@ impl Split {
 
     /// The same split of some of the jobs.
     pub(crate) fn of(&self, jobs: BTreeSet<&String>) -> Self {
-        let known = |part: &BTreeSet<String>| {
-            let known = part.iter().filter(|job| jobs.contains(job));
-            known.cloned().collect()
-        };
-        Self {
-            training: known(&self.training),
-            validation: known(&self.validation),
-            test: known(&self.test),
+        let mut split = self.clone();
+        for part in [&mut split.training, &mut split.validation, &mut split.test] {
+            part.retain(|job| jobs.contains(job));
         }
+        split
     }
 
     /// The ids of the jobs of one part.
@@ -114,13 +110,6 @@ impl Split {
             Part::Validation => &self.validation,
             Part::Test => &self.test,
         }
-    }
-
-    /// The part of a job; `None` if it is in no part.
-    pub(crate) fn part(&self, job: &str) -> Option<Part> {
-        [Part::Training, Part::Validation, Part::Test]
-            .into_iter()
-            .find(|&part| self.jobs(part).contains(job))
     }
 }
 
@@ -143,7 +132,7 @@ impl Geometries {
     }
 }
 
-/// (w_lig, alpha) up to mirroring, in units of 1e-9, so that the rounding error of pi - alpha has
+/// (w_lig, alpha) up to mirroring, in units of 1e-9, so the rounding error of pi - alpha has
 /// no effect.
 pub(crate) fn geometry(row: &Row) -> [i64; 2] {
     let alpha = row.design.alpha.min(PI - row.design.alpha);

@@ -50,8 +50,8 @@ mod tanh;
 mod weights;
 
 pub use card::{
-    Card, DistillationRecord, ErrorBin, FORMAT_VERSION, FitError, SpotCheck, Teacher, TestErrors,
-    UNITS,
+    BinQuantity, Card, DistillationRecord, ErrorBin, FORMAT_VERSION, FitError, SpotCheck, Teacher,
+    TestErrors, UNITS,
 };
 pub use damage::HingeDamage;
 pub use energy::Prepared;

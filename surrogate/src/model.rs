@@ -83,7 +83,7 @@ impl Surrogate {
     /// The surrogate of the same material at `factor` times the thickness, exact for geometrically
     /// similar hinges.
     ///
-    /// The window is rate-independent and has no length of its own, so that with all lengths
+    /// The window is rate-independent and has no length of its own, so with all lengths
     /// multiplied by `factor`, W is multiplied by its cube, and D and D_peak do not change. A hinge
     /// of width w_lig therefore has `factor`^3 times the energy of the hinge w_lig / `factor` of
     /// this surrogate, at the same (eta_a, eta_s, theta).
@@ -188,7 +188,7 @@ impl Surrogate {
         self.card.damage_scale
     }
 
-    /// Computes the quantities that depend on the designs alone: chi(xi(0, g)) and its derivative
+    /// Computes the quantities that depend only on the designs: chi(xi(0, g)) and its derivative
     /// in g.
     pub fn prepare(&self, designs: &[HingeDesign]) -> Prepared {
         Prepared::new(&self.chi, designs, self.card.hinge.fillet_ratio)

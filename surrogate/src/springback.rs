@@ -71,11 +71,11 @@ pub struct Springback {
     spans: [f64; 2],
     /// Coefficients of (d_a, d_theta, d_s, u_{theta a}), a row a term.
     stiffness_even: [[f64; 4]; TERMS[0]],
-    /// Of (u_{s a}, u_{s theta}).
+    /// Coefficients of (u_{s a}, u_{s theta}).
     stiffness_odd: [[f64; 2]; TERMS[1]],
-    /// Of (e_a, e_theta).
+    /// Coefficients of (e_a, e_theta).
     rest_even: [[f64; 2]; TERMS[0]],
-    /// Of e_s.
+    /// Coefficients of e_s.
     rest_odd: [[f64; 1]; TERMS[1]],
 }
 

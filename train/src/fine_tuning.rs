@@ -134,7 +134,7 @@ fn factor(points: impl Iterator<Item = [f64; 2]>) -> f64 {
 }
 
 /// Changes a first layer such that its outputs for inputs standardised by `to` are those for inputs
-/// standardised by `from` before. They do not depend on a feature that `to` alone has, the radius
+/// standardised by `from` before. They do not depend on a feature that only `to` has, the radius
 /// of the hole.
 fn restandardise(first: &mut Layer, from: &Standardisation, to: &Standardisation) {
     let [known, features] = [from, to].map(|features| features.mean.len());

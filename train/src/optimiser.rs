@@ -1,6 +1,6 @@
 //! The optimiser: Muon for the weight matrices of the embedding, Adam for all other parameters.
 //!
-//! Muon steps along the orthogonal matrix nearest to the averaged gradient, so that directions in
+//! Muon steps along the orthogonal matrix nearest to the averaged gradient, so directions in
 //! which the loss is flat change as much as steep ones. In the same number of steps, the error of
 //! the forces is about half of that with Adam. The damage heads overfit with Muon and are therefore
 //! trained with Adam.

@@ -5,12 +5,13 @@ use crate::mirror;
 use burn::tensor::{Tensor, TensorCreationOptions, TensorData};
 use dataset::Row;
 use hinge::{HingeDeformation, HingeDesign, HingeSample, NetLigament};
+use support::statistics;
 use surrogate::{Card, FEATURE_NAMES, Standardisation, feature_names, features};
 
 /// The scales of (14) and (15), computed from the training rows.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Scales {
-    /// Of the hinges that the networks see; [`NetLigament`].
+    /// Standardisation of the hinges that the networks see; [`NetLigament`].
     pub standardisation: Standardisation,
     /// The hole of these hinges, over w_lig.
     pub hole: f64,
@@ -72,8 +73,7 @@ impl Scales {
     pub fn new(rows: &[Row], hole: f64, names: &[&'static str]) -> Result<Self, TrainError> {
         let count = rows.len() as f64;
         let root_mean_square = |target: &'static str, value: fn(&Row) -> f64| {
-            let sum: f64 = rows.iter().map(|row| value(row).powi(2)).sum();
-            let scale = (sum / count).sqrt();
+            let scale = statistics::root_mean_square(rows.iter().map(value));
             refuse_outlier(rows, target, value)?;
             if scale > 0.0 && scale.is_finite() {
                 Ok(scale)

@@ -30,7 +30,7 @@ use surrogate::{Card, FORMAT_VERSION, Surrogate, TestErrors, UNITS, feature_name
 #[derive(Clone, Debug)]
 pub struct Trained {
     /// The surrogate in which each network is from the epoch of its minimum validation error, or
-    /// from the last epoch if that error is not known.
+    /// from the last epoch if that error is unknown.
     pub surrogate: Surrogate,
     /// The surrogate of the last epoch.
     pub last: Surrogate,
@@ -114,28 +114,23 @@ impl Training {
         let parts = Parts::new(data.database)?;
         let manifest = data.database.manifest();
         let rows = with_mirrored(&parts.training);
-        let state = match start {
-            Start::State { state, .. } => Some(State::read(state)?),
-            Start::Fresh | Start::Weights(_) => None,
-        };
-        let (layers, scales) = match (start, &state) {
-            (Start::Weights(pretrained), _) => {
+        let names = feature_names(manifest.domain.holes.is_some());
+        let (mut layers, mut saved) = (None, None);
+        let scales = match start {
+            Start::Fresh => Scales::new(&rows, manifest.hinge.fillet_ratio, names)?,
+            Start::Weights(pretrained) => {
                 check_pretrained(pretrained, config)?;
                 let initial = Initial::new(pretrained, &rows, manifest)?;
-                (Some(initial.layers), initial.scales)
+                layers = Some(initial.layers);
+                initial.scales
             }
-            (_, Some(state)) => {
-                let card = &state.progress.card;
-                (None, Scales::from_card(card, &rows)?)
-            }
-            (_, None) => {
-                let hole = manifest.hinge.fillet_ratio;
-                let names = feature_names(manifest.domain.holes.is_some());
-                (None, Scales::new(&rows, hole, names)?)
+            Start::State { state, .. } => {
+                let state = saved.insert(State::read(state)?);
+                Scales::from_card(&state.progress.card, &rows)?
             }
         };
         let mut card = card(manifest, &rows, &scales, config)?;
-        card.distillation = data.record().cloned();
+        card.distillation = data.distillation.map(|median| median.record.clone());
         match start {
             Start::Fresh => {}
             Start::Weights(pretrained) => inherit(&mut card, pretrained, &rows),
@@ -168,7 +163,7 @@ impl Training {
             began,
             elapsed_s: 0.0,
         };
-        if let Some(state) = state {
+        if let Some(state) = saved {
             training.resume(state)?;
         }
         training.networks = training.networks.frozen(config.frozen_layers);

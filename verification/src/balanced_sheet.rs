@@ -47,7 +47,7 @@ pub struct Round {
 
 /// A sheet in equilibrium with the forces of finite elements.
 pub struct Balanced {
-    /// By the hinge law alone, followed by the deployment with the corrected law of each round.
+    /// The deployment by the hinge law, followed by the deployment with the corrected law of each round.
     deployments: Vec<Deployment>,
     /// The last state of each hinge by finite elements, in the last round that solved it; `None` if
     /// no round did.
@@ -220,7 +220,7 @@ impl Iteration<'_> {
     ///
     /// The slopes between states that hardly differ are slopes of the noise of their forces, and
     /// may throw the sheet far away. A step longer than the `last` one is therefore compared with
-    /// the step by the newest forces alone, on the tangent of the law, and the shorter step is
+    /// the step only by the newest forces, on the tangent of the law, and the shorter step is
     /// made; after a step by the newest forces the earlier forces are forgotten. After an error the
     /// problem has the law that it had before.
     fn step(
@@ -297,12 +297,12 @@ fn law_of(problem: &mut DesignProblem) -> Result<&mut Arc<dyn HingeLaw>, Verific
 }
 
 impl Balanced {
-    /// The deployment by the hinge law alone.
+    /// The deployment by the hinge law.
     pub fn by_law(&self) -> &Deployment {
         &self.deployments[0]
     }
 
-    /// The error budget of the deployment by the hinge law alone, before finite elements: see
+    /// The error budget of the deployment by the hinge law, before finite elements: see
     /// [`ErrorBudget::new`].
     pub fn budget(&self, scene: &Scene) -> Result<Option<ErrorBudget>, VerificationError> {
         let problem = scene.problem()?;

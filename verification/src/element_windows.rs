@@ -1,12 +1,14 @@
 //! The hinges of a deployed sheet, solved by finite elements along their paths in it.
 
 use crate::verification_error::{VerificationError, refused};
+use dataset::Fidelity;
 use design::objective::design_problem::Deployment;
 use fe_driver::{DeformationPath, HingePath, SolveService, WindowProblem, WindowSolve};
 use hinge::{HingeDeformation, HingeSample, SheetMaterial};
 use mesher::Tier;
 use serde::Serialize;
 use std::fmt;
+use surrogate::Surrogate;
 
 /// A hinge of a sheet that finite elements did not follow along its path.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -76,4 +78,20 @@ impl ElementWindows<'_> {
             _ => Ok(solved),
         }
     }
+}
+
+/// The mesh tier to test weights on: `requested`, or the tier of the database they were trained on,
+/// or the finer tier that the database was corrected to.
+pub fn verification_tier(
+    requested: Option<Tier>,
+    surrogate: &Surrogate,
+) -> Result<Tier, VerificationError> {
+    let trained_on = &surrogate.card().tier;
+    let own = || trained_on.parse().map(Fidelity::mesh).ok();
+    requested.or_else(own).ok_or_else(|| {
+        refused(format!(
+            "the weights were trained on the tier `{trained_on}`, which is no mesh tier: pass the \
+             tier to compare with as --tier"
+        ))
+    })
 }

@@ -12,6 +12,7 @@ use std::collections::VecDeque;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
+use support::table::{Cell, Columns, Table};
 use surrogate::{SpotCheck, Surrogate};
 use train::{ErrorInterval, spot_check};
 
@@ -84,7 +85,7 @@ pub enum LearningEnd {
     AllRays,
 }
 
-/// Fewest rays on which a round that the deadline ends is trained: a geometry in each part of the
+/// Minimum number of rays on which a round that the deadline ends is trained: a geometry in each part of the
 /// split, and some more.
 const LEAST_RAYS: usize = 6;
 
@@ -188,6 +189,39 @@ impl<'a> Learning<'a> {
         let weights = weights.with_spot_check(round.check.clone());
         Ok((round, weights))
     }
+}
+
+impl LearningRound {
+    /// The rounds, one a row; `-` if an error is unknown, without its interval if it has none.
+    pub fn table(rounds: &[Self]) -> Table {
+        let mut columns = Columns::new()
+            .column("rays", |round: &Self| round.rays)
+            .column("to their end", |round| {
+                Cell::percent(round.complete as f64 / round.rays as f64, 0)
+            })
+            .column("solver CPU\ns", |round| Cell::fixed(round.cpu_s, 0))
+            .column("training\ns", |round| Cell::fixed(round.training_s, 0))
+            .column("states", |round| round.check.errors.rows)
+            .column("inside", |round| round.check.inside);
+        let names = ["W\n%", "F_a\n%", "F_s\n%", "M\n%", "D\n%", "D_peak\n%"];
+        for (i, name) in names.into_iter().enumerate() {
+            columns =
+                columns.column(name, move |round| Cell::fixed(round.check.errors.percents()[i], 2));
+        }
+        columns
+            .column("forces\n%", |round| Cell::fixed(round.check.errors.forces_percent(), 2))
+            .column("W, 95 %", |round| interval(round, 0))
+            .column("forces, 95 %", |round| interval(round, 1))
+            .table(rounds)
+    }
+}
+
+fn interval(round: &LearningRound, which: usize) -> String {
+    let intervals = round.intervals.as_ref();
+    intervals.map_or("-".into(), |both| {
+        let [low, high] = both[which].interval;
+        format!("{low:.2} to {high:.2}")
+    })
 }
 
 /// Numbers of rays of the rounds: each twice the one before, the `solved` rays of earlier runs, and

@@ -11,7 +11,7 @@
 //! | rays of a campaign solved in rounds until weights are accurate | [`Learning`] |
 //!
 //! Windows are solved by a [`SolveService`](fe_driver::SolveService). One that fails ends no task:
-//! it is named in the result, which says what it leaves unknown. The example checks weights at
+//! it is named in the result, which states what it leaves unknown. The example checks weights at
 //! eight states:
 //!
 //! ```no_run
@@ -51,9 +51,7 @@ mod distillation_states;
 mod element_windows;
 mod final_design;
 mod learning;
-mod networks;
 mod patch;
-mod round_table;
 mod rows;
 mod sheet_check;
 mod sheet_cost;
@@ -69,10 +67,9 @@ pub use balanced_sheet::{
 };
 pub use compared_states::{SCALE, spread_table};
 pub use distillation_states::distillation_states;
-pub use element_windows::{ElementWindows, UnsolvedHinge};
+pub use element_windows::{ElementWindows, UnsolvedHinge, verification_tier};
 pub use final_design::{final_design, most_cpu_seconds};
 pub use learning::{Accuracy, Learning, LearningEnd, LearningRound, LearningTask};
-pub use networks::verification_tier;
 pub use rows::{collected, collected_windows, rows};
 pub use sheet_check::{HingeCheck, PanelCheck, SheetCheck, StateCheck};
 pub use sheet_cost::SheetCost;

@@ -97,7 +97,7 @@ pub struct StateCheck {
     /// in space.
     pub flank_gap: Option<f64>,
     /// The margin against leaving the plane by the hinge law, at its next load step; `None` for a
-    /// patch, and where the law has none.
+    /// patch, and if the law has none.
     pub margin: Option<f64>,
 }
 
@@ -112,7 +112,7 @@ pub struct HingeCheck {
     pub theta_deg: [f64; 2],
     /// Energy (N mm).
     pub energy: [f64; 2],
-    /// D_peak; by the law `None` if it is not known.
+    /// D_peak; by the law `None` if unknown.
     pub d_peak: [Option<f64>; 2],
 }
 
@@ -123,7 +123,7 @@ pub struct PanelCheck {
     pub panel: usize,
     /// Tilt (deg).
     pub tilt_deg: f64,
-    /// Largest distance of a corner from where the law has it (mm).
+    /// Largest distance of a corner from its position by the law (mm).
     pub off: f64,
     /// Lowest and highest point (mm).
     pub z: [f64; 2],

@@ -55,8 +55,8 @@ struct LawState {
 }
 
 impl SheetTask {
-    /// The design of a scene, kept in its plane as `support` says, or as its posture does. Of a
-    /// `patch`, the panel [column, row] and those around it are solved.
+    /// The design of a scene, kept in its plane by `support`, or as its posture states. With a
+    /// `patch`, only the panel [column, row] and those around it are solved.
     pub fn new(
         scene: &Scene,
         design: &DesignVector,

@@ -57,7 +57,7 @@ pub fn with_support(scene: &Scene, support: Option<Posture>) -> Result<Scene, Ve
     Ok(scene)
 }
 
-/// A sheet of a scene as a finite-element problem, kept in its plane as `support` says, with
+/// A sheet of a scene as a finite-element problem, kept in its plane by `support`, with
 /// `contact` of the flanks of its cuts or without.
 pub fn sheet_problem(
     scene: &Scene,
