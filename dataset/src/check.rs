@@ -166,7 +166,7 @@ mod tests {
             let found = found(change);
             assert!(found.iter().any(|what| what.contains(part)), "{part}: {found:?}");
         };
-        // The gates reject such a row at collection; a table may have been written by other means.
+        // Such a row is rejected at collection; a table may have been written by other means.
         let mut database = Database::collect(rows(12), &SplitPlan::default()).unwrap();
         database.rows[7].sample.w = -1.0;
         assert!(database.check().iter().any(|it| it.what.contains("negative")));

@@ -18,7 +18,7 @@ pub struct Database {
 }
 
 impl Database {
-    /// Drops and counts the rows that the gates reject, and splits the others by geometry.
+    /// Drops and counts the rows outside the acceptance limits, and splits the others by geometry.
     ///
     /// Rows of different materials or hinge constants are an error, and rows of two tiers without a
     /// common ray.

@@ -1,8 +1,8 @@
 //! What the manifest and the summary need of the rows of a database, gathered ray by ray: the rows
 //! themselves need not be in memory at the same time.
 
+use crate::acceptance::{AcceptanceLimits, Rejection};
 use crate::error::{DatasetError, refused};
-use crate::gates::{Gates, Rejection};
 use crate::manifest::{FORMAT_VERSION, FinerMesh, Manifest};
 use crate::meshes::Meshes;
 use crate::rows::Row;
@@ -35,9 +35,9 @@ const TEXTS: [fn(&Row) -> &String; 4] =
     [|row| &row.material, |row| &row.material_hash, |row| &row.tools.gmsh, |row| &row.tools.ccx];
 
 impl Digest {
-    /// The rows that pass the gates; the others are counted.
+    /// The rows within the acceptance limits; the others are counted.
     pub fn accepted(&mut self, mut rows: Vec<Row>) -> Vec<Row> {
-        rows.retain(|row| match Gates::default().rejection(row) {
+        rows.retain(|row| match AcceptanceLimits::default().rejection(row) {
             Some(reason) => {
                 *self.rejected.entry(reason).or_default() += 1;
                 false
@@ -111,7 +111,7 @@ impl Digest {
                 rays: finer.rays,
                 cpu_s: finer.cpu_s,
             }),
-            gates: Gates::default(),
+            gates: AcceptanceLimits::default(),
             rejected: self.rejected,
             material: Vec::from_iter(material).join(" + "),
             tier: rays.first.tier,

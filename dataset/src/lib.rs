@@ -23,6 +23,7 @@
 
 #![warn(missing_docs)]
 
+mod acceptance;
 mod bridge;
 mod check;
 mod compare;
@@ -31,7 +32,6 @@ mod database_files;
 mod digest;
 mod error;
 mod fidelity_correction;
-mod gates;
 mod manifest;
 mod meshes;
 mod parquet;
@@ -41,12 +41,13 @@ mod schema;
 mod split;
 mod summary;
 
+pub use acceptance::{AcceptanceLimits, Rejection};
 pub use check::Defect;
 pub use compare::{COMPARED, ComparedRay, ComparedState, compare, reference_rms, relative_rms};
 pub use database::Database;
 pub use error::DatasetError;
 pub use fidelity_correction::{LeftOut, left_out};
-pub use gates::{Gates, Rejection};
+
 pub use manifest::{FORMAT_VERSION, FinerMesh, Manifest};
 pub use ray_stream::Collected;
 pub use rows::{Fidelity, Row, with_mirrored};

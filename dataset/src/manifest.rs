@@ -1,6 +1,6 @@
 //! The manifest `X.json` of a database `X.parquet`.
 
-use crate::gates::{Gates, Rejection};
+use crate::acceptance::{AcceptanceLimits, Rejection};
 use crate::rows::{Fidelity, Row};
 use crate::split::{Split, SplitPlan};
 use hinge::{HingeConstants, TrainingDomain};
@@ -37,8 +37,8 @@ pub struct Manifest {
     /// The finer mesh on which some of the rays were solved too.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub finer: Option<FinerMesh>,
-    /// The gates that all rows have passed.
-    pub gates: Gates,
+    /// The limits that all rows satisfy.
+    pub gates: AcceptanceLimits,
     /// Number of rejected rows by reason.
     pub rejected: BTreeMap<Rejection, usize>,
     /// Name of the material.

@@ -2,8 +2,7 @@
 
 use crate::card::{Card, ErrorBin, SpotCheck, TestErrors};
 use crate::damage::{self, HingeDamage};
-use crate::energy::{self, Prepared};
-use crate::hinge_energy::{HingeEnergy, Order};
+use crate::energy::{self, HingeEnergy, Order, Prepared};
 use crate::network::{Layer, Network, missing};
 use crate::reference_ligament;
 use hinge::{

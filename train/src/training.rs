@@ -4,27 +4,58 @@
 use crate::bins::error_bins;
 use crate::config::{DAMAGE_SHARPNESS, TrainingConfig};
 use crate::distillation::TrainingData;
-use crate::epoch::Epoch;
 use crate::error::{TrainError, failed};
 use crate::export::layers;
 use crate::fine_tuning::{Initial, check_pretrained, inherit};
 use crate::loss::loss;
 use crate::networks::{Networks, options};
-use crate::optimiser::{learning_rate, optimiser};
 use crate::samples::{Batch, Sample, Scales};
 use crate::state::{self, Progress, State};
 use crate::validation::Parity;
-use burn::optim::{GradientsParams, ModuleOptimizer};
+use burn::grad_clipping::GradientClippingConfig;
+use burn::module::ParamGroup;
+use burn::optim::{AdamConfig, GradientsParams, ModuleOptimizer, MuonConfig};
 use burn::tensor::{DType, TensorCreationOptions};
 use dataset::{Database, Manifest, Part, Row, with_mirrored};
 use hinge::TrainingDomain;
 use rand::SeedableRng;
 use rand::seq::SliceRandom;
 use rand_chacha::ChaCha8Rng;
+use serde::{Deserialize, Deserializer, Serialize};
 use std::collections::BTreeSet;
+use std::f64::consts::PI;
 use std::path::Path;
 use std::time::Instant;
 use surrogate::{Card, FORMAT_VERSION, Surrogate, TestErrors, UNITS, feature_names};
+
+/// The result of one pass over the training rows.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Epoch {
+    /// Number of the epoch: 1, 2, ..., `epochs`.
+    pub epoch: usize,
+    /// Maximum number of epochs.
+    pub epochs: usize,
+    /// The loss (15): mean over the batches, each with the weights before its step.
+    pub training_loss: f64,
+    /// The loss (15) on the validation part at the end of the epoch.
+    pub validation_loss: f64,
+    /// Relative errors of each network on the validation part: of W and the forces (their geometric
+    /// mean), of D, and of D_peak; NaN if no validation row has a known target that is not zero.
+    #[serde(deserialize_with = "numbers_or_null")]
+    pub validation_errors: [f64; 3],
+    /// Learning rate at the end of the epoch.
+    pub learning_rate: f64,
+    /// Whether one of the validation errors is smaller than in all earlier epochs.
+    pub best: bool,
+    /// Training time so far (s).
+    pub elapsed_s: f64,
+}
+
+/// JSON has no NaN.
+fn numbers_or_null<'de, D: Deserializer<'de>>(values: D) -> Result<[f64; 3], D::Error> {
+    let values = <[Option<f64>; 3]>::deserialize(values)?;
+    Ok(values.map(|value| value.unwrap_or(f64::NAN)))
+}
 
 /// A trained surrogate with its history and test errors.
 #[derive(Clone, Debug)]
@@ -292,9 +323,10 @@ impl Training {
         self.samples.len().div_ceil(self.config.batch_size)
     }
 
+    /// A half cosine from the initial rate at the first step to zero after the last.
     fn learning_rate(&self, step: usize) -> f64 {
         let steps = self.config.epochs * self.steps_per_epoch();
-        learning_rate(self.config.learning_rate, step, steps)
+        0.5 * (1.0 + (PI * step as f64 / steps as f64).cos()) * self.config.learning_rate
     }
 }
 
@@ -372,4 +404,23 @@ fn the_only(hashes: &BTreeSet<String>) -> Option<String> {
 fn export(networks: &Networks, card: &Card) -> Result<Surrogate, TrainError> {
     Surrogate::from_parts(layers(networks)?, card.clone())
         .map_err(|error| failed(format!("the weights cannot be exported: {error}")))
+}
+
+/// Maximum norm of the gradient of one weight matrix or bias; larger gradients are scaled down to
+/// it.
+const GRADIENT_NORM_MAX: f32 = 1.0;
+
+/// Muon for the weight matrices of the embedding, Adam for all other parameters of [`Networks`].
+///
+/// Muon steps along the orthogonal matrix nearest to the averaged gradient, so directions in which
+/// the loss is flat change as much as steep ones. In the same number of steps, the error of the
+/// forces is about half of the error with Adam. The damage heads overfit with Muon and are therefore
+/// trained with Adam.
+fn optimiser() -> ModuleOptimizer {
+    let clipping = GradientClippingConfig::Norm(GRADIENT_NORM_MAX);
+    AdamConfig::new().with_epsilon(1e-8).init().with_grad_clipping(clipping.init()).with_group(
+        ParamGroup::from_predicates(vec!["chi.", "weight"]),
+        MuonConfig::new().build(),
+        Some(clipping.init()),
+    )
 }
