@@ -220,3 +220,14 @@ fn a_single_geometry_is_an_error() {
         assert!(error.starts_with("1 geometries cannot be split"), "{error}");
     }
 }
+
+#[test]
+fn the_rows_of_a_shipped_database_give_its_hash_and_its_split() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../data/polypropylene-3mm");
+    let shipped = Database::read(&folder.join("hinges.parquet")).unwrap();
+    let manifest = shipped.manifest();
+    let again = Database::collect(shipped.rows().to_vec(), &manifest.split_plan).unwrap();
+    let found = again.manifest();
+    assert_eq!([&found.hash, &found.split_hash], [&manifest.hash, &manifest.split_hash]);
+    assert_eq!((found.tier, &found.finer), (manifest.tier, &manifest.finer));
+}
