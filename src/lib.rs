@@ -1,6 +1,5 @@
 //! The command line of kirigami: its subcommands.
 
-#![warn(missing_docs)]
 // A page in a browser has the studio alone.
 #![cfg_attr(target_family = "wasm", allow(dead_code))]
 

@@ -6,8 +6,6 @@
 //! [`design_run`] searches and keeps its run folder. What is computed of a deployed sheet is in
 //! [`analysis`], the sheet for a silhouette in [`fit`], the outlines of drawings in [`drawing`].
 
-#![warn(missing_docs)]
-
 mod actuation;
 pub mod analysis;
 mod boundary_values;

@@ -13,8 +13,6 @@
 //! assert_eq!(page, "| hinge | error of W |\n|---|---|\n| 18 mm | 1.2 % |\n");
 //! ```
 
-#![warn(missing_docs)]
-
 pub mod caught_panic;
 pub mod csv_table;
 pub mod document;

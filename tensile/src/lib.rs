@@ -14,8 +14,6 @@
 //! A material file may name a clean curve as `tensile_csv`. It is read without corrections: a curve
 //! that needs one is rejected, with the advice to use `kirigami material fit`, which reports them.
 
-#![warn(missing_docs)]
-
 mod cleaning;
 mod drawing;
 mod error;

@@ -217,7 +217,7 @@ fn a_database_is_corrected_by_some_rays_of_a_finer_mesh() {
 }
 
 /// The differences of a quantity over all states (%), in each table of a text.
-pub fn differences<const TABLES: usize>(text: &str, quantity: &str) -> [f64; TABLES] {
+pub(crate) fn differences<const TABLES: usize>(text: &str, quantity: &str) -> [f64; TABLES] {
     let row = format!(" {quantity} ");
     let rows = (text.lines()).filter(|line| line.starts_with(&row) && line.contains(" % "));
     let first = |row: &str| row.split(' ').find_map(|word| word.parse().ok());

@@ -396,6 +396,18 @@ fn hostile_names_reach_slurm_as_they_are() {
     assert!(message.contains("cannot state this name"), "{message}");
 }
 
+/// Ends the controller and starts it again. (Killed, it would forget the last seconds.)
+fn restart_controller(cluster: &Cluster) {
+    let pid = std::fs::read_to_string(cluster.slurm.path().join("slurmctld.pid")).unwrap();
+    let pid = pid.trim();
+    cluster.output(&format!("kill {pid}"));
+    let process = Path::new("/proc").join(pid).join("environ");
+    cluster.until("the controller has ended", || {
+        std::fs::read(&process).is_ok_and(|environment| environment.is_empty()) || !process.exists()
+    });
+    cluster.output("env PATH=/usr/sbin:/usr/bin:/sbin:/bin slurmctld");
+}
+
 #[test]
 fn a_campaign_on_slurm_gives_the_database_of_one_run() {
     let cluster = Cluster::up();
@@ -435,15 +447,7 @@ fn a_campaign_on_slurm_gives_the_database_of_one_run() {
     cluster.at_work(4);
     cluster.output(&format!("scancel --signal=TERM --batch {array}_4"));
     cluster.until("task 4 is queued again", || task("%T", 4) == "PENDING");
-    // The controller is restarted. (Killed, it would forget the last seconds.)
-    let pid = std::fs::read_to_string(cluster.slurm.path().join("slurmctld.pid")).unwrap();
-    let pid = pid.trim();
-    cluster.output(&format!("kill {pid}"));
-    let process = Path::new("/proc").join(pid).join("environ");
-    cluster.until("the controller has ended", || {
-        std::fs::read(&process).is_ok_and(|environment| environment.is_empty()) || !process.exists()
-    });
-    cluster.output("env PATH=/usr/sbin:/usr/bin:/sbin:/bin slurmctld");
+    restart_controller(&cluster);
 
     let run = format!("kirigami campaign run {CAMPAIGN} --folder runs/whole");
     cluster.output(&run);
