@@ -13,6 +13,14 @@
 //!
 //! A material file may name a clean curve as `tensile_csv`. It is read without corrections: a curve
 //! that needs one is rejected, with the advice to use `kirigami material fit`, which reports them.
+//!
+//! ```
+//! # use std::path::Path;
+//! # let records = Path::new(env!("CARGO_MANIFEST_DIR")).join("../configs/tensile");
+//! let table = tensile::read_tensile(&records.join("polypropylene.csv"), 1400.0)?;
+//! assert!(table.is_sorted_by(|[_, earlier], [_, later]| earlier < later));
+//! # Ok::<_, tensile::TensileError>(())
+//! ```
 
 mod cleaning;
 mod drawing;

@@ -61,7 +61,7 @@ fn the_solver_runs_in_its_own_environment() {
     assert!(!seen.contains("SECRET") && !seen.contains("/somewhere"), "{seen}");
 }
 
-/// As `kirigami ... > /dev/full`, and as into a pipe that is full and does not block.
+/// Output goes to `/dev/full`, or into a pipe that is full and does not block.
 #[test]
 fn output_that_cannot_be_written_is_an_error_and_no_panic() {
     let work = Workplace::new();

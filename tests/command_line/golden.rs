@@ -85,7 +85,7 @@ fn picture(scene: &Path) -> String {
     )
 }
 
-/// With `KIRIGAMI_WRITE=1` the pictures are written instead.
+/// The pictures are written instead with `KIRIGAMI_WRITE=1`.
 #[test]
 fn the_pictures_of_the_finished_sheets_show_them() {
     for scene in scenes("configs/examples") {

@@ -126,7 +126,7 @@ fn a_project_with_all_defaults_is_designed() {
     }
 }
 
-/// With ligaments of 0.93 thicknesses, as in the shipped plate of polypropylene, both would leave
+/// Ligaments of 0.93 thicknesses, as in the shipped plate of polypropylene, would let both leave
 /// their plane.
 #[test]
 fn plates_of_other_materials_stay_in_their_plane() {
@@ -141,7 +141,7 @@ fn plates_of_other_materials_stay_in_their_plane() {
     }
 }
 
-/// As `material check` says.
+/// The same that `material check` says.
 #[test]
 fn a_material_that_tears_before_it_opens_is_refused() {
     let work = Workplace::new();
@@ -164,7 +164,7 @@ fn weights_of_a_film_do_not_serve_a_plate() {
     assert!(said.contains("kirigami campaign run plate/campaign.toml"), "{said}");
     let campaign = keys(&work, "plate/campaign.toml");
     assert_eq!(campaign["tier"].as_str(), Some("plate"));
-    // In the thickness of the film's weights, the law is theirs.
+    // The law is the weights' own in their thickness.
     work.edit("plate/material.toml", &[("thickness = 3.0", "thickness = 0.5")]);
     let message = work.error("design plate/scene.toml --weights data/pet-0.5mm/medium.safetensors");
     assert!(message.contains("no law holds for both"), "{message}");

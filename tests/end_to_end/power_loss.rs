@@ -29,7 +29,7 @@ impl Disk {
                 self.unsynced_names.insert((*path).to_owned());
             }
             ("rename" | "renameat" | "renameat2", [.., from, to]) => {
-                // From now on, the disk may hold the new name.
+                // The disk may hold the new name.
                 assert!(
                     !self.unsynced_contents.contains(*from) || !is_data(to),
                     "{to} may be left with a part of its contents"
