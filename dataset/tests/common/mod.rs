@@ -3,7 +3,7 @@
 use dataset::{Database, DatasetError, Row, SplitPlan};
 use hinge::{HingeConstants, HingeSample};
 
-pub(crate) fn row(job: usize, lambda: f64) -> Row {
+pub fn row(job: usize, lambda: f64) -> Row {
     Row {
         job: format!("job-{job:02}"),
         design: HingeConstants::PAPER.hinge(5.0 + job as f64, 0.8 + 0.05 * job as f64),
@@ -30,19 +30,19 @@ pub(crate) fn row(job: usize, lambda: f64) -> Row {
 }
 
 /// Five increments of each of ten jobs, unsorted.
-pub(crate) fn rows() -> Vec<Row> {
+pub fn rows() -> Vec<Row> {
     let lambdas = [0.6, 0.2, 1.0, 0.4, 0.8];
     let increments = |job| lambdas.map(|lambda| row(job, lambda));
     (0..10).rev().flat_map(increments).collect()
 }
 
 /// The first rays of [`rows`] on the mesh `reference`.
-pub(crate) fn finer(rays: usize) -> Vec<Row> {
+pub fn finer(rays: usize) -> Vec<Row> {
     on_tier("reference", &rows()[5 * (10 - rays)..])
 }
 
 /// The rays on another mesh, each under another name.
-pub(crate) fn on_tier(tier: &str, rows: &[Row]) -> Vec<Row> {
+pub fn on_tier(tier: &str, rows: &[Row]) -> Vec<Row> {
     let solved = |row: &Row| Row {
         job: format!("{tier}-{}", row.job),
         settings_hash: format!("5e77-{tier}"),
@@ -54,6 +54,6 @@ pub(crate) fn on_tier(tier: &str, rows: &[Row]) -> Vec<Row> {
     rows.iter().map(solved).collect()
 }
 
-pub(crate) fn collect(rows: Vec<Row>) -> Result<Database, DatasetError> {
+pub fn collect(rows: Vec<Row>) -> Result<Database, DatasetError> {
     Database::collect(rows, &SplitPlan::default())
 }

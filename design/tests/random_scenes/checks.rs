@@ -24,7 +24,7 @@ const SEARCHED: usize = 17;
 /// What was found at a sheet: its place in the table, its words, and whether it contradicts what
 /// the software promises.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) struct Finding(u8, pub &'static str, pub bool);
+pub struct Finding(u8, pub &'static str, pub bool);
 
 impl Finding {
     const SCENES: Self = Self(0, "sheets", false);
@@ -62,9 +62,9 @@ impl Finding {
 }
 
 /// What was found, and the details of each.
-pub(crate) type Findings = Vec<(Finding, String)>;
+pub type Findings = Vec<(Finding, String)>;
 
-pub(crate) fn findings(seed: u64) -> Findings {
+pub fn findings(seed: u64) -> Findings {
     let drawn = Drawn::new(seed);
     let problem = drawn.problem();
     let mut found = vec![(Finding::SCENES, String::new())];

@@ -32,7 +32,7 @@ static NETWORKS: LazyLock<[Surrogate; 2]> = LazyLock::new(|| {
 });
 
 #[derive(Clone, Debug)]
-pub(crate) enum DrawnLaw {
+pub enum DrawnLaw {
     /// (k_a, k_s, k_theta) per hinge.
     Linear(Vec<[f64; 3]>),
     /// One of the networks, at a multiple of its thickness.
@@ -44,7 +44,7 @@ pub(crate) enum DrawnLaw {
 const EXPONENTS: [f64; 2] = [2.0, 8.0];
 
 #[derive(Clone, Debug)]
-pub(crate) struct Drawn {
+pub struct Drawn {
     pub grid: Grid,
     pub outline: Outline,
     pub pattern: PatternCoordinates,
@@ -108,7 +108,7 @@ impl Dice {
 }
 
 impl Drawn {
-    pub(crate) fn new(seed: u64) -> Self {
+    pub fn new(seed: u64) -> Self {
         let dice = &mut Dice(ChaCha8Rng::seed_from_u64(seed));
         // Small sheets are more frequent.
         let count =
@@ -177,7 +177,7 @@ impl Drawn {
     }
 
     /// Whether springs differ by more than the springs of sheets do.
-    pub(crate) fn is_extreme(&self) -> bool {
+    pub fn is_extreme(&self) -> bool {
         let DrawnLaw::Linear(constants) = &self.law else {
             return false;
         };
@@ -186,7 +186,7 @@ impl Drawn {
         ratios.iter().any(|ratio| *ratio > EXPONENTS[0] + 1.0)
     }
 
-    pub(crate) fn design(&self) -> DesignVector {
+    pub fn design(&self) -> DesignVector {
         let chart = self.chart();
         DesignVector {
             pattern: self.pattern.clone(),
@@ -211,7 +211,7 @@ impl Drawn {
     }
 
     /// The sheet is to become an ellipse a little wider than itself.
-    pub(crate) fn problem(&self) -> DesignProblem {
+    pub fn problem(&self) -> DesignProblem {
         let settings = SolverSettings::default();
         let solver =
             EquilibriumSolver::new(self.grid, &self.supports, &self.loads, self.steps, settings);
@@ -248,7 +248,7 @@ impl Drawn {
 
     /// All lengths times `factor`, the thickness of learned hinges included; forces so that the
     /// sheet opens alike.
-    pub(crate) fn similar(&self, factor: f64) -> Self {
+    pub fn similar(&self, factor: f64) -> Self {
         let mut other = self.clone();
         let energy = match &mut other.law {
             // The translational constants of a spring do not change.
@@ -285,7 +285,7 @@ impl Drawn {
     /// The image of (x, y) -> (-x, y), and for each of its panels the panel of this sheet. `None`
     /// if horizontal cuts become vertical, and for learned laws, which have the symmetry by
     /// training alone.
-    pub(crate) fn mirrored(&self) -> Option<(Self, Vec<usize>)> {
+    pub fn mirrored(&self) -> Option<(Self, Vec<usize>)> {
         let Grid { m, n } = self.grid;
         if m % 2 == 1 || matches!(self.law, DrawnLaw::Learned(..)) {
             return None;

@@ -5,43 +5,42 @@ use serde::de::DeserializeOwned;
 use serde_json::Value;
 
 /// Hinge constants that a sheet needs besides w_lig and alpha; no case depends on them.
-pub(crate) const PROCESS: CuttingProcess =
+pub const PROCESS: CuttingProcess =
     CuttingProcess { hole: Hole::Ratio(0.16), slit_width: 0.2, r_win: 100.0 };
 
-pub(crate) const AT_CORNER: SheetOptions =
+pub const AT_CORNER: SheetOptions =
     SheetOptions { hinge_point: HingePoint::Corner, process: PROCESS };
 
-pub(crate) const AT_TIP: SheetOptions =
-    SheetOptions { hinge_point: HingePoint::CutTip, process: PROCESS };
+pub const AT_TIP: SheetOptions = SheetOptions { hinge_point: HingePoint::CutTip, process: PROCESS };
 
-pub(crate) fn case(name: &str) -> Value {
+pub fn case(name: &str) -> Value {
     let path = format!("{}/tests/cases/{name}.json", env!("CARGO_MANIFEST_DIR"));
     let text = std::fs::read_to_string(&path).expect("the case is part of the repository");
     serde_json::from_str(&text).expect("the case is valid JSON")
 }
 
-pub(crate) fn get<T: DeserializeOwned>(value: &Value, key: &str) -> T {
+pub fn get<T: DeserializeOwned>(value: &Value, key: &str) -> T {
     T::deserialize(&value[key]).unwrap_or_else(|error| panic!("{key}: {error}"))
 }
 
-pub(crate) fn grid(case: &Value) -> Grid {
+pub fn grid(case: &Value) -> Grid {
     Grid { m: get(case, "M"), n: get(case, "N") }
 }
 
-pub(crate) fn outline(case: &Value) -> Outline {
+pub fn outline(case: &Value) -> Outline {
     Outline { corners: get(case, "outline_corners") }
 }
 
-pub(crate) fn coordinates(case: &Value) -> PatternCoordinates {
+pub fn coordinates(case: &Value) -> PatternCoordinates {
     PatternCoordinates { z: get(case, "z"), ell: get(case, "ell") }
 }
 
-pub(crate) fn pattern(case: &Value) -> CutPattern {
+pub fn pattern(case: &Value) -> CutPattern {
     CutPattern::new(grid(case), outline(case), &coordinates(case)).unwrap()
 }
 
 /// The sheet of a pattern case, with equal ligaments.
-pub(crate) fn sheet(case: &Value) -> Sheet {
+pub fn sheet(case: &Value) -> Sheet {
     let pattern = pattern(case);
     Sheet::new(&pattern, &vec![0.1; pattern.grid.hinge_count()], AT_CORNER).unwrap()
 }
@@ -57,18 +56,18 @@ fn by_panel(case: &Value, key: &str) -> Vec<(usize, Dof, f64)> {
     entries.iter().map(entry).collect()
 }
 
-pub(crate) fn supports(case: &Value) -> Vec<Support> {
+pub fn supports(case: &Value) -> Vec<Support> {
     let to_support = |(panel, dof, value)| support(panel, dof, value);
     by_panel(case, "supports").into_iter().map(to_support).collect()
 }
 
-pub(crate) fn loads(case: &Value) -> Vec<Load> {
+pub fn loads(case: &Value) -> Vec<Load> {
     let to_load = |(panel, dof, value)| load(panel, dof, value);
     by_panel(case, "loads").into_iter().map(to_load).collect()
 }
 
 /// Maximum difference between the numbers of two arrays of the same shape.
-pub(crate) fn difference<const N: usize>(found: &[[f64; N]], expected: &[[f64; N]]) -> f64 {
+pub fn difference<const N: usize>(found: &[[f64; N]], expected: &[[f64; N]]) -> f64 {
     assert_eq!(found.len(), expected.len());
     let pairs = std::iter::zip(found.as_flattened(), expected.as_flattened());
     pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)

@@ -5,7 +5,7 @@ use std::f64::consts::FRAC_PI_4;
 
 /// Moments in equilibrium with the same M_theta at every hinge: the moment on each panel is one
 /// M_theta per hinge, with the sign of its ideal rotation. The clamped panel needs none.
-pub(crate) fn opening_moments(sheet: &Sheet, clamped: usize, m_theta: f64) -> Vec<Load> {
+pub fn opening_moments(sheet: &Sheet, clamped: usize, m_theta: f64) -> Vec<Load> {
     let mut moments = vec![0.0; sheet.panels.len()];
     for hinge in &sheet.hinges {
         moments[hinge.panel_a()] -= m_theta;

@@ -28,18 +28,18 @@ impl<F: Fn(HingeDeformation) -> [[f64; 3]; 3] + Send + Sync> PreparedLaw for &Un
 }
 
 /// Energy, force and stiffness of a linear spring.
-pub(crate) fn spring(k: f64, x: f64) -> [f64; 3] {
+pub fn spring(k: f64, x: f64) -> [f64; 3] {
     [0.5 * k * x * x, k * x, k]
 }
 
 /// k_a a^2/2 + k_s s^2/2 + any function of theta with two derivatives.
-pub(crate) fn rotational(turned: fn(f64) -> [f64; 3]) -> impl HingeLaw {
+pub fn rotational(turned: fn(f64) -> [f64; 3]) -> impl HingeLaw {
     Uncoupled(move |eps: HingeDeformation| {
         [spring(100.0, eps.a), spring(100.0, eps.s), turned(eps.theta)]
     })
 }
 
-pub(crate) fn assert_finite(path: &[LoadStep]) {
+pub fn assert_finite(path: &[LoadStep]) {
     for step in path {
         let numbers = step.configuration.as_flattened().iter();
         let mut numbers = numbers.chain(&step.energies).chain([&step.potential]);
@@ -137,7 +137,7 @@ fn an_unstable_flat_sheet_is_left_for_a_minimum() {
 }
 
 /// W = theta^2 (theta - 1)^2 resists opening by at most M_max = sqrt(3)/9.
-pub(crate) fn snapping(theta: f64) -> [f64; 3] {
+pub fn snapping(theta: f64) -> [f64; 3] {
     [
         theta * theta * (theta - 1.0).powi(2),
         2.0 * theta * (theta - 1.0) * (2.0 * theta - 1.0),

@@ -11,11 +11,11 @@ use hinge::TrainingDomain;
 use std::path::Path;
 use surrogate::Surrogate;
 
-pub(crate) const GRID: Grid = Grid { m: 3, n: 3 };
+pub const GRID: Grid = Grid { m: 3, n: 3 };
 /// Side of the sheet (mm).
-pub(crate) const SIDE: f64 = 300.0;
+pub const SIDE: f64 = 300.0;
 
-pub(crate) fn tiny() -> SurrogateLaw {
+pub fn tiny() -> SurrogateLaw {
     let cases = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/cases");
     let surrogate = Surrogate::load(&cases.join("chi_tiny.safetensors")).unwrap();
     SurrogateLaw { surrogate }
@@ -23,7 +23,7 @@ pub(crate) fn tiny() -> SurrogateLaw {
 
 /// Clamped in the middle of the west edge, with a moment at a corner; in the middle of the east
 /// edge pulled, moved, or pulled up to a stroke.
-pub(crate) fn held(law: impl HingeLaw + 'static, moment: f64, east: East) -> Model {
+pub fn held(law: impl HingeLaw + 'static, moment: f64, east: East) -> Model {
     let mut supports = clamp(3).to_vec();
     let mut loads = vec![load(8, Dof::Phi, moment)];
     match east {
@@ -39,11 +39,10 @@ pub(crate) fn held(law: impl HingeLaw + 'static, moment: f64, east: East) -> Mod
     model
 }
 
-pub(crate) const EASTS: [East; 3] =
-    [East::Pulled(12.0), East::Moved(40.0), East::Driven(12.0, 60.0)];
+pub const EASTS: [East; 3] = [East::Pulled(12.0), East::Moved(40.0), East::Driven(12.0, 60.0)];
 
 #[derive(Clone, Copy)]
-pub(crate) enum East {
+pub enum East {
     /// N
     Pulled(f64),
     /// N, and the stroke (mm)
@@ -52,7 +51,7 @@ pub(crate) enum East {
     Moved(f64),
 }
 
-pub(crate) fn problem(model: Model, hinge_point: HingePoint) -> DesignProblem {
+pub fn problem(model: Model, hinge_point: HingePoint) -> DesignProblem {
     let target = (0..60).map(|i| {
         let (sin, cos) = (f64::from(i) * std::f64::consts::TAU / 60.0).sin_cos();
         [0.6 * SIDE * cos, 0.45 * SIDE * sin]
@@ -91,7 +90,7 @@ pub(crate) fn problem(model: Model, hinge_point: HingePoint) -> DesignProblem {
     }
 }
 
-pub(crate) fn start() -> DesignVector {
+pub fn start() -> DesignVector {
     let mut random = Random::new(11);
     DesignVector {
         pattern: PatternCoordinates {
@@ -105,7 +104,7 @@ pub(crate) fn start() -> DesignVector {
 }
 
 /// Asserts order 2 along a random direction in each block (z, ell, omega, opening, fit).
-pub(crate) fn assert_order_two(problem: &DesignProblem, design: &DesignVector) {
+pub fn assert_order_two(problem: &DesignProblem, design: &DesignVector) {
     let evaluation = problem.evaluate(design).unwrap();
     for step in &evaluation.deployment.path {
         let found = matches!(step.status, Status::Converged | Status::LeftDomain);
@@ -180,7 +179,7 @@ fn a_sheet_and_its_target_are_fitted_to_each_other() {
     assert_order_two(&problem, &design);
 }
 
-pub(crate) fn springs() -> LinearLaw {
+pub fn springs() -> LinearLaw {
     LinearLaw::uniform([20.0, 12.0, 1500.0], GRID.hinge_count())
 }
 
@@ -212,7 +211,7 @@ fn surrogate_law_with_drilled_holes() {
 }
 
 /// The same problem for a sheet with a weight, held and pulled at other points than centroids.
-pub(crate) fn hung(mut model: Model, by_area: [f64; 2]) -> Model {
+pub fn hung(mut model: Model, by_area: [f64; 2]) -> Model {
     let points = vec![
         attached(3, PanelPoint::Middle([3, 0])),
         attached(5, PanelPoint::Fixed([0.95 * SIDE, 0.45 * SIDE])),

@@ -17,7 +17,7 @@ const INCREMENTS: u32 = 10;
 
 /// What goes wrong in an attempt of a [`FakeSolver`].
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Fault {
+pub enum Fault {
     /// The increments end at this lambda.
     Diverges(f64),
     /// The attempt ends at its time limit or on request.
@@ -29,7 +29,7 @@ pub(crate) enum Fault {
 }
 
 /// A solver of hinges with a closed-form energy.
-pub(crate) struct FakeSolver<F> {
+pub struct FakeSolver<F> {
     /// (k_a, k_s) (N/mm) and k_theta (N mm/rad).
     stiffness: [f64; 3],
     /// The fault of an attempt at a solve.
@@ -41,16 +41,16 @@ pub(crate) struct FakeSolver<F> {
 impl<F: Fn(&WindowSolve) -> Option<Fault>> FakeSolver<F> {
     /// Hinges with the stiffness (k_a, k_s) (N/mm) and k_theta (N mm/rad); `fault` is asked at
     /// every attempt.
-    pub(crate) fn new(stiffness: [f64; 3], fault: F) -> Self {
+    pub fn new(stiffness: [f64; 3], fault: F) -> Self {
         Self { stiffness, fault, attempts: AtomicUsize::new(0) }
     }
 
     /// Number of attempts so far.
-    pub(crate) fn attempts(&self) -> usize {
+    pub fn attempts(&self) -> usize {
         self.attempts.load(Ordering::Relaxed)
     }
 
-    pub(crate) fn sample(&self, lambda: f64, state: HingeDeformation) -> HingeSample {
+    pub fn sample(&self, lambda: f64, state: HingeDeformation) -> HingeSample {
         let ([k_a, k_s, k_theta], [a, s, theta]) = (self.stiffness, state.to_array());
         let w = 0.5 * (k_a * a * a + k_s * s * s + k_theta * theta * theta);
         let d = 0.01 * theta * theta;

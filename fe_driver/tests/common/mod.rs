@@ -11,21 +11,21 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
-pub(crate) fn configs() -> PathBuf {
+pub fn configs() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../configs")
 }
 
-pub(crate) fn film() -> SheetMaterial {
+pub fn film() -> SheetMaterial {
     SheetMaterial::load(&configs().join("materials/pet-0.5mm.toml")).unwrap()
 }
 
 /// The paper's hinge with the cut angle `alpha_deg`.
-pub(crate) fn design(alpha_deg: f64) -> HingeDesign {
+pub fn design(alpha_deg: f64) -> HingeDesign {
     HingeConstants::PAPER.hinge(18.0, alpha_deg.to_radians())
 }
 
 /// A ray of the paper's hinge on the coarsest mesh.
-pub(crate) fn problem(alpha_deg: f64, eta: [f64; 2], theta_deg: f64) -> WindowProblem {
+pub fn problem(alpha_deg: f64, eta: [f64; 2], theta_deg: f64) -> WindowProblem {
     let ray = Ray {
         design: design(alpha_deg),
         end: HingeDeformation::from_eta(eta[0], eta[1], theta_deg.to_radians(), 18.0),
@@ -34,34 +34,34 @@ pub(crate) fn problem(alpha_deg: f64, eta: [f64; 2], theta_deg: f64) -> WindowPr
 }
 
 /// The first rays of the demo campaign, with small rotations only.
-pub(crate) fn campaign(count: usize) -> Campaign {
+pub fn campaign(count: usize) -> Campaign {
     let mut campaign = Campaign::load(&configs().join("campaigns/demo.toml")).unwrap();
     campaign = campaign.first_rays(count);
     campaign.boxes[0].theta_deg = [4.0, 8.0];
     campaign
 }
 
-pub(crate) fn jobs(folder: &Path) -> Vec<Solved> {
+pub fn jobs(folder: &Path) -> Vec<Solved> {
     finished_windows(folder).unwrap().collect::<Result<_, _>>().unwrap()
 }
 
 /// The folder of a job.
-pub(crate) fn job_folder(folder: &Path, id: &str) -> PathBuf {
+pub fn job_folder(folder: &Path, id: &str) -> PathBuf {
     folder.join("jobs").join(&id[..2]).join(id)
 }
 
 /// The history of a shard that ran on this host; the path does not exist before that.
-pub(crate) fn history(folder: &Path, name: &str) -> PathBuf {
+pub fn history(folder: &Path, name: &str) -> PathBuf {
     let hosts = std::fs::read_dir(folder.join("hosts")).into_iter().flatten();
     let host = hosts.map(|entry| entry.unwrap().path()).next();
     host.unwrap_or_default().join(name)
 }
 
-pub(crate) const TWO_WORKERS: RunOptions =
+pub const TWO_WORKERS: RunOptions =
     RunOptions { shard: Shard::WHOLE, workers: 2, time_limit: None, retry: false };
 
 /// A run without a stop request.
-pub(crate) fn run_with(
+pub fn run_with(
     options: &RunOptions,
     campaign: &Campaign,
     folder: &Path,
@@ -72,7 +72,7 @@ pub(crate) fn run_with(
 }
 
 /// The output of ccx for a deck; panics if ccx does not finish.
-pub(crate) fn solved(deck: &str) -> String {
+pub fn solved(deck: &str) -> String {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("test.inp"), deck).unwrap();
     let limit = Duration::from_secs(120);
@@ -85,7 +85,7 @@ pub(crate) fn solved(deck: &str) -> String {
 }
 
 /// The rows with exactly `fields` numbers in a part of a solver's output.
-pub(crate) fn rows(text: &str, fields: usize) -> Vec<Vec<f64>> {
+pub fn rows(text: &str, fields: usize) -> Vec<Vec<f64>> {
     let numbers = |line: &str| line.split_whitespace().map(|f| f.parse().ok()).collect();
     let rows = text.lines().filter_map(numbers);
     rows.filter(|row: &Vec<f64>| row.len() == fields).collect()

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 /// A uniaxial law: the true stress (MPa) at a plastic strain, and Young's modulus (MPa).
 #[derive(Clone, Copy)]
-pub(crate) struct Law {
+pub struct Law {
     pub name: &'static str,
     pub young: f64,
     pub stress: fn(f64) -> f64,
@@ -14,7 +14,7 @@ pub(crate) struct Law {
 }
 
 /// sigma = 200 + 1000 eps_p
-pub(crate) const LINEAR: Law = Law {
+pub const LINEAR: Law = Law {
     name: "linear hardening",
     young: 70e3,
     stress: |plastic| 200.0 + 1000.0 * plastic,
@@ -22,7 +22,7 @@ pub(crate) const LINEAR: Law = Law {
 };
 
 /// sigma = 120 + 130 (1 - exp(-12 eps_p)); Voce. It necks at eps_p = 0.145.
-pub(crate) const VOCE: Law = Law {
+pub const VOCE: Law = Law {
     name: "Voce",
     young: 70e3,
     stress: |plastic| 120.0 + 130.0 * (1.0 - (-12.0 * plastic).exp()),
@@ -30,7 +30,7 @@ pub(crate) const VOCE: Law = Law {
 };
 
 /// eps_p = 0.002 (sigma / 300)^8; Ramberg and Osgood.
-pub(crate) const RAMBERG_OSGOOD: Law = Law {
+pub const RAMBERG_OSGOOD: Law = Law {
     name: "Ramberg-Osgood",
     young: 200e3,
     stress: |plastic| 300.0 * (plastic / 0.002).powf(1.0 / 8.0),
@@ -39,7 +39,7 @@ pub(crate) const RAMBERG_OSGOOD: Law = Law {
 
 /// sigma = 44 + 8 (L^2 - 1 / L) with L = exp(eps_p); Haward and Thackray. It necks at the yield and
 /// draws.
-pub(crate) const FILM: Law = Law {
+pub const FILM: Law = Law {
     name: "cold drawing",
     young: 3000.0,
     stress: |plastic| 44.0 + 8.0 * ((2.0 * plastic).exp() - (-plastic).exp()),
@@ -48,7 +48,7 @@ pub(crate) const FILM: Law = Law {
 
 /// The draw of a film, in closed form up to the quadrature.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Plateau {
+pub struct Plateau {
     pub stress: f64,
     pub ratio: f64,
     pub upper_yield: f64,
@@ -79,7 +79,7 @@ impl Law {
 
     /// Stress and draw ratio of the running neck by Maxwell's rule: equal areas of the local curve
     /// above and below.
-    pub(crate) fn plateau(&self) -> Plateau {
+    pub fn plateau(&self) -> Plateau {
         let curve = self.uniform();
         let (top, upper_yield) = (0..curve.len() / 4)
             .map(|i| (i, curve[i][1]))
@@ -104,12 +104,12 @@ impl Law {
 
     /// The record of a specimen: rows [nominal strain, nominal stress] at a constant rate of the
     /// strain.
-    pub(crate) fn record(&self, rows: usize) -> Vec<[f64; 2]> {
+    pub fn record(&self, rows: usize) -> Vec<[f64; 2]> {
         self.record_to(self.end, rows)
     }
 
     /// The same up to another plastic strain.
-    pub(crate) fn record_to(&self, end: f64, rows: usize) -> Vec<[f64; 2]> {
+    pub fn record_to(&self, end: f64, rows: usize) -> Vec<[f64; 2]> {
         let mut curve = Law { end, ..*self }.uniform();
         if self.name == FILM.name {
             let Plateau { stress, ratio, upper_yield } = self.plateau();
@@ -126,7 +126,7 @@ impl Law {
     }
 
     /// The nominal stress at a plastic strain of 0.2 %.
-    pub(crate) fn offset_yield(&self) -> f64 {
+    pub fn offset_yield(&self) -> f64 {
         let [strain, stress] = [0, 1].map(|of| move |plastic: f64| self.nominal(plastic)[of]);
         let (mut low, mut high) = (0.0, 0.01);
         for _ in 0..60 {
@@ -141,17 +141,17 @@ impl Law {
 }
 
 /// Linear interpolation of [x, y] rows with increasing x.
-pub(crate) fn at(curve: &[[f64; 2]], x: f64) -> f64 {
+pub fn at(curve: &[[f64; 2]], x: f64) -> f64 {
     let after = curve.partition_point(|row| row[0] < x).clamp(1, curve.len() - 1);
     let ([x0, y0], [x1, y1]) = (curve[after - 1], curve[after]);
     y0 + (y1 - y0) * (x - x0) / (x1 - x0)
 }
 
 /// Normally distributed numbers from a seed: the sum of twelve uniform ones.
-pub(crate) struct Noise(pub u64);
+pub struct Noise(pub u64);
 
 impl Noise {
-    pub(crate) fn integer(&mut self) -> u64 {
+    pub fn integer(&mut self) -> u64 {
         // splitmix64
         self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
         let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
@@ -159,14 +159,14 @@ impl Noise {
         z ^ (z >> 31)
     }
 
-    pub(crate) fn normal(&mut self) -> f64 {
+    pub fn normal(&mut self) -> f64 {
         let uniform = |noise: &mut Self| noise.integer() as f64 / u64::MAX as f64;
         (0..12).map(|_| uniform(self)).sum::<f64>() - 6.0
     }
 }
 
 /// Rows as a comma-separated file with a header.
-pub(crate) fn csv(header: &str, rows: &[[f64; 2]]) -> String {
+pub fn csv(header: &str, rows: &[[f64; 2]]) -> String {
     let mut text = format!("{header}\n");
     for [strain, stress] in rows {
         writeln!(text, "{strain},{stress}").unwrap();
@@ -174,10 +174,10 @@ pub(crate) fn csv(header: &str, rows: &[[f64; 2]]) -> String {
     text
 }
 
-pub(crate) const HEADER: &str = "Tensile strain (1),Tensile stress (MPa)";
+pub const HEADER: &str = "Tensile strain (1),Tensile stress (MPa)";
 
 /// Writes files into a folder.
-pub(crate) fn write(folder: &Path, name: &str, text: &str) -> PathBuf {
+pub fn write(folder: &Path, name: &str, text: &str) -> PathBuf {
     let path = folder.join(name);
     std::fs::write(&path, text).unwrap();
     path

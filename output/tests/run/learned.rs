@@ -12,7 +12,7 @@ use support::severity::Severity;
 use surrogate::Surrogate;
 
 /// Writes the random weights and their card, with changes, next to the scene.
-pub(crate) fn weights(folder: &Path, changes: &[(&str, &str)]) {
+pub fn weights(folder: &Path, changes: &[(&str, &str)]) {
     let cases = Path::new(env!("CARGO_MANIFEST_DIR")).join("../design/tests/cases");
     let random = cases.join("chi_tiny.safetensors");
     std::fs::copy(random, folder.join("tiny.safetensors")).unwrap();
@@ -27,7 +27,7 @@ pub(crate) fn weights(folder: &Path, changes: &[(&str, &str)]) {
     std::fs::write(folder.join("tiny.json"), card).unwrap();
 }
 
-pub(crate) fn learned(changes: &[(&str, &str)]) -> String {
+pub fn learned(changes: &[(&str, &str)]) -> String {
     let posture = "[posture]\nkind = \"held-flat\"";
     let weights = format!("[surrogate]\nweights = \"tiny.safetensors\"\n\n{posture}");
     let terms = "compression = 0.2\nshear = 0.1\ndamage = 0.2";
@@ -147,7 +147,7 @@ fn a_path_that_departs_from_its_ray_is_named() {
 }
 
 /// Writes weights next to the scene that predict D_peak in proportion to `peak_scale`.
-pub(crate) fn brittle(folder: &Path, peak_scale: f64) {
+pub fn brittle(folder: &Path, peak_scale: f64) {
     let cases = Path::new(env!("CARGO_MANIFEST_DIR")).join("../surrogate/tests/cases");
     let random = Surrogate::load(&cases.join("chi_domain.safetensors")).unwrap();
     let mut card = random.card().clone();

@@ -12,7 +12,7 @@ use hinge::{HingeConstants, HingeDeformation, HingeDesign, HingeSample};
 use surrogate::{Order, Surrogate};
 use train::{Trained, Training, TrainingConfig, train};
 
-pub(crate) fn sample(design: &HingeDesign, eps: HingeDeformation, lambda: f64) -> HingeSample {
+pub fn sample(design: &HingeDesign, eps: HingeDeformation, lambda: f64) -> HingeSample {
     let w = design.w_lig;
     let [u, v] = eps.eta(w);
     let t = eps.theta;
@@ -38,7 +38,7 @@ pub(crate) fn sample(design: &HingeDesign, eps: HingeDeformation, lambda: f64) -
 }
 
 /// Ten increments of each of `jobs` rays, distributed over the features by irrational steps.
-pub(crate) fn rows(jobs: usize) -> Vec<Row> {
+pub fn rows(jobs: usize) -> Vec<Row> {
     let mut rows = Vec::new();
     for job in 0..jobs {
         let spread = |step: f64| (step * (job + 1) as f64).fract();
@@ -64,11 +64,11 @@ pub(crate) fn rows(jobs: usize) -> Vec<Row> {
     rows
 }
 
-pub(crate) fn database(rows: Vec<Row>) -> Database {
+pub fn database(rows: Vec<Row>) -> Database {
     Database::collect(rows, &SplitPlan::default()).unwrap()
 }
 
-pub(crate) fn config(epochs: usize) -> TrainingConfig {
+pub fn config(epochs: usize) -> TrainingConfig {
     TrainingConfig {
         seed: 4,
         embedding: vec![32, 32, 16],
@@ -79,12 +79,12 @@ pub(crate) fn config(epochs: usize) -> TrainingConfig {
     }
 }
 
-pub(crate) fn trained(epochs: usize) -> Trained {
+pub fn trained(epochs: usize) -> Trained {
     train(&database(rows(60)), &config(epochs), &mut |_| {}).unwrap()
 }
 
 /// The energies of a surrogate at some states.
-pub(crate) fn energies(surrogate: &Surrogate) -> Vec<f64> {
+pub fn energies(surrogate: &Surrogate) -> Vec<f64> {
     let (designs, deformations): (Vec<_>, Vec<_>) =
         rows(7).iter().map(|row| (row.design, row.sample.deformation())).unzip();
     let prepared = surrogate.prepare(&designs);
@@ -92,7 +92,7 @@ pub(crate) fn energies(surrogate: &Surrogate) -> Vec<f64> {
     energies.iter().map(|energy| energy.w).collect()
 }
 
-pub(crate) fn finished(mut training: Training) -> Trained {
+pub fn finished(mut training: Training) -> Trained {
     while !training.is_finished() {
         training.epoch().unwrap();
     }
