@@ -5,6 +5,7 @@
 pub(crate) mod pages;
 
 use dataset::{Database, Row};
+use serde_json::Value;
 use std::os::unix::fs::symlink;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
@@ -33,13 +34,12 @@ impl Workplace {
 
     /// Replaces texts in a file; each of them must occur in it.
     pub(crate) fn edit(&self, name: &str, replacements: &[(&str, &str)]) {
-        let path = self.path(name);
-        let mut text = std::fs::read_to_string(&path).unwrap();
+        let mut text = self.read(name);
         for (old, new) in replacements {
             assert!(text.contains(old), "{name} does not hold `{old}`");
             text = text.replace(old, new);
         }
-        std::fs::write(path, text).unwrap();
+        self.write(name, text);
     }
 
     /// Changes the keys of a campaign, and the keys of each of its boxes of rays, which are counted
@@ -50,16 +50,23 @@ impl Workplace {
         keys: impl FnOnce(&mut Table),
         mut of_box: impl FnMut(usize, &mut Table),
     ) {
-        let path = self.path(name);
-        let text = std::fs::read_to_string(&path).unwrap();
-        let mut campaign: DocumentMut = text.parse().unwrap();
+        let mut campaign: DocumentMut = self.read(name).parse().unwrap();
         keys(campaign.as_table_mut());
         let boxes = campaign["rays"].as_array_of_tables_mut();
         let boxes = boxes.into_iter().flat_map(ArrayOfTables::iter_mut);
         for (place, rays) in boxes.enumerate() {
             of_box(place, rays);
         }
-        std::fs::write(path, campaign.to_string()).unwrap();
+        self.write(name, campaign.to_string());
+    }
+
+    /// The text of a file.
+    pub(crate) fn read(&self, name: &str) -> String {
+        std::fs::read_to_string(self.path(name)).unwrap()
+    }
+
+    pub(crate) fn write(&self, name: &str, contents: impl AsRef<[u8]>) {
+        std::fs::write(self.path(name), contents).unwrap();
     }
 
     /// The program with arguments, ready to run in the folder.
@@ -74,6 +81,23 @@ impl Workplace {
         let (output, message) = run(&mut self.program(arguments));
         assert!(output.status.success(), "{arguments}: {message}");
         String::from_utf8(output.stdout).unwrap()
+    }
+
+    /// Asserts that the output of a run has every one of the parts.
+    #[track_caller]
+    pub(crate) fn prints(&self, arguments: &str, expected: &[&str]) {
+        assert_contains(&self.output(arguments), expected);
+    }
+
+    /// Asserts that the error message of a run has every one of the parts.
+    #[track_caller]
+    pub(crate) fn refuses(&self, arguments: &str, expected: &[&str]) {
+        assert_contains(&self.error(arguments), expected);
+    }
+
+    /// What a run prints as JSON.
+    pub(crate) fn json(&self, arguments: &str) -> Value {
+        serde_json::from_str(&self.output(arguments)).unwrap()
     }
 
     /// The error message of a run, which must fail with an error and not a panic.

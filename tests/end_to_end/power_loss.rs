@@ -121,7 +121,7 @@ fn a_loss_of_power_at_any_moment_leaves_whole_files_and_whole_jobs() {
         .current_dir(work.path(""))
         .stdout(Stdio::null());
     assert!(traced.status().unwrap().success());
-    let trace = std::fs::read_to_string(work.path("trace")).unwrap();
+    let trace = work.read("trace");
 
     let mut disk = Disk::default();
     let mut results = 0;
