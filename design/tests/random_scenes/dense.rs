@@ -10,7 +10,6 @@
 
 use crate::drawn::Drawn;
 use design::equilibrium::load_step::LoadStep;
-use design::equilibrium::supports::Support;
 use design::hinge_law::Order;
 use design::objective::design_problem::DesignProblem;
 use design::sheet::cut_sheet::Sheet;
