@@ -15,11 +15,20 @@
 //! that needs one is rejected, with the advice to use `kirigami material fit`, which reports them.
 //!
 //! ```
-//! # use std::path::Path;
-//! # let records = Path::new(env!("CARGO_MANIFEST_DIR")).join("../configs/tensile");
-//! let table = tensile::read_tensile(&records.join("polypropylene.csv"), 1400.0)?;
-//! assert!(table.is_sorted_by(|[_, earlier], [_, later]| earlier < later));
-//! # Ok::<_, tensile::TensileError>(())
+//! use tensile::{FitOptions, MaterialFit, RecordOptions, SpecimenOptions};
+//!
+//! # let records = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../configs/tensile");
+//! let dimensions = RecordOptions {
+//!     width: Some(10.0),
+//!     thickness: Some(0.5),
+//!     gauge_length: Some(50.0),
+//!     ..RecordOptions::default()
+//! };
+//! let options =
+//!     FitOptions { specimen: SpecimenOptions::default(), fracture_strain: None, rows: 30 };
+//! let fit = MaterialFit::new(&[(records.join("strip-1.csv"), dimensions)], &options)?;
+//! assert!((fit.young.mean - 3000.0).abs() < 10.0); // MPa
+//! # Ok::<_, Box<dyn std::error::Error>>(())
 //! ```
 
 mod cleaning;
