@@ -15,9 +15,11 @@ test-fast:
 	cargo test --release --locked --workspace --lib --bins --test command_line --test data \
 	    --test measured_sheet --test reference --test run --test scenes --test sheet --test tensile --test vtk_sheet --test weights
 
+# The oldest Rust that Cargo.toml allows compiles the workspace; where it is the installed one nothing is compiled again.
 lint:
 	cargo fmt --all --check
 	cargo clippy --release --locked --workspace --all-targets -- -D warnings
+	rustup run --install $(shell sed -n 's/^rust-version = "\(.*\)"/\1/p' Cargo.toml).0 cargo check --release --locked --workspace
 	cargo check --release --locked -p kirigami --no-default-features
 	RUSTDOCFLAGS="-D warnings" cargo doc --release --locked --workspace --lib --no-deps
 

@@ -21,8 +21,6 @@
 //! # Ok::<_, dataset::DatasetError>(())
 //! ```
 
-#![warn(missing_docs)]
-
 mod acceptance;
 mod bridge;
 mod check;

@@ -76,8 +76,6 @@
 //! # Ok::<_, Box<dyn std::error::Error>>(())
 //! ```
 
-#![warn(missing_docs)]
-
 pub mod equilibrium;
 pub mod geometry;
 pub mod hinge_law;

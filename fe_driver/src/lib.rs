@@ -63,8 +63,6 @@
 //! # Ok::<_, Box<dyn std::error::Error>>(())
 //! ```
 
-#![warn(missing_docs)]
-
 #[cfg(test)]
 extern crate self as fe_driver;
 

@@ -34,8 +34,6 @@
 //! # Ok::<_, hinge::InvalidDesign>(())
 //! ```
 
-#![warn(missing_docs)]
-
 mod deformation;
 mod design;
 mod domain;

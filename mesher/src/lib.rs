@@ -23,8 +23,6 @@
 //! # Ok::<_, Box<dyn std::error::Error>>(())
 //! ```
 
-#![warn(missing_docs)]
-
 mod element;
 mod extrusion;
 mod geo;

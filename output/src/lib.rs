@@ -21,8 +21,6 @@
 //! # Ok::<_, Box<dyn std::error::Error>>(())
 //! ```
 
-#![warn(missing_docs)]
-
 pub mod cut_file;
 mod deployment_states;
 pub mod display;

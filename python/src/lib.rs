@@ -13,8 +13,6 @@
 //!
 //! Calls that evaluate hinges, solve or search release the GIL meanwhile.
 
-#![warn(missing_docs)]
-
 mod arrays;
 mod deployment;
 mod errors;

@@ -5,8 +5,17 @@
 //! keys. [`Scene::read`] reads a scene and [`Scene::problem`] makes it a design problem;
 //! [`design_run`] searches and keeps its run folder. What is computed of a deployed sheet is in
 //! [`analysis`], the sheet for a silhouette in [`fit`], the outlines of drawings in [`drawing`].
-
-#![warn(missing_docs)]
+//!
+//! ```
+//! use scene::Scene;
+//! use std::path::Path;
+//!
+//! # let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("../configs/scenes");
+//! let scene = Scene::read(&scenes.join("pin-7x7.toml"))?;
+//! let (problem, start) = (scene.problem()?, scene.start());
+//! assert!(problem.loss(&start)?.is_finite());
+//! # Ok::<_, Box<dyn std::error::Error>>(())
+//! ```
 
 mod actuation;
 pub mod analysis;

@@ -13,8 +13,6 @@
 //! assert_eq!(page, "| hinge | error of W |\n|---|---|\n| 18 mm | 1.2 % |\n");
 //! ```
 
-#![warn(missing_docs)]
-
 /// Appends a formatted line to a string.
 #[macro_export]
 macro_rules! add_line {

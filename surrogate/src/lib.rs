@@ -33,8 +33,6 @@
 //! # Ok::<_, surrogate::WeightsError>(())
 //! ```
 
-#![warn(missing_docs)]
-
 mod card;
 mod damage;
 mod energy;

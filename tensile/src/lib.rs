@@ -11,8 +11,23 @@
 //! | local curve in the neck | `cold_drawing` |
 //! | mean over the specimens, table, fracture strain | `mean_curve`, `thinning`, `fit` |
 //! | the material and its file | `material_file` |
-
-#![warn(missing_docs)]
+//!
+//! ```
+//! use tensile::{FitOptions, MaterialFit, RecordOptions, SpecimenOptions};
+//!
+//! # let records = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../configs/tensile");
+//! let dimensions = RecordOptions {
+//!     width: Some(10.0),
+//!     thickness: Some(0.5),
+//!     gauge_length: Some(50.0),
+//!     ..RecordOptions::default()
+//! };
+//! let options =
+//!     FitOptions { specimen: SpecimenOptions::default(), fracture_strain: None, rows: 30 };
+//! let fit = MaterialFit::new(&[(records.join("strip-1.csv"), dimensions)], &options)?;
+//! assert!((fit.young.mean - 3000.0).abs() < 10.0); // MPa
+//! # Ok::<_, Box<dyn std::error::Error>>(())
+//! ```
 
 mod cleaning;
 mod cold_drawing;

@@ -29,7 +29,7 @@ fn the_message_about_a_missing_program_states_how_to_install_it() {
     // A program that cannot be loaded, and another one, which prints a number.
     for (status, printed) in [(127, "libspooles.so.2.2: cannot open"), (0, "line 4, in x")] {
         let script = format!("#!/bin/sh\necho '{printed}' >&2\nexit {status}\n");
-        std::fs::write(work.path("ccx"), script).unwrap();
+        work.write("ccx", script);
         std::fs::set_permissions(work.path("ccx"), PermissionsExt::from_mode(0o755)).unwrap();
         let text = doctor("ccx");
         assert!(text.contains(printed), "{text}");
@@ -54,14 +54,14 @@ fn the_solver_runs_in_its_own_environment() {
     solve.env("KIRIGAMI_CCX", ccx);
     solve.env("CCX_NPROC_STIFFNESS", "4").env("OMP_NUM_THREADS", "4");
     failure(solve.env("HOME", "/somewhere").env("SECRET", "1"));
-    let seen = std::fs::read_to_string(work.path("runs/solve/environment.txt")).unwrap();
+    let seen = work.read("runs/solve/environment.txt");
     for line in ["CCX_NPROC_STIFFNESS=1", "OMP_NUM_THREADS=1"] {
         assert!(seen.lines().any(|it| it == line), "{seen}");
     }
     assert!(!seen.contains("SECRET") && !seen.contains("/somewhere"), "{seen}");
 }
 
-/// As `kirigami ... > /dev/full`, and as into a pipe that is full and does not block.
+/// Output goes to `/dev/full`, or into a pipe that is full and does not block.
 #[test]
 fn output_that_cannot_be_written_is_an_error_and_no_panic() {
     let work = Workplace::new();

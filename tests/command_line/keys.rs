@@ -113,7 +113,7 @@ fn table<'a>(
     keys: impl Iterator<Item = (&'a String, &'a Value)>,
     schema: &Value,
 ) {
-    writeln!(page, "\n| key | type | range | default | meaning |\n|---|---|---|---|---|").unwrap();
+    writeln!(page, "\n| key | value | default | meaning |\n|---|---|---|---|").unwrap();
     for (key, property) in keys {
         let default = match property.get("default") {
             _ if required(schema, key) => "required".to_owned(),
@@ -121,7 +121,8 @@ fn table<'a>(
             Some(default) => format!("`{default}`"),
         };
         let (kind, range, meaning) = (kind(property), range(property), text(property));
-        writeln!(page, "| `{key}` | {kind} | {range} | {default} | {meaning} |").unwrap();
+        let comma = if range.is_empty() { "" } else { ", " };
+        writeln!(page, "| `{key}` | {kind}{comma}{range} | {default} | {meaning} |").unwrap();
     }
 }
 

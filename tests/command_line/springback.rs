@@ -79,7 +79,7 @@ fn what_stays_of_a_sheet_outside_the_domain_is_not_known() {
 
 /// The report of the design of a scene.
 fn report(work: &Workplace, scene: &str) -> Value {
-    serde_json::from_str(&work.output(&format!("design {scene} --json"))).unwrap()
+    work.json(&format!("design {scene} --json"))
 }
 
 /// The unloaded sheet of a report.
@@ -105,7 +105,7 @@ fn the_report_says_what_stays_by_the_law_that_the_scene_names() {
     assert_eq!(released(&report(&work, "run")), released(&found));
     let creep = "/facts/creep_and_springback/creep/ratio";
     assert_eq!(found.pointer(creep).unwrap(), 3.0);
-    let text = || std::fs::read_to_string(work.path("run/report.txt")).unwrap();
+    let text = || work.read("run/report.txt");
     let share = 100.0 * share(released(&found));
     assert!(share < 90.0, "{share}");
     let stays = format!("stay when the load is taken off, {share:.0} %");

@@ -142,15 +142,15 @@ fn balance(rounds: usize) -> String {
 }
 
 fn balance_page(work: &Workplace) -> String {
-    std::fs::read_to_string(work.path("balance/equilibrium.md")).unwrap()
+    work.read("balance/equilibrium.md")
 }
 
 fn the_design_is_balanced_by_finite_elements(work: &Workplace) {
-    let scene = std::fs::read_to_string(work.path("configs/scenes/demo.toml")).unwrap();
+    let scene = work.read("configs/scenes/demo.toml");
     let scene = scene
         .replace("../../runs/demo/surrogate.safetensors", SHIPPED_WEIGHTS)
         .replace("../materials", "configs/materials");
-    std::fs::write(work.path("shipped.toml"), scene).unwrap();
+    work.write("shipped.toml", scene);
     let text = work.output(&balance(2));
     let again = Instant::now();
     assert_eq!(work.output(&balance(2)), text, "solved once");
@@ -177,7 +177,7 @@ fn a_failed_round_keeps_the_rounds_before(work: &Workplace) {
 
 fn weights_are_tested_on_the_spot_check(work: &Workplace) {
     let test = "surrogate test runs/demo/surrogate.safetensors runs/demo/spot-check.parquet";
-    let card = || json(&std::fs::read_to_string(work.path("runs/demo/surrogate.json")).unwrap());
+    let card = || json(&work.read("runs/demo/surrogate.json"));
     // Six rays do not cover the region in which the states are drawn; the rays of the shipped
     // weights cover most of it.
     let tested = ["tested on tier tiny, 3 rays", " of 12 states inside the training domain"];
@@ -202,7 +202,7 @@ fn weights_are_tested_on_the_spot_check(work: &Workplace) {
 
 fn further_rays_are_planned(work: &Workplace) {
     let rays = "w_lig,alpha_deg,eta_a,eta_s,theta_deg\n18,80,-0.3,0.1,20\n12,90,0.1,0,30\n";
-    std::fs::write(work.path("configs/campaigns/further.csv"), rays).unwrap();
+    work.write("configs/campaigns/further.csv", rays);
     work.edit(CAMPAIGN, &[("spot_rays = 3", "extra_rays = \"further.csv\"\nspot_rays = 3")]);
     let plan =
         json(&work.output(&format!("campaign plan {CAMPAIGN} --folder runs/demo/campaign --json")));

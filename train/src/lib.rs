@@ -17,8 +17,6 @@
 //! # Ok::<_, Box<dyn std::error::Error>>(())
 //! ```
 
-#![warn(missing_docs)]
-
 mod affine;
 mod bins;
 mod config;

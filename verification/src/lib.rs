@@ -43,8 +43,6 @@
 //! # Ok::<_, Box<dyn std::error::Error>>(())
 //! ```
 
-#![warn(missing_docs)]
-
 mod balanced_sheet;
 mod compared_states;
 mod distillation_states;

@@ -16,7 +16,7 @@ use fe_driver::{
 use hinge::Regime;
 use mesher::Tier;
 use scene::run_inputs::scene_file;
-use scene::{Level, Scene, SceneConfig};
+use scene::{Level, LinearConstants, Scene, SceneConfig};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
@@ -80,13 +80,9 @@ fn balance(
 /// A sheet of springs with the stiffness of [`SPRINGS`], times `factor`.
 fn springs(factor: f64) -> Scene {
     let path = repository().join("configs/scenes/linear-7x7.toml");
-    let text = std::fs::read_to_string(&path).unwrap();
+    let mut config: SceneConfig = support::toml_file::read(&path).unwrap();
     let [k_a, k_s, k_theta] = SPRINGS.map(|k| k * factor);
-    let text = text
-        .replace("k_a = 400.0", &format!("k_a = {k_a}"))
-        .replace("k_s = 250.0", &format!("k_s = {k_s}"))
-        .replace("k_theta = 300.0", &format!("k_theta = {k_theta}"));
-    let config: SceneConfig = support::toml_file::parse(&text, &path).unwrap();
+    config.linear = Some(LinearConstants { k_a, k_s, k_theta });
     Scene::new(config, &path).unwrap()
 }
 
