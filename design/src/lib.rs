@@ -88,14 +88,18 @@ pub mod sheet;
 
 pub use equilibrium::solver::EquilibriumSolver;
 pub use hinge_law::{HingeLaw, LinearLaw, SurrogateLaw};
-pub use objective::design_problem::{
-    Deployment, DesignError, DesignProblem, Evaluation, Mechanics, Model,
+pub use objective::{
+    design_problem::{Deployment, DesignError, DesignProblem, Evaluation, Mechanics, Model},
+    loss::Objective,
+    shape::Shape,
 };
-pub use objective::loss::Objective;
-pub use objective::shape::Shape;
-pub use optimise::outer_loop::{Ended, SearchState, optimise};
-pub use optimise::search::SearchMethod;
-pub use pattern::cut_pattern::Outline;
-pub use pattern::design_vector::{DesignVector, WidthChart};
-pub use pattern::grid::Grid;
+pub use optimise::{
+    outer_loop::{Ended, SearchState, optimise},
+    search::SearchMethod,
+};
+pub use pattern::{
+    cut_pattern::Outline,
+    design_vector::{DesignVector, WidthChart},
+    grid::Grid,
+};
 pub use sheet::cut_sheet::Sheet;

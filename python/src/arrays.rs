@@ -1,10 +1,11 @@
 //! NumPy arrays in and out. What cannot be read as real numbers without loss is an error that names
 //! the argument.
 
-use numpy::ndarray::ArrayD;
-use numpy::{IntoPyArray, PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
-use pyo3::exceptions::{PyTypeError, PyValueError};
-use pyo3::prelude::*;
+use numpy::{IntoPyArray, PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods, ndarray::ArrayD};
+use pyo3::{
+    exceptions::{PyTypeError, PyValueError},
+    prelude::*,
+};
 use serde::Serialize;
 
 /// An array of float64.

@@ -1,13 +1,14 @@
 //! Deployed sheets: a path of load steps, or the state at full load alone.
 
-use crate::arrays::{Doubles, array, bools, plain, triples};
-use crate::errors;
-use crate::flat_sheet::{Sheet, quadrilaterals};
-use design::equilibrium::load_step::LoadStep;
-use design::hinge_law::HingeDamage;
-use design::objective::response::Response;
-use design::sheet::kinematics::deployed_corners;
-use design::{DesignError, DesignProblem};
+use crate::{
+    arrays::{Doubles, array, bools, plain, triples},
+    errors,
+    flat_sheet::{Sheet, quadrilaterals},
+};
+use design::{
+    DesignError, DesignProblem, equilibrium::load_step::LoadStep, hinge_law::HingeDamage,
+    objective::response::Response, sheet::kinematics::deployed_corners,
+};
 use numpy::PyArrayDyn;
 use pyo3::prelude::*;
 use std::sync::Arc;

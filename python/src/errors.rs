@@ -1,9 +1,7 @@
 //! Errors as Python exceptions. The message is the message of the command line.
 
 use design::DesignError;
-use pyo3::create_exception;
-use pyo3::exceptions::PyException;
-use pyo3::prelude::*;
+use pyo3::{create_exception, exceptions::PyException, prelude::*};
 use std::fmt::Display;
 
 create_exception!(

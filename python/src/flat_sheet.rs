@@ -1,16 +1,20 @@
 //! Cut patterns and flat sheets.
 
-use crate::arrays::{Doubles, array, numbers, shaped, triples, tuple};
-use crate::errors;
-use design::pattern::coordinates::PatternCoordinates;
-use design::pattern::cut_pattern::CutPattern;
-use design::sheet::cut_sheet::{HingePoint, SheetOptions};
-use design::sheet::ideal_deployment::ideal_deployment;
-use design::sheet::kinematics::deployed_corners;
-use design::{Grid, Outline};
+use crate::{
+    arrays::{Doubles, array, numbers, shaped, triples, tuple},
+    errors,
+};
+use design::{
+    Grid, Outline,
+    pattern::{coordinates::PatternCoordinates, cut_pattern::CutPattern},
+    sheet::{
+        cut_sheet::{HingePoint, SheetOptions},
+        ideal_deployment::ideal_deployment,
+        kinematics::deployed_corners,
+    },
+};
 use hinge::HingeConstants;
-use pyo3::exceptions::PyValueError;
-use pyo3::prelude::*;
+use pyo3::{exceptions::PyValueError, prelude::*};
 use std::sync::Arc;
 
 /// A cut pattern that deploys rigidly, (2)-(5), of m x n panels.

@@ -1,19 +1,17 @@
 //! The learned hinge energy: weights, hinges prepared for evaluation, and what is known of their
 //! states.
 
-use crate::arrays::{
-    Doubles, Numbers, array, bools, followed_by, numbers, plain, tuple, wrong_shape,
+use crate::{
+    arrays::{Doubles, Numbers, array, bools, followed_by, numbers, plain, tuple, wrong_shape},
+    errors,
+    waiting::unlocked,
 };
-use crate::errors;
-use crate::waiting::unlocked;
 use design::hinge_law::{HingeDamage, HingeEnergy, Order, PreparedLaw, PreparedSurrogate};
 use hinge::{DesignGradient, HingeConstants, HingeDeformation, HingeDesign};
 use numpy::PyArrayDyn;
-use pyo3::exceptions::PyValueError;
-use pyo3::prelude::*;
+use pyo3::{exceptions::PyValueError, prelude::*};
 use rayon::prelude::*;
-use std::path::PathBuf;
-use std::sync::Arc;
+use std::{path::PathBuf, sync::Arc};
 use surrogate::mean_and_variance;
 
 /// The learned energy of a hinge, W(a, s, theta; w_lig, alpha), with its continuation outside the

@@ -1,28 +1,39 @@
 //! A prepared design problem: its scene is read once, its solves start from the last state.
 
-use crate::arrays::{
-    Doubles, Numbers, array, finite, numbers, plain, shaped, triples, tuple, wrong_shape,
+use crate::{
+    arrays::{
+        Doubles, Numbers, array, finite, numbers, plain, shaped, triples, tuple, wrong_shape,
+    },
+    deployment::{Deployment, State},
+    errors,
+    flat_sheet::Sheet,
+    waiting::{unlocked, while_polling},
 };
-use crate::deployment::{Deployment, State};
-use crate::errors;
-use crate::flat_sheet::Sheet;
-use crate::waiting::{unlocked, while_polling};
-use design::equilibrium::warm_start::WarmStart;
-use design::objective::response::{Conditions, Response, ResponseCotangent, ResponseGradient};
 use design::{
-    DesignError, DesignProblem, DesignVector, Evaluation, SearchMethod, SearchState, optimise,
+    DesignError, DesignProblem, DesignVector, Evaluation, SearchMethod, SearchState,
+    equilibrium::warm_start::WarmStart,
+    objective::response::{Conditions, Response, ResponseCotangent, ResponseGradient},
+    optimise,
 };
-use pyo3::exceptions::{PyTypeError, PyValueError};
-use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyList, PyTuple};
+use pyo3::{
+    exceptions::{PyTypeError, PyValueError},
+    prelude::*,
+    types::{PyDict, PyList, PyTuple},
+};
 use rayon::prelude::*;
-use scene::design_run::{design_of_run, stored_design};
-use scene::run_inputs::scene_file;
-use scene::{Level, Scene, SceneConfig};
-use std::ops::Range;
-use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use scene::{
+    Level, Scene, SceneConfig,
+    design_run::{design_of_run, stored_design},
+    run_inputs::scene_file,
+};
+use std::{
+    ops::Range,
+    path::{Path, PathBuf},
+    sync::{
+        Arc, Mutex, MutexGuard, PoisonError,
+        atomic::{AtomicBool, Ordering},
+    },
+};
 
 /// A design problem: sheet, material, supports, loads, target and objective of a scene.
 ///

@@ -1,12 +1,15 @@
 //! Calls without the GIL, and Ctrl-C during those that take long.
 
-use pyo3::exceptions::PyRuntimeError;
-use pyo3::prelude::*;
-use std::panic::resume_unwind;
-use std::sync::OnceLock;
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::{RecvTimeoutError, channel};
-use std::time::Duration;
+use pyo3::{exceptions::PyRuntimeError, prelude::*};
+use std::{
+    panic::resume_unwind,
+    sync::{
+        OnceLock,
+        atomic::{AtomicBool, Ordering},
+        mpsc::{RecvTimeoutError, channel},
+    },
+    time::Duration,
+};
 
 /// How often Python is asked for signals.
 const POLL: Duration = Duration::from_millis(50);

@@ -16,18 +16,19 @@
 //! function that depends on them, by g_r, lambda is -g_r there, and the equations of the free
 //! degrees of freedom have the right-hand side g_i + H g_r.
 
-use crate::equilibrium::corrector::Branch;
-use crate::equilibrium::hinged_sheet::HingedSheet;
-use crate::equilibrium::load_step::LoadStep;
-use crate::equilibrium::potential::Stage;
-use crate::equilibrium::refined_solve::refined_solve;
-use crate::equilibrium::solver::EquilibriumSolver;
-use crate::equilibrium::weight::add_weight_gradient;
-use crate::geometry::plane::{add, complex};
-use crate::hinge_law::{HingeGradient, Order};
-use crate::sheet::cut_sheet::SheetGradient;
-use crate::sheet::kinematics::{HingeGeometryGradient, HingeMotion};
-use crate::sheet::panel_vectors::{add_at_hinge, at_hinge};
+use crate::{
+    equilibrium::{
+        corrector::Branch, hinged_sheet::HingedSheet, load_step::LoadStep, potential::Stage,
+        refined_solve::refined_solve, solver::EquilibriumSolver, weight::add_weight_gradient,
+    },
+    geometry::plane::{add, complex},
+    hinge_law::{HingeGradient, Order},
+    sheet::{
+        cut_sheet::SheetGradient,
+        kinematics::{HingeGeometryGradient, HingeMotion},
+        panel_vectors::{add_at_hinge, at_hinge},
+    },
+};
 use std::borrow::Cow;
 use support::vectors::{self, dot};
 

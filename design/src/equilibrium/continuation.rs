@@ -13,16 +13,20 @@
 //!
 //! The increments do not depend on the load steps, which are read off the path between them.
 
-use crate::equilibrium::corrector::{Branch, Corrected, Point};
-use crate::equilibrium::displacement_control::HeldFactor;
-use crate::equilibrium::hinged_sheet::HingedSheet;
-use crate::equilibrium::load_step::DescentEnd;
-use crate::equilibrium::newton::{Failure, Minimum};
-use crate::equilibrium::potential::{Stage, State, moved};
-use crate::equilibrium::predictor::{Arc, PathPoint, bisected};
-use crate::equilibrium::solver::EquilibriumSolver;
-use crate::hinge_law::Order;
-use crate::sheet::kinematics::Configuration;
+use crate::{
+    equilibrium::{
+        corrector::{Branch, Corrected, Point},
+        displacement_control::HeldFactor,
+        hinged_sheet::HingedSheet,
+        load_step::DescentEnd,
+        newton::{Failure, Minimum},
+        potential::{Stage, State, moved},
+        predictor::{Arc, PathPoint, bisected},
+        solver::EquilibriumSolver,
+    },
+    hinge_law::Order,
+    sheet::kinematics::Configuration,
+};
 
 /// Length of the first increment of a branch. Lengths are in rad, or in panel sizes for hinge
 /// translations.

@@ -11,14 +11,18 @@
 //! which is regular where the load has a maximum along the path. One factorisation serves as many
 //! corrections as it contracts fast enough.
 
-use crate::equilibrium::displacement_control::HeldFactor;
-use crate::equilibrium::hinged_sheet::HingedSheet;
-use crate::equilibrium::load_step::Effort;
-use crate::equilibrium::newton::Minimum;
-use crate::equilibrium::potential::{Potential, Stage, State, moved};
-use crate::equilibrium::predictor::PathPoint;
-use crate::equilibrium::solver::EquilibriumSolver;
-use crate::hinge_law::Order;
+use crate::{
+    equilibrium::{
+        displacement_control::HeldFactor,
+        hinged_sheet::HingedSheet,
+        load_step::Effort,
+        newton::Minimum,
+        potential::{Potential, Stage, State, moved},
+        predictor::PathPoint,
+        solver::EquilibriumSolver,
+    },
+    hinge_law::Order,
+};
 
 /// Maximum number of corrections.
 const CORRECTIONS: usize = 10;

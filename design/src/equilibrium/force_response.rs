@@ -9,16 +9,22 @@
 //!
 //! which takes one solve with the factors of the tangent.
 
-use crate::equilibrium::adjoint::SINGULAR;
-use crate::equilibrium::displacement_control::{Stroke, magnitude};
-use crate::equilibrium::hinged_sheet::HingedSheet;
-use crate::equilibrium::load_step::LoadStep;
-use crate::equilibrium::refined_solve::refined_solve;
-use crate::equilibrium::solver::EquilibriumSolver;
-use crate::hinge_law::Order;
-use crate::sheet::cut_sheet::Sheet;
-use crate::sheet::kinematics::{Configuration, HingeMotion};
-use crate::sheet::panel_vectors::{add_at_hinge, at_hinge};
+use crate::{
+    equilibrium::{
+        adjoint::SINGULAR,
+        displacement_control::{Stroke, magnitude},
+        hinged_sheet::HingedSheet,
+        load_step::LoadStep,
+        refined_solve::refined_solve,
+        solver::EquilibriumSolver,
+    },
+    hinge_law::Order,
+    sheet::{
+        cut_sheet::Sheet,
+        kinematics::{Configuration, HingeMotion},
+        panel_vectors::{add_at_hinge, at_hinge},
+    },
+};
 use support::vectors::dot;
 
 /// An equilibrium whose hinge forces may have errors.

@@ -3,19 +3,25 @@
 //! Newton's method follows the path in increments of its own, and the load steps are read off it:
 //! the cubic between two points of the path is the start of a correction at the load of the step.
 
-use crate::equilibrium::continuation::{Follower, LEAP};
-use crate::equilibrium::corrector::{Branch, Point};
-use crate::equilibrium::displacement_control::{HeldFactor, work};
-use crate::equilibrium::hinged_sheet::HingedSheet;
-use crate::equilibrium::load_step::{DescentEnd, LoadStep, Status, StepTangent};
-use crate::equilibrium::newton::{Failure, Minimum};
-use crate::equilibrium::potential::{Stage, State, moved};
-use crate::equilibrium::predictor::PathPoint;
-use crate::equilibrium::solver::EquilibriumSolver;
-use crate::equilibrium::weight::weights_of_panels;
-use crate::hinge_law::Order;
-use crate::sheet::kinematics::{Configuration, HingeMotion};
-use crate::sheet::panel_vectors::add_at_hinge;
+use crate::{
+    equilibrium::{
+        continuation::{Follower, LEAP},
+        corrector::{Branch, Point},
+        displacement_control::{HeldFactor, work},
+        hinged_sheet::HingedSheet,
+        load_step::{DescentEnd, LoadStep, Status, StepTangent},
+        newton::{Failure, Minimum},
+        potential::{Stage, State, moved},
+        predictor::PathPoint,
+        solver::EquilibriumSolver,
+        weight::weights_of_panels,
+    },
+    hinge_law::Order,
+    sheet::{
+        kinematics::{Configuration, HingeMotion},
+        panel_vectors::add_at_hinge,
+    },
+};
 
 /// The end of an increment of a path.
 #[derive(Clone, Debug)]

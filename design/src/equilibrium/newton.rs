@@ -10,10 +10,14 @@
 //! by their rates (Magisano, Leonetti and Garcea 2017), until the state is stationary or no descent
 //! step is found.
 
-use crate::equilibrium::displacement_control::HeldFactor;
-use crate::equilibrium::load_step::{DescentEnd, Effort};
-use crate::equilibrium::potential::{Potential, State, moved};
-use crate::sheet::kinematics::Configuration;
+use crate::{
+    equilibrium::{
+        displacement_control::HeldFactor,
+        load_step::{DescentEnd, Effort},
+        potential::{Potential, State, moved},
+    },
+    sheet::kinematics::Configuration,
+};
 use support::vectors::dot;
 
 /// Maximum length of a step: rotations in rad, hinge translations in panel sizes.

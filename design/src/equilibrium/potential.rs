@@ -12,13 +12,17 @@
 //! configuration with that stroke. If there are a weight or loads held constant, U contains their
 //! work with negative sign.
 
-use crate::equilibrium::hinged_sheet::HingedSheet;
-use crate::equilibrium::panel_force::PanelForce;
-use crate::equilibrium::solver::EquilibriumSolver;
-use crate::equilibrium::weight::weights_of_panels;
-use crate::hinge_law::{HingeEnergy, Order};
-use crate::sheet::kinematics::{Configuration, HingeMotion};
-use crate::sheet::panel_vectors::{add_at_hinge, at_hinge};
+use crate::{
+    equilibrium::{
+        hinged_sheet::HingedSheet, panel_force::PanelForce, solver::EquilibriumSolver,
+        weight::weights_of_panels,
+    },
+    hinge_law::{HingeEnergy, Order},
+    sheet::{
+        kinematics::{Configuration, HingeMotion},
+        panel_vectors::{add_at_hinge, at_hinge},
+    },
+};
 use hinge::HingeDeformation;
 use support::vectors::dot;
 

@@ -8,16 +8,24 @@
 //! displacement; its work is subtracted. In unloading the work of the forces that held the sheet is
 //! subtracted.
 
-use crate::equilibrium::displacement_control::{Stroke, magnitude, work};
-use crate::equilibrium::settings::SolverSettings;
-use crate::equilibrium::supports::{Dof, Load, Support, hold_rigid_body};
-use crate::equilibrium::tangent::TangentPattern;
-use crate::equilibrium::weight::hung_from;
-use crate::pattern::grid::Grid;
-use crate::sheet::cut_sheet::{AttachmentPoint, Sheet};
-use crate::sheet::kinematics::Configuration;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use crate::{
+    equilibrium::{
+        displacement_control::{Stroke, magnitude, work},
+        settings::SolverSettings,
+        supports::{Dof, Load, Support, hold_rigid_body},
+        tangent::TangentPattern,
+        weight::hung_from,
+    },
+    pattern::grid::Grid,
+    sheet::{
+        cut_sheet::{AttachmentPoint, Sheet},
+        kinematics::Configuration,
+    },
+};
+use std::sync::{
+    Arc,
+    atomic::{AtomicBool, Ordering},
+};
 
 /// Supports, loads or settings that do not define an equilibrium problem.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

@@ -1,16 +1,22 @@
 //! LDL^T of a sparse symmetric matrix without pivoting, by faer: column by column for few unknowns,
 //! otherwise by supernodes, dense blocks of columns.
 
-use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
-use faer::linalg::cholesky::ldlt::factor::LdltRegularization;
-use faer::mat::MatMut;
-use faer::sparse::linalg::cholesky::{
-    CholeskySymbolicParams, LdltRef, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering,
-    factorize_symbolic_cholesky, supernodal::SupernodalLdltRef,
+use faer::{
+    Conj, Par, Side,
+    dyn_stack::{MemBuffer, MemStack, StackReq},
+    linalg::cholesky::ldlt::factor::LdltRegularization,
+    mat::MatMut,
+    sparse::{
+        SparseColMatRef, SymbolicSparseColMat,
+        linalg::{
+            SupernodalThreshold, SymbolicSupernodalParams, amd,
+            cholesky::{
+                CholeskySymbolicParams, LdltRef, SymbolicCholesky, SymbolicCholeskyRaw,
+                SymmetricOrdering, factorize_symbolic_cholesky, supernodal::SupernodalLdltRef,
+            },
+        },
+    },
 };
-use faer::sparse::linalg::{SupernodalThreshold, SymbolicSupernodalParams, amd};
-use faer::sparse::{SparseColMatRef, SymbolicSparseColMat};
-use faer::{Conj, Par, Side};
 use std::cell::RefCell;
 
 /// Number of unknowns from which the supernodal factorisation is faster (measured).

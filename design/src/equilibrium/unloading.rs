@@ -5,15 +5,18 @@
 //! Supports that rest and the weight of the sheet stay; supports that moved the sheet are removed,
 //! too.
 
-use crate::equilibrium::corrector::Branch;
-use crate::equilibrium::hinged_sheet::HingedSheet;
-use crate::equilibrium::load_step::LoadStep;
-use crate::equilibrium::potential::Stage;
-use crate::equilibrium::solver::{EquilibriumError, EquilibriumSolver};
-use crate::equilibrium::supports::Support;
-use crate::hinge_law::Order;
-use crate::sheet::cut_sheet::Sheet;
-use crate::sheet::kinematics::Configuration;
+use crate::{
+    equilibrium::{
+        corrector::Branch,
+        hinged_sheet::HingedSheet,
+        load_step::LoadStep,
+        potential::Stage,
+        solver::{EquilibriumError, EquilibriumSolver},
+        supports::Support,
+    },
+    hinge_law::Order,
+    sheet::{cut_sheet::Sheet, kinematics::Configuration},
+};
 
 /// Number of steps in which the loads are taken off.
 const STEPS: usize = 10;

@@ -13,14 +13,18 @@
 //! jump that appears between two load steps is not noticed: paths must be followed from the flat
 //! sheet now and then.
 
-use crate::equilibrium::corrector::Branch;
-use crate::equilibrium::hinged_sheet::HingedSheet;
-use crate::equilibrium::load_step::{LoadStep, Status};
-use crate::equilibrium::newton::Minimum;
-use crate::equilibrium::potential::{Stage, moved};
-use crate::equilibrium::predictor::PathPoint;
-use crate::equilibrium::solver::EquilibriumSolver;
-use crate::hinge_law::{HingeEnergy, Order, PreparedLaw};
+use crate::{
+    equilibrium::{
+        corrector::Branch,
+        hinged_sheet::HingedSheet,
+        load_step::{LoadStep, Status},
+        newton::Minimum,
+        potential::{Stage, moved},
+        predictor::PathPoint,
+        solver::EquilibriumSolver,
+    },
+    hinge_law::{HingeEnergy, Order, PreparedLaw},
+};
 use hinge::{HingeDeformation, HingeDesign};
 use support::vectors::dot;
 

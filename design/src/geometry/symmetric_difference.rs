@@ -15,8 +15,10 @@
 //! Edges that coincide enclose nothing, in any order. Heights are measured along an oblique axis:
 //! an edge without height would have no derivative.
 
-use crate::geometry::plane::{complex, point, turn};
-use crate::geometry::polygon::{area, counter_clockwise, edges, side};
+use crate::geometry::{
+    plane::{complex, point, turn},
+    polygon::{area, counter_clockwise, edges, side},
+};
 
 /// Rotation of the polygons before they are cut into slabs (rad).
 const OBLIQUE: f64 = 0.7;

@@ -20,11 +20,12 @@
 use crate::hinge_law::law::{
     DamageMeasure, HingeDamage, HingeEnergy, HingeLaw, Order, PreparedLaw,
 };
-use faer::linalg::solvers::{Llt, Solve};
-use faer::{Col, Mat, Side};
+use faer::{
+    Col, Mat, Side,
+    linalg::solvers::{Llt, Solve},
+};
 use hinge::{HingeDeformation, HingeDesign, TrainingDomain};
-use std::array::from_fn;
-use std::sync::Arc;
+use std::{array::from_fn, sync::Arc};
 use support::vectors::dot;
 
 /// A hinge law with a correction for each hinge of one sheet.

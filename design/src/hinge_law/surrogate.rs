@@ -18,9 +18,7 @@ use crate::hinge_law::law::{
     PreparedLaw,
 };
 use hinge::{HingeDeformation, HingeDesign, Jet, TrainingDomain};
-use std::array::from_fn;
-use std::ops::Deref;
-use std::sync::Arc;
+use std::{array::from_fn, ops::Deref, sync::Arc};
 use surrogate::{Prepared, Surrogate};
 
 /// delta: maximum distance outside the domain at which the network is evaluated, relative to the

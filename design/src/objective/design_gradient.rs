@@ -1,19 +1,25 @@
 //! The objective and its gradient in the design by the forward chain in reverse: lines 6-7 of
 //! Algorithm 1.
 
-use crate::equilibrium::adjoint::{PathGradient, adjoint};
-use crate::equilibrium::load_step::LoadStep;
-use crate::equilibrium::warm_start::WarmStart;
-use crate::geometry::plane::add;
-use crate::hinge_law::{HingeGradient, PreparedLaw};
-use crate::objective::design_problem::{
-    Deployment, DesignError, DesignProblem, Evaluation, Mechanics, Sensitivities,
+use crate::{
+    equilibrium::{
+        adjoint::{PathGradient, adjoint},
+        load_step::LoadStep,
+        warm_start::WarmStart,
+    },
+    geometry::plane::add,
+    hinge_law::{HingeGradient, PreparedLaw},
+    objective::design_problem::{
+        Deployment, DesignError, DesignProblem, Evaluation, Mechanics, Sensitivities,
+    },
+    pattern::design_vector::DesignVector,
+    sheet::{
+        cut_sheet::{Sheet, SheetGradient},
+        ideal_deployment::ideal_deployment_pullback,
+        kinematics::deployed_pullback,
+        topology::PanelCorner,
+    },
 };
-use crate::pattern::design_vector::DesignVector;
-use crate::sheet::cut_sheet::{Sheet, SheetGradient};
-use crate::sheet::ideal_deployment::ideal_deployment_pullback;
-use crate::sheet::kinematics::deployed_pullback;
-use crate::sheet::topology::PanelCorner;
 
 /// The partial derivatives of a function of a deployment.
 pub(super) struct Partials<'a> {

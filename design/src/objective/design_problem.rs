@@ -1,27 +1,36 @@
 //! The forward chain theta -> pattern -> sheet -> equilibria -> objective, and its gradient by the
 //! same chain in reverse: lines 2-7 of Algorithm 1.
 
-use crate::equilibrium::adjoint::SingularTangent;
-use crate::equilibrium::hinged_sheet::HingedSheet;
-use crate::equilibrium::load_step::{DescentEnd, LoadStep, Status, residual_in_words};
-use crate::equilibrium::solver::{EquilibriumError, EquilibriumSolver};
-use crate::equilibrium::warm_start::WarmStart;
-use crate::hinge_law::{Contact, DamageMeasure, HingeLaw, PreparedLaw};
-use crate::objective::loss::{Objective, ObjectiveValue, TermValues};
-use crate::objective::term::Deployed;
-use crate::pattern::cut_pattern::{CutPattern, Outline};
-use crate::pattern::design_vector::{DesignVector, WidthChart};
-use crate::pattern::fit_variables::FitVariables;
-use crate::pattern::grid::Grid;
-use crate::pattern::pattern_error::PatternError;
-use crate::sheet::cut_sheet::{Sheet, SheetError, SheetOptions};
-use crate::sheet::ideal_deployment::ideal_deployment;
-use crate::sheet::kinematics::deployed;
-use crate::sheet::topology::PanelCorner;
+use crate::{
+    equilibrium::{
+        adjoint::SingularTangent,
+        hinged_sheet::HingedSheet,
+        load_step::{DescentEnd, LoadStep, Status, residual_in_words},
+        solver::{EquilibriumError, EquilibriumSolver},
+        warm_start::WarmStart,
+    },
+    hinge_law::{Contact, DamageMeasure, HingeLaw, PreparedLaw},
+    objective::{
+        loss::{Objective, ObjectiveValue, TermValues},
+        term::Deployed,
+    },
+    pattern::{
+        cut_pattern::{CutPattern, Outline},
+        design_vector::{DesignVector, WidthChart},
+        fit_variables::FitVariables,
+        grid::Grid,
+        pattern_error::PatternError,
+    },
+    sheet::{
+        cut_sheet::{Sheet, SheetError, SheetOptions},
+        ideal_deployment::ideal_deployment,
+        kinematics::deployed,
+        topology::PanelCorner,
+    },
+};
 use hinge::TrainingDomain;
 use serde::Serialize;
-use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
+use std::sync::{Arc, atomic::AtomicBool};
 use support::verbose;
 
 /// Why a design has no objective value.

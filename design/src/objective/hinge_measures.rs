@@ -1,9 +1,11 @@
 //! Functionals of the deformation path of the hinges; (17)-(19): means over the hinges of a
 //! function of one measure along the path of a hinge.
 
-use crate::equilibrium::load_step::LoadStep;
-use crate::hinge_law::{DamageMeasure, HingeGradient};
-use crate::objective::term::{Deployed, TermGradient};
+use crate::{
+    equilibrium::load_step::LoadStep,
+    hinge_law::{DamageMeasure, HingeGradient},
+    objective::term::{Deployed, TermGradient},
+};
 
 /// A dimensionless measure of the state of a hinge.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

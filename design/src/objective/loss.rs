@@ -1,9 +1,11 @@
 //! The design objective: the Chamfer distance of the deployed outline to the target, functionals of
 //! the deformation paths of the hinges (16), and penalties.
 
-use crate::objective::hinge_measures::add_by_states;
-use crate::objective::shape::Shape;
-use crate::objective::term::{Deployed, Term, TermGradient, Weighted, in_words};
+use crate::objective::{
+    hinge_measures::add_by_states,
+    shape::Shape,
+    term::{Deployed, Term, TermGradient, Weighted, in_words},
+};
 use indexmap::IndexMap;
 
 /// The unweighted terms of the objective by name, in their order.

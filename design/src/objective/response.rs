@@ -16,18 +16,23 @@
 //! W(a/t, s/t, theta, w_lig/t; 1), so that Euler's theorem gives df/dlog t from the second
 //! derivatives of W.
 
-use crate::equilibrium::hinged_sheet::HingedSheet;
-use crate::equilibrium::load_step::LoadStep;
-use crate::equilibrium::solver::EquilibriumSolver;
-use crate::equilibrium::warm_start::WarmStart;
-use crate::equilibrium::weight::weights_of_panels;
-use crate::hinge_law::{HingeEnergy, HingeGradient, Order};
-use crate::objective::design_gradient::Partials;
-use crate::objective::design_problem::{Deployment, DesignError, DesignProblem, Model, converged};
-use crate::pattern::design_vector::DesignVector;
-use crate::sheet::cut_sheet::SheetGradient;
-use crate::sheet::kinematics::{HingeMotion, deployed_corners};
-use crate::sheet::panel_vectors::at_hinge;
+use crate::{
+    equilibrium::{
+        hinged_sheet::HingedSheet, load_step::LoadStep, solver::EquilibriumSolver,
+        warm_start::WarmStart, weight::weights_of_panels,
+    },
+    hinge_law::{HingeEnergy, HingeGradient, Order},
+    objective::{
+        design_gradient::Partials,
+        design_problem::{Deployment, DesignError, DesignProblem, Model, converged},
+    },
+    pattern::design_vector::DesignVector,
+    sheet::{
+        cut_sheet::SheetGradient,
+        kinematics::{HingeMotion, deployed_corners},
+        panel_vectors::at_hinge,
+    },
+};
 use hinge::HingeDeformation;
 use support::vectors::dot;
 

@@ -1,11 +1,17 @@
 //! The shape term of the objective: the Chamfer distance of the deployed outline to the target. Its
 //! points P are the panel corners on the outline that belong to no hinge.
 
-use crate::geometry::chamfer::chamfer;
-use crate::geometry::plane::{I, complex, dot, point};
-use crate::objective::centre;
-use crate::objective::term::{Deployed, Term, TermGradient};
-use crate::pattern::fit_variables::FitVariables;
+use crate::{
+    geometry::{
+        chamfer::chamfer,
+        plane::{I, complex, dot, point},
+    },
+    objective::{
+        centre,
+        term::{Deployed, Term, TermGradient},
+    },
+    pattern::fit_variables::FitVariables,
+};
 use faer::c64;
 
 /// The distance of the deployed outline to a target.

@@ -1,12 +1,13 @@
 //! What a term of the objective is: a function of a deployed sheet, with its derivatives in what
 //! the sheet consists of.
 
-use crate::equilibrium::load_step::LoadStep;
-use crate::hinge_law::HingeGradient;
-use crate::pattern::fit_variables::FitVariables;
-use crate::sheet::cut_sheet::{Sheet, SheetGradient};
-use std::fmt::Debug;
-use std::sync::Arc;
+use crate::{
+    equilibrium::load_step::LoadStep,
+    hinge_law::HingeGradient,
+    pattern::fit_variables::FitVariables,
+    sheet::cut_sheet::{Sheet, SheetGradient},
+};
+use std::{fmt::Debug, sync::Arc};
 use support::vectors;
 
 /// A term of the objective.

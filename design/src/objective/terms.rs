@@ -20,11 +20,11 @@ pub use panel_width::PanelWidth;
 pub use shear::Shear;
 pub use symmetric_difference::SymmetricDifference;
 
-use crate::hinge_law::{DamageMeasure, HingeLaw};
-use crate::objective::loss::Objective;
-use crate::objective::shape::Shape;
-use crate::objective::term::Weighted;
-use crate::sheet::cut_sheet::AttachmentPoint;
+use crate::{
+    hinge_law::{DamageMeasure, HingeLaw},
+    objective::{loss::Objective, shape::Shape, term::Weighted},
+    sheet::cut_sheet::AttachmentPoint,
+};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 

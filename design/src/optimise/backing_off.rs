@@ -1,10 +1,12 @@
 //! Step halving: a step of the outer loop that leads to a design without objective value, or to one
 //! that the search does not accept, is halved until it leads to an acceptable design.
 
-use crate::equilibrium::warm_start::WarmStart;
-use crate::objective::design_problem::{DesignProblem, Evaluation};
-use crate::optimise::search::Search;
-use crate::pattern::design_vector::DesignVector;
+use crate::{
+    equilibrium::warm_start::WarmStart,
+    objective::design_problem::{DesignProblem, Evaluation},
+    optimise::search::Search,
+    pattern::design_vector::DesignVector,
+};
 
 /// Maximum number of halvings of one step.
 pub(crate) const MAX_HALVINGS: u32 = 12;

@@ -11,12 +11,18 @@
 //! halved until an equilibrium exists. Steps depend only on the problem and the search state, so a
 //! search continued from a saved state follows the trajectory of an uninterrupted one.
 
-use crate::equilibrium::warm_start::WarmStart;
-use crate::objective::design_problem::{DesignProblem, Evaluation, Model};
-use crate::objective::scores::Scores;
-use crate::optimise::backing_off::{MAX_HALVINGS, Setback, evaluate_or_back_off};
-use crate::optimise::search::{Search, SearchMethod};
-use crate::pattern::design_vector::DesignVector;
+use crate::{
+    equilibrium::warm_start::WarmStart,
+    objective::{
+        design_problem::{DesignProblem, Evaluation, Model},
+        scores::Scores,
+    },
+    optimise::{
+        backing_off::{MAX_HALVINGS, Setback, evaluate_or_back_off},
+        search::{Search, SearchMethod},
+    },
+    pattern::design_vector::DesignVector,
+};
 use serde::{Deserialize, Serialize};
 use std::sync::atomic::{AtomicBool, Ordering};
 

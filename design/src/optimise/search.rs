@@ -1,8 +1,10 @@
 //! How the next design is proposed: by Adam, as in Algorithm 1, or by L-BFGS with backtracking,
 //! which needs a fraction of Adam's evaluations on designs with equilibrium.
 
-use crate::optimise::adam::Adam;
-use crate::optimise::lbfgs_memory::{Memory, shortened};
+use crate::optimise::{
+    adam::Adam,
+    lbfgs_memory::{Memory, shortened},
+};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use support::vectors::dot;

@@ -4,8 +4,7 @@
 //! r = sigma(z),     tau_(e,s) = sum over m <= s of softmax(ell_e)_m
 //! ```
 
-use crate::pattern::grid::Grid;
-use crate::pattern::pattern_error::PatternError;
+use crate::pattern::{grid::Grid, pattern_error::PatternError};
 use serde::{Deserialize, Serialize};
 
 /// Unconstrained coordinates of a pattern (5), or a gradient in them.

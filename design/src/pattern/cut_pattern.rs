@@ -9,18 +9,24 @@
 //!
 //! and its exact vector-Jacobian product by the transposed system.
 
-use crate::geometry::plane::{add, complex, cross, dot};
-use crate::geometry::polygon::bounds;
-use crate::pattern::coordinates::{
-    PatternCoordinates, intervals, logistic, partial_sums, partial_sums_pullback,
+use crate::{
+    geometry::{
+        plane::{add, complex, cross, dot},
+        polygon::bounds,
+    },
+    pattern::{
+        coordinates::{
+            PatternCoordinates, intervals, logistic, partial_sums, partial_sums_pullback,
+        },
+        grid::{EDGES, Endpoint, Grid},
+        pattern_error::PatternError,
+    },
 };
-use crate::pattern::grid::{EDGES, Endpoint, Grid};
-use crate::pattern::pattern_error::PatternError;
-use faer::Mat;
-use faer::c64;
-use faer::linalg::solvers::Solve;
-use faer::sparse::linalg::solvers::Lu;
-use faer::sparse::{SparseColMat, Triplet};
+use faer::{
+    Mat, c64,
+    linalg::solvers::Solve,
+    sparse::{SparseColMat, Triplet, linalg::solvers::Lu},
+};
 use serde::{Deserialize, Serialize};
 
 /// The fixed outline of the flat sheet: corners SW, SE, NE, NW (mm).

@@ -1,9 +1,11 @@
 //! The design vector theta = (z, ell, omega) of (1) in unconstrained coordinates, and the chart of
 //! the ligament widths, w_lig = w_minus + (w_plus - w_minus) sigma(omega).
 
-use crate::pattern::coordinates::{PatternCoordinates, logistic, logit};
-use crate::pattern::fit_variables::FitVariables;
-use crate::pattern::grid::Grid;
+use crate::pattern::{
+    coordinates::{PatternCoordinates, logistic, logit},
+    fit_variables::FitVariables,
+    grid::Grid,
+};
 use serde::{Deserialize, Serialize};
 
 /// All design variables, or a gradient in them.

@@ -8,8 +8,7 @@
 //!
 //! between the middle c of the stock and its corner s_i.
 
-use crate::pattern::coordinates::logistic;
-use crate::pattern::cut_pattern::Outline;
+use crate::pattern::{coordinates::logistic, cut_pattern::Outline};
 use serde::{Deserialize, Serialize};
 
 /// The variables of a fit, or a gradient in them.

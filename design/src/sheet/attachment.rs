@@ -1,8 +1,12 @@
 //! The room that the hole or the clip at an attachment point needs.
 
-use crate::geometry::plane::{I, add, complex, dot, point};
-use crate::geometry::polygon::{distance, edges, nearest_on_segment};
-use crate::sheet::cut_sheet::{AttachmentPoint, PanelPoint, Sheet, SheetGradient};
+use crate::{
+    geometry::{
+        plane::{I, add, complex, dot, point},
+        polygon::{distance, edges, nearest_on_segment},
+    },
+    sheet::cut_sheet::{AttachmentPoint, PanelPoint, Sheet, SheetGradient},
+};
 use faer::c64;
 
 /// What a hole or a clip is measured to.

@@ -10,11 +10,17 @@
 //! alpha = atan2(-m . e_sec_perp, m . e_sec),     O = C + w_lig / sin(alpha) m        (7)
 //! ```
 
-use crate::geometry::plane::{I, add, complex, cross, dot, point};
-use crate::pattern::cut_pattern::{CutPattern, Outline};
-use crate::pattern::grid::{Grid, NE, NW, SE, SW};
-use crate::sheet::cutting_process::CuttingProcess;
-use crate::sheet::topology::{HingeSite, PanelCorner, hinge_sites, panel_endpoints};
+use crate::{
+    geometry::plane::{I, add, complex, cross, dot, point},
+    pattern::{
+        cut_pattern::{CutPattern, Outline},
+        grid::{Grid, NE, NW, SE, SW},
+    },
+    sheet::{
+        cutting_process::CuttingProcess,
+        topology::{HingeSite, PanelCorner, hinge_sites, panel_endpoints},
+    },
+};
 use faer::c64;
 use hinge::HingeDesign;
 use schemars::JsonSchema;

@@ -4,8 +4,10 @@
 //! the perpendicular from the tip O. Hinge energies are additive only if the windows are disjoint
 //! and lie within the two panels that their hinges join.
 
-use crate::geometry::polygon::{clip, common, contains, distance, distance_to_polygon};
-use crate::sheet::cut_sheet::{Hinge, Panel, Sheet};
+use crate::{
+    geometry::polygon::{clip, common, contains, distance, distance_to_polygon},
+    sheet::cut_sheet::{Hinge, Panel, Sheet},
+};
 use std::f64::consts::PI;
 
 /// The window of a hinge in the flat sheet.

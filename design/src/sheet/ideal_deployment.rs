@@ -10,10 +10,14 @@
 //! Because every void is a parallelogram, the result is the same along every sequence of hinges
 //! through the sheet. Pitches follow (6).
 
-use crate::geometry::plane::{I, add, complex, dot, turn};
-use crate::sheet::cut_sheet::{Sheet, SheetGradient};
-use crate::sheet::kinematics::Configuration;
-use crate::sheet::topology::is_even;
+use crate::{
+    geometry::plane::{I, add, complex, dot, turn},
+    sheet::{
+        cut_sheet::{Sheet, SheetGradient},
+        kinematics::Configuration,
+        topology::is_even,
+    },
+};
 use faer::c64;
 
 /// The configuration with every hinge open by `theta` (rad).

@@ -13,9 +13,13 @@
 //! theta). The sum is arranged in terms that each vanish in the flat sheet, so that small motions
 //! keep their accuracy.
 
-use crate::geometry::plane::{I, complex, cross, dot, point, turn, turn_less_one};
-use crate::geometry::polygon::distance;
-use crate::sheet::cut_sheet::{Panel, Sheet};
+use crate::{
+    geometry::{
+        plane::{I, complex, cross, dot, point, turn, turn_less_one},
+        polygon::distance,
+    },
+    sheet::cut_sheet::{Panel, Sheet},
+};
 use faer::c64;
 use hinge::HingeDeformation;
 

@@ -11,9 +11,10 @@
 //! parallelogram with the angles theta and pi - theta. For any pattern, panels touch at theta = 0
 //! and at theta = pi and at no angle between.
 
-use crate::geometry::plane::{I, complex};
-use crate::sheet::cut_sheet::Sheet;
-use crate::sheet::ideal_deployment::ideal_deployment;
+use crate::{
+    geometry::plane::{I, complex},
+    sheet::{cut_sheet::Sheet, ideal_deployment::ideal_deployment},
+};
 use faer::c64;
 use serde::Serialize;
 use std::f64::consts::PI;

@@ -1,11 +1,11 @@
 //! Whether a pattern and its ligament widths can be cut and modelled: areas, overlaps, void
 //! sides, space for the windows, cut angles.
 
-use crate::geometry::polygon::{area, common, distance};
-use crate::pattern::cut_pattern::CutPattern;
-use crate::pattern::grid::Grid;
-use crate::sheet::cut_sheet::Sheet;
-use crate::sheet::kinematics::deployed_corners;
+use crate::{
+    geometry::polygon::{area, common, distance},
+    pattern::{cut_pattern::CutPattern, grid::Grid},
+    sheet::{cut_sheet::Sheet, kinematics::deployed_corners},
+};
 use hinge::{HingeDesign, TrainingDomain};
 use serde::Serialize;
 

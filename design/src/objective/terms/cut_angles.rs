@@ -2,8 +2,7 @@
 //! / alpha' - 1)^2, with alpha' the smaller one of alpha and pi - alpha.
 
 use crate::objective::term::{Deployed, Term, TermGradient};
-use std::f64::consts::FRAC_PI_2;
-use std::f64::consts::PI;
+use std::f64::consts::{FRAC_PI_2, PI};
 
 /// The penalty on small cut angles.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -2,10 +2,14 @@
 //! the peak damage. A ligament tears at a peak damage of 1: from 0.9 on it costs (100 (max_i^tau
 //! D_ih - 0.9))^2 more.
 
-use crate::geometry::smooth_extrema::smooth_max;
-use crate::hinge_law::DamageMeasure;
-use crate::objective::hinge_measures::HingeMeasure;
-use crate::objective::term::{Deployed, Term, TermGradient};
+use crate::{
+    geometry::smooth_extrema::smooth_max,
+    hinge_law::DamageMeasure,
+    objective::{
+        hinge_measures::HingeMeasure,
+        term::{Deployed, Term, TermGradient},
+    },
+};
 
 /// Peak damage from which a ligament costs more, and the factor on its excess.
 const NEARLY_TORN: f64 = 0.9;

@@ -9,8 +9,10 @@
 //! hinge from it. A state beyond the domain by a tenth of the range costs 1. The penalty begins at
 //! 98 % of the domain, because otherwise a minimum would lie just outside.
 
-use crate::hinge_law::HingeGradient;
-use crate::objective::term::{Deployed, Term, TermGradient};
+use crate::{
+    hinge_law::HingeGradient,
+    objective::term::{Deployed, Term, TermGradient},
+};
 use hinge::{HingeDeformation, HingeDesign, TrainingDomain};
 
 /// Gauge above which a state is penalised.

@@ -15,9 +15,11 @@
 //! collapses. Sheets that open far need stretched panels, so shapes that can be cut well cost
 //! nothing. Corners closer than l_min leave no room for the windows of their hinges.
 
-use crate::geometry::plane::{I, add, complex, cross};
-use crate::objective::term::{Deployed, Term, TermGradient};
-use crate::sheet::cut_sheet::Panel;
+use crate::{
+    geometry::plane::{I, add, complex, cross},
+    objective::term::{Deployed, Term, TermGradient},
+    sheet::cut_sheet::Panel,
+};
 
 /// Largest rho that is not penalised.
 const WELL_SHAPED: f64 = 4.0;

@@ -9,9 +9,11 @@
 //! shorter than its smallest d. b is C^2; a search that begins with wider panels never evaluates a
 //! design with a thinner one, because steps to an infinite loss are halved.
 
-use crate::geometry::plane::{I, add, complex, cross};
-use crate::objective::term::{Deployed, Term, TermGradient};
-use crate::sheet::cut_sheet::Panel;
+use crate::{
+    geometry::plane::{I, add, complex, cross},
+    objective::term::{Deployed, Term, TermGradient},
+    sheet::cut_sheet::Panel,
+};
 use faer::c64;
 
 /// Weight of the barrier relative to d_min^2, and to the area of a square of this side.
