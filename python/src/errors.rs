@@ -47,10 +47,12 @@ pub(crate) fn scene(error: impl Display) -> PyErr {
 }
 
 /// The same exception, with the element of a batch in its message.
-pub(crate) fn of_element(py: Python, element: usize, error: PyErr) -> PyErr {
-    let message = format!("element {element}: {}", error.value(py));
-    let kind = error.get_type(py).call1((message,));
-    kind.map_or(error, PyErr::from_value)
+pub(crate) fn of_element(element: usize, error: PyErr) -> PyErr {
+    Python::attach(|py| {
+        let message = format!("element {element}: {}", error.value(py));
+        let kind = error.get_type(py).call1((message,));
+        kind.map_or(error, PyErr::from_value)
+    })
 }
 
 /// The exception of a design without a value or a gradient.

@@ -1,9 +1,7 @@
 //! A prepared design problem: its scene is read once, its solves start from the last state.
 
 use crate::{
-    arrays::{
-        Doubles, Numbers, array, finite, numbers, plain, shaped, triples, tuple, wrong_shape,
-    },
+    arrays::{Argument, Array, Numbers, Plain, finite, list, plain, rows, shaped, tuple},
     deployment::{Deployment, State},
     errors,
     flat_sheet::Sheet,
@@ -12,13 +10,13 @@ use crate::{
 use design::{
     DesignError, DesignProblem, DesignVector, Evaluation, SearchMethod, SearchState,
     equilibrium::warm_start::WarmStart,
-    objective::response::{Conditions, Response, ResponseCotangent, ResponseGradient},
+    objective::response::{Conditions, Response, ResponseCotangent},
     optimise,
 };
 use pyo3::{
     exceptions::{PyTypeError, PyValueError},
     prelude::*,
-    types::{PyDict, PyList, PyTuple},
+    types::PyDict,
 };
 use rayon::prelude::*;
 use scene::{
@@ -59,6 +57,22 @@ struct Warm {
     state: Known,
 }
 
+/// One of many equilibria, or why there is none.
+#[derive(IntoPyObject)]
+enum Answer {
+    Found(State),
+    Missing(PyErr),
+}
+
+/// The gradient of a function of the equilibrium, as a dict.
+#[derive(IntoPyObject)]
+struct Pullback {
+    design: Array,
+    loads: Array,
+    thickness: Option<f64>,
+    stress: Option<f64>,
+}
+
 /// Load steps that are known, and how many solves have been corrected from one another since the
 /// last followed path.
 #[derive(Default)]
@@ -83,12 +97,7 @@ impl Known {
 impl Problem {
     #[new]
     #[pyo3(signature = (scene, folder=None, level=None))]
-    fn new(
-        py: Python,
-        scene: &Bound<PyAny>,
-        folder: Option<PathBuf>,
-        level: Option<&str>,
-    ) -> PyResult<Self> {
+    fn new(scene: &Argument, folder: Option<PathBuf>, level: Option<&str>) -> PyResult<Self> {
         let scene = if let Ok(keys) = scene.cast::<PyDict>() {
             scene_of(keys, &folder.unwrap_or_default())?
         } else {
@@ -97,7 +106,7 @@ impl Problem {
                     "`scene` is neither a path nor a dict with the keys of a scene",
                 )
             })?;
-            unlocked(py, || {
+            unlocked(|| {
                 let path = scene_file(&path).map_err(errors::scene)?;
                 Scene::read(&path).map_err(errors::scene)
             })??
@@ -106,7 +115,7 @@ impl Problem {
             Some(name) => scene.at_level(read_level(name)?).map_err(errors::scene)?,
             None => scene,
         };
-        let mut problem = unlocked(py, || scene.problem())?.map_err(errors::scene)?;
+        let mut problem = unlocked(|| scene.problem())?.map_err(errors::scene)?;
         let stop = Arc::<AtomicBool>::default();
         problem.stop_by(Arc::clone(&stop));
         Ok(Self {
@@ -126,8 +135,8 @@ impl Problem {
 
     /// The start design of the scene, shape (size,).
     #[getter]
-    fn start<'py>(&self, py: Python<'py>) -> Doubles<'py> {
-        array(py, self.start.to_flat(), &[self.size()])
+    fn start(&self) -> Array {
+        list(self.start.to_flat())
     }
 
     /// The parts of a design by name, as slices: `z`, the logits of the void aspect ratios; `ell`,
@@ -164,8 +173,8 @@ impl Problem {
 
     /// (F_x, F_y, M) on every panel at full load (N, N, N mm), shape (panels, 3).
     #[getter]
-    fn loads<'py>(&self, py: Python<'py>) -> PyResult<Doubles<'py>> {
-        Ok(triples(py, self.mechanics()?.solver.loads()))
+    fn loads(&self) -> PyResult<Array> {
+        Ok(rows(self.mechanics()?.solver.loads().to_vec()))
     }
 
     /// Names of the inputs in which the equilibrium has a derivative: the design, the loads and, if
@@ -180,15 +189,10 @@ impl Problem {
 
     /// The design with other ligament widths (mm), a number or an array of shape (hinges,), inside
     /// the range of the scene.
-    fn with_widths<'py>(
-        &self,
-        py: Python<'py>,
-        x: &Bound<PyAny>,
-        w_lig: &Bound<PyAny>,
-    ) -> PyResult<Doubles<'py>> {
+    fn with_widths(&self, x: &Argument, w_lig: &Argument) -> PyResult<Array> {
         let mut design = self.design_of(x)?;
         let hinges = design.omega.len();
-        let widths = numbers(w_lig, "w_lig")?.filled("w_lig", &[hinges], hinges)?;
+        let widths = Numbers::read(w_lig, "w_lig")?.filled(&[hinges])?;
         let range = self.problem.widths;
         for (h, (omega, &width)) in design.omega.iter_mut().zip(&widths).enumerate() {
             if !(range.w_minus < width && width < range.w_plus) {
@@ -199,13 +203,11 @@ impl Problem {
             }
             *omega = range.omega(width);
         }
-        let flat = design.to_flat();
-        let size = flat.len();
-        Ok(array(py, flat, &[size]))
+        Ok(list(design.to_flat()))
     }
 
     /// The flat sheet of a design.
-    fn sheet(&self, x: &Bound<PyAny>) -> PyResult<Sheet> {
+    fn sheet(&self, x: &Argument) -> PyResult<Sheet> {
         let (_, sheet) = self.problem.cut(&self.design_of(x)?).map_err(errors::design)?;
         Ok(Sheet(Arc::new(sheet)))
     }
@@ -220,9 +222,8 @@ impl Problem {
     #[pyo3(signature = (x, loads=None, thickness=None, stress=1.0, warm=true))]
     fn deploy(
         &self,
-        py: Python,
-        x: &Bound<PyAny>,
-        loads: Option<Bound<PyAny>>,
+        x: &Argument,
+        loads: Option<Argument>,
         thickness: Option<f64>,
         stress: f64,
         warm: bool,
@@ -230,7 +231,7 @@ impl Problem {
         let problem = self.under(loads.as_ref(), thickness, stress)?;
         let design = self.design_of(x)?;
         let known = self.known(warm, |warm| &warm.path);
-        let deployment = self.solved(py, || problem.deploy_near(&design, known.as_deref()))?;
+        let deployment = self.solved(|| problem.deploy_near(&design, known.as_deref()))?;
         let deployment = deployment.map_err(errors::design)?;
         self.warm().path.keep(&deployment);
         Ok(Deployment::new(problem, deployment))
@@ -240,15 +241,14 @@ impl Problem {
     #[pyo3(signature = (x, loads=None, thickness=None, stress=1.0, warm=true))]
     fn equilibrium(
         &self,
-        py: Python,
-        x: &Bound<PyAny>,
-        loads: Option<Bound<PyAny>>,
+        x: &Argument,
+        loads: Option<Argument>,
         thickness: Option<f64>,
         stress: f64,
         warm: bool,
     ) -> PyResult<Deployment> {
         self.mechanics()?;
-        let deployment = self.deploy(py, x, loads, thickness, stress, warm)?;
+        let deployment = self.deploy(x, loads, thickness, stress, warm)?;
         deployment.at_full_load()?;
         Ok(deployment)
     }
@@ -258,9 +258,8 @@ impl Problem {
     #[pyo3(signature = (x, loads=None, thickness=None, stress=1.0, warm=true))]
     fn solve(
         &self,
-        py: Python,
-        x: &Bound<PyAny>,
-        loads: Option<Bound<PyAny>>,
+        x: &Argument,
+        loads: Option<Argument>,
         thickness: Option<f64>,
         stress: f64,
         warm: bool,
@@ -268,7 +267,7 @@ impl Problem {
         let problem = self.under(loads.as_ref(), thickness, stress)?;
         let design = self.design_of(x)?;
         let known = self.known(warm, |warm| &warm.state);
-        let response = self.solved(py, || problem.response(&design, known.as_deref()))?;
+        let response = self.solved(|| problem.response(&design, known.as_deref()))?;
         let response = response.map_err(errors::design)?;
         self.warm().state.keep(&response.deployment);
         Ok(State(response))
@@ -281,19 +280,18 @@ impl Problem {
     /// Returns a list of n states. strict: the first equilibrium that is not found is raised;
     /// otherwise its place holds the exception.
     #[pyo3(signature = (x, loads=None, thickness=None, stress=None, strict=true))]
-    fn solve_many<'py>(
+    fn solve_many(
         &self,
-        py: Python<'py>,
-        x: &Bound<PyAny>,
-        loads: Option<&Bound<PyAny>>,
-        thickness: Option<&Bound<PyAny>>,
-        stress: Option<&Bound<PyAny>>,
+        x: &Argument,
+        loads: Option<&Argument>,
+        thickness: Option<&Argument>,
+        stress: Option<&Argument>,
         strict: bool,
-    ) -> PyResult<Bound<'py, PyList>> {
+    ) -> PyResult<Vec<Answer>> {
         let many = self.many(x, loads, thickness, stress)?;
         let known = self.known(true, |warm| &warm.state);
         let stop = AtomicBool::new(false);
-        let answers = while_polling(py, &stop, || {
+        let answers = while_polling(&stop, || {
             many.par_iter()
                 .map(|(design, conditions)| {
                     (!stop.load(Ordering::Relaxed)).then(|| {
@@ -303,15 +301,14 @@ impl Problem {
                 })
                 .collect::<Option<Vec<Result<Response, DesignError>>>>()
         })?;
-        let list = PyList::empty(py);
-        for (i, answer) in answers.unwrap_or_default().into_iter().enumerate() {
-            match answer.map_err(errors::design) {
-                Ok(response) => list.append(State(response))?,
-                Err(error) if strict => return Err(errors::of_element(py, i, error)),
-                Err(error) => list.append(error.into_value(py))?,
-            }
-        }
-        Ok(list)
+        let answers = answers.unwrap_or_default().into_iter().enumerate();
+        answers
+            .map(|(i, answer)| match answer.map_err(errors::design) {
+                Ok(response) => Ok(Answer::Found(State(response))),
+                Err(error) if strict => Err(errors::of_element(i, error)),
+                Err(error) => Ok(Answer::Missing(error)),
+            })
+            .collect()
     }
 
     /// The gradient in the inputs of a function of the equilibrium at full load, from its gradient
@@ -326,73 +323,55 @@ impl Problem {
         clippy::too_many_arguments,
         reason = "inputs and outputs of the equilibrium, by keyword in Python"
     )]
-    fn pullback<'py>(
+    fn pullback(
         &self,
-        py: Python<'py>,
-        x: &Bound<PyAny>,
-        configuration: &Bound<PyAny>,
-        corners: &Bound<PyAny>,
-        reactions: &Bound<PyAny>,
+        x: &Argument,
+        configuration: &Argument,
+        corners: &Argument,
+        reactions: &Argument,
         load_factor: f64,
-        loads: Option<Bound<PyAny>>,
+        loads: Option<Argument>,
         thickness: Option<f64>,
         stress: f64,
-    ) -> PyResult<Bound<'py, PyDict>> {
+    ) -> PyResult<Pullback> {
         let problem = self.under(loads.as_ref(), thickness, stress)?;
         let design = self.design_of(x)?;
         let configuration = self.by_panel(configuration, "configuration")?;
         let load_factor = finite("load_factor", load_factor)?;
-        let panels = problem.grid.panel_count();
-        let expected = tuple(&[panels, 4, 2]);
-        let corners = shaped(corners, "corners", &[Some(panels), Some(4), Some(2)], &expected)?;
+        let corners = shaped(corners, "corners", &[problem.grid.panel_count(), 4, 2])?;
         let by = ResponseCotangent {
-            corners: (corners.values.as_chunks::<8>().0.iter())
+            corners: (corners.as_chunks::<8>().0.iter())
                 .map(|row| std::array::from_fn(|c| [row[2 * c], row[2 * c + 1]]))
                 .collect(),
             reactions: self.by_panel(reactions, "reactions")?,
             load_factor,
         };
-        let gradient = unlocked(py, || {
+        let gradient = unlocked(|| {
             let response = problem.response_at(&design, &configuration)?;
             problem.response_pullback(&design, &response, &by)
         })?;
-        let ResponseGradient { design, loads, thickness: of_thickness, stress: of_stress } =
-            gradient.map_err(errors::design)?;
-        let gradient = PyDict::new(py);
-        let flat = design.to_flat();
-        let size = flat.len();
-        gradient.set_item("design", array(py, flat, &[size]))?;
-        gradient.set_item("loads", triples(py, &loads))?;
+        let gradient = gradient.map_err(errors::design)?;
         // From logarithms to mm and to the factor.
         let thickness = thickness.unwrap_or(self.thickness());
-        gradient.set_item("thickness", of_thickness.map(|slope| slope / thickness))?;
-        gradient.set_item("stress", of_stress.map(|slope| slope / stress))?;
-        Ok(gradient)
+        Ok(Pullback {
+            design: list(gradient.design.to_flat()),
+            loads: rows(gradient.loads),
+            thickness: gradient.thickness.map(|slope| slope / thickness),
+            stress: gradient.stress.map(|slope| slope / stress),
+        })
     }
 
     /// The objective (16) of the scene (mm^2) and its gradient, shape (size,).
     #[pyo3(signature = (x, warm=true))]
-    fn loss_and_gradient<'py>(
-        &self,
-        py: Python<'py>,
-        x: &Bound<PyAny>,
-        warm: bool,
-    ) -> PyResult<(f64, Doubles<'py>)> {
-        let evaluation = self.evaluated(py, x, warm)?;
-        let gradient = evaluation.gradient.to_flat();
-        Ok((evaluation.loss, array(py, gradient, &[self.size()])))
+    fn loss_and_gradient(&self, x: &Argument, warm: bool) -> PyResult<(f64, Array)> {
+        let evaluation = self.evaluated(x, warm)?;
+        Ok((evaluation.loss, list(evaluation.gradient.to_flat())))
     }
 
     /// The terms of the objective by name, unweighted.
     #[pyo3(signature = (x, warm=true))]
-    fn terms<'py>(
-        &self,
-        py: Python<'py>,
-        x: &Bound<PyAny>,
-        warm: bool,
-    ) -> PyResult<Bound<'py, PyAny>> {
-        let evaluation = self.evaluated(py, x, warm)?;
-        plain(py, &evaluation.terms)
+    fn terms(&self, x: &Argument, warm: bool) -> PyResult<Plain> {
+        Ok(plain(&self.evaluated(x, warm)?.terms))
     }
 
     /// The search of the scene, Algorithm 1, in memory: no file is written.
@@ -401,15 +380,14 @@ impl Problem {
     /// the search ends if it returns True. Ctrl-C ends it after the step. Returns (x, why it ended,
     /// the history, one dict a step).
     #[pyo3(signature = (start=None, steps=None, method=None, learning_rate=None, callback=None))]
-    fn design<'py>(
+    fn design(
         &self,
-        py: Python<'py>,
-        start: Option<&Bound<PyAny>>,
+        start: Option<&Argument>,
         steps: Option<usize>,
         method: Option<&str>,
         learning_rate: Option<f64>,
         callback: Option<Py<PyAny>>,
-    ) -> PyResult<Bound<'py, PyTuple>> {
+    ) -> PyResult<(Array, Plain, Plain)> {
         let optimiser = self.scene.config.optimiser;
         let start = start.map_or(Ok(self.start.clone()), |x| self.design_of(x))?;
         let method = match method {
@@ -423,36 +401,33 @@ impl Problem {
             Python::attach(|py| {
                 py.check_signals()?;
                 if let Some(callback) = &callback {
-                    let record = plain(py, search.last())?;
-                    let ends = callback.call1(py, (record,))?.is_truthy(py)?;
+                    let ends = callback.call1(py, (plain(search.last()),))?.is_truthy(py)?;
                     stop.fetch_or(ends, Ordering::Relaxed);
                 }
                 Ok::<_, PyErr>(())
             })
         };
-        let (search, ended) = unlocked(py, || {
+        let (search, ended) = unlocked(|| {
             let evaluation = problem.evaluate(&start).map_err(errors::design)?;
             let mut search = SearchState::new(problem, start, &evaluation, method, rate);
             report(&search)?;
             let ended = optimise(problem, &mut search, steps, &stop, &mut |search| report(search))?;
             Ok::<_, PyErr>((search, ended))
         })??;
-        let best = array(py, search.best.to_flat(), &[self.size()]);
-        let (ended, history) = (plain(py, &ended)?, plain(py, &search.history)?);
-        PyTuple::new(py, [best.into_any(), ended, history])
+        Ok((list(search.best.to_flat()), plain(&ended), plain(&search.history)))
     }
 
     /// The design of the run of this scene, or in a file (`state.json` of a run, or a design
     /// alone), shape (size,).
     #[pyo3(signature = (file=None))]
-    fn stored<'py>(&self, py: Python<'py>, file: Option<PathBuf>) -> PyResult<Doubles<'py>> {
+    fn stored(&self, file: Option<PathBuf>) -> PyResult<Array> {
         let design = match file {
             Some(file) => stored_design(&file, &self.scene).map_err(errors::scene)?,
             None => design_of_run(&self.scene).map_err(errors::scene)?.ok_or_else(|| {
                 errors::scene(format!("there is no run in {}", self.scene.output().display()))
             })?,
         };
-        Ok(array(py, design.to_flat(), &[self.size()]))
+        Ok(list(design.to_flat()))
     }
 
     /// Forgets the last states: the next solves follow their paths from the flat sheet.
@@ -462,10 +437,10 @@ impl Problem {
 
     /// The keys of the scene with absolute paths, of which the problem is made again when it is
     /// unpickled, without its last states.
-    fn __getnewargs__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>,)> {
+    fn __getnewargs__(&self) -> PyResult<(Plain,)> {
         let keys = self.scene.located().map_err(errors::scene)?;
         let keys = toml::Value::try_from(&keys).map_err(errors::scene)?;
-        Ok((plain(py, &keys)?,))
+        Ok((plain(&keys),))
     }
 
     fn __repr__(&self) -> String {
@@ -476,9 +451,9 @@ impl Problem {
 
 impl Problem {
     /// The result of `solve`, without the GIL; Ctrl-C ends the path that it follows, and is raised.
-    fn solved<T: Send>(&self, py: Python, solve: impl FnOnce() -> T + Send) -> PyResult<T> {
+    fn solved<T: Send>(&self, solve: impl FnOnce() -> T + Send) -> PyResult<T> {
         self.stop.store(false, Ordering::Relaxed);
-        while_polling(py, &self.stop, solve)
+        while_polling(&self.stop, solve)
     }
 
     fn mechanics(&self) -> PyResult<&design::Mechanics> {
@@ -495,22 +470,19 @@ impl Problem {
         part(&self.warm()).usable(follow_every).filter(|_| warm)
     }
 
-    fn design_of(&self, x: &Bound<PyAny>) -> PyResult<DesignVector> {
-        let size = self.size();
-        let flat = shaped(x, "x", &[Some(size)], &tuple(&[size]))?;
-        Ok(self.start.with_flat(&flat.values))
+    fn design_of(&self, x: &Argument) -> PyResult<DesignVector> {
+        Ok(self.start.with_flat(&shaped(x, "x", &[self.size()])?))
     }
 
-    fn by_panel(&self, argument: &Bound<PyAny>, name: &str) -> PyResult<Vec<[f64; 3]>> {
-        let panels = self.problem.grid.panel_count();
-        let given = shaped(argument, name, &[Some(panels), Some(3)], &tuple(&[panels, 3]))?;
-        Ok(given.values.as_chunks::<3>().0.to_vec())
+    fn by_panel(&self, argument: &Argument, name: &'static str) -> PyResult<Vec<[f64; 3]>> {
+        let given = shaped(argument, name, &[self.problem.grid.panel_count(), 3])?;
+        Ok(given.as_chunks::<3>().0.to_vec())
     }
 
     /// The problem with other loads, another thickness (mm) and other stresses than the scene has.
     fn under(
         &self,
-        loads: Option<&Bound<PyAny>>,
+        loads: Option<&Argument>,
         thickness: Option<f64>,
         stress: f64,
     ) -> PyResult<Arc<DesignProblem>> {
@@ -529,11 +501,10 @@ impl Problem {
         Ok(Arc::new(self.problem.under(&conditions).map_err(errors::design)?))
     }
 
-    fn evaluated(&self, py: Python, x: &Bound<PyAny>, warm: bool) -> PyResult<Evaluation> {
+    fn evaluated(&self, x: &Argument, warm: bool) -> PyResult<Evaluation> {
         let design = self.design_of(x)?;
         let known = self.known(warm, |warm| &warm.path);
-        let evaluation =
-            self.solved(py, || self.problem.evaluate_near(&design, known.as_deref()))?;
+        let evaluation = self.solved(|| self.problem.evaluate_near(&design, known.as_deref()))?;
         let evaluation = evaluation.map_err(errors::design)?;
         self.warm().path.keep(&evaluation.deployment);
         Ok(evaluation)
@@ -542,39 +513,38 @@ impl Problem {
     /// The inputs of many solves.
     fn many(
         &self,
-        x: &Bound<PyAny>,
-        loads: Option<&Bound<PyAny>>,
-        thickness: Option<&Bound<PyAny>>,
-        stress: Option<&Bound<PyAny>>,
+        x: &Argument,
+        loads: Option<&Argument>,
+        thickness: Option<&Argument>,
+        stress: Option<&Argument>,
     ) -> PyResult<Vec<(DesignVector, Conditions)>> {
-        let read = |argument: Option<&Bound<PyAny>>, name| {
-            argument.map(|argument| numbers(argument, name)).transpose()
+        let read = |argument: Option<&Argument>, name, one: &[usize]| {
+            let numbers = argument.map(|argument| Numbers::read(argument, name)).transpose()?;
+            Ok::<_, PyErr>((numbers, one.to_vec()))
         };
         let given = [
-            ("x", Some(numbers(x, "x")?), vec![self.size()]),
-            ("loads", read(loads, "loads")?, vec![self.problem.grid.panel_count(), 3]),
-            ("thickness", read(thickness, "thickness")?, vec![]),
-            ("stress", read(stress, "stress")?, vec![]),
+            read(Some(x), "x", &[self.size()])?,
+            read(loads, "loads", &[self.problem.grid.panel_count(), 3])?,
+            read(thickness, "thickness", &[])?,
+            read(stress, "stress", &[])?,
         ];
         let mut count = None;
-        for (name, numbers, one) in &given {
-            let Some(Numbers { shape, .. }) = numbers else {
+        for (numbers, one) in &given {
+            let Some(numbers) = numbers.as_ref().filter(|numbers| numbers.shape != *one) else {
                 continue;
             };
-            if shape == one {
-                continue;
+            match numbers.shape.split_first() {
+                Some((many, rest)) if rest == one && count.is_none_or(|count| count == *many) => {
+                    count = Some(*many);
+                }
+                _ => {
+                    let n = count.map_or("n".to_owned(), |count| count.to_string());
+                    let expected = format!("{} or ({n}, ...) of these", tuple(one));
+                    return Err(numbers.wrong_shape(&expected));
+                }
             }
-            let many = shape.first().copied().unwrap_or(0);
-            let expected = |n: String| format!("{} or ({n}, ...) of these", tuple(one));
-            if shape.len() != one.len() + 1 || shape[1..] != one[..] {
-                return Err(wrong_shape(name, shape, &expected("n".into())));
-            }
-            if count.is_some_and(|count| count != many) {
-                return Err(wrong_shape(name, shape, &expected(count.unwrap_or(0).to_string())));
-            }
-            count = Some(many);
         }
-        let [x, loads, thickness, stress] = given.map(|(_, numbers, one)| {
+        let [x, loads, thickness, stress] = given.map(|(numbers, one)| {
             let length: usize = one.iter().product();
             move |i: usize| -> Option<Vec<f64>> {
                 let values = &numbers.as_ref()?.values;
@@ -603,7 +573,7 @@ fn scene_of(keys: &Bound<PyDict>, folder: &Path) -> PyResult<Scene> {
     let keys: toml::Value = serde_json::from_str(&text).map_err(errors::scene)?;
     let text = toml::to_string(&keys).map_err(errors::scene)?;
     let config: SceneConfig = support::toml_file::parse(&text, &path).map_err(errors::scene)?;
-    unlocked(py, || Scene::new(config, &path))?.map_err(errors::scene)
+    unlocked(|| Scene::new(config, &path))?.map_err(errors::scene)
 }
 
 fn read_level(name: &str) -> PyResult<Level> {

@@ -16,7 +16,7 @@ const POLL: Duration = Duration::from_millis(50);
 
 /// The result of `work`, without the GIL; an error in a fork of the process that began to compute,
 /// whose threads are missing here.
-pub(crate) fn unlocked<T: Send>(py: Python, work: impl FnOnce() -> T + Send) -> PyResult<T> {
+pub(crate) fn unlocked<T: Send>(work: impl FnOnce() -> T + Send) -> PyResult<T> {
     static OWNER: OnceLock<u32> = OnceLock::new();
     if *OWNER.get_or_init(std::process::id) != std::process::id() {
         return Err(PyRuntimeError::new_err(
@@ -24,17 +24,16 @@ pub(crate) fn unlocked<T: Send>(py: Python, work: impl FnOnce() -> T + Send) -> 
              multiprocessing.get_context(\"spawn\")",
         ));
     }
-    Ok(py.detach(work))
+    Ok(Python::attach(|py| py.detach(work)))
 }
 
 /// The result of `work`, which ends early when `stop` becomes true: at Ctrl-C, which is then
 /// raised.
 pub(crate) fn while_polling<T: Send>(
-    py: Python,
     stop: &AtomicBool,
     work: impl FnOnce() -> T + Send,
 ) -> PyResult<T> {
-    unlocked(py, || {
+    unlocked(|| {
         std::thread::scope(|scope| {
             let (done, finished) = channel();
             let worker = scope.spawn(move || {
