@@ -6,7 +6,7 @@ use crate::{
     flat_sheet::Sheet,
 };
 use design::{
-    DesignError, DesignProblem, equilibrium::load_step::LoadStep, hinge_law::HingeDamage,
+    DesignProblem, equilibrium::load_step::LoadStep, hinge_law::HingeDamage,
     objective::response::Response, sheet::kinematics::deployed_corners,
 };
 use pyo3::prelude::*;
@@ -146,8 +146,7 @@ impl Deployment {
     #[getter]
     fn reactions(&self) -> PyResult<Array> {
         let last = self.at_full_load()?;
-        let mechanics = self.problem.model.mechanics();
-        let mechanics = mechanics.ok_or_else(|| errors::design(DesignError::NoMechanics))?;
+        let mechanics = self.problem.model.equilibrium().map_err(errors::design)?;
         let sheet = &self.deployment.sheet;
         let law = mechanics.law.prepare(&sheet.designs());
         let hinged = mechanics.hinged(sheet, &*law, false);

@@ -56,7 +56,8 @@ pub(crate) fn of_element(element: usize, error: PyErr) -> PyErr {
 }
 
 /// The exception of a design without a value or a gradient.
-pub(crate) fn design(error: DesignError) -> PyErr {
+pub(crate) fn design(error: impl Into<DesignError>) -> PyErr {
+    let error = error.into();
     let message = error.to_string();
     match error {
         DesignError::NoEquilibrium { .. } => NoEquilibrium::new_err(message),

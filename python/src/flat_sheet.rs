@@ -9,7 +9,7 @@ use design::{
     pattern::{coordinates::PatternCoordinates, cut_pattern::CutPattern},
     sheet::{
         cut_sheet::{HingePoint, SheetOptions},
-        ideal_deployment::ideal_deployment,
+        ideal_deployment::{check_opening, ideal_deployment},
         kinematics::deployed_corners,
     },
 };
@@ -69,9 +69,8 @@ impl Pattern {
                 part.copy_from_slice(&shaped(argument, name, &[part.len()])?);
             }
         }
-        let wrong = |error| errors::design(design::DesignError::Pattern(error));
-        let coordinates = PatternCoordinates::from_values(grid, &values).map_err(wrong)?;
-        Ok(Self(CutPattern::new(grid, outline, &coordinates).map_err(wrong)?))
+        let coordinates = PatternCoordinates::from_values(grid, &values).map_err(errors::design)?;
+        Ok(Self(CutPattern::new(grid, outline, &coordinates).map_err(errors::design)?))
     }
 
     /// Void aspect ratios of the interior cuts, row by row.
@@ -106,8 +105,7 @@ impl Sheet {
         let constants = HingeConstants { kerf: slit_width, ..HingeConstants::PAPER };
         let options = SheetOptions { hinge_point: HingePoint::CutTip, process: constants.into() };
         let sheet = design::Sheet::new(&pattern.0, &widths, options);
-        let wrong = |error| errors::design(design::DesignError::Sheet(error));
-        Ok(Self(Arc::new(sheet.map_err(wrong)?)))
+        Ok(Self(Arc::new(sheet.map_err(errors::design)?)))
     }
 
     /// Corners SW, SE, NE, NW of every panel (mm), row by row, shape (panels, 4, 2).
@@ -157,9 +155,7 @@ impl Sheet {
     /// The kinematic deployment with every hinge open by `opening` (rad): motions (u_x, u_y, phi)
     /// of the panels (mm, mm, rad), shape (panels, 3), and their corners, shape (panels, 4, 2).
     fn deploy(&self, opening: f64) -> PyResult<(Array, Array)> {
-        if !opening.is_finite() {
-            return Err(errors::design(design::DesignError::Opening(opening)));
-        }
+        check_opening(opening).map_err(errors::design)?;
         let configuration = ideal_deployment(&self.0, opening);
         let corners = deployed_corners(&self.0, &configuration);
         Ok((rows(configuration), quadrilaterals(&corners)))

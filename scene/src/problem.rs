@@ -5,7 +5,7 @@ use crate::keys::SceneConfig;
 use crate::loaded_hinge::HingeBehaviour;
 use crate::scene_error::SceneError;
 use crate::sheet_config::StartConfig;
-use design::equilibrium::solver::{EquilibriumError, EquilibriumSolver};
+use design::equilibrium::solver::EquilibriumSolver;
 use design::objective::design_problem::{DesignProblem, Mechanics, Model};
 use design::objective::loss::Objective;
 use design::objective::terms::Setting;
@@ -96,7 +96,7 @@ impl Scene {
         Ok(Model::Equilibrium(Box::new(Mechanics { law, contact: Some(contact), solver })))
     }
 
-    fn solver(&self) -> Result<EquilibriumSolver, EquilibriumError> {
+    fn solver(&self) -> Result<EquilibriumSolver, support::fault::Fault> {
         let level = self.config.level;
         let settings = level.solver(self.config.solver);
         let actuation = self.actuation();

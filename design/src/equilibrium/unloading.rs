@@ -7,16 +7,13 @@
 
 use crate::{
     equilibrium::{
-        corrector::Branch,
-        hinged_sheet::HingedSheet,
-        load_step::LoadStep,
-        potential::Stage,
-        solver::{EquilibriumError, EquilibriumSolver},
-        supports::Support,
+        corrector::Branch, hinged_sheet::HingedSheet, load_step::LoadStep, potential::Stage,
+        solver::EquilibriumSolver, supports::Support,
     },
     hinge_law::Order,
     sheet::{cut_sheet::Sheet, kinematics::Configuration},
 };
+use support::fault::{Fault, fault};
 
 /// Number of steps in which the loads are taken off.
 const STEPS: usize = 10;
@@ -24,11 +21,7 @@ const STEPS: usize = 10;
 impl EquilibriumSolver {
     /// The load steps from the configuration `start`, of which the last one is without loads. Their
     /// load factor is the part of the holding forces that is left.
-    pub fn unload(
-        &self,
-        sheet: HingedSheet,
-        start: Configuration,
-    ) -> Result<Vec<LoadStep>, EquilibriumError> {
+    pub fn unload(&self, sheet: HingedSheet, start: Configuration) -> Result<Vec<LoadStep>, Fault> {
         let mut free = self.unloaded(sheet.sheet)?;
         if let Some(holding) = free.holding(sheet, start.clone()) {
             free.loads = holding.iter().map(|force| force.map(|x| -x)).collect();
@@ -39,7 +32,7 @@ impl EquilibriumSolver {
     }
 
     /// The same problem without loads, and without the supports that moved the sheet.
-    fn unloaded(&self, sheet: &Sheet) -> Result<Self, EquilibriumError> {
+    fn unloaded(&self, sheet: &Sheet) -> Result<Self, Fault> {
         let resting = self.supports.iter().filter(|support| support.value == 0.0);
         let resting: Vec<Support> = resting.copied().collect();
         let free = Self {
@@ -47,10 +40,9 @@ impl EquilibriumSolver {
             attachment_points: self.attachment_points.clone(),
             ..Self::new(self.grid, &resting, &[], STEPS, self.settings)?
         };
-        match free.check_supports(sheet) {
-            Ok(()) => Ok(free),
-            Err(_) => Err(EquilibriumError::HeldByMoved),
-        }
+        let what = "without the supports that moved it the sheet is free to move as a rigid body, and its \
+                    unloaded position is undetermined. Hold it by supports that do not move";
+        free.check_supports(sheet).map_err(|_| fault("", what, "")).map(|()| free)
     }
 
     /// The forces (F_x, F_y, M) on the free panels that balance a configuration without loads;

@@ -6,7 +6,7 @@ use crate::{
         adjoint::SingularTangent,
         hinged_sheet::HingedSheet,
         load_step::{DescentEnd, LoadStep, Status, residual_in_words},
-        solver::{EquilibriumError, EquilibriumSolver},
+        solver::EquilibriumSolver,
         warm_start::WarmStart,
     },
     hinge_law::{Contact, DamageMeasure, HingeLaw, PreparedLaw},
@@ -19,11 +19,10 @@ use crate::{
         design_vector::{DesignVector, WidthChart},
         fit_variables::FitVariables,
         grid::Grid,
-        pattern_error::PatternError,
     },
     sheet::{
-        cut_sheet::{Sheet, SheetError, SheetOptions},
-        ideal_deployment::ideal_deployment,
+        cut_sheet::{Sheet, SheetOptions},
+        ideal_deployment::{check_opening, ideal_deployment},
         kinematics::deployed,
         topology::PanelCorner,
     },
@@ -31,32 +30,17 @@ use crate::{
 use hinge::TrainingDomain;
 use serde::Serialize;
 use std::sync::{Arc, atomic::AtomicBool};
-use support::verbose;
+use support::{
+    fault::{Fault, fault},
+    verbose,
+};
 
 /// Why a design has no objective value.
 #[derive(Debug, thiserror::Error)]
 #[allow(missing_docs, reason = "the message of a variant is its documentation")]
 pub enum DesignError {
     #[error(transparent)]
-    Pattern(#[from] PatternError),
-    #[error(transparent)]
-    Sheet(#[from] SheetError),
-    #[error(transparent)]
-    Equilibrium(#[from] EquilibriumError),
-    #[error("the level `pin` has no equilibrium: set level = \"linear\" or \"standard\"")]
-    NoMechanics,
-    #[error(
-        "a sheet with these errors cannot exist: a ligament, the thickness or the stresses are not positive"
-    )]
-    ImpossibleSheet,
-    #[error("the target has no points")]
-    EmptyTarget,
-    #[error(
-        "the hinge law does not determine the hinges of a sheet of another thickness, or of a stronger material: use level = \"standard\""
-    )]
-    NoSimilarLaw,
-    #[error("the opening angle {0} rad is not a finite number")]
-    Opening(f64),
+    Fault(#[from] Fault),
     #[error(
         "no equilibrium was found beyond load factor {reached:.4} ({}){}",
         residual_in_words(*residual),
@@ -95,6 +79,12 @@ impl Model {
             Self::Ideal { .. } => None,
             Self::Equilibrium(mechanics) => Some(mechanics),
         }
+    }
+
+    /// The same; an error if all hinges are pins.
+    pub fn equilibrium(&self) -> Result<&Mechanics, Fault> {
+        let remedy = "set level = \"linear\" or \"standard\"";
+        self.mechanics().ok_or_else(|| fault("", "the level `pin` has no equilibrium", remedy))
     }
 
     /// The training domain of the hinge law, if it has one.
@@ -263,7 +253,7 @@ impl DesignProblem {
 
     /// The sheet of a pattern with the given ligament widths (mm), held and pulled where the
     /// problem's sheet is.
-    pub(crate) fn sheet(&self, pattern: &CutPattern, w_lig: &[f64]) -> Result<Sheet, SheetError> {
+    pub(crate) fn sheet(&self, pattern: &CutPattern, w_lig: &[f64]) -> Result<Sheet, Fault> {
         let sheet = Sheet::new(pattern, w_lig, self.options)?;
         Ok(match self.model.mechanics() {
             Some(mechanics) => sheet.attached_at(mechanics.solver.attachment_points()),
@@ -298,9 +288,7 @@ impl DesignProblem {
         let (path, followed, law) = match &self.model {
             Model::Ideal { opening } => {
                 let theta = design.opening.unwrap_or(*opening);
-                if !theta.is_finite() {
-                    return Err(DesignError::Opening(theta));
-                }
+                check_opening(theta)?;
                 let ideal = LoadStep::ideal(&sheet, ideal_deployment(&sheet, theta));
                 (vec![ideal], true, None)
             }
@@ -335,7 +323,7 @@ impl DesignProblem {
         outline: &[PanelCorner],
     ) -> Result<ObjectiveValue, DesignError> {
         if self.objective.shape.target.is_empty() {
-            return Err(DesignError::EmptyTarget);
+            return Err(fault("", "the target has no points", "").into());
         }
         deployment.at_full_load()?;
         Ok(self.objective.evaluate(&Deployed {
@@ -362,15 +350,19 @@ pub fn converged(step: &LoadStep) -> Result<&LoadStep, DesignError> {
 impl Mechanics {
     /// The mechanics at `thickness` times the thickness and `stress` times the stress at every
     /// strain. Its weight grows with the thickness; contact is not changed.
-    pub(crate) fn scaled(&self, thickness: f64, stress: f64) -> Result<Self, DesignError> {
+    pub(crate) fn scaled(&self, thickness: f64, stress: f64) -> Result<Self, Fault> {
         if !(thickness > 0.0 && stress > 0.0 && thickness.is_finite() && stress.is_finite()) {
-            return Err(DesignError::ImpossibleSheet);
+            let why = "a ligament, the thickness or the stresses are not positive";
+            return Err(fault("a sheet with these errors cannot exist", why, ""));
         }
         let mut similar =
             Self { law: Arc::clone(&self.law), contact: self.contact, solver: self.solver.clone() };
         if (thickness, stress) != (1.0, 1.0) {
             let law = self.law.scaled(thickness, stress);
-            similar.law = law.ok_or(DesignError::NoSimilarLaw)?;
+            let what = "the hinge law does not determine the hinges of a sheet of another thickness, \
+                        or of a stronger material";
+            let remedy = "use level = \"standard\"";
+            similar.law = law.ok_or_else(|| fault("", what, remedy))?;
             similar.solver.weight = self.solver.weight.map(|weight| thickness * weight);
         }
         Ok(similar)

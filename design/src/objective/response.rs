@@ -104,7 +104,7 @@ pub struct ResponseGradient {
 impl DesignProblem {
     /// The same problem under other conditions.
     pub fn under(&self, conditions: &Conditions) -> Result<Self, DesignError> {
-        let mechanics = self.model.mechanics().ok_or(DesignError::NoMechanics)?;
+        let mechanics = self.model.equilibrium()?;
         let mut mechanics = mechanics.scaled(conditions.thickness, conditions.stress)?;
         if let Some(loads) = &conditions.loads {
             mechanics.solver = mechanics.solver.loaded(loads)?;
@@ -163,7 +163,7 @@ impl DesignProblem {
         design: &DesignVector,
         solve: impl FnOnce(&EquilibriumSolver, HingedSheet) -> (Vec<LoadStep>, bool),
     ) -> Result<Response, DesignError> {
-        let mechanics = self.model.mechanics().ok_or(DesignError::NoMechanics)?;
+        let mechanics = self.model.equilibrium()?;
         let (pattern, sheet) = self.cut(design)?;
         mechanics.solver.check_supports(&sheet)?;
         let law = mechanics.law.prepare(&sheet.designs());
@@ -186,7 +186,7 @@ impl DesignProblem {
         response: &Response,
         by: &ResponseCotangent,
     ) -> Result<ResponseGradient, DesignError> {
-        let mechanics = self.model.mechanics().ok_or(DesignError::NoMechanics)?;
+        let mechanics = self.model.equilibrium()?;
         let (sheet, state) = (&response.deployment.sheet, response.state());
         let designs = sheet.designs();
         let law = mechanics.law.prepare(&designs);

@@ -4,8 +4,9 @@
 //! r = sigma(z),     tau_(e,s) = sum over m <= s of softmax(ell_e)_m
 //! ```
 
-use crate::pattern::{grid::Grid, pattern_error::PatternError};
+use crate::pattern::grid::Grid;
 use serde::{Deserialize, Serialize};
+use support::fault::{Fault, fault};
 
 /// Unconstrained coordinates of a pattern (5), or a gradient in them.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -34,7 +35,7 @@ impl PatternCoordinates {
     }
 
     /// Coordinates of the pattern with given [`values`](Self::values).
-    pub fn from_values(grid: Grid, values: &[f64]) -> Result<Self, PatternError> {
+    pub fn from_values(grid: Grid, values: &[f64]) -> Result<Self, Fault> {
         let (r, mut rest) = values.split_at(grid.aspect_ratio_count().min(values.len()));
         let tau = grid.edge_cut_counts().map(|count| {
             let (edge, others) = rest.split_at(count.min(rest.len()));
@@ -47,21 +48,21 @@ impl PatternCoordinates {
     }
 
     /// The logits z of given aspect ratios.
-    pub fn z_of(r: &[f64]) -> Result<Vec<f64>, PatternError> {
+    pub fn z_of(r: &[f64]) -> Result<Vec<f64>, Fault> {
         let inside = |r: f64| r > 0.0 && r < 1.0;
         match r.iter().position(|r| !inside(*r)) {
-            Some(index) => Err(PatternError::Interval { name: "r", index, value: r[index] }),
+            Some(index) => Err(outside_interval("r", index, r[index])),
             None => Ok(r.iter().map(|r| logit(*r)).collect()),
         }
     }
 
     /// Logits of given boundary positions on the four edges: the logarithms of their intervals.
-    pub fn ell_of(tau: &[Vec<f64>; 4]) -> Result<[Vec<f64>; 4], PatternError> {
+    pub fn ell_of(tau: &[Vec<f64>; 4]) -> Result<[Vec<f64>; 4], Fault> {
         for tau in tau {
             let widths = intervals(tau);
             if let Some(index) = widths.iter().position(|width| *width <= 0.0 || width.is_nan()) {
                 let index = index.min(tau.len() - 1);
-                return Err(PatternError::Interval { name: "tau", index, value: tau[index] });
+                return Err(outside_interval("tau", index, tau[index]));
             }
         }
         let logits = |tau: &Vec<f64>| intervals(tau).iter().map(|width| width.ln()).collect();
@@ -69,7 +70,7 @@ impl PatternCoordinates {
     }
 
     /// An error unless the coordinates are finite and as many as the grid has.
-    pub fn check(&self, grid: Grid) -> Result<(), PatternError> {
+    pub fn check(&self, grid: Grid) -> Result<(), Fault> {
         let expected = grid.edge_cut_counts().map(|count| count + 1);
         let blocks = [
             ("z", &self.z, grid.aspect_ratio_count()),
@@ -80,21 +81,25 @@ impl PatternCoordinates {
         ];
         for (name, values, expected) in blocks {
             if values.len() != expected {
-                return Err(PatternError::Count {
-                    name,
-                    found: values.len(),
-                    expected,
-                    m: grid.m,
-                    n: grid.n,
-                });
+                let (found, Grid { m, n }) = (values.len(), grid);
+                let what = format!(
+                    "{name} has {found} entries; a sheet of {m} x {n} panels needs {expected}"
+                );
+                return Err(fault("", what, ""));
             }
             if let Some(index) = values.iter().position(|value| !value.is_finite()) {
                 let value = values[index];
-                return Err(PatternError::NotFinite { name, index, value });
+                let what = format!("{name}[{index}] = {value} is not a finite number");
+                return Err(fault("", what, ""));
             }
         }
         Ok(())
     }
+}
+
+fn outside_interval(name: &str, index: usize, value: f64) -> Fault {
+    let range = format!("0 < {name} < 1, increasing along each edge");
+    fault("", format!("{name}[{index}] = {value} violates {range}"), "")
 }
 
 /// The logistic function sigma of (5).

@@ -19,7 +19,6 @@ use crate::{
             PatternCoordinates, intervals, logistic, partial_sums, partial_sums_pullback,
         },
         grid::{EDGES, Endpoint, Grid},
-        pattern_error::PatternError,
     },
 };
 use faer::{
@@ -28,6 +27,7 @@ use faer::{
     sparse::{SparseColMat, Triplet, linalg::solvers::Lu},
 };
 use serde::{Deserialize, Serialize};
+use support::fault::{Fault, fault};
 
 /// The fixed outline of the flat sheet: corners SW, SE, NE, NW (mm).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -55,13 +55,21 @@ impl Outline {
         f64::max(high[0] - low[0], high[1] - low[1])
     }
 
-    /// Whether the outline is strictly convex with counter-clockwise corners.
-    pub fn is_convex(&self) -> bool {
+    /// An error unless the outline is strictly convex with counter-clockwise corners.
+    pub fn check(&self) -> Result<(), Fault> {
         let corner = |k: usize| complex(self.corners[k % 4]);
-        (0..4).all(|k| {
+        let convex = (0..4).all(|k| {
             let turn = cross(corner(k + 1) - corner(k), corner(k + 2) - corner(k + 1));
             turn > 0.0 && turn.is_finite()
-        })
+        });
+        let what = || {
+            format!(
+                "the outline {:?} is not a convex quadrilateral with its corners \
+                 counter-clockwise from the south-west",
+                self.corners
+            )
+        };
+        convex.then_some(()).ok_or_else(|| fault("", what(), ""))
     }
 }
 
@@ -88,23 +96,22 @@ impl CutPattern {
         grid: Grid,
         outline: Outline,
         coordinates: &PatternCoordinates,
-    ) -> Result<Self, PatternError> {
+    ) -> Result<Self, Fault> {
         let Grid { m, n } = grid;
         if m < 2 || n < 2 {
-            return Err(PatternError::TooFewPanels { m, n });
+            let what = format!("a sheet of {m} x {n} panels has no interior cut");
+            return Err(fault("", what, "use at least 2 x 2"));
         }
-        if !outline.is_convex() {
-            return Err(PatternError::Outline { corners: outline.corners });
-        }
+        outline.check()?;
         coordinates.check(grid)?;
         let r: Vec<f64> = coordinates.z.iter().copied().map(logistic).collect();
         if let Some(index) = r.iter().position(|&r| r <= 0.0 || r >= 1.0) {
-            return Err(PatternError::Collision { name: "z", index });
+            return Err(colliding("z", index));
         }
         let tau = coordinates.ell.each_ref().map(|ell| partial_sums(ell));
         for tau in &tau {
             if let Some(index) = intervals(tau).iter().position(|&interval| interval <= 0.0) {
-                return Err(PatternError::Collision { name: "ell", index });
+                return Err(colliding("ell", index));
             }
         }
         let system = SparseColMat::try_new_from_triplets(
@@ -112,14 +119,14 @@ impl CutPattern {
             grid.point_count(),
             &collinearity(grid, &r),
         )
-        .map_err(|_| PatternError::Singular)?
+        .map_err(|_| singular())?
         .sp_lu()
-        .map_err(|_| PatternError::Singular)?;
+        .map_err(|_| singular())?;
         let solution = system.solve(outline_points(grid, &outline, &tau));
         let points: Vec<[f64; 2]> =
             (0..grid.point_count()).map(|row| [solution[(row, 0)], solution[(row, 1)]]).collect();
         if points.iter().flatten().any(|value| !value.is_finite()) {
-            return Err(PatternError::Singular);
+            return Err(singular());
         }
         Ok(Self { grid, outline, r, tau, points, system })
     }
@@ -200,6 +207,17 @@ impl CutPattern {
         }
         corners
     }
+}
+
+fn colliding(name: &str, index: usize) -> Fault {
+    let what = format!(
+        "{name}[{index}] is so far from 0 that its chart (5) rounds to a bound: two cuts collide"
+    );
+    fault("", what, "")
+}
+
+fn singular() -> Fault {
+    fault("", "the collinearity system of the pattern is singular", "")
 }
 
 /// The matrix of (3)-(4): one row per cut endpoint.

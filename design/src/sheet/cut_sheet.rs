@@ -25,24 +25,9 @@ use faer::c64;
 use hinge::HingeDesign;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use support::fault::{Fault, fault};
 
-/// Why a pattern and its ligament widths do not define a sheet.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[allow(missing_docs, reason = "the message of a variant is its documentation")]
-pub enum SheetError {
-    #[error("{found} ligament widths for {expected} hinges")]
-    WidthCount { found: usize, expected: usize },
-    #[error("w_lig[{hinge}] = {value} mm is not a positive finite number")]
-    Width { hinge: usize, value: f64 },
-    #[error(
-        "panel {panel} has the area {area} mm^2, which must be positive: its cuts have collapsed"
-    )]
-    PanelArea { panel: usize, area: f64 },
-    #[error(
-        "hinge {hinge} has the cut angle {alpha_deg} deg, outside (0, 180): its cuts have collapsed"
-    )]
-    CutAngle { hinge: usize, alpha_deg: f64 },
-}
+const COLLAPSED: &str = "its cuts have collapsed";
 
 /// The point at which the hinge deformation (8) is measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
@@ -197,17 +182,12 @@ impl SheetGradient {
 
 impl Sheet {
     /// The sheet of `pattern` with one ligament width (mm) per hinge.
-    pub fn new(
-        pattern: &CutPattern,
-        w_lig: &[f64],
-        options: SheetOptions,
-    ) -> Result<Self, SheetError> {
+    pub fn new(pattern: &CutPattern, w_lig: &[f64], options: SheetOptions) -> Result<Self, Fault> {
         let grid = pattern.grid;
         if w_lig.len() != grid.hinge_count() {
-            return Err(SheetError::WidthCount {
-                found: w_lig.len(),
-                expected: grid.hinge_count(),
-            });
+            let (found, expected) = (w_lig.len(), grid.hinge_count());
+            let what = format!("{found} ligament widths for {expected} hinges");
+            return Err(fault("", what, ""));
         }
         let panel_endpoints = panel_endpoints(grid);
         let panels = std::iter::zip(0.., &panel_endpoints)
@@ -341,13 +321,14 @@ impl Sheet {
 }
 
 impl Panel {
-    fn new(panel: usize, corners: [[f64; 2]; 4]) -> Result<Self, SheetError> {
+    fn new(panel: usize, corners: [[f64; 2]; 4]) -> Result<Self, Fault> {
         let mean = corners.map(complex).iter().sum::<c64>() / 4.0;
         let arms = corners.map(|corner| complex(corner) - mean);
         let sectors = sectors(&arms);
         let area = 0.5 * sectors.iter().sum::<f64>();
         if !(area > 0.0 && area.is_finite()) {
-            return Err(SheetError::PanelArea { panel, area });
+            let what = format!("panel {panel} has the area {area} mm^2, which must be positive");
+            return Err(fault("", what, COLLAPSED));
         }
         let moment: c64 = (0..4).map(|j| (arms[j] + arms[(j + 1) % 4]) * sectors[j]).sum();
         let centroid = point(mean + moment / (6.0 * area));
@@ -423,9 +404,10 @@ impl Hinge {
         points: &[[f64; 2]],
         [w_lig, set_back]: [f64; 2],
         options: SheetOptions,
-    ) -> Result<Self, SheetError> {
+    ) -> Result<Self, Fault> {
         if !(w_lig > 0.0 && w_lig.is_finite()) {
-            return Err(SheetError::Width { hinge, value: w_lig });
+            let what = format!("w_lig[{hinge}] = {w_lig} mm is not a positive finite number");
+            return Err(fault("", what, ""));
         }
         let unit = |from: usize, to: usize| {
             let segment = complex(points[to]) - complex(points[from]);
@@ -437,7 +419,8 @@ impl Hinge {
         let alpha = cross(main, e_sec).atan2(dot(main, e_sec));
         if !(alpha > 0.0 && alpha < std::f64::consts::PI) {
             let alpha_deg = alpha.to_degrees();
-            return Err(SheetError::CutAngle { hinge, alpha_deg });
+            let what = format!("hinge {hinge} has the cut angle {alpha_deg} deg, outside (0, 180)");
+            return Err(fault("", what, COLLAPSED));
         }
         let corner = points[site.corner];
         let hinge = Self {

@@ -19,6 +19,13 @@ use crate::{
     },
 };
 use faer::c64;
+use support::fault::{Fault, fault};
+
+/// An error unless the opening angle (rad) is finite.
+pub fn check_opening(theta: f64) -> Result<(), Fault> {
+    let what = || format!("the opening angle {theta} rad is not a finite number");
+    theta.is_finite().then_some(()).ok_or_else(|| fault("", what(), ""))
+}
 
 /// The configuration with every hinge open by `theta` (rad).
 pub fn ideal_deployment(sheet: &Sheet, theta: f64) -> Configuration {
