@@ -1,4 +1,4 @@
-//! Deployed sheets: a path of load steps, or the state at full load alone.
+//! Deployed sheets: a path of load steps, or only the state at full load.
 
 use crate::{
     arrays::{Array, Plain, array, plain, quadrilaterals, rows},
@@ -121,7 +121,7 @@ impl Deployment {
         self.by_step(&[self.hinges()], |step| step.energies.clone())
     }
 
-    /// D of the hinges, shape (steps, hinges); nan where it is not known: outside the training
+    /// D of the hinges, shape (steps, hinges); nan where it is unknown: outside the training
     /// domain, or without a learned law.
     #[getter]
     fn damage(&self) -> Array {

@@ -1,5 +1,5 @@
-//! The learned hinge energy: weights, hinges prepared for evaluation, and what is known of their
-//! states.
+//! The learned hinge energy: weights, hinges prepared for evaluation, and the domain and
+//! spread of their states.
 
 use crate::{
     arrays::{Argument, Array, Numbers, Plain, array, plain, tuple},
@@ -39,7 +39,7 @@ type Law = PreparedSurrogate<Arc<surrogate::Surrogate>>;
 
 struct Prepared {
     networks: Vec<Arc<surrogate::Surrogate>>,
-    /// Of the first network, one for each chunk of the designs.
+    /// Laws of the first network, one for each chunk of the designs.
     laws: Vec<Law>,
     designs: Vec<HingeDesign>,
     shape: Vec<usize>,
@@ -51,7 +51,7 @@ struct Prepared {
 pub(crate) struct HingeStates {
     hinges: Arc<Prepared>,
     deformations: Vec<HingeDeformation>,
-    /// Of each chunk.
+    /// Energies of each chunk.
     energies: Vec<Vec<HingeEnergy>>,
     order: Order,
 }
@@ -267,7 +267,7 @@ impl HingeStates {
     }
 
     /// D, the mean plastic strain of the ligament over that at fracture; nan outside the training
-    /// domain, where it is not known.
+    /// domain, where it is unknown.
     #[getter]
     fn damage(&self) -> PyResult<Array> {
         self.damaged(|damage| Some(damage.d))

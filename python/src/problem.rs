@@ -228,7 +228,7 @@ impl Problem {
         Ok(deployment)
     }
 
-    /// The equilibrium at full load alone: deployed corners, reactions, load factor. It costs a
+    /// Only the equilibrium at full load: deployed corners, reactions, load factor. It costs a
     /// fraction of the path.
     #[pyo3(signature = (x, loads=None, thickness=None, stress=1.0, warm=true))]
     fn solve(
@@ -326,7 +326,7 @@ impl Problem {
             problem.response_pullback(&design, &response, &by)
         })?;
         let gradient = gradient.map_err(errors::design)?;
-        // From logarithms to mm and to the factor.
+        // Derivatives in mm and in the factor.
         let thickness = thickness.unwrap_or(self.thickness());
         Ok(Pullback {
             design: list(gradient.design.to_flat()),

@@ -8,7 +8,7 @@ use crate::sheet_config::StartConfig;
 use design::equilibrium::solver::EquilibriumSolver;
 use design::objective::design_problem::{DesignProblem, Mechanics, Model};
 use design::objective::loss::Objective;
-use design::objective::terms::Setting;
+use design::objective::terms::TermContext;
 use design::pattern::design_vector::{DesignVector, WidthChart};
 use design::pattern::grid::Grid;
 use rand::{RngExt, SeedableRng};
@@ -76,7 +76,7 @@ impl Scene {
     }
 
     fn objective(&self, model: &Model) -> Objective {
-        self.config.objective.objective(&Setting {
+        self.config.objective.objective(&TermContext {
             target: &self.target.points,
             law: model.mechanics().map(|mechanics| &*mechanics.law),
             mean_panel_area: self.config.sheet.mean_panel_area(),

@@ -1,7 +1,8 @@
 //! The adjoint of the equilibria; (20). With g_i the gradient of the objective with respect to q_i,
 //!
 //! ```text
-//! H_i lambda_i = g_i,     dL/dp -= sum_i sum_h d/dp [ grad W(eps_h(q_i, p); p) . D eps_h(q_i, p)[lambda_i] ]
+//! H_i lambda_i = g_i,     dL/dp -= sum_i sum_h d/dp [ grad W(eps_h(q_i, p); p) . D eps_h(q_i,
+//! p)[lambda_i] ]
 //! ```
 //!
 //! which is local to each hinge in p = (attachment point, reference points, angle of e_sec, w_lig,
@@ -47,16 +48,16 @@ pub struct SingularTangent {
 pub(crate) struct PathGradient<'a> {
     /// `by_states[h][i]`: in hinge h at load step i.
     pub by_states: &'a [Vec<HingeGradient>],
-    /// In the load factor of the last load step; read under displacement control only.
+    /// Gradient in the load factor of the last load step; read under displacement control only.
     pub by_load_factor: f64,
-    /// In the last configuration.
+    /// Gradient in the last configuration.
     pub by_last: Vec<[f64; 3]>,
-    /// In the forces (F_x, F_y, M) of the supports in the last state; zero at free degrees of
-    /// freedom. `None` if it depends on none.
+    /// Gradient in the forces (F_x, F_y, M) of the supports in the last state; zero at free degrees
+    /// of freedom. `None` if it depends on none.
     pub by_reactions: Option<Vec<[f64; 3]>>,
 }
 
-/// What the adjoint computes besides the gradient with respect to the sheet.
+/// Results of the adjoint other than the gradient in the sheet.
 pub(crate) struct AdjointSums {
     /// Gradient with respect to (F_x, F_y, M) of every panel at full load.
     pub loads: Vec<[f64; 3]>,

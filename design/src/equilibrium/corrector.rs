@@ -1,7 +1,7 @@
 //! Equilibria on a branch of the path: prediction corrected by Newton's method, in the plane normal
 //! to the path or at a given load.
 //!
-//! With d_0 the correction at constant load, q' the rate with the load and p the rate along the
+//! Let d_0 be the correction at constant load, q' the rate with the load and p the rate along the
 //! path, the correction in the plane is
 //!
 //! ```text
@@ -60,8 +60,8 @@ pub(crate) struct Branch<'a> {
 
 /// An equilibrium close enough to the path to follow it.
 pub(crate) struct Corrected {
-    pub place: PathPoint,
-    /// The state at the place, the factors of a tangent near it, and the rate with the load
+    pub position: PathPoint,
+    /// The state at the position, the factors of a tangent near it, and the rate with the load
     /// parameter by them.
     pub state: State,
     pub factor: HeldFactor,
@@ -84,24 +84,24 @@ struct Correction {
 }
 
 pub(crate) struct Point {
-    pub place: PathPoint,
+    pub position: PathPoint,
     /// The rate along the path; the fastest hinge moves by one (rad, or panel sizes).
     pub rate: PathPoint,
     /// Maximum rate of rotation (rad).
     pub turning: f64,
-    /// Factors of a tangent near the place.
+    /// Factors of a tangent near the position.
     pub factor: Option<HeldFactor>,
 }
 
 impl Point {
-    /// A place without a known rate: from there the path goes on by its load parameter.
-    pub fn still(place: PathPoint) -> Self {
+    /// A position without a known rate: from there the path goes on by its load parameter.
+    pub fn still(position: PathPoint) -> Self {
         let rate = PathPoint {
             at: 1.0,
-            configuration: vec![[0.0; 3]; place.configuration.len()],
-            forces: vec![[0.0; 3]; place.forces.len()],
+            configuration: vec![[0.0; 3]; position.configuration.len()],
+            forces: vec![[0.0; 3]; position.forces.len()],
         };
-        Self { place, rate, turning: 0.0, factor: None }
+        Self { position, rate, turning: 0.0, factor: None }
     }
 
     pub fn is_still(&self) -> bool {
@@ -140,45 +140,46 @@ impl<'a> Branch<'a> {
         }
     }
 
-    /// Moves supports and stroke of a place to their values at its load parameter; their values in
-    /// `known` must be right.
-    pub fn hold(&self, place: &mut PathPoint, known: &PathPoint) {
+    /// Moves supports and stroke of a position to their values at its load parameter; their values
+    /// in `known` must be right.
+    pub fn hold(&self, position: &mut PathPoint, known: &PathPoint) {
         let ahead = match self.stage {
             Stage::Weight => 0.0,
-            Stage::Actuation => place.at - known.at,
+            Stage::Actuation => position.at - known.at,
         };
         for support in &self.solver.supports {
             let (panel, dof) = (support.panel, support.dof.index());
-            place.configuration[panel][dof] =
+            position.configuration[panel][dof] =
                 known.configuration[panel][dof] + ahead * support.value;
         }
         if let Some((stroke, full)) = &self.solver.drive {
-            let of =
-                |place: &PathPoint| stroke.of(&self.solver.pattern.gather(&place.configuration));
-            let short = of(known) + ahead * full - of(place);
+            let of = |position: &PathPoint| {
+                stroke.of(&self.solver.pattern.gather(&position.configuration))
+            };
+            let short = of(known) + ahead * full - of(position);
             let motion = self.solver.pattern.spread(&stroke.motion(short));
-            place.configuration = moved(&place.configuration, &motion, 1.0);
+            position.configuration = moved(&position.configuration, &motion, 1.0);
         }
     }
 
-    /// The equilibrium near a predicted place: in the plane normal to the rate `normal`, or at the
-    /// load of the place. Otherwise the error of the prediction if that is larger than `limit`,
-    /// infinite if the corrections do not converge.
+    /// The equilibrium near a predicted position: in the plane normal to the rate `normal`, or at
+    /// the load of the position. Otherwise the error of the prediction if that is larger than
+    /// `limit`, infinite if the corrections do not converge.
     pub fn close(
         &mut self,
-        mut place: PathPoint,
+        mut position: PathPoint,
         normal: Option<&PathPoint>,
         limit: f64,
     ) -> Result<Corrected, f64> {
         const DIVERGED: f64 = f64::INFINITY;
         let (mut error, mut before) = (None, DIVERGED);
         for _ in 0..CORRECTIONS {
-            let near = self.state(&place, Order::Tangent).and_then(|state| {
-                let expected = Some(place.forces.clone());
-                self.linearised(place.at, State { expected, ..state })
+            let near = self.state(&position, Order::Tangent).and_then(|state| {
+                let expected = Some(position.forces.clone());
+                self.linearised(position.at, State { expected, ..state })
             });
             let mut near = near.ok_or(DIVERGED)?;
-            let rate = self.rate(&self.potential(place.at), &near.state, &near.factor);
+            let rate = self.rate(&self.potential(position.at), &near.state, &near.factor);
             let in_plane = normal.map(|normal| (&rate[..], normal));
             let mut last = self.correction(&near.state, &near.factor, in_plane);
             if last.length.is_nan() || last.length > DIVERGENCE * before {
@@ -189,24 +190,24 @@ impl<'a> Branch<'a> {
                 return Err(error);
             }
             before = last.length;
-            place = self.corrected(place.at, &near.state, &last);
+            position = self.corrected(position.at, &near.state, &last);
             // The other corrections need only the forces of the hinges.
             let mut next = before;
             while next > CLOSE {
-                let state = self.state(&place, Order::Forces).ok_or(DIVERGED)?;
+                let state = self.state(&position, Order::Forces).ok_or(DIVERGED)?;
                 near.state = state.with_stiffness_of(&near.state);
                 let again = self.correction(&near.state, &near.factor, in_plane);
                 if again.length.is_nan() || again.length > CONTRACTION * last.length {
                     break;
                 }
-                place = self.corrected(place.at, &near.state, &again);
+                position = self.corrected(position.at, &near.state, &again);
                 next = again.length * again.length / last.length;
                 last = again;
             }
             if next <= CLOSE {
-                let state = self.state(&place, Order::Tangent).ok_or(DIVERGED)?;
+                let state = self.state(&position, Order::Tangent).ok_or(DIVERGED)?;
                 return Ok(Corrected {
-                    place: PathPoint { forces: state.forces(), ..place },
+                    position: PathPoint { forces: state.forces(), ..position },
                     state,
                     factor: near.factor,
                     rate,
@@ -217,17 +218,18 @@ impl<'a> Branch<'a> {
         Err(DIVERGED)
     }
 
-    /// The equilibrium near a predicted place, at its load, with a residual within the tolerance.
-    pub fn balanced(&mut self, mut place: PathPoint) -> Option<Minimum> {
+    /// The equilibrium near a predicted position, at its load, with a residual within the
+    /// tolerance.
+    pub fn balanced(&mut self, mut position: PathPoint) -> Option<Minimum> {
         let tolerance = self.solver.settings.tolerance;
         let mut before = f64::INFINITY;
         for _ in 0..CORRECTIONS {
-            let mut state = self.state(&place, Order::Tangent)?;
+            let mut state = self.state(&position, Order::Tangent)?;
             if state.is_balanced(tolerance) {
-                return self.linearised(place.at, state).map(Minimum::from);
+                return self.linearised(position.at, state).map(Minimum::from);
             }
-            state.expected = Some(place.forces.clone());
-            let mut near = self.linearised(place.at, state)?;
+            state.expected = Some(position.forces.clone());
+            let mut near = self.linearised(position.at, state)?;
             let first = self.correction(&near.state, &near.factor, None);
             if first.length.is_nan() || first.length > DIVERGENCE * before {
                 return None;
@@ -236,7 +238,7 @@ impl<'a> Branch<'a> {
             let mut next = before * before;
             let mut last = first;
             let mut polished = false;
-            place = self.corrected(place.at, &near.state, &last);
+            position = self.corrected(position.at, &near.state, &last);
             for _ in 0..CORRECTIONS {
                 // One more correction makes a balanced state as smooth in the design as rounding
                 // allows.
@@ -248,16 +250,16 @@ impl<'a> Branch<'a> {
                 } else {
                     Order::Tangent
                 };
-                let mut state = self.state(&place, order)?;
+                let mut state = self.state(&position, order)?;
                 state.rounding = state.rounding.max(near.state.rounding);
                 let balanced = state.is_balanced(tolerance);
                 if balanced && ready {
                     // Factors of a tangent this close serve as its own, after refinement.
                     if before > NEAR {
-                        return self.linearised(place.at, state).map(Minimum::from);
+                        return self.linearised(position.at, state).map(Minimum::from);
                     }
                     return Some(Minimum {
-                        tangent: self.potential(place.at).tangent(&state),
+                        tangent: self.potential(position.at).tangent(&state),
                         factor: Some(near.factor),
                         state,
                     });
@@ -269,7 +271,7 @@ impl<'a> Branch<'a> {
                     break;
                 }
                 near.state = state.with_stiffness_of(&near.state);
-                place = self.corrected(place.at, &near.state, &again);
+                position = self.corrected(position.at, &near.state, &again);
                 next = again.length * again.length / last.length;
                 last = again;
             }
@@ -277,10 +279,10 @@ impl<'a> Branch<'a> {
         None
     }
 
-    /// The state at a place; `None` if its energy is not finite.
-    pub fn state(&self, place: &PathPoint, order: Order) -> Option<State> {
-        let configuration = place.configuration.clone();
-        self.potential(place.at).state_up_to(configuration, order)
+    /// The state at a position; `None` if its energy is not finite.
+    pub fn state(&self, position: &PathPoint, order: Order) -> Option<State> {
+        let configuration = position.configuration.clone();
+        self.potential(position.at).state_up_to(configuration, order)
     }
 
     fn linearised(&mut self, at: f64, state: State) -> Option<Linearised> {
@@ -355,13 +357,13 @@ impl<'a> Branch<'a> {
             .sum()
     }
 
-    /// The point of the branch at a corrected place, seen along the rate `before`.
+    /// The point of the branch at a corrected position, seen along the rate `before`.
     pub fn point(&self, corrected: Corrected, before: Option<&PathPoint>) -> Point {
-        let Corrected { place, state, factor, rate, .. } = corrected;
-        let potential = self.potential(place.at);
+        let Corrected { position, state, factor, rate, .. } = corrected;
+        let potential = self.potential(position.at);
         let rate = self.refined_rate(&potential, &state, &factor, rate);
         let size = potential.length(&state, &rate);
-        // Without any motion the path is followed by its load parameter.
+        // A path without any motion is followed by its load parameter.
         let size = if size > 0.0 { size } else { 1.0 };
         // A stable branch goes on to higher loads, however sharply it turns where hinges lock;
         // beyond a limit point the path goes on in the direction in which it came.
@@ -376,7 +378,7 @@ impl<'a> Branch<'a> {
         Point {
             turning: rate.configuration.iter().fold(0.0, turning),
             rate,
-            place,
+            position,
             factor: Some(factor),
         }
     }

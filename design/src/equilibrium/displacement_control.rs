@@ -72,7 +72,7 @@ impl Stroke {
         -by_load_factor / self.size
     }
 
-    /// A motion with the given stroke, used when no better prediction is known.
+    /// A motion with the given stroke, used without a better prediction.
     pub fn motion(&self, stroke: f64) -> Vec<f64> {
         let square = dot(&self.direction, &self.direction);
         self.direction.iter().map(|c| stroke * c / square).collect()

@@ -2,9 +2,9 @@
 //! of (F_a, F_s, M_theta) at hinge h and B the rates of the hinge states,
 //!
 //! ```text
-//! H dq + mu c = -B^T df,    c . dq = 0,    dP = -mu            prescribed stroke c . q, load P
-//! H dq = -B^T df,                          dP = 0              dead loads
-//! H dq = -B^T df,                          dP = v . B^T df     supports moved by U, v = dq/d(displacement) on the path
+//! H dq + mu c = -B^T df,    c . dq = 0,    dP = -mu            prescribed stroke c . q, load P H
+//! dq = -B^T df,                          dP = 0              dead loads H dq = -B^T df,
+//! dP = v . B^T df     supports moved by U, v = dq/d(displacement) on the path
 //! ```
 //!
 //! which takes one solve with the factors of the tangent.

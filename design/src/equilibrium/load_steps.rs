@@ -96,7 +96,7 @@ impl EquilibriumSolver {
     ///
     /// # Panics
     /// If the grids of sheet and solver differ.
-    pub fn readings(&self, sheet: HingedSheet, parameters: &[f64]) -> Vec<LoadStep> {
+    pub fn load_steps_at(&self, sheet: HingedSheet, parameters: &[f64]) -> Vec<LoadStep> {
         let (_, start) = self.before_loads(sheet);
         self.read(sheet, Stage::Actuation, start, parameters.iter().copied())
     }
@@ -194,7 +194,7 @@ impl EquilibriumSolver {
         let follower = self.follower(sheet, Stage::Actuation, start);
         let ends = follower.into_iter().flat_map(|mut follower| {
             std::iter::from_fn(move || {
-                let goes_on = follower.last.place.at < 1.0 && follower.advance().is_ok();
+                let goes_on = follower.last.position.at < 1.0 && follower.advance().is_ok();
                 goes_on.then(|| follower.end_of_increment())
             })
         });
@@ -240,14 +240,14 @@ impl Follower<'_> {
     fn end_of_increment(&self) -> Increment {
         let state = self.last_state(Order::Forces);
         Increment {
-            at: self.last.place.at,
+            at: self.last.position.at,
             load_factor: state.load_factor,
             configuration: state.configuration,
         }
     }
 
     fn last_state(&self, order: Order) -> State {
-        let state = self.branch.state(&self.last.place, order);
+        let state = self.branch.state(&self.last.position, order);
         state.expect("this state was computed before")
     }
 
@@ -259,7 +259,7 @@ impl Follower<'_> {
 
     /// The equilibrium at `to` on the path.
     fn followed(&mut self, to: f64) -> Result<Minimum, Failure> {
-        while self.last.place.at < to {
+        while self.last.position.at < to {
             if let Err(failure) = self.advance() {
                 // A sheet without stiffness is at rest in any state; beyond the increments the load
                 // steps go on.
@@ -273,20 +273,20 @@ impl Follower<'_> {
                 return Ok(minimum);
             }
         }
-        let mut place = match &self.arc {
-            Some(arc) => arc.reading(to),
-            None => PathPoint { at: to, ..self.last.place.clone() },
+        let mut position = match &self.arc {
+            Some(arc) => arc.at_load(to),
+            None => PathPoint { at: to, ..self.last.position.clone() },
         };
-        self.branch.hold(&mut place, &self.last.place);
-        let start = place.clone();
-        let found = self.branch.balanced(place);
+        self.branch.hold(&mut position, &self.last.position);
+        let start = position.clone();
+        let found = self.branch.balanced(position);
         let stable = |held: &HeldFactor| held.unstable_directions() == 0;
         let minimum = match found.filter(|found| found.factor.as_ref().is_some_and(stable)) {
             Some(found) => found,
             None => self.branch.minimum(&start)?,
         };
         let moved = self.branch.moved(&minimum, &start);
-        // Without an arc the start is a place at a higher load.
+        // The start without an arc is a position at a higher load.
         self.jumps += usize::from(self.arc.is_some() && moved > LEAP);
         Ok(minimum)
     }
@@ -294,8 +294,8 @@ impl Follower<'_> {
     /// The minimum at `to` that is reached from the last point, from where the path goes on, and
     /// its distance.
     fn minimised(&mut self, to: f64) -> Result<(Minimum, f64), Failure> {
-        let mut start = PathPoint { at: to, ..self.last.place.clone() };
-        self.branch.hold(&mut start, &self.last.place);
+        let mut start = PathPoint { at: to, ..self.last.position.clone() };
+        self.branch.hold(&mut start, &self.last.position);
         let minimum = self.branch.minimum(&start)?;
         let moved = self.branch.moved(&minimum, &start);
         self.last = Point::still(PathPoint {
@@ -326,7 +326,7 @@ impl Branch<'_> {
         jumps: usize,
     ) -> LoadStep {
         let effort = std::mem::take(&mut self.effort);
-        // Under a drive the minimised function does not contain the work of the loads.
+        // The minimised function under a drive does not contain the work of the loads.
         let driven = match self.solver.drive {
             Some(_) => state.load_factor * work(&self.solver.loads, &state.configuration),
             None => 0.0,
@@ -358,7 +358,7 @@ impl Branch<'_> {
         }
     }
 
-    /// The maximum rotation or hinge translation from a place to a minimum.
+    /// The maximum rotation or hinge translation from a position to a minimum.
     pub fn moved(&self, minimum: &Minimum, start: &PathPoint) -> f64 {
         let motion = moved(&minimum.state.configuration, &start.configuration, -1.0);
         let potential = self.potential(start.at);

@@ -1,6 +1,6 @@
 //! Minimisation of the potential (10) at one load factor by a damped Newton method.
 //!
-//! With S the diagonal of the tangent at the start, a step solves (H + sigma S) d = -grad Pi with
+//! Let S be the diagonal of the tangent at the start. A step solves (H + sigma S) d = -grad Pi with
 //! the smallest tested sigma that makes the matrix positive definite. It is shortened until the
 //! rotations are moderate, and accepted if Pi decreases by a fraction of the predicted decrease.
 //!

@@ -1,6 +1,6 @@
 //! The potential (10) of a configuration at one point of the path, with its first two derivatives.
 //!
-//! Under load control the load factor zeta is given. Under displacement control the stroke c . q of
+//! The load factor zeta is given under load control. Under displacement control the stroke c . q of
 //! the loads is prescribed, c being their direction, and zeta is the multiplier with the smallest
 //! residual,
 //!
@@ -162,7 +162,7 @@ impl Potential<'_> {
         let loads = constant + load_factor.abs() * self.largest(solver.loads.iter().copied());
         let hinges = self.largest(energies.iter().map(|energy| energy.forces));
         let force = self.force.max(loads).max(hinges);
-        // Without any force nothing is unbalanced.
+        // A sheet without any force is balanced.
         let over_force = |unbalanced: f64| match force {
             0.0 => 0.0,
             _ => unbalanced / force,

@@ -28,7 +28,8 @@ pub(crate) struct Refined {
     pub error: f64,
 }
 
-/// For the right-hand sides (b, d). `None` if not even a shifted tangent can be factorised.
+/// Solution for the right-hand sides (b, d); `None` if not even a shifted tangent can be
+/// factorised.
 pub(crate) fn refined_solve(
     pattern: &TangentPattern,
     tangent: &StepTangent,

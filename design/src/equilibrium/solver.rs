@@ -31,7 +31,7 @@ use support::fault::{Fault, fault};
 /// Number of load steps in which the weight comes on.
 const WEIGHT_STEPS: usize = 2;
 
-/// Supports and loads of a sheet, with everything that depends on its topology alone.
+/// Supports and loads of a sheet, with everything that depends only on its topology.
 #[derive(Clone, Debug)]
 pub struct EquilibriumSolver {
     pub(crate) grid: Grid,
@@ -48,7 +48,7 @@ pub struct EquilibriumSolver {
     pub(crate) attachment_points: Box<[AttachmentPoint]>,
     /// Loads held constant from the beginning of the path.
     pub(crate) held: Box<[[f64; 3]]>,
-    /// Under displacement control, the direction of the stroke and its value at full load.
+    /// Direction of the stroke and its value at full load, under displacement control.
     pub(crate) drive: Option<(Box<Stroke>, f64)>,
     /// Shared by the solvers of one sheet with other loads.
     pub(crate) pattern: Arc<TangentPattern>,
@@ -185,7 +185,7 @@ impl EquilibriumSolver {
     }
 
     /// The displacement of a configuration along the loads, by which a stroke is prescribed: their
-    /// work over the sum of their magnitudes (mm; rad if there are couples alone). `None` without
+    /// work over the sum of their magnitudes (mm; rad if there are only couples). `None` without
     /// loads.
     pub fn displacement(&self, configuration: &[[f64; 3]]) -> Option<f64> {
         let (size, _) = magnitude(&self.loads)?;

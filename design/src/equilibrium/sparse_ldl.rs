@@ -59,7 +59,7 @@ pub(crate) fn elimination_ranks(matrix: &SymbolicSparseColMat<usize>) -> Vec<usi
 impl SparseLdl {
     /// The factorisation in the order of the columns.
     pub fn new(matrix: SymbolicSparseColMat<usize>) -> Self {
-        // Without a given ordering faer analyses the upper triangle, whichever side is passed.
+        // faer without a given ordering analyses the upper triangle, whichever side is passed.
         let upper = matrix.transpose().to_col_major();
         let cholesky = factorize_symbolic_cholesky(
             upper.expect("indices fit in usize").as_ref(),

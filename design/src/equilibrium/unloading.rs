@@ -19,7 +19,7 @@ use support::fault::{Fault, fault};
 const STEPS: usize = 10;
 
 impl EquilibriumSolver {
-    /// The load steps from the configuration `start`, of which the last one is without loads. Their
+    /// The load steps from the configuration `start`; the last one is without loads. Their
     /// load factor is the part of the holding forces that is left.
     pub fn unload(&self, sheet: HingedSheet, start: Configuration) -> Result<Vec<LoadStep>, Fault> {
         let mut free = self.unloaded(sheet.sheet)?;

@@ -79,10 +79,7 @@ impl EquilibriumSolver {
     /// not complete or jumps, or if a state is not a stable equilibrium close to the known one:
     /// then the path must be followed.
     pub fn path_near(&self, sheet: HingedSheet, known: &WarmStart) -> Option<Vec<LoadStep>> {
-        if known.steps.len() != self.weight_steps() + self.steps {
-            return None;
-        }
-        let (weighed, loaded) = known.steps.split_at(self.weight_steps());
+        let (weighed, loaded) = known.steps.split_at_checked(self.weight_steps())?;
         let near = |stage, steps| {
             let ends: Vec<f64> = self.ends(stage).collect();
             self.steps_near(sheet, stage, &ends, &known.designs, steps)
@@ -92,17 +89,14 @@ impl EquilibriumSolver {
         Some(path)
     }
 
-    /// The [`readings`](Self::readings) of a sheet near another one of which `known` are the
-    /// readings at the same parameters; `None` as for a path.
-    pub fn readings_near(
+    /// The [load steps](Self::load_steps_at) of a sheet near another one, whose load steps at the
+    /// same parameters are `known`; `None` as for a path.
+    pub fn load_steps_near(
         &self,
         sheet: HingedSheet,
         parameters: &[f64],
         known: &WarmStart,
     ) -> Option<Vec<LoadStep>> {
-        if known.steps.len() != parameters.len() {
-            return None;
-        }
         self.steps_near(sheet, Stage::Actuation, parameters, &known.designs, &known.steps)
     }
 
@@ -124,7 +118,8 @@ impl EquilibriumSolver {
         (step.status != Status::Almost).then_some(step)
     }
 
-    /// The load steps that end at load parameters, each from the known one there.
+    /// The load steps that end at load parameters, each from the known one there; `None` unless
+    /// there is one for each.
     fn steps_near(
         &self,
         sheet: HingedSheet,
@@ -136,7 +131,7 @@ impl EquilibriumSolver {
         let smooth = |step: &LoadStep| {
             matches!(step.status, Status::Converged | Status::LeftDomain) && step.jumps == 0
         };
-        if !known.iter().all(smooth) {
+        if known.len() != ends.len() || !known.iter().all(smooth) {
             return None;
         }
         let changes = changes(sheet, designs);
@@ -175,19 +170,19 @@ impl Branch<'_> {
 
     /// Moves a known state to the stroke at its load parameter, which loads in another direction
     /// change.
-    fn hold_stroke(&self, place: &mut PathPoint) {
+    fn hold_stroke(&self, position: &mut PathPoint) {
         let Some((stroke, full)) = &self.solver.drive else {
             return;
         };
         let target = match self.stage {
             Stage::Weight => 0.0,
-            Stage::Actuation => place.at * full,
+            Stage::Actuation => position.at * full,
         };
         let pattern = &self.solver.pattern;
-        let short = target - stroke.of(&pattern.gather(&place.configuration));
+        let short = target - stroke.of(&pattern.gather(&position.configuration));
         if short.abs() > ROUNDED * full.abs() {
             let motion = pattern.spread(&stroke.motion(short));
-            place.configuration = moved(&place.configuration, &motion, 1.0);
+            position.configuration = moved(&position.configuration, &motion, 1.0);
         }
     }
 
@@ -213,6 +208,6 @@ impl Branch<'_> {
         let found = branch.close(start, None, f64::INFINITY).ok();
         self.effort.iterations += branch.effort.iterations;
         self.effort.factorisations += branch.effort.factorisations;
-        Some(found?.place)
+        Some(found?.position)
     }
 }

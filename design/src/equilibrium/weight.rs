@@ -1,6 +1,6 @@
 //! The weight of the panels, in the plane of the sheet.
 //!
-//! With w the weight of a unit of area (a vector in the plane), A the area of a panel, c its
+//! Let w be the weight of a unit of area (a vector in the plane), A the area of a panel, c its
 //! centroid and r its reference point, the weight has the work w A . (u + R(phi) (c - r)). Its
 //! moment about the reference point turns with the panel:
 //!

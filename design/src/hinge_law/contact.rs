@@ -2,7 +2,8 @@
 //! pi - theta at the neighbouring corner of the void; text of (11).
 //!
 //! ```text
-//! E(phi) = -k (phi - phi_cut)^2 ln((phi - phi_min) / (phi_cut - phi_min))   for phi_min < phi < phi_cut
+//! E(phi) = -k (phi - phi_cut)^2 ln((phi - phi_min) / (phi_cut - phi_min))   for phi_min < phi <
+//! phi_cut
 //! ```
 //!
 //! It is zero above phi_cut, infinite at and below phi_min, and C^2 in between and at phi_cut.

@@ -27,25 +27,25 @@ pub(super) struct Partials<'a> {
     pub path: &'a [LoadStep],
     /// The panel corners whose deployed positions the function depends on.
     pub outline: &'a [PanelCorner],
-    /// In their deployed positions.
+    /// Gradient in their deployed positions.
     pub by_outline: &'a [[f64; 2]],
-    /// In each hinge at each step of `path`.
+    /// Gradient in each hinge at each step of `path`.
     pub by_states: &'a [Vec<HingeGradient>],
-    /// In the load factor of the last step.
+    /// Gradient in the load factor of the last step.
     pub by_load_factor: f64,
-    /// In the flat sheet, at fixed states and designs of its hinges.
+    /// Gradient in the flat sheet, at fixed states and designs of its hinges.
     pub by_sheet: SheetGradient,
-    /// In size and rotation of a fitted target.
+    /// Gradient in size and rotation of a fitted target.
     pub by_fit: [f64; 2],
-    /// In the forces of the supports in the last step; `None` if all are zero.
+    /// Gradient in the forces of the supports in the last step; `None` if all are zero.
     pub by_reactions: Option<Vec<[f64; 3]>>,
 }
 
 /// The gradient of a function of a deployment.
 pub(super) struct Gradient {
-    /// In the design.
+    /// Gradient in the design.
     pub design: DesignVector,
-    /// In the constants of the problem.
+    /// Gradient in the constants of the problem.
     pub sensitivities: Sensitivities,
     /// [`AdjointSums::virtual_motion`](crate::equilibrium::adjoint::AdjointSums::virtual_motion);
     /// empty without equilibrium.

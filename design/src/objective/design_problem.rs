@@ -128,11 +128,11 @@ pub struct Deployment {
 /// The gradient of L with respect to quantities that are constant during the design.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Sensitivities {
-    /// With respect to the outline's corners, at fixed r and tau.
+    /// Gradient in the outline's corners, at fixed r and tau.
     pub outline: [[f64; 2]; 4],
-    /// With respect to (F_x, F_y, M) of each panel at full load; empty without equilibrium.
+    /// Gradient in (F_x, F_y, M) of each panel at full load; empty without equilibrium.
     pub loads: Vec<[f64; 3]>,
-    /// With respect to (k_a, k_s, k_theta) of each hinge; empty without equilibrium, zero unless
+    /// Gradient in (k_a, k_s, k_theta) of each hinge; empty without equilibrium, zero unless
     /// the law is (11).
     pub constants: Vec<[f64; 3]>,
 }
@@ -160,7 +160,7 @@ impl Deployment {
         WarmStart { designs: self.sheet.designs(), steps: self.path.clone() }
     }
 
-    /// The load steps of the weight alone; none without weight.
+    /// The load steps of only the weight; none without weight.
     pub fn weight_steps(&self) -> &[LoadStep] {
         let partial = self.path.iter().take_while(|step| step.weight < 1.0).count();
         match partial {

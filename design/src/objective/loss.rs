@@ -28,13 +28,13 @@ pub(crate) struct ObjectiveValue {
     /// L of (16).
     pub loss: f64,
     pub terms: TermValues,
-    /// Of the loss; the gradient in the measures of the hinges is contained in that in their
-    /// states.
+    /// Gradient of the loss; the gradient in the states of the hinges contains the gradient in
+    /// their measures.
     pub gradient: TermGradient,
 }
 
 impl Objective {
-    /// The Chamfer distance alone.
+    /// Only the Chamfer distance.
     pub fn from_shape(shape: Shape) -> Self {
         Self { shape, functionals: Vec::new(), penalties: Vec::new() }
     }
@@ -81,7 +81,7 @@ impl Objective {
             functionals.map(|Weighted { weight, term }| value(&**term, *weight, true)).sum();
         let mut loss = shape + functionals;
         for Weighted { weight, term } in &self.penalties {
-            // Without weight a penalty may be infinite: panels may then have any shape.
+            // A penalty without weight may be infinite: panels may then have any shape.
             loss += value(&**term, *weight, *weight != 0.0);
         }
         add_by_states(at, &mut gradient);

@@ -68,7 +68,7 @@ impl Memory {
     }
 }
 
-/// A step no coordinate of which is longer than `longest`.
+/// The step, shortened until no coordinate is longer than `longest`.
 pub(crate) fn shortened(mut step: Vec<f64>, longest: f64) -> Vec<f64> {
     let reach = (step.iter()).fold(0.0, |reach, entry| f64::max(reach, entry.abs()));
     if reach > longest {

@@ -61,7 +61,7 @@ pub enum Ended {
     },
 }
 
-/// Everything that the next step depends on, besides the problem.
+/// Everything that the next step depends on, except the problem.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct SearchState {
     /// The last design that was evaluated.
@@ -245,7 +245,7 @@ impl SearchState {
         &mut self,
         problem: &DesignProblem,
     ) -> Result<(DesignVector, Evaluation, Setback), Ended> {
-        // After a followed design that is not better than the candidate, the candidate is followed.
+        // The candidate is followed after a followed design that is not better.
         if self.last().followed {
             self.confirm(problem)?;
         }
@@ -348,14 +348,14 @@ impl SearchState {
     ) {
         let (followed, loss) = (evaluation.deployment.followed, evaluation.loss);
         let scored = Scored { design: design.clone(), loss, step: self.history.len() };
-        let least = self.candidate.as_ref().unwrap_or(&self.best_followed).loss;
+        let lowest = self.candidate.as_ref().unwrap_or(&self.best_followed).loss;
         match followed {
             true if loss < self.best_followed.loss => {
                 self.candidate.take_if(|candidate| candidate.loss >= loss);
                 self.best = design.clone();
                 self.best_followed = scored;
             }
-            false if loss < least => self.candidate = Some(scored),
+            false if loss < lowest => self.candidate = Some(scored),
             _ => {}
         }
         if followed {

@@ -58,7 +58,7 @@ struct Point {
 }
 
 impl Search {
-    /// For `n` coordinates.
+    /// The optimiser of `n` coordinates.
     pub(crate) fn new(method: SearchMethod, learning_rate: f64, n: usize) -> Self {
         match method {
             SearchMethod::Adam => Self::Adam(Adam::new(n, learning_rate)),

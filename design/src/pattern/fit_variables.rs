@@ -24,7 +24,7 @@ pub struct FitVariables {
 }
 
 impl FitVariables {
-    /// As one vector.
+    /// All coordinates as one vector.
     pub fn to_flat(&self) -> Vec<f64> {
         let corners = self.corners.as_flattened();
         [&[self.ln_size, self.rotation], corners].concat()
@@ -57,8 +57,8 @@ impl FitVariables {
     ) -> Self {
         let middle = middle(stock);
         let by_u = |i: usize, c: usize| {
-            let share = logistic(self.corners[i][c]);
-            by_outline[i][c] * share * (1.0 - share) * (stock.corners[i][c] - middle[c])
+            let fraction = logistic(self.corners[i][c]);
+            by_outline[i][c] * fraction * (1.0 - fraction) * (stock.corners[i][c] - middle[c])
         };
         Self { ln_size, rotation, corners: std::array::from_fn(|i| [by_u(i, 0), by_u(i, 1)]) }
     }

@@ -12,13 +12,13 @@ use faer::c64;
 /// What a hole or a clip is measured to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Obstacle {
-    /// From the centre of a hole to the line between two corners of the panel.
+    /// Distance from the centre of a hole to the line between two corners of the panel.
     Edge([usize; 2]),
-    /// From the centre of a hole to the tip of a hinge.
+    /// Distance from the centre of a hole to the tip of a hinge.
     HoleToHinge(usize),
-    /// From a clip to the tip of a hinge.
+    /// Distance from a clip to the tip of a hinge.
     ClipToHinge(usize),
-    /// From end to end of the edge on which a clip is.
+    /// Length of the edge on which a clip is.
     Ends([usize; 2]),
 }
 
@@ -120,9 +120,9 @@ impl AttachmentPoint {
             Obstacle::Edge([p, q]) => {
                 by_corners = panel.pullback(self.point, point(away));
                 let [start, end] = [p, q].map(|corner| complex(panel.corners[corner]));
-                let share = dot(to - start, end - start) / (end - start).norm_sqr();
-                by_corners[p] -= away * (1.0 - share);
-                by_corners[q] -= away * share;
+                let along = dot(to - start, end - start) / (end - start).norm_sqr();
+                by_corners[p] -= away * (1.0 - along);
+                by_corners[q] -= away * along;
             }
             Obstacle::HoleToHinge(h) => {
                 by_corners = panel.pullback(self.point, point(away));

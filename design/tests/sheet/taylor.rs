@@ -166,7 +166,7 @@ fn a_sheet_and_its_target_are_fitted_to_each_other() {
     let mut problem = problem(Model::Ideal { opening: 0.9 }, HingePoint::Corner);
     problem.objective.shape.centred = true;
     let difference = SymmetricDifference::new(problem.objective.shape.clone());
-    let angles = CutAngles { least: 1.5 };
+    let angles = CutAngles { minimum: 1.5 };
     problem.objective.penalties = vec![Weighted::new(1e5, difference), Weighted::new(1e4, angles)];
     let corners = Random::new(17).numbers(8, 0.4);
     let corners = std::array::from_fn(|i| [1.5 + corners[2 * i], 1.5 + corners[2 * i + 1]]);

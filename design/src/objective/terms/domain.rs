@@ -130,7 +130,7 @@ mod tests {
     fn a_tenth_of_the_range_beyond_its_margin_costs_one() {
         assert_eq!(value(&[-3.0, 1.0, 0.4, 15.0, 1.5]), 0.0);
         assert!((value(&[0.0, 0.0, 0.5, 15.0, 0.8 + (0.02 - 0.1) * 1.5]) - 1.0).abs() < 1e-12);
-        // In the middle of a face the other half-spaces do not matter.
+        // The other half-spaces do not matter in the middle of a face.
         let beyond = value(&[(-0.3 + 0.5 * 1.18) * 15.0, 0.0, 0.6, 15.0, 1.5]);
         assert!((beyond - 1.0).abs() < 1e-3, "{beyond}");
     }

@@ -22,7 +22,7 @@ pub struct SymmetricDifference {
 }
 
 impl SymmetricDifference {
-    /// For the outline and the target of `shape`.
+    /// The term for the outline and the target of `shape`.
     pub fn new(shape: Shape) -> Self {
         let target = counter_clockwise(&shape.target);
         Self { shape, target }
