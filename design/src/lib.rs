@@ -56,7 +56,11 @@
 //!         contact: None,
 //!         solver,
 //!     })),
-//!     objective: Objective::from_shape(Shape::new(circle.collect())),
+//!     objective: Objective {
+//!         shape: Shape::new(circle.collect()),
+//!         functionals: Vec::new(),
+//!         penalties: Vec::new(),
+//!     },
 //! };
 //!
 //! // Deploy the uniform sheet; its loss and the gradient.

@@ -30,14 +30,14 @@ pub(crate) struct Surrogate {
 
 /// Hinges of given designs, prepared once for any number of evaluations.
 #[pyclass(frozen, module = "kirigami")]
-pub(crate) struct Hinges(Arc<Prepared>);
+pub(crate) struct Hinges(Arc<PreparedHinges>);
 
 /// Hinges that one thread evaluates together.
 const CHUNK: usize = 2048;
 
 type Law = PreparedSurrogate<Arc<surrogate::Surrogate>>;
 
-struct Prepared {
+struct PreparedHinges {
     networks: Vec<Arc<surrogate::Surrogate>>,
     /// Laws of the first network, one for each chunk of the designs.
     laws: Vec<Law>,
@@ -49,7 +49,7 @@ struct Prepared {
 /// spread when they are read.
 #[pyclass(frozen, module = "kirigami")]
 pub(crate) struct HingeStates {
-    hinges: Arc<Prepared>,
+    hinges: Arc<PreparedHinges>,
     deformations: Vec<HingeDeformation>,
     /// Energies of each chunk.
     energies: Vec<Vec<HingeEnergy>>,
@@ -168,7 +168,7 @@ impl Surrogate {
         })?;
         let networks = self.networks.clone();
         let laws = unlocked(|| prepared(&networks[0], &designs))?;
-        Ok(Hinges(Arc::new(Prepared { networks, laws, designs, shape })))
+        Ok(Hinges(Arc::new(PreparedHinges { networks, laws, designs, shape })))
     }
 }
 
@@ -302,7 +302,7 @@ impl HingeStates {
     /// 4).
     #[getter]
     fn spread(&self) -> PyResult<Array> {
-        let Prepared { networks, designs, shape, .. } = &*self.hinges;
+        let PreparedHinges { networks, designs, shape, .. } = &*self.hinges;
         if networks.len() == 1 {
             return Err(PyValueError::new_err(
                 "one network has no spread: load its ensemble, Surrogate.load(weights, ensemble=[...])",

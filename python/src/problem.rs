@@ -54,7 +54,7 @@ pub(crate) struct Problem {
 
 /// One of many equilibria, or why there is none.
 #[derive(IntoPyObject)]
-enum Answer {
+enum BatchElement {
     Found(State),
     Missing(PyErr),
 }
@@ -262,7 +262,7 @@ impl Problem {
         thickness: Option<&Argument>,
         stress: Option<&Argument>,
         strict: bool,
-    ) -> PyResult<Vec<Answer>> {
+    ) -> PyResult<Vec<BatchElement>> {
         let many = self.many(x, loads, thickness, stress)?;
         let known = self.known(true, |warm| &warm.state);
         let stop = AtomicBool::new(false);
@@ -279,9 +279,9 @@ impl Problem {
         let answers = answers.unwrap_or_default().into_iter().enumerate();
         answers
             .map(|(i, answer)| match answer.map_err(errors::design) {
-                Ok(response) => Ok(Answer::Found(State(response))),
+                Ok(response) => Ok(BatchElement::Found(State(response))),
                 Err(error) if strict => Err(errors::of_element(i, error)),
-                Err(error) => Ok(Answer::Missing(error)),
+                Err(error) => Ok(BatchElement::Missing(error)),
             })
             .collect()
     }

@@ -19,7 +19,7 @@
 
 use crate::{
     equilibrium::{
-        corrector::Branch, hinged_sheet::HingedSheet, load_step::LoadStep, potential::Stage,
+        corrector::Branch, hinged_sheet::HingedSheet, load_step::LoadStep, potential::PathStage,
         refined_solve::refined_solve, solver::EquilibriumSolver, weight::add_weight_gradient,
     },
     geometry::plane::{add, complex},
@@ -143,9 +143,8 @@ pub(crate) fn adjoint(
             let weights = std::array::from_fn(|c| by_state.state[c] - against(energy.tangent[c]));
             let turning = motions[h].rates_geometry_gradient(energy.forces, virtual_motion);
             let stretching = motions[h].geometry_gradient(weights);
-            let panels = [hinge.panel_a(), hinge.panel_b()];
-            add_geometry(by_sheet, h, panels, &stretching, 1.0);
-            add_geometry(by_sheet, h, panels, &turning, -1.0);
+            add_geometry(by_sheet, h, hinge.panels(), &stretching, 1.0);
+            add_geometry(by_sheet, h, hinge.panels(), &turning, -1.0);
             if sheet.law.has_constants() {
                 let eps = step.deformations[h].to_array();
                 (0..3).for_each(|c| sums.constants[h][c] -= eps[c] * rates[c]);
@@ -176,7 +175,7 @@ fn held_motion(
 ) -> HeldMotion {
     let mut motion = vec![[0.0; 3]; by_reactions.len()];
     add_motions(&mut motion, by_reactions, -1.0);
-    let potential = Branch::new(solver, sheet, Stage::Actuation).potential(1.0);
+    let potential = Branch::new(solver, sheet, PathStage::Actuation).potential(1.0);
     let state = potential.state(step.configuration.clone());
     let state = state.expect("the energy of an equilibrium is finite");
     HeldMotion { resistance: potential.resistance(&state, &motion), motion }

@@ -20,8 +20,8 @@ use crate::{
         hinged_sheet::HingedSheet,
         load_step::DescentEnd,
         newton::{Failure, Minimum},
-        potential::{Stage, State, moved},
-        predictor::{Arc, PathPoint, bisected},
+        potential::{PathStage, PotentialState, moved},
+        predictor::{PathArc, PathPoint, bisected},
         solver::EquilibriumSolver,
     },
     hinge_law::Order,
@@ -62,7 +62,7 @@ pub(crate) struct Follower<'a> {
     pub branch: Branch<'a>,
     pub last: Point,
     /// The increment that ends in `last`; `None` at the beginning of a branch.
-    pub arc: Option<Arc>,
+    pub arc: Option<PathArc>,
     /// Ratio of lengths by the rates at the two ends of the arc.
     stretch: f64,
     /// Length of the next increment.
@@ -83,7 +83,7 @@ impl<'a> Follower<'a> {
     pub fn new(
         solver: &'a EquilibriumSolver,
         sheet: HingedSheet<'a>,
-        stage: Stage,
+        stage: PathStage,
         start: Configuration,
     ) -> Option<Self> {
         let mut branch = Branch::new(solver, sheet, stage);
@@ -240,7 +240,7 @@ impl<'a> Follower<'a> {
 
     /// The arc from the last point to another, and the ratio of lengths by the rates at its two
     /// ends.
-    fn arc_to(&self, point: &Point) -> (Arc, f64) {
+    fn arc_to(&self, point: &Point) -> (PathArc, f64) {
         let last = &self.last;
         let product = |position: &PathPoint| {
             (self.branch).product(&last.rate.configuration, &position.configuration)
@@ -249,7 +249,7 @@ impl<'a> Follower<'a> {
         let change = PathPoint::sum([(1.0, &point.position), (-1.0, &last.position)]);
         let (length, stretch) =
             if last.is_still() { (change.at, 1.0) } else { (along(&change), along(&point.rate)) };
-        let arc = Arc {
+        let arc = PathArc {
             from: last.position.clone(),
             from_rate: last.rate.clone(),
             to: point.position.clone(),
@@ -259,7 +259,7 @@ impl<'a> Follower<'a> {
         (arc, stretch)
     }
 
-    fn accept(&mut self, point: Point, (arc, stretch): (Arc, f64), next: f64) {
+    fn accept(&mut self, point: Point, (arc, stretch): (PathArc, f64), next: f64) {
         let left = |(distance, resolution)| ((distance - arc.length) / stretch, resolution);
         self.unstable = self.unstable.map(left).filter(|(distance, _)| *distance > 0.0);
         let before = std::mem::replace(&mut self.last, point);
@@ -341,7 +341,7 @@ impl<'a> Follower<'a> {
 
 impl Branch<'_> {
     /// The distance of the path from the middle of an arc, by factors of a tangent near its end.
-    fn midpoint_error(&self, arc: &Arc, point: &Point) -> f64 {
+    fn midpoint_error(&self, arc: &PathArc, point: &Point) -> f64 {
         let middle = arc.position(0.5 * arc.length);
         let potential = self.potential(middle.at);
         potential
@@ -379,7 +379,7 @@ impl Branch<'_> {
     }
 
     /// An equilibrium with the factors of its own tangent.
-    fn exact(&self, at: f64, state: State, factor: HeldFactor) -> Corrected {
+    fn exact(&self, at: f64, state: PotentialState, factor: HeldFactor) -> Corrected {
         Corrected {
             position: PathPoint {
                 at,
@@ -402,7 +402,7 @@ impl Branch<'_> {
 
     /// The maximum rotation or hinge translation between two positions, in the frames of a state
     /// near them.
-    pub fn distance(&self, near: &State, to: &PathPoint, from: &PathPoint) -> f64 {
+    pub fn distance(&self, near: &PotentialState, to: &PathPoint, from: &PathPoint) -> f64 {
         let motion = moved(&to.configuration, &from.configuration, -1.0);
         self.potential(from.at).length(near, &motion)
     }

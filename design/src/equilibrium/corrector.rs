@@ -17,7 +17,7 @@ use crate::{
         hinged_sheet::HingedSheet,
         load_step::Effort,
         newton::Minimum,
-        potential::{Potential, Stage, State, moved},
+        potential::{PathStage, Potential, PotentialState, moved},
         predictor::PathPoint,
         solver::EquilibriumSolver,
     },
@@ -47,7 +47,7 @@ const RATE: (f64, usize) = (1e-3, 3);
 /// The equilibria of a sheet under the loads, stroke and support motions of a solver.
 pub(crate) struct Branch<'a> {
     pub solver: &'a EquilibriumSolver,
-    pub stage: Stage,
+    pub stage: PathStage,
     pub sheet: HingedSheet<'a>,
     /// Lower bound of the force that residuals are relative to (N).
     pub force: f64,
@@ -63,7 +63,7 @@ pub(crate) struct Corrected {
     pub position: PathPoint,
     /// The state at the position, the factors of a tangent near it, and the rate with the load
     /// parameter by them.
-    pub state: State,
+    pub state: PotentialState,
     pub factor: HeldFactor,
     pub rate: Vec<[f64; 3]>,
     /// Length of the first correction: the error of the prediction (rad, or panel sizes).
@@ -71,12 +71,12 @@ pub(crate) struct Corrected {
 }
 
 struct Linearised {
-    state: State,
+    state: PotentialState,
     values: Vec<f64>,
     factor: HeldFactor,
 }
 
-struct Correction {
+struct NewtonCorrection {
     at: f64,
     motion: Vec<[f64; 3]>,
     /// rad, or panel sizes
@@ -110,7 +110,7 @@ impl Point {
 }
 
 impl<'a> Branch<'a> {
-    pub fn new(solver: &'a EquilibriumSolver, sheet: HingedSheet<'a>, stage: Stage) -> Self {
+    pub fn new(solver: &'a EquilibriumSolver, sheet: HingedSheet<'a>, stage: PathStage) -> Self {
         let area: f64 = sheet.sheet.panels.iter().map(|panel| panel.area).sum();
         let mut branch = Self {
             solver,
@@ -144,8 +144,8 @@ impl<'a> Branch<'a> {
     /// in `known` must be right.
     pub fn hold(&self, position: &mut PathPoint, known: &PathPoint) {
         let ahead = match self.stage {
-            Stage::Weight => 0.0,
-            Stage::Actuation => position.at - known.at,
+            PathStage::Weight => 0.0,
+            PathStage::Actuation => position.at - known.at,
         };
         for support in &self.solver.supports {
             let (panel, dof) = (support.panel, support.dof.index());
@@ -176,7 +176,7 @@ impl<'a> Branch<'a> {
         for _ in 0..CORRECTIONS {
             let near = self.state(&position, Order::Tangent).and_then(|state| {
                 let expected = Some(position.forces.clone());
-                self.linearised(position.at, State { expected, ..state })
+                self.linearised(position.at, PotentialState { expected, ..state })
             });
             let mut near = near.ok_or(DIVERGED)?;
             let rate = self.rate(&self.potential(position.at), &near.state, &near.factor);
@@ -280,12 +280,12 @@ impl<'a> Branch<'a> {
     }
 
     /// The state at a position; `None` if its energy is not finite.
-    pub fn state(&self, position: &PathPoint, order: Order) -> Option<State> {
+    pub fn state(&self, position: &PathPoint, order: Order) -> Option<PotentialState> {
         let configuration = position.configuration.clone();
         self.potential(position.at).state_up_to(configuration, order)
     }
 
-    fn linearised(&mut self, at: f64, state: State) -> Option<Linearised> {
+    fn linearised(&mut self, at: f64, state: PotentialState) -> Option<Linearised> {
         let potential = self.potential(at);
         let (values, factor) = self.factor(&potential, &state);
         Some(Linearised { state, values, factor: factor? })
@@ -295,7 +295,7 @@ impl<'a> Branch<'a> {
     pub fn factor(
         &mut self,
         potential: &Potential,
-        state: &State,
+        state: &PotentialState,
     ) -> (Vec<f64>, Option<HeldFactor>) {
         self.effort.factorisations += 1;
         let values = potential.tangent(state);
@@ -307,10 +307,10 @@ impl<'a> Branch<'a> {
     /// normal to the path, or at constant load.
     fn correction(
         &mut self,
-        state: &State,
+        state: &PotentialState,
         factor: &HeldFactor,
         in_plane: Option<(&[[f64; 3]], &PathPoint)>,
-    ) -> Correction {
+    ) -> NewtonCorrection {
         let direct = self.direct(state, factor);
         let (motion, at) = match in_plane {
             Some((rate, normal)) => self.in_plane(&direct, rate, normal),
@@ -318,10 +318,10 @@ impl<'a> Branch<'a> {
         };
         let length = self.potential(0.0).length(state, &motion);
         self.effort.iterations += usize::from(length > 0.0);
-        Correction { at, motion, length }
+        NewtonCorrection { at, motion, length }
     }
 
-    fn corrected(&self, at: f64, state: &State, by: &Correction) -> PathPoint {
+    fn corrected(&self, at: f64, state: &PotentialState, by: &NewtonCorrection) -> PathPoint {
         let rates = self.potential(at).force_rates(state, &by.motion);
         PathPoint {
             at: at + by.at,
@@ -331,7 +331,7 @@ impl<'a> Branch<'a> {
     }
 
     /// The correction d_0 of a state at constant load.
-    pub fn direct(&self, state: &State, factor: &HeldFactor) -> Vec<[f64; 3]> {
+    pub fn direct(&self, state: &PotentialState, factor: &HeldFactor) -> Vec<[f64; 3]> {
         let downhill: Vec<f64> = state.gradient.iter().map(|g| -g).collect();
         let pattern = &self.solver.pattern;
         pattern.spread(&factor.solve(pattern, &downhill))
@@ -387,7 +387,7 @@ impl<'a> Branch<'a> {
     fn refined_rate(
         &self,
         potential: &Potential,
-        state: &State,
+        state: &PotentialState,
         factor: &HeldFactor,
         mut rate: Vec<[f64; 3]>,
     ) -> Vec<[f64; 3]> {
@@ -407,9 +407,14 @@ impl<'a> Branch<'a> {
     }
 
     /// The rate of the configuration with the load parameter.
-    pub fn rate(&self, potential: &Potential, state: &State, factor: &HeldFactor) -> Vec<[f64; 3]> {
+    pub fn rate(
+        &self,
+        potential: &Potential,
+        state: &PotentialState,
+        factor: &HeldFactor,
+    ) -> Vec<[f64; 3]> {
         let solver = self.solver;
-        let (supports, stroke) = if self.stage == Stage::Actuation {
+        let (supports, stroke) = if self.stage == PathStage::Actuation {
             let stroke = solver.drive.as_ref().map_or(0.0, |(_, stroke)| *stroke);
             (solver.support_motions(), stroke)
         } else {

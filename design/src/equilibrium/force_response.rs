@@ -40,7 +40,7 @@ pub struct ForceResponse<'a> {
 
 /// What an error of the hinge forces changes.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Response {
+pub struct SheetChange {
     /// Changes of the motions (u_x, u_y, phi) of the panels (mm, mm, rad).
     pub motions: Configuration,
     /// Change of the load that the prescribed displacement takes (N; N mm if couples or rotations
@@ -70,7 +70,7 @@ impl<'a> ForceResponse<'a> {
 
     /// The response to errors (F_a, F_s, M_theta) of the forces of some hinges, given with their
     /// indices (N, N, N mm); `None` if the tangent is singular.
-    pub fn to(&self, errors: &[(usize, [f64; 3])]) -> Option<Response> {
+    pub fn to(&self, errors: &[(usize, [f64; 3])]) -> Option<SheetChange> {
         let mut forces = vec![[0.0; 3]; self.sheet.panels.len()];
         for &(h, error) in errors {
             let on_panels = self.motions[h].forces(error).map(|force| -force);
@@ -82,7 +82,7 @@ impl<'a> ForceResponse<'a> {
             work.sum()
         });
         let by_stroke = self.solver.is_driven().then_some(-mu);
-        Some(Response { motions, load: by_path.or(by_stroke) })
+        Some(SheetChange { motions, load: by_path.or(by_stroke) })
     }
 
     fn solve(&self, forces: &[[f64; 3]], stroke: Option<&Stroke>) -> Option<(Configuration, f64)> {

@@ -11,7 +11,7 @@ use crate::{
         hinged_sheet::HingedSheet,
         load_step::{DescentEnd, LoadStep, Status, StepTangent},
         newton::{Failure, Minimum},
-        potential::{Stage, State, moved},
+        potential::{PathStage, PotentialState, moved},
         predictor::PathPoint,
         solver::EquilibriumSolver,
         weight::weights_of_panels,
@@ -58,7 +58,7 @@ impl EquilibriumSolver {
             return Vec::new();
         }
         let start = self.start(sheet.sheet).unwrap_or_else(|| self.flat());
-        self.read(sheet, Stage::Weight, start, self.ends(Stage::Weight))
+        self.read(sheet, PathStage::Weight, start, self.ends(PathStage::Weight))
     }
 
     /// Load factor and configuration of the sheet before the loads: flat, or under its weight.
@@ -73,19 +73,19 @@ impl EquilibriumSolver {
     /// # Panics
     /// If the sheet or the start has another grid than the solver.
     pub(crate) fn path_from(&self, sheet: HingedSheet, start: Configuration) -> Vec<LoadStep> {
-        self.read(sheet, Stage::Actuation, start, self.ends(Stage::Actuation))
+        self.read(sheet, PathStage::Actuation, start, self.ends(PathStage::Actuation))
     }
 
     /// The load parameters of the load steps, from the sheet before the loads to full load.
     pub fn load_parameters(&self) -> impl Iterator<Item = f64> + use<> {
-        self.ends(Stage::Actuation)
+        self.ends(PathStage::Actuation)
     }
 
     /// The load parameters of the load steps of a part of the path.
-    pub(crate) fn ends(&self, stage: Stage) -> impl Iterator<Item = f64> + use<> {
+    pub(crate) fn ends(&self, stage: PathStage) -> impl Iterator<Item = f64> + use<> {
         let steps = match stage {
-            Stage::Weight => self.weight_steps(),
-            Stage::Actuation => self.steps,
+            PathStage::Weight => self.weight_steps(),
+            PathStage::Actuation => self.steps,
         };
         (1..=steps).map(move |i| i as f64 / steps as f64)
     }
@@ -98,7 +98,7 @@ impl EquilibriumSolver {
     /// If the grids of sheet and solver differ.
     pub fn load_steps_at(&self, sheet: HingedSheet, parameters: &[f64]) -> Vec<LoadStep> {
         let (_, start) = self.before_loads(sheet);
-        self.read(sheet, Stage::Actuation, start, parameters.iter().copied())
+        self.read(sheet, PathStage::Actuation, start, parameters.iter().copied())
     }
 
     /// The load step at full load in a configuration that is in equilibrium there, as one of a path
@@ -107,7 +107,7 @@ impl EquilibriumSolver {
     /// # Panics
     /// If the grids of sheet and solver differ.
     pub fn full_load(&self, sheet: HingedSheet, configuration: Configuration) -> LoadStep {
-        let mut branch = Branch::new(self, sheet, Stage::Actuation);
+        let mut branch = Branch::new(self, sheet, PathStage::Actuation);
         let potential = branch.potential(1.0);
         let Some(state) = potential.state_up_to(configuration.clone(), Order::Design) else {
             return not_finite(sheet, configuration);
@@ -150,7 +150,7 @@ impl EquilibriumSolver {
     /// The forces (F_x, F_y, M) by which the supports hold the panels in an equilibrium at full
     /// load (N, N, N mm); zero at free degrees of freedom.
     pub fn reactions(&self, sheet: HingedSheet, configuration: &[[f64; 3]]) -> Vec<[f64; 3]> {
-        let potential = Branch::new(self, sheet, Stage::Actuation).potential(1.0);
+        let potential = Branch::new(self, sheet, PathStage::Actuation).potential(1.0);
         let state = potential.state_up_to(configuration.to_vec(), Order::Forces);
         let state = state.expect("the energy of an equilibrium is finite");
         self.at_supports(&state.unbalanced)
@@ -161,7 +161,7 @@ impl EquilibriumSolver {
     fn read(
         &self,
         sheet: HingedSheet,
-        stage: Stage,
+        stage: PathStage,
         start: Configuration,
         ends: impl Iterator<Item = f64>,
     ) -> Vec<LoadStep> {
@@ -191,7 +191,7 @@ impl EquilibriumSolver {
     /// If the grids of sheet and solver differ.
     pub fn increments(&self, sheet: HingedSheet) -> Vec<Increment> {
         let (_, start) = self.before_loads(sheet);
-        let follower = self.follower(sheet, Stage::Actuation, start);
+        let follower = self.follower(sheet, PathStage::Actuation, start);
         let ends = follower.into_iter().flat_map(|mut follower| {
             std::iter::from_fn(move || {
                 let goes_on = follower.last.position.at < 1.0 && follower.advance().is_ok();
@@ -205,7 +205,7 @@ impl EquilibriumSolver {
     fn follower<'a>(
         &'a self,
         sheet: HingedSheet<'a>,
-        stage: Stage,
+        stage: PathStage,
         start: Configuration,
     ) -> Option<Follower<'a>> {
         assert_eq!(self.grid, sheet.sheet.grid, "the grids of solver and sheet must be the same");
@@ -246,7 +246,7 @@ impl Follower<'_> {
         }
     }
 
-    fn last_state(&self, order: Order) -> State {
+    fn last_state(&self, order: Order) -> PotentialState {
         let state = self.branch.state(&self.last.position, order);
         state.expect("this state was computed before")
     }
@@ -320,7 +320,7 @@ impl Branch<'_> {
     /// The load step in a state, with what it cost since the last.
     fn reported(
         &mut self,
-        state: State,
+        state: PotentialState,
         tangent: Option<StepTangent>,
         status: Status,
         jumps: usize,

@@ -14,7 +14,7 @@ use crate::{
     equilibrium::{
         displacement_control::HeldFactor,
         load_step::{DescentEnd, Effort},
-        potential::{Potential, State, moved},
+        potential::{Potential, PotentialState, moved},
     },
     sheet::kinematics::Configuration,
 };
@@ -39,7 +39,7 @@ const NEGATIVE_CURVATURE: f64 = -1e-11;
 pub(crate) const LEVEL: f64 = 1e-9;
 
 pub(crate) struct Minimum {
-    pub state: State,
+    pub state: PotentialState,
     pub tangent: Vec<f64>,
     /// `None` if the tangent is singular.
     pub factor: Option<HeldFactor>,
@@ -112,7 +112,12 @@ impl Potential<'_> {
     /// The state after a damped Newton step; `None` if no state along it is better, or if the
     /// residual is small and no longer halves. `longest` is the maximum step length (see
     /// [`length`](Self::length)), adapted after every step.
-    fn step(&self, state: &State, factor: &HeldFactor, longest: &mut f64) -> Option<State> {
+    fn step(
+        &self,
+        state: &PotentialState,
+        factor: &HeldFactor,
+        longest: &mut f64,
+    ) -> Option<PotentialState> {
         let settings = &self.solver.settings;
         let downhill: Vec<f64> = state.gradient.iter().map(|g| -g).collect();
         let direction = factor.solve(&self.solver.pattern, &downhill);
@@ -188,11 +193,11 @@ impl Potential<'_> {
     /// tangent.
     fn escape(
         &self,
-        state: &State,
+        state: &PotentialState,
         tangent: &[f64],
         scale: &[f64],
         factor: &HeldFactor,
-    ) -> Option<State> {
+    ) -> Option<PotentialState> {
         // A start vector that no symmetry of the sheet makes orthogonal to the direction.
         let mut direction: Vec<f64> = (1..=scale.len()).map(|i| (i as f64).sqrt().sin()).collect();
         for _ in 0..20 {

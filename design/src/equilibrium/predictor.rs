@@ -36,7 +36,7 @@ impl PathPoint {
 }
 
 /// The path between two points, by its length from the first.
-pub(crate) struct Arc {
+pub(crate) struct PathArc {
     pub from: PathPoint,
     pub from_rate: PathPoint,
     pub to: PathPoint,
@@ -44,7 +44,7 @@ pub(crate) struct Arc {
     pub length: f64,
 }
 
-impl Arc {
+impl PathArc {
     /// The weights of `from`, `from_rate`, `to` and `to_rate` at a length.
     fn weights(&self, length: f64) -> [f64; 4] {
         let u = length / self.length;
@@ -116,7 +116,7 @@ mod tests {
             forces: vec![[1.0 - 3.0 * s * s, 0.0, 0.0]],
             at: 1.0 + 2.0 * s,
         };
-        let arc = Arc {
+        let arc = PathArc {
             from: position(t(1.0), x(1.0)),
             from_rate: rate(1.0),
             to: position(t(3.0), x(3.0)),

@@ -7,7 +7,7 @@
 
 use crate::{
     equilibrium::{
-        corrector::Branch, hinged_sheet::HingedSheet, load_step::LoadStep, potential::Stage,
+        corrector::Branch, hinged_sheet::HingedSheet, load_step::LoadStep, potential::PathStage,
         solver::EquilibriumSolver, supports::Support,
     },
     hinge_law::Order,
@@ -48,7 +48,7 @@ impl EquilibriumSolver {
     /// The forces (F_x, F_y, M) on the free panels that balance a configuration without loads;
     /// `None` if its energy is not finite.
     fn holding(&self, sheet: HingedSheet, configuration: Configuration) -> Option<Vec<[f64; 3]>> {
-        let potential = Branch::new(self, sheet, Stage::Actuation).potential(0.0);
+        let potential = Branch::new(self, sheet, PathStage::Actuation).potential(0.0);
         let state = potential.state_up_to(configuration, Order::Forces)?;
         Some(self.pattern.spread(&state.gradient))
     }

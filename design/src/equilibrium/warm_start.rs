@@ -19,7 +19,7 @@ use crate::{
         hinged_sheet::HingedSheet,
         load_step::{LoadStep, Status},
         newton::Minimum,
-        potential::{Stage, moved},
+        potential::{PathStage, moved},
         predictor::PathPoint,
         solver::EquilibriumSolver,
     },
@@ -84,8 +84,8 @@ impl EquilibriumSolver {
             let ends: Vec<f64> = self.ends(stage).collect();
             self.steps_near(sheet, stage, &ends, &known.designs, steps)
         };
-        let mut path = near(Stage::Weight, weighed)?;
-        path.extend(near(Stage::Actuation, loaded)?);
+        let mut path = near(PathStage::Weight, weighed)?;
+        path.extend(near(PathStage::Actuation, loaded)?);
         Some(path)
     }
 
@@ -97,7 +97,7 @@ impl EquilibriumSolver {
         parameters: &[f64],
         known: &WarmStart,
     ) -> Option<Vec<LoadStep>> {
-        self.steps_near(sheet, Stage::Actuation, parameters, &known.designs, &known.steps)
+        self.steps_near(sheet, PathStage::Actuation, parameters, &known.designs, &known.steps)
     }
 
     /// A stable equilibrium at full load next to the last state of a known path: where Newton's
@@ -106,7 +106,7 @@ impl EquilibriumSolver {
     pub(crate) fn full_load_near(&self, sheet: HingedSheet, known: &WarmStart) -> Option<LoadStep> {
         let last = known.steps.last()?;
         let changes = changes(sheet, &known.designs);
-        let mut branch = Branch::new(self, sheet, Stage::Actuation);
+        let mut branch = Branch::new(self, sheet, PathStage::Actuation);
         let start = branch.carried_over(1.0, last, &changes)?;
         let stable = |found: &Minimum| {
             let factor = found.factor.as_ref();
@@ -123,7 +123,7 @@ impl EquilibriumSolver {
     fn steps_near(
         &self,
         sheet: HingedSheet,
-        stage: Stage,
+        stage: PathStage,
         ends: &[f64],
         designs: &[HingeDesign],
         known: &[LoadStep],
@@ -175,8 +175,8 @@ impl Branch<'_> {
             return;
         };
         let target = match self.stage {
-            Stage::Weight => 0.0,
-            Stage::Actuation => position.at * full,
+            PathStage::Weight => 0.0,
+            PathStage::Actuation => position.at * full,
         };
         let pattern = &self.solver.pattern;
         let short = target - stroke.of(&pattern.gather(&position.configuration));

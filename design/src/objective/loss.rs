@@ -34,11 +34,6 @@ pub(crate) struct ObjectiveValue {
 }
 
 impl Objective {
-    /// Only the Chamfer distance.
-    pub fn from_shape(shape: Shape) -> Self {
-        Self { shape, functionals: Vec::new(), penalties: Vec::new() }
-    }
-
     /// The terms of one sheet with their weights, in the order of [`TermValues`].
     pub(crate) fn terms(&self) -> impl Iterator<Item = (&dyn Term, f64)> {
         let others = self.functionals.iter().chain(&self.penalties);

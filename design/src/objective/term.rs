@@ -81,7 +81,7 @@ pub struct TermGradient {
 }
 
 /// A sum over the panels of functions of their corners, times `scale`. `function` adds its value
-/// to the sum and its gradient to that of the panel.
+/// to the sum, and its gradient.
 pub(crate) fn over_panels(
     at: &Deployed,
     weight: f64,

@@ -12,7 +12,7 @@ mod symmetric_difference;
 
 pub use compression::Compression;
 pub use cut_angles::CutAngles;
-pub use damage::Damage;
+pub use damage::DamageFunctional;
 pub use domain::DomainPenalty;
 pub use fastenings::Fastenings;
 pub use panel_shape::PanelShape;
@@ -99,7 +99,7 @@ impl ObjectiveConfig {
         let (minimum, limited) = (self.min_panel_width, f64::from(self.min_panel_width > 0.0));
         // Temperatures are a tenth of typical values.
         let (domain, temperature) = (domain.cloned(), 0.01);
-        let damage = Damage {
+        let damage = DamageFunctional {
             measure: self.damage_measure,
             // No scale is needed without damage.
             scale: scale.unwrap_or(1.0),

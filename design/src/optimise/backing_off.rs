@@ -4,7 +4,7 @@
 use crate::{
     equilibrium::warm_start::WarmStart,
     objective::design_problem::{DesignProblem, Evaluation},
-    optimise::search::Search,
+    optimise::search::Optimiser,
     pattern::design_vector::DesignVector,
 };
 
@@ -23,7 +23,7 @@ pub(crate) struct Setback {
 /// states why the last point had no value, if it had none.
 pub(crate) fn evaluate_or_back_off(
     problem: &DesignProblem,
-    search: &Search,
+    search: &Optimiser,
     good: &DesignVector,
     mut proposal: DesignVector,
     known: Option<&WarmStart>,
@@ -80,7 +80,11 @@ mod tests {
             widths: WidthChart { w_minus: 0.05, w_plus: 0.1 },
             options: SheetOptions { hinge_point: HingePoint::Corner, process: process.into() },
             model: Model::Ideal { opening: 0.5 },
-            objective: Objective::from_shape(Shape::new(vec![[3.0, 3.0]])),
+            objective: Objective {
+                shape: Shape::new(vec![[3.0, 3.0]]),
+                functionals: Vec::new(),
+                penalties: Vec::new(),
+            },
         }
     }
 
@@ -90,7 +94,7 @@ mod tests {
         let proposed = |z: f64| {
             let mut proposal = good.clone();
             proposal.pattern.z.fill(z);
-            let adam = Search::Adam(Adam::new(0, 0.1));
+            let adam = Optimiser::Adam(Adam::new(0, 0.1));
             evaluate_or_back_off(&problem(), &adam, &good, proposal, None)
         };
         let (design, _, setback) = proposed(1.0).unwrap();

@@ -19,7 +19,7 @@ use crate::{
     },
     optimise::{
         backing_off::{MAX_HALVINGS, Setback, evaluate_or_back_off},
-        search::{Search, SearchMethod},
+        search::{Optimiser, SearchMethod},
     },
     pattern::design_vector::DesignVector,
 };
@@ -68,7 +68,7 @@ pub struct SearchState {
     pub(crate) design: DesignVector,
     /// The next design that the search evaluates.
     pub(crate) proposal: DesignVector,
-    pub(crate) search: Search,
+    pub(crate) search: Optimiser,
     /// The design with the minimum loss of those whose path was followed from the flat sheet, also
     /// at a pause.
     pub best: DesignVector,
@@ -175,7 +175,7 @@ impl SearchState {
         method: SearchMethod,
         learning_rate: f64,
     ) -> Self {
-        let search = Search::new(method, learning_rate, start.to_flat().len());
+        let search = Optimiser::new(method, learning_rate, start.to_flat().len());
         Self::with(search, problem, start, evaluation)
     }
 
@@ -190,7 +190,7 @@ impl SearchState {
     }
 
     fn with(
-        search: Search,
+        search: Optimiser,
         problem: &DesignProblem,
         start: DesignVector,
         evaluation: &Evaluation,

@@ -24,13 +24,7 @@ pub struct FitVariables {
 }
 
 impl FitVariables {
-    /// All coordinates as one vector.
-    pub fn to_flat(&self) -> Vec<f64> {
-        let corners = self.corners.as_flattened();
-        [&[self.ln_size, self.rotation], corners].concat()
-    }
-
-    /// The coordinates in the order of [`to_flat`](Self::to_flat).
+    /// All coordinates, in the order of the fields.
     pub(crate) fn coordinates_mut(&mut self) -> impl Iterator<Item = &mut f64> {
         let corners = self.corners.as_flattened_mut();
         [&mut self.ln_size, &mut self.rotation].into_iter().chain(corners)

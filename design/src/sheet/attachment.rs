@@ -40,8 +40,7 @@ impl AttachmentPoint {
     pub fn clearances(&self, sheet: &Sheet) -> Vec<Clearance> {
         let panel = &sheet.panels[self.panel];
         let hinges = sheet.hinges.iter().enumerate();
-        let hinges =
-            hinges.filter(|(_, hinge)| [hinge.panel_a(), hinge.panel_b()].contains(&self.panel));
+        let hinges = hinges.filter(|(_, hinge)| hinge.panels().contains(&self.panel));
         let process = sheet.options.process;
         let (r_win, half_slit) = (process.r_win, 0.5 * process.slit_width);
         let mut clearances = Vec::new();

@@ -348,6 +348,11 @@ impl Hinge {
         }
     }
 
+    /// Indices of panels A and B.
+    pub fn panels(&self) -> [usize; 2] {
+        [self.site.a.0, self.site.b.0]
+    }
+
     /// Index of panel A.
     pub fn panel_a(&self) -> usize {
         self.site.a.0

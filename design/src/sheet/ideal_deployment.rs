@@ -92,8 +92,9 @@ struct Link {
 fn spanning_tree(sheet: &Sheet) -> Vec<Link> {
     let mut neighbours = vec![Vec::new(); sheet.panels.len()];
     for (hinge, h) in sheet.hinges.iter().enumerate() {
-        neighbours[h.panel_a()].push((hinge, h.panel_b()));
-        neighbours[h.panel_b()].push((hinge, h.panel_a()));
+        let [a, b] = h.panels();
+        neighbours[a].push((hinge, b));
+        neighbours[b].push((hinge, a));
     }
     let mut reached = vec![false; sheet.panels.len()];
     reached[0] = true;

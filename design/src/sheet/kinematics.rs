@@ -114,8 +114,8 @@ impl HingeMotion {
     /// The kinematics of one hinge, given by its index.
     pub fn new(sheet: &Sheet, hinge: usize, configuration: &[[f64; 3]]) -> Self {
         let hinge = &sheet.hinges[hinge];
-        let (a, b) = (hinge.panel_a(), hinge.panel_b());
-        let (c_a, c_b) = (complex(sheet.panels[a].reference), complex(sheet.panels[b].reference));
+        let [a, b] = hinge.panels();
+        let [c_a, c_b] = [a, b].map(|panel| complex(sheet.panels[panel].reference));
         let ([ax, ay, phi_a], [bx, by, phi_b]) = (configuration[a], configuration[b]);
         let (theta, phibar) = (phi_b - phi_a, 0.5 * (phi_a + phi_b));
         let frame = complex(hinge.e_sec).conj();

@@ -98,8 +98,7 @@ pub fn overlap(sheet: &Sheet, configuration: &[[f64; 3]]) -> f64 {
 fn hinge_spacings(sheet: &Sheet) -> Vec<f64> {
     let mut of_panel = vec![Vec::new(); sheet.panels.len()];
     for (h, hinge) in sheet.hinges.iter().enumerate() {
-        of_panel[hinge.panel_a()].push(h);
-        of_panel[hinge.panel_b()].push(h);
+        hinge.panels().into_iter().for_each(|panel| of_panel[panel].push(h));
     }
     let mut spacings = vec![f64::INFINITY; sheet.hinges.len()];
     for hinges in of_panel {

@@ -20,19 +20,19 @@ use std::{
 /// What the next solves start from.
 #[derive(Default)]
 pub(super) struct Warm {
-    pub path: Known,
-    pub state: Known,
+    pub path: KnownPath,
+    pub state: KnownPath,
 }
 
 /// Load steps that are known, and how many solves have been corrected from one another since the
 /// last followed path.
 #[derive(Default)]
-pub(super) struct Known {
+pub(super) struct KnownPath {
     path: Option<Arc<WarmStart>>,
     corrected: usize,
 }
 
-impl Known {
+impl KnownPath {
     /// The path to start from; none when the next one is to be followed from the flat sheet.
     fn usable(&self, follow_every: usize) -> Option<Arc<WarmStart>> {
         self.path.clone().filter(|_| self.corrected + 1 < follow_every)
@@ -62,7 +62,7 @@ impl Problem {
     pub(super) fn known(
         &self,
         warm: bool,
-        part: impl Fn(&Warm) -> &Known,
+        part: impl Fn(&Warm) -> &KnownPath,
     ) -> Option<Arc<WarmStart>> {
         let follow_every = self.scene.config.solver.follow_every;
         part(&self.warm()).usable(follow_every).filter(|_| warm)

@@ -17,7 +17,7 @@ const TEARING: f64 = 100.0;
 
 /// The damage functional.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Damage {
+pub struct DamageFunctional {
     /// D or D_peak.
     pub measure: DamageMeasure,
     /// D_s of the measure.
@@ -26,7 +26,7 @@ pub struct Damage {
     pub temperature: f64,
 }
 
-impl Term for Damage {
+impl Term for DamageFunctional {
     fn name(&self) -> &'static str {
         "damage"
     }
