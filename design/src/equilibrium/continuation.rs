@@ -91,7 +91,7 @@ impl<'a> Follower<'a> {
         let state = potential.state(start.clone())?;
         let position = PathPoint { at: 0.0, configuration: start, forces: state.forces() };
         let (_, factor) = branch.factor(&potential, &state);
-        let stable = factor.filter(|factor| factor.unstable_directions() == 0);
+        let stable = factor.filter(HeldFactor::is_stable);
         let mut follower = Self {
             branch,
             last: Point::still(position.clone()),
@@ -357,7 +357,7 @@ impl Branch<'_> {
 
     /// Whether a corrected position is stable. If the tangent near it is not, its own decides.
     fn is_stable(&mut self, corrected: &mut Corrected) -> bool {
-        if corrected.factor.unstable_directions() > 0 {
+        if !corrected.factor.is_stable() {
             let PathPoint { at, configuration, .. } = corrected.position.clone();
             let potential = self.potential(at);
             if let Some(state) = potential.state(configuration)
@@ -366,13 +366,13 @@ impl Branch<'_> {
                 *corrected = Corrected { error: corrected.error, ..self.exact(at, state, factor) };
             }
         }
-        corrected.factor.unstable_directions() == 0
+        corrected.factor.is_stable()
     }
 
     /// The stable equilibrium that is reached downhill from a position at constant load.
     pub fn settled(&mut self, start: PathPoint) -> Result<Corrected, Failure> {
         let Minimum { state, factor, .. } = self.minimum(&start)?;
-        match factor.filter(|factor| factor.unstable_directions() == 0) {
+        match factor.filter(HeldFactor::is_stable) {
             Some(factor) => Ok(self.exact(start.at, state, factor)),
             None => Err(Failure { residual: state.residual, end: DescentEnd::Stagnated }),
         }
@@ -390,6 +390,15 @@ impl Branch<'_> {
             state,
             factor,
             error: 0.0,
+        }
+    }
+
+    /// The stable equilibrium near a predicted position, at its load, or else the minimum that is
+    /// reached downhill from it.
+    pub fn stable_near(&mut self, start: &PathPoint) -> Result<Minimum, Failure> {
+        match self.balanced(start.clone()).filter(Minimum::is_stable) {
+            Some(found) => Ok(found),
+            None => self.minimum(start),
         }
     }
 

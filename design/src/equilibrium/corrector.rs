@@ -367,9 +367,9 @@ impl<'a> Branch<'a> {
         let size = if size > 0.0 { size } else { 1.0 };
         // A stable branch goes on to higher loads, however sharply it turns where hinges lock;
         // beyond a limit point the path goes on in the direction in which it came.
-        let unstable = factor.unstable_directions() > 0;
-        let backwards = before
-            .is_some_and(|before| unstable && self.product(&before.configuration, &rate) < 0.0);
+        let backwards = before.is_some_and(|before| {
+            !factor.is_stable() && self.product(&before.configuration, &rate) < 0.0
+        });
         let scale = if backwards { -1.0 / size } else { 1.0 / size };
         let forces = potential.force_rates(&state, &rate);
         let rate = PathPoint { at: 1.0, configuration: rate, forces };

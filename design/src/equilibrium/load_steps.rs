@@ -7,7 +7,7 @@ use crate::{
     equilibrium::{
         continuation::{Follower, LEAP},
         corrector::{Branch, Point},
-        displacement_control::{HeldFactor, work},
+        displacement_control::work,
         hinged_sheet::HingedSheet,
         load_step::{DescentEnd, LoadStep, Status, StepTangent},
         newton::{Failure, Minimum},
@@ -278,14 +278,8 @@ impl Follower<'_> {
             None => PathPoint { at: to, ..self.last.position.clone() },
         };
         self.branch.hold(&mut position, &self.last.position);
-        let start = position.clone();
-        let found = self.branch.balanced(position);
-        let stable = |held: &HeldFactor| held.unstable_directions() == 0;
-        let minimum = match found.filter(|found| found.factor.as_ref().is_some_and(stable)) {
-            Some(found) => found,
-            None => self.branch.minimum(&start)?,
-        };
-        let moved = self.branch.moved(&minimum, &start);
+        let minimum = self.branch.stable_near(&position)?;
+        let moved = self.branch.moved(&minimum, &position);
         // The start without an arc is a position at a higher load.
         self.jumps += usize::from(self.arc.is_some() && moved > LEAP);
         Ok(minimum)
@@ -366,14 +360,13 @@ impl Branch<'_> {
     }
 
     fn status(&self, minimum: &Minimum, jumped: bool) -> Status {
-        let stable = (minimum.factor.as_ref()).is_some_and(|held| held.unstable_directions() == 0);
         let settings = &self.solver.settings;
         // Rounding may explain a residual above the loose tolerance; it is no converged state
         // nevertheless.
         let balanced = minimum.state.is_balanced(settings.tolerance)
             && minimum.state.residual <= settings.loose_tolerance();
         let law = self.sheet.law;
-        if !balanced || !stable {
+        if !balanced || !minimum.is_stable() {
             Status::Almost
         } else if jumped {
             Status::LimitPoint

@@ -45,6 +45,12 @@ pub(crate) struct Minimum {
     pub factor: Option<HeldFactor>,
 }
 
+impl Minimum {
+    pub fn is_stable(&self) -> bool {
+        self.factor.as_ref().is_some_and(HeldFactor::is_stable)
+    }
+}
+
 /// A minimisation that ended without a minimum.
 #[derive(Debug)]
 pub(crate) struct Failure {
@@ -74,7 +80,7 @@ impl Potential<'_> {
             let scale = scale.get_or_insert_with(|| self.solver.pattern.shift_scale(&tangent));
             effort.factorisations += 1;
             let factor = self.factorise(&tangent, std::mem::take(&mut memory));
-            let stable = factor.as_ref().filter(|factor| factor.unstable_directions() == 0);
+            let stable = factor.as_ref().filter(|factor| factor.is_stable());
             let next = match stable {
                 Some(_) if stationary => None,
                 Some(factor) => self.step(&state, factor, &mut longest),
@@ -178,7 +184,7 @@ impl Potential<'_> {
             let shifted = pattern.shifted(tangent, scale.iter().map(|entry| *shift * entry));
             effort.factorisations += 1;
             match self.factorise(&shifted, Vec::new()) {
-                Some(mut factor) if factor.unstable_directions() == 0 => {
+                Some(mut factor) if factor.is_stable() => {
                     factor.shifted = true;
                     return Some(factor);
                 }

@@ -18,7 +18,6 @@ use crate::{
         corrector::Branch,
         hinged_sheet::HingedSheet,
         load_step::{LoadStep, Status},
-        newton::Minimum,
         potential::{PathStage, moved},
         predictor::PathPoint,
         solver::EquilibriumSolver,
@@ -108,12 +107,7 @@ impl EquilibriumSolver {
         let changes = changes(sheet, &known.designs);
         let mut branch = Branch::new(self, sheet, PathStage::Actuation);
         let start = branch.carried_over(1.0, last, &changes)?;
-        let stable = |found: &Minimum| {
-            let factor = found.factor.as_ref();
-            factor.is_some_and(|held| held.unstable_directions() == 0)
-        };
-        let found = branch.balanced(start.clone()).filter(stable);
-        let found = found.or_else(|| branch.minimum(&start).ok())?;
+        let found = branch.stable_near(&start).ok()?;
         let step = branch.load_step(found, 0);
         (step.status != Status::Almost).then_some(step)
     }

@@ -129,8 +129,13 @@ pub fn partial_sums(ell: &[f64]) -> Vec<f64> {
 
 /// The intervals between neighbouring boundary positions: the softmax weights.
 pub fn intervals(tau: &[f64]) -> Vec<f64> {
-    let ends = std::iter::once(0.0).chain(tau.iter().copied()).chain(std::iter::once(1.0));
+    let ends = with_ends(tau);
     ends.clone().skip(1).zip(ends).map(|(b, a)| b - a).collect()
+}
+
+/// Boundary positions with the two ends of their edge.
+pub(crate) fn with_ends(tau: &[f64]) -> impl Iterator<Item = f64> + Clone {
+    std::iter::once(0.0).chain(tau.iter().copied()).chain(std::iter::once(1.0))
 }
 
 /// The gradient in ell from the gradient in tau.

@@ -16,7 +16,7 @@ use crate::{
     },
     pattern::{
         coordinates::{
-            PatternCoordinates, intervals, logistic, partial_sums, partial_sums_pullback,
+            PatternCoordinates, intervals, logistic, partial_sums, partial_sums_pullback, with_ends,
         },
         grid::{EDGES, Endpoint, Grid},
     },
@@ -164,8 +164,7 @@ impl CutPattern {
             .map(|((i, j), r)| {
                 let [a, b] = self.grid.facing_endpoints(i, j);
                 let slit = complex(self.points[a]) - complex(self.points[b]);
-                let x = self.grid.endpoint(i, j, Endpoint::X);
-                let x_prime = self.grid.endpoint(i, j, Endpoint::XPrime);
+                let [x, x_prime] = self.grid.endpoints(i, j);
                 r * (1.0 - r) * dot(adjoint(x) - adjoint(x_prime), slit)
             })
             .collect();
@@ -175,8 +174,7 @@ impl CutPattern {
             let tau: Vec<f64> = (1..=self.tau[edge].len())
                 .map(|s| {
                     let (i, j) = self.grid.edge_vertex(edge, s);
-                    let x = self.grid.endpoint(i, j, Endpoint::X);
-                    let x_prime = self.grid.endpoint(i, j, Endpoint::XPrime);
+                    let [x, x_prime] = self.grid.endpoints(i, j);
                     dot(adjoint(x) + adjoint(x_prime), end - start)
                 })
                 .collect();
@@ -192,18 +190,15 @@ impl CutPattern {
             let [start, end] = EDGES[edge];
             for (s, tau) in std::iter::zip(1.., tau) {
                 let (i, j) = self.grid.edge_vertex(edge, s);
-                let both =
-                    [Endpoint::X, Endpoint::XPrime].map(|e| adjoint(self.grid.endpoint(i, j, e)));
-                let force = both[0] + both[1];
+                let [x, x_prime] = self.grid.endpoints(i, j).map(&adjoint);
+                let force = x + x_prime;
                 add(&mut corners[start], force * (1.0 - tau));
                 add(&mut corners[end], force * *tau);
             }
         }
         let Grid { m, n } = self.grid;
         for (corner, (i, j)) in std::iter::zip(&mut corners, [(0, 0), (m, 0), (m, n), (0, n)]) {
-            for endpoint in [Endpoint::X, Endpoint::XPrime] {
-                add(corner, adjoint(self.grid.endpoint(i, j, endpoint)));
-            }
+            self.grid.endpoints(i, j).into_iter().for_each(|point| add(corner, adjoint(point)));
         }
         corners
     }
@@ -226,8 +221,7 @@ fn collinearity(grid: Grid, r: &[f64]) -> Vec<Triplet<usize, usize, f64>> {
         (0..grid.point_count()).map(|point| Triplet::new(point, point, 1.0)).collect();
     for ((i, j), &r) in std::iter::zip(grid.interior_vertices(), r) {
         let [a, b] = grid.facing_endpoints(i, j);
-        let x = grid.endpoint(i, j, Endpoint::X);
-        let x_prime = grid.endpoint(i, j, Endpoint::XPrime);
+        let [x, x_prime] = grid.endpoints(i, j);
         entries.extend([
             Triplet::new(x, a, -r),
             Triplet::new(x, b, r - 1.0),
@@ -243,13 +237,11 @@ fn outline_points(grid: Grid, outline: &Outline, tau: &[Vec<f64>; 4]) -> Mat<f64
     let mut points = Mat::zeros(grid.point_count(), 2);
     for (edge, tau) in tau.iter().enumerate() {
         let [start, end] = EDGES[edge].map(|corner| outline.corners[corner]);
-        let positions = std::iter::once(0.0).chain(tau.iter().copied()).chain(std::iter::once(1.0));
-        for (s, tau) in positions.enumerate() {
+        for (s, tau) in with_ends(tau).enumerate() {
             let (i, j) = grid.edge_vertex(edge, s);
-            for endpoint in [Endpoint::X, Endpoint::XPrime] {
+            for point in grid.endpoints(i, j) {
                 for axis in 0..2 {
-                    points[(grid.endpoint(i, j, endpoint), axis)] =
-                        (1.0 - tau) * start[axis] + tau * end[axis];
+                    points[(point, axis)] = (1.0 - tau) * start[axis] + tau * end[axis];
                 }
             }
         }
