@@ -8,7 +8,7 @@ use design::{
     Grid, Outline,
     pattern::{coordinates::PatternCoordinates, cut_pattern::CutPattern},
     sheet::{
-        cut_sheet::{HingePoint, SheetOptions},
+        cut_sheet::{Hinge, HingePoint, SheetOptions},
         ideal_deployment::{check_opening, ideal_deployment},
         kinematics::deployed_corners,
     },
@@ -125,7 +125,7 @@ impl Sheet {
     /// The two panels A and B of every hinge, shape (hinges, 2).
     #[getter]
     fn hinge_panels(&self) -> Vec<[usize; 2]> {
-        self.0.hinges.iter().map(|hinge| [hinge.panel_a(), hinge.panel_b()]).collect()
+        self.0.hinges.iter().map(Hinge::panels).collect()
     }
 
     /// The tips O of the main cuts (mm), shape (hinges, 2).

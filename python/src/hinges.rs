@@ -249,7 +249,7 @@ impl HingeStates {
     #[getter]
     fn tangent(&self) -> PyResult<Array> {
         self.needs(Order::Tangent, "tangent")?;
-        Ok(self.column(|energy| flat(energy.tangent), &[3, 3]))
+        Ok(self.column(|energy| energy.tangent.into_iter().flatten(), &[3, 3]))
     }
 
     /// dW/d(w_lig, alpha, hole) at constant (a, s, theta), shape (..., 3).
@@ -263,7 +263,8 @@ impl HingeStates {
     #[getter]
     fn forces_by_design(&self) -> PyResult<Array> {
         self.needs(Order::Design, "design")?;
-        Ok(self.column(|energy| flat(energy.mixed.map(DesignGradient::to_array)), &[3, 3]))
+        Ok(self
+            .column(|energy| energy.mixed.into_iter().flat_map(DesignGradient::to_array), &[3, 3]))
     }
 
     /// D, the mean plastic strain of the ligament over that at fracture; nan outside the training
@@ -338,9 +339,9 @@ impl HingeStates {
         Ok(())
     }
 
-    fn column<const N: usize>(
+    fn column<R: IntoIterator<Item = f64>>(
         &self,
-        of: impl Fn(&HingeEnergy) -> [f64; N],
+        of: impl Fn(&HingeEnergy) -> R,
         shape: &[usize],
     ) -> Array {
         let values = self.energies.iter().flatten().flat_map(of);
@@ -378,12 +379,4 @@ fn by_chunk<T: Send>(
     }
     let chunks = laws.par_iter().zip(states.par_chunks(CHUNK));
     chunks.map(|(law, states)| of(law, states)).collect()
-}
-
-fn flat([a, b, c]: [[f64; 3]; 3]) -> [f64; 9] {
-    let mut flat = [0.0; 9];
-    flat[..3].copy_from_slice(&a);
-    flat[3..6].copy_from_slice(&b);
-    flat[6..].copy_from_slice(&c);
-    flat
 }

@@ -18,7 +18,7 @@ use design::{
 use pyo3::{
     exceptions::{PyTypeError, PyValueError},
     prelude::*,
-    types::PyDict,
+    types::{PyDict, PySlice},
 };
 use rayon::prelude::*;
 use scene::{
@@ -27,7 +27,6 @@ use scene::{
     run_inputs::scene_file,
 };
 use std::{
-    ops::Range,
     path::PathBuf,
     sync::{
         Arc, Mutex,
@@ -124,12 +123,11 @@ impl Problem {
         let ell = pattern.ell.iter().map(Vec::len).sum();
         let opening = usize::from(self.start.opening.is_some());
         let lengths = [pattern.z.len(), ell, self.start.omega.len(), opening];
-        let mut end = 0;
+        let mut start = 0;
         for (name, length) in ["z", "ell", "omega", "opening"].into_iter().zip(lengths) {
-            let Range { start, end: stop } = end..end + length;
-            end = stop;
-            let slice = py.import("builtins")?.call_method1("slice", (start, stop))?;
-            blocks.set_item(name, slice)?;
+            let end = start + length as isize;
+            blocks.set_item(name, PySlice::new(py, start, end, 1))?;
+            start = end;
         }
         Ok(blocks)
     }

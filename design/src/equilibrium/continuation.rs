@@ -205,7 +205,7 @@ impl<'a> Follower<'a> {
         }
     }
 
-    pub fn is_exhausted(&self) -> bool {
+    fn is_exhausted(&self) -> bool {
         let solver = self.branch.solver;
         self.tried > solver.settings.max_increments || solver.is_stopped()
     }

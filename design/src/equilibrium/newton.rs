@@ -61,7 +61,7 @@ pub(crate) struct Failure {
 impl Failure {
     pub const EXHAUSTED: Self = Self { residual: f64::INFINITY, end: DescentEnd::Increments };
     pub const STOPPED: Self = Self { residual: f64::INFINITY, end: DescentEnd::Stopped };
-    pub const NOT_FINITE: Self = Self { residual: f64::INFINITY, end: DescentEnd::NotFinite };
+    const NOT_FINITE: Self = Self { residual: f64::INFINITY, end: DescentEnd::NotFinite };
 }
 
 impl Potential<'_> {

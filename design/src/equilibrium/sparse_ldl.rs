@@ -89,7 +89,7 @@ impl SparseLdl {
     }
 
     /// Number of stored entries of L and D.
-    pub fn factor_entries(&self) -> usize {
+    fn factor_entries(&self) -> usize {
         self.cholesky.len_val()
     }
 

@@ -308,13 +308,8 @@ impl DesignProblem {
     /// L(theta) without its gradient.
     pub fn loss(&self, design: &DesignVector) -> Result<f64, DesignError> {
         let deployment = self.deploy(design)?;
-        self.loss_of(&deployment)
-    }
-
-    /// L of a deployed sheet at full load.
-    pub fn loss_of(&self, deployment: &Deployment) -> Result<f64, DesignError> {
         let outline = deployment.sheet.free_outline_corners();
-        Ok(self.evaluate_deployed(deployment, &outline)?.loss)
+        Ok(self.evaluate_deployed(&deployment, &outline)?.loss)
     }
 
     pub(super) fn evaluate_deployed(

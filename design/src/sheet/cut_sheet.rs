@@ -334,7 +334,7 @@ impl Hinge {
     }
 
     /// The hinge with its tip at another distance from the line of the secondary cut (mm).
-    pub(super) fn with_tip(self, set_back: f64, hinge_point: HingePoint) -> Self {
+    fn with_tip(self, set_back: f64, hinge_point: HingePoint) -> Self {
         let along = complex(self.main) * (set_back / self.alpha.sin());
         let tip = point(complex(self.corner) + along);
         Self {
