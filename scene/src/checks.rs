@@ -13,7 +13,6 @@ use crate::solved_hinges::SolvedHingesError;
 use crate::target::Target;
 use design::geometry::polygon::{contains, distance, edges, mean};
 use design::pattern::cut_pattern::CutPattern;
-use design::pattern::pattern_error::PatternError;
 use design::sheet::topology::panel_endpoints;
 use hinge::InvalidDesign;
 use std::collections::{BTreeMap, BTreeSet};
@@ -93,10 +92,7 @@ fn sheet(scene: &SceneConfig) -> Result<(), InvalidScene> {
         return Err(InvalidScene::SizeOrCorners);
     }
     let outline = scene.sheet.outline();
-    if !outline.is_convex() {
-        let corners = outline.corners;
-        return Err(InvalidScene::Corners(PatternError::Outline { corners }));
-    }
+    outline.check().map_err(InvalidScene::Corners)?;
     within("the size of sheet.corners", outline.size(), [20.0, 2e4], "mm")?;
     let [columns, rows] = scene.sheet.panels;
     if columns.saturating_mul(rows) > 100_000 {

@@ -72,7 +72,7 @@ impl Stroke {
         -by_load_factor / self.size
     }
 
-    /// A motion with the given stroke, used when no better prediction is known.
+    /// A motion with the given stroke, used without a better prediction.
     pub fn motion(&self, stroke: f64) -> Vec<f64> {
         let square = dot(&self.direction, &self.direction);
         self.direction.iter().map(|c| stroke * c / square).collect()
@@ -114,12 +114,12 @@ impl HeldFactor {
         border.as_ref().is_none_or(regular).then_some(Self { factor, shifted: false, border })
     }
 
-    /// Number of directions of negative curvature, at constant stroke if that is prescribed. The
-    /// border adds one negative pivot, or removes one if the force of the sheet decreases with the
-    /// stroke.
-    pub fn unstable_directions(&self) -> usize {
+    /// Whether there is no direction of negative curvature, at constant stroke if that is
+    /// prescribed. The border adds one negative pivot, or removes one if the force of the sheet
+    /// decreases with the stroke.
+    pub fn is_stable(&self) -> bool {
         let softening = (self.border.as_ref()).is_some_and(|border| border.compliance < 0.0);
-        (self.factor.negative_pivots).saturating_sub(usize::from(softening))
+        self.factor.negative_pivots <= usize::from(softening)
     }
 
     /// The x for the right-hand side `b` and d = 0.

@@ -1,4 +1,4 @@
-//! The weight of a panel as a force, besides the forces of its hinges.
+//! The weight of a panel as a force, in addition to the forces of its hinges.
 
 /// A force on a panel in one of its positions, with its derivative.
 #[derive(Clone, Copy, Default)]

@@ -1,16 +1,22 @@
 //! LDL^T of a sparse symmetric matrix without pivoting, by faer: column by column for few unknowns,
 //! otherwise by supernodes, dense blocks of columns.
 
-use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
-use faer::linalg::cholesky::ldlt::factor::LdltRegularization;
-use faer::mat::MatMut;
-use faer::sparse::linalg::cholesky::{
-    CholeskySymbolicParams, LdltRef, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering,
-    factorize_symbolic_cholesky, supernodal::SupernodalLdltRef,
+use faer::{
+    Conj, Par, Side,
+    dyn_stack::{MemBuffer, MemStack, StackReq},
+    linalg::cholesky::ldlt::factor::LdltRegularization,
+    mat::MatMut,
+    sparse::{
+        SparseColMatRef, SymbolicSparseColMat,
+        linalg::{
+            SupernodalThreshold, SymbolicSupernodalParams, amd,
+            cholesky::{
+                CholeskySymbolicParams, LdltRef, SymbolicCholesky, SymbolicCholeskyRaw,
+                SymmetricOrdering, factorize_symbolic_cholesky, supernodal::SupernodalLdltRef,
+            },
+        },
+    },
 };
-use faer::sparse::linalg::{SupernodalThreshold, SymbolicSupernodalParams, amd};
-use faer::sparse::{SparseColMatRef, SymbolicSparseColMat};
-use faer::{Conj, Par, Side};
 use std::cell::RefCell;
 
 /// Number of unknowns from which the supernodal factorisation is faster (measured).
@@ -53,7 +59,7 @@ pub(crate) fn elimination_ranks(matrix: &SymbolicSparseColMat<usize>) -> Vec<usi
 impl SparseLdl {
     /// The factorisation in the order of the columns.
     pub fn new(matrix: SymbolicSparseColMat<usize>) -> Self {
-        // Without a given ordering faer analyses the upper triangle, whichever side is passed.
+        // faer without a given ordering analyses the upper triangle, whichever side is passed.
         let upper = matrix.transpose().to_col_major();
         let cholesky = factorize_symbolic_cholesky(
             upper.expect("indices fit in usize").as_ref(),
@@ -83,7 +89,7 @@ impl SparseLdl {
     }
 
     /// Number of stored entries of L and D.
-    pub fn factor_entries(&self) -> usize {
+    fn factor_entries(&self) -> usize {
         self.cholesky.len_val()
     }
 

@@ -2,9 +2,11 @@
 //! symbolic analysis is done once per topology and set of supports; free degrees of freedom are
 //! numbered in elimination order.
 
-use crate::equilibrium::sparse_ldl::{SparseLdl, elimination_ranks};
-use crate::pattern::grid::Grid;
-use crate::sheet::topology::hinge_sites;
+use crate::{
+    equilibrium::sparse_ldl::{SparseLdl, elimination_ranks},
+    pattern::grid::Grid,
+    sheet::topology::hinge_sites,
+};
 use faer::sparse::SymbolicSparseColMat;
 use std::collections::BTreeSet;
 

@@ -78,7 +78,7 @@ fn hinge_site(grid: Grid, i: usize, j: usize, endpoint: Endpoint) -> Option<Hing
     })
 }
 
-/// The panel whose given corner lies at vertex (i, j), if there is one.
+/// The panel whose given corner is at vertex (i, j), if there is one.
 fn panel_with_corner(grid: Grid, i: usize, j: usize, corner: usize) -> Option<PanelCorner> {
     let p = i.checked_sub(usize::from(corner == SE || corner == NE))?;
     let q = j.checked_sub(usize::from(corner == NE || corner == NW))?;

@@ -46,7 +46,11 @@ fn deployed() -> (DesignProblem, Deployment) {
             contact: None,
             solver,
         })),
-        objective: Objective::from_shape(Shape::new(vec![[0.0, 0.0]])),
+        objective: Objective {
+            shape: Shape::new(vec![[0.0, 0.0]]),
+            functionals: Vec::new(),
+            penalties: Vec::new(),
+        },
     };
     let mut design = DesignVector::uniform(GRID);
     for (i, z) in design.pattern.z.iter_mut().enumerate() {

@@ -87,7 +87,7 @@ impl ActuationCurve {
         readings.extend(solver.load_parameters());
         readings.sort_by(f64::total_cmp);
         readings.dedup();
-        let steps = solver.readings(hinged, &readings);
+        let steps = solver.load_steps_at(hinged, &readings);
         Self::through(mechanics, sheet, &before, steps.iter().map(load_and_state))
     }
 

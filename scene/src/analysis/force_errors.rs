@@ -5,7 +5,7 @@
 //! responds to each mode ([`ForceResponse`]), and the squares of the responses add up to the
 //! variance.
 
-use design::equilibrium::force_response::{ForceResponse, Response};
+use design::equilibrium::force_response::{ForceResponse, SheetChange};
 use design::equilibrium::load_step::LoadStep;
 use design::hinge_law::LENGTHS;
 use design::sheet::cut_sheet::Sheet;
@@ -110,7 +110,7 @@ impl ForceErrors {
         let mut variances = vec![0.0; arms.len()];
         let mut of_load = None;
         for mode in &self.modes {
-            let Response { motions, load } = response.to(mode)?;
+            let SheetChange { motions, load } = response.to(mode)?;
             for ((panel, [x, y]), variance) in arms.iter().zip(&mut variances) {
                 let [u_x, u_y, phi] = motions[*panel];
                 *variance += (u_x - phi * y).powi(2) + (u_y + phi * x).powi(2);

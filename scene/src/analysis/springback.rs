@@ -113,7 +113,7 @@ pub fn unload(
     if outside > 0 {
         return Err(UnloadError::OutsideDomain { hinges: outside });
     }
-    let mechanics = problem.model.mechanics().ok_or(DesignError::NoMechanics)?;
+    let mechanics = problem.model.equilibrium().map_err(DesignError::from)?;
     let loaded = deployment.at_full_load()?;
     let (sheet, designs) = (&deployment.sheet, deployment.sheet.designs());
     let prepared = mechanics.law.prepare(&designs);

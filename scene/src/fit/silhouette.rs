@@ -215,7 +215,7 @@ impl Making {
         let penalties = vec![
             Weighted::new(DIFFERENCE * sheet, SymmetricDifference::new(shape.clone())),
             Weighted::new(PANEL_SHAPE * panel_area, PanelShape { min_distance }),
-            Weighted::new(ANGLES * panel_area, CutAngles { least: self.least_angle }),
+            Weighted::new(ANGLES * panel_area, CutAngles { minimum: self.least_angle }),
         ];
         DesignProblem {
             grid,
