@@ -3,8 +3,8 @@
 use crate::ui::progress::announce;
 use anyhow::Result;
 use scene::Scene;
-use scene::analysis::out_of_plane::Stability;
-use scene::fit::scene::{FittedScene, Missed, Nearness, fitted, on_larger_stock};
+use analysis::out_of_plane::Stability;
+use analysis::fit::scene::{FittedScene, Missed, Nearness, fitted, on_larger_stock};
 
 /// The number of missed parts that are named.
 const NAMED: usize = 4;

@@ -11,10 +11,10 @@ pub use agreement::{Agreement, OpeningSpread, Spread};
 use design::geometry::plane::point;
 use design::sheet::cut_sheet::Sheet;
 use faer::c64;
-use scene::analysis::measured_openings::{MeasuredOpening, MeasuredPanel, openings, scatter, slip};
-use scene::analysis::measured_points::FittedPoint;
-use scene::analysis::measured_sheet::MeasuredSheet;
-use scene::analysis::path_fit::Fit;
+use analysis::measured_openings::{MeasuredOpening, MeasuredPanel, openings, scatter, slip};
+use analysis::measured_points::FittedPoint;
+use analysis::measured_sheet::MeasuredSheet;
+use analysis::path_fit::Fit;
 use serde::Serialize;
 
 /// A measured sheet in numbers.

@@ -19,7 +19,7 @@ use output::drawing::deployment_frames;
 use output::report::{Report, Warning};
 use output::run_files::{ANIMATION, RUN_FILES, Writer};
 use output::run_results::{remove_run, write_results};
-use scene::analysis::refinement::refine;
+use analysis::refinement::refine;
 use scene::design_run::{BegunRun, Designed, Earlier, LEVELS, OnStep};
 use scene::run_inputs::{SCENE_FILE, holds_a_run, scene_file};
 use scene::{Level, Scene, SceneConfig};

@@ -6,7 +6,7 @@ use anyhow::Result;
 use design::pattern::design_vector::DesignVector;
 use output::run_results::write_results;
 use scene::Scene;
-use scene::analysis::design_checks::DesignChecks;
+use analysis::design_checks::DesignChecks;
 use scene::design_run::Designed;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;

@@ -6,7 +6,7 @@ use crate::ui::progress::announce;
 use crate::ui::{charts, interrupt, output_file};
 use anyhow::Result;
 use clap::Args;
-use scene::analysis::levels::{LevelCost, Levels, levels};
+use analysis::levels::{LevelCost, Levels, levels};
 use serde::Serialize;
 use std::path::PathBuf;
 use support::document::Document;

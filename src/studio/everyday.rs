@@ -9,7 +9,7 @@ use output::cut_file::CutLines;
 use output::report::Report;
 use output::run_page::{PageData, SheetData};
 use scene::Scene;
-use scene::analysis::design_checks::DesignChecks;
+use analysis::design_checks::DesignChecks;
 use scene::design_run::Designed;
 use serde::Serialize;
 use serde_json::json;

@@ -20,7 +20,7 @@ use design::sheet::kinematics::{corner_distances, deployed_corners};
 use hinge::HingeSample;
 use mesher::Tier;
 use scene::Scene;
-use scene::analysis::error_budget::ErrorBudget;
+use analysis::error_budget::ErrorBudget;
 use serde::Serialize;
 use std::sync::Arc;
 

@@ -11,7 +11,7 @@ use crate::replay::ElementWindows;
 use crate::verification_error::VerificationError;
 use design::optimise::outer_loop::Ended;
 use mesher::Tier;
-use scene::analysis::level_difference::AtLevel;
+use analysis::level_difference::AtLevel;
 use scene::design_run::{BegunRun, Designed, Earlier, LEVELS, OnStep};
 use scene::{Level, Scene, SolvedHinge, SolvedHinges};
 use std::sync::atomic::AtomicBool;

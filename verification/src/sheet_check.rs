@@ -12,11 +12,11 @@ use design::sheet::kinematics::{Configuration, deployed_corners, hinge_deformati
 use fe_driver::{PanelState, SheetSolve, SheetState, SheetSurface, Solved, ToolVersions};
 use hinge::HingeDesign;
 use mesher::Tier;
-use scene::analysis::actuation_curve::ActuationCurve;
-use scene::analysis::design_checks::WholeSheet;
-use scene::analysis::flanks::flank_gap;
-use scene::analysis::flatness::Flatness;
-use scene::analysis::out_of_plane::{OutOfPlane, out_of_plane};
+use analysis::actuation_curve::ActuationCurve;
+use analysis::design_checks::WholeSheet;
+use analysis::flanks::flank_gap;
+use analysis::flatness::Flatness;
+use analysis::out_of_plane::{OutOfPlane, out_of_plane};
 use scene::{Posture, Scene};
 use serde::Serialize;
 use support::severity::{Finding, Severity};

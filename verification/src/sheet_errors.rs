@@ -6,7 +6,7 @@ use crate::balanced_sheet::{
 use design::hinge_law::DamageMeasure;
 use design::objective::design_problem::Deployment;
 use mesher::Tier;
-use scene::analysis::error_budget::{Cause, Effect, ErrorBudget};
+use analysis::error_budget::{Cause, Effect, ErrorBudget};
 use serde::Serialize;
 use support::document::Document;
 use support::statistics::rms_and_maximum;

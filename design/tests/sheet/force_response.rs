@@ -4,7 +4,7 @@
 use crate::prelude::*;
 use design::equilibrium::force_response::{ForceResponse, Response};
 use design::hinge_law::{CorrectedLaw, Correction, MissingForces};
-use scene::analysis::actuation_curve::ActuationCurve;
+use analysis::actuation_curve::ActuationCurve;
 use scene::{SupportConfig, SupportKind};
 
 /// The A4 sheet after a change, without its ensemble.

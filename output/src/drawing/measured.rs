@@ -10,9 +10,9 @@ use design::geometry::polygon::bounds;
 use design::sheet::cut_sheet::Sheet;
 use design::sheet::kinematics::deployed_corners;
 use design::sheet::topology::is_even;
-use scene::analysis::measured_openings::MeasuredOpening;
-use scene::analysis::measured_points::FittedPoint;
-use scene::analysis::path_fit::Fit;
+use analysis::measured_openings::MeasuredOpening;
+use analysis::measured_points::FittedPoint;
+use analysis::path_fit::Fit;
 
 /// Magnifications of the residuals.
 const MAGNIFICATIONS: [f64; 8] = [1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0];

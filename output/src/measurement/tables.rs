@@ -2,8 +2,8 @@
 
 use crate::measurement::{Agreement, Closed, MeasurementReport, OpeningSpread, Spread};
 use design::objective::scores::shown;
-use scene::analysis::measured_openings::MeasuredOpening;
-use scene::analysis::measured_points::FittedPoint;
+use analysis::measured_openings::MeasuredOpening;
+use analysis::measured_points::FittedPoint;
 use support::document::Document;
 use support::table::{Cell, Columns, Table};
 

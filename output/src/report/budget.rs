@@ -1,7 +1,7 @@
 //! The error budget of a run as a table, and what it leaves out.
 
 use crate::report::self_weight::SelfWeight;
-use scene::analysis::error_budget::{Effect, ErrorBudget};
+use analysis::error_budget::{Effect, ErrorBudget};
 use serde::Serialize;
 use support::table::{Cell, Table};
 

@@ -4,7 +4,7 @@ use crate::report::numbers::rounded;
 use design::objective::design_problem::{Deployment, DesignProblem};
 use hinge::Creep;
 use scene::Scene;
-use scene::analysis::springback::{
+use analysis::springback::{
     ResidualShape, TOO_FAR, UnloadError, moment_after_overshoot, unload,
 };
 use serde::Serialize;

@@ -10,7 +10,7 @@ use design::geometry::polygon::{area, bounds};
 use design::objective::design_problem::{Deployment, DesignProblem};
 use design::sheet::cut_sheet::AttachmentPoint;
 use design::sheet::kinematics::deployed_corners;
-use scene::analysis::actuation_curve::{ActuationCurve, LimitPoint, LoadPeak, Mover};
+use analysis::actuation_curve::{ActuationCurve, LimitPoint, LoadPeak, Mover};
 use scene::{Level, Scene, panel_name};
 use serde::Serialize;
 use surrogate::TestErrors;

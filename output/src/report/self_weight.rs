@@ -2,7 +2,7 @@
 //! its plane.
 
 use crate::report::numbers::rounded;
-use scene::analysis::localisation::elasto_gravity_length;
+use analysis::localisation::elasto_gravity_length;
 use scene::{FRICTION, Posture, Scene};
 use serde::Serialize;
 

@@ -3,8 +3,8 @@
 use crate::report::numbers::rounded;
 use crate::report::{BUDGET_HEADING, HingeRow, Report};
 use design::objective::scores::{Scores, shown};
-use scene::analysis::design_checks::WholeSheet;
-use scene::analysis::levels::Levels;
+use analysis::design_checks::WholeSheet;
+use analysis::levels::Levels;
 use std::cmp::Ordering;
 use support::document::Document;
 use support::severity::Severity;

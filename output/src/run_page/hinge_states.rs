@@ -8,7 +8,7 @@ use design::hinge_law::{DamageMeasure, Order};
 use design::objective::design_problem::{Deployment, DesignProblem, Mechanics};
 use design::sheet::cut_sheet::Sheet;
 use scene::Scene;
-use scene::analysis::actuation_curve::ActuationCurve;
+use analysis::actuation_curve::ActuationCurve;
 use scene::placement::placed;
 use serde::Serialize;
 use surrogate::Surrogate;

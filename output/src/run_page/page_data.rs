@@ -11,7 +11,7 @@ use design::objective::term::in_words;
 use design::optimise::outer_loop::StepRecord;
 use design::sheet::cut_sheet::Sheet;
 use hinge::TrainingDomain;
-use scene::analysis::levels::Levels;
+use analysis::levels::Levels;
 use scene::design_run::Designed;
 use scene::{Actuation, Scene};
 use serde::Serialize;

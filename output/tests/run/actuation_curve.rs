@@ -3,7 +3,7 @@
 use super::*;
 use design::equilibrium::load_step::{LoadStep, Status};
 use design::objective::design_problem::{Deployment, DesignProblem};
-use scene::analysis::actuation_curve::{ActuationCurve, Mover};
+use analysis::actuation_curve::{ActuationCurve, Mover};
 
 /// The deployment of a scene with another actuation, in many load steps.
 fn deployed(actuation: &str) -> (DesignProblem, Deployment) {

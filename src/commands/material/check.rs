@@ -3,7 +3,7 @@
 use anyhow::{Result, bail, ensure};
 use clap::Args;
 use hinge::{Regime, SheetMaterial};
-use scene::analysis::material_check::{Intended, MaterialCheck};
+use analysis::material_check::{Intended, MaterialCheck};
 use scene::run_inputs::scene_file;
 use scene::{Posture, SceneConfig};
 use std::path::PathBuf;

@@ -2,8 +2,8 @@
 
 use super::axes::{Axis, axes, names};
 use super::*;
-use scene::analysis::error_budget::Cause;
-use scene::analysis::levels::Levels;
+use analysis::error_budget::Cause;
+use analysis::levels::Levels;
 
 /// Size of the chart (px).
 const SIZE: (u32, u32) = (640, 460);

@@ -1,9 +1,9 @@
 //! What each level of a scene costs, and by how much it differs from the finest one.
 
-use crate::analysis::error_budget::{Cause, Contribution, ErrorBudget};
-use crate::analysis::level_difference::{AtLevel, LevelError, deployed};
-use crate::design_run::BegunRun;
-use crate::{Level, LevelDifference, Scene};
+use crate::error_budget::{Cause, Contribution, ErrorBudget};
+use crate::level_difference::{AtLevel, LevelError, deployed};
+use scene::design_run::BegunRun;
+use scene::{Level, LevelDifference, Scene};
 use design::optimise::outer_loop::optimise;
 use design::pattern::design_vector::DesignVector;
 use serde::{Deserialize, Serialize};

@@ -3,7 +3,7 @@
 use crate::changed;
 use design::Deployment;
 use design::sheet::kinematics::deployed_corners;
-use scene::analysis::error_budget::{Cause, Effect, ErrorBudget};
+use analysis::error_budget::{Cause, Effect, ErrorBudget};
 use scene::{Posture, PostureConfig, Scene, SceneConfig};
 use testkit::derivatives::{assert_close, assert_ratio};
 

@@ -12,7 +12,7 @@
 //!
 //! docs/MATERIALS.md has the windows that the strain at the tip comes from.
 
-use crate::analysis::localisation::{critical_edge, gamma};
+use crate::localisation::{critical_edge, gamma};
 use hinge::{Regime, SheetMaterial};
 use serde::Serialize;
 use support::severity::{Finding, Severity};

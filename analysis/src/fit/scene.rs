@@ -1,12 +1,12 @@
 //! The scene of a sheet that is fitted to the target of another: what the fit, the pulls and one
 //! equilibrium decide becomes keys.
 
-use crate::analysis::out_of_plane::Stability;
+use crate::out_of_plane::Stability;
 use crate::fit::opening::safe_opening;
 use crate::fit::placement::place;
 use crate::fit::pulls::{Pull, candidates, pulls};
 use crate::fit::silhouette::{DIFFERENCE, Fitted, Making, ROTATIONS, fit};
-use crate::{
+use scene::{
     DriveConfig, Level, LigamentConfig, LoadConfig, OptimiserConfig, Posture, PostureConfig, Scene,
     SceneConfig, SceneError, StartConfig, SupportConfig, SupportKind, rounded,
 };

@@ -10,8 +10,8 @@
 //! with one unknown rigid motion, and one unknown scale if requested. x and the motion have the
 //! least sum of squared errors over all points. Residuals are in the frame of the design, in mm.
 
-use crate::analysis::measured_points::{FittedPoint, MeasuredPoint};
-use crate::analysis::shape_path::{PathShape, ShapePath};
+use crate::measured_points::{FittedPoint, MeasuredPoint};
+use crate::shape_path::{PathShape, ShapePath};
 use design::geometry::plane::{complex, point};
 use design::geometry::similarity::{Pair, Scale, Similarity};
 

@@ -5,10 +5,10 @@
 //! that is larger than the tolerance, the finer level continues from that design and with that
 //! optimiser; if not, the search makes its other steps, and the finer level evaluates the design.
 
-use crate::analysis::error_budget::{Cause, ErrorBudget};
-use crate::analysis::level_difference::AtLevel;
-use crate::design_run::{BegunRun, Designed, Earlier, InverseDesignError, LEVELS, OnStep};
-use crate::{Scene, SceneError};
+use crate::error_budget::{Cause, ErrorBudget};
+use crate::level_difference::AtLevel;
+use scene::design_run::{BegunRun, Designed, Earlier, InverseDesignError, LEVELS, OnStep};
+use scene::{Scene, SceneError};
 use design::optimise::outer_loop::{Ended, Until};
 use std::sync::atomic::AtomicBool;
 

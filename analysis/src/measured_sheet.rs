@@ -1,8 +1,8 @@
 //! Points measured on a deployed sheet, compared with its equilibrium path; section 4.4.
 
-use crate::analysis::measured_points::MeasuredPoint;
-use crate::analysis::path_fit::{Fit, MIN_POINTS, Problem};
-use crate::analysis::shape_path::ShapePath;
+use crate::measured_points::MeasuredPoint;
+use crate::path_fit::{Fit, MIN_POINTS, Problem};
+use crate::shape_path::ShapePath;
 use design::geometry::similarity::Scale;
 use std::collections::HashSet;
 

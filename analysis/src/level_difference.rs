@@ -1,8 +1,8 @@
 //! By how much a sheet at one level differs from the same sheet at a finer one: the estimate of the
 //! error of the coarser level.
 
-use crate::analysis::actuation_curve::ActuationCurve;
-use crate::{CoarseSearch, Level, LevelDifference, Scene, SceneError};
+use crate::actuation_curve::ActuationCurve;
+use scene::{CoarseSearch, Level, LevelDifference, Scene, SceneError};
 use design::geometry::plane::{complex, point};
 use design::geometry::polygon::distance;
 use design::geometry::similarity::{Scale, Similarity};

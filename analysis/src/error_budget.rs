@@ -20,12 +20,11 @@
 //!
 //! What is not measured is not known: the sum of the others is a lower bound.
 
-use crate::analysis::actuation_curve::ActuationCurve;
-use crate::analysis::force_errors::{Deviations, ForceErrors};
-use crate::analysis::out_of_plane::out_of_plane;
-use crate::analysis::path_separation::path_separation;
-use crate::tolerances::standard_deviation;
-use crate::{Posture, Scene};
+use crate::actuation_curve::ActuationCurve;
+use crate::force_errors::{Deviations, ForceErrors};
+use crate::out_of_plane::out_of_plane;
+use crate::path_separation::path_separation;
+use scene::{Posture, Scene};
 use design::equilibrium::force_response::ForceResponse;
 use design::hinge_law::{HingeEnergy, Order};
 use design::objective::design_problem::{Deployment, DesignProblem};
@@ -464,7 +463,7 @@ impl Deployed<'_> {
     fn kerf(&self) -> Known {
         let tolerance = self.scene.config.tolerances.kerf;
         let tolerance = tolerance.ok_or("no tolerances.kerf in the scene")?;
-        let narrower = -0.5 * standard_deviation(tolerance);
+        let narrower = -0.5 * (0.5 * tolerance);
         let errors: Vec<[f64; 3]> = (self.energies.iter())
             .zip(&self.designs)
             .map(|(energy, design)| {
@@ -479,7 +478,7 @@ impl Deployed<'_> {
     fn thickness(&self) -> Known {
         let tolerance = self.scene.config.tolerances.thickness;
         let tolerance = tolerance.ok_or("no tolerances.thickness in the scene")?;
-        let relative = standard_deviation(tolerance) / self.scene.material.thickness;
+        let relative = (0.5 * tolerance) / self.scene.material.thickness;
         let states = &self.deployment.final_step().deformations;
         let hinges = self.energies.iter().zip(&self.designs).zip(states);
         let errors: Vec<[f64; 3]> = hinges

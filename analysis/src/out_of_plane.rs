@@ -27,7 +27,7 @@
 //! with the stiffness K of the ligaments, the stiffness G by the forces in the plane, and the
 //! moments p by the bumps.
 
-use crate::{Scene, SupportKind};
+use scene::{Scene, SupportKind};
 use design::equilibrium::load_step::LoadStep;
 use design::equilibrium::tangent::TangentPattern;
 use design::geometry::plane::{I, complex, cross, point, turn};

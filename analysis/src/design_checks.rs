@@ -1,8 +1,8 @@
 //! What was measured of the design of a run after its search. The folder of the run keeps it, and
 //! its report states it.
 
-use crate::Posture;
-use crate::analysis::levels::Levels;
+use scene::Posture;
+use crate::levels::Levels;
 use design::pattern::design_vector::DesignVector;
 use serde::{Deserialize, Serialize};
 use std::io;

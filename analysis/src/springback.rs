@@ -1,8 +1,8 @@
 //! A deployed sheet that is unloaded: its equilibrium without loads, with hinges that are elastic
 //! about their residual deformations.
 
-use crate::Scene;
-use crate::analysis::actuation_curve::{ActuationCurve, Mover};
+use scene::Scene;
+use crate::actuation_curve::{ActuationCurve, Mover};
 use design::equilibrium::load_step::LoadStep;
 use design::hinge_law::{Order, PreparedLaw, Release, ReleasedLaw};
 use design::objective::design_problem::{Deployment, DesignError, DesignProblem, converged};

@@ -2,9 +2,9 @@
 //!
 //! Panels of a film that nothing holds leave the plane with their ligaments, which buckle
 //! (docs/results/flatness). On a table the weight presses the panels down about the ligaments, over
-//! the elasto-gravity length. Plates: [`out_of_plane`](super::out_of_plane).
+//! the elasto-gravity length. Plates: [`out_of_plane`](crate::out_of_plane).
 
-use crate::analysis::localisation::elasto_gravity_length;
+use crate::localisation::elasto_gravity_length;
 use hinge::SheetMaterial;
 
 /// Whether the panels of a sheet stay in their plane.

@@ -6,7 +6,7 @@ use design::optimise::outer_loop::{Ended, SearchState, Until, optimise};
 use design::optimise::search::SearchMethod;
 use design::{DesignProblem, DesignVector, HingeLaw, SurrogateLaw};
 use hinge::{HingeDeformation, HingeDesign};
-use scene::analysis::level_difference::{AtLevel, deployed};
+use analysis::level_difference::{AtLevel, deployed};
 use scene::{Level, Scene};
 use std::convert::Infallible;
 use std::sync::Arc;

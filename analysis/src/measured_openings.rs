@@ -4,7 +4,7 @@
 //! motions, with 2 n - 3 degrees of freedom for n marks, give the standard deviation of one
 //! coordinate for any prediction: the errors of the measurement, and the bending of the panels.
 
-use crate::analysis::path_fit::Fit;
+use crate::path_fit::Fit;
 use design::geometry::plane::{complex, point};
 use design::geometry::polygon::distance;
 use design::geometry::similarity::{Pair, Scale, Similarity};

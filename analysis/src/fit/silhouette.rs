@@ -242,7 +242,7 @@ impl Making {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::target::{Target, TargetShape};
+    use scene::target::{Target, TargetShape};
     use design::geometry::chamfer::chamfer;
     use design::sheet::cut_sheet::HingePoint;
     use design::sheet::cutting_process::{CuttingProcess, Hole};
