@@ -1,10 +1,10 @@
 //! A sheet that is fitted to its target before the search, and what is said of it.
 
 use crate::ui::progress::announce;
+use analysis::fit::scene::{FittedScene, Missed, Nearness, fitted, on_larger_stock};
+use analysis::out_of_plane::Stability;
 use anyhow::Result;
 use scene::Scene;
-use analysis::out_of_plane::Stability;
-use analysis::fit::scene::{FittedScene, Missed, Nearness, fitted, on_larger_stock};
 
 /// The number of missed parts that are named.
 const NAMED: usize = 4;

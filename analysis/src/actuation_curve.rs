@@ -12,6 +12,7 @@
 //! Where a stroke or a motion is prescribed, the load may have a maximum on the way. A dead load,
 //! such as a hung weight, opens the sheet only as far as the first state that carries it.
 
+use crate::unit::Unit;
 use design::equilibrium::displacement_control::{magnitude, work};
 use design::equilibrium::load_step::LoadStep;
 use design::equilibrium::load_steps::Increment;
@@ -187,8 +188,12 @@ impl ActuationCurve {
     }
 
     /// Units of displacement and load.
-    pub fn units(&self) -> [&'static str; 2] {
-        if self.translational { ["mm", "N"] } else { ["rad", "N mm"] }
+    pub fn units(&self) -> [Unit; 2] {
+        if self.translational {
+            [Unit::Millimetre, Unit::Newton]
+        } else {
+            [Unit::Radian, Unit::NewtonMillimetre]
+        }
     }
 }
 

@@ -1,9 +1,9 @@
 //! What was measured of the design of a run after its search. The folder of the run keeps it, and
 //! its report states it.
 
-use scene::Posture;
 use crate::levels::Levels;
 use design::pattern::design_vector::DesignVector;
+use scene::Posture;
 use serde::{Deserialize, Serialize};
 use std::io;
 use std::path::Path;

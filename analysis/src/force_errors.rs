@@ -81,18 +81,6 @@ impl ForceErrors {
     /// that are alike at hinges of like design and state: a Gaussian process over both, with the
     /// mirror symmetry of hinges.
     pub fn alike(sizes: &[[f64; 3]], designs: &[HingeDesign], states: &[HingeDeformation]) -> Self {
-        if let Ok(kind) = std::env::var("GP") {
-            let one = |h: usize, i: usize| {
-                let sign = if i == 1 && designs[h].alpha > PI / 2.0 { -1.0 } else { 1.0 };
-                (h, component(i, sign * sizes[h][i], &designs[h]))
-            };
-            let n = sizes.len();
-            return Self { modes: if kind == "common" {
-                (0..3).map(|i| (0..n).map(|h| one(h, i)).collect()).collect()
-            } else {
-                (0..3).flat_map(|i| (0..n).map(move |h| vec![one(h, i)]).collect::<Vec<_>>()).collect()
-            }};
-        }
         let places: Vec<Place> = std::iter::zip(designs, states).map(Place::new).collect();
         let mut modes = Vec::new();
         // F_a and M_theta of the mirror image are the same, F_s has the other sign.

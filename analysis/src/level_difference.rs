@@ -1,16 +1,17 @@
-//! By how much a sheet at one level differs from the same sheet at a finer one: the estimate of the
-//! error of the coarser level.
+//! Difference of a sheet at one level to the same sheet at a finer one: the estimate of the error of
+//! the coarser level.
 
 use crate::actuation_curve::ActuationCurve;
-use scene::{CoarseSearch, Level, LevelDifference, Scene, SceneError};
 use design::geometry::plane::{complex, point};
 use design::geometry::polygon::distance;
 use design::geometry::similarity::{Scale, Similarity};
 use design::hinge_law::DamageMeasure;
-use design::objective::design_problem::{Deployment, DesignError, DesignProblem};
+use design::objective::design_problem::{Deployment, DesignProblem};
 use design::optimise::outer_loop::SearchState;
 use design::pattern::design_vector::DesignVector;
 use design::sheet::kinematics::deployed_corners;
+use scene::{CoarseSearch, Level, LevelDifference, Scene};
+use support::fault::{Fault, fault};
 use support::statistics::rms_and_maximum;
 
 /// What is compared of a sheet at a level.
@@ -25,29 +26,19 @@ pub struct AtLevel {
     pub damage_peak: Option<f64>,
 }
 
-/// Why a sheet has no state at a level.
-#[derive(Debug, thiserror::Error)]
-#[allow(missing_docs, reason = "the message of a variant is its documentation")]
-pub enum LevelError {
-    #[error(transparent)]
-    Scene(#[from] SceneError),
-    #[error("at the level `{level}` {source}")]
-    Design { level: Level, source: DesignError },
-}
-
 /// Deploys a design of a scene at the level of the scene.
 pub fn deployed(
     scene: &Scene,
     design: &DesignVector,
-) -> Result<(DesignProblem, Deployment), LevelError> {
-    let problem = scene.problem()?;
+) -> Result<(DesignProblem, Deployment), Fault> {
+    let problem = scene.problem().map_err(|error| fault("", error.to_string(), ""))?;
     let deployment = problem.deploy(design).and_then(|deployment| {
         deployment.at_full_load()?;
         Ok(deployment)
     });
     let level = scene.config.level;
-    let deployment = deployment.map_err(|source| LevelError::Design { level, source })?;
-    Ok((problem, deployment))
+    let named = |error| fault("", format!("at the level `{level}` {error}"), "");
+    Ok((problem, deployment.map_err(named)?))
 }
 
 impl AtLevel {

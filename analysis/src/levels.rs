@@ -1,15 +1,16 @@
 //! What each level of a scene costs, and by how much it differs from the finest one.
 
 use crate::error_budget::{Cause, Contribution, ErrorBudget};
-use crate::level_difference::{AtLevel, LevelError, deployed};
-use scene::design_run::BegunRun;
-use scene::{Level, LevelDifference, Scene};
+use crate::level_difference::{AtLevel, deployed};
 use design::optimise::outer_loop::optimise;
 use design::pattern::design_vector::DesignVector;
+use scene::design_run::BegunRun;
+use scene::{Level, LevelDifference, Scene};
 use serde::{Deserialize, Serialize};
 use std::convert::Infallible;
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
+use support::fault::Fault;
 
 /// Steps of a search that are timed: one whose path is followed, and those up to the next one.
 const TIMED: usize = 10;
@@ -51,7 +52,7 @@ pub fn levels(
     design: &DesignVector,
     stop: &AtomicBool,
     progress: &mut dyn FnMut(Level),
-) -> Result<Levels, LevelError> {
+) -> Result<Levels, Fault> {
     let scenes = Level::ALL.into_iter();
     let scenes: Vec<Scene> = scenes.filter_map(|level| scene.at_level(level).ok()).collect();
     let finest = scenes.last().unwrap_or(scene);

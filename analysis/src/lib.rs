@@ -29,3 +29,4 @@ pub mod path_separation;
 pub mod refinement;
 pub mod shape_path;
 pub mod springback;
+pub mod unit;

@@ -27,7 +27,6 @@
 //! with the stiffness K of the ligaments, the stiffness G by the forces in the plane, and the
 //! moments p by the bumps.
 
-use scene::{Scene, SupportKind};
 use design::equilibrium::load_step::LoadStep;
 use design::equilibrium::tangent::TangentPattern;
 use design::geometry::plane::{I, complex, cross, point, turn};
@@ -37,6 +36,7 @@ use design::sheet::cut_sheet::{Hinge, Sheet};
 use design::sheet::kinematics::{Configuration, deployed};
 use faer::c64;
 use hinge::{HingeDeformation, Regime};
+use scene::{Scene, SupportKind};
 use serde::Serialize;
 use std::array::from_fn;
 

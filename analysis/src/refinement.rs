@@ -7,24 +7,18 @@
 
 use crate::error_budget::{Cause, ErrorBudget};
 use crate::level_difference::AtLevel;
+use design::optimise::outer_loop::{Ended, Until};
 use scene::design_run::{BegunRun, Designed, Earlier, InverseDesignError, LEVELS, OnStep};
 use scene::{Scene, SceneError};
-use design::optimise::outer_loop::{Ended, Until};
 use std::sync::atomic::AtomicBool;
+use support::fault::{Fault, fault};
 
 /// Why no design is found.
 #[derive(Debug, thiserror::Error)]
 #[allow(missing_docs, reason = "the message of a variant is its documentation")]
 pub enum RefinementError {
-    #[error(
-        "an accuracy is measured by two learned levels, and the scene has {found}: name a smaller network (surrogate.draft) or \
-         further ones (surrogate.ensemble), or design at one level (--level)"
-    )]
-    OneLevel { found: String },
-    #[error(
-        "{tolerance} mm is less than the rounding of a sheet of {size:.0} mm: ask for at least {least:.1e} mm"
-    )]
-    TooFine { tolerance: f64, size: f64, least: f64 },
+    #[error(transparent)]
+    Fault(#[from] Fault),
     #[error(transparent)]
     Design(#[from] InverseDesignError),
 }
@@ -52,14 +46,18 @@ pub fn refine(
     let size = scene.config.sheet.outline().size();
     let least = LEAST * size;
     if tolerance < least {
-        return Err(RefinementError::TooFine { tolerance, size, least });
+        let what = format!("{tolerance} mm is less than the rounding of a sheet of {size:.0} mm");
+        return Err(fault("", what, format!("ask for at least {least:.1e} mm")).into());
     }
-    let [coarsest, finer @ ..] = &levels[..] else {
-        return Err(RefinementError::OneLevel { found: "no learned level".to_owned() });
+    let ([coarsest], finer @ [_, ..]) = levels.split_at(levels.len().min(1)) else {
+        let found = levels.first().map_or("no learned level".into(), |it| format!("`{it}` alone"));
+        return Err(fault(
+            "",
+            format!("an accuracy is measured by two learned levels, and the scene has {found}"),
+            "name a smaller network (surrogate.draft) or further ones (surrogate.ensemble), or design at one level (--level)",
+        )
+        .into());
     };
-    if finer.is_empty() {
-        return Err(RefinementError::OneLevel { found: format!("`{coarsest}` alone") });
-    }
     let mut earlier = Earlier::default();
     let mut run = BegunRun::new(scene.at_level(*coarsest)?, None)?;
     for finer in finer {

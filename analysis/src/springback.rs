@@ -1,34 +1,17 @@
 //! A deployed sheet that is unloaded: its equilibrium without loads, with hinges that are elastic
 //! about their residual deformations.
 
-use scene::Scene;
 use crate::actuation_curve::{ActuationCurve, Mover};
 use design::equilibrium::load_step::LoadStep;
 use design::hinge_law::{Order, PreparedLaw, Release, ReleasedLaw};
 use design::objective::design_problem::{Deployment, DesignError, DesignProblem, converged};
-use design::objective::scores::outline_error_at;
 use design::sheet::kinematics::corner_distances;
 use hinge::{HingeDeformation, ReleasedHinge};
+use scene::Scene;
 use serde::Serialize;
 use std::array::from_fn;
 use support::statistics::rms_and_maximum;
 use surrogate::Springback;
-
-/// Why the unloaded state of a sheet cannot be computed.
-#[derive(Debug, thiserror::Error)]
-#[allow(missing_docs, reason = "the message of a variant is its documentation")]
-pub enum UnloadError {
-    #[error(
-        "{hinges} hinges are outside the training domain at full load, where the law of released hinges is not known"
-    )]
-    OutsideDomain { hinges: usize },
-    #[error(
-        "without its loads the sheet would open further, from {loaded:.1} to {free:.1} deg: the law of released hinges does not hold here"
-    )]
-    OpensFurther { loaded: f64, free: f64 },
-    #[error(transparent)]
-    Design(#[from] DesignError),
-}
 
 /// The residual opening of a sheet.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -37,17 +20,13 @@ pub struct ResidualShape {
     pub rotations: Vec<[f64; 2]>,
     /// Rotation at which every hinge by itself would be without forces (rad).
     pub rest_rotations: Vec<f64>,
-    /// Displacement along the loads, under load and without, in `displacement_unit`; `None` if
-    /// supports moved the sheet.
+    /// Displacement along the loads, under load and without (mm, or rad if couples move the sheet);
+    /// `None` if supports moved the sheet.
     pub displacement: Option<[f64; 2]>,
-    /// mm, or rad if couples move the sheet.
-    pub displacement_unit: &'static str,
     /// Movement of the panel corners: root mean square and maximum (mm).
     pub corners: [f64; 2],
     /// Whether the sheet snaps to another state while the loads are taken off.
     pub snaps: bool,
-    /// Root mean square distance of the outline to the target, under load and without (mm).
-    pub outline_error: [f64; 2],
 }
 
 impl ResidualShape {
@@ -72,15 +51,9 @@ impl ResidualShape {
         Ok(Self {
             rotations: rotations.map(|(on, off)| [on.theta, off.theta]).collect(),
             rest_rotations: hinges.iter().map(|hinge| hinge.rest.theta).collect(),
-            displacement_unit: match &curve {
-                Some(curve) if !curve.translational => "rad",
-                _ => "mm",
-            },
             displacement: curve.map(|curve| [curve.points[0][0], curve.points[1][0]]),
             snaps: path.iter().any(|step| step.jumps > 0),
             corners: rms_and_maximum(moved),
-            outline_error: [loaded, free]
-                .map(|step| outline_error_at(&problem.objective, deployment, step)),
         })
     }
 
@@ -108,11 +81,30 @@ pub fn unload(
     problem: &DesignProblem,
     law: &Springback,
     deployment: &Deployment,
-) -> Result<ResidualShape, UnloadError> {
+) -> Result<ResidualShape, String> {
     let outside = deployment.hinges_outside();
     if outside > 0 {
-        return Err(UnloadError::OutsideDomain { hinges: outside });
+        return Err(format!(
+            "{outside} hinges are outside the training domain at full load, where the law of released hinges is not known"
+        ));
     }
+    let stays = unloaded(scene, problem, law, deployment).map_err(|error| error.to_string())?;
+    let [loaded, free] = stays.mean_rotations().map(f64::to_degrees);
+    if free > loaded {
+        return Err(format!(
+            "without its loads the sheet would open further, from {loaded:.1} to {free:.1} deg: the law of released hinges does not hold here"
+        ));
+    }
+    Ok(stays)
+}
+
+/// The residual opening of a sheet whose hinges are inside the training domain.
+fn unloaded(
+    scene: &Scene,
+    problem: &DesignProblem,
+    law: &Springback,
+    deployment: &Deployment,
+) -> Result<ResidualShape, DesignError> {
     let mechanics = problem.model.mechanics().ok_or(DesignError::NoMechanics)?;
     let loaded = deployment.at_full_load()?;
     let (sheet, designs) = (&deployment.sheet, deployment.sheet.designs());
@@ -121,17 +113,11 @@ pub fn unload(
         Release { law, scale: scene.scale() }.hinges(&*prepared, &designs, &loaded.deformations);
     let released = ReleasedLaw(&hinges);
     let hinged = mechanics.hinged(sheet, &released, false);
-    let path = mechanics.solver.unload(hinged, loaded.configuration.clone());
-    let path = path.map_err(DesignError::from)?;
-    let stays = ResidualShape::new(problem, deployment, &hinges, &path)?;
-    let [loaded, free] = stays.mean_rotations().map(f64::to_degrees);
-    if free > loaded {
-        return Err(UnloadError::OpensFurther { loaded, free });
-    }
-    Ok(stays)
+    let path = mechanics.solver.unload(hinged, loaded.configuration.clone())?;
+    ResidualShape::new(problem, deployment, &hinges, &path)
 }
 
-/// By how much a person opens a sheet too far, in parts of its opening.
+/// Over-opening by a person, as a fraction of the opening.
 pub const TOO_FAR: f64 = 0.15;
 
 /// The work rate M theta of the hinges of a sheet that was opened [too far](TOO_FAR) and brought

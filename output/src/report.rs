@@ -1,39 +1,39 @@
 //! The report of a design run: the objective before and after, all hinges, warnings.
 
 mod budget;
-mod creep_and_springback;
+mod deployed;
 mod estimate;
-mod fact_sheet;
+mod facts;
+mod findings;
 mod hinge_row;
 pub(crate) mod numbers;
-mod rules;
 mod self_weight;
 mod text;
-mod warning;
 
 pub(crate) use budget::BUDGET_HEADING;
+pub(crate) use deployed::extent;
 pub(crate) use estimate::force_spreads;
-pub(crate) use fact_sheet::{extent, miss};
 pub(crate) use numbers::rounded;
 pub(crate) use text::worst_first;
 
 pub use budget::Budget;
-pub use creep_and_springback::{CreepAndSpringback, Released};
 pub use estimate::Estimate;
-pub use fact_sheet::{FactSheet, Reached, SpotCheckFacts, WeightFacts};
+pub use facts::{Fact, reached::Reached};
+pub use findings::{Rule, Warning, rules};
 pub use hinge_row::HingeRow;
-pub use self_weight::{Lying, SelfWeight};
-pub use warning::{Concern, Warning};
 
 use crate::cut_file::{CutLines, FabricationError};
-use crate::report::rules::{RuleInput, RunContext};
+use crate::report::deployed::{Deployed, Run};
+use crate::report::facts::facts;
+use crate::report::findings::findings;
+use crate::report::self_weight::SelfWeight;
+use analysis::design_checks::DesignChecks;
+use analysis::error_budget::ErrorBudget;
 use design::objective::design_problem::Deployment;
 use design::objective::scores::Scores;
 use design::optimise::outer_loop::Ended;
-use analysis::design_checks::DesignChecks;
-use analysis::error_budget::ErrorBudget;
 use scene::design_run::Designed;
-use scene::{CoarseSearch, Level, LevelDifference, Scene};
+use scene::{CoarseSearch, Level, Scene};
 use serde::Serialize;
 use support::severity::Severity;
 
@@ -65,7 +65,20 @@ pub struct Report {
     pub budget: Option<Budget>,
     /// What the sheet is made of, how far it opens under which load, and what the hinge law rests
     /// on.
-    pub facts: FactSheet,
+    pub facts: Vec<Fact>,
+    /// Load and stroke at the end of the path; `None` without equilibrium, or if nothing moves the
+    /// sheet.
+    #[serde(skip)]
+    pub reached: Option<Reached>,
+    /// How much of the hinges is modelled.
+    #[serde(skip)]
+    level: Level,
+    /// Extent of the flat sheet along x and y (mm).
+    #[serde(skip)]
+    flat_size: [f64; 2],
+    /// Whether the hinge law has a training domain.
+    #[serde(skip)]
+    has_domain: bool,
     /// Whether a cut file was written.
     pub cut_file: bool,
     /// All hinges of the best design.
@@ -82,13 +95,17 @@ pub fn warnings(
     deployment: &Deployment,
     cuts: &Result<CutLines, FabricationError>,
 ) -> Vec<Warning> {
-    rules::warnings(&RuleInput {
-        scene,
-        deployment,
-        cuts,
-        hinges: &HingeRow::all(scene, deployment),
-        run: None,
-    })
+    let hinges = HingeRow::all(scene, deployment);
+    findings(&Deployed { scene, deployment, cuts, hinges, run: None, warnings: Vec::new() })
+}
+
+/// The distance of the outline of a sheet of some flat size to its target (mm), in words.
+pub(crate) fn miss(outline_error: f64, [width, height]: [f64; 2]) -> String {
+    format!(
+        "the outline is {} mm (root mean square) from the target, {} % of the longer side of the flat sheet",
+        rounded(outline_error, 3),
+        rounded(100.0 * outline_error / width.max(height), 2)
+    )
 }
 
 impl Report {
@@ -109,47 +126,7 @@ impl Report {
 
     /// How far the outline is from the target, which is the first that a person asks.
     pub fn miss(&self) -> String {
-        miss(self.after.outline_error, self.facts.flat_size)
-    }
-
-    /// The searches at coarser levels: the error of each, measured by the next finer one.
-    pub fn coarse_search_lines(&self) -> Vec<String> {
-        let searches = self.coarse_searches.iter().map(|search| {
-            let percent = |load| format!(", the load by {} %", rounded(100.0 * load, 2));
-            let peak = |peak| format!(", D_peak by {}", rounded(peak, 2));
-            let LevelDifference {
-                corners,
-                load,
-                damage,
-            } = search.difference;
-            let reference = match search.finer {
-                Level::Final => "finite elements of every hinge".to_owned(),
-                finer => format!("`{finer}`"),
-            };
-            format!(
-                "searched at the level `{}` in {} steps: its corners differ from {reference} by {} mm at most{}{}; tolerance: {} mm",
-                search.level,
-                search.steps,
-                rounded(corners[1], 2),
-                load.map_or(String::new(), percent),
-                damage.map_or(String::new(), peak),
-                rounded(search.tolerance, 3)
-            )
-        });
-        let mut lines: Vec<String> = searches.collect();
-        if self.coarse_searches.last().is_some_and(|last| !last.suffices()) {
-            lines.push(match self.steps {
-                _ if self.facts.level == Level::Final => {
-                    "not converged: all rounds of finite elements were made".into()
-                }
-                0 => "that is less than the mesh of the windows is known to: see its row of the error budget".into(),
-                _ => format!(
-                    "searched on at `{}`, and no level is finer: `kirigami verify --equilibrium` compares with finite elements",
-                    self.facts.level
-                ),
-            });
-        }
-        lines
+        miss(self.after.outline_error, self.flat_size)
     }
 
     /// How the search ended.
@@ -175,46 +152,51 @@ impl Report {
         checks: DesignChecks,
         force: bool,
     ) -> Self {
-        let deployment = &designed.best.deployment;
+        let (deployment, problem) = (&designed.best.deployment, &designed.problem);
+        let reached = Reached::new(scene, problem, deployment);
+        let load = reached.as_ref().and_then(Reached::force);
+        let mass_kg = facts::sheet::mass_kg(scene, &deployment.sheet.outline.corners);
+        let run = Run {
+            designed,
+            after: Scores::new(&problem.objective, &designed.best),
+            checks,
+            weight: SelfWeight::new(scene, mass_kg, load),
+            reached,
+            estimate: Estimate::new(scene.networks(), deployment),
+        };
         let hinges = HingeRow::all(scene, deployment);
-        let facts = FactSheet::new(scene, &designed.problem, deployment, &hinges);
-        let last = designed.coarse_searches.last();
-        let by_elements = last.filter(|search| search.finer == Level::Final);
-        let residual = by_elements.map(|search| search.difference.corners[1]);
-        let errors = ErrorBudget::new(scene, &designed.problem, deployment, residual);
+        let mut deployed =
+            Deployed { scene, deployment, cuts, hinges, run: Some(&run), warnings: Vec::new() };
+        deployed.warnings = findings(&deployed);
+        let (facts, flat_size) = (facts(&deployed, &run), deployed.flat_size());
+        let Deployed { hinges, warnings, .. } = deployed;
+        let (search, coarse_searches) = (&designed.search, &designed.coarse_searches);
+        let last = coarse_searches.last().filter(|search| search.finer == Level::Final);
+        let residual = last.map(|search| search.difference.corners[1]);
+        let errors = ErrorBudget::new(scene, problem, deployment, residual);
         let dead_loads = scene.config.has_loads() && scene.config.drive.is_none();
-        let budget = errors.map(|errors| Budget::new(errors, &facts.self_weight, dead_loads));
-        let after = Scores::new(&designed.problem.objective, &designed.best);
-        let warnings = rules::warnings(&RuleInput {
-            scene,
-            deployment,
-            cuts,
-            hinges: &hinges,
-            run: Some(RunContext { designed, facts: &facts, after: &after, checks: &checks }),
-        });
         let mut report = Self {
             cut_file: false,
             title: scene.config.title.clone(),
             ended: designed.ended.clone(),
-            coarse_searches: designed.coarse_searches.clone(),
-            steps: designed.search.last().step,
-            setbacks: designed
-                .search
-                .history
-                .iter()
-                .filter(|record| record.setback.is_some())
-                .count(),
-            terms: designed.problem.objective.labels(),
-            before: match designed.coarse_searches.first() {
+            coarse_searches: coarse_searches.clone(),
+            steps: search.last().step,
+            setbacks: search.history.iter().filter(|record| record.setback.is_some()).count(),
+            terms: problem.objective.labels(),
+            before: match coarse_searches.first() {
                 Some(first) => first.start.clone(),
-                None => Scores::new(&designed.problem.objective, &designed.start),
+                None => Scores::new(&problem.objective, &designed.start),
             },
-            after,
-            estimate: Estimate::new(scene.networks(), deployment),
-            budget,
+            after: run.after,
+            estimate: run.estimate,
+            budget: errors.map(|errors| Budget::new(errors, &run.weight, dead_loads)),
             facts,
+            reached: run.reached,
+            level: scene.config.level,
+            flat_size,
+            has_domain: scene.surrogate().is_some(),
             warnings,
-            checks,
+            checks: run.checks,
             hinges,
         };
         report.cut_file = cuts.is_ok() && (force || report.errors().next().is_none());

@@ -3,8 +3,8 @@
 use crate::cut_file::{CutLines, SheetDrawing};
 use crate::report::Report;
 use crate::run_files::{RUN_FILES, Results, Writer};
-use scene::Scene;
 use analysis::design_checks::DesignChecks;
+use scene::Scene;
 use scene::design_run::{Designed, InverseDesignError};
 use std::io;
 use std::path::Path;

@@ -12,6 +12,7 @@
 use crate::recorded_path::paths_of;
 use crate::replay::{ElementWindows, UnsolvedHinge};
 use crate::verification_error::VerificationError;
+use analysis::error_budget::ErrorBudget;
 use design::geometry::polygon::{bounds, distance};
 use design::hinge_law::{CorrectedLaw, Correction, HingeLaw, MissingForces, Order};
 use design::objective::design_problem::{Deployment, DesignError, DesignProblem, Model};
@@ -20,7 +21,6 @@ use design::sheet::kinematics::{corner_distances, deployed_corners};
 use hinge::HingeSample;
 use mesher::Tier;
 use scene::Scene;
-use analysis::error_budget::ErrorBudget;
 use serde::Serialize;
 use std::sync::Arc;
 

@@ -3,6 +3,11 @@
 use crate::patch::SheetPart;
 use crate::verification_error::VerificationError;
 use crate::whole_sheet::{sheet_problem, with_support};
+use analysis::actuation_curve::ActuationCurve;
+use analysis::design_checks::WholeSheet;
+use analysis::flanks::flank_gap;
+use analysis::flatness::Flatness;
+use analysis::out_of_plane::{OutOfPlane, out_of_plane};
 use design::geometry::polygon::distance;
 use design::hinge_law::{DamageMeasure, Order};
 use design::objective::design_problem::{Deployment, DesignProblem};
@@ -12,11 +17,6 @@ use design::sheet::kinematics::{Configuration, deployed_corners, hinge_deformati
 use fe_driver::{PanelState, SheetSolve, SheetState, SheetSurface, Solved, ToolVersions};
 use hinge::HingeDesign;
 use mesher::Tier;
-use analysis::actuation_curve::ActuationCurve;
-use analysis::design_checks::WholeSheet;
-use analysis::flanks::flank_gap;
-use analysis::flatness::Flatness;
-use analysis::out_of_plane::{OutOfPlane, out_of_plane};
 use scene::{Posture, Scene};
 use serde::Serialize;
 use support::severity::{Finding, Severity};

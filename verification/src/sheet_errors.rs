@@ -3,10 +3,10 @@
 use crate::balanced_sheet::{
     BALANCED, BALANCED_FORCES, BalanceEnd, Balanced, Round, movements, size,
 };
+use analysis::error_budget::{Cause, Effect, ErrorBudget};
 use design::hinge_law::DamageMeasure;
 use design::objective::design_problem::Deployment;
 use mesher::Tier;
-use analysis::error_budget::{Cause, Effect, ErrorBudget};
 use serde::Serialize;
 use support::document::Document;
 use support::statistics::rms_and_maximum;

@@ -1,15 +1,11 @@
 //! The scene of a sheet that is fitted to the target of another: what the fit, the pulls and one
 //! equilibrium decide becomes keys.
 
-use crate::out_of_plane::Stability;
 use crate::fit::opening::safe_opening;
 use crate::fit::placement::place;
 use crate::fit::pulls::{Pull, candidates, pulls};
 use crate::fit::silhouette::{DIFFERENCE, Fitted, Making, ROTATIONS, fit};
-use scene::{
-    DriveConfig, Level, LigamentConfig, LoadConfig, OptimiserConfig, Posture, PostureConfig, Scene,
-    SceneConfig, SceneError, StartConfig, SupportConfig, SupportKind, rounded,
-};
+use crate::out_of_plane::Stability;
 use design::equilibrium::load_step::Status;
 use design::geometry::chamfer::chamfer;
 use design::geometry::plane::{complex, point};
@@ -23,6 +19,10 @@ use design::pattern::cut_pattern::Outline;
 use design::pattern::design_vector::WidthChart;
 use design::sheet::validity::{OVERLAP, overlap};
 use hinge::Regime;
+use scene::{
+    DriveConfig, Level, LigamentConfig, LoadConfig, OptimiserConfig, Posture, PostureConfig, Scene,
+    SceneConfig, SceneError, StartConfig, SupportConfig, SupportKind, rounded,
+};
 use std::cmp::Ordering;
 
 /// The largest opening that is planned (rad): 65 degrees.

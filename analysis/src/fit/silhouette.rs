@@ -242,10 +242,10 @@ impl Making {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use scene::target::{Target, TargetShape};
     use design::geometry::chamfer::chamfer;
     use design::sheet::cut_sheet::HingePoint;
     use design::sheet::cutting_process::{CuttingProcess, Hole};
+    use scene::target::{Target, TargetShape};
     use std::path::Path;
 
     const MAKING: Making = Making {

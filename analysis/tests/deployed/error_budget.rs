@@ -1,9 +1,9 @@
 //! The error budget of a sheet against sheets that have the errors.
 
 use crate::changed;
+use analysis::error_budget::{Cause, Effect, ErrorBudget};
 use design::Deployment;
 use design::sheet::kinematics::deployed_corners;
-use analysis::error_budget::{Cause, Effect, ErrorBudget};
 use scene::{Posture, PostureConfig, Scene, SceneConfig};
 use testkit::derivatives::{assert_close, assert_ratio};
 

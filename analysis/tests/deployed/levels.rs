@@ -1,12 +1,12 @@
 //! The levels of a scene: what each takes from it, their derivatives, and the difference to a finer
 //! one.
 
+use analysis::level_difference::{AtLevel, deployed};
 use design::hinge_law::{MeanLaw, Order};
 use design::optimise::outer_loop::{Ended, SearchState, Until, optimise};
 use design::optimise::search::SearchMethod;
 use design::{DesignProblem, DesignVector, HingeLaw, SurrogateLaw};
 use hinge::{HingeDeformation, HingeDesign};
-use analysis::level_difference::{AtLevel, deployed};
 use scene::{Level, Scene};
 use std::convert::Infallible;
 use std::sync::Arc;

@@ -1,8 +1,8 @@
 //! How far a measured sheet is from a state of its path.
 
-use design::sheet::cut_sheet::Sheet;
 use analysis::measured_openings::{MeasuredOpening, MeasuredPanel, openings};
 use analysis::path_fit::Fit;
+use design::sheet::cut_sheet::Sheet;
 use serde::Serialize;
 use support::statistics::root_mean_square;
 

@@ -1,13 +1,13 @@
 //! One hinge in the report.
 
+use analysis::flanks::flank_gap;
+use analysis::localisation::gamma;
+use analysis::path_separation::path_separation;
 use design::geometry::polygon::{distance, edges};
 use design::hinge_law::DamageMeasure;
 use design::objective::design_problem::Deployment;
 use design::sheet::cut_sheet::{Hinge, Sheet};
 use hinge::HingeDesign;
-use analysis::flanks::flank_gap;
-use analysis::localisation::gamma;
-use analysis::path_separation::path_separation;
 use scene::{Posture, Scene};
 use serde::Serialize;
 use surrogate::Surrogate;

@@ -3,11 +3,11 @@
 
 use super::learned::{brittle, learned, weights};
 use super::*;
+use analysis::actuation_curve::ActuationCurve;
+use analysis::design_checks::{DesignChecks, WholeSheet};
 use design::DesignError;
 use output::listing::equilibrium;
 use scene::Posture;
-use analysis::actuation_curve::ActuationCurve;
-use analysis::design_checks::{DesignChecks, WholeSheet};
 use scene::design_run::design_of_run;
 use scene::target::TargetShape;
 use support::severity::Severity;
