@@ -37,13 +37,13 @@ pub(crate) fn expected(fit: &FittedScene) -> String {
 }
 
 /// Whether something must hold a plate flat.
-fn in_its_plane(Stability { margin, leaves_at, .. }: Stability) -> String {
-    match leaves_at {
+fn in_its_plane(stability: Stability) -> String {
+    match stability.leaves_at {
         Some(opening) => format!(
             "\n  its panels leave the plane where hinges open by {:.0} deg: hold it flat, such as between two boards",
             opening.to_degrees()
         ),
-        None if margin < Stability::SAFE => {
+        None if !stability.is_safe() => {
             "\n  its panels nearly leave the plane: hold it flat, such as between two boards"
                 .to_owned()
         }

@@ -4,6 +4,7 @@
 //! (docs/results/flatness). On a table the weight presses the panels down about the ligaments, over
 //! the elasto-gravity length. Plates: [`out_of_plane`](crate::out_of_plane).
 
+use crate::calibration::CALIBRATION;
 use crate::localisation::elasto_gravity_length;
 use hinge::SheetMaterial;
 
@@ -19,8 +20,8 @@ pub enum Flatness {
 }
 
 impl Flatness {
-    /// Of an error of the corners (root mean square) over the longer side of the flat sheet, and
-    /// the largest tilt of a panel (deg).
+    /// The flatness by an error of the corners (root mean square) over the longer side of the flat
+    /// sheet, and by the largest tilt of a panel (deg).
     pub fn of(error: f64, tilt_deg: f64) -> Self {
         if error <= 0.003 && tilt_deg <= 1.0 {
             Self::Flat
@@ -32,17 +33,13 @@ impl Flatness {
     }
 }
 
-/// Error on a table, for each elasto-gravity length in the radius of a window.
-const TABLE: f64 = 0.01;
-/// The number of these lengths up to which the weight holds the panels down.
-const PRESSED: f64 = 3.2;
-
 /// The expected error of the panel corners (root mean square) over the longer side of a film that
 /// lies on a table, with windows of `r_win` (mm), whose hinges open by about 26 deg; `None` if its
 /// weight does not hold it down.
 pub fn error_on_table(material: &SheetMaterial, r_win: f64) -> Option<f64> {
     let ratio = elasto_gravity_length(material) / r_win;
-    (ratio <= PRESSED).then_some(TABLE * ratio)
+    let [error, pressed] = CALIBRATION.table.value;
+    (ratio <= pressed).then_some(error * ratio)
 }
 
 #[cfg(test)]

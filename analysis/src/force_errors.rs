@@ -23,107 +23,86 @@ const DESIGN_LENGTHS: [f64; 2] = [0.5, 0.5];
 /// Variance that is left out of alike errors, relative to the variance of a hinge.
 const LEFT_OUT: f64 = 1e-3;
 
-/// Errors of the hinge forces.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct ForceErrors {
-    /// Independent modes, each with the standard deviation one.
-    pub modes: Vec<Mode>,
+/// Independent errors of the hinge forces, each with the standard deviation one.
+pub type Modes = Vec<Mode>;
+
+/// One error of all hinges, along `forces`.
+pub fn common(forces: &[[f64; 3]]) -> Modes {
+    vec![forces.iter().copied().enumerate().collect()]
 }
 
-/// Standard deviations of a deployed sheet.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Deviations {
-    /// Of every panel corner: root of the sum of the variances along x and y (mm).
-    pub corners: Vec<f64>,
-    /// Of the load that the prescribed displacement takes (N or N mm); `None` under dead loads.
-    pub load: Option<f64>,
+/// Independent errors of the hinges, along the force of each.
+pub fn along(forces: &[[f64; 3]]) -> Modes {
+    forces.iter().copied().enumerate().map(|hinge| vec![hinge]).collect()
 }
 
-impl ForceErrors {
-    /// One error of all hinges, along `forces`.
-    pub fn common(forces: &[[f64; 3]]) -> Self {
-        Self { modes: vec![forces.iter().copied().enumerate().collect()] }
-    }
+/// Independent errors of the hinges in any direction: of the given root mean squares of the norm of
+/// (F_a, F_s, M_theta / w_lig) (N).
+pub fn isotropic(sizes: &[f64], designs: &[HingeDesign]) -> Modes {
+    let of_hinge = |(h, size): (usize, &f64)| {
+        let each = size / 3f64.sqrt();
+        (0..3).map(move |i| vec![(h, component(i, each, &designs[h]))])
+    };
+    sizes.iter().enumerate().flat_map(of_hinge).collect()
+}
 
-    /// Independent errors of the hinges, along the force of each.
-    pub fn along(forces: &[[f64; 3]]) -> Self {
-        let hinges = forces.iter().copied().enumerate();
-        Self { modes: hinges.map(|hinge| vec![hinge]).collect() }
-    }
+/// The deviations of several networks from their mean, of which the sample covariance is the
+/// estimate; each with one force a hinge.
+pub fn spread(networks: &[Vec<[f64; 3]>]) -> Modes {
+    let count = networks.len() as f64;
+    let deviation = |forces: &[[f64; 3]], h: usize, i: usize| {
+        let mean = networks.iter().map(|forces| forces[h][i]).sum::<f64>() / count;
+        (forces[h][i] - mean) / (count - 1.0).sqrt()
+    };
+    let mode = |forces: &Vec<[f64; 3]>| {
+        (0..forces.len()).map(|h| (h, from_fn(|i| deviation(forces, h, i)))).collect()
+    };
+    networks.iter().map(mode).collect()
+}
 
-    /// Independent errors of the hinges in any direction: of the given root mean squares of the
-    /// norm of (F_a, F_s, M_theta / w_lig) (N).
-    pub fn isotropic(sizes: &[f64], designs: &[HingeDesign]) -> Self {
-        let of_hinge = |(h, size): (usize, &f64)| {
-            let each = size / 3f64.sqrt();
-            (0..3).map(move |i| vec![(h, component(i, each, &designs[h]))])
-        };
-        Self { modes: sizes.iter().enumerate().flat_map(of_hinge).collect() }
-    }
-
-    /// The deviations of several networks from their mean, of which the sample covariance is the
-    /// estimate; each with one force a hinge.
-    pub fn spread(networks: &[Vec<[f64; 3]>]) -> Self {
-        let hinges = networks.first().map_or(0, Vec::len);
-        let count = networks.len() as f64;
-        let mean =
-            |h: usize, i: usize| networks.iter().map(|forces| forces[h][i]).sum::<f64>() / count;
-        let means: Vec<[f64; 3]> = (0..hinges).map(|h| from_fn(|i| mean(h, i))).collect();
-        let mode = |forces: &Vec<[f64; 3]>| {
-            let deviation =
-                |h: usize| from_fn(|i| (forces[h][i] - means[h][i]) / (count - 1.0).sqrt());
-            (0..hinges).map(|h| (h, deviation(h))).collect()
-        };
-        Self { modes: networks.iter().map(mode).collect() }
-    }
-
-    /// Errors with the standard deviations `sizes` (N) of (F_a, F_s, M_theta / w_lig) at each hinge
-    /// that are alike at hinges of like design and state: a Gaussian process over both, with the
-    /// mirror symmetry of hinges.
-    pub fn alike(sizes: &[[f64; 3]], designs: &[HingeDesign], states: &[HingeDeformation]) -> Self {
-        let places: Vec<Place> = std::iter::zip(designs, states).map(Place::new).collect();
-        let mut modes = Vec::new();
-        // F_a and M_theta of the mirror image are the same, F_s has the other sign.
-        for (parity, components) in [(1.0, &[0, 2][..]), (-1.0, &[1][..])] {
-            let columns = factor(places.len(), |h, k| places[h].correlation(&places[k], parity));
-            for &i in components {
-                modes.extend(columns.iter().map(|column| {
-                    let hinges = column.iter().enumerate();
-                    hinges
-                        .map(|(h, part)| (h, component(i, part * sizes[h][i], &designs[h])))
-                        .collect::<Mode>()
-                }));
-            }
+/// Errors with the standard deviations `sizes` (N) of (F_a, F_s, M_theta / w_lig) at each hinge that
+/// are alike at hinges of like design and state: a Gaussian process over both, with the mirror
+/// symmetry of hinges.
+pub fn alike(sizes: &[[f64; 3]], designs: &[HingeDesign], states: &[HingeDeformation]) -> Modes {
+    let places: Vec<Place> = std::iter::zip(designs, states).map(Place::new).collect();
+    let mut modes = Modes::new();
+    // F_a and M_theta of the mirror image are the same, F_s has the other sign.
+    for (parity, components) in [(1.0, &[0, 2][..]), (-1.0, &[1][..])] {
+        let columns = factor(places.len(), |h, k| places[h].correlation(&places[k], parity));
+        for &i in components {
+            modes.extend(columns.iter().map(|column| {
+                let error =
+                    |(h, part): (usize, &f64)| (h, component(i, part * sizes[h][i], &designs[h]));
+                column.iter().enumerate().map(error).collect::<Mode>()
+            }));
         }
-        Self { modes }
     }
+    modes
+}
 
-    /// The standard deviations of a sheet at a load step whose response is given; `None` if its
-    /// tangent is singular.
-    pub fn deviations(
-        &self,
-        response: &ForceResponse,
-        sheet: &Sheet,
-        step: &LoadStep,
-    ) -> Option<Deviations> {
-        let arms = corner_arms(sheet, step);
-        let mut variances = vec![0.0; arms.len()];
-        let mut of_load = None;
-        for mode in &self.modes {
-            let Response { motions, load } = response.to(mode)?;
-            for ((panel, [x, y]), variance) in arms.iter().zip(&mut variances) {
-                let [u_x, u_y, phi] = motions[*panel];
-                *variance += (u_x - phi * y).powi(2) + (u_y + phi * x).powi(2);
-            }
-            if let Some(load) = load {
-                *of_load.get_or_insert(0.0) += load * load;
-            }
+/// The standard deviations of a sheet at a load step whose response is given: of every panel corner,
+/// the root of the sum of the variances along x and y (mm), and of the load that the prescribed
+/// displacement takes (N or N mm; `None` under dead loads). `None` if its tangent is singular.
+pub fn deviations(
+    modes: &Modes,
+    response: &ForceResponse,
+    sheet: &Sheet,
+    step: &LoadStep,
+) -> Option<(Vec<f64>, Option<f64>)> {
+    let arms = corner_arms(sheet, step);
+    let mut variances = vec![0.0; arms.len()];
+    let mut of_load = None;
+    for mode in modes {
+        let Response { motions, load } = response.to(mode)?;
+        for ((panel, [x, y]), variance) in arms.iter().zip(&mut variances) {
+            let [u_x, u_y, phi] = motions[*panel];
+            *variance += (u_x - phi * y).powi(2) + (u_y + phi * x).powi(2);
         }
-        Some(Deviations {
-            corners: variances.into_iter().map(f64::sqrt).collect(),
-            load: of_load.map(f64::sqrt),
-        })
+        if let Some(load) = load {
+            *of_load.get_or_insert(0.0) += load * load;
+        }
     }
+    Some((variances.into_iter().map(f64::sqrt).collect(), of_load.map(f64::sqrt)))
 }
 
 /// A force of `size` (N) in one component of (F_a, F_s, M_theta / w_lig).
@@ -201,12 +180,12 @@ mod tests {
     use super::*;
     use hinge::HingeConstants;
 
-    fn variance(errors: &ForceErrors, h: usize, k: usize, i: usize) -> f64 {
+    fn variance(errors: &Modes, h: usize, k: usize, i: usize) -> f64 {
         let at = |mode: &Mode, h: usize| {
             let here = mode.iter().filter(|(hinge, _)| *hinge == h);
             here.map(|(_, force)| force[i]).sum::<f64>()
         };
-        let modes = errors.modes.iter();
+        let modes = errors.iter();
         modes.map(|mode| at(mode, h) * at(mode, k)).sum()
     }
 
@@ -222,7 +201,7 @@ mod tests {
     fn alike_errors_have_their_sizes_and_the_symmetry_of_hinges() {
         let (designs, states) = hinges();
         let sizes = vec![[1.0, 2.0, 3.0]; 3];
-        let errors = ForceErrors::alike(&sizes, &designs, &states);
+        let errors = alike(&sizes, &designs, &states);
         let arms = [1.0, 1.0, 18.0];
         for (i, size, sign) in [(0, 1.0, 1.0), (1, 2.0, -1.0), (2, 3.0, 1.0)] {
             let expected: f64 = f64::powi(size * arms[i], 2);
@@ -238,7 +217,7 @@ mod tests {
     fn the_spread_of_networks_is_their_sample_covariance() {
         let networks = [[1.0, 4.0], [2.0, 2.0], [6.0, 3.0]];
         let networks = networks.map(|[one, two]| vec![[one, 0.0, 0.0], [two, 0.0, 0.0]]);
-        let errors = ForceErrors::spread(&networks);
+        let errors = spread(&networks);
         assert!((variance(&errors, 0, 0, 0) - 7.0).abs() < 1e-12);
         assert!((variance(&errors, 0, 1, 0) + 0.5).abs() < 1e-12);
     }

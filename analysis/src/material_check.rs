@@ -5,13 +5,14 @@
 //!
 //! | quantity | value |
 //! |---|---|
-//! | of a film: strain at which it buckles | (t / w)^2 / 2, at the rotation t / w |
-//! | of a film: rotation at which a fold as long as the ligament is wide yields at its surface | 2 w / t times the yield strain |
-//! | rotation at which the most strained 1 % tears, at the tip | fracture strain and yield strain over [`tip_strain`] |
+//! | film: strain at which it buckles | (t / w)^2 / 2, at the rotation t / w |
+//! | film: rotation at which a fold as long as the ligament is wide yields at its surface | 2 w / t times the yield strain |
+//! | rotation at which the most strained 1 % tears, at the tip | fracture strain and yield strain over the strain at the tip |
 //! | critical panel edge, Gamma | (22), (21) |
 //!
 //! docs/MATERIALS.md has the windows that the strain at the tip comes from.
 
+use crate::calibration::CALIBRATION;
 use crate::localisation::{critical_edge, gamma};
 use hinge::{Regime, SheetMaterial};
 use serde::Serialize;
@@ -29,7 +30,7 @@ pub struct Intended {
 impl Intended {
     /// A sheet of the given thickness (mm) with the ligaments for which there are hinge data.
     pub fn usual(thickness: f64, regime: Regime) -> Self {
-        let w_lig = known_slenderness(regime).map(|ratio| ratio * thickness);
+        let w_lig = CALIBRATION.of(regime).slenderness.value.map(|ratio| ratio * thickness);
         Self { w_lig, lying_pitch: None }
     }
 }
@@ -70,39 +71,11 @@ pub struct MaterialCheck {
 /// Limit of an opening (deg).
 const HALF_TURN: f64 = 180.0;
 
-/// Plastic strain of the most strained 1 % of a ligament over the rotation (1/rad).
-pub const fn tip_strain(regime: Regime) -> [f64; 2] {
-    match regime {
-        Regime::Film => [0.05, 0.3],
-        Regime::Plate => [0.4, 1.7],
-    }
-}
-
-/// Range of w / t of the shipped hinge data.
-pub const fn known_slenderness(regime: Regime) -> [f64; 2] {
-    match regime {
-        Regime::Film => [10.0, 50.0],
-        Regime::Plate => [0.3, 0.95],
-    }
-}
-
-/// The opening of most sheets (deg).
-const fn usual_opening(regime: Regime) -> f64 {
-    match regime {
-        Regime::Film => 60.0,
-        Regime::Plate => 25.0,
-    }
-}
-
 /// Densities below this (kg/m^3) are densities of plastics and papers.
 const LIGHTEST_METAL: f64 = 1700.0;
 /// Maximum of Young's modulus over density of plastics without fibres and of papers (MPa m^3/kg);
 /// paper has up to 12.
 const STIFFEST_PLASTIC: f64 = 12.0;
-/// Slope of a softening table over Young's modulus at which coarse meshes still converge: the drop
-/// of the polyester film from 44 to 33.6 MPa over a strain of 0.05.
-const STEEPEST_DROP: f64 = 0.07;
-
 impl MaterialCheck {
     /// Checks a valid material for an intended use with positive lengths.
     pub fn new(material: &SheetMaterial, intended: &Intended) -> Self {
@@ -138,7 +111,7 @@ impl LigamentEstimate {
         let of_film = |angle: f64| (regime == Regime::Film).then_some(angle.to_degrees());
         // The fracture strain is plastic.
         let tears = material.fracture_strain + yield_strain(material);
-        let [least, most] = tip_strain(regime).map(|strain| tears / strain);
+        let [least, most] = CALIBRATION.of(regime).tip_strain.value.map(|strain| tears / strain);
         Self {
             w_lig,
             slenderness,
@@ -195,13 +168,14 @@ fn law(material: &SheetMaterial) -> Vec<Finding> {
         drop.and_then(|pair| <&[[f64; 2]; 2]>::try_from(pair).ok())
         && to < from
     {
+        let steepest = CALIBRATION.steepest_drop.value;
         let steepness = (from - to) / (end - start) / young;
         let fall = format!(
             "the table falls from {from} to {to} MPa between the plastic strains {start} and {end}"
         );
-        verdicts.push(if steepness > STEEPEST_DROP {
+        verdicts.push(if steepness > steepest {
             let steep = format!(
-                "{fall}, by {steepness:.3} E: above {STEEPEST_DROP} E coarse meshes diverge; spread the fall over a longer \
+                "{fall}, by {steepness:.3} E: above {steepest} E coarse meshes diverge; spread the fall over a longer \
                  strain"
             );
             Severity::Warning.finding(steep)
@@ -252,7 +226,7 @@ fn slenderness(ligaments: &[LigamentEstimate]) -> Option<Finding> {
     // Rounding of a width given as a multiple of the thickness.
     let slack = 1e-9;
     let outside = ligaments.iter().filter(|ligament| {
-        let [least, most] = known_slenderness(ligament.regime());
+        let [least, most] = CALIBRATION.of(ligament.regime()).slenderness.value;
         !(least * (1.0 - slack)..=most * (1.0 + slack)).contains(&ligament.slenderness)
     });
     let found: Vec<String> = outside
@@ -262,7 +236,7 @@ fn slenderness(ligaments: &[LigamentEstimate]) -> Option<Finding> {
         })
         .collect();
     (!found.is_empty()).then(|| {
-        let [[narrow, wide], [least, most]] = [Regime::Plate, Regime::Film].map(known_slenderness);
+        let [[narrow, wide], [least, most]] = [Regime::Plate, Regime::Film].map(|regime| CALIBRATION.of(regime).slenderness.value);
         let message = format!(
             "a ligament of {}: the shipped hinge data cover {narrow} to {wide} of plates and {least} to {most} of films, so try a \
              window (kirigami solve) before a campaign",
@@ -297,8 +271,9 @@ fn panels(intended: &Intended, ligaments: &[LigamentEstimate]) -> Option<Finding
 /// The strain at the tip against the fracture strain.
 fn tearing(material: &SheetMaterial, ligament: &LigamentEstimate) -> Finding {
     let regime = ligament.regime();
-    let ([least, most], [from, to]) = (tip_strain(regime), ligament.tears_at_deg);
-    let opening = usual_opening(regime);
+    let ([least, most], [from, to]) =
+        (CALIBRATION.of(regime).tip_strain.value, ligament.tears_at_deg);
+    let opening = CALIBRATION.of(regime).opening.value;
     let (severity, tears) = if to < opening {
         (Severity::Error, "tears")
     } else if from < opening {

@@ -27,6 +27,7 @@
 //! with the stiffness K of the ligaments, the stiffness G by the forces in the plane, and the
 //! moments p by the bumps.
 
+use crate::calibration::CALIBRATION;
 use design::equilibrium::load_step::LoadStep;
 use design::equilibrium::tangent::TangentPattern;
 use design::geometry::plane::{I, complex, cross, point, turn};
@@ -40,16 +41,15 @@ use scene::{Scene, SupportKind};
 use serde::Serialize;
 use std::array::from_fn;
 
-/// c. It is above 1 as one side of a ligament that has yielded unloads elastically when it bends.
-const UNLOADING: f64 = 1.7;
-/// Stiffness of a ligament against a difference of heights over K_aa: so large that there is none.
-const RIGID: f64 = 1e3;
 /// The least margin that is distinguished.
 const LEAST_MARGIN: f64 = 0.05;
 /// The largest margin that is distinguished.
 pub const MOST: f64 = 20.0;
 /// Number of halvings of this interval: to 0.2 %.
 const HALVINGS: usize = 12;
+
+/// Stiffness of a ligament against a difference of heights over K_aa: so large that there is none.
+const RIGID: f64 = 1e3;
 /// Smallest stiffness along a ligament over that in the flat sheet.
 const LEAST: f64 = 1e-3;
 
@@ -70,15 +70,12 @@ pub struct Stability {
 }
 
 impl Stability {
-    /// Smallest margin of a plate whose panels tilt by less than a degree (docs/results/flatness).
-    pub const SAFE: f64 = 1.2;
-
     /// Whether nothing needs to hold it flat.
     pub fn is_safe(self) -> bool {
-        self.margin >= Self::SAFE
+        self.margin >= CALIBRATION.safe_margin.value
     }
 
-    /// Of a deployed plate; `None` where [`out_of_plane`] has none.
+    /// The stability of a deployed plate; `None` where [`out_of_plane`] has none.
     pub fn new(scene: &Scene, problem: &DesignProblem, deployment: &Deployment) -> Option<Self> {
         let path = out_of_plane(scene, problem, deployment)?;
         let states: Vec<[f64; 2]> = std::iter::zip(&path, &deployment.path)
@@ -151,15 +148,7 @@ pub fn out_of_plane(
     let law = mechanics.law.prepare(&sheet.designs());
     let undeformed = vec![HingeDeformation::default(); sheet.hinges.len()];
     let flat = law.energies(&undeformed, Order::Tangent);
-    let mut supported = vec![[false; 3]; sheet.panels.len()];
-    let attachments = scene.actuation().attachments;
-    for (support, attachment) in std::iter::zip(&scene.config.supports, &attachments) {
-        let [height, tilts @ ..] = &mut supported[attachment.panel];
-        *height = true;
-        let clipped = support.kind == SupportKind::Clamp || attachment.clip.is_some();
-        tilts.iter_mut().for_each(|held| *held |= clipped);
-    }
-    let pattern = TangentPattern::new(sheet.grid, supported.as_flattened());
+    let pattern = TangentPattern::new(sheet.grid, supported(scene, sheet).as_flattened());
     let of_step = |step: &LoadStep| {
         let elastic = law.energies(&step.deformations, Order::Tangent);
         // Contact carries forces, but does not stiffen ligaments.
@@ -168,21 +157,15 @@ pub fn out_of_plane(
             contact.add(&mut total, &step.deformations);
         }
         let mut loads = vec![[0.0; 3]; sheet.panels.len()];
-        let blocks = (0..sheet.hinges.len()).map(|h| {
+        let blocks = sheet.hinges.iter().enumerate().map(|(h, hinge)| {
             let ligament = Ligament::new(sheet, h, &step.configuration, total[h].forces);
-            let theta = step.deformations[h].theta;
-            let stiffness = Stiffness::new(
-                [&flat[h].tangent, &elastic[h].tangent],
-                ligament.moment / theta,
-                sheet.hinges[h].w_lig,
-                thickness,
-            );
-            let [a, b] = ligament.moments_of_bump(sheet.hinges[h].w_lig, thickness);
-            let hinge = &sheet.hinges[h];
-            for (panel, moments) in [(hinge.panel_a(), a), (hinge.panel_b(), b)] {
-                for (sum, moment) in loads[panel][1..].iter_mut().zip(moments) {
-                    *sum += moment;
-                }
+            let secant = ligament.moment / step.deformations[h].theta;
+            let tangents = [&flat[h].tangent, &elastic[h].tangent];
+            let stiffness = Stiffness::new(tangents, secant, hinge.w_lig, thickness);
+            let [a, b] = ligament.moments_of_bump(hinge.w_lig, thickness);
+            for (panel, [x, y]) in [(hinge.panel_a(), a), (hinge.panel_b(), b)] {
+                loads[panel][1] += x;
+                loads[panel][2] += y;
             }
             (ligament.elastic(&stiffness), ligament.geometric())
         });
@@ -208,6 +191,19 @@ pub fn out_of_plane(
         before = Some(now);
     }
     Some(path)
+}
+
+/// Whether the supports hold (z, w_x, w_y) of every panel.
+fn supported(scene: &Scene, sheet: &Sheet) -> Vec<[bool; 3]> {
+    let mut supported = vec![[false; 3]; sheet.panels.len()];
+    let attachments = scene.actuation().attachments;
+    for (support, attachment) in std::iter::zip(&scene.config.supports, &attachments) {
+        let [height, tilts @ ..] = &mut supported[attachment.panel];
+        *height = true;
+        let clipped = support.kind == SupportKind::Clamp || attachment.clip.is_some();
+        tilts.iter_mut().for_each(|held| *held |= clipped);
+    }
+    supported
 }
 
 /// What forces and moments in the plane of a state do out of it.
@@ -276,16 +272,16 @@ fn margin(pattern: &TangentPattern, elastic: &[f64], geometric: &[f64]) -> Optio
 
 /// The stiffnesses of a ligament out of the plane.
 struct Stiffness {
-    /// Against a difference of heights (N/mm).
+    /// Resistance to a difference of heights (N/mm).
     height: f64,
-    /// Against bending and twist (N mm).
+    /// Resistance to bending and twist (N mm).
     bend: f64,
     twist: f64,
 }
 
 impl Stiffness {
-    /// From the tangents of the hinge law in the flat sheet and in a state, and the `secant`
-    /// stiffness of the rotation there (N mm).
+    /// The stiffnesses by the tangents of the hinge law in the flat sheet and in a state, and by the
+    /// `secant` stiffness of the rotation there (N mm).
     fn new([flat, state]: [&[[f64; 3]; 3]; 2], secant: f64, w_lig: f64, thickness: f64) -> Self {
         let axial = state[0][0].max(LEAST * flat[0][0]);
         // About the middle, where a rotation causes no axial force.
@@ -299,7 +295,7 @@ impl Stiffness {
         let bending = thickness * w_lig.powi(3) / 12.0;
         Self {
             height: RIGID * flat[0][0],
-            bend: UNLOADING * axial * thickness.powi(2) / 12.0,
+            bend: CALIBRATION.unloading.value * axial * thickness.powi(2) / 12.0,
             twist: torsion / bending * rotation / 3.0,
         }
     }
@@ -351,7 +347,7 @@ impl Ligament {
         }
     }
 
-    /// The stiffness by its own.
+    /// The stiffness of the ligament itself.
     fn elastic(&self, stiffness: &Stiffness) -> Block {
         let [a, b] = self.arms;
         let turn = |c64 { re: x, im: y }: c64| [0.0, -x, -y, 0.0, x, y];
@@ -405,131 +401,4 @@ impl Ligament {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use design::pattern::grid::Grid;
-    use std::path::Path;
-    use testkit::derivatives::assert_close;
-
-    fn deployed_scene(name: &str) -> (Scene, Deployment) {
-        let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("../configs/scenes");
-        let scene = Scene::read(&scenes.join(name)).unwrap();
-        let deployment = scene.problem().unwrap().deploy(&scene.start()).unwrap();
-        (scene, deployment)
-    }
-
-    /// A panel that a force pushes towards its hinge with a clamped panel tips over it at the load
-    /// of a rigid bar on a spring.
-    #[test]
-    fn a_pushed_panel_tips_over_at_the_load_of_a_bar_on_a_spring() {
-        let (load, arm, bend) = (3.0, 40.0, 500.0);
-        let along = turn(0.4);
-        let ligament = Ligament {
-            along,
-            arms: [10.0 * along, -arm * along],
-            force: -load * along,
-            moment: 0.0,
-        };
-        let stiffness = Stiffness { height: 1e6, bend, twist: 0.1 * bend };
-        let pattern =
-            TangentPattern::new(Grid { m: 2, n: 1 }, &[true, true, true, false, false, false]);
-        let [elastic, geometric] = [ligament.elastic(&stiffness), ligament.geometric()]
-            .map(|block| pattern.assemble(std::iter::once(block)));
-        let found = margin(&pattern, &elastic, &geometric).unwrap();
-        assert_close(found, bend / (load * arm), 0.02);
-        // Pulled, it stays.
-        let pulled: Vec<f64> = geometric.iter().map(|entry| -entry).collect();
-        assert_eq!(margin(&pattern, &elastic, &pulled), Some(MOST));
-        // Nothing holds it.
-        let free = TangentPattern::new(Grid { m: 2, n: 1 }, &[false; 6]);
-        let loose = free.assemble(std::iter::once(ligament.elastic(&stiffness)));
-        assert_eq!(margin(&free, &loose, &loose), None);
-    }
-
-    /// A pulled panel tilts by the moment of the force at the height of the bump, less the more it
-    /// is pulled, in one load step as in two.
-    #[test]
-    fn a_bump_tilts_a_pulled_panel() {
-        let (load, arm, bend, w_lig, thickness) = (3.0, 40.0, 500.0, 2.0, 3.0);
-        let along = turn(0.4);
-        let pattern =
-            TangentPattern::new(Grid { m: 2, n: 1 }, &[true, true, true, false, false, false]);
-        let of = |share: f64| {
-            let ligament = Ligament {
-                along,
-                arms: [10.0 * along, -arm * along],
-                force: share * load * along,
-                moment: 0.0,
-            };
-            let stiffness = Stiffness { height: 1e9, bend, twist: bend };
-            let [_, [x, y]] = ligament.moments_of_bump(w_lig, thickness);
-            let [elastic, geometric] = [ligament.elastic(&stiffness), ligament.geometric()]
-                .map(|block| pattern.assemble(std::iter::once(block)));
-            OfForces { elastic, geometric, loads: pattern.gather(&[[0.0; 3], [0.0, x, y]]) }
-        };
-        let none = vec![0.0; 3];
-        let half = of(0.5);
-        let at_half = moved(&pattern, None, &half, none.clone()).unwrap();
-        for motions in
-            [moved(&pattern, Some(&half), &of(1.0), at_half), moved(&pattern, None, &of(1.0), none)]
-        {
-            let [_, [z, x, y]] = pattern.spread(&motions.unwrap())[..] else { unreachable!() };
-            let height = Regime::Plate.bump() * thickness * f64::exp(-0.25);
-            let tilt = load * height / (bend + load * arm);
-            assert_close(x.hypot(y), tilt, 1e-6);
-            // The far end of the arm rises to the line of the force.
-            let tilted = c64::new(x, y) / (I * along);
-            assert_close(tilted.re.abs(), tilt, 1e-6);
-            assert_close(z.abs(), arm * tilt, 1e-6);
-        }
-    }
-
-    /// As in any equilibrium, the stiffness by the forces is symmetric.
-    #[test]
-    fn forces_in_equilibrium_have_a_symmetric_stiffness() {
-        let (scene, deployment) = deployed_scene("linear-7x7.toml");
-        let problem = scene.problem().unwrap();
-        let (sheet, step) = (&deployment.sheet, deployment.final_step());
-        let mechanics = problem.model.mechanics().unwrap();
-        let prepared = mechanics.law.prepare(&sheet.designs());
-        let hinged = mechanics.hinged(sheet, &*prepared, false);
-        let energies = hinged.energies(&step.deformations, Order::Forces);
-        let mut turning = vec![0.0; sheet.panels.len()];
-        let mut size = 0.0_f64;
-        for (h, energy) in energies.iter().enumerate() {
-            let ligament = Ligament::new(sheet, h, &step.configuration, energy.forces);
-            let block = ligament.geometric();
-            let hinge = &sheet.hinges[h];
-            for (panel, at) in [(hinge.panel_a(), 0), (hinge.panel_b(), 3)] {
-                turning[panel] += block[at + 1][at + 2] - block[at + 2][at + 1];
-                size = size.max(block[at + 1][at + 2].abs());
-            }
-            // Between its panels it is symmetric by itself.
-            let between: [[f64; 3]; 3] = from_fn(|i| from_fn(|j| block[i][j + 3]));
-            let mirrored: [[f64; 3]; 3] = from_fn(|i| from_fn(|j| block[j + 3][i]));
-            assert_eq!(between, mirrored);
-        }
-        let held: Vec<usize> = (scene.config.supports.iter())
-            .map(|support| support.panel[1] * sheet.grid.m + support.panel[0])
-            .collect();
-        let free = (0..turning.len()).filter(|panel| !held.contains(panel));
-        for panel in free {
-            assert!(turning[panel].abs() < 1e-6 * size, "{panel}: {}", turning[panel]);
-        }
-    }
-
-    /// By finite elements panels of the design tilt by 0.28 deg and its corners are 0.20 mm out of
-    /// the plane, root mean square (docs/results/plates).
-    #[test]
-    fn the_a4_plate_stays_nearly_in_its_plane_and_a_film_has_no_margin() {
-        let (scene, deployment) = deployed_scene("a4-plate.toml");
-        let stability = Stability::new(&scene, &scene.problem().unwrap(), &deployment).unwrap();
-        assert!(stability.margin > Stability::SAFE, "{stability:?}");
-        assert_eq!(stability.leaves_at, None);
-        let tilt_deg = stability.tilt.unwrap().to_degrees();
-        assert!((0.15..0.5).contains(&tilt_deg), "{tilt_deg}");
-        let (film, deployment) = deployed_scene("pet-3x3.toml");
-        let film = out_of_plane(&film, &film.problem().unwrap(), &deployment);
-        assert_eq!(film, None);
-    }
-}
+mod tests;

@@ -7,7 +7,6 @@ mod facts;
 mod findings;
 mod hinge_row;
 pub(crate) mod numbers;
-mod self_weight;
 mod text;
 
 pub(crate) use budget::BUDGET_HEADING;
@@ -18,15 +17,14 @@ pub(crate) use text::worst_first;
 
 pub use budget::Budget;
 pub use estimate::Estimate;
-pub use facts::{Fact, reached::Reached};
+pub use facts::{Fact, Reached};
 pub use findings::{Rule, Warning, rules};
 pub use hinge_row::HingeRow;
 
 use crate::cut_file::{CutLines, FabricationError};
-use crate::report::deployed::{Deployed, Run};
+use crate::report::deployed::{Deployed, Run, left_out};
 use crate::report::facts::facts;
 use crate::report::findings::findings;
-use crate::report::self_weight::SelfWeight;
 use analysis::design_checks::DesignChecks;
 use analysis::error_budget::ErrorBudget;
 use design::objective::design_problem::Deployment;
@@ -153,15 +151,11 @@ impl Report {
         force: bool,
     ) -> Self {
         let (deployment, problem) = (&designed.best.deployment, &designed.problem);
-        let reached = Reached::new(scene, problem, deployment);
-        let load = reached.as_ref().and_then(Reached::force);
-        let mass_kg = facts::sheet::mass_kg(scene, &deployment.sheet.outline.corners);
         let run = Run {
             designed,
             after: Scores::new(&problem.objective, &designed.best),
             checks,
-            weight: SelfWeight::new(scene, mass_kg, load),
-            reached,
+            reached: Reached::new(scene, problem, deployment),
             estimate: Estimate::new(scene.networks(), deployment),
         };
         let hinges = HingeRow::all(scene, deployment);
@@ -189,7 +183,7 @@ impl Report {
             },
             after: run.after,
             estimate: run.estimate,
-            budget: errors.map(|errors| Budget::new(errors, &run.weight, dead_loads)),
+            budget: errors.map(|errors| Budget::new(errors, left_out(scene), dead_loads)),
             facts,
             reached: run.reached,
             level: scene.config.level,

@@ -2,15 +2,16 @@
 
 use crate::cut_file::{CutLines, FabricationError};
 use crate::report::estimate::Estimate;
-use crate::report::facts::reached::Reached;
+use crate::report::facts::Reached;
 use crate::report::findings::Warning;
 use crate::report::hinge_row::HingeRow;
-use crate::report::self_weight::SelfWeight;
+use crate::report::numbers::rounded;
 use analysis::design_checks::{DesignChecks, WholeSheet};
+use design::geometry::polygon::{area, bounds};
 use design::objective::design_problem::Deployment;
 use design::objective::scores::Scores;
-use scene::Scene;
 use scene::design_run::Designed;
+use scene::{Posture, Scene};
 
 /// A deployed design.
 pub(super) struct Deployed<'a> {
@@ -34,7 +35,6 @@ pub(super) struct Run<'a> {
     /// What was measured of it after the search.
     pub checks: DesignChecks,
     pub reached: Option<Reached>,
-    pub weight: SelfWeight,
     pub estimate: Option<Estimate>,
 }
 
@@ -50,6 +50,24 @@ impl Deployed<'_> {
         name.map_or(String::new(), |name| name.to_string_lossy().into_owned())
     }
 
+    /// Mass of the uncut sheet (kg).
+    pub fn mass_kg(&self) -> f64 {
+        let outline = &self.deployment.sheet.outline.corners;
+        self.scene.material.mass_by_area() * area(outline).abs()
+    }
+
+    /// Weight of the uncut sheet (N).
+    pub fn weight(&self) -> f64 {
+        hinge::STANDARD_GRAVITY * self.mass_kg()
+    }
+
+    /// Weight over the load at the end of the path; `None` if that is zero or no force, or without
+    /// equilibrium.
+    pub fn weight_over_load(&self) -> Option<f64> {
+        let load = self.run?.reached.as_ref()?.force()?.abs();
+        (load > 0.0).then(|| self.weight() / load)
+    }
+
     /// Extent of the flat sheet along x and y (mm).
     pub fn flat_size(&self) -> [f64; 2] {
         extent(self.deployment.sheet.outline.corners)
@@ -61,7 +79,51 @@ impl Deployed<'_> {
     }
 }
 
+/// What keeps the panels in their plane; `None` if the scene does not say.
+pub(super) fn posture(scene: &Scene) -> Option<Posture> {
+    scene.config.posture.map(|posture| posture.kind)
+}
+
+/// Whether the weight of the sheet acts in the model.
+pub(super) fn is_heavy(scene: &Scene) -> bool {
+    scene.weight_by_area() != [0.0; 2]
+}
+
+/// Effects in the plane that are not modelled for the out-of-plane restraint; `None` if there are
+/// none, and if the scene states no restraint.
+pub(super) fn left_out(scene: &Scene) -> Option<&'static str> {
+    match posture(scene)? {
+        Posture::HeldFlat => Some(
+            "what holds the panels flat, and its friction; the weight of the sheet, if its plane is not horizontal",
+        ),
+        Posture::Lying => Some("in the design, friction"),
+        Posture::Hanging if is_heavy(scene) => None,
+        Posture::Hanging | Posture::Free => Some("the weight of the sheet"),
+    }
+}
+
+/// A ratio to the load in words.
+pub(super) fn of_the_load(ratio: f64) -> String {
+    if ratio < 10.0 {
+        format!("{} % of the load", rounded(100.0 * ratio, 2))
+    } else {
+        format!("{} times the load", rounded(ratio, 2))
+    }
+}
+
 pub(crate) fn extent(points: impl IntoIterator<Item = [f64; 2]>) -> [f64; 2] {
-    let [low, high] = design::geometry::polygon::bounds(points);
+    let [low, high] = bounds(points);
     [high[0] - low[0], high[1] - low[1]]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::of_the_load;
+
+    #[test]
+    fn a_ratio_to_the_load_is_in_percent_or_times() {
+        for (ratio, said) in [(0.162, "16 %"), (0.0486, "4.9 %"), (56.4, "56 times")] {
+            assert!(of_the_load(ratio).starts_with(said), "{ratio}");
+        }
+    }
 }

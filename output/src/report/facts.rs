@@ -1,12 +1,10 @@
 //! The facts of a run: what the sheet is made of, how far it opens under which load, what the hinge
 //! law rests on. Report, page, JSON and studio show this list.
 
-mod law;
+mod design;
 mod load;
-pub(super) mod reached;
-mod run;
-pub(super) mod sheet;
-mod springback;
+
+pub use load::Reached;
 
 use crate::report::deployed::{Deployed, Run};
 use crate::report::numbers::rounded;
@@ -17,9 +15,7 @@ use serde_json::Value;
 /// A fact of the best design of a run.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Fact {
-    /// Its name for programs; several facts of a run may have the same.
-    pub key: &'static str,
-    /// Its name for people.
+    /// Its name; several facts of a run may have the same.
     pub label: &'static str,
     /// A number in `unit`, several, a text or an object; null if unknown.
     pub value: Value,
@@ -35,13 +31,13 @@ type Facts = fn(&Deployed, &Run) -> Vec<Fact>;
 
 /// The pages that explain facts, and the facts.
 const FACTS: [(&str, Facts); 7] = [
-    ("docs/RUN-PAGE.md", sheet::material_and_size),
-    ("docs/NUMERICS.md", reached::load_and_stroke),
+    ("docs/RUN-PAGE.md", design::material_and_size),
+    ("docs/NUMERICS.md", load::load_and_stroke),
     ("docs/HOLDING.md", load::holding_and_weight),
-    ("docs/LIMITS.md", springback::springback_and_creep),
-    ("docs/MATERIALS.md", law::domain_and_weights),
-    ("docs/CHOOSE.md", run::levels_and_findings),
-    ("docs/RUN-PAGE.md", sheet::hashes),
+    ("docs/LIMITS.md", load::springback_and_creep),
+    ("docs/MATERIALS.md", design::domain_and_weights),
+    ("docs/CHOOSE.md", design::levels_and_findings),
+    ("docs/RUN-PAGE.md", design::hashes),
 ];
 
 /// All facts of a run.
@@ -53,23 +49,19 @@ pub(super) fn facts(of: &Deployed, run: &Run) -> Vec<Fact> {
     all
 }
 
-/// A fact whose value is said in words.
-fn fact(
-    [key, label]: [&'static str; 2],
-    value: impl Serialize,
-    unit: Unit,
-    text: impl Into<String>,
-) -> Fact {
+/// A fact that is said in words.
+fn fact(label: &'static str, value: impl Serialize, text: impl Into<String>) -> Fact {
     let value = serde_json::to_value(value).unwrap_or_default();
-    Fact { key, label, value, unit, text: text.into(), page: "" }
+    Fact { label, value, unit: Unit::None, text: text.into(), page: "" }
 }
 
 /// A fact that is a number, with `digits` and a remark.
-fn number(names: [&'static str; 2], value: f64, digits: usize, unit: Unit, remark: &str) -> Fact {
-    fact(names, value, unit, format!("{} {unit}{remark}", rounded(value, digits)))
+fn number(label: &'static str, value: f64, digits: usize, unit: Unit, remark: &str) -> Fact {
+    let text = format!("{} {unit}{remark}", rounded(value, digits));
+    Fact { unit, ..fact(label, value, text) }
 }
 
 /// A fact that is a text.
-fn text(names: [&'static str; 2], text: String) -> Fact {
-    fact(names, &text, Unit::None, text.clone())
+fn text(label: &'static str, text: String) -> Fact {
+    fact(label, &text, text.clone())
 }

@@ -3,9 +3,7 @@
 
 mod geometry;
 mod law;
-mod out_of_plane;
-mod path;
-mod weight;
+mod load;
 
 use crate::report::deployed::Deployed;
 use serde::Serialize;
@@ -52,11 +50,9 @@ struct Found {
     message: String,
 }
 
-/// First how well a run meets its target, then the rules about its design, then about the run as a
-/// whole: what its model leaves out, how accurate its weights are.
+/// First the rules about the sheet, then about its hinge law, then about its path and loads.
 pub fn rules() -> impl Iterator<Item = Rule> {
-    let design = geometry::RULES.into_iter().chain(law::RULES).chain(path::RULES);
-    design.chain(out_of_plane::RULES).chain(weight::RULES).chain(law::RULES_OF_RUN)
+    geometry::RULES.into_iter().chain(law::RULES).chain(load::RULES)
 }
 
 /// All that the rules find, the most severe first.
@@ -66,7 +62,7 @@ pub(super) fn findings(of: &Deployed) -> Vec<Warning> {
     let by_elements = of.whole_sheet().into_iter().flat_map(|sheet| &sheet.findings);
     warnings.extend(by_elements.map(|finding| {
         let message = format!("by finite elements, {}", finding.message);
-        out_of_plane::WHOLE_SHEET.warning(found(message).with(finding.severity))
+        load::WHOLE_SHEET.warning(found(message).with(finding.severity))
     }));
     warnings.sort_by_key(|warning| Reverse(warning.severity));
     warnings

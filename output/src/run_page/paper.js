@@ -1,7 +1,7 @@
 // What only paper shows: a summary, and a sketch of the flat sheet with the places where it is held and pulled.
 
 /** The facts of the summary. */
-const SUMMARY = ["material", "flat_size", "deployed_size", "load", "stroke", "stable_parts"];
+const SUMMARY = ["material", "flat size", "deployed size", "load reached", "stroke reached", "stable parts"];
 
 function drawPaper() {
   const table = byId("paper-facts");
@@ -12,9 +12,9 @@ function drawPaper() {
     write(tr, "td", value);
   };
   row("target", run.miss);
-  for (const { key, label, text } of run.facts) if (SUMMARY.includes(key)) row(label, text);
+  for (const { label, text } of run.facts) if (SUMMARY.includes(label)) row(label, text);
   // They need not be twice on paper.
-  [...byId("facts").rows].forEach((tr, i) => tr.classList.toggle("screen-only", SUMMARY.includes(run.facts[i].key)));
+  for (const tr of byId("facts").rows) tr.classList.toggle("screen-only", SUMMARY.includes(tr.firstChild.textContent));
   row("cut file", run.about_cut_files ? `${run.about_cut_files}: see the findings` : "no finding prevents it");
   byId("hang-box").hidden = !run.carries_load;
   if (run.carries_load) drawHang(byId("hang"), 340, 215);

@@ -5,7 +5,7 @@ mod mistakes;
 
 use analysis::measured_openings::{MeasuredPanel, openings, scatter, slip};
 use analysis::measured_points::{Mark, MeasuredPoint};
-use analysis::measured_sheet::{MeasuredSheet, MeasurementError};
+use analysis::measured_sheet::MeasuredSheet;
 use analysis::shape_path::ShapePath;
 use design::equilibrium::settings::SolverSettings;
 use design::equilibrium::supports::{Dof, Load, Support};

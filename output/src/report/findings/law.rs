@@ -12,7 +12,7 @@ const SAME_SLIT: f64 = 1e-6;
 /// Relative error of a force (%) above which a law is inaccurate.
 const INACCURATE: f64 = 10.0;
 
-pub(super) const RULES: [Rule; 7] = [
+pub(super) const RULES: [Rule; 10] = [
     rule(
         "ligaments-outside-domain",
         Warning,
@@ -83,9 +83,6 @@ pub(super) const RULES: [Rule; 7] = [
         ],
         overstrained,
     ),
-];
-
-pub(super) const RULES_OF_RUN: [Rule; 3] = [
     rule(
         "weak-weights",
         Warning,
