@@ -5,11 +5,11 @@
 //! displacement  zeta D                   load  R . U / D              moved by supports, by U of total magnitude D
 //! ```
 //!
-//! In both cases the area below the curve is the work done on the sheet; for one force it is the
+//! The area below the curve is in both cases the work done on the sheet; for one force it is the
 //! displacement of its panel along the force. F and D are sums of the magnitudes of forces or
 //! translations, or, if there are none, of couples or rotations.
 //!
-//! Where a stroke or a motion is prescribed, the load may have a maximum on the way. A dead load,
+//! The load may have a maximum on the path if a stroke or a motion is prescribed. A dead load,
 //! such as a hung weight, opens the sheet only as far as the first state that carries it.
 
 use crate::unit::Unit;
@@ -44,7 +44,7 @@ pub struct ActuationCurve {
 }
 
 impl ActuationCurve {
-    /// Whether a motion is prescribed, so that the load is a result.
+    /// Whether a motion is prescribed, and the load is a result.
     pub fn is_prescribed(&self, mechanics: &Mechanics) -> bool {
         mechanics.solver.is_driven() || self.mover == Mover::Supports
     }
@@ -74,21 +74,21 @@ impl ActuationCurve {
         let states = increments.iter().map(|end| (end.load_factor, &*end.configuration));
         let coarse = Self::through(mechanics, sheet, &before, states)?.forwards();
         let (top, reached) = (highest(&coarse), first_reached(&coarse));
-        let mut readings = Vec::new();
+        let mut factors = Vec::new();
         let mut from = 0.0;
         for (i, Increment { at: to, .. }) in increments.into_iter().enumerate() {
             let fine = i + 1 == top || i == top || Some(i) == reached;
-            let parts = if fine { READINGS } else { 1 };
-            readings
+            let parts = if fine { FINE_STEPS } else { 1 };
+            factors
                 .extend((1..parts).map(|k| from + (to - from) * f64::from(k) / f64::from(parts)));
-            readings.push(to);
+            factors.push(to);
             from = to;
         }
         // The load steps may go on where the path cannot be followed.
-        readings.extend(solver.load_parameters());
-        readings.sort_by(f64::total_cmp);
-        readings.dedup();
-        let steps = solver.readings(hinged, &readings);
+        factors.extend(solver.load_parameters());
+        factors.sort_by(f64::total_cmp);
+        factors.dedup();
+        let steps = solver.readings(hinged, &factors);
         Self::through(mechanics, sheet, &before, steps.iter().map(load_and_state))
     }
 
@@ -225,7 +225,7 @@ pub struct LimitPoint {
 const SAME_LOAD: f64 = 1e-3;
 
 /// Number of parts into which an interval between two increments is divided.
-const READINGS: u32 = 16;
+const FINE_STEPS: u32 = 16;
 
 /// The index of the point of maximum load.
 fn highest(points: &[[f64; 2]]) -> usize {

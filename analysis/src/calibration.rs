@@ -15,7 +15,7 @@ pub struct Measured<T> {
 
 /// How the forces depend on the path of a hinge, with separations in ligament widths.
 #[derive(Debug, Deserialize)]
-pub struct Detour {
+pub struct PathDeviation {
     /// Relative change of the forces for each unit of separation.
     pub slope: f64,
     /// The largest change that was found.
@@ -31,7 +31,7 @@ pub struct Detour {
 #[allow(missing_docs, reason = "the file documents them")]
 pub struct OfRegime {
     pub imperfection: Measured<Vec<[f64; 2]>>,
-    pub detour: Detour,
+    pub path_deviation: PathDeviation,
     pub slit: Measured<[f64; 2]>,
     pub tip_strain: Measured<[f64; 2]>,
     pub slenderness: Measured<[f64; 2]>,
@@ -44,8 +44,8 @@ pub struct OfRegime {
 pub struct Calibration {
     film: OfRegime,
     plate: OfRegime,
-    bent_rays: Detour,
-    pub detour_yield: Measured<f64>,
+    bent_rays: PathDeviation,
+    pub deviation_yield: Measured<f64>,
     pub unloading: Measured<f64>,
     pub safe_margin: Measured<f64>,
     pub falls: Measured<f64>,
@@ -68,10 +68,10 @@ impl Calibration {
     }
 
     /// How forces depend on the path in a regime, by a law of straight or of bent rays.
-    pub fn detour(&self, regime: Regime, bent_rays: bool) -> &Detour {
+    pub fn path_deviation(&self, regime: Regime, bent_rays: bool) -> &PathDeviation {
         match regime {
             Regime::Plate if bent_rays => &self.bent_rays,
-            _ => &self.of(regime).detour,
+            _ => &self.of(regime).path_deviation,
         }
     }
 }

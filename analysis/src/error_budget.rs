@@ -1,7 +1,7 @@
 //! The error budget of a deployed sheet: how far each cause of errors moves its panel corners and
 //! changes its load.
 //!
-//! To first order an error of the hinge forces moves the sheet by [`ForceResponse`].
+//! An error of the hinge forces moves the sheet to first order by [`ForceResponse`].
 //! A cause gives the standard deviations of these forces ([`Modes`]), from what was measured:
 //!
 //! | cause | force errors | of the hinges | measured |
@@ -18,7 +18,7 @@
 //! Finite elements of all hinges of the sheet replace the first two and the loading path. What they
 //! leave is the movement of the panels in their last round.
 //!
-//! What is not measured is not known: the sum of the others is a lower bound.
+//! What is not measured is unknown: the sum of the others is a lower bound.
 
 use crate::actuation_curve::ActuationCurve;
 use crate::error_causes::LoadedSheet;
@@ -58,7 +58,7 @@ pub enum Cause {
     MaterialLaw,
     /// The imperfection from which the ligament buckles.
     Imperfection,
-    /// The energy of a hinge as a function of its state alone.
+    /// The energy of a hinge as a function only of its state.
     #[strum(serialize = "loading path")]
     LoadingPath,
     /// The width that the cutter removes.
@@ -76,9 +76,9 @@ pub enum Cause {
 pub struct Contribution {
     /// What causes the errors.
     pub cause: Cause,
-    /// Where their size is from or, if that is not known, why.
+    /// Source of their size or, if that is unknown, the reason.
     pub source: String,
-    /// `None` if it is not known.
+    /// `None` if it is unknown.
     pub effect: Option<Effect>,
 }
 
@@ -90,7 +90,7 @@ pub struct Effect {
     /// Deviation of the load that the prescribed displacement takes, relative to it; `None` under
     /// dead loads.
     pub load: Option<f64>,
-    /// Whether it is a lower bound: a sum of which a part is not known.
+    /// Whether it is a lower bound: a sum with an unknown part.
     pub at_least: bool,
     /// Deviation of every panel corner, SW, SE, NE and NW of every panel (mm).
     #[serde(skip)]
@@ -171,7 +171,7 @@ impl ErrorBudget {
     }
 
     /// The root of the sum of the squares of the contributions whose causes `count`; a lower bound
-    /// if one is not known.
+    /// if one is unknown.
     pub fn sum(&self, count: impl Fn(Cause) -> bool) -> Effect {
         let counted = || self.contributions.iter().filter(|part| count(part.cause));
         let none = Effect::new(vec![0.0; self.total.by_corner.len()], None);

@@ -28,7 +28,7 @@ pub(crate) struct LoadedSheet<'a> {
     pub residual: Option<f64>,
 }
 
-/// A quantity with its source, or why it is not known.
+/// A quantity with its source, or why it is unknown.
 type Known<T> = Result<(T, String), String>;
 
 impl LoadedSheet<'_> {
@@ -207,7 +207,7 @@ impl LoadedSheet<'_> {
     fn loading_path(&self) -> Known<Modes> {
         let material = &self.scene.material;
         let yields_at = material.plastic[0][0] / material.young;
-        let covered = &CALIBRATION.detour_yield;
+        let covered = &CALIBRATION.deviation_yield;
         if yields_at < 0.5 * covered.value {
             return Err(format!(
                 "measured for the polyester film; this material yields at {:.2} % ({})",
@@ -222,8 +222,8 @@ impl LoadedSheet<'_> {
             let path = self.deployment.path.iter().map(|step| step.deformations[h]);
             let separation = path_separation(design.w_lig, curvature, &path.collect::<Vec<_>>());
             let regime = material.regime(design.w_lig);
-            let detour = CALIBRATION.detour(regime, curvature > 0.0);
-            *size *= f64::min(detour.slope * separation, detour.most);
+            let deviation = CALIBRATION.path_deviation(regime, curvature > 0.0);
+            *size *= f64::min(deviation.slope * separation, deviation.most);
             largest = largest.max(separation);
         }
         let source =
@@ -261,7 +261,7 @@ impl LoadedSheet<'_> {
     }
 }
 
-/// Between the points [x, y] of a table, linear in the logarithms; `None` outside.
+/// Value between the points [x, y] of a table, linear in the logarithms; `None` outside.
 fn interpolated(table: &[[f64; 2]], x: f64) -> Option<f64> {
     let pair = table.windows(2).find(|pair| (pair[0][0]..=pair[1][0]).contains(&x))?;
     let [[x0, y0], [x1, y1]] = [pair[0], pair[1]];

@@ -8,7 +8,7 @@
 //! gap(l) = w_c + a sin(alpha) + s cos(alpha) + 2 l sin(theta / 2)
 //! ```
 //!
-//! In a plate they stay in the plane: the least gap counts, at the hole or at the rim of the
+//! Flanks of a plate stay in the plane: the least gap counts, at the hole or at the rim of the
 //! window. The panels of a film tilt out of the plane as the ligament folds, which draws the flanks
 //! apart at the hole: in solved windows they touch only where they do at the rim, which moves with
 //! the rigid panel (docs/TRIED.md).
@@ -61,7 +61,7 @@ mod tests {
             for gap in [gap_at_hole, gap_at_rim] {
                 let gap = |state: [f64; 3]| gap(&design(alpha), &state.into());
                 assert_eq!(gap([0.0; 3]), kerf);
-                // Along the cut the flanks slide.
+                // The flanks slide along the cut.
                 assert!((gap([alpha.cos(), -alpha.sin(), 0.0]) - kerf).abs() < 1e-12);
                 assert!((gap([-alpha.sin(), -alpha.cos(), 0.0]) - (kerf - 1.0)).abs() < 1e-12);
             }

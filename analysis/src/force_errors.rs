@@ -64,11 +64,13 @@ pub fn spread(networks: &[Vec<[f64; 3]>]) -> Modes {
 /// are alike at hinges of like design and state: a Gaussian process over both, with the mirror
 /// symmetry of hinges.
 pub fn alike(sizes: &[[f64; 3]], designs: &[HingeDesign], states: &[HingeDeformation]) -> Modes {
-    let places: Vec<Place> = std::iter::zip(designs, states).map(Place::new).collect();
+    let positions: Vec<HingePosition> =
+        std::iter::zip(designs, states).map(HingePosition::new).collect();
     let mut modes = Modes::new();
     // F_a and M_theta of the mirror image are the same, F_s has the other sign.
     for (parity, components) in [(1.0, &[0, 2][..]), (-1.0, &[1][..])] {
-        let columns = factor(places.len(), |h, k| places[h].correlation(&places[k], parity));
+        let columns =
+            factor(positions.len(), |h, k| positions[h].correlation(&positions[k], parity));
         for &i in components {
             modes.extend(columns.iter().map(|column| {
                 let error =
@@ -125,12 +127,12 @@ fn corner_arms(sheet: &Sheet, step: &LoadStep) -> Vec<(usize, [f64; 2])> {
 }
 
 /// Design and state of a hinge and of its mirror image, in units of the lengths.
-struct Place {
+struct HingePosition {
     own: [f64; 5],
     mirrored: [f64; 5],
 }
 
-impl Place {
+impl HingePosition {
     fn new((design, state): (&HingeDesign, &HingeDeformation)) -> Self {
         let [eta_a, eta_s] = state.eta(design.w_lig);
         let ([a, s, theta], [width, angle]) = (LENGTHS, DESIGN_LENGTHS);

@@ -22,7 +22,7 @@ pub struct AtLevel {
     corners: Vec<[f64; 2]>,
     /// The load at the end of the path, where the motion is prescribed.
     pub load: Option<f64>,
-    /// The largest D_peak of a hinge along the path, if it is known of every hinge.
+    /// The largest D_peak of a hinge along the path, if every hinge has one.
     pub damage_peak: Option<f64>,
 }
 

@@ -1,4 +1,4 @@
-//! What each level of a scene costs, and by how much it differs from the finest one.
+//! Cost of each level of a scene, and its difference to the finest one.
 
 use crate::error_budget::{Cause, Contribution, ErrorBudget};
 use crate::level_difference::{AtLevel, deployed};

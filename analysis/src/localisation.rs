@@ -6,7 +6,7 @@
 //!
 //!   Gamma = 6 p L^3 w_lig / (E t^4) = (L / L*)^3,   L* = (E t^3 / (6 rho g w_lig))^(1/3).
 //!
-//! For Gamma > 1 the paper expects that buckling stays in the ligaments. The prefactor is of order
+//! The paper expects for Gamma > 1 that buckling stays in the ligaments. The prefactor is of order
 //! one, so L* is an order of magnitude and not a sharp limit: by finite elements of whole sheets,
 //! panels lift off a table also where Gamma is above
 //! 10. Gamma does not apply to a sheet that hangs or stands.
@@ -24,8 +24,8 @@ pub fn critical_edge(material: &SheetMaterial, w_lig: f64) -> f64 {
 ///
 ///   l_eg = (E t^3 / (12 (1 - nu^2) rho g t))^(1/3).
 ///
-/// By finite elements of four sheets on a table, the corners are off by about 1 % of the sheet for
-/// each l_eg in the radius of a window.
+/// The corners of four sheets on a table are off by about 1 % of the sheet for each l_eg in the
+/// radius of a window, by finite elements.
 pub fn elasto_gravity_length(material: &SheetMaterial) -> f64 {
     let plate =
         material.young * material.thickness.powi(3) / (12.0 * (1.0 - material.poisson.powi(2)));

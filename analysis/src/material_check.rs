@@ -320,11 +320,11 @@ mod tests {
         let notes = verdicts.all(|found| found.severity == Severity::Note);
         assert!(notes, "{check:?}");
         let [ligament] = check.ligaments[..] else { panic!("{check:?}") };
-        // Of Table 2.
+        // The value of Table 2.
         assert!((ligament.critical_edge / 10.0 - 6.3).abs() < 0.05);
         assert!((250.0..350.0).contains(&ligament.gamma.unwrap()));
         assert_eq!(ligament.slenderness, 36.0);
-        // At the rotation of yield the surface strain is the yield strain.
+        // The surface strain at the rotation of yield is the yield strain.
         let at_yield = 0.5 * ligament.yields_at_deg.unwrap().to_radians() / 36.0;
         assert!((at_yield - 44.0 / 3000.0).abs() < 1e-12);
     }

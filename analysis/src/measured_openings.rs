@@ -135,7 +135,7 @@ pub fn slip(sheet: &Sheet, closed: &Fit, deployed: &Fit, panel: usize) -> Option
     let seen = |fit: &Fit| {
         let panels = MeasuredPanel::all(sheet, fit);
         let found = panels.into_iter().find(|other| other.panel == panel)?;
-        // In the frame of the closed sheet.
+        // Both are in the frame of the closed sheet.
         let image = closed.motion.back(fit.motion.of(complex(found.centre)));
         Some(image - complex(found.predicted))
     };

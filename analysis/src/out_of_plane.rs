@@ -17,7 +17,7 @@
 //! is symmetric; its symmetric part is taken.
 //!
 //! Ligaments as cut have a bump, here all of them on one side: their middles are higher by h and
-//! slope by h / w_lig towards the secondary cut, so that forces and moments lift and tilt the
+//! slope by h / w_lig towards the secondary cut, so forces and moments lift and tilt the
 //! panels before they are unstable. From a state to the next the motions q grow by
 //!
 //! ```text
@@ -284,7 +284,7 @@ impl Stiffness {
     /// `secant` stiffness of the rotation there (N mm).
     fn new([flat, state]: [&[[f64; 3]; 3]; 2], secant: f64, w_lig: f64, thickness: f64) -> Self {
         let axial = state[0][0].max(LEAST * flat[0][0]);
-        // About the middle, where a rotation causes no axial force.
+        // The stiffness about the middle, where a rotation causes no axial force.
         let elastic = flat[2][2] - flat[0][2].powi(2) / flat[0][0];
         // A hinge that forces turn against its moment, or that has not turned, has the stiffness of
         // the flat sheet.
@@ -305,7 +305,7 @@ impl Stiffness {
 struct Ligament {
     /// Unit vector along it.
     along: c64,
-    /// From the reference points of panels A and B to its middle (mm).
+    /// Arms from the reference points of panels A and B to its middle (mm).
     arms: [c64; 2],
     /// Force on panel A towards B (N), and moment about its middle (N mm).
     force: c64,
@@ -370,7 +370,7 @@ impl Ligament {
 
     /// The moments (N mm) about x and y on panels A and B by its bump.
     fn moments_of_bump(&self, w_lig: f64, thickness: f64) -> [[f64; 2]; 2] {
-        // At its middle, half a ligament width from the secondary cut.
+        // Its middle is half a ligament width from the secondary cut.
         let height = Regime::Plate.bump() * thickness * f64::exp(-0.25);
         let slope = height / w_lig * I * self.along;
         let moment = self.moment * slope - height * I * self.force;

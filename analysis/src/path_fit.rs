@@ -28,7 +28,7 @@ pub struct Fit {
     pub position: f64,
     /// Load factor and panel motions at this position.
     pub shape: PathShape,
-    /// From the frame of the design (mm) into the frame of the measurement.
+    /// Motion from the frame of the design (mm) into the frame of the measurement.
     pub motion: Similarity,
     /// One entry for each measured point, in the order of the measurement.
     pub points: Vec<FittedPoint>,

@@ -10,22 +10,22 @@ use hinge::HingeDeformation;
 /// given [curvature](surrogate::Surrogate::ray_curvature): a rotation by one radian moves a point
 /// at the distance of one ligament width from O by one ligament width.
 pub fn path_separation(w_lig: f64, curvature: f64, states: &[HingeDeformation]) -> f64 {
-    let place = |state: &HingeDeformation| {
+    let position = |state: &HingeDeformation| {
         let [eta_a, eta_s] = state.eta(w_lig);
         let bend = curvature * state.theta * state.theta.abs();
         [eta_a - bend, eta_s, state.theta]
     };
     let begin = std::iter::once([0.0; 3]);
-    let places: Vec<[f64; 3]> = begin.chain(states.iter().map(place)).collect();
+    let positions: Vec<[f64; 3]> = begin.chain(states.iter().map(position)).collect();
     let mut lengths = vec![0.0];
-    for pair in places.windows(2) {
+    for pair in positions.windows(2) {
         lengths.push(lengths[lengths.len() - 1] + distance(pair[0], pair[1]));
     }
     let whole = lengths[lengths.len() - 1].max(f64::MIN_POSITIVE);
-    let end = places[places.len() - 1];
-    let gaps = places.iter().zip(&lengths).map(|(place, length)| {
+    let end = positions[positions.len() - 1];
+    let gaps = positions.iter().zip(&lengths).map(|(position, length)| {
         let on_the_ray = end.map(|x| length / whole * x);
-        distance(*place, on_the_ray)
+        distance(*position, on_the_ray)
     });
     gaps.fold(0.0, f64::max)
 }

@@ -99,7 +99,7 @@ pub fn refine(
 }
 
 /// The error of the panel corners by the mesh of the windows (mm, the largest), which no level
-/// lowers; `None` if it is not known.
+/// lowers; `None` if it is unknown.
 fn mesh_error(run: &BegunRun) -> Option<f64> {
     let budget = ErrorBudget::new(&run.scene, &run.problem, &run.start.deployment, None)?;
     let mut mesh = budget.contributions.into_iter();

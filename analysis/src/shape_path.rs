@@ -1,7 +1,6 @@
 //! The shapes of a sheet from flat to full load, interpolated between load steps.
 //!
-//! Between two load steps the motions (u, phi) of the panels are linear in the position on the
-//! path.
+//! The motions (u, phi) of the panels are linear in the position on the path between two load steps.
 
 use design::equilibrium::load_step::Status;
 use design::objective::design_problem::{Deployment, DesignProblem, Model};
@@ -26,7 +25,7 @@ pub struct PathShape {
 pub struct ShapePath<'a> {
     /// The flat sheet.
     pub sheet: &'a Sheet,
-    /// In order of the path.
+    /// The shapes in the order of the path.
     pub shapes: Vec<PathShape>,
 }
 
@@ -58,7 +57,7 @@ impl<'a> ShapePath<'a> {
         path
     }
 
-    /// The flat sheet alone.
+    /// Only the flat sheet.
     pub fn flat(sheet: &'a Sheet) -> Self {
         let flat =
             PathShape { load_factor: 0.0, configuration: vec![[0.0; 3]; sheet.panels.len()] };

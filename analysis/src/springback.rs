@@ -64,14 +64,14 @@ impl ResidualShape {
     }
 
     /// Mean rotation without load over that under load; `None` if the hinges have not opened.
-    pub fn share(&self) -> Option<f64> {
+    pub fn fraction(&self) -> Option<f64> {
         let [loaded, free] = self.mean_rotations();
         (loaded > 0.0).then(|| free / loaded)
     }
 }
 
 /// The residual opening of a deployed sheet of a scene and its problem when it is unloaded, where
-/// the law of released hinges is known to hold.
+/// the law of unloaded hinges is known to hold.
 ///
 /// # Errors
 /// If hinges are outside the training domain at full load, if the sheet has no equilibrium with or
@@ -88,14 +88,14 @@ pub fn unload(
             "{outside} hinges are outside the training domain at full load, where the law of released hinges is not known"
         ));
     }
-    let stays = unloaded(scene, problem, law, deployment).map_err(|error| error.to_string())?;
-    let [loaded, free] = stays.mean_rotations().map(f64::to_degrees);
+    let shape = unloaded(scene, problem, law, deployment).map_err(|error| error.to_string())?;
+    let [loaded, free] = shape.mean_rotations().map(f64::to_degrees);
     if free > loaded {
         return Err(format!(
             "without its loads the sheet would open further, from {loaded:.1} to {free:.1} deg: the law of released hinges does not hold here"
         ));
     }
-    Ok(stays)
+    Ok(shape)
 }
 
 /// The residual opening of a sheet whose hinges are inside the training domain.
@@ -157,6 +157,6 @@ pub fn moment_after_overshoot(
         let hinges = std::iter::zip(&energies, &last.deformations);
         hinges.map(|(energy, state)| energy.forces[2] * state.theta).sum()
     };
-    let share = holds(&ReleasedLaw(&hinges)) / holds(&*prepared);
-    share.is_finite().then_some(share)
+    let fraction = holds(&ReleasedLaw(&hinges)) / holds(&*prepared);
+    fraction.is_finite().then_some(fraction)
 }

@@ -16,7 +16,6 @@ pub(crate) use numbers::rounded;
 pub(crate) use text::worst_first;
 
 pub use budget::Budget;
-pub use estimate::Estimate;
 pub use facts::{Fact, Reached};
 pub use findings::{Rule, Warning, rules};
 pub use hinge_row::HingeRow;
@@ -46,8 +45,6 @@ pub struct Report {
     pub coarse_searches: Vec<CoarseSearch>,
     /// Number of steps after the start.
     pub steps: usize,
-    /// Number of steps that were halved because a design had no objective value.
-    pub setbacks: usize,
     /// The terms of the scores in words, with their units.
     #[serde(skip)]
     pub terms: Vec<String>,
@@ -55,10 +52,7 @@ pub struct Report {
     pub before: Scores,
     /// Scores of the best design.
     pub after: Scores,
-    /// Standard deviations of the scene's ensemble on the path of the best design, if there is an
-    /// ensemble.
-    pub estimate: Option<Estimate>,
-    /// By how much each cause of errors moves the best design; `None` without a learned hinge law
+    /// How far each cause of errors moves the best design; `None` without a learned hinge law
     /// or without an equilibrium.
     pub budget: Option<Budget>,
     /// What the sheet is made of, how far it opens under which load, and what the hinge law rests
@@ -156,7 +150,6 @@ impl Report {
             after: Scores::new(&problem.objective, &designed.best),
             checks,
             reached: Reached::new(scene, problem, deployment),
-            estimate: Estimate::new(scene.networks(), deployment),
         };
         let hinges = HingeRow::all(scene, deployment);
         let mut deployed =
@@ -175,14 +168,12 @@ impl Report {
             ended: designed.ended.clone(),
             coarse_searches: coarse_searches.clone(),
             steps: search.last().step,
-            setbacks: search.history.iter().filter(|record| record.setback.is_some()).count(),
             terms: problem.objective.labels(),
             before: match coarse_searches.first() {
                 Some(first) => first.start.clone(),
                 None => Scores::new(&problem.objective, &designed.start),
             },
             after: run.after,
-            estimate: run.estimate,
             budget: errors.map(|errors| Budget::new(errors, left_out(scene), dead_loads)),
             facts,
             reached: run.reached,

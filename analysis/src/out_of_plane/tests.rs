@@ -72,7 +72,7 @@ fn a_bump_tilts_a_pulled_panel() {
     }
 }
 
-/// As in any equilibrium, the stiffness by the forces is symmetric.
+/// The stiffness by the forces is symmetric, as in any equilibrium.
 #[test]
 fn forces_in_equilibrium_have_a_symmetric_stiffness() {
     let (scene, deployment) = deployed_scene("linear-7x7.toml");
@@ -92,7 +92,7 @@ fn forces_in_equilibrium_have_a_symmetric_stiffness() {
             turning[panel] += block[at + 1][at + 2] - block[at + 2][at + 1];
             size = size.max(block[at + 1][at + 2].abs());
         }
-        // Between its panels it is symmetric by itself.
+        // The part between its panels is symmetric by itself.
         let between: [[f64; 3]; 3] = from_fn(|i| from_fn(|j| block[i][j + 3]));
         let mirrored: [[f64; 3]; 3] = from_fn(|i| from_fn(|j| block[j + 3][i]));
         assert_eq!(between, mirrored);
@@ -106,7 +106,7 @@ fn forces_in_equilibrium_have_a_symmetric_stiffness() {
     }
 }
 
-/// By finite elements panels of the design tilt by 0.28 deg and its corners are 0.20 mm out of
+/// Panels of the design tilt by 0.28 deg by finite elements, and its corners are 0.20 mm out of
 /// the plane, root mean square (docs/results/plates).
 #[test]
 fn the_a4_plate_stays_nearly_in_its_plane_and_a_film_has_no_margin() {

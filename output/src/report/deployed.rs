@@ -1,7 +1,6 @@
 //! What facts and findings are about: a deployed design and, after a search, its run.
 
 use crate::cut_file::{CutLines, FabricationError};
-use crate::report::estimate::Estimate;
 use crate::report::facts::Reached;
 use crate::report::findings::Warning;
 use crate::report::hinge_row::HingeRow;
@@ -21,7 +20,7 @@ pub(super) struct Deployed<'a> {
     pub cuts: &'a Result<CutLines, FabricationError>,
     /// All hinges.
     pub hinges: Vec<HingeRow>,
-    /// The run whose best design it is; `None` for a design alone.
+    /// The run whose best design it is; `None` for only a design.
     pub run: Option<&'a Run<'a>>,
     /// The findings, once they are known.
     pub warnings: Vec<Warning>,
@@ -35,7 +34,6 @@ pub(super) struct Run<'a> {
     /// What was measured of it after the search.
     pub checks: DesignChecks,
     pub reached: Option<Reached>,
-    pub estimate: Option<Estimate>,
 }
 
 impl Deployed<'_> {

@@ -17,7 +17,7 @@ use surrogate::{Order, Surrogate, mean_and_variance};
 
 /// Standard deviations over an ensemble, relative to the root mean square over the path.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Estimate {
+pub(super) struct Estimate {
     /// Number of networks.
     pub networks: usize,
     /// Standard deviation of W.
@@ -92,7 +92,7 @@ pub(crate) fn force_spreads(
     Some(deviations)
 }
 
-/// At every load step and hinge: (W, w_lig F_a, w_lig F_s, M_theta, D_peak), each with one value
+/// Predictions at every load step and hinge: (W, w_lig F_a, w_lig F_s, M_theta, D_peak), each with one value
 /// for each network.
 fn predictions(
     networks: &[Surrogate],

@@ -29,7 +29,7 @@ pub struct HingeRow {
     pub eta_a: f64,
     /// s / w_lig in the last state of the path.
     pub eta_s: f64,
-    /// Maximum along the path of D, the mean damage of the ligament; `None` if it is not known: the
+    /// Maximum along the path of D, the mean damage of the ligament; `None` if it is unknown: the
     /// hinge law does not predict it, or a state of the path is outside its training domain.
     pub damage: Option<f64>,
     /// Maximum along the path of D_peak; at 1 the ligament tears.

@@ -8,7 +8,7 @@ use support::document::Document;
 use support::severity::Severity;
 use support::table::{Cell, Columns, Table};
 
-/// Maximum number of hinges of which all are listed.
+/// Maximum number of hinges that are all listed.
 const ALL_LISTED: usize = 24;
 /// Number of hinges that are listed of a larger sheet.
 const WORST_LISTED: usize = 20;

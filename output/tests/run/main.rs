@@ -159,10 +159,9 @@ fn shipped(name: &str, change: impl FnOnce(&mut SceneConfig)) -> Scene {
     Scene::new(config, &path).unwrap()
 }
 
-/// A number of the facts.
-fn number(report: &Report, label: &str) -> Option<f64> {
-    let fact = report.facts.iter().find(|fact| fact.label == label)?;
-    fact.value.as_f64()
+/// The value of a fact.
+fn value<'a>(report: &'a Report, label: &str) -> &'a serde_json::Value {
+    &report.facts.iter().find(|fact| fact.label == label).unwrap().value
 }
 
 /// The warnings of one kind.

@@ -2,6 +2,7 @@
 
 use super::{Fact, fact, number, text};
 use crate::report::deployed::{Deployed, Run, extent};
+use crate::report::estimate::Estimate;
 use crate::report::numbers::rounded;
 use analysis::design_checks::WholeSheet;
 use analysis::levels::Levels;
@@ -110,7 +111,8 @@ pub(super) fn levels_and_findings(of: &Deployed, run: &Run) -> Vec<Fact> {
             ),
         }));
     }
-    facts.extend(run.estimate.map(|estimate| {
+    let estimate = Estimate::new(of.scene.networks(), of.deployment);
+    facts.extend(estimate.map(|estimate| {
         let percent = |x: f64| format!("{:.1} %", 100.0 * x);
         let said = format!(
             "{} networks; standard deviation inside the domain: energy {}, forces {}, D_peak {}",

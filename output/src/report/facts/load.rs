@@ -55,7 +55,7 @@ impl Reached {
             load,
             units: curve.units(),
             peak: resolved.as_ref().map(ActuationCurve::peak),
-            // Beyond a jump the curve is another branch.
+            // The curve beyond a jump is another branch.
             limit_points: resolved
                 .filter(|_| deployment.path.iter().all(|step| step.jumps == 0))
                 .map_or_else(Vec::new, |curve| curve.limit_points()),
@@ -228,7 +228,7 @@ fn overshoot(moments: Option<f64>) -> Fact {
 
 fn residual_opening(shape: &ResidualShape, errors: Option<&SpringbackErrors>) -> String {
     let [loaded, free] = shape.mean_rotations().map(f64::to_degrees);
-    let ratio = shape.share().map_or(String::new(), |ratio| format!(", {:.0} %", 100.0 * ratio));
+    let ratio = shape.fraction().map_or(String::new(), |ratio| format!(", {:.0} %", 100.0 * ratio));
     let [rms, most] = shape.corners.map(|length| rounded(length, 3));
     let snaps = if shape.snaps { "; the sheet snaps to another state on the way" } else { "" };
     let law = match errors {

@@ -157,13 +157,13 @@ fn states_outside(of: &Deployed) -> Option<Found> {
 fn path_dependence(of: &Deployed) -> Option<Found> {
     let bent_rays = of.scene.surrogate()?.card().bent_rays;
     let regime = of.scene.material.regime(of.scene.config.ligament.range[1]);
-    let detour = CALIBRATION.detour(regime, bent_rays);
+    let deviation = CALIBRATION.path_deviation(regime, bent_rays);
     let message = format!(
         "paths depart by more than {} ligament widths from the rays of the hinge law: energy, forces and damage depend on the \
          path there ({}); check by `kirigami verify`",
-        detour.safe, detour.source
+        deviation.safe, deviation.source
     );
-    at(of.hinges_where(|row| row.path_separation > detour.safe), message)
+    at(of.hinges_where(|row| row.path_separation > deviation.safe), message)
 }
 
 /// Windows have no contact.

@@ -112,7 +112,7 @@ pub(super) const RULES: [Rule; 11] = [
 
 fn path(of: &Deployed) -> Option<Found> {
     let weighed = of.deployment.weight_steps().len();
-    // Under a prescribed stroke or motion a jump is no maximum of the load.
+    // A jump under a prescribed stroke or motion is no maximum of the load.
     let dead = of.scene.config.has_loads() && of.scene.config.drive.is_none();
     let mut before = "the beginning".to_owned();
     let mut departures = Vec::new();
@@ -218,7 +218,7 @@ fn friction(of: &Deployed) -> Option<Found> {
     })
 }
 
-/// Under a prescribed stroke a mass is a direction only.
+/// Weights that are too heavy to hang; a mass under a prescribed stroke is only a direction.
 fn hung_weight(of: &Deployed) -> Option<Found> {
     let config = &of.scene.config;
     let grams: f64 = config.loads.iter().filter_map(|load| load.mass_g).sum();
