@@ -258,9 +258,9 @@ fn assert_table(page: &str, table: &str) {
 
 /// The table of docs/WARNINGS.md.
 fn rule_table() -> String {
-    let mut table = "| finding | severity | meaning | remedy |\n|---|---|---|---|\n".to_owned();
+    let mut table = "| finding | meaning | remedy |\n|---|---|---|\n".to_owned();
     for Rule { subject, severity, meaning, remedy, .. } in rules() {
-        writeln!(table, "| {subject} | {severity} | {meaning} | {remedy} |").unwrap();
+        writeln!(table, "| {severity}: {subject} | {meaning} | {remedy} |").unwrap();
     }
     table
 }

@@ -25,7 +25,7 @@ pub(super) const RULES: [Rule; 7] = [
         Note,
         [
             "the outline misses its target",
-            "its distance from the target is more than 1 % of the longer side of the sheet; from 3 % a warning, from 20 % an error",
+            "its distance is above 1 % of the longer side; a warning from 3 %, an error from 20 %",
             "another target, more panels, a larger stroke or load",
         ],
         missed,
@@ -34,9 +34,9 @@ pub(super) const RULES: [Rule; 7] = [
         "panels-overlap",
         Error,
         [
-            "panels lie over each other, or cuts are closed further than in the flat sheet",
-            "no sheet moves like that; on the way only, the load is larger there",
-            "a larger target, or loads that open the cuts; pull at more panels",
+            "panels overlap, or cuts are closed further than flat",
+            "no sheet moves like that; a warning before the end of the path",
+            "a larger target, or more loads that open the cuts",
         ],
         panels_overlap,
     ),
@@ -66,7 +66,7 @@ pub(super) const RULES: [Rule; 7] = [
         [
             "a slit or a hole vanishes",
             "there are no cut lines",
-            "narrower ligaments or longer cuts; wider ligaments or a larger hole (`fillet_ratio`, `hole_diameter`)",
+            "narrower ligaments, longer cuts; wider ligaments, larger holes (`fillet_ratio`, `hole_diameter`)",
         ],
         cannot_be_cut,
     ),

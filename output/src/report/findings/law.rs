@@ -19,7 +19,7 @@ pub(super) const RULES: [Rule; 10] = [
         [
             "ligaments outside the training domain",
             "w_lig or alpha is outside the database",
-            "w_lig: `[ligament] range` of the scene; alpha: a wider `alpha_deg` in the campaign",
+            "w_lig: `[ligament] range`; alpha: a wider `alpha_deg` in the campaign",
         ],
         ligaments_outside,
     ),
@@ -48,7 +48,7 @@ pub(super) const RULES: [Rule; 10] = [
         Note,
         [
             "paths depart from the rays of the hinge law",
-            "energy, forces and damage depend on the path there: in a plate by 3.6 times the distance",
+            "energy, forces and damage depend on the path",
             "`kirigami verify`",
         ],
         path_dependence,
@@ -98,7 +98,7 @@ pub(super) const RULES: [Rule; 10] = [
         Warning,
         [
             "the spot check is outside the domain",
-            "most of its states are, so its errors say little about the weights",
+            "its errors say little about the weights",
             "more rays",
         ],
         outside,

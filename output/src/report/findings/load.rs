@@ -20,8 +20,8 @@ pub(super) const RULES: [Rule; 11] = [
         Warning,
         [
             "the path is not smooth and stable",
-            "a jump, no equilibrium (an error if the path ends there), or an inaccurate step at the named load factor",
-            "other loads or supports, or a prescribed stroke (`[drive]`) instead of dead loads",
+            "a jump, an inaccurate step, or no equilibrium, an error at the end",
+            "other loads or supports, or a stroke (`[drive]`)",
         ],
         path,
     ),
@@ -42,7 +42,7 @@ pub(super) const RULES: [Rule; 11] = [
         Error,
         [
             "a panel has moved away from its point",
-            "the design no longer contains the point at which it is held or pulled",
+            "it no longer contains the point that is held or pulled",
             "`at = \"bottom\"`, or another point",
         ],
         point_outside,
@@ -52,7 +52,7 @@ pub(super) const RULES: [Rule; 11] = [
         Note,
         [
             "effects in the plane that are not modelled",
-            "what the posture of the scene leaves out, such as friction",
+            "what the posture leaves out, such as friction",
             "as below",
         ],
         not_modelled,
@@ -62,8 +62,8 @@ pub(super) const RULES: [Rule; 11] = [
         Warning,
         [
             "panels leave the plane",
-            "nothing, or only its weight, keeps the sheet flat. Of a plate: by how much its panels tilt, the opening at which they leave the plane, and the share of its forces that suffices. Of a film: the expected error of the corners in mm; above 5 % of the sheet an error ([flatness](results/flatness/README.md))",
-            "hold the sheet flat, take narrower ligaments or a thicker sheet, pull more panels, or solve it: `kirigami verify --sheet`",
+            "nothing, or only its weight, keeps the sheet flat ([flatness](results/flatness/README.md)); a film with corners off by more than 5 % of the sheet is an error, a plate that stays a note",
+            "hold it flat, narrower ligaments, a thicker sheet, more pulls, or `kirigami verify --sheet`",
         ],
         leaves_plane,
     ),
@@ -103,8 +103,8 @@ pub(super) const RULES: [Rule; 11] = [
         Warning,
         [
             "the load has a maximum",
-            "a dead load of the final size, such as a hung weight, does not open the sheet",
-            "move the panels by the stroke (`[drive]`) instead of loading them",
+            "a hung weight of the final size does not open the sheet",
+            "a stroke (`[drive]`)",
         ],
         load_peak,
     ),
@@ -259,7 +259,7 @@ pub(super) const WHOLE_SHEET: Rule = rule(
     Note,
     [
         "by finite elements, ...",
-        "what `kirigami verify --sheet` found of this design; it replaces the line above",
+        "what `kirigami verify --sheet` found; it replaces the line above",
         "as there",
     ],
     |_| None,
