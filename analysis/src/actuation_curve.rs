@@ -94,7 +94,7 @@ impl ActuationCurve {
 
     /// The curve through the load factors and configurations of states, beginning `before` the
     /// loads; `None` if nothing moves the sheet.
-    pub(crate) fn through<'a>(
+    fn through<'a>(
         mechanics: &Mechanics,
         sheet: &Sheet,
         (load_factor, start): &'a (f64, Configuration),

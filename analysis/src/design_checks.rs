@@ -42,7 +42,7 @@ pub struct WholeSheet {
 
 /// The file: the checks with the design that they are of.
 #[derive(Serialize, Deserialize)]
-struct Kept {
+struct ChecksOfDesign {
     design: DesignVector,
     checks: DesignChecks,
 }
@@ -56,7 +56,7 @@ impl DesignChecks {
             Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(Self::default()),
             text => text.map_err(FileError::at(&path))?,
         };
-        let kept = sealed_json::from_slice::<Kept>(&text).map_err(io::Error::other);
+        let kept = sealed_json::from_slice::<ChecksOfDesign>(&text).map_err(io::Error::other);
         let kept = kept.map_err(FileError::at(&path))?;
         Ok(if kept.design == *design { kept.checks } else { Self::default() })
     }
@@ -64,7 +64,7 @@ impl DesignChecks {
     /// Writes the checks of a design to the folder of its run.
     pub fn write(self, folder: &Path, design: &DesignVector) -> Result<(), FileError> {
         let path = folder.join(CHECKS_FILE);
-        let kept = Kept { design: design.clone(), checks: self };
+        let kept = ChecksOfDesign { design: design.clone(), checks: self };
         let text = sealed_json::to_vec(&kept).map_err(FileError::at(&path))?;
         whole_file::write(&path, &text).map_err(FileError::at(&path))
     }

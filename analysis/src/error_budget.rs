@@ -47,7 +47,7 @@ const MOST_HINGES: usize = 2000;
 )]
 #[serde(rename_all = "kebab-case")]
 #[strum(serialize_all = "lowercase")]
-pub enum Cause {
+pub enum ErrorCause {
     /// Spread of the networks of the ensemble.
     Network,
     /// Errors of the weights relative to a finer mesh of the windows.
@@ -75,7 +75,7 @@ pub enum Cause {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Contribution {
     /// What causes the errors.
-    pub cause: Cause,
+    pub cause: ErrorCause,
     /// Source of their size or, if that is unknown, the reason.
     pub source: String,
     /// `None` if it is unknown.
@@ -106,7 +106,7 @@ pub struct ErrorBudget {
     pub total: Effect,
 }
 
-impl Cause {
+impl ErrorCause {
     /// Its name.
     pub fn name(self) -> &'static str {
         self.into()
@@ -153,7 +153,7 @@ impl ErrorBudget {
             residual,
         };
         let mut contributions = Vec::new();
-        for &cause in Cause::VARIANTS {
+        for &cause in ErrorCause::VARIANTS {
             if residual.is_some() && cause.is_seen_by_elements() {
                 continue;
             }
@@ -172,7 +172,7 @@ impl ErrorBudget {
 
     /// The root of the sum of the squares of the contributions whose causes `count`; a lower bound
     /// if one is unknown.
-    pub fn sum(&self, count: impl Fn(Cause) -> bool) -> Effect {
+    pub fn sum(&self, count: impl Fn(ErrorCause) -> bool) -> Effect {
         let counted = || self.contributions.iter().filter(|part| count(part.cause));
         let none = Effect::new(vec![0.0; self.total.by_corner.len()], None);
         Effect {

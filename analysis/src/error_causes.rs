@@ -1,7 +1,7 @@
 //! The causes of the error budget: the errors of the hinge forces by each, and their sources.
 
 use crate::calibration::CALIBRATION;
-use crate::error_budget::{Cause, Effect};
+use crate::error_budget::{Effect, ErrorCause};
 use crate::force_errors::{Modes, alike, along, common, deviations, isotropic, spread};
 use crate::out_of_plane::out_of_plane;
 use crate::path_separation::path_separation;
@@ -29,22 +29,22 @@ pub(crate) struct LoadedSheet<'a> {
 }
 
 /// A quantity with its source, or why it is unknown.
-type Known<T> = Result<(T, String), String>;
+type Sourced<T> = Result<(T, String), String>;
 
 impl LoadedSheet<'_> {
     /// The effect of a cause, `None` in it if the tangent is singular; `None` for a cause that the
     /// sheet does not have.
-    pub fn effect(&self, cause: Cause) -> Option<Known<Option<Effect>>> {
+    pub fn effect(&self, cause: ErrorCause) -> Option<Sourced<Option<Effect>>> {
         let modes = match cause {
-            Cause::Network => self.networks()?,
-            Cause::WindowMesh => self.window_mesh(),
-            Cause::MaterialLaw => self.material_law(),
-            Cause::Imperfection => self.imperfection(),
-            Cause::LoadingPath => self.loading_path(),
-            Cause::Kerf => self.kerf(),
-            Cause::Thickness => self.thickness(),
-            Cause::Tilt => return self.tilt(),
-            Cause::Balance => {
+            ErrorCause::Network => self.networks()?,
+            ErrorCause::WindowMesh => self.window_mesh(),
+            ErrorCause::MaterialLaw => self.material_law(),
+            ErrorCause::Imperfection => self.imperfection(),
+            ErrorCause::LoadingPath => self.loading_path(),
+            ErrorCause::Kerf => self.kerf(),
+            ErrorCause::Thickness => self.thickness(),
+            ErrorCause::Tilt => return self.tilt(),
+            ErrorCause::Balance => {
                 let corners = vec![self.residual?; 4 * self.deployment.sheet.panels.len()];
                 let source = "largest movement in the last balance with finite elements of every hinge, which replace networks, mesh and path";
                 return Some(Ok((Some(Effect::new(corners, None)), source.into())));
@@ -61,7 +61,7 @@ impl LoadedSheet<'_> {
     }
 
     /// Distances of the corners from the plane; `None` if the panels are held flat.
-    fn tilt(&self) -> Option<Known<Option<Effect>>> {
+    fn tilt(&self) -> Option<Sourced<Option<Effect>>> {
         let Self { scene, problem, deployment, .. } = self;
         let heights = match scene.config.posture {
             None => Err("the scene has no posture"),
@@ -122,7 +122,7 @@ impl LoadedSheet<'_> {
     }
 
     /// The errors of the weights at their spot check, with the source.
-    fn checked(&self) -> Known<Modes> {
+    fn checked(&self) -> Sourced<Modes> {
         let (check, tier, forces) = self.spot_check()?;
         let sizes: Vec<[f64; 3]> =
             (self.norms().into_iter()).map(|norm| forces.map(|error| error * norm)).collect();
@@ -139,7 +139,7 @@ impl LoadedSheet<'_> {
     }
 
     /// `None` if only the spot check knows it, on a finer mesh: it is a part of that row.
-    fn networks(&self) -> Option<Known<Modes>> {
+    fn networks(&self) -> Option<Sourced<Modes>> {
         let (mut modes, mut sources) = (Modes::new(), Vec::new());
         let networks = self.scene.networks();
         if networks.len() > 1 {
@@ -166,7 +166,7 @@ impl LoadedSheet<'_> {
         (!sources.is_empty()).then(|| Ok((modes, sources.join("; "))))
     }
 
-    fn window_mesh(&self) -> Known<Modes> {
+    fn window_mesh(&self) -> Sourced<Modes> {
         let (_, tier, _) = self.spot_check()?;
         if self.is_checked_on_finer_mesh() {
             self.checked()
@@ -175,7 +175,7 @@ impl LoadedSheet<'_> {
         }
     }
 
-    fn material_law(&self) -> Known<Modes> {
+    fn material_law(&self) -> Sourced<Modes> {
         let material = &self.scene.material;
         let deviation = material
             .stress_deviation
@@ -184,7 +184,7 @@ impl LoadedSheet<'_> {
         Ok((common(&self.forces(deviation)), source))
     }
 
-    fn imperfection(&self) -> Known<Modes> {
+    fn imperfection(&self) -> Sourced<Modes> {
         let thickness = self.scene.material.thickness;
         let mut forces = self.forces(1.0);
         let mut largest = (0.0, "");
@@ -204,7 +204,7 @@ impl LoadedSheet<'_> {
         Ok((along(&forces), source))
     }
 
-    fn loading_path(&self) -> Known<Modes> {
+    fn loading_path(&self) -> Sourced<Modes> {
         let material = &self.scene.material;
         let yields_at = material.plastic[0][0] / material.young;
         let covered = &CALIBRATION.deviation_yield;
@@ -231,7 +231,7 @@ impl LoadedSheet<'_> {
         Ok((isotropic(&sizes, &self.designs), source))
     }
 
-    fn kerf(&self) -> Known<Modes> {
+    fn kerf(&self) -> Sourced<Modes> {
         let tolerance = self.scene.config.tolerances.kerf;
         let tolerance = tolerance.ok_or("no tolerances.kerf in the scene")?;
         let narrower = -0.5 * (0.5 * tolerance);
@@ -246,7 +246,7 @@ impl LoadedSheet<'_> {
         Ok((common(&errors), source))
     }
 
-    fn thickness(&self) -> Known<Modes> {
+    fn thickness(&self) -> Sourced<Modes> {
         let tolerance = self.scene.config.tolerances.thickness;
         let tolerance = tolerance.ok_or("no tolerances.thickness in the scene")?;
         let relative = (0.5 * tolerance) / self.scene.material.thickness;

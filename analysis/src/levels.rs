@@ -1,6 +1,6 @@
 //! Cost of each level of a scene, and its difference to the finest one.
 
-use crate::error_budget::{Cause, Contribution, ErrorBudget};
+use crate::error_budget::{Contribution, ErrorBudget, ErrorCause};
 use crate::level_difference::{AtLevel, deployed};
 use design::optimise::outer_loop::optimise;
 use design::pattern::design_vector::DesignVector;
@@ -89,7 +89,7 @@ pub fn levels(
     let others = budget.into_iter().flat_map(|budget| budget.contributions);
     Ok(Levels {
         levels: found,
-        others: others.filter(|part| part.cause != Cause::Network).collect(),
+        others: others.filter(|part| part.cause != ErrorCause::Network).collect(),
     })
 }
 

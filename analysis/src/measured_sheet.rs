@@ -1,7 +1,7 @@
 //! Points measured on a deployed sheet, compared with its equilibrium path; section 4.4.
 
 use crate::measured_points::MeasuredPoint;
-use crate::path_fit::{Fit, MIN_POINTS, Problem};
+use crate::path_fit::{Fit, MIN_POINTS, PathFit};
 use crate::shape_path::ShapePath;
 use design::geometry::similarity::Scale;
 use std::collections::HashSet;
@@ -39,7 +39,7 @@ impl MeasuredSheet {
                 "measure corners, or measure in mm, cm or m",
             ));
         }
-        let problem = Problem { path, points, scale };
+        let problem = PathFit { path, points, scale };
         let best = problem.fit(problem.best_position());
         let full = problem.fit(path.end());
         let coincide = || fault("", "the measured points coincide", "");

@@ -54,7 +54,7 @@ const RIGID: f64 = 1e3;
 const LEAST: f64 = 1e-3;
 
 /// The stiffness of a hinge in (z, w_x, w_y) of its panels A and B.
-type Block = [[f64; 6]; 6];
+type JointStiffness = [[f64; 6]; 6];
 
 /// How a plate stays in its plane along its path.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -169,7 +169,7 @@ pub fn out_of_plane(
             }
             (ligament.elastic(&stiffness), ligament.geometric())
         });
-        let (elastic, geometric): (Vec<Block>, Vec<Block>) = blocks.unzip();
+        let (elastic, geometric): (Vec<JointStiffness>, Vec<JointStiffness>) = blocks.unzip();
         OfForces {
             elastic: pattern.assemble(elastic.into_iter()),
             geometric: pattern.assemble(geometric.into_iter().map(symmetric)),
@@ -239,7 +239,7 @@ fn moved(
 }
 
 /// The symmetric part of a block.
-fn symmetric(block: Block) -> Block {
+fn symmetric(block: JointStiffness) -> JointStiffness {
     from_fn(|i| from_fn(|j| 0.5 * (block[i][j] + block[j][i])))
 }
 
@@ -348,7 +348,7 @@ impl Ligament {
     }
 
     /// The stiffness of the ligament itself.
-    fn elastic(&self, stiffness: &Stiffness) -> Block {
+    fn elastic(&self, stiffness: &Stiffness) -> JointStiffness {
         let [a, b] = self.arms;
         let turn = |c64 { re: x, im: y }: c64| [0.0, -x, -y, 0.0, x, y];
         let height = [-1.0, -a.im, a.re, 1.0, b.im, -b.re];
@@ -357,7 +357,7 @@ impl Ligament {
             (stiffness.twist, turn(self.along)),
             (stiffness.bend, turn(I * self.along)),
         ];
-        let mut block = Block::default();
+        let mut block = JointStiffness::default();
         for (stiffness, motion) in motions {
             for (row, by_row) in block.iter_mut().zip(motion) {
                 for (entry, by_column) in row.iter_mut().zip(motion) {
@@ -379,8 +379,8 @@ impl Ligament {
     }
 
     /// The stiffness by its force and moment in the plane.
-    fn geometric(&self) -> Block {
-        let mut block = Block::default();
+    fn geometric(&self) -> JointStiffness {
+        let mut block = JointStiffness::default();
         let half = 0.5 * self.moment;
         for (panel, sign) in [(0, -1.0), (1, 1.0)] {
             let row = 3 * panel;

@@ -35,13 +35,13 @@ pub struct Fit {
 }
 
 /// The unknowns of a measurement.
-pub(crate) struct Problem<'a> {
+pub(crate) struct PathFit<'a> {
     pub path: &'a ShapePath<'a>,
     pub points: &'a [MeasuredPoint],
     pub scale: Scale,
 }
 
-impl Problem<'_> {
+impl PathFit<'_> {
     /// Number of unknowns: the position on the path, the motion and, if requested, the scale.
     fn unknowns(&self) -> f64 {
         1.0 + self.scale.unknowns()

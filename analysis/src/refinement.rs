@@ -5,7 +5,7 @@
 //! that is larger than the tolerance, the finer level continues from that design and with that
 //! optimiser; if not, the search makes its other steps, and the finer level evaluates the design.
 
-use crate::error_budget::{Cause, ErrorBudget};
+use crate::error_budget::{ErrorBudget, ErrorCause};
 use crate::level_difference::AtLevel;
 use design::optimise::outer_loop::{Ended, Until};
 use scene::design_run::{BegunRun, Designed, Earlier, InverseDesignError, LEVELS, OnStep};
@@ -103,5 +103,5 @@ pub fn refine(
 fn mesh_error(run: &BegunRun) -> Option<f64> {
     let budget = ErrorBudget::new(&run.scene, &run.problem, &run.start.deployment, None)?;
     let mut mesh = budget.contributions.into_iter();
-    Some(mesh.find(|part| part.cause == Cause::WindowMesh)?.effect?.corners[1])
+    Some(mesh.find(|part| part.cause == ErrorCause::WindowMesh)?.effect?.corners[1])
 }

@@ -1,12 +1,10 @@
 //! A deployed sheet that is unloaded: its equilibrium without loads, with hinges that are elastic
 //! about their residual deformations.
 
-use crate::actuation_curve::{ActuationCurve, Mover};
-use design::equilibrium::load_step::LoadStep;
 use design::hinge_law::{Order, PreparedLaw, Release, ReleasedLaw};
 use design::objective::design_problem::{Deployment, DesignError, DesignProblem, converged};
 use design::sheet::kinematics::corner_distances;
-use hinge::{HingeDeformation, ReleasedHinge};
+use hinge::HingeDeformation;
 use scene::Scene;
 use serde::Serialize;
 use std::array::from_fn;
@@ -18,11 +16,6 @@ use surrogate::Springback;
 pub struct ResidualShape {
     /// Rotation of every hinge under load and without (rad).
     pub rotations: Vec<[f64; 2]>,
-    /// Rotation at which every hinge by itself would be without forces (rad).
-    pub rest_rotations: Vec<f64>,
-    /// Displacement along the loads, under load and without (mm, or rad if couples move the sheet);
-    /// `None` if supports moved the sheet.
-    pub displacement: Option<[f64; 2]>,
     /// Movement of the panel corners: root mean square and maximum (mm).
     pub corners: [f64; 2],
     /// Whether the sheet snaps to another state while the loads are taken off.
@@ -30,33 +23,6 @@ pub struct ResidualShape {
 }
 
 impl ResidualShape {
-    /// The residual opening of a sheet with these hinges at the end of the path of its unloading.
-    fn new(
-        problem: &DesignProblem,
-        deployment: &Deployment,
-        hinges: &[ReleasedHinge],
-        path: &[LoadStep],
-    ) -> Result<Self, DesignError> {
-        let loaded = deployment.at_full_load()?;
-        let free = converged(path.last().expect("a path has at least one step"))?;
-        let sheet = &deployment.sheet;
-        let moved = corner_distances(sheet, &loaded.configuration, &free.configuration);
-        let curve = problem.model.mechanics().and_then(|mechanics| {
-            let start = (loaded.load_factor, loaded.configuration.clone());
-            let end = std::iter::once((0.0, &*free.configuration));
-            ActuationCurve::through(mechanics, sheet, &start, end)
-        });
-        let curve = curve.filter(|curve| curve.mover == Mover::Loads);
-        let rotations = std::iter::zip(&loaded.deformations, &free.deformations);
-        Ok(Self {
-            rotations: rotations.map(|(on, off)| [on.theta, off.theta]).collect(),
-            rest_rotations: hinges.iter().map(|hinge| hinge.rest.theta).collect(),
-            displacement: curve.map(|curve| [curve.points[0][0], curve.points[1][0]]),
-            snaps: path.iter().any(|step| step.jumps > 0),
-            corners: rms_and_maximum(moved),
-        })
-    }
-
     /// Mean rotation of the hinges under load and without (rad).
     pub fn mean_rotations(&self) -> [f64; 2] {
         let count = self.rotations.len() as f64;
@@ -114,7 +80,14 @@ fn unloaded(
     let released = ReleasedLaw(&hinges);
     let hinged = mechanics.hinged(sheet, &released, false);
     let path = mechanics.solver.unload(hinged, loaded.configuration.clone())?;
-    ResidualShape::new(problem, deployment, &hinges, &path)
+    let free = converged(path.last().expect("a path has at least one step"))?;
+    let moved = corner_distances(sheet, &loaded.configuration, &free.configuration);
+    let rotations = std::iter::zip(&loaded.deformations, &free.deformations);
+    Ok(ResidualShape {
+        rotations: rotations.map(|(on, off)| [on.theta, off.theta]).collect(),
+        corners: rms_and_maximum(moved),
+        snaps: path.iter().any(|step| step.jumps > 0),
+    })
 }
 
 /// Over-opening by a person, as a fraction of the opening.

@@ -21,7 +21,7 @@ pub use findings::{Rule, Warning, rules};
 pub use hinge_row::HingeRow;
 
 use crate::cut_file::{CutLines, FabricationError};
-use crate::report::deployed::{Deployed, Run, left_out};
+use crate::report::deployed::{DeployedDesign, FinishedRun, left_out};
 use crate::report::facts::facts;
 use crate::report::findings::findings;
 use analysis::design_checks::DesignChecks;
@@ -88,7 +88,7 @@ pub fn warnings(
     cuts: &Result<CutLines, FabricationError>,
 ) -> Vec<Warning> {
     let hinges = HingeRow::all(scene, deployment);
-    findings(&Deployed { scene, deployment, cuts, hinges, run: None, warnings: Vec::new() })
+    findings(&DeployedDesign { scene, deployment, cuts, hinges, run: None, warnings: Vec::new() })
 }
 
 /// The distance of the outline of a sheet of some flat size to its target (mm), in words.
@@ -145,18 +145,24 @@ impl Report {
         force: bool,
     ) -> Self {
         let (deployment, problem) = (&designed.best.deployment, &designed.problem);
-        let run = Run {
+        let run = FinishedRun {
             designed,
             after: Scores::new(&problem.objective, &designed.best),
             checks,
             reached: Reached::new(scene, problem, deployment),
         };
         let hinges = HingeRow::all(scene, deployment);
-        let mut deployed =
-            Deployed { scene, deployment, cuts, hinges, run: Some(&run), warnings: Vec::new() };
+        let mut deployed = DeployedDesign {
+            scene,
+            deployment,
+            cuts,
+            hinges,
+            run: Some(&run),
+            warnings: Vec::new(),
+        };
         deployed.warnings = findings(&deployed);
         let (facts, flat_size) = (facts(&deployed, &run), deployed.flat_size());
-        let Deployed { hinges, warnings, .. } = deployed;
+        let DeployedDesign { hinges, warnings, .. } = deployed;
         let (search, coarse_searches) = (&designed.search, &designed.coarse_searches);
         let last = coarse_searches.last().filter(|search| search.finer == Level::Final);
         let residual = last.map(|search| search.difference.corners[1]);

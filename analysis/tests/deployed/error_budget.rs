@@ -1,7 +1,7 @@
 //! The error budget of a sheet against sheets that have the errors.
 
 use crate::changed;
-use analysis::error_budget::{Cause, Effect, ErrorBudget};
+use analysis::error_budget::{Effect, ErrorBudget, ErrorCause};
 use design::Deployment;
 use design::sheet::kinematics::deployed_corners;
 use scene::{Posture, PostureConfig, Scene, SceneConfig};
@@ -23,7 +23,7 @@ fn budget(scene: &Scene, residual: Option<f64>) -> ErrorBudget {
     ErrorBudget::new(scene, &problem, &deployed(scene), residual).unwrap()
 }
 
-fn effect(budget: &ErrorBudget, cause: Cause) -> Option<&Effect> {
+fn effect(budget: &ErrorBudget, cause: ErrorCause) -> Option<&Effect> {
     let part = budget.contributions.iter().find(|part| part.cause == cause);
     part.unwrap().effect.as_ref()
 }
@@ -39,7 +39,7 @@ fn an_error_of_the_stress_is_one_of_the_load() {
     let mut scene = film(|_| ());
     scene.material.stress_deviation = Some(0.04);
     let budget = budget(&scene, None);
-    let effect = effect(&budget, Cause::MaterialLaw).unwrap();
+    let effect = effect(&budget, ErrorCause::MaterialLaw).unwrap();
     assert!(effect.corners[1] < 1e-8, "{effect:?}");
     assert_close(effect.load.unwrap(), 0.04, 1e-9);
 }
@@ -50,7 +50,7 @@ fn an_error_of_the_thickness_is_the_difference_of_two_sheets() {
     let (thickness, tolerance) = (0.1, 2e-5);
     let toleranced = film(|config| config.tolerances.thickness = Some(tolerance));
     let budget = budget(&toleranced, None);
-    let found = effect(&budget, Cause::Thickness).unwrap();
+    let found = effect(&budget, ErrorCause::Thickness).unwrap();
     let [thin, thick] = [-1.0, 1.0].map(|sign| {
         deployed(&film(|config| {
             // One standard deviation, half of the tolerance.
@@ -72,15 +72,15 @@ fn an_error_of_the_thickness_is_the_difference_of_two_sheets() {
 #[test]
 fn what_is_known_adds_in_squares_and_is_a_lower_bound_if_a_part_is_not() {
     let budget = budget(&film(|_| ()), None);
-    assert!(effect(&budget, Cause::Kerf).is_none());
+    assert!(effect(&budget, ErrorCause::Kerf).is_none());
     assert!(budget.total.at_least);
-    assert!(!budget.sum(|cause| cause == Cause::LoadingPath).at_least);
+    assert!(!budget.sum(|cause| cause == ErrorCause::LoadingPath).at_least);
     let square = |effect: &Effect| effect.corners[0].powi(2);
     let parts = budget.contributions.iter();
     let known = parts.filter_map(|part| part.effect.as_ref());
     let sum: f64 = known.map(square).sum();
     assert_ratio(square(&budget.total), sum, 1e-12);
-    assert!(effect(&budget, Cause::LoadingPath).unwrap().corners[0] > 0.0);
+    assert!(effect(&budget, ErrorCause::LoadingPath).unwrap().corners[0] > 0.0);
 }
 
 /// Its weights have a spot check, which was made inside of their domain.
@@ -92,7 +92,7 @@ fn a_network_whose_error_is_not_known_says_why() {
     let problem = scene.problem().unwrap();
     let budget = ErrorBudget::new(&scene, &problem, &deployment, None).unwrap();
     let mut parts = budget.contributions.iter();
-    let network = parts.find(|part| part.cause == Cause::Network).unwrap();
+    let network = parts.find(|part| part.cause == ErrorCause::Network).unwrap();
     assert_eq!(network.source, "no ensemble; hinges are outside the training domain");
 }
 
@@ -103,7 +103,7 @@ fn a_verified_sheet_has_the_residual_of_its_rounds() {
     let budget = budget(&scene, Some(0.02));
     let mut parts = budget.contributions.iter();
     assert!(parts.all(|part| !part.cause.is_seen_by_elements()));
-    let found = effect(&budget, Cause::Balance).unwrap();
+    let found = effect(&budget, ErrorCause::Balance).unwrap();
     assert_close(found.corners[0], 0.02, 1e-15);
 }
 
@@ -117,7 +117,7 @@ fn a_plate_that_tilts_has_the_heights_of_its_corners() {
             change(config);
         });
         let budget = budget(&scene, None);
-        let tilt = (budget.contributions.iter()).find(|part| part.cause == Cause::Tilt);
+        let tilt = (budget.contributions.iter()).find(|part| part.cause == ErrorCause::Tilt);
         tilt.map(|tilt| (tilt.effect.clone(), budget.total))
     };
     assert!(plate(Posture::HeldFlat, |_| ()).is_none());

@@ -13,7 +13,7 @@ use scene::design_run::Designed;
 use scene::{Posture, Scene};
 
 /// A deployed design.
-pub(super) struct Deployed<'a> {
+pub(super) struct DeployedDesign<'a> {
     pub scene: &'a Scene,
     pub deployment: &'a Deployment,
     /// The cut lines of the sheet.
@@ -21,13 +21,13 @@ pub(super) struct Deployed<'a> {
     /// All hinges.
     pub hinges: Vec<HingeRow>,
     /// The run whose best design it is; `None` for only a design.
-    pub run: Option<&'a Run<'a>>,
+    pub run: Option<&'a FinishedRun<'a>>,
     /// The findings, once they are known.
     pub warnings: Vec<Warning>,
 }
 
 /// A run, with what is computed of its best design once.
-pub(super) struct Run<'a> {
+pub(super) struct FinishedRun<'a> {
     pub designed: &'a Designed,
     /// The scores of the best design.
     pub after: Scores,
@@ -36,7 +36,7 @@ pub(super) struct Run<'a> {
     pub reached: Option<Reached>,
 }
 
-impl Deployed<'_> {
+impl DeployedDesign<'_> {
     pub fn whole_sheet(&self) -> Option<&WholeSheet> {
         self.run?.checks.whole_sheet.as_ref()
     }

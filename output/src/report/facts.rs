@@ -6,7 +6,7 @@ mod load;
 
 pub use load::Reached;
 
-use crate::report::deployed::{Deployed, Run};
+use crate::report::deployed::{DeployedDesign, FinishedRun};
 use crate::report::numbers::rounded;
 use analysis::unit::Unit;
 use serde::Serialize;
@@ -27,7 +27,7 @@ pub struct Fact {
     pub page: &'static str,
 }
 
-type Facts = fn(&Deployed, &Run) -> Vec<Fact>;
+type Facts = fn(&DeployedDesign, &FinishedRun) -> Vec<Fact>;
 
 /// The pages that explain facts, and the facts.
 const FACTS: [(&str, Facts); 7] = [
@@ -41,7 +41,7 @@ const FACTS: [(&str, Facts); 7] = [
 ];
 
 /// All facts of a run.
-pub(super) fn facts(of: &Deployed, run: &Run) -> Vec<Fact> {
+pub(super) fn facts(of: &DeployedDesign, run: &FinishedRun) -> Vec<Fact> {
     let mut all = Vec::new();
     for (page, facts) in FACTS {
         all.extend(facts(of, run).into_iter().map(|fact| Fact { page, ..fact }));

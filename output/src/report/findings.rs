@@ -5,7 +5,7 @@ mod geometry;
 mod law;
 mod load;
 
-use crate::report::deployed::Deployed;
+use crate::report::deployed::DeployedDesign;
 use serde::Serialize;
 use std::cmp::Reverse;
 use std::fmt;
@@ -39,7 +39,7 @@ pub struct Rule {
     pub meaning: &'static str,
     /// What helps.
     pub remedy: &'static str,
-    find: fn(&Deployed) -> Option<Found>,
+    find: fn(&DeployedDesign) -> Option<Found>,
 }
 
 /// What a rule finds of a design.
@@ -56,7 +56,7 @@ pub fn rules() -> impl Iterator<Item = Rule> {
 }
 
 /// All that the rules find, the most severe first.
-pub(super) fn findings(of: &Deployed) -> Vec<Warning> {
+pub(super) fn findings(of: &DeployedDesign) -> Vec<Warning> {
     let mut warnings: Vec<Warning> =
         rules().filter_map(|rule| Some(rule.warning((rule.find)(of)?))).collect();
     let by_elements = of.whole_sheet().into_iter().flat_map(|sheet| &sheet.findings);
@@ -72,7 +72,7 @@ const fn rule(
     concern: &'static str,
     severity: Severity,
     [subject, meaning, remedy]: [&'static str; 3],
-    find: fn(&Deployed) -> Option<Found>,
+    find: fn(&DeployedDesign) -> Option<Found>,
 ) -> Rule {
     Rule { concern, severity, subject, meaning, remedy, find }
 }

@@ -1,7 +1,7 @@
 //! What the sheet is made of, what its hinge law rests on, and the searches and checks of the run.
 
 use super::{Fact, fact, number, text};
-use crate::report::deployed::{Deployed, Run, extent};
+use crate::report::deployed::{DeployedDesign, FinishedRun, extent};
 use crate::report::estimate::Estimate;
 use crate::report::numbers::rounded;
 use analysis::design_checks::WholeSheet;
@@ -12,7 +12,7 @@ use scene::{CoarseSearch, Level, LevelDifference};
 use support::severity::Severity;
 use surrogate::TestErrors;
 
-pub(super) fn material_and_size(of: &Deployed, _: &Run) -> Vec<Fact> {
+pub(super) fn material_and_size(of: &DeployedDesign, _: &FinishedRun) -> Vec<Fact> {
     let (scene, sheet) = (of.scene, &of.deployment.sheet);
     let corners = deployed_corners(sheet, &of.deployment.final_step().configuration);
     let size = |label, size: [f64; 2], remark| {
@@ -37,7 +37,7 @@ pub(super) fn material_and_size(of: &Deployed, _: &Run) -> Vec<Fact> {
 
 /// BLAKE3 hashes: the keys of the scene without title and run folder, the law of the material, the
 /// points of the target, and everything that the predictions of the weights depend on.
-pub(super) fn hashes(of: &Deployed, _: &Run) -> Vec<Fact> {
+pub(super) fn hashes(of: &DeployedDesign, _: &FinishedRun) -> Vec<Fact> {
     let scene = of.scene;
     let short = |label, hash: String| {
         let short: String = hash.chars().take(16).collect();
@@ -54,7 +54,7 @@ pub(super) fn hashes(of: &Deployed, _: &Run) -> Vec<Fact> {
         .collect()
 }
 
-pub(super) fn domain_and_weights(of: &Deployed, _: &Run) -> Vec<Fact> {
+pub(super) fn domain_and_weights(of: &DeployedDesign, _: &FinishedRun) -> Vec<Fact> {
     let (scene, mut facts) = (of.scene, Vec::new());
     let gamma = of.hinges.iter().filter_map(|row| row.gamma).min_by(f64::total_cmp);
     if let Some(gamma) = gamma {
@@ -96,7 +96,7 @@ fn listed(percents: &[f64]) -> String {
     errors.collect::<Vec<_>>().join(", ")
 }
 
-pub(super) fn levels_and_findings(of: &Deployed, run: &Run) -> Vec<Fact> {
+pub(super) fn levels_and_findings(of: &DeployedDesign, run: &FinishedRun) -> Vec<Fact> {
     let searches = &run.designed.coarse_searches;
     let mut facts: Vec<Fact> = searches.iter().map(coarse_search).collect();
     if searches.last().is_some_and(|last| !last.suffices()) {

@@ -2,7 +2,7 @@
 //! that stays, and when the load is taken off.
 
 use super::{Fact, fact, number, text};
-use crate::report::deployed::{Deployed, Run, is_heavy, of_the_load, posture};
+use crate::report::deployed::{DeployedDesign, FinishedRun, is_heavy, of_the_load, posture};
 use crate::report::numbers::rounded;
 use analysis::actuation_curve::{ActuationCurve, LimitPoint, LoadPeak, Mover};
 use analysis::localisation::elasto_gravity_length;
@@ -110,7 +110,7 @@ fn stroke_of(scene: &Scene, curve: &ActuationCurve) -> String {
     stroke
 }
 
-pub(super) fn load_and_stroke(of: &Deployed, run: &Run) -> Vec<Fact> {
+pub(super) fn load_and_stroke(of: &DeployedDesign, run: &FinishedRun) -> Vec<Fact> {
     let Some(reached) = &run.reached else { return Vec::new() };
     let [length, force] = reached.units;
     let last = of.deployment.final_step();
@@ -138,7 +138,7 @@ pub(super) fn load_and_stroke(of: &Deployed, run: &Run) -> Vec<Fact> {
     facts
 }
 
-pub(super) fn holding_and_weight(of: &Deployed, _: &Run) -> Vec<Fact> {
+pub(super) fn holding_and_weight(of: &DeployedDesign, _: &FinishedRun) -> Vec<Fact> {
     if !of.scene.hinge.carries_load() {
         return Vec::new();
     }
@@ -176,7 +176,7 @@ pub(super) fn holding_and_weight(of: &Deployed, _: &Run) -> Vec<Fact> {
 /// Young's modulus above which a sheet is a metal (MPa).
 const METAL: f64 = 40_000.0;
 
-pub(super) fn springback_and_creep(of: &Deployed, run: &Run) -> Vec<Fact> {
+pub(super) fn springback_and_creep(of: &DeployedDesign, run: &FinishedRun) -> Vec<Fact> {
     let (scene, problem) = (of.scene, &run.designed.problem);
     if problem.model.mechanics().is_none() {
         return Vec::new();

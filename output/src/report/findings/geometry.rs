@@ -3,7 +3,7 @@
 use super::{Found, Rule, at, found, rule};
 use crate::cut_file::fits;
 use crate::display::Shape;
-use crate::report::deployed::Deployed;
+use crate::report::deployed::DeployedDesign;
 use crate::report::miss;
 use crate::report::numbers::rounded;
 use design::equilibrium::load_step::LoadStep;
@@ -92,7 +92,7 @@ pub(super) const RULES: [Rule; 7] = [
     ),
 ];
 
-fn missed(of: &Deployed) -> Option<Found> {
+fn missed(of: &DeployedDesign) -> Option<Found> {
     let error = of.run?.after.outline_error;
     let [width, height] = of.flat_size();
     let ratio = error / width.max(height);
@@ -103,8 +103,8 @@ fn missed(of: &Deployed) -> Option<Found> {
 
 /// Panels cannot lie over each other, whatever the hinge law. On the way the edges of closed cuts,
 /// which are softer in the model than in the sheet, may let them by a little.
-fn panels_overlap(of: &Deployed) -> Option<Found> {
-    let Deployed { deployment, hinges, .. } = of;
+fn panels_overlap(of: &DeployedDesign) -> Option<Found> {
+    let DeployedDesign { deployment, hinges, .. } = of;
     let covered = |step: &LoadStep| overlap(&deployment.sheet, &step.configuration);
     let at_the_end = covered(deployment.final_step());
     let openings = hinges.iter().map(|row| row.theta_deg.to_radians());
@@ -140,7 +140,7 @@ fn panels_overlap(of: &Deployed) -> Option<Found> {
     })
 }
 
-fn windows_overlap(of: &Deployed) -> Option<Found> {
+fn windows_overlap(of: &DeployedDesign) -> Option<Found> {
     let sheet = &of.deployment.sheet;
     let windows = Window::of_sheet(sheet);
     let overlapping = |h: &usize| {
@@ -155,7 +155,7 @@ fn windows_overlap(of: &Deployed) -> Option<Found> {
     at((0..windows.len()).filter(overlapping).collect(), message)
 }
 
-fn windows_leave_panels(of: &Deployed) -> Option<Found> {
+fn windows_leave_panels(of: &DeployedDesign) -> Option<Found> {
     let sheet = &of.deployment.sheet;
     let windows = Window::of_sheet(sheet).into_iter().zip(&sheet.hinges);
     let leaving = windows.enumerate().filter(|(_, (window, hinge))| {
@@ -167,18 +167,18 @@ fn windows_leave_panels(of: &Deployed) -> Option<Found> {
     at(leaving.map(|(h, _)| h).collect(), message)
 }
 
-fn cannot_be_cut(of: &Deployed) -> Option<Found> {
+fn cannot_be_cut(of: &DeployedDesign) -> Option<Found> {
     of.cuts.as_ref().err().map(|error| found(error.to_string()))
 }
 
-fn cuts_too_close(of: &Deployed) -> Option<Found> {
+fn cuts_too_close(of: &DeployedDesign) -> Option<Found> {
     let cuts = of.cuts.as_ref().ok()?;
     let close = of.hinges_where(|row| cuts.clearance(row.hinge) < row.w_lig - ROUNDING);
     at(close, "another cut is closer to the tip than w_lig")
 }
 
 /// The cuts of a sheet are within the stock that it is cut from.
-fn stock(of: &Deployed) -> Option<Found> {
+fn stock(of: &DeployedDesign) -> Option<Found> {
     let cuts = of.cuts.as_ref().ok()?;
     let stock = cuts.cutting.stock?.size();
     let [low, high] = Shape::extent(cuts.drawing().cuts());

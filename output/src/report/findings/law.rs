@@ -1,7 +1,7 @@
 //! Findings about the hinges and the law that predicts them.
 
 use super::{Found, Rule, at, found, rule};
-use crate::report::deployed::Deployed;
+use crate::report::deployed::DeployedDesign;
 use crate::report::numbers::rounded;
 use analysis::calibration::CALIBRATION;
 use design::hinge_law::{DamageMeasure, HingeDamage};
@@ -115,7 +115,7 @@ pub(super) const RULES: [Rule; 10] = [
     ),
 ];
 
-fn ligaments_outside(of: &Deployed) -> Option<Found> {
+fn ligaments_outside(of: &DeployedDesign) -> Option<Found> {
     let domain = of.scene.surrogate()?.domain();
     let outside = |[min, max]: [f64; 2], value: f64| !(min..=max).contains(&value);
     let alpha_deg = domain.alpha.map(f64::to_degrees);
@@ -130,7 +130,7 @@ fn ligaments_outside(of: &Deployed) -> Option<Found> {
 }
 
 /// A learned law has the slits of its training; the effect of others was measured in a range.
-fn slit_width(of: &Deployed) -> Option<Found> {
+fn slit_width(of: &DeployedDesign) -> Option<Found> {
     let known = of.scene.surrogate()?.card().hinge.kerf;
     let slit = of.deployment.sheet.options.process.slit_width;
     if (slit / known - 1.0).abs() < SAME_SLIT {
@@ -146,7 +146,7 @@ fn slit_width(of: &Deployed) -> Option<Found> {
     at(of.hinges_where(|row| !(least..=most).contains(&(slit / row.w_lig))), message)
 }
 
-fn states_outside(of: &Deployed) -> Option<Found> {
+fn states_outside(of: &DeployedDesign) -> Option<Found> {
     of.scene.surrogate()?;
     let message = "deformations leave the training domain of the hinge law along the path: energy and forces of these \
                    hinges are extrapolated, and their damage is not known";
@@ -154,7 +154,7 @@ fn states_outside(of: &Deployed) -> Option<Found> {
 }
 
 /// A learned law was measured along rays.
-fn path_dependence(of: &Deployed) -> Option<Found> {
+fn path_dependence(of: &DeployedDesign) -> Option<Found> {
     let bent_rays = of.scene.surrogate()?.card().bent_rays;
     let regime = of.scene.material.regime(of.scene.config.ligament.range[1]);
     let deviation = CALIBRATION.path_deviation(regime, bent_rays);
@@ -167,7 +167,7 @@ fn path_dependence(of: &Deployed) -> Option<Found> {
 }
 
 /// Windows have no contact.
-fn flanks_touch(of: &Deployed) -> Option<Found> {
+fn flanks_touch(of: &DeployedDesign) -> Option<Found> {
     of.scene.surrogate()?;
     let gaps = of.hinges.iter().map(|row| row.flank_gap);
     let most = -gaps.fold(f64::INFINITY, f64::min);
@@ -179,7 +179,7 @@ fn flanks_touch(of: &Deployed) -> Option<Found> {
     at(of.hinges_where(|row| row.flank_gap < 0.0), message)
 }
 
-fn tearing(of: &Deployed) -> Option<Found> {
+fn tearing(of: &DeployedDesign) -> Option<Found> {
     // The mean reaches 1 later than the peak; weights without D_peak predict the mean only.
     let torn =
         of.hinges_where(|row| row.damage_peak.or(row.damage).is_some_and(|damage| damage >= 1.0));
@@ -196,7 +196,7 @@ fn tearing(of: &Deployed) -> Option<Found> {
     at(torn, format!("predicted peak damage of 1 or more: the ligament tears{cause}"))
 }
 
-fn overstrained(of: &Deployed) -> Option<Found> {
+fn overstrained(of: &DeployedDesign) -> Option<Found> {
     let beyond = of.hinges_where(|row| row.eta_a.abs().max(row.eta_s.abs()) > 1.0);
     let message = "ligaments translate by more than their width at full load, where no hinge law is valid: \
                    reduce the load or the size of the target";
@@ -205,7 +205,7 @@ fn overstrained(of: &Deployed) -> Option<Found> {
 
 /// Weights whose forces are off by more than a tenth at their spot check, or at unseen rays, some
 /// of which leave the training domain, if they have none.
-fn inaccurate(of: &Deployed) -> Option<Found> {
+fn inaccurate(of: &DeployedDesign) -> Option<Found> {
     let card = of.scene.weights()?.card();
     let (errors, states) = match &card.spot_check {
         Some(check) => (&check.errors, "random"),
@@ -226,7 +226,7 @@ fn inaccurate(of: &Deployed) -> Option<Found> {
 }
 
 /// Weights whose spot check mostly lies outside their training domain.
-fn outside(of: &Deployed) -> Option<Found> {
+fn outside(of: &DeployedDesign) -> Option<Found> {
     let check = of.scene.weights()?.card().spot_check.as_ref()?;
     let (inside, states) = (check.inside, check.errors.rows);
     (of.run.is_some() && 2 * inside < states).then(|| {
@@ -238,7 +238,7 @@ fn outside(of: &Deployed) -> Option<Found> {
     })
 }
 
-fn other_branch(of: &Deployed) -> Option<Found> {
+fn other_branch(of: &DeployedDesign) -> Option<Found> {
     of.run?.designed.search.branch_mismatch().then(|| {
         found(
             "during the search a corrected path was on another branch than the path followed from the flat sheet: the designs \

@@ -1,7 +1,7 @@
 //! Findings about the path, its load, weight and friction, and panels that leave the plane.
 
 use super::{Found, Rule, found, rule};
-use crate::report::deployed::{Deployed, is_heavy, left_out, of_the_load, posture};
+use crate::report::deployed::{DeployedDesign, is_heavy, left_out, of_the_load, posture};
 use crate::report::numbers::rounded;
 use analysis::calibration::CALIBRATION;
 use analysis::flatness::{Flatness, error_on_table};
@@ -110,7 +110,7 @@ pub(super) const RULES: [Rule; 11] = [
     ),
 ];
 
-fn path(of: &Deployed) -> Option<Found> {
+fn path(of: &DeployedDesign) -> Option<Found> {
     let weighed = of.deployment.weight_steps().len();
     // A jump under a prescribed stroke or motion is no maximum of the load.
     let dead = of.scene.config.has_loads() && of.scene.config.drive.is_none();
@@ -146,12 +146,12 @@ fn departure(step: &LoadStep, peaks: &str, before: &str, place: &str) -> Option<
     })
 }
 
-fn target_drawing(of: &Deployed) -> Option<Found> {
+fn target_drawing(of: &DeployedDesign) -> Option<Found> {
     let notes = &of.scene.target.notes;
     (!notes.is_empty()).then(|| found(format!("the drawing of the target: {}", notes.join("; "))))
 }
 
-fn target_crosses(of: &Deployed) -> Option<Found> {
+fn target_crosses(of: &DeployedDesign) -> Option<Found> {
     let target = &of.scene.target;
     target.crossing.filter(|_| target.notes.is_empty()).map(|[x, y]| {
         found(format!(
@@ -162,7 +162,7 @@ fn target_crosses(of: &Deployed) -> Option<Found> {
 }
 
 /// A point at which a panel is held or pulled does not move with its cuts.
-fn point_outside(of: &Deployed) -> Option<Found> {
+fn point_outside(of: &DeployedDesign) -> Option<Found> {
     let panels = &of.deployment.sheet.panels;
     let attachments = of.scene.actuation().attachments.into_iter();
     let outside = attachments.filter(|attachment| {
@@ -180,7 +180,7 @@ fn point_outside(of: &Deployed) -> Option<Found> {
     })
 }
 
-fn not_modelled(of: &Deployed) -> Option<Found> {
+fn not_modelled(of: &DeployedDesign) -> Option<Found> {
     of.scene.surrogate()?;
     of.run?;
     left_out(of.scene).map(|missing| found(format!("not modelled: {missing}")))
@@ -193,7 +193,7 @@ const HEAVY: f64 = 0.05;
 const HUNG: f64 = 50.0;
 
 /// A weight that acts in the plane of the sheet but not in the model.
-fn weightless(of: &Deployed) -> Option<Found> {
+fn weightless(of: &DeployedDesign) -> Option<Found> {
     of.scene.surrogate()?;
     let acts = matches!(posture(of.scene)?, Posture::Hanging | Posture::Free);
     let ratio = of.weight_over_load().filter(|ratio| *ratio > HEAVY)?;
@@ -206,7 +206,7 @@ fn weightless(of: &Deployed) -> Option<Found> {
 }
 
 /// Friction that the design does not know of.
-fn friction(of: &Deployed) -> Option<Found> {
+fn friction(of: &DeployedDesign) -> Option<Found> {
     of.scene.surrogate()?;
     let ratio = FRICTION * of.weight_over_load()?;
     (ratio > HEAVY && posture(of.scene)? == Posture::Lying).then(|| {
@@ -219,7 +219,7 @@ fn friction(of: &Deployed) -> Option<Found> {
 }
 
 /// Weights that are too heavy to hang; a mass under a prescribed stroke is only a direction.
-fn hung_weight(of: &Deployed) -> Option<Found> {
+fn hung_weight(of: &DeployedDesign) -> Option<Found> {
     let config = &of.scene.config;
     let grams: f64 = config.loads.iter().filter_map(|load| load.mass_g).sum();
     let ratio = 1e-3 * grams / of.mass_kg();
@@ -231,7 +231,7 @@ fn hung_weight(of: &Deployed) -> Option<Found> {
     })
 }
 
-fn load_peak(of: &Deployed) -> Option<Found> {
+fn load_peak(of: &DeployedDesign) -> Option<Found> {
     let reached = of.run?.reached.as_ref()?;
     let peak = reached.peak?;
     let [length, force] = reached.units;
@@ -266,7 +266,7 @@ pub(super) const WHOLE_SHEET: Rule = rule(
 );
 
 /// Panels that leave the plane unless something holds them flat.
-fn leaves_plane(of: &Deployed) -> Option<Found> {
+fn leaves_plane(of: &DeployedDesign) -> Option<Found> {
     let posture = posture(of.scene)?;
     let solved = of.whole_sheet().is_some_and(|sheet| sheet.support == posture);
     if posture == Posture::HeldFlat || solved {
@@ -316,7 +316,7 @@ fn plate_leaves_plane(kept: &str, stability: Option<Stability>) -> Found {
 }
 
 /// A film, whose ligaments buckle and tilt its panels.
-fn film_leaves_plane(of: &Deployed, posture: Posture, kept: &str, widest: f64) -> Found {
+fn film_leaves_plane(of: &DeployedDesign, posture: Posture, kept: &str, widest: f64) -> Found {
     let (sheet, thickness) = (&of.deployment.sheet, of.scene.material.thickness);
     let r_win = sheet.options.process.r_win;
     let on_table =
