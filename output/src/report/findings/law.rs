@@ -49,7 +49,7 @@ pub(super) const RULES: [Rule; 10] = [
         [
             "paths depart from the rays of the hinge law",
             "energy, forces and damage depend on the path",
-            "`kirigami verify`",
+            "`kirigami verify --equilibrium`",
         ],
         path_dependence,
     ),
@@ -160,7 +160,7 @@ fn path_dependence(of: &DeployedDesign) -> Option<Found> {
     let deviation = CALIBRATION.path_deviation(regime, bent_rays);
     let message = format!(
         "paths depart by more than {} ligament widths from the rays of the hinge law: energy, forces and damage depend on the \
-         path there ({}); check by `kirigami verify`",
+         path there ({}); check by `kirigami verify --equilibrium`",
         deviation.safe, deviation.source
     );
     at(of.hinges_where(|row| row.path_separation > deviation.safe), message)
