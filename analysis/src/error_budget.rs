@@ -21,6 +21,8 @@
 //! What is not measured is unknown: the sum of the others is a lower bound.
 
 use crate::actuation_curve::ActuationCurve;
+pub use crate::error_causes::{Effect, ErrorCause};
+
 use crate::error_causes::LoadedSheet;
 use design::equilibrium::force_response::ForceResponse;
 use design::hinge_law::Order;
@@ -28,48 +30,9 @@ use design::objective::design_problem::{Deployment, DesignProblem};
 use scene::Scene;
 use serde::{Deserialize, Serialize};
 use strum::VariantArray;
-use support::statistics::rms_and_maximum;
 
 /// Number of hinges above which no budget is made: it takes three solves a hinge and more.
 const MOST_HINGES: usize = 2000;
-
-/// A cause of errors of a deployed sheet, in the order of a budget.
-#[derive(
-    Clone,
-    Copy,
-    Debug,
-    PartialEq,
-    Eq,
-    Serialize,
-    Deserialize,
-    strum::IntoStaticStr,
-    strum::VariantArray,
-)]
-#[serde(rename_all = "kebab-case")]
-#[strum(serialize_all = "lowercase")]
-pub enum ErrorCause {
-    /// Spread of the networks of the ensemble.
-    Network,
-    /// Errors of the weights relative to a finer mesh of the windows.
-    #[strum(serialize = "window mesh")]
-    WindowMesh,
-    /// The stress at equal strain.
-    #[strum(serialize = "material law")]
-    MaterialLaw,
-    /// The imperfection from which the ligament buckles.
-    Imperfection,
-    /// The energy of a hinge as a function only of its state.
-    #[strum(serialize = "loading path")]
-    LoadingPath,
-    /// The width that the cutter removes.
-    Kerf,
-    /// The thickness of the sheet.
-    Thickness,
-    /// Panels that tilt, which are in the plane in the model.
-    Tilt,
-    /// What is left if the sheet was balanced with finite elements for its hinges.
-    Balance,
-}
 
 /// One cause of errors.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -82,21 +45,6 @@ pub struct Contribution {
     pub effect: Option<Effect>,
 }
 
-/// Standard deviations of a deployed sheet.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Effect {
-    /// Deviations of the panel corners (mm): root mean square and maximum.
-    pub corners: [f64; 2],
-    /// Deviation of the load that the prescribed displacement takes, relative to it; `None` under
-    /// dead loads.
-    pub load: Option<f64>,
-    /// Whether it is a lower bound: a sum with an unknown part.
-    pub at_least: bool,
-    /// Deviation of every panel corner, SW, SE, NE and NW of every panel (mm).
-    #[serde(skip)]
-    pub by_corner: Vec<f64>,
-}
-
 /// The error budget of a deployed sheet.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ErrorBudget {
@@ -104,19 +52,6 @@ pub struct ErrorBudget {
     pub contributions: Vec<Contribution>,
     /// The root of the sum of the squares of those that are known.
     pub total: Effect,
-}
-
-impl ErrorCause {
-    /// Its name.
-    pub fn name(self) -> &'static str {
-        self.into()
-    }
-
-    /// Whether finite elements of the hinges of a sheet see its errors: they have the imperfection,
-    /// the material, the kerf and the thickness of the scene.
-    pub fn is_seen_by_elements(self) -> bool {
-        matches!(self, Self::Network | Self::WindowMesh | Self::LoadingPath)
-    }
 }
 
 impl ErrorBudget {
@@ -179,21 +114,5 @@ impl ErrorBudget {
             at_least: counted().any(|part| part.effect.is_none()),
             ..counted().filter_map(|part| part.effect.as_ref()).fold(none, Effect::with)
         }
-    }
-}
-
-impl Effect {
-    /// An effect on every corner (mm), and relative to the load.
-    pub(crate) fn new(by_corner: Vec<f64>, load: Option<f64>) -> Self {
-        let corners = rms_and_maximum(by_corner.iter().copied());
-        Self { corners, load, at_least: false, by_corner }
-    }
-
-    /// The root of the sum of the squares of both, which are known.
-    fn with(self, other: &Self) -> Self {
-        let corners = std::iter::zip(&self.by_corner, &other.by_corner);
-        let loads = [self.load, other.load].into_iter().flatten();
-        let load = loads.reduce(f64::hypot);
-        Self::new(corners.map(|(one, other)| one.hypot(*other)).collect(), load)
     }
 }

@@ -1,7 +1,6 @@
 //! The causes of the error budget: the errors of the hinge forces by each, and their sources.
 
 use crate::calibration::CALIBRATION;
-use crate::error_budget::{Effect, ErrorCause};
 use crate::force_errors::{Modes, alike, along, common, deviations, isotropic, spread};
 use crate::out_of_plane::out_of_plane;
 use crate::path_separation::path_separation;
@@ -11,7 +10,62 @@ use design::objective::design_problem::{Deployment, DesignProblem};
 use design::objective::response::by_thickness;
 use hinge::{HingeDeformation, HingeDesign, Regime};
 use scene::{Posture, Scene};
+use serde::{Deserialize, Serialize};
+use support::statistics::rms_and_maximum;
 use surrogate::{SpotCheck, Surrogate};
+
+/// A cause of errors of a deployed sheet, in the order of a budget.
+#[derive(
+    Clone,
+    Copy,
+    Debug,
+    PartialEq,
+    Eq,
+    Serialize,
+    Deserialize,
+    strum::IntoStaticStr,
+    strum::VariantArray,
+)]
+#[serde(rename_all = "kebab-case")]
+#[strum(serialize_all = "lowercase")]
+pub enum ErrorCause {
+    /// Spread of the networks of the ensemble.
+    Network,
+    /// Errors of the weights relative to a finer mesh of the windows.
+    #[strum(serialize = "window mesh")]
+    WindowMesh,
+    /// The stress at equal strain.
+    #[strum(serialize = "material law")]
+    MaterialLaw,
+    /// The imperfection from which the ligament buckles.
+    Imperfection,
+    /// The energy of a hinge as a function only of its state.
+    #[strum(serialize = "loading path")]
+    LoadingPath,
+    /// The width that the cutter removes.
+    Kerf,
+    /// The thickness of the sheet.
+    Thickness,
+    /// Panels that tilt, which are in the plane in the model.
+    Tilt,
+    /// What is left if the sheet was balanced with finite elements for its hinges.
+    Balance,
+}
+
+/// Standard deviations of a deployed sheet.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Effect {
+    /// Deviations of the panel corners (mm): root mean square and maximum.
+    pub corners: [f64; 2],
+    /// Deviation of the load that the prescribed displacement takes, relative to it; `None` under
+    /// dead loads.
+    pub load: Option<f64>,
+    /// Whether it is a lower bound: a sum with an unknown part.
+    pub at_least: bool,
+    /// Deviation of every panel corner, SW, SE, NE and NW of every panel (mm).
+    #[serde(skip)]
+    pub by_corner: Vec<f64>,
+}
 
 /// A deployed sheet at full load.
 pub(crate) struct LoadedSheet<'a> {
@@ -30,6 +84,35 @@ pub(crate) struct LoadedSheet<'a> {
 
 /// A quantity with its source, or why it is unknown.
 type Sourced<T> = Result<(T, String), String>;
+
+impl ErrorCause {
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        self.into()
+    }
+
+    /// Whether finite elements of the hinges of a sheet see its errors: they have the imperfection,
+    /// the material, the kerf and the thickness of the scene.
+    pub fn is_seen_by_elements(self) -> bool {
+        matches!(self, Self::Network | Self::WindowMesh | Self::LoadingPath)
+    }
+}
+
+impl Effect {
+    /// An effect on every corner (mm), and relative to the load.
+    pub fn new(by_corner: Vec<f64>, load: Option<f64>) -> Self {
+        let corners = rms_and_maximum(by_corner.iter().copied());
+        Self { corners, load, at_least: false, by_corner }
+    }
+
+    /// The root of the sum of the squares of both, which are known.
+    pub fn with(self, other: &Self) -> Self {
+        let corners = std::iter::zip(&self.by_corner, &other.by_corner);
+        let loads = [self.load, other.load].into_iter().flatten();
+        let load = loads.reduce(f64::hypot);
+        Self::new(corners.map(|(one, other)| one.hypot(*other)).collect(), load)
+    }
+}
 
 impl LoadedSheet<'_> {
     /// The effect of a cause, `None` in it if the tangent is singular; `None` for a cause that the

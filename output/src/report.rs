@@ -7,18 +7,20 @@ mod facts;
 mod findings;
 mod hinge_row;
 pub(crate) mod numbers;
+mod reached;
 mod text;
 
 pub(crate) use budget::BUDGET_HEADING;
-pub(crate) use deployed::extent;
+pub(crate) use deployed::{extent, miss};
 pub(crate) use estimate::force_spreads;
 pub(crate) use numbers::rounded;
 pub(crate) use text::worst_first;
 
 pub use budget::Budget;
-pub use facts::{Fact, Reached};
+pub use facts::Fact;
 pub use findings::{Rule, Warning, rules};
 pub use hinge_row::HingeRow;
+pub use reached::Reached;
 
 use crate::cut_file::{CutLines, FabricationError};
 use crate::report::deployed::{DeployedDesign, FinishedRun, left_out};
@@ -88,16 +90,7 @@ pub fn warnings(
     cuts: &Result<CutLines, FabricationError>,
 ) -> Vec<Warning> {
     let hinges = HingeRow::all(scene, deployment);
-    findings(&DeployedDesign { scene, deployment, cuts, hinges, run: None, warnings: Vec::new() })
-}
-
-/// The distance of the outline of a sheet of some flat size to its target (mm), in words.
-pub(crate) fn miss(outline_error: f64, [width, height]: [f64; 2]) -> String {
-    format!(
-        "the outline is {} mm (root mean square) from the target, {} % of the longer side of the flat sheet",
-        rounded(outline_error, 3),
-        rounded(100.0 * outline_error / width.max(height), 2)
-    )
+    findings(&DeployedDesign { scene, deployment, cuts, hinges, run: None, severities: Vec::new() })
 }
 
 impl Report {
@@ -158,11 +151,12 @@ impl Report {
             cuts,
             hinges,
             run: Some(&run),
-            warnings: Vec::new(),
+            severities: Vec::new(),
         };
-        deployed.warnings = findings(&deployed);
+        let warnings = findings(&deployed);
+        deployed.severities = warnings.iter().map(|found| found.severity).collect();
         let (facts, flat_size) = (facts(&deployed, &run), deployed.flat_size());
-        let DeployedDesign { hinges, warnings, .. } = deployed;
+        let hinges = deployed.hinges;
         let (search, coarse_searches) = (&designed.search, &designed.coarse_searches);
         let last = coarse_searches.last().filter(|search| search.finer == Level::Final);
         let residual = last.map(|search| search.difference.corners[1]);

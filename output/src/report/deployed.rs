@@ -1,16 +1,16 @@
 //! What facts and findings are about: a deployed design and, after a search, its run.
 
 use crate::cut_file::{CutLines, FabricationError};
-use crate::report::facts::Reached;
-use crate::report::findings::Warning;
 use crate::report::hinge_row::HingeRow;
 use crate::report::numbers::rounded;
+use crate::report::reached::Reached;
 use analysis::design_checks::{DesignChecks, WholeSheet};
 use design::geometry::polygon::{area, bounds};
 use design::objective::design_problem::Deployment;
 use design::objective::scores::Scores;
 use scene::design_run::Designed;
 use scene::{Posture, Scene};
+use support::severity::Severity;
 
 /// A deployed design.
 pub(super) struct DeployedDesign<'a> {
@@ -22,8 +22,8 @@ pub(super) struct DeployedDesign<'a> {
     pub hinges: Vec<HingeRow>,
     /// The run whose best design it is; `None` for only a design.
     pub run: Option<&'a FinishedRun<'a>>,
-    /// The findings, once they are known.
-    pub warnings: Vec<Warning>,
+    /// How grave its findings are, once they are known.
+    pub severities: Vec<Severity>,
 }
 
 /// A run, with what is computed of its best design once.
@@ -107,6 +107,15 @@ pub(super) fn of_the_load(ratio: f64) -> String {
     } else {
         format!("{} times the load", rounded(ratio, 2))
     }
+}
+
+/// The distance of the outline of a sheet of some flat size to its target (mm), in words.
+pub(crate) fn miss(outline_error: f64, [width, height]: [f64; 2]) -> String {
+    format!(
+        "the outline is {} mm (root mean square) from the target, {} % of the longer side of the flat sheet",
+        rounded(outline_error, 3),
+        rounded(100.0 * outline_error / width.max(height), 2)
+    )
 }
 
 pub(crate) fn extent(points: impl IntoIterator<Item = [f64; 2]>) -> [f64; 2] {

@@ -4,8 +4,6 @@
 mod design;
 mod load;
 
-pub use load::Reached;
-
 use crate::report::deployed::{DeployedDesign, FinishedRun};
 use crate::report::numbers::rounded;
 use analysis::unit::Unit;

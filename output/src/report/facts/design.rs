@@ -126,7 +126,7 @@ pub(super) fn levels_and_findings(of: &DeployedDesign, run: &FinishedRun) -> Vec
     facts.extend(run.checks.levels.as_ref().map(levels));
     facts.extend(run.checks.whole_sheet.as_ref().map(whole_sheet));
     let counts = [Severity::Error, Severity::Warning, Severity::Note]
-        .map(|severity| of.warnings.iter().filter(|found| found.severity == severity).count());
+        .map(|severity| of.severities.iter().filter(|found| **found == severity).count());
     let [errors, warnings, notes] = counts;
     let said = format!("errors {errors}, warnings {warnings}, notes {notes}");
     facts.push(fact("findings", counts, said));

@@ -3,8 +3,7 @@
 use super::{Found, Rule, at, found, rule};
 use crate::cut_file::fits;
 use crate::display::Shape;
-use crate::report::deployed::DeployedDesign;
-use crate::report::miss;
+use crate::report::deployed::{DeployedDesign, miss};
 use crate::report::numbers::rounded;
 use design::equilibrium::load_step::LoadStep;
 use design::sheet::hinge_window::Window;
