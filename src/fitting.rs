@@ -1,10 +1,10 @@
 //! A sheet that is fitted to its target before the search, and what is said of it.
 
 use crate::ui::progress::announce;
+use analysis::fit::scene::{FittedScene, Missed, Nearness, fitted, on_larger_stock};
+use analysis::out_of_plane::Stability;
 use anyhow::Result;
 use scene::Scene;
-use scene::analysis::out_of_plane::Stability;
-use scene::fit::scene::{FittedScene, Missed, Nearness, fitted, on_larger_stock};
 
 /// The number of missed parts that are named.
 const NAMED: usize = 4;
@@ -37,13 +37,13 @@ pub(crate) fn expected(fit: &FittedScene) -> String {
 }
 
 /// Whether something must hold a plate flat.
-fn in_its_plane(Stability { margin, leaves_at, .. }: Stability) -> String {
-    match leaves_at {
+fn in_its_plane(stability: Stability) -> String {
+    match stability.leaves_at {
         Some(opening) => format!(
             "\n  its panels leave the plane where hinges open by {:.0} deg: hold it flat, such as between two boards",
             opening.to_degrees()
         ),
-        None if margin < Stability::SAFE => {
+        None if !stability.is_safe() => {
             "\n  its panels nearly leave the plane: hold it flat, such as between two boards"
                 .to_owned()
         }

@@ -3,8 +3,7 @@
 //! A scene names its level, and only the hinge law of that level is loaded: `level = "linear"`
 //! reads no weights. Paths are relative to the scene file. The admissible values stand with their
 //! keys. [`Scene::read`] reads a scene and [`Scene::problem`] makes it a design problem;
-//! [`design_run`] searches and keeps its run folder. What is computed of a deployed sheet is in
-//! [`analysis`], the sheet for a silhouette in [`fit`], the outlines of drawings in [`drawing`].
+//! [`design_run`] searches and keeps its run folder; the outlines of drawings are in [`drawing`].
 //!
 //! ```
 //! use scene::Scene;
@@ -18,7 +17,6 @@
 //! ```
 
 mod actuation;
-pub mod analysis;
 mod boundary_values;
 mod checked_scene;
 mod checks;
@@ -27,7 +25,7 @@ mod cutting;
 pub mod design_run;
 pub mod drawing;
 mod drawn_target;
-pub mod fit;
+
 mod hinge_model;
 mod invalid_scene;
 mod keys;

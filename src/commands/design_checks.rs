@@ -2,11 +2,11 @@
 
 use crate::ui::progress::announce;
 use crate::ui::run_folder;
+use analysis::design_checks::DesignChecks;
 use anyhow::Result;
 use design::pattern::design_vector::DesignVector;
 use output::run_results::write_results;
 use scene::Scene;
-use scene::analysis::design_checks::DesignChecks;
 use scene::design_run::Designed;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;

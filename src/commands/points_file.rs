@@ -1,9 +1,9 @@
 //! The CSV file of measured points; errors name file, line and column.
 
+use analysis::measured_points::{Mark, MeasuredPoint};
 use anyhow::{Context, Result, anyhow, bail, ensure};
 use clap::ValueEnum;
 use design::geometry::similarity::Scale;
-use scene::analysis::measured_points::{Mark, MeasuredPoint};
 use std::collections::HashMap;
 use std::path::Path;
 use support::csv_table::{NamedTable, name_and_unit};

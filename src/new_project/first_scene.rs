@@ -297,7 +297,7 @@ fn whole(panel: [usize; 2]) -> Array {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use scene::fit::opening::safe_opening;
+    use analysis::fit::opening::safe_opening;
     use surrogate::Surrogate;
 
     /// The published rectangle of the sheet of section 4.3, opened by 25 degrees.

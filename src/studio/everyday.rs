@@ -3,13 +3,13 @@
 
 use crate::studio::event::{Event, Kind};
 use crate::ui::exit::message;
+use analysis::design_checks::DesignChecks;
 use anyhow::{Context, Result};
 use design::equilibrium::warm_start::WarmStart;
 use output::cut_file::CutLines;
 use output::report::Report;
 use output::run_page::{PageData, SheetData};
 use scene::Scene;
-use scene::analysis::design_checks::DesignChecks;
 use scene::design_run::Designed;
 use serde::Serialize;
 use serde_json::json;

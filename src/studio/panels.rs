@@ -8,8 +8,8 @@
 //! rigid panels does.
 
 use crate::new_project::first_scene::OPENING;
+use analysis::fit::pulls::opened_about;
 use anyhow::Result;
-use scene::fit::pulls::opened_about;
 use scene::{At, NamedPoint, Scene, SceneConfig, StartConfig, rounded};
 
 /// The scene of a uniform sheet with this number of columns and rows.

@@ -7,6 +7,7 @@ use dataset::ColumnMeaning;
 use fe_driver::Campaign;
 use hinge::SheetMaterial;
 use kirigami::cli::Cli;
+use output::report::{Rule, rules};
 use scene::SceneConfig;
 use schemars::{Schema, schema_for};
 use serde_json::Value;
@@ -254,6 +255,20 @@ fn assert_table(page: &str, table: &str) {
         let run = "run `KIRIGAMI_WRITE=1 cargo test --test command_line keys`";
         assert!(&text[begin..begin + length] == table, "{page}: {run}");
     }
+}
+
+/// The table of docs/WARNINGS.md.
+fn rule_table() -> String {
+    let mut table = "| finding | meaning | remedy |\n|---|---|---|\n".to_owned();
+    for Rule { subject, severity, meaning, remedy, .. } in rules() {
+        writeln!(table, "| {severity}: {subject} | {meaning} | {remedy} |").unwrap();
+    }
+    table
+}
+
+#[test]
+fn the_page_of_warnings_has_every_rule() {
+    assert_table("docs/WARNINGS.md", &rule_table());
 }
 
 #[test]

@@ -11,6 +11,7 @@
 
 use crate::element_windows::{ElementWindows, UnsolvedHinge};
 use crate::verification_error::{VerificationError, refused};
+use analysis::error_budget::ErrorBudget;
 use design::geometry::polygon::{bounds, distance};
 use design::hinge_law::{CorrectedLaw, Correction, HingeLaw, MissingForces, Order};
 use design::objective::design_problem::{Deployment, DesignError, DesignProblem, Model};
@@ -19,7 +20,6 @@ use design::sheet::kinematics::{corner_distances, deployed_corners};
 use hinge::HingeSample;
 use mesher::Tier;
 use scene::Scene;
-use scene::analysis::error_budget::ErrorBudget;
 use serde::Serialize;
 use std::sync::Arc;
 

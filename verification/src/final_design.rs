@@ -9,9 +9,9 @@
 use crate::balanced_sheet::{BALANCED, Balanced, DRAFT_ROUNDS, balanced};
 use crate::element_windows::ElementWindows;
 use crate::verification_error::VerificationError;
+use analysis::level_difference::AtLevel;
 use design::optimise::outer_loop::Ended;
 use mesher::Tier;
-use scene::analysis::level_difference::AtLevel;
 use scene::design_run::{BegunRun, Designed, Earlier, LEVELS, OnStep};
 use scene::{Level, Scene, SolvedHinge, SolvedHinges};
 use std::sync::atomic::AtomicBool;

@@ -1,11 +1,11 @@
 //! What finite elements found of a whole sheet, compared with the deployment that the hinge law
 //! predicts.
 
+use analysis::design_checks::WholeSheet;
+use analysis::flatness::Flatness;
 use fe_driver::SheetSurface;
 use mesher::Tier;
 use scene::Posture;
-use scene::analysis::design_checks::WholeSheet;
-use scene::analysis::flatness::Flatness;
 use serde::Serialize;
 use support::severity::{Finding, Severity};
 

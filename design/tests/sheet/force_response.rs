@@ -2,9 +2,9 @@
 //! has them, and in closed form.
 
 use crate::prelude::*;
+use analysis::actuation_curve::ActuationCurve;
 use design::equilibrium::force_response::{ForceResponse, SheetChange};
 use design::hinge_law::{CorrectedLaw, Correction, MissingForces};
-use scene::analysis::actuation_curve::ActuationCurve;
 use scene::{SupportConfig, SupportKind};
 
 /// The A4 sheet after a change, without its ensemble.

@@ -1,9 +1,9 @@
 //! `kirigami material check`: what a material means for windows and sheets.
 
+use analysis::material_check::{Intended, MaterialCheck};
 use anyhow::{Result, bail, ensure};
 use clap::Args;
 use hinge::{Regime, SheetMaterial};
-use scene::analysis::material_check::{Intended, MaterialCheck};
 use scene::run_inputs::scene_file;
 use scene::{Posture, SceneConfig};
 use std::path::PathBuf;

@@ -2,19 +2,19 @@
 
 use super::axes::{Axis, axes, names};
 use super::*;
-use scene::analysis::error_budget::Cause;
-use scene::analysis::levels::Levels;
+use analysis::error_budget::ErrorCause;
+use analysis::levels::Levels;
 
 /// Size of the chart (px).
 const SIZE: (u32, u32) = (640, 460);
 /// What the axes reach beyond the first and the last value, as a factor.
 const MARGIN: f64 = 3.0;
 /// Causes of errors that no level lowers, with a line each, and their colours.
-const LINES: [(Cause, RGBColor); 4] = [
-    (Cause::MaterialLaw, COLOURS[2]),
-    (Cause::LoadingPath, COLOURS[5]),
-    (Cause::Kerf, COLOURS[3]),
-    (Cause::Thickness, COLOURS[4]),
+const LINES: [(ErrorCause, RGBColor); 4] = [
+    (ErrorCause::MaterialLaw, COLOURS[2]),
+    (ErrorCause::LoadingPath, COLOURS[5]),
+    (ErrorCause::Kerf, COLOURS[3]),
+    (ErrorCause::Thickness, COLOURS[4]),
 ];
 
 /// One point for every level but the finest, a grey band up to the error of the mesh, and lines for
@@ -27,13 +27,13 @@ pub fn levels(found: &Levels) -> Result<String> {
         })
         .filter(|(seconds, corners, _)| *seconds > 0.0 && *corners > 0.0)
         .collect();
-    let of = |cause: Cause| {
+    let of = |cause: ErrorCause| {
         let part = found.others.iter().find(|part| part.cause == cause)?;
         Some(part.effect.as_ref()?.corners[1]).filter(|corners| *corners > 0.0)
     };
     let others = LINES.into_iter().filter_map(|(cause, _)| of(cause));
     let heights = points.iter().map(|point| point.1);
-    let heights = heights.chain(others).chain(of(Cause::WindowMesh));
+    let heights = heights.chain(others).chain(of(ErrorCause::WindowMesh));
     let across = around(points.iter().map(|point| point.0));
     let up = around(heights);
     drawn(SIZE, |root| {
@@ -41,7 +41,7 @@ pub fn levels(found: &Levels) -> Result<String> {
         let corners =
             Axis::powers(up.clone().log_scale(), "largest difference of a panel corner, mm");
         let mut chart = axes(root, "Levels, and what no level lowers", seconds, corners)?;
-        if let Some(mesh) = of(Cause::WindowMesh) {
+        if let Some(mesh) = of(ErrorCause::WindowMesh) {
             let band = [(across.start, up.start), (across.end, mesh)];
             chart
                 .draw_series([Rectangle::new(band, GUIDE.mix(0.25).filled())])?
