@@ -4,11 +4,11 @@
 //! a tab, and the data as JSON. A worker hears nothing while it computes: a search pauses once
 //! there is a file [`PAUSE`].
 
+use crate::catalogue::Catalogue;
 use crate::event::{Event, Kind};
-use crate::everyday::{Everyday, Listener, refusal};
+use crate::full_analysis::{FullAnalysis, Listener, refusal};
 use crate::request::Request;
 use crate::session::{Fetched, Next, Session};
-use crate::shop::Shop;
 use anyhow::{Context, Result};
 use app::failure::message;
 use std::cell::RefCell;
@@ -58,7 +58,7 @@ extern "C" fn answer() {
     });
 }
 
-/// Computes the everyday level of a sheet that has not changed for a moment.
+/// Computes the full analysis of a sheet that has not changed for a moment.
 #[unsafe(no_mangle)]
 extern "C" fn rest() {
     with(|studio| {
@@ -105,12 +105,12 @@ impl Studio {
                 }
             }
         });
-        listener(Event::new(Kind::Shop, &Shop::open()?));
-        let everyday = Everyday::start(Arc::clone(&listener))?;
+        listener(Event::new(Kind::Shop, &Catalogue::open()?));
+        let analysis = FullAnalysis::start(Arc::clone(&listener))?;
         let files = Fetched::default();
         let session = Session::new(
             PathBuf::from("runs/studio"),
-            everyday,
+            analysis,
             Arc::clone(&stop_search),
             Arc::clone(&files),
             listener,

@@ -1,7 +1,7 @@
 //! Drafts: the sheet at full load, next to the last one, as it is shown while something is dragged
 //! and in every step of a search.
 
-use crate::everyday::milliseconds;
+use crate::full_analysis::milliseconds;
 use design::equilibrium::warm_start::WarmStart;
 use design::optimise::outer_loop::SearchState;
 use design::{Deployment, DesignError, DesignProblem, DesignVector};

@@ -1,14 +1,14 @@
 //! A thread that holds a scene and answers requests one after the other.
 //!
 //! While something is dragged every change is answered by a draft; when no request comes for a
-//! moment, by the everyday level: the path followed from the flat sheet, and the report.
+//! moment, by the full analysis: the path followed from the flat sheet, and the report.
 
+use crate::catalogue::Catalogue;
 use crate::event::{Event, Kind};
-use crate::everyday::{Everyday, Listener};
+use crate::full_analysis::{FullAnalysis, Listener};
 use crate::project::Project;
 use crate::request::Request;
 use crate::session::{Fetched, Next, Session};
-use crate::shop::Shop;
 use anyhow::{Context, Result};
 use scene::Scene;
 use std::collections::VecDeque;
@@ -18,7 +18,7 @@ use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
-/// Time without a request after which the everyday level is computed.
+/// Time without a request after which the full analysis is computed.
 const REST: Duration = Duration::from_millis(200);
 
 /// The engine.
@@ -54,16 +54,17 @@ impl Engine {
     ) -> Result<Self> {
         let inbox = Arc::new(Inbox::default());
         let files = Fetched::default();
-        let shop = Shop::open()?;
+        let catalogue = Catalogue::open()?;
         let stop_search = Arc::<AtomicBool>::default();
-        let everyday = Everyday::start(Arc::clone(&listener)).context("cannot start a thread")?;
+        let analysis =
+            FullAnalysis::start(Arc::clone(&listener)).context("cannot start a thread")?;
         let thread = std::thread::Builder::new().name("studio".into());
         let thread = thread.spawn({
             let (inbox, files) = (Arc::clone(&inbox), Arc::clone(&files));
             let stop = Arc::clone(&stop_search);
             move || {
-                listener(Event::new(Kind::Shop, &shop));
-                let mut session = Session::new(projects, everyday, stop, files, listener);
+                listener(Event::new(Kind::Shop, &catalogue));
+                let mut session = Session::new(projects, analysis, stop, files, listener);
                 if let Some((project, scene)) = opened {
                     session.open(project, scene);
                 }

@@ -41,11 +41,14 @@ pub enum Kind {
 
 /// An event, with its data as JSON.
 pub struct Event {
+    /// What it is about.
     pub kind: Kind,
+    /// JSON without a line break.
     pub data: String,
 }
 
 impl Event {
+    /// An event with its data.
     pub fn new(kind: Kind, data: &impl Serialize) -> Self {
         let data = serde_json::to_string(data).expect("the data of events have text keys");
         Self { kind, data }
@@ -68,6 +71,7 @@ struct Latest {
 }
 
 impl Post {
+    /// Stores an event and wakes the readers.
     pub fn deliver(&self, event: Event) {
         let mut latest = self.lock();
         latest.count += 1;

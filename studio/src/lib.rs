@@ -9,15 +9,17 @@
 
 #[cfg(target_family = "wasm")]
 mod browser;
+mod catalogue;
 mod draft;
 #[cfg(unix)]
 pub mod engine;
 pub mod event;
-mod everyday;
 mod for_service;
+mod full_analysis;
 #[cfg(unix)]
 mod http;
 mod key_meanings;
+mod opened;
 #[cfg(unix)]
 mod page;
 mod panels;
@@ -27,6 +29,5 @@ mod run_listing;
 #[cfg(unix)]
 pub mod server;
 mod session;
-mod shop;
 #[cfg(unix)]
 pub mod static_page;

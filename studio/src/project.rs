@@ -26,6 +26,7 @@ const SCENE: &str = "scene.toml";
 
 /// The folder of a sheet.
 pub struct Project {
+    /// Its path.
     pub folder: PathBuf,
 }
 

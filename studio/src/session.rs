@@ -1,32 +1,29 @@
 //! The scene that is shown, and the answers to requests.
 
+use crate::catalogue::is_example;
 use crate::draft::{Draft, Steps, draft};
 use crate::event::{Event, Kind};
-use crate::everyday::{Everyday, Listener, Resting, Shown, refusal, run_name};
+use crate::full_analysis::{FullAnalysis, Listener, Resting, Shown, refusal, run_name};
+use crate::opened::{Opened, Run, fitted_to};
 use crate::panels::with_panels;
 use crate::project::Project;
 use crate::request::{Change, Drawing, Files, NewSheet, Request};
 use crate::run_listing::files_of_run;
-use crate::shop::is_example;
 use anyhow::{Context, Result, anyhow, ensure};
-use app::cut::{Verdict, machine_file_of_run, tiles_of_run};
+use app::cut::{machine_file_of_run, tiles_of_run};
 use app::design::write_run;
 use app::failure::message;
-use app::fitting::expected;
 use app::run_folder;
 use app::shell_word::shell_word;
-use design::equilibrium::warm_start::WarmStart;
 use design::optimise::outer_loop::Ended;
 use output::run_page::PageData;
 use scene::analysis::levels::levels;
 use scene::design_run::inverse_design;
-use scene::fit::scene::fitted;
-use scene::target::TargetShape;
-use scene::{Scene, SceneConfig, place_drawing};
+use scene::{Scene, SceneConfig};
 use serde::Serialize;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Instant;
@@ -45,7 +42,7 @@ pub(crate) enum Next {
 
 pub(crate) struct Session {
     projects: PathBuf,
-    everyday: Arc<Everyday>,
+    analysis: Arc<FullAnalysis>,
     stop_search: Arc<AtomicBool>,
     listener: Listener,
     files: Fetched,
@@ -53,42 +50,15 @@ pub(crate) struct Session {
     at_rest: bool,
 }
 
-/// An opened sheet.
-struct Opened {
-    project: Project,
-    /// The scene that is shown; its start is the sheet.
-    scene: Scene,
-    /// The keys on disk, those before and after them.
-    on_disk: SceneConfig,
-    before: Vec<SceneConfig>,
-    after: Vec<SceneConfig>,
-    /// The page that made the last change, and the number of its changes; `None` if no page did, as
-    /// after an undo.
-    by: Option<(String, u64)>,
-    /// The last equilibrium, from which a draft starts.
-    known: Option<WarmStart>,
-    /// The runs, each in a folder of its own.
-    runs: Vec<Run>,
-}
-
-/// A run whose best design is shown while the scene has the keys `adopted`.
-struct Run {
-    scene: Scene,
-    adopted: SceneConfig,
-    ended: Ended,
-    /// What services say of the files of a machine, by its name.
-    verdicts: BTreeMap<String, Vec<Verdict>>,
-}
-
 impl Session {
     pub fn new(
         projects: PathBuf,
-        everyday: Arc<Everyday>,
+        analysis: Arc<FullAnalysis>,
         stop_search: Arc<AtomicBool>,
         files: Fetched,
         listener: Listener,
     ) -> Self {
-        Self { projects, everyday, stop_search, listener, files, sheet: None, at_rest: true }
+        Self { projects, analysis, stop_search, listener, files, sheet: None, at_rest: true }
     }
 
     pub fn is_at_rest(&self) -> bool {
@@ -97,7 +67,7 @@ impl Session {
 
     /// Shows another sheet.
     pub fn open(&mut self, project: Project, scene: Scene) {
-        self.everyday.stop();
+        self.analysis.stop();
         let run = project.run_of(&scene);
         let run = run.map(|(of, ended)| Run::new(of, scene.config.clone(), ended));
         let file = project.scene_file();
@@ -122,7 +92,7 @@ impl Session {
         let done = caught_panic::catch(|| match next {
             Next::Request(request) => self.answer(request),
             Next::Rest => self.rest(),
-            Next::Closed => self.close(),
+            Next::Closed => self.commit(),
         });
         match done {
             Ok(Ok(())) => {}
@@ -141,8 +111,15 @@ impl Session {
                 let (project, scene) = Project::open(&scene, &self.projects)?;
                 self.open(project, scene);
             }
-            Request::Change(change) => self.change(change)?,
-            Request::Panels { panels } => self.panels(panels)?,
+            Request::Change(Change { scene, by }) => {
+                let changed = self.opened()?.scene.changed(*scene)?;
+                self.draft(changed, Some(by))?;
+            }
+            Request::Panels { panels } => {
+                self.tell(Kind::Working, &"panels");
+                let changed = with_panels(&self.opened()?.scene, panels)?;
+                self.draft(changed, None)?;
+            }
             Request::Drawing(drawing) => self.drawing(&drawing)?,
             Request::Level { level } => {
                 let other = self.opened()?.scene.at_level(level)?;
@@ -184,7 +161,7 @@ impl Session {
         Ok((scene, Some(says)))
     }
 
-    /// Writes the scene, and lets the everyday level be computed.
+    /// Writes the scene, and lets the full analysis be computed.
     fn rest(&mut self) -> Result<()> {
         self.at_rest = true;
         if self.sheet.is_none() {
@@ -194,18 +171,10 @@ impl Session {
         self.list_files()?;
         self.tell(Kind::Working, &"everyday");
         let sheet = self.opened()?;
-        self.everyday.compute(match sheet.run() {
+        self.analysis.compute(match sheet.run() {
             Some(run) => Resting::Run(run.scene.clone()),
             None => Resting::Start(sheet.scene.clone()),
         });
-        Ok(())
-    }
-
-    /// Writes the scene before the end.
-    fn close(&mut self) -> Result<()> {
-        if self.sheet.is_some() {
-            self.commit()?;
-        }
         Ok(())
     }
 
@@ -217,17 +186,6 @@ impl Session {
         let why = named.and_then(|named| why.strip_prefix(&named)).unwrap_or(why);
         (self.listener)(refusal(why));
         self.tell(Kind::Working, &());
-    }
-
-    fn change(&mut self, Change { scene, by }: Change) -> Result<()> {
-        let changed = self.opened()?.scene.changed(*scene)?;
-        self.draft(changed, Some(by))
-    }
-
-    fn panels(&mut self, panels: [usize; 2]) -> Result<()> {
-        self.tell(Kind::Working, &"panels");
-        let changed = with_panels(&self.opened()?.scene, panels)?;
-        self.draft(changed, None)
     }
 
     fn drawing(&mut self, drawing: &Drawing) -> Result<()> {
@@ -257,7 +215,7 @@ impl Session {
 
     /// Measures the levels of the sheet that is shown.
     fn levels(&mut self) -> Result<()> {
-        self.stop_everyday();
+        self.stop_analysis();
         self.tell(Kind::Working, &"levels");
         let scene = &self.opened()?.scene;
         let stop = &*self.stop_search;
@@ -272,7 +230,7 @@ impl Session {
     fn draft(&mut self, scene: Scene, by: Option<(String, u64)>) -> Result<()> {
         self.say("");
         let begin = Instant::now();
-        let path = self.everyday.last_path();
+        let path = self.analysis.last_path();
         let sheet = self.opened_mut()?;
         sheet.known = path.or(sheet.known.take());
         let problem = scene.problem()?;
@@ -290,7 +248,9 @@ impl Session {
 
     /// Writes the scene that is shown, and keeps that before it for an undo.
     fn commit(&mut self) -> Result<()> {
-        let sheet = self.opened_mut()?;
+        let Some(sheet) = &mut self.sheet else {
+            return Ok(());
+        };
         if sheet.scene.config != sheet.on_disk {
             let before = std::mem::replace(&mut sheet.on_disk, sheet.scene.config.clone());
             sheet.before.push(before);
@@ -329,7 +289,7 @@ impl Session {
             Some(run) if run.ended == Ended::Stopped => run.scene.clone(),
             _ => sheet.scene_of_run()?,
         };
-        self.stop_everyday();
+        self.stop_analysis();
         self.tell(Kind::Working, &"design");
         let (run, stop) = (run_name(&scene), self.stop_search.clone());
         let end = self.search(scene, &stop)?;
@@ -378,7 +338,7 @@ impl Session {
         self.tell(Kind::Working, &"files");
         let mut said = Vec::new();
         if self.opened()?.run().is_none() {
-            self.stop_everyday();
+            self.stop_analysis();
             let scene = self.opened()?.scene_of_run()?;
             said.push(format!("the run {}", run_name(&scene)));
             self.search(scene, &AtomicBool::new(true))?;
@@ -445,17 +405,17 @@ impl Session {
 
     /// Shows a scene.
     fn show(&mut self, scene: Scene) -> Result<&mut Opened> {
-        self.stop_everyday();
+        self.stop_analysis();
         let sheet = self.opened_mut()?;
         sheet.scene = scene;
         sheet.by = None;
         Ok(sheet)
     }
 
-    /// Ends the everyday level, which a rest computes again.
-    fn stop_everyday(&mut self) {
+    /// Ends the full analysis, which a rest computes again.
+    fn stop_analysis(&mut self) {
         self.at_rest = false;
-        let path = self.everyday.stop();
+        let path = self.analysis.stop();
         if let (Some(sheet), Some(path)) = (&mut self.sheet, path) {
             sheet.known = Some(path);
         }
@@ -486,50 +446,4 @@ impl Session {
     }
 }
 
-/// A sheet that is fitted to the drawing in a file of its folder, at a path.
-fn fitted_to(scene: &Scene, file: PathBuf, path: &Path) -> Result<(Scene, Value)> {
-    let target = &scene.target;
-    let (centre, height) = place_drawing(path, target.mean(), target.area())?;
-    let target = TargetShape::Svg { file, centre, height: Some(height), rotation_deg: 0.0 };
-    let config = SceneConfig { target, ..scene.config.clone() };
-    let drawn = scene.changed(config)?;
-    let fit = fitted(&drawn)?;
-    let says = expected(&fit);
-    let scene = drawn.changed(fit.config)?;
-    let says = json!({ "target": scene.config.target, "says": says });
-    Ok((scene, says))
-}
-
 const NO_SHEET: &str = "there is no sheet yet: begin one";
-
-impl Opened {
-    /// The last equilibrium, if a scene's may be near it: of the same sheet with the same
-    /// supports.
-    fn known_near(&self, scene: &Scene) -> Option<&WarmStart> {
-        let held = |scene: &Scene| (scene.config.sheet, scene.config.supports.clone());
-        self.known.as_ref().filter(|_| held(scene) == held(&self.scene))
-    }
-
-    /// The scene with a run folder of its own.
-    fn scene_of_run(&self) -> Result<Scene> {
-        let config = SceneConfig { output: self.project.next_run(), ..self.scene.config.clone() };
-        Ok(self.scene.changed(config)?)
-    }
-
-    /// The run whose best design is shown.
-    fn run(&self) -> Option<&Run> {
-        let mut runs = self.runs.iter();
-        runs.find(|run| run.adopted == self.scene.config)
-    }
-
-    fn run_mut(&mut self) -> Option<&mut Run> {
-        let mut runs = self.runs.iter_mut();
-        runs.find(|run| run.adopted == self.scene.config)
-    }
-}
-
-impl Run {
-    fn new(scene: Scene, adopted: SceneConfig, ended: Ended) -> Self {
-        Self { scene, adopted, ended, verdicts: BTreeMap::new() }
-    }
-}

@@ -1,4 +1,4 @@
-//! The everyday level on a thread of its own: the path followed from the flat sheet, and the
+//! The full analysis on a thread of its own: the path followed from the flat sheet, and the
 //! report. Drafts go on meanwhile.
 
 use crate::event::{Event, Kind};
@@ -21,7 +21,7 @@ use support::caught_panic;
 /// Who hears the events.
 pub(crate) type Listener = Arc<dyn Fn(Event) + Send + Sync>;
 
-/// A page as everyday computations and runs show it.
+/// A page as full analyses and runs show it.
 #[derive(Serialize)]
 pub(crate) struct Shown<'a> {
     pub page: PageData<'a>,
@@ -74,7 +74,7 @@ pub(crate) fn run_name(scene: &Scene) -> String {
 }
 
 /// The thread, and what it is to compute.
-pub(crate) struct Everyday {
+pub(crate) struct FullAnalysis {
     wanted: Mutex<Wanted>,
     news: Condvar,
     listener: Listener,
@@ -89,24 +89,24 @@ struct Wanted {
     path: Option<WarmStart>,
 }
 
-impl Everyday {
+impl FullAnalysis {
     /// Starts the thread, which ends with the program. A page in a browser has none: there
     /// [`Self::compute`] computes at once.
     pub fn start(listener: Listener) -> std::io::Result<Arc<Self>> {
-        let everyday = Arc::new(Self { wanted: Mutex::default(), news: Condvar::new(), listener });
+        let analysis = Arc::new(Self { wanted: Mutex::default(), news: Condvar::new(), listener });
         if cfg!(target_family = "wasm") {
-            return Ok(everyday);
+            return Ok(analysis);
         }
         let thread = std::thread::Builder::new().name("everyday".into());
         thread.spawn({
-            let everyday = Arc::clone(&everyday);
+            let analysis = Arc::clone(&analysis);
             move || {
                 loop {
-                    everyday.work();
+                    analysis.work();
                 }
             }
         })?;
-        Ok(everyday)
+        Ok(analysis)
     }
 
     /// Computes a sheet next, and nothing else.

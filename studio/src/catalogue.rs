@@ -38,8 +38,8 @@ const EXAMPLES: [[&str; 3]; 3] = [
 
 /// What a page offers.
 #[derive(Serialize)]
-pub(crate) struct Shop {
-    materials: Vec<Offered>,
+pub(crate) struct Catalogue {
+    materials: Vec<OfferedMaterial>,
     /// Names and what they are.
     machines: Vec<[String; 2]>,
     /// Names of services that cut, and the machines whose files they take.
@@ -55,7 +55,7 @@ pub(crate) struct Shop {
 
 /// A material with weights.
 #[derive(Serialize)]
-struct Offered {
+struct OfferedMaterial {
     /// Its file.
     file: PathBuf,
     name: String,
@@ -65,7 +65,7 @@ struct Offered {
     says: String,
 }
 
-impl Shop {
+impl Catalogue {
     /// What the shipped files offer, in the working folder.
     pub fn open() -> Result<Self> {
         let Machines { machine, service } = Machines::shipped();
@@ -104,7 +104,7 @@ pub(crate) fn is_example(file: &Path) -> bool {
 }
 
 /// The material of weights, if its file is among the shipped ones.
-fn offered(card: &Card) -> Result<Option<Offered>> {
+fn offered(card: &Card) -> Result<Option<OfferedMaterial>> {
     for entry in std::fs::read_dir(MATERIALS)? {
         let file = entry?.path();
         if file.extension().is_none_or(|kind| kind != "toml") {
@@ -119,7 +119,7 @@ fn offered(card: &Card) -> Result<Option<Offered>> {
             None => (&card.test_errors, "unseen"),
         };
         let [low, high] = card.domain.w_lig;
-        return Ok(Some(Offered {
+        return Ok(Some(OfferedMaterial {
             says: format!(
                 "{}: at {} mm ligaments of {low:.2} to {high:.2} mm, panels of {:.0} mm at least; W within {:.1} %, F_a {:.1} %, M {:.1} % (root mean squares at {} {on} states)",
                 material.regime(high),
