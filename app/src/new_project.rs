@@ -331,17 +331,11 @@ fn readme(folder: &Path, why: &str, regime: Regime, trained: bool, whole_build: 
     text
 }
 
-/// The text of a material file for another folder, in a thickness (mm): the path of its measured
-/// curve becomes absolute.
+/// Text of a material file in another thickness (mm).
 pub fn material_text(path: &Path, thickness: f64) -> Result<String> {
     let text = text_file::read(path).with_context(|| format!("cannot read {}", path.display()))?;
     let mut material: DocumentMut = text.parse()?;
     set(&mut material["thickness"], thickness);
-    let curve = material.get("tensile_csv").and_then(|curve| curve.as_str());
-    if let Some(curve) = curve.map(|curve| path.with_file_name(curve)) {
-        let curve = std::path::absolute(curve)?;
-        set(&mut material["tensile_csv"], &*curve.to_string_lossy());
-    }
     Ok(material.to_string())
 }
 
@@ -367,18 +361,12 @@ mod tests {
     }
 
     #[test]
-    fn a_copied_material_names_the_curve_of_the_original() {
+    fn a_copied_material_keeps_its_comments() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("film.toml");
-        std::fs::write(
-            &path,
-            "name = \"film\"\nthickness = 0.5\ntensile_csv = \"curve.csv\" # measured\n",
-        )
-        .unwrap();
-        let curve = folder.path().join("curve.csv");
-        let expected =
-            format!("name = \"film\"\nthickness = 3.0\ntensile_csv = {curve:?} # measured\n");
-        assert_eq!(material_text(&path, 3.0).unwrap(), expected);
+        let text = "name = \"film\"\nthickness = 0.5 # measured\n";
+        std::fs::write(&path, text).unwrap();
+        assert_eq!(material_text(&path, 3.0).unwrap(), text.replace("0.5", "3.0"));
     }
 
     #[test]

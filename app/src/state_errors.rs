@@ -151,7 +151,7 @@ pub fn print_errors(surrogate: &Surrogate, database: &Database) {
 
 /// Writes the errors to the card of weights.
 pub fn record(surrogate: Surrogate, spot: &Database, weights: &Path) -> Result<()> {
-    let check = spot_check(&surrogate, spot.rows(), &spot.manifest().tier);
+    let check = spot_check(&surrogate, spot.rows(), &spot.manifest().tier.to_string());
     surrogate.with_spot_check(check).save(weights)?;
     println!("recorded on the card of {}", weights.display());
     Ok(())

@@ -40,7 +40,6 @@ mod damage;
 mod energy;
 mod ensemble;
 mod features;
-mod hinge_energy;
 mod mlp_kernels;
 mod model;
 mod network;
@@ -50,16 +49,15 @@ mod tanh;
 mod weights;
 
 pub use card::{
-    Card, DistillationRecord, ErrorBin, FORMAT_VERSION, FitError, SpotCheck, Teacher, TestErrors,
-    UNITS,
+    BinQuantity, Card, DistillationRecord, ErrorBin, FORMAT_VERSION, FitError, SpotCheck, Teacher,
+    TestErrors, UNITS,
 };
 pub use damage::HingeDamage;
-pub use energy::Prepared;
+pub use energy::{HingeEnergy, Order, Prepared};
 pub use ensemble::mean_and_variance;
 pub use features::{FEATURE_NAMES, Standardisation, feature_names, features};
-pub use hinge_energy::{HingeEnergy, Order};
 pub use model::{Layers, Surrogate};
-pub use network::{InvalidWeights, Layer, Network, Tensor};
-pub use springback::{Springback, SpringbackError, SpringbackErrors};
+pub use network::{Layer, Network, Tensor};
+pub use springback::{Springback, SpringbackErrors};
 pub use tanh::tanh_in_place;
 pub use weights::WeightsError;

@@ -4,11 +4,12 @@
 //! Lines before the first row of numbers are a preamble. Of these, the last one, or the last one
 //! above a row of units, names the columns. Lines that start with `#` are comments.
 
-use crate::error::TensileError;
+use crate::in_file;
 use crate::name::Name;
 use crate::quantity::{are_units, bare};
 use std::collections::BTreeMap;
 use std::path::Path;
+use support::fault::{Fault, fault};
 use support::file_error::FileError;
 use support::text_table::{NumberStyle, TextRow, TextTable};
 use support::{regular_file, text_file};
@@ -29,13 +30,12 @@ pub(super) struct NumberTable {
 
 impl NumberTable {
     /// The tables of a file, and its BLAKE3 hash, 16 hexadecimal digits.
-    pub fn read_all(path: &Path) -> Result<(Vec<Self>, String), TensileError> {
-        let bytes = regular_file::read(path).map_err(FileError::at(path))?;
+    pub fn read_all(path: &Path) -> Result<(Vec<Self>, String), Fault> {
+        let unread = |error| fault("", format!("cannot read {}", FileError::at(path)(error)), "");
+        let bytes = regular_file::read(path).map_err(unread)?;
         let hash = blake3::hash(&bytes).to_hex()[..16].to_owned();
-        let text = text_file::decoded(&bytes).map_err(FileError::at(path))?;
-        let tables = Self::parse(&text)
-            .map_err(|what| TensileError::File { path: path.to_owned(), what })?;
-        Ok((tables, hash))
+        let text = text_file::decoded(&bytes).map_err(unread)?;
+        Ok((Self::parse(&text).map_err(in_file(path))?, hash))
     }
 
     fn parse(text: &str) -> Result<Vec<Self>, String> {

@@ -93,7 +93,7 @@ fn counts_have_an_upper_bound() {
         format!("campaign run {DEMO} --jobs 0"),
         format!("campaign submit {DEMO} --shards 1000001 --time 1"),
         format!("campaign submit {DEMO} --shards 1 --time 525601"),
-        format!("verify {SCENE} --sample 1000001"),
+        format!("verify {SCENE} --equilibrium --rounds 1000001"),
     ] {
         let output = work.program(&arguments).output().unwrap();
         assert_eq!(output.status.code(), Some(2), "{arguments}");

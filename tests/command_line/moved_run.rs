@@ -65,10 +65,11 @@ fn a_run_is_replayed_from_its_folder_alone() {
 
     work.output("material check moved/inputs/material.toml moved");
     // The design of the run, unless the start design is asked for.
-    let verify = "verify moved --sample 1 --tier tiny --out verified";
-    for (option, name) in
-        [("", "The design moved/state.json: "), (" --design start", "The start design of moved: ")]
-    {
+    let verify = "verify moved --equilibrium --rounds 1 --tier tiny --out verified";
+    for (option, name) in [
+        ("", "Equilibrium of the design moved/state.json "),
+        (" --design start", "Equilibrium of the start design of moved "),
+    ] {
         let page = work.output(&format!("{verify}{option}"));
         assert!(page.contains(name), "{page}");
     }

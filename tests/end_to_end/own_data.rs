@@ -151,33 +151,31 @@ fn a_database_is_compared_with_another_of_the_same_rays() {
     assert!(page.contains(row), "{page}");
 }
 
-/// The tensile curve of a testing machine becomes the material of a campaign.
+/// The tensile curve of a testing machine becomes the material of a solve.
 #[test]
 fn a_measured_curve_is_a_material() {
     let work = Workplace::new();
-    let file = "configs/materials/s235-1.5mm.toml";
     let mut curve = "engineering_strain,engineering_stress_mpa\n0,0\n".to_owned();
     for i in 1..=400 {
         let strain = 5e-4 * f64::from(i);
         let stress = (210e3 * strain).min(235.0 + 900.0 * strain / (1.0 + 3.0 * strain));
         writeln!(curve, "{strain},{stress}").unwrap();
     }
-    std::fs::write(work.path("configs/materials/curve.csv"), curve).unwrap();
-    let text = std::fs::read_to_string(work.path(file)).unwrap();
-    let (head, _) = text.split_once("plastic = [").unwrap();
-    std::fs::write(work.path(file), format!("{head}tensile_csv = \"curve.csv\"\n")).unwrap();
-    let solve = format!("solve --material {file} --tier tiny --theta-deg 3");
+    std::fs::write(work.path("curve.csv"), curve).unwrap();
+    let fit =
+        "material fit curve.csv --name steel --thickness 1.5 --density-kg-m3 7850 --young 210000";
+    work.output(fit);
+    let solve = "solve --material runs/material/steel.toml --tier tiny --theta-deg 3";
     let json = work.output(&format!("{solve} --json"));
     let solved: serde_json::Value = serde_json::from_str(&json).unwrap();
     let yields = solved["material"]["plastic"][0][0].as_f64().unwrap();
     assert!((235.0..245.0).contains(&yields), "{yields}");
 
-    std::fs::remove_file(work.path("configs/materials/curve.csv")).unwrap();
-    let error = work.error(&solve);
-    assert!(error.contains("curve.csv"), "{error}");
-    std::fs::write(work.path(file), head).unwrap();
-    let error = work.error(&solve);
-    assert!(error.contains("`plastic` and `tensile_csv`"), "{error}");
+    let text = std::fs::read_to_string(work.path("runs/material/steel.toml")).unwrap();
+    let (head, _) = text.split_once("plastic = [").unwrap();
+    std::fs::write(work.path("runs/material/steel.toml"), head).unwrap();
+    let error = work.error(solve);
+    assert!(error.contains("plastic"), "{error}");
 }
 
 /// The corrected rays of the default mesh have about half the error in W of the uncorrected ones.

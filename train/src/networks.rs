@@ -46,7 +46,7 @@ pub(crate) fn options(dtype: DType) -> TensorCreationOptions {
 
 impl Networks {
     /// Initial networks with Xavier's uniform weights and zero biases. The random numbers do not
-    /// come from the backend, so that a seed gives the same weights on every backend.
+    /// come from the backend, so a seed gives the same weights on every backend.
     pub fn new(
         config: &TrainingConfig,
         features: usize,

@@ -1,7 +1,7 @@
 //! A part of a sheet that is too large to be solved as a whole: 3 x 3 panels, joined to panels that
 //! move as the hinge law predicts.
 
-use crate::verification_error::VerificationError;
+use crate::verification_error::{VerificationError, refused};
 use design::objective::design_problem::Deployment;
 use design::pattern::grid::Grid;
 use design::sheet::cut_sheet::Sheet;
@@ -28,7 +28,10 @@ impl SheetPart {
     pub fn around(sheet: &Sheet, [column, row]: [usize; 2]) -> Result<Self, VerificationError> {
         let Grid { m, n } = sheet.grid;
         if column >= m || row >= n {
-            return Err(VerificationError::NoSuchPanel { column, row, m, n });
+            return Err(refused(format!(
+                "there is no panel [{column}, {row}]: the sheet has {m} columns and {n} rows, \
+                 counted from 0"
+            )));
         }
         let near =
             |panel: &usize| (panel % m).abs_diff(column) <= 1 && (panel / m).abs_diff(row) <= 1;
@@ -50,7 +53,10 @@ impl SheetPart {
             return Ok(whole);
         }
         if whole.keeping == Keeping::Nothing && whole.down.is_some() {
-            return Err(VerificationError::HangingPatch);
+            return Err(refused(
+                "a patch of a hanging sheet must be held flat: its weight comes on before the \
+                 loads. Use --support held-flat",
+            ));
         }
         let place = |panel: usize| self.panels.binary_search(&panel).ok();
         let mut part = whole.clone();
@@ -61,7 +67,10 @@ impl SheetPart {
             .filter_map(|pulled| place(pulled.panel).map(|panel| Pulled { panel, ..*pulled }))
             .collect();
         if part.stroke.take().is_some() && !part.pulled.is_empty() {
-            return Err(VerificationError::DrivenPatch);
+            return Err(refused(
+                "the patch contains a panel that is pulled by a prescribed stroke, whose load it \
+                 does not know: choose another patch",
+            ));
         }
         part.shape.panels =
             (self.panels.iter()).map(|panel| whole.shape.panels[*panel].clone()).collect();

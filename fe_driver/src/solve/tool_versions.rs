@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 /// Versions of the external programs that determine a result.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct ToolVersions {
     /// Version of gmsh.
     pub gmsh: String,

@@ -268,7 +268,7 @@ fn path_dependence(input: &RuleInput) -> Option<Warning> {
     let bent = input.hinges_where(|row| row.path_separation > safe);
     let message = format!(
         "paths depart by more than {safe} ligament widths from the rays of the hinge law: energy, forces and damage depend on the \
-         path there ({page}); check by `kirigami verify`"
+         path there ({page}); check by `kirigami verify --equilibrium`"
     );
     about(Concern::PathDependence, bent, message)
 }

@@ -25,7 +25,7 @@ impl RestoreCommand {
     pub fn run(&self) -> Result<()> {
         let database = Database::read(&self.from)?;
         let campaign = self.campaign.load()?;
-        let windows = collected_windows(database.rows())?;
+        let windows = collected_windows(database.rows());
         let folder = self.campaign.folder();
         let restored = fe_driver::restore(&campaign, &folder, &windows)?;
         println!(

@@ -10,7 +10,7 @@ use clap::Args;
 use fe_driver::{RunOptions, Shard, Tally};
 use std::path::Path;
 use std::time::Duration;
-use verification::VerificationError;
+use verification::every_ray_failed;
 
 /// Solve all rays that are not solved yet
 ///
@@ -78,10 +78,7 @@ fn refuse_unfinished(tally: &Tally, folder: &Path) -> Result<()> {
     if tally.to_run() > 0 {
         bail!(Unfinished { left: tally.to_run(), what: "rays" });
     }
-    ensure!(
-        tally.failed == 0 || tally.complete + tally.partial > 0,
-        VerificationError::EveryRayFailed(folder.join("jobs"))
-    );
+    ensure!(tally.failed == 0 || tally.complete + tally.partial > 0, every_ray_failed(folder));
     Ok(())
 }
 

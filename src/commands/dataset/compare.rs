@@ -33,10 +33,12 @@ impl CompareCommand {
         let reference = (self.reference.as_ref()).map(|file| Database::read(file));
         let reference = reference.transpose()?;
         let (rays, finer) = match &reference {
-            Some(reference) => (compare(&database, reference), reference.manifest().tier.clone()),
+            Some(reference) => {
+                (compare(&database, reference), reference.manifest().tier.to_string())
+            }
             None => {
                 let finer = database.manifest().finer.as_ref();
-                let finer = finer.map_or(String::new(), |finer| finer.tier.clone());
+                let finer = finer.map_or(String::new(), |finer| finer.tier.to_string());
                 (database.on_both_meshes(), finer)
             }
         };
@@ -47,7 +49,7 @@ impl CompareCommand {
         );
         let states: Vec<_> = rays.iter().map(ComparedRay::states).collect();
         output_file::create_folder(&self.out)?;
-        let tiers = [database.manifest().tier.clone(), finer];
+        let tiers = [database.manifest().tier.to_string(), finer];
         let mut page = summary(&rays, &states, &tiers);
         match left_out(&rays) {
             Ok(checked) => page.append(correction(&checked)),

@@ -1,52 +1,39 @@
 //! The material file of a fit, with its provenance as comments.
 
-use crate::material::{InvalidMaterial, SheetMaterial};
+use crate::{Cause, MaterialFit, Origin, ReadColumn, Specimen, Statistic};
+use hinge::{InvalidMaterial, SheetMaterial};
 use std::fmt::Write;
-use tensile::{Cause, MaterialFit, Origin, ReadColumn, Specimen, Statistic};
 
-/// What a tensile test does not measure.
-#[derive(Clone, Debug, PartialEq)]
-pub struct SheetFacts {
-    /// Name of the material.
-    pub name: String,
-    /// Thickness of the sheet (mm).
-    pub thickness: f64,
-    /// Poisson's ratio.
-    pub poisson: f64,
-    /// Whether Poisson's ratio is assumed.
-    pub poisson_assumed: bool,
-    /// Density (kg/m^3).
-    pub density_kg_m3: f64,
-}
-
-impl SheetMaterial {
-    /// The material of a fit; the error names a value that no sheet has.
-    pub fn fitted(fit: &MaterialFit, facts: &SheetFacts) -> Result<Self, InvalidMaterial> {
-        let material = Self {
-            name: facts.name.clone(),
-            thickness: facts.thickness,
-            young: fit.young.mean,
-            poisson: facts.poisson,
-            density_kg_m3: facts.density_kg_m3,
-            fracture_strain: fit.fracture_strain,
-            plastic: fit.table.iter().map(|row| [row.stress, row.strain]).collect(),
-            stress_deviation: fit.stress_deviation(),
-            ..Self::default()
+impl MaterialFit {
+    /// The material of the fit, with name, thickness, Poisson's ratio and density of `known`, which
+    /// a tensile test does not measure. The error names a value that no sheet has.
+    pub fn material(&self, known: SheetMaterial) -> Result<SheetMaterial, InvalidMaterial> {
+        let material = SheetMaterial {
+            young: self.young.mean,
+            fracture_strain: self.fracture_strain,
+            plastic: self.table.iter().map(|row| [row.stress, row.strain]).collect(),
+            stress_deviation: self.stress_deviation(),
+            ..known
         };
         material.validate()?;
         Ok(material)
     }
 }
 
-/// The TOML text of a fitted material.
-pub fn material_file(fit: &MaterialFit, facts: &SheetFacts) -> String {
+/// TOML text of the fitted material, with its provenance as comments.
+pub fn material_file(fit: &MaterialFit, material: &SheetMaterial, poisson_assumed: bool) -> String {
     let mut text = String::new();
-    write(&mut text, fit, facts).expect("writing to a string cannot fail");
+    write(&mut text, fit, material, poisson_assumed).expect("writing to a string cannot fail");
     text
 }
 
-fn write(t: &mut String, fit: &MaterialFit, facts: &SheetFacts) -> std::fmt::Result {
-    let name = printable(&facts.name);
+fn write(
+    t: &mut String,
+    fit: &MaterialFit,
+    material: &SheetMaterial,
+    poisson_assumed: bool,
+) -> std::fmt::Result {
+    let name = printable(&material.name);
     writeln!(t, "# {name}: the law of tensile tests, by `kirigami material fit`.")?;
     for specimen in &fit.specimens {
         provenance(t, specimen)?;
@@ -55,13 +42,17 @@ fn write(t: &mut String, fit: &MaterialFit, facts: &SheetFacts) -> std::fmt::Res
     let quoted = name.replace('\\', "\\\\").replace('"', "\\\"");
     writeln!(t, "name = \"{quoted}\"\n")?;
     let source = if fit.young_given { "given" } else { "measured" };
-    let assumed = if facts.poisson_assumed { "  # assumed" } else { "" };
-    writeln!(t, "thickness = {:?}  # mm", facts.thickness)?;
-    writeln!(t, "young = {:?}  # MPa; {source}{}", fit.young.mean, scatter(&fit.young, 0))?;
-    writeln!(t, "poisson = {:?}{assumed}", facts.poisson)?;
-    writeln!(t, "density_kg_m3 = {:?}  # kg/m^3", facts.density_kg_m3)?;
+    let assumed = if poisson_assumed { "  # assumed" } else { "" };
+    writeln!(t, "thickness = {:?}  # mm", material.thickness)?;
+    writeln!(t, "young = {:?}  # MPa; {source}{}", material.young, scatter(&fit.young, 0))?;
+    writeln!(t, "poisson = {:?}{assumed}", material.poisson)?;
+    writeln!(t, "density_kg_m3 = {:?}  # kg/m^3", material.density_kg_m3)?;
     let source = fit.fracture_source.words();
-    writeln!(t, "fracture_strain = {:?}  # true plastic strain; {source}", fit.fracture_strain)?;
+    writeln!(
+        t,
+        "fracture_strain = {:?}  # true plastic strain; {source}",
+        material.fracture_strain
+    )?;
     writeln!(
         t,
         "\n# Rows [true stress (MPa), true plastic strain]; constant stress after the last row. They deviate by at most\n\
@@ -77,7 +68,7 @@ fn write(t: &mut String, fit: &MaterialFit, facts: &SheetFacts) -> std::fmt::Res
         writeln!(t, "    [{:?}, {:?}],{origin}", row.stress, row.strain)?;
     }
     writeln!(t, "]")?;
-    match fit.stress_deviation() {
+    match material.stress_deviation {
         Some(deviation) => writeln!(
             t,
             "\nstress_deviation = {deviation:?}  # relative standard deviation of the stress over the specimens"

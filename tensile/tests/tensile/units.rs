@@ -3,7 +3,8 @@
 
 use super::{OPTIONS, fit_with, write};
 use crate::synthetic::Law;
-use tensile::{MaterialFit, Quantity, RecordOptions, TensileError};
+use support::fault::Fault;
+use tensile::{MaterialFit, Quantity, RecordOptions};
 
 /// sigma = 30.164 + 15 (1 - exp(-eps_p / 0.03)), of a specimen of 10 x 0.5 mm with a gauge length
 /// of 50 mm.
@@ -40,7 +41,7 @@ fn text(law: &Law, header: &str, deformation: f64, load: f64) -> String {
     text
 }
 
-fn read(text: &str, options: &RecordOptions) -> Result<MaterialFit, TensileError> {
+fn read(text: &str, options: &RecordOptions) -> Result<MaterialFit, Fault> {
     let folder = tempfile::tempdir().unwrap();
     let path = write(folder.path(), "test.csv", text);
     MaterialFit::new(&[(path, options.clone())], &OPTIONS)

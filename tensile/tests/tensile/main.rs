@@ -6,12 +6,12 @@ mod mutations;
 mod synthetic;
 mod units;
 
-use hinge::{SheetFacts, SheetMaterial, material_file};
+use hinge::SheetMaterial;
 use std::path::PathBuf;
 use synthetic::{FILM, HEADER, LINEAR, Law, Noise, RAMBERG_OSGOOD, VOCE, at, csv, write};
 use tensile::{
     Cause, FitOptions, FractureSource, MaterialFit, Origin, Quantity, RecordOptions,
-    SpecimenOptions,
+    SpecimenOptions, material_file,
 };
 
 const OPTIONS: FitOptions = FitOptions {
@@ -20,13 +20,14 @@ const OPTIONS: FitOptions = FitOptions {
     rows: 40,
 };
 
-fn facts() -> SheetFacts {
-    SheetFacts {
+/// What no tensile test measures.
+fn known() -> SheetMaterial {
+    SheetMaterial {
         name: "fitted \"sheet\"".into(),
         thickness: 0.5,
         poisson: 0.4,
-        poisson_assumed: true,
         density_kg_m3: 1390.0,
+        ..SheetMaterial::default()
     }
 }
 
@@ -462,20 +463,14 @@ fn the_material_file_is_read_and_its_table_is_the_law() {
     let folder = tempfile::tempdir().unwrap();
     for law in [LINEAR, VOCE, RAMBERG_OSGOOD, FILM] {
         let fit = fit_text(&csv(HEADER, &law.record(6000)), &OPTIONS);
-        let text = material_file(&fit, &facts());
+        let material = fit.material(known()).unwrap();
+        let text = material_file(&fit, &material, true);
         let path = write(folder.path(), "material.toml", &text);
         let read = SheetMaterial::load(&path).unwrap();
-        assert_eq!(read, SheetMaterial::fitted(&fit, &facts()).unwrap(), "{text}");
+        assert_eq!(read, material, "{text}");
         // Comments are no part of the law.
         let bare: Vec<&str> = text.lines().filter(|line| !line.starts_with('#')).collect();
         let path = write(folder.path(), "bare.toml", &bare.join("\n"));
         assert_eq!(SheetMaterial::load(&path).unwrap().law_hash(), read.law_hash());
-        // The same curve as a file of true values and as the table itself.
-        let table: Vec<[f64; 2]> = read.plastic.clone();
-        write(folder.path(), "table.csv", &csv("true_stress_mpa,plastic_strain", &table));
-        let (head, _) = text.split_once("plastic = [").unwrap();
-        let path =
-            write(folder.path(), "named.toml", &format!("{head}tensile_csv = \"table.csv\"\n"));
-        assert_eq!(SheetMaterial::load(&path).unwrap(), read);
     }
 }

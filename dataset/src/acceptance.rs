@@ -8,13 +8,13 @@ use std::fmt;
 /// Limits that an accepted row satisfies.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
-pub struct Gates {
+pub struct AcceptanceLimits {
     /// Maximum accepted [`hinge::HingeSample::energy_residual`]: relative difference of the
     /// solver's energy and the work of its reaction forces.
     pub energy_residual_max: f64,
 }
 
-impl Default for Gates {
+impl Default for AcceptanceLimits {
     /// Converged rays stay below 1e-3; ten times this value is not explained by the error of the
     /// quadrature.
     fn default() -> Self {
@@ -47,7 +47,7 @@ impl fmt::Display for Rejection {
     }
 }
 
-impl Gates {
+impl AcceptanceLimits {
     /// Why `row` is rejected; `None` if it is accepted.
     pub fn rejection(&self, row: &Row) -> Option<Rejection> {
         let sample = &row.sample;
@@ -71,14 +71,14 @@ mod tests {
     use crate::rows::tests::row;
 
     #[test]
-    fn each_gate_rejects_its_own_defect() {
-        let gates = Gates::default();
-        assert_eq!(gates.rejection(&row(0, 0.5)), None);
+    fn each_limit_rejects_its_own_defect() {
+        let limits = AcceptanceLimits::default();
+        assert_eq!(limits.rejection(&row(0, 0.5)), None);
         type Change = fn(&mut Row);
         let with = |change: Change| {
             let mut row = row(0, 0.5);
             change(&mut row);
-            gates.rejection(&row)
+            limits.rejection(&row)
         };
         let cases: [(Change, Rejection); 5] = [
             (|row| row.sample.f_s = f64::NAN, Rejection::NotFinite),

@@ -1,10 +1,10 @@
 //! Files with random changes: never a panic, and never a number in the material file that is not
 //! finite.
 
-use super::{FILM, HEADER, OPTIONS, VOCE, csv, facts, write};
+use super::{FILM, HEADER, OPTIONS, VOCE, csv, known, write};
 use crate::synthetic::Noise;
-use hinge::{SheetMaterial, material_file};
-use tensile::{MaterialFit, RecordOptions};
+use hinge::SheetMaterial;
+use tensile::{MaterialFit, RecordOptions, material_file};
 
 /// A text with one to three random changes of bytes and lines.
 fn mutated(text: &str, random: &mut Noise) -> Vec<u8> {
@@ -51,8 +51,8 @@ fn mutated_files_are_refused_or_give_a_valid_material() {
                 }
             };
             fitted += 1;
-            if let Ok(material) = SheetMaterial::fitted(&fit, &facts()) {
-                let text = material_file(&fit, &facts());
+            if let Ok(material) = fit.material(known()) {
+                let text = material_file(&fit, &material, true);
                 let path = write(folder.path(), "material.toml", &text);
                 assert_eq!(SheetMaterial::load(&path).unwrap(), material, "{text}");
                 assert!(!text.contains("NaN") && !text.contains("inf"), "{text}");

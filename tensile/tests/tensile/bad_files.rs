@@ -97,6 +97,24 @@ fn the_message_says_what_to_do() {
             "true_stress_mpa,plastic_strain\n10,0\n20,1\n".into(),
             &["hardening table already"],
         ),
+        (
+            "a table in per cent",
+            "true_stress_mpa,plastic_strain\n44,0\n50,60\n".into(),
+            &["per cent"],
+        ),
+        ("other names", "wear,tear\n1,2\n".into(), &["has the columns 1 `wear`, 2 `tear`"]),
+        ("no pair", "true_stress_mpa,engineering_strain\n1,2\n".into(), &["no pair of stress"]),
+        (
+            "engineering and true values",
+            "engineering_stress_mpa,engineering_strain,true_stress_mpa,plastic_strain\n1,2,3,4\n"
+                .into(),
+            &["both engineering and true values"],
+        ),
+        (
+            "a negative strain",
+            "engineering_stress_mpa,engineering_strain\n0,0\n30,-2\n".into(),
+            &["violates"],
+        ),
     ];
     for (case, text, expected) in cases {
         let message = message(&text);

@@ -19,7 +19,7 @@
 
 /// The local curve of the material in the running neck.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Drawing {
+pub(super) struct ColdDrawing {
     /// [true stress (MPa), plastic strain] at the upper yield.
     pub from: [f64; 2],
     /// The same at the natural draw ratio.
@@ -28,7 +28,7 @@ pub(super) struct Drawing {
     pub mean: f64,
 }
 
-impl Drawing {
+impl ColdDrawing {
     /// From the end of the measured curve to the natural draw ratio `ratio` under the nominal
     /// stress `plateau` (MPa). `None` if the ratio is not beyond the upper yield.
     pub fn new(from: [f64; 2], plateau: f64, ratio: f64, young: f64) -> Option<Self> {
@@ -79,7 +79,7 @@ mod tests {
     fn the_work_of_the_draw_is_that_of_the_machine() {
         let young = 3000.0;
         let from = [45.0, 0.01];
-        let drawing = Drawing::new(from, 33.6, 3.28, young).unwrap();
+        let drawing = ColdDrawing::new(from, 33.6, 3.28, young).unwrap();
         let points = drawing.points(20_000);
         let mut work = 0.0;
         let mut before = from;
@@ -96,12 +96,12 @@ mod tests {
 
     #[test]
     fn a_low_plateau_cuts_the_upper_yield() {
-        let drawing = Drawing::new([252.5, 1e-5], 240.0, 1.02, 210e3).unwrap();
+        let drawing = ColdDrawing::new([252.5, 1e-5], 240.0, 1.02, 210e3).unwrap();
         let cut = drawing.yields_at();
         assert!((240.0..245.0).contains(&cut), "{cut}");
         let points = drawing.points(100);
         assert!(points[..99].iter().all(|[stress, _]| *stress == cut));
-        assert!(Drawing::new([252.5, 0.1], 240.0, 1.02, 210e3).is_none());
+        assert!(ColdDrawing::new([252.5, 0.1], 240.0, 1.02, 210e3).is_none());
     }
 
     #[test]
