@@ -2,10 +2,11 @@
 
 use fe_driver::{FailureKind, ToolVersions};
 use hinge::{HingeDesign, HingeSample};
-use mesher::{Tier, UnknownTier};
+use mesher::Tier;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::str::FromStr;
+use support::fault::Fault;
 
 /// A sample of (eps, g) -> (W, grad W, D) with its provenance; section 2.4.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -107,9 +108,9 @@ impl fmt::Display for Fidelity {
 }
 
 impl FromStr for Fidelity {
-    type Err = UnknownTier;
+    type Err = Fault;
 
-    fn from_str(text: &str) -> Result<Self, UnknownTier> {
+    fn from_str(text: &str) -> Result<Self, Fault> {
         Ok(match text.split_once(CORRECTED_TO) {
             Some((from, to)) => Self::Corrected { from: from.parse()?, to: to.parse()? },
             None => Self::Solved(text.parse()?),
@@ -118,9 +119,9 @@ impl FromStr for Fidelity {
 }
 
 impl TryFrom<String> for Fidelity {
-    type Error = UnknownTier;
+    type Error = Fault;
 
-    fn try_from(text: String) -> Result<Self, UnknownTier> {
+    fn try_from(text: String) -> Result<Self, Fault> {
         text.parse()
     }
 }

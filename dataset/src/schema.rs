@@ -2,8 +2,8 @@
 
 use crate::error::{DatasetError, refused};
 use crate::rows::Row;
-use fe_driver::UnknownFailure;
 use polars::prelude::{Column, DataFrame, IntoColumn, NamedFrom, Series};
+use support::fault::Fault;
 
 /// What a column of a database holds.
 #[derive(Debug)]
@@ -91,7 +91,7 @@ pub static COLUMNS: [ColumnMeaning; 32] = [
             |row| row.failure.map_or(String::new(), |kind| kind.to_string()),
             |row, text| {
                 let kind = (!text.is_empty()).then(|| text.parse()).transpose();
-                row.failure = kind.map_err(|error: UnknownFailure| error.to_string())?;
+                row.failure = kind.map_err(|error: Fault| error.to_string())?;
                 Ok(())
             },
         ),

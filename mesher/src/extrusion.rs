@@ -1,7 +1,6 @@
 //! A plane mesh extruded to layers of solid elements.
 
-use crate::element::ElementKind;
-use crate::msh::PlaneMesh;
+use crate::{ElementKind, PlaneMesh};
 
 /// Solid elements above the faces of a plane mesh; indices count from 0.
 #[derive(Clone, Debug)]
@@ -41,7 +40,7 @@ impl Extrusion {
             .iter()
             .map(|element| {
                 let positions: Vec<_> = element.iter().map(|node| nodes[*node]).collect();
-                ElementKind::of_element(element).gauss_volumes(&positions)
+                ElementKind::of(element).gauss_volumes(&positions)
             })
             .collect();
         Self { nodes, elements, gauss_volumes, levels }

@@ -24,6 +24,13 @@ pub fn fault(
     Fault { place: place.into(), what: what.into(), remedy: remedy.into() }
 }
 
+impl From<String> for Fault {
+    /// A mistake in words, without a place.
+    fn from(what: String) -> Self {
+        fault("", what, "")
+    }
+}
+
 /// Maps the error of reading `path`, for use in `map_err`.
 pub fn unread<E: fmt::Display>(path: &Path) -> impl FnOnce(E) -> Fault {
     move |error| fault("", format!("cannot read {}: {error}", path.display()), "")

@@ -5,7 +5,7 @@ use crate::verification_error::{VerificationError, refused};
 use design::objective::design_problem::Deployment;
 use design::pattern::grid::Grid;
 use design::sheet::cut_sheet::Sheet;
-use fe_driver::{DrivenRim, Held, Keeping, Pulled, SheetProblem};
+use fe_driver::{DrivenRim, Held, OutOfPlaneRestraint, Pulled, SheetProblem};
 use mesher::{PlacedWindow, Side};
 
 /// Panels and hinges of a sheet, by their indices, in increasing order.
@@ -52,7 +52,7 @@ impl SheetPart {
         if self.panels.len() == whole.shape.panels.len() {
             return Ok(whole);
         }
-        if whole.keeping == Keeping::Nothing && whole.down.is_some() {
+        if whole.restraint == OutOfPlaneRestraint::Nothing && whole.down.is_some() {
             return Err(refused(
                 "a patch of a hanging sheet must be held flat: its weight comes on before the \
                  loads. Use --support held-flat",

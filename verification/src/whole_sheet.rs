@@ -4,7 +4,7 @@ use crate::verification_error::{VerificationError, refused};
 use design::pattern::grid::Grid;
 use design::sheet::cut_sheet::{AttachmentPoint, PanelPoint, Sheet};
 use design::sheet::hinge_window::Window;
-use fe_driver::{Held, Keeping, Place, Pulled, SheetProblem};
+use fe_driver::{Held, OutOfPlaneRestraint, Place, Pulled, SheetProblem};
 use hinge::{HingeDesign, Regime};
 use mesher::{
     Frame, Imperfection, PanelShape, PlacedWindow, PlaneRecipe, SheetMesh, SheetShape, Tier,
@@ -77,10 +77,10 @@ pub fn sheet_problem(
             (length > 0.0).then(|| [x / length, y / length, 0.0])
         }
     };
-    let keeping = match support {
-        Posture::HeldFlat => Keeping::HeldFlat,
-        Posture::Lying => Keeping::Table,
-        Posture::Hanging | Posture::Free => Keeping::Nothing,
+    let restraint = match support {
+        Posture::HeldFlat => OutOfPlaneRestraint::HeldFlat,
+        Posture::Lying => OutOfPlaneRestraint::Table,
+        Posture::Hanging | Posture::Free => OutOfPlaneRestraint::Nothing,
     };
     let mut shape = sheet_shape(sheet, scene.material.thickness, tier)?;
     for pulled in &pulled {
@@ -98,13 +98,13 @@ pub fn sheet_problem(
         shape,
         tier,
         material: scene.material.as_solved(),
-        keeping,
+        restraint,
         held,
         pulled,
         rims: Vec::new(),
         stroke: scene.config.drive.map(|drive| drive.stroke),
         down,
-        step: SheetProblem::usual_step(keeping, contact),
+        step: SheetProblem::usual_step(restraint, contact),
         contact,
         dynamic: false,
     })
@@ -308,13 +308,13 @@ const NOT_HELD: f64 = 3.5;
 
 impl SheetCost {
     /// The cost of a meshed sheet.
-    pub fn of(mesh: &SheetMesh, keeping: Keeping) -> Self {
+    pub fn of(mesh: &SheetMesh, restraint: OutOfPlaneRestraint) -> Self {
         let unknowns = 3 * mesh.nodes.len();
         let [reference, seconds, memory] = REFERENCE;
         let ratio = unknowns as f64 / reference;
-        let paths = match keeping {
-            Keeping::HeldFlat => 1.0,
-            Keeping::Table | Keeping::Nothing => NOT_HELD,
+        let paths = match restraint {
+            OutOfPlaneRestraint::HeldFlat => 1.0,
+            OutOfPlaneRestraint::Table | OutOfPlaneRestraint::Nothing => NOT_HELD,
         };
         Self {
             unknowns,

@@ -1,8 +1,6 @@
 //! Converts printed frames to hinge samples: energy, work, forces, damage.
 
-use crate::calculix::dat::Frame;
-use crate::calculix::model::WindowModel;
-use crate::calculix::panel_motion::{PanelMotion, rotated};
+use crate::{Frame, PanelMotion, WindowModel, rotated};
 use hinge::{HingeDeformation, HingeDesign, HingeForces, HingeSample, SheetMaterial};
 use mesher::WindowMesh;
 use std::f64::consts::PI;
@@ -103,7 +101,7 @@ pub(crate) struct Damage {
 }
 
 impl Damage {
-    /// From (strain, volume) at the Gauss points of its window.
+    /// Evaluates (strain, volume) at the Gauss points of the window.
     pub fn new(
         mut points: Vec<(f64, f64)>,
         design: &HingeDesign,

@@ -1,6 +1,6 @@
 //! `kirigami campaign collect`
 
-use crate::commands::campaign::campaign_args::{CampaignArgs, DATABASE, SPOT_CHECK};
+use super::campaign_args::{CampaignArgs, DATABASE, SPOT_CHECK};
 use crate::ui::output_file;
 use anyhow::{Context, Result, bail};
 use clap::Args;

@@ -1,6 +1,6 @@
 //! `kirigami campaign plan`
 
-use crate::commands::campaign::campaign_args::{CampaignArgs, print_tally};
+use super::campaign_args::{CampaignArgs, print_tally};
 use crate::commands::solve_args::FeSolver;
 use crate::ui::processors;
 use crate::ui::progress::duration;
@@ -51,7 +51,7 @@ impl PlanCommand {
             duration(plan.seconds / workers),
             match plan.tally.timed {
                 0 => "the usual time of its meshes; rays of some materials take longer".into(),
-                timed => format!("by the time of the {timed} rays solved so far"),
+                timed => format!("from the time of the {timed} rays solved"),
             },
             plan.memory_mb,
             plan.disk_mb

@@ -1,6 +1,6 @@
 //! `kirigami campaign restore`
 
-use crate::commands::campaign::campaign_args::CampaignArgs;
+use super::campaign_args::CampaignArgs;
 use anyhow::Result;
 use clap::Args;
 use dataset::Database;

@@ -1,6 +1,6 @@
 //! `kirigami campaign run`
 
-use crate::commands::campaign::campaign_args::{CampaignArgs, print_tally};
+use super::campaign_args::{CampaignArgs, print_tally};
 use crate::commands::solve_args::{FeSolver, SolveArgs};
 use crate::ui::exit::Unfinished;
 use crate::ui::interrupt;

@@ -80,7 +80,7 @@ impl VerifyCommand {
         let stop = interrupt::stop_flag()?;
         let problem = &solve.problem;
         let mesh = problem.shape.mesh(&folder, &calculix.gmsh, limit, stop)?;
-        let cost = SheetCost::of(&mesh, problem.keeping);
+        let cost = SheetCost::of(&mesh, problem.restraint);
         let needed = cost.memory_mib;
         announce(&format!(
             "{} unknowns; about {} of CPU time and {needed:.0} MiB of memory; kept in {}",

@@ -188,7 +188,7 @@ fn the_cost_is_that_of_measured_sheets() {
     let (limit, stop) = (Duration::from_secs(60), AtomicBool::new(false));
     let shape = &solve.problem.shape;
     let mesh = shape.mesh(folder.path(), &calculix.gmsh, limit, &stop).unwrap();
-    let cost = SheetCost::of(&mesh, solve.problem.keeping);
+    let cost = SheetCost::of(&mesh, solve.problem.restraint);
     assert_eq!(cost.unknowns, 3 * mesh.nodes.len());
     assert!((3.0..60.0).contains(&cost.cpu_seconds), "{cost:?}");
     assert!((10.0..100.0).contains(&cost.memory_mib), "{cost:?}");

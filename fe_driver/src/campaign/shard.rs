@@ -3,14 +3,14 @@
 //! The shards of one list may run at the same time, on one machine or on several machines that
 //! share the folder. Together they do the same jobs as one run of the whole list.
 
-use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::str::FromStr;
+use support::fault::{Fault, fault};
 
 /// The part of the jobs that one run works on; written `2/4` for the second of four.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Shard {
-    /// From 1 to `count`.
+    /// Number of the shard, 1 to `count`.
     index: usize,
     count: usize,
 }
@@ -19,9 +19,9 @@ impl Shard {
     /// All jobs.
     pub const WHOLE: Self = Self { index: 1, count: 1 };
 
-    /// Whether the job at index `place` of the list belongs to the shard.
-    pub fn holds(self, place: usize) -> bool {
-        place % self.count == self.index - 1
+    /// Whether the job at an index of the list belongs to the shard.
+    pub fn holds(self, job: usize) -> bool {
+        job % self.count == self.index - 1
     }
 }
 
@@ -31,21 +31,17 @@ impl fmt::Display for Shard {
     }
 }
 
-/// A text that is not a shard.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("`{0}` is not a shard: write i/n with 1 <= i <= n, for example 2/4")]
-pub struct InvalidShard(String);
-
 impl FromStr for Shard {
-    type Err = InvalidShard;
+    type Err = Fault;
 
-    fn from_str(text: &str) -> Result<Self, InvalidShard> {
+    fn from_str(text: &str) -> Result<Self, Fault> {
         let parse = || {
             let (index, count) = text.split_once('/')?;
             let (index, count) = (index.parse().ok()?, count.parse().ok()?);
             (1..=count).contains(&index).then_some(Self { index, count })
         };
-        parse().ok_or_else(|| InvalidShard(text.to_owned()))
+        let what = format!("`{text}` is not a shard");
+        parse().ok_or_else(|| fault("", what, "write i/n with 1 <= i <= n, for example 2/4"))
     }
 }
 
@@ -56,9 +52,9 @@ mod tests {
     #[test]
     fn every_job_is_in_exactly_one_shard() {
         let shards = ["1/3", "2/3", "3/3"].map(|text| text.parse::<Shard>().unwrap());
-        for place in 0..10 {
-            assert!(Shard::WHOLE.holds(place));
-            assert_eq!(shards.iter().filter(|s| s.holds(place)).count(), 1);
+        for index in 0..10 {
+            assert!(Shard::WHOLE.holds(index));
+            assert_eq!(shards.iter().filter(|s| s.holds(index)).count(), 1);
         }
     }
 
