@@ -30,11 +30,11 @@ paper: built
 # The studio as a folder of files for any web server: no request leaves the page. rustup adds the target.
 page:
 	rustup target add wasm32-wasip1
-	RUSTFLAGS="-C target-feature=+simd128" cargo rustc --locked --profile page -p kirigami --lib --no-default-features \
+	RUSTFLAGS="-C target-feature=+simd128" cargo rustc --locked --profile page -p studio --lib \
 	    --target wasm32-wasip1 --crate-type cdylib
 	rm -rf target/page
 	cargo run --release --locked -- studio --page target/page
-	cp target/wasm32-wasip1/page/kirigami.wasm target/page/
+	cp target/wasm32-wasip1/page/studio.wasm target/page/kirigami.wasm
 	cargo test --release --locked -p kirigami --test end_to_end static_page -- --ignored
 
 # The Python package and its tests, in an environment of their own. The tests of PyTorch need 5 GB: by a command of their own.

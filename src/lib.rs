@@ -8,13 +8,6 @@
 //! assert!(Cli::try_parse_from(["kirigami", "design", "scene.toml", "--step", "10"]).is_err());
 //! ```
 
-// A page in a browser has the studio alone.
-#![cfg_attr(target_family = "wasm", allow(dead_code))]
-
-#[cfg(unix)]
 pub mod cli;
 pub mod commands;
-mod fitting;
-mod new_project;
-mod studio;
 pub mod ui;

@@ -2,8 +2,9 @@
 
 use crate::ui::{output_file, run_folder};
 use anyhow::{Result, ensure};
+use app::train::correction;
 use clap::Args;
-use dataset::{ComparedRay, ComparedState, Database, LeftOut, compare, left_out};
+use dataset::{ComparedRay, ComparedState, Database, compare, left_out};
 use std::path::PathBuf;
 use support::document::Document;
 use verification::{SCALE, spread_table};
@@ -81,24 +82,6 @@ fn summary(
         cpu[1],
     ));
     page.table(spread_table(&groups(states), "ray"));
-    page
-}
-
-/// The remaining differences when every ray is corrected by the others.
-pub fn correction(checked: &LeftOut) -> Document {
-    let note = match &checked.uncorrected()[..] {
-        [] => String::new(),
-        left => format!(
-            " Not corrected, because that does not reduce the differences: {}.",
-            left.join(", ")
-        ),
-    };
-    let mut page = Document::default();
-    page.text(format!(
-        "Remaining differences when each of the {} rays is corrected by the others.{note}",
-        checked.states.len()
-    ));
-    page.table(spread_table(&groups(&checked.states), "ray"));
     page
 }
 

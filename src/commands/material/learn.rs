@@ -13,7 +13,6 @@ use crate::commands::campaign::RayProgress;
 use crate::commands::material::learn::conclusion::{MATERIAL, WEIGHTS, conclusion};
 use crate::commands::material::learn::fine_tuning::FineTuning;
 use crate::commands::solve_args::{FeSolver, SolveArgs, task_error};
-use crate::new_project::{self, edited};
 use crate::ui::exit::Unfinished;
 use crate::ui::interrupt;
 use crate::ui::progress::duration;
@@ -21,6 +20,7 @@ use crate::ui::run_folder;
 use crate::ui::with_unit::{percent, time};
 use ::train::{ErrorInterval, TrainingConfig, check_pretrained};
 use anyhow::{Context, Result, bail, ensure};
+use app::new_project::{self, edited};
 use clap::Args;
 use dataset::{Database, SplitPlan};
 use fe_driver::{Campaign, random_paths};
@@ -132,6 +132,7 @@ impl LearnCommand {
             config,
             distillation: distillation_states(campaign.drawn(&region)),
             fits: self.out.join("fits"),
+            stop: interrupt::stop_flag()?,
         };
         let spot = self.spot_check(&campaign, &region)?;
         let accuracy = Accuracy { energy: self.accuracy, forces: self.forces };

@@ -1,7 +1,7 @@
 //! `kirigami surrogate card`
 
-use crate::commands::train::{UNSEEN, bin_table, error_table};
 use anyhow::Result;
+use app::train::{UNSEEN, bin_table, error_table};
 use clap::Args;
 use std::path::PathBuf;
 use surrogate::{Surrogate, Teacher};
