@@ -8,6 +8,8 @@
 //! assert!(Cli::try_parse_from(["kirigami", "design", "scene.toml", "--step", "10"]).is_err());
 //! ```
 
+#![cfg_attr(not(test), warn(unreachable_pub))]
+
 pub mod cli;
 pub mod commands;
 pub mod ui;

@@ -117,7 +117,7 @@ impl Effect {
 impl LoadedSheet<'_> {
     /// The effect of a cause, `None` in it if the tangent is singular; `None` for a cause that the
     /// sheet does not have.
-    pub fn effect(&self, cause: ErrorCause) -> Option<Sourced<Option<Effect>>> {
+    pub(crate) fn effect(&self, cause: ErrorCause) -> Option<Sourced<Option<Effect>>> {
         let modes = match cause {
             ErrorCause::Network => self.networks()?,
             ErrorCause::WindowMesh => self.window_mesh(),

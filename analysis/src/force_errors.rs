@@ -15,7 +15,7 @@ use std::array::from_fn;
 use std::f64::consts::PI;
 
 /// (F_a, F_s, M_theta) at some hinges, with their indices (N, N, N mm).
-pub type Mode = Vec<(usize, [f64; 3])>;
+pub(crate) type Mode = Vec<(usize, [f64; 3])>;
 
 /// Lengths of (log w_lig, alpha) over which the error of a learned law changes, as [`LENGTHS`] are
 /// of the state: about a third of the extent of a training domain.
@@ -24,21 +24,21 @@ const DESIGN_LENGTHS: [f64; 2] = [0.5, 0.5];
 const LEFT_OUT: f64 = 1e-3;
 
 /// Independent errors of the hinge forces, each with the standard deviation one.
-pub type Modes = Vec<Mode>;
+pub(crate) type Modes = Vec<Mode>;
 
 /// One error of all hinges, along `forces`.
-pub fn common(forces: &[[f64; 3]]) -> Modes {
+pub(crate) fn common(forces: &[[f64; 3]]) -> Modes {
     vec![forces.iter().copied().enumerate().collect()]
 }
 
 /// Independent errors of the hinges, along the force of each.
-pub fn along(forces: &[[f64; 3]]) -> Modes {
+pub(crate) fn along(forces: &[[f64; 3]]) -> Modes {
     forces.iter().copied().enumerate().map(|hinge| vec![hinge]).collect()
 }
 
 /// Independent errors of the hinges in any direction: of the given root mean squares of the norm of
 /// (F_a, F_s, M_theta / w_lig) (N).
-pub fn isotropic(sizes: &[f64], designs: &[HingeDesign]) -> Modes {
+pub(crate) fn isotropic(sizes: &[f64], designs: &[HingeDesign]) -> Modes {
     let of_hinge = |(h, size): (usize, &f64)| {
         let each = size / 3f64.sqrt();
         (0..3).map(move |i| vec![(h, component(i, each, &designs[h]))])
@@ -48,7 +48,7 @@ pub fn isotropic(sizes: &[f64], designs: &[HingeDesign]) -> Modes {
 
 /// The deviations of several networks from their mean, of which the sample covariance is the
 /// estimate; each with one force a hinge.
-pub fn spread(networks: &[Vec<[f64; 3]>]) -> Modes {
+pub(crate) fn spread(networks: &[Vec<[f64; 3]>]) -> Modes {
     let count = networks.len() as f64;
     let deviation = |forces: &[[f64; 3]], h: usize, i: usize| {
         let mean = networks.iter().map(|forces| forces[h][i]).sum::<f64>() / count;
@@ -63,7 +63,11 @@ pub fn spread(networks: &[Vec<[f64; 3]>]) -> Modes {
 /// Errors with the standard deviations `sizes` (N) of (F_a, F_s, M_theta / w_lig) at each hinge that
 /// are alike at hinges of like design and state: a Gaussian process over both, with the mirror
 /// symmetry of hinges.
-pub fn alike(sizes: &[[f64; 3]], designs: &[HingeDesign], states: &[HingeDeformation]) -> Modes {
+pub(crate) fn alike(
+    sizes: &[[f64; 3]],
+    designs: &[HingeDesign],
+    states: &[HingeDeformation],
+) -> Modes {
     let positions: Vec<HingePosition> =
         std::iter::zip(designs, states).map(HingePosition::new).collect();
     let mut modes = Modes::new();
@@ -85,7 +89,7 @@ pub fn alike(sizes: &[[f64; 3]], designs: &[HingeDesign], states: &[HingeDeforma
 /// The standard deviations of a sheet at a load step whose response is given: of every panel corner,
 /// the root of the sum of the variances along x and y (mm), and of the load that the prescribed
 /// displacement takes (N or N mm; `None` under dead loads). `None` if its tangent is singular.
-pub fn deviations(
+pub(crate) fn deviations(
     modes: &Modes,
     response: &ForceResponse,
     sheet: &Sheet,

@@ -6,6 +6,8 @@
 //! sheet for a silhouette, [`refinement`] the cheapest level that keeps a tolerance. What studies
 //! have measured stands in [`calibration`].
 
+#![cfg_attr(not(test), warn(unreachable_pub))]
+
 pub mod actuation_curve;
 pub mod calibration;
 pub mod design_checks;

@@ -22,7 +22,7 @@ type Colour = [u8; 3];
 
 /// Writes SVG pictures of the same size as the frames of an animation that repeats, `width` pixels
 /// wide.
-pub fn save(frames: &[String], path: &Path, width: u32) -> Result<()> {
+pub(crate) fn save(frames: &[String], path: &Path, width: u32) -> Result<()> {
     let pixels = frames.iter().map(|svg| {
         let frame = rasterise(svg, width)?;
         let colours = frame.pixels().iter().map(|it| [it.red(), it.green(), it.blue()]);

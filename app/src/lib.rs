@@ -5,6 +5,8 @@
 //! assert!(refused.is_err());
 //! ```
 
+#![cfg_attr(not(test), warn(unreachable_pub))]
+
 mod animation;
 pub mod charts;
 pub mod chosen;

@@ -52,7 +52,7 @@ pub(crate) struct Bridge {
 
 impl Bridge {
     /// Fits the correction from the mesh of the rays to the mesh of their references.
-    pub fn fit(rays: &[ComparedRay]) -> Self {
+    pub(crate) fn fit(rays: &[ComparedRay]) -> Self {
         let pairs = rays.iter().flat_map(ComparedRay::pairs);
         let pairs: Vec<_> = pairs.filter(|(row, _)| row.at_requested_tier()).collect();
         let unfitted = Self {
@@ -100,7 +100,7 @@ impl Bridge {
     }
 
     /// The correction of the energy, the damage and D_peak, as far as they are to be `corrected`.
-    pub fn only(mut self, corrected: [bool; 3]) -> Self {
+    pub(crate) fn only(mut self, corrected: [bool; 3]) -> Self {
         for (coefficients, _) in
             self.coefficients.iter_mut().zip(corrected).filter(|(_, corrected)| !corrected)
         {
@@ -112,7 +112,7 @@ impl Bridge {
     /// The sample of a row, corrected to the finer mesh. Quantities that no surrogate is trained on
     /// are unchanged, including the work of the reaction forces and the energy residual. A row that
     /// was solved on a finer tier than the requested one is also unchanged.
-    pub fn corrected(&self, row: &Row) -> HingeSample {
+    pub(crate) fn corrected(&self, row: &Row) -> HingeSample {
         if !row.at_requested_tier() {
             return row.sample;
         }

@@ -36,7 +36,7 @@ const TEXTS: [fn(&Row) -> &String; 4] =
 
 impl Digest {
     /// The rows within the acceptance limits; the others are counted.
-    pub fn accepted(&mut self, mut rows: Vec<Row>) -> Vec<Row> {
+    pub(crate) fn accepted(&mut self, mut rows: Vec<Row>) -> Vec<Row> {
         rows.retain(|row| match AcceptanceLimits::default().rejection(row) {
             Some(reason) => {
                 *self.rejected.entry(reason).or_default() += 1;
@@ -49,7 +49,7 @@ impl Digest {
 
     /// Adds accepted rows of one job, in the order of lambda. The jobs must come in the order of
     /// their ids.
-    pub fn add(&mut self, ray: &[Row]) -> Result<(), DatasetError> {
+    pub(crate) fn add(&mut self, ray: &[Row]) -> Result<(), DatasetError> {
         for row in ray {
             self.refuse_duplicate(row)?;
             for (values, text) in self.texts.iter_mut().zip(TEXTS) {
@@ -77,7 +77,7 @@ impl Digest {
     }
 
     /// The manifest of the rows, whose Parquet file has the given hash.
-    pub fn manifest(self, hash: String, plan: &SplitPlan) -> Result<Manifest, DatasetError> {
+    pub(crate) fn manifest(self, hash: String, plan: &SplitPlan) -> Result<Manifest, DatasetError> {
         let no_rows = |rejected| refused(format!("no rows: {}", reasons(rejected)));
         let bent_rays = self.meshes.bent_rays.unwrap_or_default();
         let Some((rays, finer)) = self.meshes.sorted()? else {

@@ -21,6 +21,8 @@
 //! # Ok::<_, dataset::DatasetError>(())
 //! ```
 
+#![cfg_attr(not(test), warn(unreachable_pub))]
+
 mod acceptance;
 mod bridge;
 mod check;

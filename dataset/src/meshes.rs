@@ -51,7 +51,7 @@ impl MeshRows {
     }
 
     /// The design and the deformation of every row.
-    pub fn states(&self) -> impl Iterator<Item = (HingeDesign, HingeDeformation)> + Clone {
+    pub(crate) fn states(&self) -> impl Iterator<Item = (HingeDesign, HingeDeformation)> + Clone {
         let designs =
             (self.designs.iter()).flat_map(|(design, count)| std::iter::repeat_n(*design, *count));
         designs.zip(self.deformations.iter().copied())
@@ -84,7 +84,7 @@ pub(crate) struct Meshes {
 
 impl Meshes {
     /// Adds accepted rows of one job.
-    pub fn add(&mut self, ray: &[Row]) -> Result<(), DatasetError> {
+    pub(crate) fn add(&mut self, ray: &[Row]) -> Result<(), DatasetError> {
         let Some(first) = ray.first() else {
             return Ok(());
         };
@@ -108,7 +108,7 @@ impl Meshes {
     }
 
     /// The mesh of the rays, and the finer one if there is one; `None` without rows.
-    pub fn sorted(self) -> Result<Option<(MeshRows, Option<MeshRows>)>, DatasetError> {
+    pub(crate) fn sorted(self) -> Result<Option<(MeshRows, Option<MeshRows>)>, DatasetError> {
         let mut meshes = self.meshes;
         meshes.sort_by(|x, y| x.cost().total_cmp(&y.cost()));
         meshes.sort_by_key(|mesh| Reverse(mesh.keys.len()));

@@ -21,7 +21,7 @@ pub(crate) struct Table<W: Write> {
 }
 
 impl<W: Write> Table<W> {
-    pub fn new(to: W) -> Result<Self, DatasetError> {
+    pub(crate) fn new(to: W) -> Result<Self, DatasetError> {
         let frame = schema::to_frame(&[])?;
         // Polars would declare texts as views, which Arrow's other libraries cannot filter or sort.
         let plain = schema_to_metadata_key(&frame.schema().to_arrow(CompatLevel::oldest()));
@@ -33,7 +33,7 @@ impl<W: Write> Table<W> {
     }
 
     /// Appends rows.
-    pub fn add(&mut self, rows: impl IntoIterator<Item = Row>) -> Result<(), DatasetError> {
+    pub(crate) fn add(&mut self, rows: impl IntoIterator<Item = Row>) -> Result<(), DatasetError> {
         self.waiting.extend(rows);
         while self.waiting.len() >= GROUP {
             let rest = self.waiting.split_off(GROUP);
@@ -44,7 +44,7 @@ impl<W: Write> Table<W> {
     }
 
     /// Writes what is left, and the end of the file.
-    pub fn finish(mut self) -> Result<(), DatasetError> {
+    pub(crate) fn finish(mut self) -> Result<(), DatasetError> {
         self.writer.write_batch(&schema::to_frame(&self.waiting)?)?;
         self.writer.finish()?;
         Ok(())
@@ -120,13 +120,13 @@ pub(crate) struct Hashing<W> {
 }
 
 impl<W> Hashing<W> {
-    pub fn new(to: W) -> Self {
+    pub(crate) fn new(to: W) -> Self {
         let hasher = blake3::Hasher::new();
         Self { to, hasher }
     }
 
     /// [`hash`] of all that was written.
-    pub fn hash(&self) -> String {
+    pub(crate) fn hash(&self) -> String {
         self.hasher.finalize().to_hex().to_string()
     }
 }

@@ -119,7 +119,7 @@ pub(crate) struct Geometries(BTreeMap<[i64; 2], Vec<String>>);
 
 impl Geometries {
     /// Adds the geometry and the job of a row. The rows of a job must come one after the other.
-    pub fn add(&mut self, row: &Row) {
+    pub(crate) fn add(&mut self, row: &Row) {
         let jobs = self.0.entry(geometry(row)).or_default();
         if jobs.last() != Some(&row.job) {
             jobs.push(row.job.clone());
@@ -127,7 +127,7 @@ impl Geometries {
     }
 
     /// Number of distinct (w_lig, alpha), up to mirroring.
-    pub fn len(&self) -> usize {
+    pub(crate) fn len(&self) -> usize {
         self.0.len()
     }
 }

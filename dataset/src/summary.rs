@@ -31,7 +31,7 @@ impl Default for Contents {
 
 impl Contents {
     /// Adds rows.
-    pub fn add(&mut self, rows: &[Row]) {
+    pub(crate) fn add(&mut self, rows: &[Row]) {
         for row in rows {
             for ([minimum, maximum], column) in self.ranges.iter_mut().zip(&COLUMNS) {
                 let value = column.number(row).unwrap_or(f64::NAN);
@@ -56,7 +56,7 @@ impl fmt::Display for Database {
 impl Contents {
     /// Prints counts, the finer mesh, rejected rows, the rays on another mesh, the split, and what
     /// each column holds.
-    pub fn summary(&self, manifest: &Manifest, f: &mut fmt::Formatter) -> fmt::Result {
+    pub(crate) fn summary(&self, manifest: &Manifest, f: &mut fmt::Formatter) -> fmt::Result {
         let Manifest { rows, rays, partial_rays, geometries, material, tier, cpu_s, .. } = manifest;
         writeln!(
             f,

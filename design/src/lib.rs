@@ -80,6 +80,8 @@
 //! # Ok::<_, Box<dyn std::error::Error>>(())
 //! ```
 
+#![cfg_attr(not(test), warn(unreachable_pub))]
+
 pub mod equilibrium;
 pub mod geometry;
 pub mod hinge_law;

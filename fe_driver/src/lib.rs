@@ -63,6 +63,8 @@
 //! # Ok::<_, Box<dyn std::error::Error>>(())
 //! ```
 
+#![cfg_attr(not(test), warn(unreachable_pub))]
+
 #[cfg(test)]
 extern crate self as fe_driver;
 

@@ -34,6 +34,8 @@
 //! # Ok::<_, hinge::InvalidDesign>(())
 //! ```
 
+#![cfg_attr(not(test), warn(unreachable_pub))]
+
 mod deformation;
 mod design;
 mod domain;

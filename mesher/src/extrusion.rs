@@ -16,7 +16,7 @@ pub(crate) struct Extrusion {
 
 impl Extrusion {
     /// Layers through z in [-t/2, t/2], offset by a height (mm) at every plane node.
-    pub fn new(
+    pub(crate) fn new(
         plane: &PlaneMesh,
         thickness: f64,
         layers: usize,
@@ -98,14 +98,14 @@ impl Levels {
     }
 
     /// The nodes above plane nodes, on all levels.
-    pub fn through(&self, plane: &[usize]) -> Vec<usize> {
+    pub(crate) fn through(&self, plane: &[usize]) -> Vec<usize> {
         let on_level = |ids: &Vec<Option<usize>>| plane.iter().filter_map(|n| ids[*n]).collect();
         let levels = self.ids.iter();
         levels.flat_map::<Vec<_>, _>(on_level).collect()
     }
 
     /// The nodes above all plane nodes on an even level, counted from the bottom.
-    pub fn level(&self, level: usize) -> Vec<usize> {
+    pub(crate) fn level(&self, level: usize) -> Vec<usize> {
         self.ids[level].iter().flatten().copied().collect()
     }
 }

@@ -23,6 +23,8 @@
 //! # Ok::<_, Box<dyn std::error::Error>>(())
 //! ```
 
+#![cfg_attr(not(test), warn(unreachable_pub))]
+
 mod element;
 mod extrusion;
 mod geo;

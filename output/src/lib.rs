@@ -21,6 +21,8 @@
 //! # Ok::<_, Box<dyn std::error::Error>>(())
 //! ```
 
+#![cfg_attr(not(test), warn(unreachable_pub))]
+
 pub mod cut_file;
 mod deployment_states;
 pub mod display;

@@ -26,7 +26,7 @@ pub(crate) struct Numbers {
 impl Numbers {
     /// The numbers of an array, of nested lists or a number. Integers and short floats are
     /// converted, as they are exact.
-    pub fn read(argument: &Argument, name: &'static str) -> PyResult<Self> {
+    pub(crate) fn read(argument: &Argument, name: &'static str) -> PyResult<Self> {
         let direct = argument.cast_exact::<PyArrayDyn<f64>>();
         let numbers = if let Some(array) = direct.ok().filter(|array| is_regular(array)) {
             copied(array, name)
@@ -43,7 +43,7 @@ impl Numbers {
     }
 
     /// One value for each element of a shape.
-    pub fn filled(self, shape: &[usize]) -> PyResult<Vec<f64>> {
+    pub(crate) fn filled(self, shape: &[usize]) -> PyResult<Vec<f64>> {
         if self.shape.is_empty() {
             return Ok(vec![self.values[0]; shape.iter().product()]);
         }
@@ -54,7 +54,7 @@ impl Numbers {
     }
 
     /// The error of an argument of another shape.
-    pub fn wrong_shape(&self, expected: &str) -> PyErr {
+    pub(crate) fn wrong_shape(&self, expected: &str) -> PyErr {
         let (name, found) = (self.name, tuple(&self.shape));
         PyValueError::new_err(format!("`{name}` has the shape {found}, expected {expected}"))
     }

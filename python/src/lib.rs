@@ -13,6 +13,8 @@
 //!
 //! Calls that evaluate hinges, solve or search release the GIL meanwhile.
 
+#![cfg_attr(not(test), warn(unreachable_pub))]
+
 mod arrays;
 mod deployment;
 mod errors;

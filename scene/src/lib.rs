@@ -16,6 +16,8 @@
 //! # Ok::<_, Box<dyn std::error::Error>>(())
 //! ```
 
+#![cfg_attr(not(test), warn(unreachable_pub))]
+
 mod actuation;
 mod boundary_values;
 mod checked_scene;

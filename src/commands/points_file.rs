@@ -47,7 +47,7 @@ impl Unit {
 impl PointsFile {
     /// Reads a file of points of a sheet with so many panels; lengths are in mm, or in the unit of
     /// the column `unit`.
-    pub fn read(path: &Path, panels: usize, y_down: bool) -> Result<Self> {
+    pub(super) fn read(path: &Path, panels: usize, y_down: bool) -> Result<Self> {
         let NamedTable { head, rows } =
             NamedTable::read(path).map_err(|error| anyhow!("cannot read {error}"))?;
         let located = |line: u64| format!("{}:{line}", path.display());
@@ -84,7 +84,7 @@ impl PointsFile {
     }
 
     /// Whether the scale of the points is known: the scale of pixels is not.
-    pub fn scale(&self) -> Scale {
+    pub(super) fn scale(&self) -> Scale {
         match self.unit {
             Unit::Px => Scale::Free,
             _ => Scale::Given,

@@ -67,7 +67,7 @@ struct OfferedMaterial {
 
 impl Catalogue {
     /// What the shipped files offer, in the working folder.
-    pub fn open() -> Result<Self> {
+    pub(crate) fn open() -> Result<Self> {
         let Machines { machine, service } = Machines::shipped();
         let mut materials = Vec::new();
         for weights in WEIGHTS.iter().map(Path::new).filter(|weights| weights.is_file()) {

@@ -32,7 +32,7 @@ pub(crate) struct Step<'a> {
 }
 
 impl<'a> Draft<'a> {
-    pub fn new(
+    pub(crate) fn new(
         scene: &'a Scene,
         problem: &DesignProblem,
         deployment: &Deployment,
@@ -52,7 +52,7 @@ pub(crate) struct Steps {
 }
 
 impl Steps {
-    pub fn step<'a>(
+    pub(crate) fn step<'a>(
         &mut self,
         scene: &'a Scene,
         problem: &DesignProblem,

@@ -92,7 +92,7 @@ struct Wanted {
 impl FullAnalysis {
     /// Starts the thread, which ends with the program. A page in a browser has none: there
     /// [`Self::compute`] computes at once.
-    pub fn start(listener: Listener) -> std::io::Result<Arc<Self>> {
+    pub(crate) fn start(listener: Listener) -> std::io::Result<Arc<Self>> {
         let analysis = Arc::new(Self { wanted: Mutex::default(), news: Condvar::new(), listener });
         if cfg!(target_family = "wasm") {
             return Ok(analysis);
@@ -110,7 +110,7 @@ impl FullAnalysis {
     }
 
     /// Computes a sheet next, and nothing else.
-    pub fn compute(&self, sheet: Resting) {
+    pub(crate) fn compute(&self, sheet: Resting) {
         self.stop();
         self.lock().sheet = Some(sheet);
         self.news.notify_one();
@@ -120,13 +120,13 @@ impl FullAnalysis {
     }
 
     /// The path of the last computation that was shown, once.
-    pub fn last_path(&self) -> Option<WarmStart> {
+    pub(crate) fn last_path(&self) -> Option<WarmStart> {
         self.lock().path.take()
     }
 
     /// Shows nothing of what is under way. Returns the path of the last computation that was shown,
     /// once.
-    pub fn stop(&self) -> Option<WarmStart> {
+    pub(crate) fn stop(&self) -> Option<WarmStart> {
         let mut wanted = self.lock();
         wanted.sheet = None;
         wanted.stop.store(true, Ordering::Relaxed);

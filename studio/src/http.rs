@@ -53,7 +53,7 @@ impl Read for Arriving<'_> {
 
 impl<'a> Request<'a> {
     /// Reads what precedes the body; `None` if no request arrives in time.
-    pub fn read(stream: &'a TcpStream) -> io::Result<Option<Self>> {
+    pub(crate) fn read(stream: &'a TcpStream) -> io::Result<Option<Self>> {
         stream.set_write_timeout(Some(PATIENCE))?;
         let deadline = Instant::now() + PATIENCE;
         let mut rest = Arriving { stream, deadline };
@@ -92,7 +92,7 @@ impl<'a> Request<'a> {
     }
 
     /// The body; an answer if it is too long or does not arrive.
-    pub fn body(self) -> Result<Vec<u8>, Answer> {
+    pub(crate) fn body(self) -> Result<Vec<u8>, Answer> {
         let Self { length, mut body, rest, .. } = self;
         if length > MOST_BYTES {
             let most = MOST_BYTES >> 20;
@@ -110,12 +110,12 @@ impl<'a> Request<'a> {
 
 impl Answer {
     /// A text.
-    pub fn refusal(status: u16, message: &str) -> Self {
+    pub(crate) fn refusal(status: u16, message: &str) -> Self {
         let kind = "text/plain; charset=utf-8";
         Self { status, kind, body: message.into() }
     }
 
-    pub fn send(self, mut page: &TcpStream) -> io::Result<()> {
+    pub(crate) fn send(self, mut page: &TcpStream) -> io::Result<()> {
         let Self { status, kind, body } = self;
         let length = body.len();
         let head = format!(

@@ -5,6 +5,8 @@
 //! engine and the pages; `browser` carries them inside a page, without a server. Everything that a
 //! page shows is a scene on disk ([`project`]) that `kirigami design` repeats.
 
+#![cfg_attr(not(test), warn(unreachable_pub))]
+
 #[cfg(target_family = "wasm")]
 mod browser;
 mod catalogue;

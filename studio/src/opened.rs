@@ -43,31 +43,31 @@ pub(crate) struct Run {
 impl Opened {
     /// The last equilibrium, if a scene's may be near it: of the same sheet with the same
     /// supports.
-    pub fn known_near(&self, scene: &Scene) -> Option<&WarmStart> {
+    pub(crate) fn known_near(&self, scene: &Scene) -> Option<&WarmStart> {
         let held = |scene: &Scene| (scene.config.sheet, scene.config.supports.clone());
         self.known.as_ref().filter(|_| held(scene) == held(&self.scene))
     }
 
     /// The scene with a run folder of its own.
-    pub fn scene_of_run(&self) -> Result<Scene> {
+    pub(crate) fn scene_of_run(&self) -> Result<Scene> {
         let config = SceneConfig { output: self.project.next_run(), ..self.scene.config.clone() };
         Ok(self.scene.changed(config)?)
     }
 
     /// The run whose best design is shown.
-    pub fn run(&self) -> Option<&Run> {
+    pub(crate) fn run(&self) -> Option<&Run> {
         let mut runs = self.runs.iter();
         runs.find(|run| run.adopted == self.scene.config)
     }
 
-    pub fn run_mut(&mut self) -> Option<&mut Run> {
+    pub(crate) fn run_mut(&mut self) -> Option<&mut Run> {
         let mut runs = self.runs.iter_mut();
         runs.find(|run| run.adopted == self.scene.config)
     }
 }
 
 impl Run {
-    pub fn new(scene: Scene, adopted: SceneConfig, ended: Ended) -> Self {
+    pub(crate) fn new(scene: Scene, adopted: SceneConfig, ended: Ended) -> Self {
         Self { scene, adopted, ended, verdicts: BTreeMap::new() }
     }
 }

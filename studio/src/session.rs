@@ -51,7 +51,7 @@ pub(crate) struct Session {
 }
 
 impl Session {
-    pub fn new(
+    pub(crate) fn new(
         projects: PathBuf,
         analysis: Arc<FullAnalysis>,
         stop_search: Arc<AtomicBool>,
@@ -61,12 +61,12 @@ impl Session {
         Self { projects, analysis, stop_search, listener, files, sheet: None, at_rest: true }
     }
 
-    pub fn is_at_rest(&self) -> bool {
+    pub(crate) fn is_at_rest(&self) -> bool {
         self.at_rest
     }
 
     /// Shows another sheet.
-    pub fn open(&mut self, project: Project, scene: Scene) {
+    pub(crate) fn open(&mut self, project: Project, scene: Scene) {
         self.analysis.stop();
         let run = project.run_of(&scene);
         let run = run.map(|(of, ended)| Run::new(of, scene.config.clone(), ended));
@@ -88,7 +88,7 @@ impl Session {
     }
 
     /// Does what comes next, and says why it cannot.
-    pub fn go(&mut self, next: Next) {
+    pub(crate) fn go(&mut self, next: Next) {
         let done = caught_panic::catch(|| match next {
             Next::Request(request) => self.answer(request),
             Next::Rest => self.rest(),

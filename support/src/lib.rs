@@ -13,6 +13,8 @@
 //! assert_eq!(page, "| hinge | error of W |\n|---|---|\n| 18 mm | 1.2 % |\n");
 //! ```
 
+#![cfg_attr(not(test), warn(unreachable_pub))]
+
 /// Appends a formatted line to a string.
 #[macro_export]
 macro_rules! add_line {

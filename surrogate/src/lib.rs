@@ -33,6 +33,8 @@
 //! # Ok::<_, surrogate::WeightsError>(())
 //! ```
 
+#![cfg_attr(not(test), warn(unreachable_pub))]
+
 mod card;
 mod damage;
 mod energy;

@@ -31,7 +31,7 @@ pub(super) struct ColdDrawing {
 impl ColdDrawing {
     /// From the end of the measured curve to the natural draw ratio `ratio` under the nominal
     /// stress `plateau` (MPa). `None` if the ratio is not beyond the upper yield.
-    pub fn new(from: [f64; 2], plateau: f64, ratio: f64, young: f64) -> Option<Self> {
+    pub(crate) fn new(from: [f64; 2], plateau: f64, ratio: f64, young: f64) -> Option<Self> {
         let [sigma, plastic] = from;
         let stress = ratio * plateau;
         let to = [stress, ratio.ln() - stress / young];
@@ -44,12 +44,12 @@ impl ColdDrawing {
 
     /// The true stress (MPa) at the upper yield: that measured, or less if the plateau is too low
     /// for it.
-    pub fn yields_at(&self) -> f64 {
+    pub(crate) fn yields_at(&self) -> f64 {
         self.from[0].min(self.mean).min(self.to[0])
     }
 
     /// `count` points up to the natural draw ratio, at which the measured curve continues.
-    pub fn points(&self, count: usize) -> Vec<[f64; 2]> {
+    pub(crate) fn points(&self, count: usize) -> Vec<[f64; 2]> {
         let [sigma, plastic] = [self.yields_at(), self.from[1]];
         let rise = self.to[0] - sigma;
         // A cut yield stress is constant up to the natural draw ratio.

@@ -29,6 +29,8 @@
 //! # Ok::<_, Box<dyn std::error::Error>>(())
 //! ```
 
+#![cfg_attr(not(test), warn(unreachable_pub))]
+
 mod cleaning;
 mod cold_drawing;
 mod fit;

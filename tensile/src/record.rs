@@ -92,7 +92,7 @@ pub struct ReadColumn {
 
 impl Record {
     /// The records of a file, one a specimen; options that name columns read one specimen.
-    pub fn read_all(path: &Path, options: &RecordOptions) -> Result<Vec<Self>, Fault> {
+    pub(crate) fn read_all(path: &Path, options: &RecordOptions) -> Result<Vec<Self>, Fault> {
         let (tables, hash) = NumberTable::read_all(path)?;
         let beside = |table: NumberTable| match table.side_by_side() {
             Some(tables) if options.columns.is_empty() => tables,

@@ -33,7 +33,7 @@ pub(crate) struct Initial {
 impl Initial {
     /// The pretrained weights for the windows of a database, fitted to the training rows, which
     /// include their mirror images.
-    pub fn new(
+    pub(crate) fn new(
         pretrained: &Surrogate,
         rows: &[Row],
         manifest: &Manifest,

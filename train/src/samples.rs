@@ -70,7 +70,7 @@ impl Scales {
     ///
     /// `hole` is the hole of the hinges that the networks see, over w_lig, and `names` are their
     /// features. The rows include their mirror images.
-    pub fn new(rows: &[Row], hole: f64, names: &[&'static str]) -> Result<Self, TrainError> {
+    pub(crate) fn new(rows: &[Row], hole: f64, names: &[&'static str]) -> Result<Self, TrainError> {
         let count = rows.len() as f64;
         let root_mean_square = |target: &'static str, value: fn(&Row) -> f64| {
             let scale = statistics::root_mean_square(rows.iter().map(value));
@@ -135,7 +135,7 @@ impl Scales {
     }
 
     /// The scales of trained weights; the scales of the forces are computed from the rows.
-    pub fn from_card(card: &Card, rows: &[Row]) -> Result<Self, TrainError> {
+    pub(crate) fn from_card(card: &Card, rows: &[Row]) -> Result<Self, TrainError> {
         Ok(Self {
             standardisation: card.standardisation.clone(),
             energy: card.energy_scale,
@@ -146,12 +146,12 @@ impl Scales {
     }
 
     /// Number of features that the networks see.
-    pub fn features(&self) -> usize {
+    pub(crate) fn features(&self) -> usize {
         self.standardisation.mean.len()
     }
 
     /// One state in these scales.
-    pub fn sample(&self, design: &HingeDesign, sample: &HingeSample) -> Sample {
+    pub(crate) fn sample(&self, design: &HingeDesign, sample: &HingeSample) -> Sample {
         let Standardisation { mean, std } = &self.standardisation;
         let standardise = |xi: [f64; FEATURES]| -> [f64; FEATURES] {
             std::array::from_fn(|k| mean.get(k).map_or(0.0, |mean| (xi[k] - mean) / std[k]))
@@ -212,7 +212,11 @@ fn d_peak(row: &Row) -> f64 {
 
 impl Batch {
     /// The samples with the first `features` of their inputs.
-    pub fn new(samples: &[Sample], features: usize, options: &TensorCreationOptions) -> Self {
+    pub(crate) fn new(
+        samples: &[Sample],
+        features: usize,
+        options: &TensorCreationOptions,
+    ) -> Self {
         let seen = |of: fn(&Sample) -> [f64; FEATURES]| columns(samples, options, of);
         let undeformed = seen(|sample| sample.origin).narrow(1, 0, features);
         let deformed = seen(|sample| sample.inputs).narrow(1, 0, features);
@@ -227,7 +231,7 @@ impl Batch {
     }
 
     /// Inputs of the deformed states, (n, features).
-    pub fn deformed(&self) -> Tensor<2> {
+    pub(crate) fn deformed(&self) -> Tensor<2> {
         self.states.clone().narrow(0, 1, 1).squeeze_dim(0)
     }
 }

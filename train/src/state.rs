@@ -31,7 +31,7 @@ pub(crate) struct Progress {
 }
 
 impl Progress {
-    pub fn new(card: &Card, history: &[Epoch]) -> Self {
+    pub(crate) fn new(card: &Card, history: &[Epoch]) -> Self {
         Self { format_version: FORMAT_VERSION, card: card.clone(), history: history.to_vec() }
     }
 }
@@ -90,7 +90,7 @@ pub(crate) fn write(
 }
 
 impl State {
-    pub fn read(path: &Path) -> Result<Self, TrainError> {
+    pub(crate) fn read(path: &Path) -> Result<Self, TrainError> {
         let malformed = malformed(path);
         let bytes = support::regular_file::read(path).map_err(unread(path))?;
         let (hash, body) = bytes
@@ -121,7 +121,7 @@ impl State {
 
     /// An error if the state has a different configuration, database, split or distillation, or
     /// different initial weights.
-    pub fn check(&self, card: &Card) -> Result<(), TrainError> {
+    pub(crate) fn check(&self, card: &Card) -> Result<(), TrainError> {
         let saved = &self.progress.card;
         for (what, same) in [
             ("configuration", saved.training == card.training),
@@ -143,7 +143,7 @@ impl State {
 
     /// The current networks, the networks of the best epoch, and the optimiser. The arguments must
     /// have the same sizes.
-    pub fn restore(
+    pub(crate) fn restore(
         self,
         networks: &Networks,
         optimiser: ModuleOptimizer,

@@ -43,6 +43,8 @@
 //! # Ok::<_, Box<dyn std::error::Error>>(())
 //! ```
 
+#![cfg_attr(not(test), warn(unreachable_pub))]
+
 mod balanced_sheet;
 mod compared_states;
 mod distillation_states;

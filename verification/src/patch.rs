@@ -17,7 +17,7 @@ pub(crate) struct SheetPart {
 
 impl SheetPart {
     /// All of a sheet.
-    pub fn whole(sheet: &Sheet) -> Self {
+    pub(crate) fn whole(sheet: &Sheet) -> Self {
         Self {
             panels: (0..sheet.panels.len()).collect(),
             hinges: (0..sheet.hinges.len()).collect(),
@@ -25,7 +25,10 @@ impl SheetPart {
     }
 
     /// The panel [column, row] with those around it, and all their hinges.
-    pub fn around(sheet: &Sheet, [column, row]: [usize; 2]) -> Result<Self, VerificationError> {
+    pub(crate) fn around(
+        sheet: &Sheet,
+        [column, row]: [usize; 2],
+    ) -> Result<Self, VerificationError> {
         let Grid { m, n } = sheet.grid;
         if column >= m || row >= n {
             return Err(refused(format!(
@@ -44,7 +47,7 @@ impl SheetPart {
     }
 
     /// This part of the whole sheet `whole`; the panels around it move as in the deployment.
-    pub fn of(
+    pub(crate) fn of(
         &self,
         whole: SheetProblem,
         deployment: &Deployment,

@@ -39,7 +39,10 @@ pub(crate) fn no_posture() -> VerificationError {
 }
 
 /// The scene with another support of its panels, as its model must know it.
-pub fn with_support(scene: &Scene, support: Option<Posture>) -> Result<Scene, VerificationError> {
+pub(crate) fn with_support(
+    scene: &Scene,
+    support: Option<Posture>,
+) -> Result<Scene, VerificationError> {
     let mut scene = scene.clone();
     match (support, &mut scene.config.posture) {
         (None, None) => return Err(no_posture()),
@@ -61,7 +64,7 @@ pub fn with_support(scene: &Scene, support: Option<Posture>) -> Result<Scene, Ve
 
 /// A sheet of a scene as a finite-element problem, kept in its plane by `support`, with
 /// `contact` of the flanks of its cuts or without.
-pub fn sheet_problem(
+pub(crate) fn sheet_problem(
     scene: &Scene,
     sheet: &Sheet,
     support: Posture,

@@ -80,7 +80,7 @@ pub(crate) struct Follower<'a> {
 impl<'a> Follower<'a> {
     /// The beginning of the path, an equilibrium at the load parameter 0; `None` if its energy is
     /// not finite. A start that is not stable is left.
-    pub fn new(
+    pub(crate) fn new(
         solver: &'a EquilibriumSolver,
         sheet: HingedSheet<'a>,
         stage: PathStage,
@@ -137,7 +137,7 @@ impl<'a> Follower<'a> {
 
     /// One increment, or a jump from the end of the branch to another; the failure where the path
     /// ends.
-    pub fn advance(&mut self) -> Result<(), Failure> {
+    pub(crate) fn advance(&mut self) -> Result<(), Failure> {
         match self.increment() {
             Some(()) => Ok(()),
             None => self.skip_ahead(),
@@ -333,7 +333,7 @@ impl<'a> Follower<'a> {
     }
 
     /// Begins a branch at the last point.
-    pub fn begin(&mut self) {
+    pub(crate) fn begin(&mut self) {
         (self.arc, self.stretch) = (None, 1.0);
         (self.length, self.unstable) = (FIRST, None);
     }
@@ -370,7 +370,7 @@ impl Branch<'_> {
     }
 
     /// The stable equilibrium that is reached downhill from a position at constant load.
-    pub fn settled(&mut self, start: PathPoint) -> Result<Corrected, Failure> {
+    pub(crate) fn settled(&mut self, start: PathPoint) -> Result<Corrected, Failure> {
         let Minimum { state, factor, .. } = self.minimum(&start)?;
         match factor.filter(HeldFactor::is_stable) {
             Some(factor) => Ok(self.exact(start.at, state, factor)),
@@ -395,7 +395,7 @@ impl Branch<'_> {
 
     /// The stable equilibrium near a predicted position, at its load, or else the minimum that is
     /// reached downhill from it.
-    pub fn stable_near(&mut self, start: &PathPoint) -> Result<Minimum, Failure> {
+    pub(crate) fn stable_near(&mut self, start: &PathPoint) -> Result<Minimum, Failure> {
         match self.balanced(start.clone()).filter(Minimum::is_stable) {
             Some(found) => Ok(found),
             None => self.minimum(start),
@@ -403,7 +403,7 @@ impl Branch<'_> {
     }
 
     /// The minimum of the potential that is reached downhill from a position at constant load.
-    pub fn minimum(&mut self, start: &PathPoint) -> Result<Minimum, Failure> {
+    pub(crate) fn minimum(&mut self, start: &PathPoint) -> Result<Minimum, Failure> {
         let potential = self.potential(start.at);
         let configuration = start.configuration.clone();
         potential.minimise(configuration, &mut self.effort)
@@ -411,7 +411,7 @@ impl Branch<'_> {
 
     /// The maximum rotation or hinge translation between two positions, in the frames of a state
     /// near them.
-    pub fn distance(&self, near: &PotentialState, to: &PathPoint, from: &PathPoint) -> f64 {
+    pub(crate) fn distance(&self, near: &PotentialState, to: &PathPoint, from: &PathPoint) -> f64 {
         let motion = moved(&to.configuration, &from.configuration, -1.0);
         self.potential(from.at).length(near, &motion)
     }

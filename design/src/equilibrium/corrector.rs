@@ -95,7 +95,7 @@ pub(crate) struct Point {
 
 impl Point {
     /// A position without a known rate: from there the path goes on by its load parameter.
-    pub fn still(position: PathPoint) -> Self {
+    pub(crate) fn still(position: PathPoint) -> Self {
         let rate = PathPoint {
             at: 1.0,
             configuration: vec![[0.0; 3]; position.configuration.len()],
@@ -104,13 +104,17 @@ impl Point {
         Self { position, rate, turning: 0.0, factor: None }
     }
 
-    pub fn is_still(&self) -> bool {
+    pub(crate) fn is_still(&self) -> bool {
         self.rate.configuration.as_flattened().iter().all(|rate| *rate == 0.0)
     }
 }
 
 impl<'a> Branch<'a> {
-    pub fn new(solver: &'a EquilibriumSolver, sheet: HingedSheet<'a>, stage: PathStage) -> Self {
+    pub(crate) fn new(
+        solver: &'a EquilibriumSolver,
+        sheet: HingedSheet<'a>,
+        stage: PathStage,
+    ) -> Self {
         let area: f64 = sheet.sheet.panels.iter().map(|panel| panel.area).sum();
         let mut branch = Self {
             solver,
@@ -129,7 +133,7 @@ impl<'a> Branch<'a> {
     }
 
     /// The potential at a point of the path.
-    pub fn potential(&self, at: f64) -> Potential<'a> {
+    pub(crate) fn potential(&self, at: f64) -> Potential<'a> {
         Potential {
             solver: self.solver,
             stage: self.stage,
@@ -142,7 +146,7 @@ impl<'a> Branch<'a> {
 
     /// Moves supports and stroke of a position to their values at its load parameter; their values
     /// in `known` must be right.
-    pub fn hold(&self, position: &mut PathPoint, known: &PathPoint) {
+    pub(crate) fn hold(&self, position: &mut PathPoint, known: &PathPoint) {
         let ahead = match self.stage {
             PathStage::Weight => 0.0,
             PathStage::Actuation => position.at - known.at,
@@ -165,7 +169,7 @@ impl<'a> Branch<'a> {
     /// The equilibrium near a predicted position: in the plane normal to the rate `normal`, or at
     /// the load of the position. Otherwise the error of the prediction if that is larger than
     /// `limit`, infinite if the corrections do not converge.
-    pub fn close(
+    pub(crate) fn close(
         &mut self,
         mut position: PathPoint,
         normal: Option<&PathPoint>,
@@ -220,7 +224,7 @@ impl<'a> Branch<'a> {
 
     /// The equilibrium near a predicted position, at its load, with a residual within the
     /// tolerance.
-    pub fn balanced(&mut self, mut position: PathPoint) -> Option<Minimum> {
+    pub(crate) fn balanced(&mut self, mut position: PathPoint) -> Option<Minimum> {
         let tolerance = self.solver.settings.tolerance;
         let mut before = f64::INFINITY;
         for _ in 0..CORRECTIONS {
@@ -280,7 +284,7 @@ impl<'a> Branch<'a> {
     }
 
     /// The state at a position; `None` if its energy is not finite.
-    pub fn state(&self, position: &PathPoint, order: Order) -> Option<PotentialState> {
+    pub(crate) fn state(&self, position: &PathPoint, order: Order) -> Option<PotentialState> {
         let configuration = position.configuration.clone();
         self.potential(position.at).state_up_to(configuration, order)
     }
@@ -292,7 +296,7 @@ impl<'a> Branch<'a> {
     }
 
     /// The tangent of a state and its factors.
-    pub fn factor(
+    pub(crate) fn factor(
         &mut self,
         potential: &Potential,
         state: &PotentialState,
@@ -331,14 +335,14 @@ impl<'a> Branch<'a> {
     }
 
     /// The correction d_0 of a state at constant load.
-    pub fn direct(&self, state: &PotentialState, factor: &HeldFactor) -> Vec<[f64; 3]> {
+    pub(crate) fn direct(&self, state: &PotentialState, factor: &HeldFactor) -> Vec<[f64; 3]> {
         let downhill: Vec<f64> = state.gradient.iter().map(|g| -g).collect();
         let pattern = &self.solver.pattern;
         pattern.spread(&factor.solve(pattern, &downhill))
     }
 
     /// The correction in the plane normal to the path, and the correction of the load parameter.
-    pub fn in_plane(
+    pub(crate) fn in_plane(
         &self,
         direct: &[[f64; 3]],
         rate: &[[f64; 3]],
@@ -350,7 +354,7 @@ impl<'a> Branch<'a> {
     }
 
     /// The product of two motions; lengths are divided by the size of a panel.
-    pub fn product(&self, a: &[[f64; 3]], b: &[[f64; 3]]) -> f64 {
+    pub(crate) fn product(&self, a: &[[f64; 3]], b: &[[f64; 3]]) -> f64 {
         let scale = 1.0 / (self.panel_size * self.panel_size);
         std::iter::zip(a, b)
             .map(|([ax, ay, phi], [bx, by, psi])| scale * (ax * bx + ay * by) + phi * psi)
@@ -358,7 +362,7 @@ impl<'a> Branch<'a> {
     }
 
     /// The point of the branch at a corrected position, seen along the rate `before`.
-    pub fn point(&self, corrected: Corrected, before: Option<&PathPoint>) -> Point {
+    pub(crate) fn point(&self, corrected: Corrected, before: Option<&PathPoint>) -> Point {
         let Corrected { position, state, factor, rate, .. } = corrected;
         let potential = self.potential(position.at);
         let rate = self.refined_rate(&potential, &state, &factor, rate);
@@ -407,7 +411,7 @@ impl<'a> Branch<'a> {
     }
 
     /// The rate of the configuration with the load parameter.
-    pub fn rate(
+    pub(crate) fn rate(
         &self,
         potential: &Potential,
         state: &PotentialState,

@@ -304,7 +304,7 @@ impl Follower<'_> {
 
 impl Branch<'_> {
     /// The load step at a minimum, `jumps` jumps after the last.
-    pub fn load_step(&mut self, minimum: Minimum, jumps: usize) -> LoadStep {
+    pub(crate) fn load_step(&mut self, minimum: Minimum, jumps: usize) -> LoadStep {
         let status = self.status(&minimum, jumps > 0);
         let tangent = StepTangent { values: minimum.tangent, factor: minimum.factor };
         self.force = minimum.state.force;
@@ -353,7 +353,7 @@ impl Branch<'_> {
     }
 
     /// The maximum rotation or hinge translation from a position to a minimum.
-    pub fn moved(&self, minimum: &Minimum, start: &PathPoint) -> f64 {
+    pub(crate) fn moved(&self, minimum: &Minimum, start: &PathPoint) -> f64 {
         let motion = moved(&minimum.state.configuration, &start.configuration, -1.0);
         let potential = self.potential(start.at);
         potential.length(&minimum.state, &motion)

@@ -46,7 +46,7 @@ pub(crate) struct Minimum {
 }
 
 impl Minimum {
-    pub fn is_stable(&self) -> bool {
+    pub(crate) fn is_stable(&self) -> bool {
         self.factor.as_ref().is_some_and(HeldFactor::is_stable)
     }
 }
@@ -59,14 +59,19 @@ pub(crate) struct Failure {
 }
 
 impl Failure {
-    pub const EXHAUSTED: Self = Self { residual: f64::INFINITY, end: DescentEnd::Increments };
-    pub const STOPPED: Self = Self { residual: f64::INFINITY, end: DescentEnd::Stopped };
+    pub(crate) const EXHAUSTED: Self =
+        Self { residual: f64::INFINITY, end: DescentEnd::Increments };
+    pub(crate) const STOPPED: Self = Self { residual: f64::INFINITY, end: DescentEnd::Stopped };
     const NOT_FINITE: Self = Self { residual: f64::INFINITY, end: DescentEnd::NotFinite };
 }
 
 impl Potential<'_> {
     /// A minimum near `start`, at lower energy.
-    pub fn minimise(&self, start: Configuration, effort: &mut Effort) -> Result<Minimum, Failure> {
+    pub(crate) fn minimise(
+        &self,
+        start: Configuration,
+        effort: &mut Effort,
+    ) -> Result<Minimum, Failure> {
         let settings = &self.solver.settings;
         let mut state = self.state(start).ok_or(Failure::NOT_FINITE)?;
         let (mut scale, mut memory) = (None, Vec::new());
@@ -163,7 +168,7 @@ impl Potential<'_> {
 
     /// The factors of the tangent, stored in `memory` of earlier factors, with the border under
     /// displacement control.
-    pub fn factorise(&self, tangent: &[f64], memory: Vec<f64>) -> Option<HeldFactor> {
+    pub(crate) fn factorise(&self, tangent: &[f64], memory: Vec<f64>) -> Option<HeldFactor> {
         let factor = self.solver.pattern.factorise(tangent, memory)?;
         HeldFactor::new(&self.solver.pattern, factor, self.solver.stroke())
     }

@@ -13,7 +13,7 @@ pub(crate) struct PanelForce {
 
 impl PanelForce {
     /// The resistance of the stiffness to a motion.
-    pub fn resistance(&self, motion: &[f64; 3]) -> [f64; 3] {
+    pub(crate) fn resistance(&self, motion: &[f64; 3]) -> [f64; 3] {
         self.stiffness.map(|row| row[0] * motion[0] + row[1] * motion[1] + row[2] * motion[2])
     }
 }

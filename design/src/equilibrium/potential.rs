@@ -87,17 +87,17 @@ pub(crate) struct PotentialState {
 
 impl PotentialState {
     /// Whether the residual is within the tolerance or the rounding error.
-    pub fn is_balanced(&self, tolerance: f64) -> bool {
+    pub(crate) fn is_balanced(&self, tolerance: f64) -> bool {
         self.residual <= tolerance.max(self.rounding)
     }
 
     /// (F_a, F_s, M_theta) per hinge.
-    pub fn forces(&self) -> Vec<[f64; 3]> {
+    pub(crate) fn forces(&self) -> Vec<[f64; 3]> {
         self.energies.iter().map(|energy| energy.forces).collect()
     }
 
     /// The state with the stiffness of the hinges in a state near it.
-    pub fn with_stiffness_of(mut self, near: &Self) -> Self {
+    pub(crate) fn with_stiffness_of(mut self, near: &Self) -> Self {
         for (energy, near) in std::iter::zip(&mut self.energies, &near.energies) {
             energy.tangent = near.tangent;
         }
@@ -110,19 +110,19 @@ impl PotentialState {
         expected.map_or(self.energies[hinge].forces, |expected| expected[hinge])
     }
 
-    pub fn deformations(&self) -> Vec<HingeDeformation> {
+    pub(crate) fn deformations(&self) -> Vec<HingeDeformation> {
         self.motions.iter().map(HingeMotion::deformation).collect()
     }
 }
 
 impl Potential<'_> {
     /// The state with all that the tangent needs; `None` if the potential is not finite.
-    pub fn state(&self, configuration: Configuration) -> Option<PotentialState> {
+    pub(crate) fn state(&self, configuration: Configuration) -> Option<PotentialState> {
         self.state_up_to(configuration, Order::Tangent)
     }
 
     /// The state with the derivatives of the hinge energies up to `order`, at least the forces.
-    pub fn state_up_to(
+    pub(crate) fn state_up_to(
         &self,
         configuration: Configuration,
         order: Order,
@@ -217,14 +217,14 @@ impl Potential<'_> {
     }
 
     /// Maximum of forces and moments, as a force (N).
-    pub fn largest(&self, forces: impl Iterator<Item = [f64; 3]>) -> f64 {
+    pub(crate) fn largest(&self, forces: impl Iterator<Item = [f64; 3]>) -> f64 {
         forces
             .map(|[x, y, moment]| (x * x + y * y).sqrt().max(moment.abs() / self.panel_size))
             .fold(0.0, f64::max)
     }
 
     /// H of (20); away from an equilibrium with the predicted hinge forces.
-    pub fn tangent(&self, state: &PotentialState) -> Vec<f64> {
+    pub(crate) fn tangent(&self, state: &PotentialState) -> Vec<f64> {
         // A panel belongs to the block of the first of its hinges.
         let mut on_panels = self.on_panels(&state.configuration);
         let mut take = |panel: usize| on_panels.get_mut(panel).map(std::mem::take);
@@ -268,7 +268,7 @@ impl Potential<'_> {
 
     /// The forces on the panels (F_x, F_y, M) that grow with the load parameter in a state, by
     /// their rates.
-    pub fn driving(&self, state: &PotentialState) -> Vec<[f64; 3]> {
+    pub(crate) fn driving(&self, state: &PotentialState) -> Vec<[f64; 3]> {
         let solver = self.solver;
         match (self.stage, &solver.drive) {
             (PathStage::Weight, _) => {
@@ -282,7 +282,7 @@ impl Potential<'_> {
     }
 
     /// The rates of the hinge forces under a motion of all panels.
-    pub fn force_rates(&self, state: &PotentialState, motion: &[[f64; 3]]) -> Vec<[f64; 3]> {
+    pub(crate) fn force_rates(&self, state: &PotentialState, motion: &[[f64; 3]]) -> Vec<[f64; 3]> {
         let hinges = state.motions.iter().zip(&state.energies);
         std::iter::zip(&self.sheet.sheet.hinges, hinges)
             .map(|(hinge, (hinge_motion, energy))| {
@@ -293,7 +293,7 @@ impl Potential<'_> {
     }
 
     /// H times a motion of all panels, including the supported ones.
-    pub fn resistance(&self, state: &PotentialState, motion: &[[f64; 3]]) -> Vec<[f64; 3]> {
+    pub(crate) fn resistance(&self, state: &PotentialState, motion: &[[f64; 3]]) -> Vec<[f64; 3]> {
         let mut forces = vec![[0.0; 3]; motion.len()];
         for (h, hinge) in self.sheet.sheet.hinges.iter().enumerate() {
             let (hinge_motion, energy) = (&state.motions[h], &state.energies[h]);
@@ -311,7 +311,7 @@ impl Potential<'_> {
         forces
     }
 
-    pub fn moved(
+    pub(crate) fn moved(
         &self,
         state: &PotentialState,
         motion: &[[f64; 3]],
@@ -321,7 +321,7 @@ impl Potential<'_> {
     }
 
     /// Maximum panel rotation (rad) or hinge translation (panel sizes) of a motion.
-    pub fn length(&self, state: &PotentialState, motion: &[[f64; 3]]) -> f64 {
+    pub(crate) fn length(&self, state: &PotentialState, motion: &[[f64; 3]]) -> f64 {
         std::iter::zip(&self.sheet.sheet.hinges, &state.motions)
             .map(|(hinge, hinge_motion)| {
                 let motions = at_hinge(hinge, motion);

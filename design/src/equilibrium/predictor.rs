@@ -19,7 +19,7 @@ pub(crate) struct PathPoint {
 
 impl PathPoint {
     /// A linear combination of positions.
-    pub fn sum<const N: usize>(terms: [(f64, &Self); N]) -> Self {
+    pub(crate) fn sum<const N: usize>(terms: [(f64, &Self); N]) -> Self {
         let combined = |part: fn(&Self) -> &[[f64; 3]]| {
             let mut sum = vec![[0.0; 3]; part(terms[0].1).len()];
             for (weight, position) in terms {
@@ -57,19 +57,19 @@ impl PathArc {
         ]
     }
 
-    pub fn position(&self, length: f64) -> PathPoint {
+    pub(crate) fn position(&self, length: f64) -> PathPoint {
         let [a, b, c, d] = self.weights(length);
         PathPoint::sum([(a, &self.from), (b, &self.from_rate), (c, &self.to), (d, &self.to_rate)])
     }
 
     /// The load parameter at a length.
-    pub fn at(&self, length: f64) -> f64 {
+    pub(crate) fn at(&self, length: f64) -> f64 {
         let [a, b, c, d] = self.weights(length);
         a * self.from.at + b * self.from_rate.at + c * self.to.at + d * self.to_rate.at
     }
 
     /// The rate of the load parameter at a length.
-    pub fn slope(&self, length: f64) -> f64 {
+    pub(crate) fn slope(&self, length: f64) -> f64 {
         let u = length / self.length;
         let chord = (self.to.at - self.from.at) / self.length;
         6.0 * u * (1.0 - u) * chord
@@ -78,7 +78,7 @@ impl PathArc {
     }
 
     /// The position with a given load parameter between the load parameters of the two points.
-    pub fn at_load(&self, at: f64) -> PathPoint {
+    pub(crate) fn at_load(&self, at: f64) -> PathPoint {
         let length = bisected(0.0, self.length, |length| self.at(length) < at);
         let position = self.position(length);
         PathPoint { at, ..position }

@@ -58,7 +58,7 @@ pub(crate) fn elimination_ranks(matrix: &SymbolicSparseColMat<usize>) -> Vec<usi
 
 impl SparseLdl {
     /// The factorisation in the order of the columns.
-    pub fn new(matrix: SymbolicSparseColMat<usize>) -> Self {
+    pub(crate) fn new(matrix: SymbolicSparseColMat<usize>) -> Self {
         // faer without a given ordering analyses the upper triangle, whichever side is passed.
         let upper = matrix.transpose().to_col_major();
         let cholesky = factorize_symbolic_cholesky(
@@ -84,7 +84,7 @@ impl SparseLdl {
     }
 
     /// Where the columns of the matrix start, and the row of each entry.
-    pub fn entries(&self) -> (&[usize], &[usize]) {
+    pub(crate) fn entries(&self) -> (&[usize], &[usize]) {
         (self.matrix.col_ptr(), self.matrix.row_idx())
     }
 
@@ -105,7 +105,7 @@ impl SparseLdl {
 
     /// LDL^T of the matrix with the entries `values`, stored in `factor`; `None` if a pivot
     /// vanishes.
-    pub fn factorise(&self, values: &[f64], factor: &mut Vec<f64>) -> Option<()> {
+    pub(crate) fn factorise(&self, values: &[f64], factor: &mut Vec<f64>) -> Option<()> {
         factor.resize(self.factor_entries(), 0.0);
         let matrix = SparseColMatRef::new(self.matrix.as_ref(), values);
         let result = self.with_scratch(|stack| {
@@ -123,7 +123,7 @@ impl SparseLdl {
     }
 
     /// D, in the order of elimination.
-    pub fn pivots(&self, factor: &[f64]) -> Vec<f64> {
+    pub(crate) fn pivots(&self, factor: &[f64]) -> Vec<f64> {
         match self.cholesky.raw() {
             SymbolicCholeskyRaw::Simplicial(symbolic) => {
                 let starts = &symbolic.col_ptr()[..symbolic.ncols()];
@@ -140,7 +140,7 @@ impl SparseLdl {
     }
 
     /// Solves with the factor, in place.
-    pub fn solve(&self, factor: &[f64], x: &mut [f64]) {
+    pub(crate) fn solve(&self, factor: &[f64], x: &mut [f64]) {
         let rows = x.len();
         self.with_scratch(|stack| {
             LdltRef::new(&self.cholesky, factor).solve_in_place_with_conj(

@@ -31,7 +31,7 @@ pub(crate) struct DeckRun {
 
 impl DeckRun {
     /// Writes the deck `folder/<job>.inp` and runs it.
-    pub fn new(
+    pub(crate) fn new(
         ccx: &Ccx,
         deck: &str,
         folder: &Path,
@@ -62,7 +62,7 @@ impl DeckRun {
 
     /// The solution of the printed increments, whose layout and samples are given: without samples
     /// if the output is damaged, or does not have the converged increments of the .sta file.
-    pub fn solution<F: Printed, P: SolvedPath>(
+    pub(crate) fn solution<F: Printed, P: SolvedPath>(
         self,
         layout: &F::Layout,
         samples: impl FnOnce(&[F]) -> P,

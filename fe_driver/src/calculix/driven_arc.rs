@@ -27,7 +27,7 @@ pub(crate) struct DrivenArc<'a> {
 
 impl DrivenArc<'_> {
     /// The two constraint equations of every node of the arc.
-    pub fn write_equations(&self, d: &mut String, positions: &[[f64; 3]]) {
+    pub(crate) fn write_equations(&self, d: &mut String, positions: &[[f64; 3]]) {
         let [turner, mover] = self.drivers;
         add_line!(d, "*EQUATION");
         for index in self.nodes {
@@ -44,7 +44,7 @@ impl DrivenArc<'_> {
     }
 
     /// The motion at given lambdas, in a step of the given duration.
-    pub fn write_amplitudes(
+    pub(crate) fn write_amplitudes(
         &self,
         d: &mut String,
         lambdas: &[f64],
@@ -59,7 +59,7 @@ impl DrivenArc<'_> {
     }
 
     /// The boundary conditions of the control nodes in the plane.
-    pub fn write_boundary(&self, d: &mut String) {
+    pub(crate) fn write_boundary(&self, d: &mut String) {
         let [turner, mover] = self.drivers;
         let freedoms = [(turner, 1), (turner, 2), (mover, 1), (mover, 2)];
         for (i, (node, freedom)) in freedoms.into_iter().enumerate() {
@@ -84,7 +84,7 @@ pub(crate) fn even_lambdas() -> impl Iterator<Item = f64> {
 ///
 /// It is the motion of panel B relative to A that corresponds to a deformation in the mean frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PanelMotion {
+pub(crate) struct PanelMotion {
     /// Rotation about O (rad).
     pub theta: f64,
     /// Displacement of O on panel B (mm), in the frame of panel A.
@@ -93,7 +93,7 @@ pub struct PanelMotion {
 
 impl PanelMotion {
     /// du = R(theta/2) (a, s).
-    pub fn new(deformation: &HingeDeformation) -> Self {
+    pub(crate) fn new(deformation: &HingeDeformation) -> Self {
         Self {
             theta: deformation.theta,
             du: rotated([deformation.a, deformation.s], 0.5 * deformation.theta),
@@ -101,7 +101,7 @@ impl PanelMotion {
     }
 
     /// The amplitudes (q1, q2, q3, q4) of the four control degrees of freedom.
-    pub fn amplitudes(&self) -> [f64; 4] {
+    pub(crate) fn amplitudes(&self) -> [f64; 4] {
         // cos(theta) - 1 without cancellation.
         let q1 = -2.0 * (0.5 * self.theta).sin().powi(2);
         [q1, self.theta.sin(), self.du[0], self.du[1]]
@@ -110,7 +110,7 @@ impl PanelMotion {
     /// (F_a, F_s, M_theta) from the resultant `force` (N) on panel B and its `moment` (N mm) about
     /// the current position of O on B. They are the gradient of the work with respect to (a, s,
     /// theta); M_theta has a contribution of the force because du rotates with theta/2.
-    pub fn forces(&self, force: [f64; 2], moment: f64) -> HingeForces {
+    pub(crate) fn forces(&self, force: [f64; 2], moment: f64) -> HingeForces {
         let [f_a, f_s] = rotated(force, -0.5 * self.theta);
         HingeForces {
             f_a,

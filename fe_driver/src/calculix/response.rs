@@ -102,7 +102,7 @@ pub(crate) struct Damage {
 
 impl Damage {
     /// Evaluates (strain, volume) at the Gauss points of the window.
-    pub fn new(
+    pub(crate) fn new(
         mut points: Vec<(f64, f64)>,
         design: &HingeDesign,
         thickness: f64,

@@ -34,7 +34,7 @@ pub(crate) struct Index {
 }
 
 impl Index {
-    pub fn new(name: &str, solves: &[WindowSolve]) -> Self {
+    pub(crate) fn new(name: &str, solves: &[WindowSolve]) -> Self {
         Self {
             name: name.to_owned(),
             tools: solves.first().map(|solve| solve.tools.clone()),
@@ -45,7 +45,7 @@ impl Index {
 
 impl CampaignFolder {
     /// The solves of the jobs.
-    pub fn store(&self) -> SolveStore {
+    pub(crate) fn store(&self) -> SolveStore {
         SolveStore(self.0.join("jobs"))
     }
 
@@ -54,14 +54,14 @@ impl CampaignFolder {
     }
 
     /// Reads `campaign.json`.
-    pub fn index(&self) -> Result<Index, CampaignError> {
+    pub(crate) fn index(&self) -> Result<Index, CampaignError> {
         let what = || format!("{} contains no campaign", self.0.display());
         let index = read_json(&self.index_path())?;
         Ok(index.ok_or_else(|| fault("", what(), "run a campaign there first"))?)
     }
 
     /// Reads `campaign.json` if it exists; an error if it is of a campaign with another name.
-    pub fn known(&self, name: &str) -> Result<Option<Index>, CampaignError> {
+    pub(crate) fn known(&self, name: &str) -> Result<Option<Index>, CampaignError> {
         match read_json::<Index>(&self.index_path())? {
             Some(Index { name: found, .. }) if found != name => {
                 let folder = self.0.display();
@@ -77,7 +77,7 @@ impl CampaignFolder {
     ///
     /// It is an error if a shard that may overlap with this one is locked on this host, or if this
     /// is a part of a campaign whose other parts are solved with other versions of gmsh and ccx.
-    pub fn enter(&self, shard: Shard, index: &Index) -> Result<EventLog, CampaignError> {
+    pub(crate) fn enter(&self, shard: Shard, index: &Index) -> Result<EventLog, CampaignError> {
         let home = self.0.join("hosts").join(host());
         whole_file::create_folder(&home).map_err(FileError::at(&home))?;
         // Shards that start at the same time enter one after the other. Otherwise each would find

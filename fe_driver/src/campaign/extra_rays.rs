@@ -27,7 +27,7 @@ struct Row {
 }
 
 /// Reads the rays of hinges with the constants `common`.
-pub fn read_extra_rays(path: &Path, common: &HingeConstants) -> Result<Vec<Ray>, Fault> {
+pub(crate) fn read_extra_rays(path: &Path, common: &HingeConstants) -> Result<Vec<Ray>, Fault> {
     let mut rays = Vec::new();
     let (_, rows) = csv_table::read::<Row>(path)?;
     for (i, (_, row)) in rows.into_iter().enumerate() {

@@ -19,7 +19,7 @@ pub(crate) struct EventLog {
 
 impl EventLog {
     /// Opens the history and locks it; an error if another process has locked it.
-    pub fn open(path: &Path) -> Result<Self, CampaignError> {
+    pub(crate) fn open(path: &Path) -> Result<Self, CampaignError> {
         let held = lock_file::try_hold(path);
         let path = path.to_owned();
         match held {
@@ -33,7 +33,7 @@ impl EventLog {
     }
 
     /// Appends an event of `job`.
-    pub fn note(&mut self, job: &str, event: &Event) -> Result<(), FileError> {
+    pub(crate) fn note(&mut self, job: &str, event: &Event) -> Result<(), FileError> {
         let line = json!({ "time": now(), "job": job, "event": event });
         self.file.write_all(format!("{line}\n").as_bytes()).map_err(FileError::at(&self.path))
     }

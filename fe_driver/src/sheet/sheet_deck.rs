@@ -43,7 +43,7 @@ fn rim_amplitudes(rim: usize) -> String {
 
 impl SheetModel<'_> {
     /// Duration of the step: lambda is the time over it.
-    pub fn duration(&self) -> f64 {
+    pub(crate) fn duration(&self) -> f64 {
         if self.problem.dynamic { SECONDS } else { 1.0 }
     }
 
@@ -65,7 +65,7 @@ impl SheetModel<'_> {
     }
 
     /// The deck.
-    pub fn deck(&self) -> String {
+    pub(crate) fn deck(&self) -> String {
         let mut text = String::new();
         let (d, problem) = (&mut text, self.problem);
         write_nodes(d, &self.mesh.nodes);

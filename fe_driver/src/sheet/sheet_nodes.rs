@@ -27,7 +27,7 @@ pub(crate) struct SheetNodes {
 }
 
 impl SheetNodes {
-    pub fn new(problem: &SheetProblem, mesh: &SheetMesh) -> Result<Self, Fault> {
+    pub(crate) fn new(problem: &SheetProblem, mesh: &SheetMesh) -> Result<Self, Fault> {
         let mut held = Vec::with_capacity(problem.held.len());
         for support in &problem.held {
             held.push(mesh.through(&held_nodes(support, mesh)?));

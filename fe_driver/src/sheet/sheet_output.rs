@@ -38,7 +38,7 @@ pub(crate) struct SheetFrame {
 }
 
 impl SheetLayout {
-    pub fn new(model: &SheetModel) -> Self {
+    pub(crate) fn new(model: &SheetModel) -> Self {
         let mesh = model.mesh;
         let points = mesh.elements.iter().enumerate();
         Self {

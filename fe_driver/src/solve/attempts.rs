@@ -87,7 +87,7 @@ impl<S: Solve> Workers<'_, S> {
     ///
     /// When `stop` becomes true, the attempts in flight are terminated and not counted. A later run
     /// continues from there.
-    pub fn work_through(
+    pub(crate) fn work_through(
         &self,
         jobs: &[Job<S>],
         stop: &AtomicBool,

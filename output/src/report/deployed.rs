@@ -37,42 +37,42 @@ pub(super) struct FinishedRun<'a> {
 }
 
 impl DeployedDesign<'_> {
-    pub fn whole_sheet(&self) -> Option<&WholeSheet> {
+    pub(super) fn whole_sheet(&self) -> Option<&WholeSheet> {
         self.run?.checks.whole_sheet.as_ref()
     }
 
     /// Name of the file of the weights.
-    pub fn weights_file(&self) -> String {
+    pub(super) fn weights_file(&self) -> String {
         let files = self.scene.config.weights_files();
         let name = files.first().and_then(|path| path.file_name());
         name.map_or(String::new(), |name| name.to_string_lossy().into_owned())
     }
 
     /// Mass of the uncut sheet (kg).
-    pub fn mass_kg(&self) -> f64 {
+    pub(super) fn mass_kg(&self) -> f64 {
         let outline = &self.deployment.sheet.outline.corners;
         self.scene.material.mass_by_area() * area(outline).abs()
     }
 
     /// Weight of the uncut sheet (N).
-    pub fn weight(&self) -> f64 {
+    pub(super) fn weight(&self) -> f64 {
         hinge::STANDARD_GRAVITY * self.mass_kg()
     }
 
     /// Weight over the load at the end of the path; `None` if that is zero or no force, or without
     /// equilibrium.
-    pub fn weight_over_load(&self) -> Option<f64> {
+    pub(super) fn weight_over_load(&self) -> Option<f64> {
         let load = self.run?.reached.as_ref()?.force()?.abs();
         (load > 0.0).then(|| self.weight() / load)
     }
 
     /// Extent of the flat sheet along x and y (mm).
-    pub fn flat_size(&self) -> [f64; 2] {
+    pub(super) fn flat_size(&self) -> [f64; 2] {
         extent(self.deployment.sheet.outline.corners)
     }
 
     /// The hinges whose rows `overstep`.
-    pub fn hinges_where(&self, overstep: impl Fn(&HingeRow) -> bool) -> Vec<usize> {
+    pub(super) fn hinges_where(&self, overstep: impl Fn(&HingeRow) -> bool) -> Vec<usize> {
         self.hinges.iter().filter(|row| overstep(row)).map(|row| row.hinge).collect()
     }
 }

@@ -38,7 +38,7 @@ struct NetworkSpread {
 impl Estimate {
     /// The estimate for a path computed with the first of `networks`; `None` for a single network,
     /// or if no state is inside the training domain.
-    pub fn new(networks: &[Surrogate], deployment: &Deployment) -> Option<Self> {
+    pub(super) fn new(networks: &[Surrogate], deployment: &Deployment) -> Option<Self> {
         let [mut energy, mut forces, mut peak] = [(); 3].map(|()| NetworkSpread::default());
         let mut peak_known = true;
         for (step, predictions) in

@@ -62,7 +62,7 @@ pub(super) struct HingeStates {
 
 impl HingeStates {
     /// The states of a deployment; with the spread of several networks.
-    pub fn new(
+    pub(super) fn new(
         scene: &Scene,
         problem: &DesignProblem,
         deployment: &Deployment,

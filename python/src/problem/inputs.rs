@@ -38,7 +38,7 @@ impl KnownPath {
         self.path.clone().filter(|_| self.corrected + 1 < follow_every)
     }
 
-    pub fn keep(&mut self, deployment: &design::Deployment) {
+    pub(super) fn keep(&mut self, deployment: &design::Deployment) {
         self.corrected = if deployment.followed { 0 } else { self.corrected + 1 };
         self.path = Some(Arc::new(deployment.warm_start()));
     }

@@ -10,7 +10,7 @@ use support::table::Table;
 
 /// Print what a run would solve, why, and the estimated time
 #[derive(Args)]
-pub struct PlanCommand {
+pub(super) struct PlanCommand {
     #[command(flatten)]
     campaign: CampaignArgs,
     /// Print JSON
@@ -19,7 +19,7 @@ pub struct PlanCommand {
 }
 
 impl PlanCommand {
-    pub fn run(&self) -> Result<()> {
+    pub(super) fn run(&self) -> Result<()> {
         let folder = self.campaign.folder();
         let versions = FeSolver::find()?.versions();
         let plan = fe_driver::plan(&self.campaign.load()?, &folder, &versions)?;

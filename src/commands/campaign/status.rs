@@ -8,7 +8,7 @@ use serde::Serialize;
 
 /// Print the state of the jobs, the reasons of failures, the throughput, and the tasks on a cluster
 #[derive(Args)]
-pub struct StatusCommand {
+pub(super) struct StatusCommand {
     #[command(flatten)]
     campaign: CampaignArgs,
     /// Print JSON
@@ -26,7 +26,7 @@ struct Report {
 }
 
 impl StatusCommand {
-    pub fn run(&self) -> Result<()> {
+    pub(super) fn run(&self) -> Result<()> {
         let folder = self.campaign.folder();
         fe_driver::known_parts(&self.campaign.load()?, &folder)?;
         let status = fe_driver::status(&folder)?;

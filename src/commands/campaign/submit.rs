@@ -18,7 +18,7 @@ use std::num::NonZeroUsize;
 /// variables (SBATCH_PARTITION, SBATCH_ACCOUNT). Example: kirigami campaign submit
 /// configs/campaigns/pet-0.5mm.toml --shards 32 --time 240
 #[derive(Args)]
-pub struct SubmitCommand {
+pub(super) struct SubmitCommand {
     #[command(flatten)]
     campaign: CampaignArgs,
     /// Number of tasks, at most one a ray; each solves every N-th ray
@@ -33,7 +33,7 @@ pub struct SubmitCommand {
 }
 
 impl SubmitCommand {
-    pub fn run(&self) -> Result<()> {
+    pub(super) fn run(&self) -> Result<()> {
         let (campaign, folder) = (self.campaign.load()?, self.campaign.folder());
         // Further tasks would have no ray.
         let count = self.shards.get().min(campaign.size());

@@ -15,7 +15,7 @@ use verification::{SCALE, spread_table};
 /// mesh, and writes them to compare.md. Example: kirigami dataset
 /// compare data/polypropylene-3mm/hinges.parquet
 #[derive(Args)]
-pub struct CompareCommand {
+pub(super) struct CompareCommand {
     /// Database to evaluate (Parquet with its manifest)
     #[arg(value_name = "DATABASE")]
     database: PathBuf,
@@ -28,7 +28,7 @@ pub struct CompareCommand {
 }
 
 impl CompareCommand {
-    pub fn run(&self) -> Result<()> {
+    pub(super) fn run(&self) -> Result<()> {
         let database = Database::read(&self.database)?;
         let reference = (self.reference.as_ref()).map(|file| Database::read(file));
         let reference = reference.transpose()?;

@@ -10,14 +10,14 @@ use surrogate::{Surrogate, Teacher};
 ///
 /// All numbers are in the JSON file next to the weights.
 #[derive(Args)]
-pub struct CardCommand {
+pub(super) struct CardCommand {
     /// Weights (safetensors with their card)
     #[arg(value_name = "WEIGHTS")]
     weights: PathBuf,
 }
 
 impl CardCommand {
-    pub fn run(&self) -> Result<()> {
+    pub(super) fn run(&self) -> Result<()> {
         let surrogate = Surrogate::load(&self.weights)?;
         let card = surrogate.card();
         println!("material {}, tier {}", card.material, card.tier);

@@ -14,7 +14,7 @@ use surrogate::Surrogate;
 /// any. Example: kirigami surrogate test data/pet-0.5mm/medium.safetensors
 /// data/pet-0.5mm/spot-check.parquet
 #[derive(Args)]
-pub struct TestCommand {
+pub(super) struct TestCommand {
     /// Weights (safetensors with their card)
     #[arg(value_name = "WEIGHTS")]
     weights: PathBuf,
@@ -28,7 +28,7 @@ pub struct TestCommand {
 }
 
 impl TestCommand {
-    pub fn run(&self) -> Result<()> {
+    pub(super) fn run(&self) -> Result<()> {
         let surrogate = Surrogate::load(&self.weights)?;
         let database = Database::read(&self.database)?;
         let (card, manifest) = (surrogate.card(), database.manifest());
