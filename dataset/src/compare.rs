@@ -6,7 +6,7 @@
 //! is interpolated linearly in lambda.
 
 use crate::database::Database;
-use crate::rows::{Fidelity, Row};
+use crate::rows::{Fidelity, RayKey, Row, ray_key};
 use hinge::HingeSample;
 use std::collections::BTreeMap;
 
@@ -124,18 +124,6 @@ fn rms<'a>(
         }
     }
     std::array::from_fn(|i| (squares[i] / f64::max(counts[i], 1.0)).sqrt())
-}
-
-/// Design and end of a ray, in millionths of their units.
-pub(crate) type RayKey = [i64; 8];
-
-/// The ray to a row, or straight on beyond it.
-pub(crate) fn ray_key(row: &Row) -> RayKey {
-    let (design, x) = (&row.design, &row.sample);
-    let [a, s, theta] = [x.a, x.s, x.theta].map(|component| component / x.lambda);
-    let ray =
-        [design.w_lig, design.alpha, design.fillet_ratio, design.kerf, design.r_win, a, s, theta];
-    ray.map(|number| (1e6 * number).round() as i64)
 }
 
 /// The rays on a mesh, by ray and hash of the material law. The last row of a job identifies its

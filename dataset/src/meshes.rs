@@ -4,9 +4,8 @@
 //! All rows have one material, one kerf and one window radius, since a surrogate has no feature for
 //! them. The finer mesh is the one with fewer rays, or, of as many, with the longer solves.
 
-use crate::compare::{RayKey, ray_key};
 use crate::error::{DatasetError, refused};
-use crate::rows::Row;
+use crate::rows::{RayKey, Row, ray_key};
 use crate::split::Geometries;
 use hinge::{HingeDeformation, HingeDesign, Regime};
 use std::cmp::Reverse;

@@ -12,59 +12,18 @@
 //! design, so dW/dg = 2 W_s (J - J0)' r, and d2W/dxi dg is reduced by 2 W_s J' J0.
 
 use crate::features::{FEATURES, features, pull_back};
+use crate::hinge_energy::{DEFORMATION_FEATURES, HingeEnergy, Order};
 use crate::mlp_kernels::{Passes, chunk_size, packed_index, packed_len};
 use crate::network::Network;
 use crate::reference_ligament;
 use faer::Mat;
-use hinge::{DesignGradient, HingeDeformation, HingeDesign, HingeGradient, NetLigament};
+use hinge::{HingeDeformation, HingeDesign, HingeGradient, NetLigament};
 use rayon::prelude::*;
 use std::cell::RefCell;
 use std::ops::Range;
 
-/// Number of features of the deformation; the others, log w_lig, alpha and rho_f, depend on the
-/// design only.
-const DEFORMATION_FEATURES: usize = 3;
 /// Number of quantities of the design.
 const DESIGN: usize = FEATURES - DEFORMATION_FEATURES;
-
-/// The derivatives to compute; each order includes all earlier ones.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Order {
-    /// W
-    Value,
-    /// additionally the gradient in (a, s, theta)
-    Forces,
-    /// additionally the Hessian in (a, s, theta)
-    Tangent,
-    /// additionally the gradient in (w_lig, alpha, rho_f) and the mixed second derivatives
-    Design,
-}
-
-impl Order {
-    /// Number of features with second derivatives, of a network with `features` inputs.
-    fn tangents(self, features: usize) -> usize {
-        match self {
-            Self::Value | Self::Forces => 0,
-            Self::Tangent => DEFORMATION_FEATURES,
-            Self::Design => features,
-        }
-    }
-}
-
-/// Energy of one hinge and its derivatives; derivatives beyond the requested order are zero.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct HingeEnergy {
-    /// W (N mm).
-    pub w: f64,
-    /// dW/d(a, s, theta): (F_a, F_s, M_theta) in (N, N, N mm).
-    pub forces: [f64; 3],
-    /// d2W/d(a, s, theta)^2.
-    pub tangent: [[f64; 3]; 3],
-    /// dW/dg at fixed (a, s, theta).
-    pub design: DesignGradient,
-    /// d2W/d(a, s, theta)dg.
-    pub mixed: [DesignGradient; 3],
-}
 
 /// Hinge designs with chi(xi(0, g)) and its derivatives, which do not depend on the deformation.
 #[derive(Clone, Debug)]

@@ -40,6 +40,7 @@ mod damage;
 mod energy;
 mod ensemble;
 mod features;
+mod hinge_energy;
 mod mlp_kernels;
 mod model;
 mod network;
@@ -53,9 +54,10 @@ pub use card::{
     TestErrors, UNITS,
 };
 pub use damage::HingeDamage;
-pub use energy::{HingeEnergy, Order, Prepared};
+pub use energy::Prepared;
 pub use ensemble::mean_and_variance;
 pub use features::{FEATURE_NAMES, Standardisation, feature_names, features};
+pub use hinge_energy::{HingeEnergy, Order};
 pub use model::{Layers, Surrogate};
 pub use network::{Layer, Network, Tensor};
 pub use springback::{Springback, SpringbackErrors};

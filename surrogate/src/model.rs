@@ -2,7 +2,8 @@
 
 use crate::card::{Card, ErrorBin, SpotCheck, TestErrors};
 use crate::damage::{self, HingeDamage};
-use crate::energy::{self, HingeEnergy, Order, Prepared};
+use crate::energy::{self, Prepared};
+use crate::hinge_energy::{HingeEnergy, Order};
 use crate::network::{Layer, Network, missing};
 use crate::reference_ligament;
 use hinge::{

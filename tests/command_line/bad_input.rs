@@ -135,7 +135,6 @@ fn a_pipe_in_place_of_a_file_is_refused() {
         "campaign plan pipe.toml",
         "train pipe.parquet",
         "surrogate card pipe.safetensors",
-        "solve --path pipe.toml --tier tiny",
         "design pipe.toml",
         "design target.toml",
         "material fit pipe.csv --name film --thickness 0.1 --density-kg-m3 1000",
