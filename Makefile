@@ -15,9 +15,11 @@ test-fast:
 	cargo test --release --locked --workspace --lib --bins --test command_line --test data \
 	    --test measured_sheet --test reference --test run --test scenes --test sheet --test tensile --test vtk_sheet --test weights
 
+# The oldest Rust that Cargo.toml allows compiles the workspace; where it is the installed one nothing is compiled again.
 lint:
 	cargo fmt --all --check
 	cargo clippy --release --locked --workspace --all-targets -- -D warnings
+	rustup run --install $(shell sed -n 's/^rust-version = "\(.*\)"/\1/p' Cargo.toml).0 cargo check --release --locked --workspace
 	cargo check --release --locked -p kirigami --no-default-features
 	RUSTDOCFLAGS="-D warnings" cargo doc --release --locked --workspace --lib --no-deps
 
@@ -28,11 +30,11 @@ paper: built
 # The studio as a folder of files for any web server: no request leaves the page. rustup adds the target.
 page:
 	rustup target add wasm32-wasip1
-	RUSTFLAGS="-C target-feature=+simd128" cargo rustc --locked --profile page -p kirigami --lib --no-default-features \
+	RUSTFLAGS="-C target-feature=+simd128" cargo rustc --locked --profile page -p studio --lib \
 	    --target wasm32-wasip1 --crate-type cdylib
 	rm -rf target/page
 	cargo run --release --locked -- studio --page target/page
-	cp target/wasm32-wasip1/page/kirigami.wasm target/page/
+	cp target/wasm32-wasip1/page/studio.wasm target/page/kirigami.wasm
 	cargo test --release --locked -p kirigami --test end_to_end static_page -- --ignored
 
 # The Python package and its tests, in an environment of their own. The tests of PyTorch need 5 GB: by a command of their own.

@@ -1,8 +1,5 @@
 //! The subcommands, one per file.
 
-/// Whether the commands from a material to weights are in this build, and finite elements.
-pub(crate) const WHOLE_BUILD: bool = cfg!(feature = "pipeline");
-
 /// Subcommands, each run by its own command.
 macro_rules! subcommands {
     ($visible:vis enum $name:ident { $($(#[$of:meta])* $variant:ident($command:ty),)* }) => {
@@ -31,7 +28,6 @@ pub mod dataset;
 #[cfg(feature = "pipeline")]
 pub mod demo;
 pub mod design;
-mod design_checks;
 pub mod doctor;
 pub mod export;
 pub mod init;
@@ -49,7 +45,6 @@ mod points_file;
 pub mod solve;
 #[cfg(feature = "pipeline")]
 pub mod solve_args;
-#[cfg(unix)]
 pub mod studio;
 #[cfg(feature = "pipeline")]
 pub mod surrogate;

@@ -1,17 +1,10 @@
-//! The user interface of the commands: progress, files, pictures, charts, sizes, counts, exit
-//! codes.
+//! The user interface of the commands: values of options, signals, exit codes.
 
-pub mod animation;
-pub mod charts;
+pub use app::{charts, input_file, output_file, picture, progress, run_folder, shell_word};
+
 pub mod count;
 pub mod exit;
-pub(crate) mod input_file;
 pub mod interrupt;
-pub mod output_file;
-pub mod picture;
-pub mod progress;
-pub mod run_folder;
-pub mod shell_word;
 pub(crate) mod with_unit;
 
 /// Number of processors of this machine.

@@ -1,24 +1,19 @@
 #!/bin/bash
-# The array of a campaign, as `kirigami campaign submit` hands it to Slurm; see docs/CLUSTER.md. Words between two @ are
-# replaced. A copy with a site's own header (account, modules) is named by --template. Submitted with the argument
-# `collect`, the same script collects the database after the array.
-#SBATCH --job-name=@name@
-#SBATCH --cpus-per-task=@cores@
-#SBATCH --time=@minutes@
+# A task of the array that `kirigami campaign submit` hands to Slurm (docs/CLUSTER.md), and the job after it. Arguments: the
+# number of tasks, and the command, to which a task adds its shard.
 #SBATCH --requeue
 #SBATCH --open-mode=append
-#SBATCH --output="@logs@/%x-%A-%a.log"
-# This script receives SIGTERM before the time limit.
-#SBATCH --signal=B:TERM@@grace@
+#SBATCH --output=%x-%A-%a.log
 
-cd @here@ || exit
-if [ "${1-}" = collect ]; then
-    exec @collect@
+shards=$1
+shift
+if [ -z "${SLURM_ARRAY_TASK_ID-}" ]; then
+    exec "$@"
 fi
 
 # Bash handles a signal only while it waits. It passes the signal on once and then waits for the run to stop.
 trap 'trap "" TERM; kill -TERM $run' TERM
-@run@ --shard "$SLURM_ARRAY_TASK_ID/@shards@" &
+"$@" --shard "$SLURM_ARRAY_TASK_ID/$shards" &
 run=$!
 wait $run
 code=$?

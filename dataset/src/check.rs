@@ -62,7 +62,7 @@ impl Database {
         let trained = self.geometries(Part::Training);
         let mut jobs = BTreeSet::new();
         let held_out =
-            |row: &&Row| matches!(split.part(&row.job), Some(Part::Validation | Part::Test));
+            |row: &&Row| split.validation.contains(&row.job) || split.test.contains(&row.job);
         (self.rows().iter().filter(held_out))
             .filter(|row| trained.contains(&geometry(row)) && jobs.insert(&row.job))
             .collect()
@@ -84,7 +84,7 @@ fn with<'a>(rays: &[&'a [Row]], condition: fn(&[Row]) -> bool) -> Vec<&'a Row> {
 pub(crate) fn repeated(rows: &[Row]) -> Vec<&Row> {
     let mut seen: BTreeMap<_, &str> = BTreeMap::new();
     let earlier = rows.iter().filter(|row| {
-        let solved = (state(row), &row.tier, &row.material_hash);
+        let solved = (state(row), row.tier, &row.material_hash);
         *seen.entry(solved).or_insert(&row.job) != row.job
     });
     earlier.collect()
@@ -102,10 +102,8 @@ fn forces_without_work(rays: &[&[Row]]) -> Option<Defect> {
     let relative = |ray: &[Row]| -> Option<f64> {
         let last = ray.last().filter(|last| ray.len() > 4 && last.sample.w > 0.0)?;
         let (mut work, mut before) = (0.0, [[0.0; 3]; 2]);
-        for row in ray {
-            let sample = &row.sample;
-            let state = [sample.a, sample.s, sample.theta];
-            let forces = [sample.f_a, sample.f_s, sample.m_theta];
+        for Row { sample, .. } in ray {
+            let (state, forces) = (sample.deformation().to_array(), sample.forces().to_array());
             work += (0..3)
                 .map(|c| 0.5 * (forces[c] + before[1][c]) * (state[c] - before[0][c]))
                 .sum::<f64>();
@@ -129,8 +127,10 @@ fn forces_without_work(rays: &[&[Row]]) -> Option<Defect> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::rows::Fidelity;
     use crate::rows::tests::rows;
     use crate::split::SplitPlan;
+    use mesher::Tier;
 
     fn found(change: impl Fn(&mut Vec<Row>)) -> Vec<&'static str> {
         let mut rows = rows(12);
@@ -156,7 +156,7 @@ mod tests {
             repeated(&both).len()
         };
         assert_eq!(other(|_| ()), rows(12).len());
-        assert_eq!(other(|row| row.tier = "fine".into()), 0);
+        assert_eq!(other(|row| row.tier = Fidelity::Solved(Tier::Fine)), 0);
         assert_eq!(other(|row| row.material_hash = "57ee1".into()), 0);
     }
 
@@ -166,7 +166,7 @@ mod tests {
             let found = found(change);
             assert!(found.iter().any(|what| what.contains(part)), "{part}: {found:?}");
         };
-        // The gates reject such a row at collection; a table may have been written by other means.
+        // Such a row is rejected at collection; a table may have been written by other means.
         let mut database = Database::collect(rows(12), &SplitPlan::default()).unwrap();
         database.rows[7].sample.w = -1.0;
         assert!(database.check().iter().any(|it| it.what.contains("negative")));

@@ -6,8 +6,7 @@
 //! is interpolated linearly in lambda.
 
 use crate::database::Database;
-use crate::rays::{RayKey, ray_key};
-use crate::rows::Row;
+use crate::rows::{Fidelity, RayKey, Row, ray_key};
 use hinge::HingeSample;
 use std::collections::BTreeMap;
 
@@ -19,7 +18,7 @@ pub const COMPARED: [&str; 6] = ["W", "F_a", "F_s", "M_theta", "D", "D_peak"];
 pub struct ComparedRay<'a> {
     /// The rows of the compared database, in order of lambda, up to the last lambda of the
     /// reference; not empty.
-    pub rows: Vec<&'a Row>,
+    pub rows: &'a [Row],
     /// The sample of the reference database at each of these rows.
     pub references: Vec<HingeSample>,
     /// CPU time of the ray (s) in the compared database and in the reference database.
@@ -29,7 +28,7 @@ pub struct ComparedRay<'a> {
 impl<'a> ComparedRay<'a> {
     /// Each row with its reference sample.
     pub fn pairs(&self) -> impl Iterator<Item = (&'a Row, &HingeSample)> {
-        std::iter::zip(self.rows.iter().copied(), &self.references)
+        std::iter::zip(self.rows, &self.references)
     }
 
     /// The state of each row with its reference.
@@ -68,41 +67,33 @@ impl Database {
     /// The rays that were solved on the finer mesh too, each with its samples there.
     pub fn on_both_meshes(&self) -> Vec<ComparedRay<'_>> {
         let manifest = self.manifest();
-        let Some(finer) = &manifest.finer else {
-            return Vec::new();
-        };
-        compare_rows(self.on_tier(&manifest.tier), self.on_tier(&finer.tier))
+        let finer = manifest.finer.as_ref();
+        finer.map_or(Vec::new(), |finer| compare_meshes((self, manifest.tier), (self, finer.tier)))
     }
 }
 
 /// The rays that both databases contain, in the order of their designs; of a database with a finer
 /// mesh, those on the other one.
 pub fn compare<'a>(candidate: &'a Database, reference: &'a Database) -> Vec<ComparedRay<'a>> {
-    let rays = |database: &'a Database| database.on_tier(&database.manifest().tier);
-    compare_rows(rays(candidate), rays(reference))
+    let [candidate, reference] =
+        [candidate, reference].map(|database| (database, database.manifest().tier));
+    compare_meshes(candidate, reference)
 }
 
-fn compare_rows<'a>(
-    candidate: impl IntoIterator<Item = &'a Row>,
-    reference: impl IntoIterator<Item = &'a Row>,
+fn compare_meshes<'a>(
+    candidate: (&'a Database, Fidelity),
+    reference: (&'a Database, Fidelity),
 ) -> Vec<ComparedRay<'a>> {
     let references = rays(reference);
-    let pairs = rays(candidate).into_iter();
-    let pairs = pairs.filter_map(|(ray, rows)| Some((rows, references.get(&ray)?)));
-    pairs
-        .filter_map(|(rows, reference)| {
-            let samples: Vec<_> = reference.iter().map(|row| row.sample).collect();
-            let (rows, references): (Vec<&Row>, Vec<HingeSample>) = rows
-                .iter()
-                .filter_map(|row| Some((*row, HingeSample::at(&samples, row.sample.lambda)?)))
-                .unzip();
-            Some(ComparedRay {
-                cpu_s: [rows.first()?.cpu_s, reference.first()?.cpu_s],
-                rows,
-                references,
-            })
-        })
-        .collect()
+    let compared = |(key, ray): (_, &'a [Row])| {
+        let reference = *references.get(&key)?;
+        let samples: Vec<_> = reference.iter().map(|row| row.sample).collect();
+        let known = ray.iter().map_while(|row| HingeSample::at(&samples, row.sample.lambda));
+        let references: Vec<HingeSample> = known.collect();
+        let rows = &ray[..references.len()];
+        Some(ComparedRay { cpu_s: [rows.first()?.cpu_s, reference[0].cpu_s], rows, references })
+    };
+    rays(candidate).into_iter().filter_map(compared).collect()
 }
 
 /// Root mean square of the reference values of each quantity.
@@ -135,21 +126,15 @@ fn rms<'a>(
     std::array::from_fn(|i| (squares[i] / f64::max(counts[i], 1.0)).sqrt())
 }
 
-/// Rows by ray and hash of the material law, in order of lambda. The last row of a job identifies
-/// its ray, which may bend.
-fn rays<'a>(rows: impl IntoIterator<Item = &'a Row>) -> BTreeMap<(RayKey, &'a str), Vec<&'a Row>> {
-    let mut jobs: BTreeMap<&str, Vec<&Row>> = BTreeMap::new();
-    for row in rows {
-        jobs.entry(&row.job).or_default().push(row);
-    }
-    let mut rays: BTreeMap<(RayKey, &str), Vec<&Row>> = BTreeMap::new();
-    for mut job in jobs.into_values() {
-        job.sort_by(|x, y| x.sample.lambda.total_cmp(&y.sample.lambda));
-        let last = job[job.len() - 1];
-        let ray = (ray_key(last), last.material_hash.as_str());
-        rays.entry(ray).or_default().extend(job);
-    }
-    rays
+/// The rays on a mesh, by ray and hash of the material law. The last row of a job identifies its
+/// ray, which may bend.
+fn rays((database, tier): (&Database, Fidelity)) -> BTreeMap<(RayKey, &str), &[Row]> {
+    let rays = database.rays().into_iter().filter(|ray| ray[0].tier == tier);
+    let keyed = rays.map(|ray| {
+        let last = &ray[ray.len() - 1];
+        ((ray_key(last), last.material_hash.as_str()), ray)
+    });
+    keyed.collect()
 }
 
 #[cfg(test)]
@@ -214,7 +199,7 @@ mod tests {
         let rays = both.on_both_meshes();
         assert_eq!(rays.len(), 4);
         for ray in rays {
-            assert!(ray.rows.iter().all(|row| row.tier == "default"));
+            assert!(ray.rows.iter().all(|row| row.tier == Fidelity::default()));
             assert_eq!((ray.rows.len(), ray.cpu_s), (10, [10.0, 70.0]));
         }
     }

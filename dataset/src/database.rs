@@ -1,10 +1,11 @@
 //! A database: consistent rows, their Parquet file and its manifest.
 
 use crate::digest::{Digest, by_job_and_lambda};
-use crate::error::DatasetError;
+use crate::error::{DatasetError, refused};
 use crate::manifest::Manifest;
 use crate::parquet;
-use crate::rows::Row;
+use crate::rows::{Fidelity, Row};
+use crate::schema::COLUMNS;
 use crate::split::{Part, SplitPlan, geometry};
 use std::collections::BTreeSet;
 
@@ -17,12 +18,12 @@ pub struct Database {
 }
 
 impl Database {
-    /// Drops and counts the rows that the gates reject, and splits the others by geometry.
+    /// Drops and counts the rows outside the acceptance limits, and splits the others by geometry.
     ///
     /// Rows of different materials or hinge constants are an error, and rows of two tiers without a
     /// common ray.
     pub fn collect(rows: Vec<Row>, plan: &SplitPlan) -> Result<Self, DatasetError> {
-        let mut digest = Digest::new();
+        let mut digest = Digest::default();
         let mut rows = digest.accepted(rows);
         rows.sort_by(by_job_and_lambda);
         for ray in rows.chunk_by(|left, right| left.job == right.job) {
@@ -65,11 +66,11 @@ impl Database {
     /// after a failure.
     pub fn rays_on_other_tiers(&self) -> Vec<&Row> {
         let first = self.rays().into_iter().filter_map(<[Row]>::first);
-        first.filter(|row| !row.is_as_asked()).collect()
+        first.filter(|row| !row.at_requested_tier()).collect()
     }
 
     /// The rows on a mesh.
-    pub(crate) fn on_tier<'a>(&'a self, tier: &'a str) -> impl Iterator<Item = &'a Row> {
+    pub(crate) fn on_tier(&self, tier: Fidelity) -> impl Iterator<Item = &Row> {
         self.rows.iter().filter(move |row| row.tier == tier)
     }
 
@@ -88,5 +89,19 @@ impl Database {
         let jobs = self.manifest.split.jobs(part);
         let rows = self.rows.iter().filter(|row| jobs.contains(&row.job));
         rows.cloned().collect()
+    }
+
+    /// The table as CSV, in full precision.
+    pub fn to_csv(&self) -> Result<Vec<u8>, DatasetError> {
+        self.csv().map_err(|error| refused(format!("the table cannot be written as CSV: {error}")))
+    }
+
+    fn csv(&self) -> csv::Result<Vec<u8>> {
+        let mut writer = csv::Writer::from_writer(Vec::new());
+        writer.write_record(COLUMNS.iter().map(|column| column.name))?;
+        for row in &self.rows {
+            writer.write_record(COLUMNS.iter().map(|column| column.text(row)))?;
+        }
+        Ok(writer.into_inner().expect("a vector takes every byte"))
     }
 }

@@ -5,15 +5,15 @@
 //! the two the next reader renames it.
 
 use crate::database::Database;
-use crate::error::DatasetError;
+use crate::error::{DatasetError, refused};
 use crate::manifest::{FORMAT_VERSION, Manifest};
 use crate::parquet;
+use std::fmt::Display;
 use std::io::Write;
 use std::path::{Path, PathBuf};
-use support::file_error::FileError;
-use support::regular_file;
-use support::sealed_json::{self, SealError};
+use support::fault::{Fault, fault, unread, unwritten};
 use support::whole_file::{self, Unnamed};
+use support::{regular_file, sealed_json};
 
 impl Database {
     /// Reads `X.parquet` and its manifest `X.json`; an error if the hash of the file is not that in
@@ -23,13 +23,15 @@ impl Database {
             Some(finished) => finished,
             None => read_files(path)?,
         };
-        let rows = parquet::decode(&parquet).map_err(|source| DatasetError::In {
-            path: path.to_owned(),
-            source: Box::new(source),
-        })?;
+        let rows = parquet::decode(&parquet)
+            .map_err(|error| fault(path.display().to_string(), error.to_string(), ""))?;
         match manifest.disagrees(&rows) {
             None => Ok(Self { rows, parquet, manifest }),
-            Some(what) => Err(DatasetError::OtherRows { path: path.to_owned(), what }),
+            Some(what) => Err(refused(format!(
+                "{} and its manifest do not belong together: {what}; copy the two files again, or \
+                 collect the campaign again",
+                path.display()
+            ))),
         }
     }
 
@@ -38,9 +40,9 @@ impl Database {
     /// An existing file is an error unless `replace` is true.
     pub fn write(&self, path: &Path, replace: bool) -> Result<(), DatasetError> {
         refuse_existing(path, replace)?;
-        let mut file = Unnamed::next_to(path).map_err(unwritable(path))?;
+        let mut file = Unnamed::next_to(path).map_err(unwritten(path))?;
         let written = file.file().write_all(&self.parquet);
-        written.map_err(unwritable(path))?;
+        written.map_err(unwritten(path))?;
         publish(file, &self.manifest, path)
     }
 }
@@ -52,15 +54,12 @@ pub(crate) fn publish(
     path: &Path,
 ) -> Result<(), DatasetError> {
     let next = next_path(path);
-    parquet.name(&next).map_err(unwritable(&next))?;
-    let mut json = sealed_json::to_vec(manifest).map_err(|source| DatasetError::Manifest {
-        path: path.to_owned(),
-        source: source.into(),
-    })?;
+    parquet.name(&next).map_err(unwritten(&next))?;
+    let mut json = sealed_json::to_vec(manifest).map_err(no_manifest(path))?;
     json.push(b'\n');
     let place = manifest_path(path);
-    whole_file::write(&place, &json).map_err(unwritable(&place))?;
-    whole_file::rename(&next, path).map_err(unwritable(path))
+    whole_file::write(&place, &json).map_err(unwritten(&place))?;
+    Ok(whole_file::rename(&next, path).map_err(unwritten(path))?)
 }
 
 /// The database whose Parquet file has not got its name yet, which it gets now if the folder can be
@@ -83,13 +82,20 @@ fn finish(path: &Path) -> Result<Option<(Manifest, Vec<u8>)>, DatasetError> {
 fn read_files(path: &Path) -> Result<(Manifest, Vec<u8>), DatasetError> {
     let parquet = read_bytes(path)?;
     if let Some(what) = other_kind(&parquet) {
-        let path = path.to_owned();
-        return Err(DatasetError::NoDatabase { path, what });
+        return Err(refused(format!(
+            "{} {what}: a database is a Parquet file (.parquet) with its manifest",
+            path.display()
+        )));
     }
     let manifest = read_manifest(&manifest_path(path))?;
     let found = parquet::hash(&parquet);
     if found != manifest.hash {
-        return Err(DatasetError::Hash { path: path.to_owned(), expected: manifest.hash, found });
+        return Err(refused(format!(
+            "{} does not match its manifest (its BLAKE3 hash is {found}, not {}); copy both files \
+             from the same place, or collect the campaign again",
+            path.display(),
+            manifest.hash
+        )));
     }
     Ok((manifest, parquet))
 }
@@ -98,7 +104,10 @@ fn read_files(path: &Path) -> Result<(Manifest, Vec<u8>), DatasetError> {
 pub(crate) fn refuse_existing(path: &Path, replace: bool) -> Result<(), DatasetError> {
     let files = [path.to_owned(), manifest_path(path)];
     match files.into_iter().find(|path| !replace && path.exists()) {
-        Some(path) => Err(DatasetError::Exists { path }),
+        Some(path) => Err(refused(format!(
+            "{} already exists; choose another name, or replace it with `--replace`",
+            path.display()
+        ))),
         None => Ok(()),
     }
 }
@@ -117,18 +126,24 @@ fn read_manifest(path: &Path) -> Result<Manifest, DatasetError> {
     struct Version {
         format_version: u64,
     }
-    let malformed = |source| DatasetError::Manifest { path: path.to_owned(), source };
     let bytes = read_bytes(path)?;
-    let version: Version =
-        serde_json::from_slice(&bytes).map_err(SealError::from).map_err(malformed)?;
-    if version.format_version != u64::from(FORMAT_VERSION) {
-        return Err(DatasetError::UnknownVersion {
-            path: path.to_owned(),
-            found: version.format_version,
-            expected: FORMAT_VERSION,
-        });
+    let Version { format_version } = serde_json::from_slice(&bytes).map_err(no_manifest(path))?;
+    if format_version != u64::from(FORMAT_VERSION) {
+        return Err(refused(format!(
+            "{} has the format version {format_version}, but this program reads only version \
+             {FORMAT_VERSION}: collect the campaign again, or use the program that wrote it",
+            path.display()
+        )));
     }
-    sealed_json::from_slice(&bytes).map_err(malformed)
+    Ok(sealed_json::from_slice(&bytes).map_err(no_manifest(path))?)
+}
+
+/// Maps the error of the manifest `path`, for use in `map_err`.
+fn no_manifest<E: Display>(path: &Path) -> impl FnOnce(E) -> Fault {
+    move |error| {
+        let what = format!("{} is not a manifest of a database: {error}", path.display());
+        fault("", what, "")
+    }
 }
 
 /// What a file is that does not begin like a Parquet file.
@@ -141,12 +156,6 @@ fn other_kind(bytes: &[u8]) -> Option<&'static str> {
     }
 }
 
-pub(crate) fn read_bytes(path: &Path) -> Result<Vec<u8>, DatasetError> {
-    regular_file::read(path).map_err(FileError::at(path)).map_err(DatasetError::Read)
-}
-
-/// Maps the error of writing `path`, for use in `map_err`.
-pub(crate) fn unwritable(path: &Path) -> impl FnOnce(std::io::Error) -> DatasetError {
-    let at_path = FileError::at(path);
-    move |source| DatasetError::Write(at_path(source))
+fn read_bytes(path: &Path) -> Result<Vec<u8>, Fault> {
+    regular_file::read(path).map_err(unread(path))
 }

@@ -1,12 +1,12 @@
 //! What the manifest and the summary need of the rows of a database, gathered ray by ray: the rows
 //! themselves need not be in memory at the same time.
 
-use crate::error::DatasetError;
-use crate::gates::{Gates, Rejection};
+use crate::acceptance::{AcceptanceLimits, Rejection};
+use crate::error::{DatasetError, refused};
 use crate::manifest::{FORMAT_VERSION, FinerMesh, Manifest};
 use crate::meshes::Meshes;
 use crate::rows::Row;
-use crate::schema;
+use crate::schema::COLUMNS;
 use crate::split::{Split, SplitPlan};
 use hinge::{HingeConstants, TrainingDomain};
 use std::cmp::Ordering;
@@ -19,10 +19,11 @@ pub(crate) fn by_job_and_lambda(left: &Row, right: &Row) -> Ordering {
 }
 
 /// What is known of the rows so far.
+#[derive(Default)]
 pub(crate) struct Digest {
     rejected: BTreeMap<Rejection, usize>,
     /// Job and lambda of the last accepted row.
-    last: (String, f64),
+    last: Option<(String, f64)>,
     rows: usize,
     meshes: Meshes,
     /// The different values of every column of text, in the order of [`TEXTS`].
@@ -31,22 +32,12 @@ pub(crate) struct Digest {
 
 /// The columns of text whose values the manifest lists.
 const TEXTS: [fn(&Row) -> &String; 4] =
-    [|row| &row.material, |row| &row.material_hash, |row| &row.gmsh, |row| &row.ccx];
+    [|row| &row.material, |row| &row.material_hash, |row| &row.tools.gmsh, |row| &row.tools.ccx];
 
 impl Digest {
-    pub fn new() -> Self {
-        Self {
-            rejected: BTreeMap::new(),
-            last: (String::new(), f64::NEG_INFINITY),
-            rows: 0,
-            meshes: Meshes::default(),
-            texts: Default::default(),
-        }
-    }
-
-    /// The rows that pass the gates; the others are counted.
-    pub fn accepted(&mut self, mut rows: Vec<Row>) -> Vec<Row> {
-        rows.retain(|row| match Gates::default().rejection(row) {
+    /// The rows within the acceptance limits; the others are counted.
+    pub(crate) fn accepted(&mut self, mut rows: Vec<Row>) -> Vec<Row> {
+        rows.retain(|row| match AcceptanceLimits::default().rejection(row) {
             Some(reason) => {
                 *self.rejected.entry(reason).or_default() += 1;
                 false
@@ -58,7 +49,7 @@ impl Digest {
 
     /// Adds accepted rows of one job, in the order of lambda. The jobs must come in the order of
     /// their ids.
-    pub fn add(&mut self, ray: &[Row]) -> Result<(), DatasetError> {
+    pub(crate) fn add(&mut self, ray: &[Row]) -> Result<(), DatasetError> {
         for row in ray {
             self.refuse_duplicate(row)?;
             for (values, text) in self.texts.iter_mut().zip(TEXTS) {
@@ -74,19 +65,20 @@ impl Digest {
     /// Rejects a row that does not come after the last one: one with the same job and lambda.
     fn refuse_duplicate(&mut self, row: &Row) -> Result<(), DatasetError> {
         let (job, lambda) = (&row.job, row.sample.lambda);
-        let by_lambda = || self.last.1.total_cmp(&lambda);
-        if self.last.0.cmp(job).then_with(by_lambda) != Ordering::Less {
-            let job = job.clone();
-            return Err(DatasetError::Duplicate { job, lambda });
+        if let Some((last, before)) = &self.last
+            && last.cmp(job).then_with(|| before.total_cmp(&lambda)) != Ordering::Less
+        {
+            return Err(refused(format!(
+                "job {job}: lambda = {lambda} occurs twice; was the job collected twice?"
+            )));
         }
-        self.last.0.clone_from(job);
-        self.last.1 = lambda;
+        self.last = Some((job.clone(), lambda));
         Ok(())
     }
 
     /// The manifest of the rows, whose Parquet file has the given hash.
-    pub fn manifest(self, hash: String, plan: &SplitPlan) -> Result<Manifest, DatasetError> {
-        let no_rows = |rejected| DatasetError::NoRows { why: reasons(rejected) };
+    pub(crate) fn manifest(self, hash: String, plan: &SplitPlan) -> Result<Manifest, DatasetError> {
+        let no_rows = |rejected| refused(format!("no rows: {}", reasons(rejected)));
         let bent_rays = self.meshes.bent_rays.unwrap_or_default();
         let Some((rays, finer)) = self.meshes.sorted()? else {
             return Err(no_rows(&self.rejected));
@@ -94,7 +86,7 @@ impl Digest {
         let Some(domain) = TrainingDomain::covering(rays.states()) else {
             return Err(no_rows(&self.rejected));
         };
-        let mut hinge = rays.first_design().constants();
+        let mut hinge = rays.first.design.constants();
         if domain.holes.is_some() {
             hinge.fillet_ratio = HingeConstants::PAPER.fillet_ratio;
         }
@@ -103,7 +95,11 @@ impl Digest {
         Ok(Manifest {
             format_version: FORMAT_VERSION,
             hash,
-            units: schema::units().map(|(name, unit)| (name.to_owned(), unit.to_owned())).collect(),
+            units: COLUMNS
+                .iter()
+                .filter(|column| !column.unit.is_empty())
+                .map(|column| (column.name.to_owned(), column.unit.to_owned()))
+                .collect(),
             rows: self.rows,
             rays: rays.rays,
             partial_rays: rays.partial_rays,
@@ -111,17 +107,17 @@ impl Digest {
             cpu_s: rays.cpu_s,
             bent_rays,
             finer: finer.map(|finer| FinerMesh {
-                tier: finer.tier().to_owned(),
+                tier: finer.first.tier,
                 rays: finer.rays,
                 cpu_s: finer.cpu_s,
             }),
-            gates: Gates::default(),
+            gates: AcceptanceLimits::default(),
             rejected: self.rejected,
             material: Vec::from_iter(material).join(" + "),
-            tier: rays.tier().to_owned(),
+            tier: rays.first.tier,
             hinge,
             material_hashes,
-            settings_hashes: [rays.settings_hash().to_owned()].into(),
+            settings_hashes: [rays.first.settings_hash].into(),
             gmsh,
             ccx,
             domain,

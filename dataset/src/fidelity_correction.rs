@@ -14,165 +14,12 @@
 //! the others, is no smaller than without the correction; of W and its forces, the sum of the four
 //! relative errors. (Fernandez-Godino et al., "Review of multi-fidelity models", 2016, section 2.)
 
+use crate::bridge::{Bridge, TERMS};
 use crate::compare::{COMPARED, ComparedRay, ComparedState};
 use crate::database::Database;
-use crate::error::DatasetError;
-use crate::fidelity::Fidelity;
-use crate::rows::Row;
-use faer::Side;
-use faer::linalg::solvers::{Llt, Solve};
-use faer::prelude::*;
+use crate::error::{DatasetError, refused};
+use crate::rows::{Fidelity, Row};
 use hinge::HingeSample;
-use std::f64::consts::FRAC_PI_2;
-use support::vectors::dot;
-
-/// The terms, as products of two of (w_lig, alpha, eta_a, eta_s, theta, 1).
-const TERMS: [[usize; 2]; 13] = [
-    [5, 5],
-    [0, 5],
-    [2, 5],
-    [4, 5],
-    [0, 0],
-    [0, 2],
-    [0, 4],
-    [2, 2],
-    [2, 4],
-    [4, 4],
-    [1, 1],
-    [1, 3],
-    [3, 3],
-];
-/// Fraction of the root mean square that limits the scale of the relative error of small values
-/// from below.
-const LEAST_SCALE: f64 = 0.3;
-/// Weight of the equation of a force, relative to the weight of the equation of W. Where a ligament
-/// buckles a second time, forces differ between the meshes as no polynomial does: on 34 rays of the
-/// film, corrected by the others, W is off by 2.6 % at the weight 1, by 1.2 % at 0.1 and at 0, F_s
-/// by 5.6, 5.5 and 6.4 %.
-const FORCE_WEIGHT: f64 = 0.1;
-/// Weight of the ridge regularisation, which equals the weight of one state. It determines only the
-/// coefficients that the rays do not determine.
-const RIDGE: f64 = 1.0;
-
-/// Coefficients of the [`TERMS`].
-type Coefficients = [f64; TERMS.len()];
-
-/// The fitted correction from one mesh to another.
-#[derive(Clone, Debug)]
-struct Bridge {
-    /// Middle and half the range of (w_lig, alpha, eta_a, eta_s, theta).
-    ranges: [[f64; 2]; 5],
-    energy: Coefficients,
-    damage: Coefficients,
-    damage_peak: Coefficients,
-}
-
-impl Bridge {
-    /// Fits the correction from the mesh of the rays to the mesh of their references.
-    fn fit(rays: &[ComparedRay]) -> Self {
-        let pairs = || {
-            let pairs = rays.iter().flat_map(ComparedRay::pairs);
-            pairs.filter(|(row, _)| row.is_as_asked())
-        };
-        let blank = [0.0; TERMS.len()];
-        let unfitted = Self {
-            ranges: ranges(pairs().map(|(row, _)| row)),
-            energy: blank,
-            damage: blank,
-            damage_peak: blank,
-        };
-        // A pair with an unknown value is omitted.
-        let damage = |value: fn(&HingeSample) -> Option<f64>| {
-            let changes = pairs().filter_map(|(row, reference)| {
-                let (terms, _) = unfitted.terms(row);
-                let value_of_row = value(&row.sample)?;
-                Some(Change::of(terms, value_of_row, value(reference)?))
-            });
-            least_squares([(changes.collect(), 1.0)])
-        };
-        let changes = pairs().map(|(row, reference)| unfitted.energy_changes(row, reference));
-        let changes: Vec<[Change; 4]> = changes.collect();
-        let of_quantity = |i: usize| {
-            let weight = if i == 0 { 1.0 } else { FORCE_WEIGHT };
-            (changes.iter().map(|of| of[i]).collect(), weight)
-        };
-        Self {
-            energy: least_squares([0, 1, 2, 3].map(of_quantity)),
-            damage: damage(|sample| Some(sample.d)),
-            damage_peak: damage(|sample| sample.d_peak),
-            ..unfitted
-        }
-    }
-
-    /// How the coefficients of q change W, F_a, F_s and M of a row.
-    fn energy_changes(&self, row: &Row, reference: &HingeSample) -> [Change; 4] {
-        let (terms, slopes) = self.terms(row);
-        let x = &row.sample;
-        let force = |i: usize, value: f64, reference: f64| {
-            let by = |k: usize| terms[k] * value + x.w * slopes[k][i];
-            Change { by: std::array::from_fn(by), missing: reference - value, reference }
-        };
-        [
-            Change::of(terms, x.w, reference.w),
-            force(0, x.f_a, reference.f_a),
-            force(1, x.f_s, reference.f_s),
-            force(2, x.m_theta, reference.m_theta),
-        ]
-    }
-
-    /// The correction of the energy, the damage and D_peak, as far as they are to be `corrected`.
-    fn only(self, corrected: [bool; 3]) -> Self {
-        let kept = |of: Coefficients, i: usize| if corrected[i] { of } else { [0.0; TERMS.len()] };
-        Self {
-            energy: kept(self.energy, 0),
-            damage: kept(self.damage, 1),
-            damage_peak: kept(self.damage_peak, 2),
-            ..self
-        }
-    }
-
-    /// The sample of a row, corrected to the finer mesh. Quantities that no surrogate is trained on
-    /// are unchanged, including the work of the reaction forces and the energy residual. A row that
-    /// was solved on a finer tier than the requested one is also unchanged.
-    fn corrected(&self, row: &Row) -> HingeSample {
-        if !row.is_as_asked() {
-            return row.sample;
-        }
-        let (terms, slopes) = self.terms(row);
-        let factor = |c: &Coefficients| 1.0 + dot(c, &terms);
-        let slope = |i: usize| dot(&self.energy, &slopes.map(|of| of[i]));
-        let x = &row.sample;
-        let energy = factor(&self.energy);
-        HingeSample {
-            w: energy * x.w,
-            f_a: energy * x.f_a + x.w * slope(0),
-            f_s: energy * x.f_s + x.w * slope(1),
-            m_theta: energy * x.m_theta + x.w * slope(2),
-            d: factor(&self.damage).max(0.0) * x.d,
-            d_peak: x.d_peak.map(|peak| factor(&self.damage_peak).max(0.0) * peak),
-            ..*x
-        }
-    }
-
-    /// The terms at a row, and their gradients with respect to (a, s, theta).
-    fn terms(&self, row: &Row) -> (Coefficients, [[f64; 3]; TERMS.len()]) {
-        let at = coordinates(row);
-        let units = [1.0, 1.0, row.design.w_lig, row.design.w_lig, 1.0];
-        let (mut x, mut by) = ([1.0; 6], [[0.0; 3]; 6]);
-        for (i, [middle, half]) in self.ranges.into_iter().enumerate() {
-            let scaled = (at[i] - middle) / half;
-            x[i] = scaled.clamp(-1.0, 1.0);
-            // The first two coordinates are the geometry, on which the forces do no work.
-            if i >= 2 && x[i] == scaled {
-                by[i][i - 2] = 1.0 / (half * units[i]);
-            }
-        }
-        (
-            TERMS.map(|[i, j]| x[i] * x[j]),
-            TERMS.map(|[i, j]| std::array::from_fn(|d| by[i][d] * x[j] + x[i] * by[j][d])),
-        )
-    }
-}
 
 impl Database {
     /// The rays, corrected to the finer mesh by those that were solved on it too, but for
@@ -186,17 +33,16 @@ impl Database {
         let rays = self.on_both_meshes();
         let checked = left_out(&rays)?;
         let corrected = checked.corrected();
-        let from = self.manifest().tier.clone();
+        let from = self.manifest().tier;
         let tier = if corrected[0] {
-            let to = finer.tier.clone();
-            Fidelity::Corrected { from, to }
+            Fidelity::Corrected { from: from.mesh(), to: finer.tier.mesh() }
         } else {
-            Fidelity::Solved(from)
+            from
         };
         let bridge = Bridge::fit(&rays).only(corrected);
-        let rows = self.on_tier(&self.manifest().tier).map(|row| Row {
+        let rows = self.on_tier(from).map(|row| Row {
             sample: bridge.corrected(row),
-            tier: tier.to_string(),
+            tier,
             ..row.clone()
         });
         Ok((self.with_rows(rows.collect())?, Some(checked)))
@@ -238,7 +84,10 @@ pub fn left_out(rays: &[ComparedRay]) -> Result<LeftOut, DatasetError> {
     let (found, needed) = (rays.len(), TERMS.len() + 1);
     if found < needed {
         // Too few to fit every term when one ray is left out.
-        return Err(DatasetError::TooFewRays { found, needed });
+        return Err(refused(format!(
+            "{found} rays are solved on the finer mesh too, but the correction needs at least \
+             {needed}: increase `finer` in the campaign"
+        )));
     }
     let bridges: Vec<Bridge> =
         (0..rays.len()).map(|i| Bridge::fit(&[&rays[..i], &rays[i + 1..]].concat())).collect();
@@ -272,77 +121,6 @@ fn errors(states: &[Vec<ComparedState>]) -> [f64; 3] {
     [(0..4).map(squares).sum(), squares(4), squares(5)]
 }
 
-/// w_lig (mm), alpha - pi/2 (rad), eta_a, eta_s, theta (rad).
-fn coordinates(row: &Row) -> [f64; 5] {
-    let [eta_a, eta_s] = row.eta();
-    let design = &row.design;
-    [design.w_lig, design.alpha - FRAC_PI_2, eta_a, eta_s, row.sample.theta]
-}
-
-/// Middle and half of the range of each coordinate. The middle is 0 except for the width, so that
-/// the mirror image has the opposite alpha and eta_s. A constant coordinate is not scaled.
-fn ranges<'a>(rows: impl Iterator<Item = &'a Row>) -> [[f64; 2]; 5] {
-    let mut minimum = [f64::INFINITY; 5];
-    let mut maximum = [f64::NEG_INFINITY; 5];
-    for row in rows {
-        for (i, value) in coordinates(row).into_iter().enumerate() {
-            minimum[i] = minimum[i].min(value);
-            maximum[i] = maximum[i].max(value);
-        }
-    }
-    std::array::from_fn(|i| {
-        let [middle, half] = match i {
-            0 => [0.5 * (minimum[i] + maximum[i]), 0.5 * (maximum[i] - minimum[i])],
-            _ => [0.0, maximum[i].abs().max(minimum[i].abs())],
-        };
-        [middle, if half > 0.0 { half } else { 1.0 }]
-    })
-}
-
-/// What the coefficients c do to a value: it changes by c . by, and should by `missing`.
-#[derive(Clone, Copy)]
-struct Change {
-    by: Coefficients,
-    missing: f64,
-    /// The value on the finer mesh.
-    reference: f64,
-}
-
-impl Change {
-    /// Of a value that is multiplied by 1 + c . terms.
-    fn of(terms: Coefficients, value: f64, reference: f64) -> Self {
-        Self { by: terms.map(|term| term * value), missing: reference - value, reference }
-    }
-}
-
-/// The c with which c . by = missing, by least squares, each equation scaled by its reference and
-/// with the weight of its quantity.
-fn least_squares<const N: usize>(quantities: [(Vec<Change>, f64); N]) -> Coefficients {
-    let mut normal = RIDGE * Mat::<f64>::identity(TERMS.len(), TERMS.len());
-    let mut right = Mat::<f64>::zeros(TERMS.len(), 1);
-    for (changes, weight) in quantities {
-        let squares: f64 = changes.iter().map(|change| change.reference.powi(2)).sum();
-        if squares == 0.0 {
-            continue;
-        }
-        let minimum = LEAST_SCALE * (squares / changes.len() as f64).sqrt();
-        for change in changes {
-            let scale = change.reference.hypot(minimum) / weight;
-            let row = change.by.map(|by| by / scale);
-            for i in 0..TERMS.len() {
-                right[(i, 0)] += row[i] * change.missing / scale;
-                for j in 0..TERMS.len() {
-                    normal[(i, j)] += row[i] * row[j];
-                }
-            }
-        }
-    }
-    let factor =
-        Llt::new(normal.as_ref(), Side::Lower).expect("the ridge term makes it positive definite");
-    let solution = factor.solve(&right);
-    std::array::from_fn(|i| solution[(i, 0)])
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -366,7 +144,7 @@ mod tests {
 
     /// The rows of the rays themselves, without the rows of the finer mesh.
     fn of_rays(database: &Database) -> Vec<Row> {
-        database.on_tier("default").cloned().collect()
+        database.on_tier(Fidelity::default()).cloned().collect()
     }
 
     /// The [`rows`] with the errors of a coarse mesh, by a known q.
@@ -416,7 +194,7 @@ mod tests {
         assert_eq!(manifest.cpu_s, 10.0 * RAYS as f64);
         assert_eq!((manifest.rays, manifest.rows), (RAYS, 10 * RAYS));
         assert_eq!(manifest.finer, None);
-        assert_eq!(manifest.tier, "default corrected to reference");
+        assert_eq!(manifest.tier.to_string(), "default corrected to reference");
         assert_eq!(manifest.split, split);
         let after = errors(&corrected);
         // 1/(1 + q) is not a polynomial of degree two. The remaining error is largest in forces
@@ -461,7 +239,7 @@ mod tests {
         let twice = twice();
         let bridge = Bridge::fit(&twice.on_both_meshes());
         let row = &of_rays(&twice)[13];
-        let image = &crate::mirror::with_mirrored(std::slice::from_ref(row))[1];
+        let image = &crate::rows::with_mirrored(std::slice::from_ref(row))[1];
         let (there, here) = (bridge.corrected(image).mirrored(), bridge.corrected(row));
         for (x, y) in [(there.w, here.w), (there.f_s, here.f_s), (there.d, here.d)] {
             assert!((x - y).abs() < 1e-12 * y.abs().max(1.0), "{x} {y}");
@@ -508,7 +286,7 @@ mod tests {
     #[test]
     fn rows_solved_on_a_finer_tier_are_unchanged() {
         let mut retried = coarse();
-        retried[0].solved_tier = "fine".into();
+        retried[0].solved_tier = mesher::Tier::Fine;
         let (corrected, _) = on_both(retried, rows(TWICE)).corrected().unwrap();
         let same = |i: usize| corrected.rows()[i].sample == coarse()[i].sample;
         assert!(same(0) && !same(1));

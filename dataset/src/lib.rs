@@ -21,39 +21,35 @@
 //! # Ok::<_, dataset::DatasetError>(())
 //! ```
 
-#![warn(missing_docs)]
+#![cfg_attr(not(test), warn(unreachable_pub))]
 
+mod acceptance;
+mod bridge;
 mod check;
 mod compare;
-mod csv;
 mod database;
 mod database_files;
 mod digest;
 mod error;
-mod fidelity;
 mod fidelity_correction;
-mod gates;
 mod manifest;
 mod meshes;
-mod mirror;
 mod parquet;
 mod ray_stream;
-mod rays;
 mod rows;
 mod schema;
 mod split;
 mod summary;
 
+pub use acceptance::{AcceptanceLimits, Rejection};
 pub use check::Defect;
 pub use compare::{COMPARED, ComparedRay, ComparedState, compare, reference_rms, relative_rms};
 pub use database::Database;
 pub use error::DatasetError;
-pub use fidelity::Fidelity;
 pub use fidelity_correction::{LeftOut, left_out};
-pub use gates::{Gates, Rejection};
+
 pub use manifest::{FORMAT_VERSION, FinerMesh, Manifest};
-pub use mirror::with_mirrored;
 pub use ray_stream::Collected;
-pub use rows::Row;
-pub use schema::{ColumnMeaning, columns};
+pub use rows::{Fidelity, Row, with_mirrored};
+pub use schema::{COLUMNS, ColumnMeaning};
 pub use split::{Part, Split, SplitPlan};

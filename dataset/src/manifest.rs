@@ -1,7 +1,7 @@
 //! The manifest `X.json` of a database `X.parquet`.
 
-use crate::gates::{Gates, Rejection};
-use crate::rows::Row;
+use crate::acceptance::{AcceptanceLimits, Rejection};
+use crate::rows::{Fidelity, Row};
 use crate::split::{Split, SplitPlan};
 use hinge::{HingeConstants, TrainingDomain};
 use serde::{Deserialize, Serialize};
@@ -37,8 +37,8 @@ pub struct Manifest {
     /// The finer mesh on which some of the rays were solved too.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub finer: Option<FinerMesh>,
-    /// The gates that all rows have passed.
-    pub gates: Gates,
+    /// The limits that all rows satisfy.
+    pub gates: AcceptanceLimits,
     /// Number of rejected rows by reason.
     pub rejected: BTreeMap<Rejection, usize>,
     /// Name of the material.
@@ -48,8 +48,8 @@ pub struct Manifest {
     /// Hash of the campaign's settings; the set is empty, or contains an empty hash, if they are
     /// unknown.
     pub settings_hashes: BTreeSet<String>,
-    /// Tier of the window mesh, as parsed by [`Fidelity::from_tier`](crate::Fidelity::from_tier).
-    pub tier: String,
+    /// The window mesh.
+    pub tier: Fidelity,
     /// The constants of all hinges; if they have holes of several radii (`domain.holes`),
     /// `fillet_ratio` is the paper's.
     pub hinge: HingeConstants,
@@ -72,7 +72,7 @@ pub struct Manifest {
 #[serde(deny_unknown_fields)]
 pub struct FinerMesh {
     /// Its tier.
-    pub tier: String,
+    pub tier: Fidelity,
     /// Number of rays that were solved on it.
     pub rays: usize,
     /// Their CPU time (s).

@@ -4,18 +4,18 @@
 //! All rows have one material, one kerf and one window radius, since a surrogate has no feature for
 //! them. The finer mesh is the one with fewer rays, or, of as many, with the longer solves.
 
-use crate::error::DatasetError;
-use crate::rays::{RayKey, ray_key};
-use crate::rows::Row;
+use crate::error::{DatasetError, refused};
+use crate::rows::{RayKey, Row, ray_key};
 use crate::split::Geometries;
 use hinge::{HingeDeformation, HingeDesign, Regime};
 use std::cmp::Reverse;
 use std::collections::BTreeSet;
 
 /// The rows of one mesh.
+#[derive(Default)]
 pub(crate) struct MeshRows {
     /// The first of them.
-    first: Row,
+    pub first: Row,
     keys: BTreeSet<RayKey>,
     pub rays: usize,
     pub partial_rays: usize,
@@ -27,19 +27,6 @@ pub(crate) struct MeshRows {
 }
 
 impl MeshRows {
-    fn new(first: &Row) -> Self {
-        Self {
-            first: first.clone(),
-            keys: BTreeSet::new(),
-            rays: 0,
-            partial_rays: 0,
-            cpu_s: 0.0,
-            geometries: Geometries::default(),
-            designs: Vec::new(),
-            deformations: Vec::new(),
-        }
-    }
-
     fn add(&mut self, ray: &[Row]) {
         for row in ray {
             self.geometries.add(row);
@@ -52,13 +39,9 @@ impl MeshRows {
         if let Some(last) = ray.last() {
             self.keys.insert(ray_key(last));
             self.rays += 1;
-            self.partial_rays += usize::from(last.is_partial());
+            self.partial_rays += usize::from(last.failure.is_some());
             self.cpu_s += last.cpu_s;
         }
-    }
-
-    pub fn tier(&self) -> &str {
-        &self.first.tier
     }
 
     /// CPU time of a ray (s).
@@ -66,16 +49,8 @@ impl MeshRows {
         self.cpu_s / self.rays as f64
     }
 
-    pub fn settings_hash(&self) -> &str {
-        &self.first.settings_hash
-    }
-
-    pub fn first_design(&self) -> &HingeDesign {
-        &self.first.design
-    }
-
     /// The design and the deformation of every row.
-    pub fn states(&self) -> impl Iterator<Item = (HingeDesign, HingeDeformation)> + Clone {
+    pub(crate) fn states(&self) -> impl Iterator<Item = (HingeDesign, HingeDeformation)> + Clone {
         let designs =
             (self.designs.iter()).flat_map(|(design, count)| std::iter::repeat_n(*design, *count));
         designs.zip(self.deformations.iter().copied())
@@ -108,13 +83,13 @@ pub(crate) struct Meshes {
 
 impl Meshes {
     /// Adds accepted rows of one job.
-    pub fn add(&mut self, ray: &[Row]) -> Result<(), DatasetError> {
+    pub(crate) fn add(&mut self, ray: &[Row]) -> Result<(), DatasetError> {
         let Some(first) = ray.first() else {
             return Ok(());
         };
-        let known = self.meshes.iter().position(|mesh| mesh.tier() == first.tier);
+        let known = self.meshes.iter().position(|mesh| mesh.first.tier == first.tier);
         let place = known.unwrap_or_else(|| {
-            self.meshes.push(MeshRows::new(first));
+            self.meshes.push(MeshRows { first: first.clone(), ..MeshRows::default() });
             self.meshes.len() - 1
         });
         for row in ray {
@@ -124,22 +99,15 @@ impl Meshes {
         if let Some(bent) = bends(ray)
             && bent != *self.bent_rays.get_or_insert(bent)
         {
-            let shape = |bent| {
-                if bent { "of bent rays" } else { "of straight rays" }
-            };
-            return Err(DatasetError::Mixed {
-                job: first.job.clone(),
-                column: "a",
-                expected: shape(!bent).into(),
-                found: shape(bent).into(),
-            });
+            let shape = |bent| format!("of {} rays", if bent { "bent" } else { "straight" });
+            return Err(mixed("a", first, [!bent, bent].map(shape)));
         }
         self.meshes[place].add(ray);
         Ok(())
     }
 
     /// The mesh of the rays, and the finer one if there is one; `None` without rows.
-    pub fn sorted(self) -> Result<Option<(MeshRows, Option<MeshRows>)>, DatasetError> {
+    pub(crate) fn sorted(self) -> Result<Option<(MeshRows, Option<MeshRows>)>, DatasetError> {
         let mut meshes = self.meshes;
         meshes.sort_by(|x, y| x.cost().total_cmp(&y.cost()));
         meshes.sort_by_key(|mesh| Reverse(mesh.keys.len()));
@@ -154,7 +122,9 @@ impl Meshes {
         };
         let third = meshes.next();
         match third.as_ref().or(finer.as_ref().filter(is_other)) {
-            Some(other) => Err(mixed("tier", &rays.first, &other.first, |row| row.tier.clone())),
+            Some(MeshRows { first, .. }) => {
+                Err(mixed("tier", first, [&rays.first, first].map(|row| row.tier.to_string())))
+            }
             None => Ok(Some((rays, finer))),
         }
     }
@@ -173,18 +143,21 @@ const SHARED: [Quantity; 4] = [
 
 /// The quantities that all rows of one mesh have in common.
 const SHARED_ON_A_MESH: [Quantity; 2] =
-    [("settings_hash", |row| row.settings_hash.clone()), ("tier", |row| row.tier.clone())];
+    [("settings_hash", |row| row.settings_hash.clone()), ("tier", |row| row.tier.to_string())];
 
 /// Rejects a row that differs from `first` in one of the quantities, which are not features of the
 /// surrogate.
 fn refuse_other(first: &Row, row: &Row, quantities: &[Quantity]) -> Result<(), DatasetError> {
     let mut different = quantities.iter().filter(|(_, text)| text(first) != text(row));
     match different.next() {
-        Some((column, text)) => Err(mixed(column, first, row, *text)),
+        Some((column, text)) => Err(mixed(column, row, [first, row].map(text))),
         None => Ok(()),
     }
 }
 
-fn mixed(column: &'static str, first: &Row, row: &Row, text: fn(&Row) -> String) -> DatasetError {
-    DatasetError::Mixed { job: row.job.clone(), column, expected: text(first), found: text(row) }
+fn mixed(column: &str, Row { job, .. }: &Row, [expected, found]: [String; 2]) -> DatasetError {
+    refused(format!(
+        "job {job}: {column} = {found}, but other rows have {expected}; collect them in separate \
+         databases"
+    ))
 }

@@ -2,16 +2,17 @@
 //! file are in memory at a time; of all other rows 24 bytes, and of every ray its id, from which
 //! domain and split are computed at the end.
 
-use crate::database_files::{publish, refuse_existing, unwritable};
+use crate::database_files::{publish, refuse_existing};
 use crate::digest::{Digest, by_job_and_lambda};
 use crate::error::DatasetError;
 use crate::manifest::Manifest;
 use crate::parquet::{Hashing, Table};
 use crate::rows::Row;
 use crate::split::SplitPlan;
-use crate::summary::{Contents, Summary};
+use crate::summary::Contents;
 use std::fmt;
 use std::path::Path;
+use support::fault::unwritten;
 use support::whole_file::Unnamed;
 
 /// A database that was written while its rays arrived.
@@ -35,9 +36,10 @@ impl Collected {
         replace: bool,
     ) -> Result<Self, E> {
         refuse_existing(path, replace)?;
-        let mut file = Unnamed::next_to(path).map_err(unwritable(path))?;
-        let failed = |error: DatasetError| unwritable(path)(std::io::Error::other(error));
-        let mut digest = Digest::new();
+        let mut file =
+            Unnamed::next_to(path).map_err(unwritten(path)).map_err(DatasetError::from)?;
+        let failed = |error: DatasetError| unwritten(path)(error).into();
+        let mut digest = Digest::default();
         let mut contents = Contents::default();
         let mut hashing = Hashing::new(file.file());
         let mut table = Table::new(&mut hashing).map_err(failed)?;
@@ -57,8 +59,7 @@ impl Collected {
 
 impl fmt::Display for Collected {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        let (manifest, contents) = (&self.manifest, &self.contents);
-        Summary { manifest, contents }.fmt(f)
+        self.contents.summary(&self.manifest, f)
     }
 }
 
@@ -93,13 +94,12 @@ mod tests {
         }
         assert_eq!(collected.to_string(), database.to_string());
 
-        assert!(matches!(write(&rows, false), Err(DatasetError::Exists { .. })));
+        let refusal = |rows: &[Row], replace| write(rows, replace).unwrap_err().to_string();
+        assert!(refusal(&rows, false).contains("already exists"));
         // A ray that is given twice, or no ray that can be used, leaves the old files.
         let twice = [&rows[..20], &rows[10..]].concat();
-        let error = write(&twice, true).unwrap_err();
-        assert!(matches!(error, DatasetError::Duplicate { .. }), "{error}");
-        let error = write(&[], true).unwrap_err();
-        assert!(matches!(error, DatasetError::NoRows { .. }), "{error}");
+        assert!(refusal(&twice, true).contains("occurs twice"));
+        assert!(refusal(&[], true).starts_with("no rows: "));
         assert_eq!(Database::read(&path).unwrap().rows(), database.rows());
         assert_eq!(folder.path().read_dir().unwrap().count(), 4);
     }

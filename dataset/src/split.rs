@@ -3,7 +3,7 @@
 //! All rays of one (w_lig, alpha) and of its mirror image belong to the same part. The test part
 //! therefore contains only geometries that are not in the training part.
 
-use crate::error::DatasetError;
+use crate::error::{DatasetError, refused};
 use crate::rows::Row;
 use rand::SeedableRng;
 use rand::seq::SliceRandom;
@@ -58,12 +58,18 @@ impl Split {
     pub(crate) fn deal(geometries: &Geometries, plan: &SplitPlan) -> Result<Self, DatasetError> {
         let SplitPlan { validation, test, .. } = *plan;
         if ![validation, test].iter().all(|share| (0.0..0.5).contains(share) && *share > 0.0) {
-            return Err(DatasetError::Shares { validation, test });
+            return Err(refused(format!(
+                "the fractions validation = {validation} and test = {test} violate \
+                 0 < fraction < 0.5"
+            )));
         }
         let mut geometries: Vec<&Vec<String>> = geometries.0.values().collect();
         let count = geometries.len();
         if count < 3 {
-            return Err(DatasetError::TooFewGeometries { found: count });
+            return Err(refused(format!(
+                "{count} geometries cannot be split into training, validation and test: at least \
+                 3 are needed"
+            )));
         }
         geometries.shuffle(&mut ChaCha8Rng::seed_from_u64(plan.seed));
         // Rounding leaves every part at least one geometry.
@@ -90,15 +96,11 @@ impl Split {
 
     /// The same split of some of the jobs.
     pub(crate) fn of(&self, jobs: BTreeSet<&String>) -> Self {
-        let known = |part: &BTreeSet<String>| {
-            let known = part.iter().filter(|job| jobs.contains(job));
-            known.cloned().collect()
-        };
-        Self {
-            training: known(&self.training),
-            validation: known(&self.validation),
-            test: known(&self.test),
+        let mut split = self.clone();
+        for part in [&mut split.training, &mut split.validation, &mut split.test] {
+            part.retain(|job| jobs.contains(job));
         }
+        split
     }
 
     /// The ids of the jobs of one part.
@@ -109,13 +111,6 @@ impl Split {
             Part::Test => &self.test,
         }
     }
-
-    /// The part of a job; `None` if it is in no part.
-    pub(crate) fn part(&self, job: &str) -> Option<Part> {
-        [Part::Training, Part::Validation, Part::Test]
-            .into_iter()
-            .find(|&part| self.jobs(part).contains(job))
-    }
 }
 
 /// The ids of the jobs of each geometry.
@@ -124,7 +119,7 @@ pub(crate) struct Geometries(BTreeMap<[i64; 2], Vec<String>>);
 
 impl Geometries {
     /// Adds the geometry and the job of a row. The rows of a job must come one after the other.
-    pub fn add(&mut self, row: &Row) {
+    pub(crate) fn add(&mut self, row: &Row) {
         let jobs = self.0.entry(geometry(row)).or_default();
         if jobs.last() != Some(&row.job) {
             jobs.push(row.job.clone());
@@ -132,12 +127,12 @@ impl Geometries {
     }
 
     /// Number of distinct (w_lig, alpha), up to mirroring.
-    pub fn len(&self) -> usize {
+    pub(crate) fn len(&self) -> usize {
         self.0.len()
     }
 }
 
-/// (w_lig, alpha) up to mirroring, in units of 1e-9, so that the rounding error of pi - alpha has
+/// (w_lig, alpha) up to mirroring, in units of 1e-9, so the rounding error of pi - alpha has
 /// no effect.
 pub(crate) fn geometry(row: &Row) -> [i64; 2] {
     let alpha = row.design.alpha.min(PI - row.design.alpha);
@@ -154,8 +149,8 @@ pub(crate) fn state(row: &Row) -> ([i64; 2], [i64; 3]) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mirror::with_mirrored;
     use crate::rows::tests::rows;
+    use crate::rows::with_mirrored;
 
     fn geometries(rows: &[Row]) -> Geometries {
         let mut geometries = Geometries::default();
@@ -206,13 +201,13 @@ mod tests {
     fn too_few_geometries_and_impossible_fractions_are_rejected() {
         let plan = SplitPlan::default();
         let error = Split::deal(&geometries(&rows(2)), &plan).unwrap_err();
-        assert!(matches!(error, DatasetError::TooFewGeometries { found: 2 }));
+        assert!(error.to_string().starts_with("2 geometries"), "{error}");
         let three = Split::deal(&geometries(&rows(3)), &plan).unwrap();
         assert_eq!(three.training.len(), 1);
         for (validation, test) in [(0.0, 0.1), (0.1, 0.5), (0.1, f64::NAN)] {
             let plan = SplitPlan { validation, test, ..plan };
             let error = Split::deal(&geometries(&rows(9)), &plan).unwrap_err();
-            assert!(matches!(error, DatasetError::Shares { .. }));
+            assert!(error.to_string().starts_with("the fractions"), "{error}");
         }
     }
 }

@@ -3,8 +3,9 @@
 use crate::database::Database;
 use crate::manifest::{FinerMesh, Manifest};
 use crate::rows::Row;
-use crate::schema;
+use crate::schema::COLUMNS;
 use crate::split::Part;
+use mesher::Tier;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 use support::table::Table;
@@ -12,18 +13,17 @@ use support::table::Table;
 /// What a summary states of the rows beyond the manifest.
 #[derive(Clone, Debug)]
 pub(crate) struct Contents {
-    /// The minimum and the maximum of every column of numbers.
-    ranges: [[f64; 2]; schema::NUMERIC],
+    /// The minimum and the maximum of every column; infinite without a number.
+    ranges: [[f64; 2]; COLUMNS.len()],
     /// The rays that were solved on another tier than the tier of their campaign, each with the
     /// tier on which it was solved.
-    other_tiers: BTreeMap<String, String>,
+    other_tiers: BTreeMap<String, Tier>,
 }
 
 impl Default for Contents {
-    /// Of no rows.
     fn default() -> Self {
         Self {
-            ranges: [[f64::INFINITY, f64::NEG_INFINITY]; schema::NUMERIC],
+            ranges: [[f64::INFINITY, f64::NEG_INFINITY]; COLUMNS.len()],
             other_tiers: BTreeMap::new(),
         }
     }
@@ -31,14 +31,15 @@ impl Default for Contents {
 
 impl Contents {
     /// Adds rows.
-    pub fn add(&mut self, rows: &[Row]) {
+    pub(crate) fn add(&mut self, rows: &[Row]) {
         for row in rows {
-            for ([minimum, maximum], value) in self.ranges.iter_mut().zip(schema::values(row)) {
+            for ([minimum, maximum], column) in self.ranges.iter_mut().zip(&COLUMNS) {
+                let value = column.number(row).unwrap_or(f64::NAN);
                 *minimum = minimum.min(value);
                 *maximum = maximum.max(value);
             }
-            if !row.is_as_asked() {
-                (self.other_tiers).insert(row.job.clone(), row.solved_tier.clone());
+            if !row.at_requested_tier() {
+                (self.other_tiers).insert(row.job.clone(), row.solved_tier);
             }
         }
     }
@@ -48,90 +49,51 @@ impl fmt::Display for Database {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let mut contents = Contents::default();
         contents.add(self.rows());
-        Summary { manifest: self.manifest(), contents: &contents }.fmt(f)
+        contents.summary(self.manifest(), f)
     }
 }
 
-/// Prints counts, the finer mesh, rejected rows, the rays on another mesh, the split, and what each
-/// column holds.
-pub(crate) struct Summary<'a> {
-    pub manifest: &'a Manifest,
-    pub contents: &'a Contents,
-}
-
-impl fmt::Display for Summary<'_> {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        self.write_meshes(f)?;
-        self.write_origin(f)?;
-        self.write_split(f)?;
-        self.write_columns(f)
-    }
-}
-
-impl Summary<'_> {
-    /// What was solved, on which meshes.
-    fn write_meshes(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        let manifest = self.manifest;
+impl Contents {
+    /// Prints counts, the finer mesh, rejected rows, the rays on another mesh, the split, and what
+    /// each column holds.
+    pub(crate) fn summary(&self, manifest: &Manifest, f: &mut fmt::Formatter) -> fmt::Result {
+        let Manifest { rows, rays, partial_rays, geometries, material, tier, cpu_s, .. } = manifest;
         writeln!(
             f,
-            "{} rows of {} rays ({} partial) over {} geometries; {}, tier {}; {:.0} CPU s",
-            manifest.rows,
-            manifest.rays,
-            manifest.partial_rays,
-            manifest.geometries,
-            manifest.material,
-            manifest.tier,
-            manifest.cpu_s,
+            "{rows} rows of {rays} rays ({partial_rays} partial) over {geometries} geometries; \
+             {material}, tier {tier}; {cpu_s:.0} CPU s"
         )?;
         if let Some(FinerMesh { tier, rays, cpu_s }) = &manifest.finer {
             writeln!(f, "{rays} of the rays also on tier {tier}; {cpu_s:.0} CPU s")?;
         }
-        match self.contents.other_tiers.len() {
-            0 => Ok(()),
-            count => {
-                let were = if count == 1 { "ray was" } else { "rays were" };
-                let tiers = counted(self.contents.other_tiers.values());
-                writeln!(f, "{count} {were} solved on another mesh after a failure: {tiers}")
-            }
+        let count = self.other_tiers.len();
+        if count > 0 {
+            let were = if count == 1 { "ray was" } else { "rays were" };
+            let tiers = counted(self.other_tiers.values());
+            writeln!(f, "{count} {were} solved on another mesh after a failure: {tiers}")?;
         }
-    }
-
-    /// Hashes and rejected rows.
-    fn write_origin(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        writeln!(
-            f,
-            "material law {}, campaign settings {}",
-            known(&self.manifest.material_hashes),
-            known(&self.manifest.settings_hashes),
-        )?;
-        for (reason, count) in &self.manifest.rejected {
+        let [law, settings] = [&manifest.material_hashes, &manifest.settings_hashes].map(known);
+        writeln!(f, "material law {law}, campaign settings {settings}")?;
+        for (reason, count) in &manifest.rejected {
             writeln!(f, "rejected {count} rows: {reason}")?;
         }
-        Ok(())
-    }
-
-    fn write_split(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        let rays = |part| self.manifest.split.jobs(part).len();
+        let [training, validation, test] = [Part::Training, Part::Validation, Part::Test]
+            .map(|part| manifest.split.jobs(part).len());
         writeln!(
             f,
-            "split by geometry: {} rays for training, {} for validation, {} for test",
-            rays(Part::Training),
-            rays(Part::Validation),
-            rays(Part::Test),
-        )
-    }
-
-    /// The columns of numbers with their ranges, then the columns of text.
-    fn write_columns(&self, f: &mut fmt::Formatter) -> fmt::Result {
+            "split by geometry: {training} rays for training, {validation} for validation, \
+             {test} for test"
+        )?;
         let head = ["column", "minimum", "maximum", "unit", "meaning"];
         let mut numbers = Table::new(head).left(&[0, 3, 4]);
-        for (column, range) in schema::numbers().zip(self.contents.ranges) {
+        let mut texts = Table::new(["column of text", "meaning"]).left(&[0, 1]);
+        for (column, range) in COLUMNS.iter().zip(self.ranges) {
+            if column.is_text() {
+                texts.row([column.name, column.meaning]);
+                continue;
+            }
             let [minimum, maximum] = &range.map(limit);
             numbers.row([column.name, minimum, maximum, column.unit, column.meaning]);
-        }
-        let mut texts = Table::new(["column of text", "meaning"]).left(&[0, 1]);
-        for column in schema::texts() {
-            texts.row([column.name, column.meaning]);
         }
         writeln!(f, "\n{numbers}\n\n{texts}")
     }
@@ -142,13 +104,13 @@ fn limit(value: f64) -> String {
     if value.is_finite() { format!("{value:.6}") } else { "-".into() }
 }
 
-/// Every text with the number of times that it occurs.
-fn counted<'a>(texts: impl Iterator<Item = &'a String>) -> String {
-    let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
-    for text in texts {
-        *counts.entry(text).or_default() += 1;
+/// Every tier with the number of times that it occurs.
+fn counted<'a>(tiers: impl Iterator<Item = &'a Tier>) -> String {
+    let mut counts: BTreeMap<&Tier, usize> = BTreeMap::new();
+    for tier in tiers {
+        *counts.entry(tier).or_default() += 1;
     }
-    let counts = counts.iter().map(|(text, count)| format!("{text} ({count})"));
+    let counts = counts.iter().map(|(tier, count)| format!("{tier} ({count})"));
     Vec::from_iter(counts).join(", ")
 }
 
@@ -163,7 +125,6 @@ fn known(hashes: &BTreeSet<String>) -> String {
 mod tests {
     use super::*;
     use crate::rows::tests::{finer, rows};
-    use crate::schema::columns;
     use crate::split::SplitPlan;
 
     fn summary(rows: Vec<Row>) -> String {
@@ -187,11 +148,11 @@ mod tests {
 
     #[test]
     fn rays_on_another_mesh_are_counted_by_its_tier() {
-        let retried = |tiers: &[(&str, &str)]| {
+        let retried = |tiers: &[(&str, Tier)]| {
             let mut rows = rows(10);
             for row in &mut rows {
                 if let Some((_, tier)) = tiers.iter().find(|(job, _)| row.job == *job) {
-                    row.solved_tier = (*tier).into();
+                    row.solved_tier = *tier;
                 }
             }
             let text = summary(rows);
@@ -200,10 +161,10 @@ mod tests {
         };
         assert_eq!(retried(&[]), None);
         assert_eq!(
-            retried(&[("job-007", "fine")]).unwrap(),
+            retried(&[("job-007", Tier::Fine)]).unwrap(),
             "1 ray was solved on another mesh after a failure: fine (1)"
         );
-        let three = [("job-002", "fine"), ("job-005", "plate"), ("job-007", "fine")];
+        let three = [("job-002", Tier::Fine), ("job-005", Tier::Plate), ("job-007", Tier::Fine)];
         assert_eq!(
             retried(&three).unwrap(),
             "3 rays were solved on another mesh after a failure: fine (2), plate (1)"
@@ -213,7 +174,7 @@ mod tests {
     #[test]
     fn every_column_has_a_line_with_its_unit_and_its_meaning() {
         let text = summary(rows(10));
-        for column in columns() {
+        for column in &COLUMNS {
             let name = format!(" {} ", column.name);
             let mut lines = text.lines().filter(|line| line.starts_with(&name));
             let line = lines.next().unwrap();

@@ -18,7 +18,7 @@ mod mean;
 mod released;
 mod surrogate;
 
-pub use contact::{Contact, InvalidContact};
+pub use contact::Contact;
 pub use corrected::{CorrectedLaw, Correction, LENGTHS, MissingForces};
 pub use law::{
     DamageMeasure, DesignGradient, HingeDamage, HingeEnergy, HingeGradient, HingeLaw, Order,

@@ -1,12 +1,13 @@
 //! Sheets of rigid panels joined by hinges: from a cut pattern to its deployment, and back to the
 //! pattern that deploys onto a target.
 //!
-//! With theta = (z, ell, omega) the coordinates of cut pattern and ligament widths, (1), the crate
-//! solves
+//! The crate solves, in the coordinates theta = (z, ell, omega) of cut pattern and ligament widths
+//! (1),
 //!
 //! ```text
-//! min over theta of  L(theta) = chamfer(outline(q_N), target) + sum_j w_j J_j(q_1 ... q_N)        (16)-(19)
-//! subject to         grad_q Pi(q_i; theta, zeta_i) = 0,   zeta_i = i / N,                          (10)
+//! min over theta of  L(theta) = chamfer(outline(q_N), target) + sum_j w_j J_j(q_1 ... q_N)
+//! (16)-(19) subject to         grad_q Pi(q_i; theta, zeta_i) = 0,   zeta_i = i / N,
+//! (10)
 //!                    Pi = sum_h W(eps_h(q); g_h) - zeta f . q
 //! ```
 //!
@@ -37,13 +38,12 @@
 //! use std::sync::Arc;
 //! use std::sync::atomic::AtomicBool;
 //!
-//! // A square sheet of 3 x 3 panels: one held at the left, one pulled to the right by 2 N.
-//! let grid = Grid { m: 3, n: 3 };
-//! let clamp = Dof::ALL.map(|dof| Support { panel: grid.panel(0, 1), dof, value: 0.0 });
-//! let pull = Load { panel: grid.panel(2, 1), dof: Dof::UX, value: 2.0 };
-//! let solver = EquilibriumSolver::new(grid, &clamp, &[pull], 4, SolverSettings::default())?;
-//! let circle = (0..100).map(|i| 0.0628 * f64::from(i)).map(|t| [700.0 + 750.0 * t.cos(), 550.0 + 750.0 * t.sin()]);
-//! let problem = DesignProblem {
+//! // A square sheet of 3 x 3 panels: one held at the left, one pulled to the right by 2 N. let
+//! grid = Grid { m: 3, n: 3 }; let clamp = Dof::ALL.map(|dof| Support { panel: grid.panel(0, 1),
+//! dof, value: 0.0 }); let pull = Load { panel: grid.panel(2, 1), dof: Dof::UX, value: 2.0 }; let
+//! solver = EquilibriumSolver::new(grid, &clamp, &[pull], 4, SolverSettings::default())?; let
+//! circle = (0..100).map(|i| 0.0628 * f64::from(i)).map(|t| [700.0 + 750.0 * t.cos(), 550.0 + 750.0
+//! * t.sin()]); let problem = DesignProblem {
 //!     grid,
 //!     outline: Outline::rectangle(1200.0, 1200.0),
 //!     widths: WidthChart { w_minus: 10.0, w_plus: 26.0 },
@@ -56,7 +56,11 @@
 //!         contact: None,
 //!         solver,
 //!     })),
-//!     objective: Objective::from_shape(Shape::new(circle.collect())),
+//!     objective: Objective {
+//!         shape: Shape::new(circle.collect()),
+//!         functionals: Vec::new(),
+//!         penalties: Vec::new(),
+//!     },
 //! };
 //!
 //! // Deploy the uniform sheet; its loss and the gradient.
@@ -76,7 +80,7 @@
 //! # Ok::<_, Box<dyn std::error::Error>>(())
 //! ```
 
-#![warn(missing_docs)]
+#![cfg_attr(not(test), warn(unreachable_pub))]
 
 pub mod equilibrium;
 pub mod geometry;
@@ -88,14 +92,18 @@ pub mod sheet;
 
 pub use equilibrium::solver::EquilibriumSolver;
 pub use hinge_law::{HingeLaw, LinearLaw, SurrogateLaw};
-pub use objective::design_problem::{
-    Deployment, DesignError, DesignProblem, Evaluation, Mechanics, Model,
+pub use objective::{
+    design_problem::{Deployment, DesignError, DesignProblem, Evaluation, Mechanics, Model},
+    loss::Objective,
+    shape::Shape,
 };
-pub use objective::loss::Objective;
-pub use objective::shape::Shape;
-pub use optimise::outer_loop::{Ended, SearchState, optimise};
-pub use optimise::search::SearchMethod;
-pub use pattern::cut_pattern::Outline;
-pub use pattern::design_vector::{DesignVector, WidthChart};
-pub use pattern::grid::Grid;
+pub use optimise::{
+    outer_loop::{Ended, SearchState, optimise},
+    search::SearchMethod,
+};
+pub use pattern::{
+    cut_pattern::Outline,
+    design_vector::{DesignVector, WidthChart},
+    grid::Grid,
+};
 pub use sheet::cut_sheet::Sheet;

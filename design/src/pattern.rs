@@ -5,4 +5,3 @@ pub mod cut_pattern;
 pub mod design_vector;
 pub mod fit_variables;
 pub mod grid;
-pub mod pattern_error;

@@ -7,6 +7,7 @@ pub mod hinge_window;
 pub mod ideal_deployment;
 pub mod kinematics;
 pub mod opening_limits;
+pub mod panel;
 pub mod panel_vectors;
 pub mod topology;
 pub mod validity;

@@ -2,13 +2,10 @@
 
 pub(crate) mod calculix_solver;
 pub(crate) mod cards;
-pub(crate) mod ccx;
 pub(crate) mod dat;
 pub(crate) mod deck;
 pub(crate) mod deck_run;
 pub(crate) mod driven_arc;
 pub(crate) mod fields;
-pub(crate) mod model;
-pub(crate) mod panel_motion;
 pub(crate) mod response;
 pub(crate) mod sta;

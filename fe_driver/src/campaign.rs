@@ -1,15 +1,14 @@
 //! A campaign of window solves: definition, plan, run, ledger, results.
 
-pub(crate) mod array_script;
 pub(crate) mod campaign_folder;
 pub(crate) mod definition;
 pub(crate) mod extra_rays;
-pub(crate) mod finished_windows;
 pub(crate) mod history;
 pub(crate) mod plan;
 pub(crate) mod restore;
 pub(crate) mod run;
 pub(crate) mod sampling;
+pub(crate) mod shard;
 pub(crate) mod slurm;
 pub(crate) mod spot_paths;
 pub(crate) mod status;

@@ -52,7 +52,9 @@
 //! };
 //! let film = SheetMaterial::load(Path::new("configs/materials/pet-0.5mm.toml"))?;
 //! let solver = CalculiX::find()?;
-//! let solve = WindowSolve::new(WindowProblem::new(ray.driven(Tier::Default.regime()), &film, Tier::Default), &solver.versions());
+//! let tier = Tier::Default;
+//! let problem = WindowProblem::new(ray.driven(tier.regime()), &film, tier);
+//! let solve = WindowSolve::new(problem, &solver.versions());
 //! let (limit, stop) = (Duration::from_secs(600), AtomicBool::new(false));
 //! let solution = solver.attempt(&solve, Path::new("runs/solve"), limit, &stop)?;
 //! for sample in &solution.samples {
@@ -61,7 +63,7 @@
 //! # Ok::<_, Box<dyn std::error::Error>>(())
 //! ```
 
-#![warn(missing_docs)]
+#![cfg_attr(not(test), warn(unreachable_pub))]
 
 #[cfg(test)]
 extern crate self as fe_driver;
@@ -72,44 +74,56 @@ mod record_file;
 mod sheet;
 mod solve;
 
+pub(crate) use calculix::cards::{
+    real, write_amplitude, write_element, write_increments, write_material, write_nodes, write_set,
+};
+pub(crate) use calculix::dat::{Block, Printed, at_node, numbers, read_printed};
+pub(crate) use calculix::deck_run::{DeckRun, read_if_there, time_reached};
+pub(crate) use calculix::driven_arc::{DrivenArc, PanelMotion, even_lambdas, rotated};
+pub(crate) use calculix::response::{Damage, samples};
+pub(crate) use campaign::campaign_folder::{CampaignFolder, Index};
+pub(crate) use campaign::extra_rays::read_extra_rays;
+pub(crate) use campaign::history::{EventLog, history_name, overlaps};
+pub(crate) use record_file::{damaged, entries, read_json, short_hash, unless_damaged, write_json};
+pub(crate) use sheet::rigid_motion::RigidMotion;
+pub(crate) use sheet::sheet_deck::{SheetModel, hinge_set};
+pub(crate) use sheet::sheet_nodes::SheetNodes;
+pub(crate) use sheet::sheet_output::{SheetFrame, SheetLayout};
+pub(crate) use sheet::sheet_problem::{SECONDS, interpolated};
+pub(crate) use sheet::sheet_response::states;
+pub(crate) use solve::attempts::{Event, Job, Workers, now};
+pub(crate) use solve::solve_folder::{SolveState, host};
+
 pub use calculix::calculix_solver::{CalculiX, reached};
-pub use calculix::ccx::{CCX, Ccx, CcxRun};
-pub use calculix::dat::{DatError, Frame, Layout, read_dat};
-pub use calculix::deck::deck;
-pub use calculix::model::WindowModel;
+pub use calculix::dat::{Frame, Layout, read_dat};
+pub use calculix::deck::{WindowModel, deck};
+pub use calculix::deck_run::{CCX, Ccx, CcxRun};
 pub use calculix::sta::{Increment, read_sta};
-pub use campaign::array_script::{ArrayScript, SLURM, ScriptError};
+pub use campaign::campaign_folder::finished_windows;
 pub use campaign::definition::{Campaign, CampaignError, JobPart};
-pub use campaign::extra_rays::ExtraRaysError;
-pub use campaign::finished_windows::finished_windows;
 pub use campaign::plan::{Plan, plan, prepare};
 pub use campaign::restore::{CollectedWindow, Restored, restore};
 pub use campaign::run::{Progress, RunOptions, run};
 pub use campaign::sampling::RayBox;
+pub use campaign::shard::Shard;
 pub use campaign::slurm::{
-    ArrayStates, JobId, SlurmError, Submission, array_states, slurm_folder, submit_array,
+    ArrayStates, ArrayTasks, Submission, array_states, slurm_folder, submit_array,
 };
 pub use campaign::spot_paths::{DrawnStates, SpotPath, random_paths};
 pub use campaign::status::{Status, Tally, Throughput, known_parts, status};
-pub use sheet::invalid_sheet_problem::InvalidSheetProblem;
 pub use sheet::sheet_problem::{
-    DrivenRim, Held, History, Keeping, Place, Pulled, SheetProblem, SheetSolve,
+    DrivenRim, Held, History, OutOfPlaneRestraint, Place, Pulled, SheetProblem, SheetSolve,
 };
 pub use sheet::sheet_solver::sheet_reached;
 pub use sheet::sheet_states::{HingeState, PanelState, SheetState, SheetStates, SheetSurface};
 pub use solve::attempts::SolveListError;
-pub use solve::deformation_path::{DeformationPath, PathError};
-pub use solve::failure::{Cause, FailureKind, UnknownFailure};
-pub use solve::hinge_path::{HingePath, Ray};
-pub use solve::ladder::AttemptKind;
+pub use solve::deformation_path::{DeformationPath, HingePath, Ray};
+pub use solve::failure::{AttemptKind, Cause, FailureKind, SolveError};
 pub use solve::problem::{Solve, SolvedPath};
 pub use solve::service::SolveService;
-pub use solve::solve_error::SolveError;
 pub use solve::solve_folder::{SolveFolder, SolveRecord, SolveStore};
-pub use solve::solved::{Solved, Unsolved};
-pub use solve::solver::{Solution, Solver};
+pub use solve::solved::Solved;
+pub use solve::solver::{Solution, Solver, ToolVersions};
 pub use solve::step_control::StepControl;
-pub use solve::tool_versions::ToolVersions;
 pub use solve::window_solve::{WindowProblem, WindowSolve};
 pub use support::file_error::FileError;
-pub use support::shard::Shard;

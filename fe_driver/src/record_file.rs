@@ -8,16 +8,17 @@ use std::path::Path;
 use support::file_error::FileError;
 use support::{regular_file, sealed_json, whole_file};
 
-/// Separates damage from other errors of reading a file: `Ok(Err(reason))` if the contents are
-/// damaged.
-pub(crate) fn or_damage<T>(read: Result<T, FileError>) -> Result<Result<T, String>, FileError> {
+/// Separates damage from other errors of reading a file: `None` if the contents are damaged.
+pub(crate) fn unless_damaged<T>(read: Result<T, FileError>) -> Result<Option<T>, FileError> {
     match read {
-        Ok(contents) => Ok(Ok(contents)),
-        Err(error) if error.source.kind() == io::ErrorKind::InvalidData => {
-            Ok(Err(error.to_string()))
-        }
-        Err(error) => Err(error),
+        Err(error) if error.source.kind() == io::ErrorKind::InvalidData => Ok(None),
+        read => read.map(Some),
     }
+}
+
+/// The error of a file with damaged contents.
+pub(crate) fn damaged(path: &Path, what: String) -> FileError {
+    FileError::at(path)(io::Error::new(io::ErrorKind::InvalidData, what))
 }
 
 /// Reads a JSON file; `None` if the file does not exist.
@@ -25,8 +26,7 @@ pub(crate) fn read_json<T: DeserializeOwned>(path: &Path) -> Result<Option<T>, F
     match regular_file::read(path) {
         Ok(bytes) => sealed_json::from_slice(&bytes).map(Some).map_err(|error| {
             let hint = "the file is damaged: delete it, and the next run writes it again";
-            let damage = io::Error::new(io::ErrorKind::InvalidData, format!("{error}: {hint}"));
-            FileError::at(path)(damage)
+            damaged(path, format!("{error}: {hint}"))
         }),
         Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
         Err(error) => Err(FileError::at(path)(error)),

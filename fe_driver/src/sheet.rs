@@ -1,6 +1,5 @@
 //! Whole sheets by finite elements: every window and every panel, nothing rigid.
 
-pub(crate) mod invalid_sheet_problem;
 pub(crate) mod rigid_motion;
 pub(crate) mod sheet_deck;
 pub(crate) mod sheet_nodes;

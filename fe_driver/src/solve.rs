@@ -4,18 +4,12 @@
 pub(crate) mod attempts;
 pub(crate) mod deformation_path;
 pub(crate) mod failure;
-pub(crate) mod hinge_path;
-pub(crate) mod host;
-pub(crate) mod ladder;
 pub(crate) mod problem;
-mod rows_csv;
 pub(crate) mod service;
-pub(crate) mod solve_error;
 pub(crate) mod solve_folder;
 pub(crate) mod solved;
 pub(crate) mod solver;
 pub(crate) mod step_control;
 #[cfg(test)]
 pub(crate) mod tests;
-pub(crate) mod tool_versions;
 pub(crate) mod window_solve;

@@ -3,6 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
+use support::fault::{Fault, fault};
 
 /// Geometry of the ligament left between the tip of a main cut and a secondary cut; (7).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -58,24 +59,13 @@ impl HingeConstants {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[allow(missing_docs, reason = "the message of a variant is its documentation")]
 pub enum InvalidDesign {
-    #[error("{name} = {value} is not a finite number")]
-    NotFinite { name: &'static str, value: f64 },
-    #[error(
-        "w_lig = {0} mm violates {MIN_W_LIG} <= w_lig <= {MAX_W_LIG}: lengths are in mm{hint}",
-        hint = unit_slip(*.0)
-    )]
-    LigamentWidth(f64),
-    #[error("alpha = {deg:.4} deg violates 0 < alpha < 180", deg = .0.to_degrees())]
-    CutAngle(f64),
-    #[error("fillet_ratio = {0} violates 0 < fillet_ratio < 1 (the hole would cut the ligament)")]
-    Fillet(f64),
     #[error(
         "kerf = {kerf} mm violates 0 < kerf < 2 fillet_ratio w_lig = {limit} mm \
          (the cut must end in its hole)"
     )]
     Kerf { kerf: f64, limit: f64 },
-    #[error("r_win = {r_win} mm violates r_win > {factor} w_lig = {limit} mm", factor = MIN_WINDOW)]
-    Window { r_win: f64, limit: f64 },
+    #[error(transparent)]
+    Fault(#[from] Fault),
 }
 
 /// Minimum and maximum ligament width accepted (mm). The limits are far outside the range that is
@@ -135,35 +125,37 @@ impl HingeDesign {
 
     /// Rejects a design that cannot be cut; the error names the violated inequality.
     pub fn validate(&self) -> Result<(), InvalidDesign> {
-        for (name, value) in [
-            ("w_lig", self.w_lig),
-            ("alpha", self.alpha),
-            ("fillet_ratio", self.fillet_ratio),
-            ("kerf", self.kerf),
-            ("r_win", self.r_win),
-        ] {
-            if !value.is_finite() {
-                return Err(InvalidDesign::NotFinite { name, value });
-            }
+        let Self { w_lig, alpha, fillet_ratio, kerf, r_win } = *self;
+        let refuse = |what: String| Err(fault("", what, "").into());
+        let named = ["w_lig", "alpha", "fillet_ratio", "kerf", "r_win"];
+        let values = [w_lig, alpha, fillet_ratio, kerf, r_win];
+        if let Some((name, value)) = named.iter().zip(values).find(|(_, it)| !it.is_finite()) {
+            return refuse(format!("{name} = {value} is not a finite number"));
         }
-        if !(MIN_W_LIG..=MAX_W_LIG).contains(&self.w_lig) {
-            return Err(InvalidDesign::LigamentWidth(self.w_lig));
+        if !(MIN_W_LIG..=MAX_W_LIG).contains(&w_lig) {
+            return refuse(format!(
+                "w_lig = {w_lig} mm violates {MIN_W_LIG} <= w_lig <= {MAX_W_LIG}: lengths are in mm{}",
+                unit_slip(w_lig)
+            ));
         }
-        if self.alpha <= 0.0 || self.alpha >= PI {
-            return Err(InvalidDesign::CutAngle(self.alpha));
+        if alpha <= 0.0 || alpha >= PI {
+            let deg = alpha.to_degrees();
+            return refuse(format!("alpha = {deg:.4} deg violates 0 < alpha < 180"));
         }
-        if self.fillet_ratio <= 0.0 || self.fillet_ratio >= 1.0 {
-            return Err(InvalidDesign::Fillet(self.fillet_ratio));
+        if fillet_ratio <= 0.0 || fillet_ratio >= 1.0 {
+            return refuse(format!(
+                "fillet_ratio = {fillet_ratio} violates 0 < fillet_ratio < 1 (the hole would cut the ligament)"
+            ));
         }
         let limit = 2.0 * self.fillet_radius();
-        if self.kerf <= 0.0 || self.kerf >= limit {
-            let kerf = self.kerf;
+        if kerf <= 0.0 || kerf >= limit {
             return Err(InvalidDesign::Kerf { kerf, limit });
         }
-        let limit = MIN_WINDOW * self.w_lig;
-        if self.r_win <= limit {
-            let r_win = self.r_win;
-            return Err(InvalidDesign::Window { r_win, limit });
+        let limit = MIN_WINDOW * w_lig;
+        if r_win <= limit {
+            return refuse(format!(
+                "r_win = {r_win} mm violates r_win > {MIN_WINDOW} w_lig = {limit} mm"
+            ));
         }
         Ok(())
     }

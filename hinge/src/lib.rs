@@ -34,7 +34,7 @@
 //! # Ok::<_, hinge::InvalidDesign>(())
 //! ```
 
-#![warn(missing_docs)]
+#![cfg_attr(not(test), warn(unreachable_pub))]
 
 mod deformation;
 mod design;
@@ -42,7 +42,6 @@ mod domain;
 mod gradient;
 mod jet;
 mod material;
-mod material_file;
 mod net_ligament;
 mod regime;
 mod released;
@@ -54,7 +53,6 @@ pub use domain::{InvalidDomain, TrainingDomain};
 pub use gradient::{DesignGradient, HingeGradient};
 pub use jet::Jet;
 pub use material::{Creep, InvalidMaterial, MaterialError, STANDARD_GRAVITY, SheetMaterial};
-pub use material_file::{SheetFacts, material_file};
 pub use net_ligament::{NetLigament, NetLigamentJet};
 pub use regime::Regime;
 pub use released::ReleasedHinge;

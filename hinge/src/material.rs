@@ -6,7 +6,6 @@ use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 use support::key_limits;
 use support::toml_file::{self, ConfigError};
-use tensile::{TensileError, read_tensile};
 
 /// Standard acceleration of gravity, rounded (m/s^2 = N/kg).
 pub const STANDARD_GRAVITY: f64 = 9.81;
@@ -35,11 +34,7 @@ pub struct SheetMaterial {
     pub fracture_strain: f64,
     /// Rows [true stress (MPa), true plastic strain]; the stress is above 0 and below `young`, the
     /// strain starts at zero and increases.
-    #[serde(default)]
     pub plastic: Vec<[f64; 2]>,
-    /// Path of a measured curve instead of `plastic`, relative to the material's file.
-    #[serde(default, skip_serializing)]
-    pub tensile_csv: Option<PathBuf>,
     /// Relative standard deviation of the stress at equal strain, of the sheet that is cut from
     /// this law, for the error budget of a design; `kirigami material fit` writes the deviation of
     /// its specimens. No window solve uses it.
@@ -76,10 +71,6 @@ const STIFFEST: f64 = 200.0;
 pub enum MaterialError {
     #[error(transparent)]
     Config(#[from] ConfigError),
-    #[error(transparent)]
-    Tensile(#[from] TensileError),
-    #[error("{path}: give exactly one of `plastic` and `tensile_csv`", path = .0.display())]
-    Hardening(PathBuf),
     #[error("{path}: {source}", path = .path.display())]
     Invalid { path: PathBuf, source: InvalidMaterial },
 }
@@ -100,17 +91,9 @@ impl SheetMaterial {
         Regime::of(w_lig / self.thickness)
     }
 
-    /// Reads a material and its tensile curve, and rejects impossible values.
+    /// Reads a material and rejects impossible values.
     pub fn load(path: &Path) -> Result<Self, MaterialError> {
-        let mut material: Self = toml_file::read(path)?;
-        match (material.plastic.is_empty(), material.tensile_csv.take()) {
-            (false, None) => {}
-            (true, Some(curve)) => {
-                let folder = path.parent().unwrap_or(Path::new(""));
-                material.plastic = read_tensile(&folder.join(curve), material.young)?;
-            }
-            _ => return Err(MaterialError::Hardening(path.to_owned())),
-        }
+        let material: Self = toml_file::read(path)?;
         match material.validate() {
             Ok(()) => Ok(material),
             Err(source) => Err(MaterialError::Invalid { path: path.to_owned(), source }),

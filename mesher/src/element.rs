@@ -20,18 +20,10 @@ pub enum ElementKind {
 }
 
 impl ElementKind {
-    /// The kind of an element with these nodes.
-    pub fn of_element(nodes: &[usize]) -> Self {
+    /// The kind of an element with these nodes, or of the elements above a face with these nodes.
+    pub fn of(nodes: &[usize]) -> Self {
         match nodes.len() {
-            15 => Self::Wedge,
-            _ => Self::Brick,
-        }
-    }
-
-    /// The kind of the elements above a face of a plane mesh.
-    pub(crate) fn of_face(face: &[usize]) -> Self {
-        match face.len() {
-            6 => Self::Wedge,
+            6 | 15 => Self::Wedge,
             _ => Self::Brick,
         }
     }
@@ -93,27 +85,22 @@ impl ElementKind {
 
     /// Volume (mm^3) of each Gauss point of the element with these nodes.
     pub(crate) fn gauss_volumes(self, nodes: &[[f64; 3]]) -> Vec<f64> {
-        (0..self.gauss_points())
-            .map(|point| {
-                let (at, weight) = self.gauss_point(point);
-                weight * self.jacobian_determinant(nodes, at)
-            })
-            .collect()
-    }
-
-    fn jacobian_determinant(self, nodes: &[[f64; 3]], at: [f64; 3]) -> f64 {
-        let mut j = [[0.0; 3]; 3];
-        for (node, position) in nodes.iter().enumerate() {
-            let gradient = self.shape_gradient(node, at);
-            for r in 0..3 {
-                for c in 0..3 {
-                    j[r][c] += position[r] * gradient[c];
+        let volume = |point| {
+            let (at, weight) = self.gauss_point(point);
+            let mut j = [[0.0; 3]; 3];
+            for (node, position) in nodes.iter().enumerate() {
+                let gradient = self.shape_gradient(node, at);
+                for (row, x) in std::iter::zip(&mut j, position) {
+                    std::iter::zip(row, gradient).for_each(|(entry, slope)| *entry += x * slope);
                 }
             }
-        }
-        j[0][0] * (j[1][1] * j[2][2] - j[1][2] * j[2][1])
-            - j[0][1] * (j[1][0] * j[2][2] - j[1][2] * j[2][0])
-            + j[0][2] * (j[1][0] * j[2][1] - j[1][1] * j[2][0])
+            let [a, b, c] = j;
+            let determinant = a[0] * (b[1] * c[2] - b[2] * c[1])
+                - a[1] * (b[0] * c[2] - b[2] * c[0])
+                + a[2] * (b[0] * c[1] - b[1] * c[0]);
+            weight * determinant
+        };
+        (0..self.gauss_points()).map(volume).collect()
     }
 }
 

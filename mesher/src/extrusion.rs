@@ -1,7 +1,6 @@
 //! A plane mesh extruded to layers of solid elements.
 
-use crate::element::ElementKind;
-use crate::msh::PlaneMesh;
+use crate::{ElementKind, PlaneMesh};
 
 /// Solid elements above the faces of a plane mesh; indices count from 0.
 #[derive(Clone, Debug)]
@@ -17,7 +16,7 @@ pub(crate) struct Extrusion {
 
 impl Extrusion {
     /// Layers through z in [-t/2, t/2], offset by a height (mm) at every plane node.
-    pub fn new(
+    pub(crate) fn new(
         plane: &PlaneMesh,
         thickness: f64,
         layers: usize,
@@ -41,7 +40,7 @@ impl Extrusion {
             .iter()
             .map(|element| {
                 let positions: Vec<_> = element.iter().map(|node| nodes[*node]).collect();
-                ElementKind::of_element(element).gauss_volumes(&positions)
+                ElementKind::of(element).gauss_volumes(&positions)
             })
             .collect();
         Self { nodes, elements, gauss_volumes, levels }
@@ -99,14 +98,14 @@ impl Levels {
     }
 
     /// The nodes above plane nodes, on all levels.
-    pub fn through(&self, plane: &[usize]) -> Vec<usize> {
+    pub(crate) fn through(&self, plane: &[usize]) -> Vec<usize> {
         let on_level = |ids: &Vec<Option<usize>>| plane.iter().filter_map(|n| ids[*n]).collect();
         let levels = self.ids.iter();
         levels.flat_map::<Vec<_>, _>(on_level).collect()
     }
 
     /// The nodes above all plane nodes on an even level, counted from the bottom.
-    pub fn level(&self, level: usize) -> Vec<usize> {
+    pub(crate) fn level(&self, level: usize) -> Vec<usize> {
         self.ids[level].iter().flatten().copied().collect()
     }
 }

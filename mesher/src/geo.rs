@@ -6,12 +6,9 @@ mod unstructured;
 
 pub(crate) use sheet_script::sheet_script;
 
-use crate::frame::Frame;
-use crate::msh::Boundary;
-use crate::tier::PlaneRecipe;
-use crate::window::Window;
-use std::fmt::Write;
+use crate::{Boundary, Frame, PlaneRecipe, Window};
 use std::ops::RangeInclusive;
+use support::add_line;
 
 /// Physical tag of the faces of a window.
 const WINDOW: usize = 100;
@@ -35,6 +32,7 @@ pub(crate) fn script(window: &Window, recipe: &PlaneRecipe) -> String {
 /// A .geo script under construction. The sign of a curve's number gives its direction.
 #[derive(Default)]
 struct Script {
+    /// gmsh ignores a last statement without a newline, so every statement ends with one.
     text: String,
     /// The frame in which points are given.
     frame: Frame,
@@ -48,7 +46,7 @@ impl Script {
         let [x, y] = self.frame.point(local);
         self.points += 1;
         let id = self.points;
-        self.add(format_args!("Point({id}) = {{{x:?}, {y:?}, 0}};"));
+        add_line!(self.text, "Point({id}) = {{{x:?}, {y:?}, 0}};");
         id
     }
 
@@ -56,7 +54,7 @@ impl Script {
     fn line(&mut self, from: i32, to: i32) -> i32 {
         self.curves += 1;
         let id = self.curves;
-        self.add(format_args!("Line({id}) = {{{from}, {to}}};"));
+        add_line!(self.text, "Line({id}) = {{{from}, {to}}};");
         id
     }
 
@@ -64,16 +62,17 @@ impl Script {
     fn arc(&mut self, from: i32, centre: i32, to: i32) -> i32 {
         self.curves += 1;
         let id = self.curves;
-        self.add(format_args!("Circle({id}) = {{{from}, {centre}, {to}}};"));
+        add_line!(self.text, "Circle({id}) = {{{from}, {centre}, {to}}};");
         id
     }
 
     /// Divides a curve into `elements` segments, each `growth` times as long as the one before.
     fn divide(&mut self, curve: i32, elements: usize, growth: f64) -> i32 {
         let points = elements + 1;
-        self.add(format_args!(
+        add_line!(
+            self.text,
             "Transfinite Curve {{{curve}}} = {points} Using Progression {growth:?};"
-        ));
+        );
         curve
     }
 
@@ -82,8 +81,8 @@ impl Script {
         self.patches += 1;
         let id = self.patches;
         let list = joined(curves);
-        self.add(format_args!("Curve Loop({id}) = {{{list}}};"));
-        self.add(format_args!("Plane Surface({id}) = {{{id}}};"));
+        add_line!(self.text, "Curve Loop({id}) = {{{list}}};");
+        add_line!(self.text, "Plane Surface({id}) = {{{id}}};");
         id
     }
 
@@ -91,29 +90,24 @@ impl Script {
     /// columns.
     fn patch(&mut self, curves: [i32; 4]) {
         let id = self.surface(&curves);
-        self.add(format_args!("Transfinite Surface {{{id}}};"));
+        add_line!(self.text, "Transfinite Surface {{{id}}};");
         self.recombine(id);
     }
 
     /// Joins the triangles of a surface to quadrilaterals.
     fn recombine(&mut self, surface: i32) {
-        self.add(format_args!("Recombine Surface {{{surface}}};"));
+        add_line!(self.text, "Recombine Surface {{{surface}}};");
     }
 
     fn boundary(&mut self, boundary: Boundary, curves: &[i32]) {
         let (tag, list) = (boundary.tag(), joined(curves));
-        self.add(format_args!("Physical Curve({tag}) = {{{list}}};"));
+        add_line!(self.text, "Physical Curve({tag}) = {{{list}}};");
     }
 
     /// Names the faces of surfaces.
     fn faces(&mut self, tag: usize, surfaces: RangeInclusive<i32>) {
         let (first, last) = surfaces.into_inner();
-        self.add(format_args!("Physical Surface({tag}) = {{{first}:{last}}};"));
-    }
-
-    /// gmsh ignores a last statement without a newline, so every statement ends with one.
-    fn add(&mut self, statement: std::fmt::Arguments) {
-        writeln!(self.text, "{statement}").expect("writing to a string cannot fail");
+        add_line!(self.text, "Physical Surface({tag}) = {{{first}:{last}}};");
     }
 }
 

@@ -23,11 +23,10 @@
 //! # Ok::<_, Box<dyn std::error::Error>>(())
 //! ```
 
-#![warn(missing_docs)]
+#![cfg_attr(not(test), warn(unreachable_pub))]
 
 mod element;
 mod extrusion;
-mod frame;
 mod geo;
 mod gmsh;
 mod mesh;
@@ -38,22 +37,21 @@ mod sheet_mesh;
 mod sheet_shape;
 mod svg;
 mod tier;
-mod vectors;
-mod vtk_cells;
 mod window;
 
+pub(crate) use extrusion::{Extrusion, Levels};
+pub(crate) use msh::sides;
+pub(crate) use quality::{MAX_AREA_ERROR, check_elements, wrong_area};
+pub(crate) use window::{cross, dot, minus, polar_angle, unit};
+
 pub use element::ElementKind;
-pub use frame::Frame;
 pub use gmsh::{GMSH, Gmsh};
-pub use mesh::WindowMesh;
+pub use mesh::{WindowMesh, vtk_grid};
 pub use meshing::{MeshError, WindowShape};
-pub use msh::{Boundary, MshError, PlaneMesh, read_msh};
-pub use quality::{MeshDefect, MeshQuality};
+pub use msh::{Boundary, PlaneMesh, read_msh};
+pub use quality::MeshQuality;
 pub use sheet_mesh::{Part, SheetMesh};
-pub use sheet_shape::{InvalidSheet, PanelShape, PlacedWindow, SheetShape};
+pub use sheet_shape::{Frame, PanelShape, PlacedWindow, SheetShape};
 pub use svg::plane_mesh_svg;
-pub use tier::{
-    Imperfection, MeshRecipe, PlaneRecipe, Structured, Tier, UnknownTier, Unstructured,
-};
-pub use vtk_cells::vtk_grid;
+pub use tier::{Imperfection, MeshRecipe, PlaneRecipe, Structured, Tier, Unstructured};
 pub use window::{Side, Window};

@@ -5,10 +5,9 @@
 //! thickness is the value that the paper measured on a cut hinge (section 4.1). The recipe sets the
 //! amplitude and the widths of the bump.
 
-use crate::extrusion::Extrusion;
-use crate::msh::{Boundary, PlaneMesh};
-use crate::tier::MeshRecipe;
+use crate::{Boundary, ElementKind, Extrusion, MeshRecipe, PlaneMesh};
 use hinge::HingeDesign;
+use support::vtk::{CellKind, UnstructuredGrid};
 
 /// A window of solid elements of one kind; indices count from 0.
 #[derive(Clone, Debug)]
@@ -63,5 +62,20 @@ impl WindowMesh {
     /// Volume of the meshed window (mm^3).
     pub fn volume(&self) -> f64 {
         self.gauss_volumes.iter().flatten().sum()
+    }
+}
+
+/// The undeformed window as a VTK grid, without data. VTK orders the nodes of its quadratic
+/// hexahedron and wedge as CalculiX orders the nodes of C3D20R and C3D15.
+pub fn vtk_grid(mesh: &WindowMesh) -> UnstructuredGrid {
+    UnstructuredGrid {
+        points: mesh.nodes.clone(),
+        kind: match mesh.recipe.element() {
+            ElementKind::Brick => CellKind::QuadraticHexahedron,
+            ElementKind::Wedge => CellKind::QuadraticWedge,
+        },
+        cells: mesh.elements.clone(),
+        point_data: Vec::new(),
+        cell_data: Vec::new(),
     }
 }

@@ -1,43 +1,33 @@
 //! Meshes the window of a hinge design, or a whole sheet, with gmsh, and checks the mesh.
 
-use crate::element::ElementKind;
 use crate::geo;
-use crate::gmsh::Gmsh;
-use crate::mesh::WindowMesh;
-use crate::msh::{MshError, PlaneMesh, read_msh};
-use crate::quality::MeshDefect;
-use crate::sheet_mesh::SheetMesh;
-use crate::sheet_shape::{InvalidSheet, SheetShape};
-use crate::tier::MeshRecipe;
-use crate::window::Window;
-use hinge::{HingeDesign, InvalidDesign};
+use crate::{
+    ElementKind, Gmsh, MeshRecipe, PlaneMesh, SheetMesh, SheetShape, Window, WindowMesh, read_msh,
+};
+use hinge::HingeDesign;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
+use support::fault::Fault;
 use support::file_error::FileError;
 use support::program::{self, ToolError};
 
 /// Why no mesh was generated.
 #[derive(Debug, thiserror::Error)]
-#[allow(missing_docs, reason = "the message of a variant is its documentation")]
 pub enum MeshError {
-    #[error(transparent)]
-    Design(#[from] InvalidDesign),
-    #[error("thickness = {0} mm violates thickness > 0")]
-    Thickness(f64),
+    /// The design, the sheet or its thickness is impossible.
+    #[error("{0}")]
+    Invalid(String),
+    /// gmsh gave no result.
     #[error(transparent)]
     Gmsh(#[from] ToolError),
+    /// The file that gmsh wrote is damaged or missing.
     #[error("gmsh did not write a usable mesh: {0}")]
-    Read(#[from] MshError),
-    #[error(
-        "the mesh for w_lig = {w_lig} mm, alpha = {alpha_deg} deg is rejected: {defect}; \
-         try a finer mesh tier"
-    )]
-    Defect { w_lig: f64, alpha_deg: f64, defect: MeshDefect },
-    #[error(transparent)]
-    Sheet(#[from] InvalidSheet),
-    #[error("the mesh of the sheet is rejected: {0}; try a finer mesh tier")]
-    SheetDefect(MeshDefect),
+    Unread(Fault),
+    /// The mesh is unsuitable for the solver.
+    #[error("the mesh {0} is rejected: {1}; try a finer mesh tier")]
+    Rejected(String, Fault),
+    /// A file cannot be written or read.
     #[error(transparent)]
     File(#[from] FileError),
 }
@@ -64,8 +54,7 @@ impl WindowShape<'_> {
         limit: Duration,
         stop: &AtomicBool,
     ) -> Result<WindowMesh, MeshError> {
-        self.design.validate()?;
-        check_thickness(self.thickness)?;
+        check(self.thickness, [self.design])?;
         let script = geo::script(&Window(self.design), &self.recipe.plane);
         generate(&script, folder, WINDOW, gmsh, limit, stop)?;
         self.read(folder)
@@ -77,11 +66,12 @@ impl WindowShape<'_> {
         let mesh = WindowMesh::extrude(*self.design, self.thickness, *self.recipe, plane);
         match mesh.quality() {
             Ok(_) => Ok(mesh),
-            Err(defect) => Err(MeshError::Defect {
-                w_lig: self.design.w_lig,
-                alpha_deg: self.design.alpha.to_degrees(),
-                defect,
-            }),
+            Err(defect) => {
+                let HingeDesign { w_lig, alpha, .. } = self.design;
+                let alpha = alpha.to_degrees();
+                let which = format!("for w_lig = {w_lig} mm, alpha = {alpha} deg");
+                Err(MeshError::Rejected(which, defect))
+            }
         }
     }
 }
@@ -97,23 +87,28 @@ impl SheetShape {
         limit: Duration,
         stop: &AtomicBool,
     ) -> Result<SheetMesh, MeshError> {
-        for window in &self.windows {
-            window.design.validate()?;
-        }
-        check_thickness(self.thickness)?;
-        let script = geo::sheet_script(self)?;
+        check(self.thickness, self.windows.iter().map(|window| &window.design))?;
+        let script = geo::sheet_script(self).map_err(MeshError::Invalid)?;
         generate(&script, folder, SHEET, gmsh, limit, stop)?;
         let kinds = [ElementKind::Brick, ElementKind::Wedge];
         let plane = read_plane(folder, SHEET, &kinds)?;
-        SheetMesh::new(self, plane).map_err(MeshError::SheetDefect)
+        let rejected = |defect| MeshError::Rejected("of the sheet".to_owned(), defect);
+        SheetMesh::new(self, plane).map_err(rejected)
     }
 }
 
-fn check_thickness(thickness: f64) -> Result<(), MeshError> {
-    match thickness {
-        t if t.is_finite() && t > 0.0 => Ok(()),
-        t => Err(MeshError::Thickness(t)),
+/// An error if a hinge cannot be cut, or a sheet has no thickness (mm).
+fn check<'a>(
+    thickness: f64,
+    designs: impl IntoIterator<Item = &'a HingeDesign>,
+) -> Result<(), MeshError> {
+    for design in designs {
+        design.validate().map_err(|error| MeshError::Invalid(error.to_string()))?;
     }
+    if thickness.is_finite() && thickness > 0.0 {
+        return Ok(());
+    }
+    Err(MeshError::Invalid(format!("thickness = {thickness} mm violates thickness > 0")))
 }
 
 /// Runs gmsh on a script in `folder`.
@@ -136,7 +131,7 @@ fn read_plane(folder: &Path, name: &str, kinds: &[ElementKind]) -> Result<PlaneM
     let msh = folder.join(name).with_extension("msh");
     // If gmsh exited with status zero but wrote no mesh, the reader reports what is missing.
     let bytes = program::output_file(&msh).map_err(FileError::at(&msh))?;
-    Ok(read_msh(&bytes, kinds)?)
+    read_msh(&bytes, kinds).map_err(MeshError::Unread)
 }
 
 /// Names of gmsh's files, without their extensions.

@@ -2,8 +2,10 @@
 //! their surfaces, and named boundary curves. Any input gives either a mesh or an error that names
 //! the line.
 
-use crate::element::ElementKind;
+use crate::ElementKind;
 use std::collections::HashMap;
+use std::str::FromStr;
+use support::fault::{Fault, fault};
 
 /// The named boundary curves of the window.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -64,25 +66,11 @@ pub(crate) fn sides(face: &[usize]) -> impl Iterator<Item = [usize; 3]> + Clone 
     (0..corners).map(move |i| [face[i], face[(i + 1) % corners], face[corners + i]])
 }
 
-/// Why a mesh file is rejected.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[allow(missing_docs, reason = "the message of a variant is its documentation")]
-pub enum MshError {
-    #[error("the mesh file is not a text file: byte {0} is not UTF-8")]
-    NotText(usize),
-    #[error("the mesh file has no section ${0}: gmsh did not finish writing it")]
-    NoSection(&'static str),
-    #[error("line {line} of the mesh file: {what}")]
-    Line { line: usize, what: &'static str },
-    #[error("the mesh file contains no faces")]
-    Empty,
-}
-
 /// gmsh's element number of the 3-node line.
-const LINE_3: u32 = 8;
+const LINE_3: u64 = 8;
 
 /// gmsh's element number of the face from which elements of this kind are extruded.
-fn face_number(element: ElementKind) -> u32 {
+fn face_number(element: ElementKind) -> u64 {
     match element {
         ElementKind::Brick => 16,
         ElementKind::Wedge => 9,
@@ -91,68 +79,66 @@ fn face_number(element: ElementKind) -> u32 {
 
 /// Reads the bytes of a .msh file with faces for `elements`; nodes that belong to no face are
 /// dropped.
-pub fn read_msh(bytes: &[u8], elements: &[ElementKind]) -> Result<PlaneMesh, MshError> {
-    let text = std::str::from_utf8(bytes).map_err(|e| MshError::NotText(e.valid_up_to()))?;
-    let lines: Vec<_> = text.lines().enumerate().collect();
+pub fn read_msh(bytes: &[u8], elements: &[ElementKind]) -> Result<PlaneMesh, Fault> {
+    let text = std::str::from_utf8(bytes).map_err(|error| {
+        let byte = error.valid_up_to();
+        Fault::from(format!("the mesh file is not a text file: byte {byte} is not UTF-8"))
+    })?;
+    let lines: Vec<_> = (1..).zip(text.lines()).collect();
     let mut positions = HashMap::new();
-    for (number, line) in section(&lines, "Nodes")? {
-        let mut fields = Fields::new(*number, line);
-        let id: u64 = fields.next()?;
-        let position: [f64; 2] = [fields.next()?, fields.next()?];
+    for (line, fields) in section(&lines, "Nodes")? {
+        let mut fields = fields.split_whitespace();
+        let id: u64 = number(fields.next(), line)?;
+        let position: [f64; 2] = [number(fields.next(), line)?, number(fields.next(), line)?];
         if !position.iter().all(|x| x.is_finite()) {
-            return Err(fields.error("a coordinate is not a finite number"));
+            return Err(at_line(line, "a coordinate is not a finite number"));
         }
         if positions.insert(id, position).is_some() {
-            return Err(fields.error("the node number occurs twice"));
+            return Err(at_line(line, "the node number occurs twice"));
         }
     }
     let mut mesh = PlaneMesh::default();
     let mut indices = HashMap::new();
     let mut edges = Vec::new();
-    for (number, line) in section(&lines, "Elements")? {
-        let mut fields = Fields::new(*number, line);
-        let _id: u64 = fields.next()?;
-        let kind: u32 = fields.next()?;
-        let tags: u32 = fields.next()?;
-        if tags < 1 {
-            return Err(fields.error("the element has no physical tag"));
-        }
-        let physical: u32 = fields.next()?;
-        for _ in 1..tags {
-            fields.next::<u64>()?;
-        }
-        let element = elements.iter().find(|element| kind == face_number(**element));
-        if let Some(element) = element {
-            let mut face = vec![0; 2 * element.corners()];
-            for node in &mut face {
-                let id: u64 = fields.next()?;
-                let Some(position) = positions.get(&id) else {
-                    return Err(fields.error("the element refers to an undefined node"));
-                };
-                *node = *indices.entry(id).or_insert_with(|| {
+    for (line, fields) in section(&lines, "Elements")? {
+        let fields = fields.split_whitespace().map(|field| number(Some(field), line));
+        let fields: Vec<u64> = fields.collect::<Result<_, _>>()?;
+        // Number, kind, count of tags, the physical tag and others, nodes.
+        let (kind, tag, nodes) = match &fields[..] {
+            [_, kind, tags @ (1..=9), tag, rest @ ..] if rest.len() as u64 + 1 >= *tags => {
+                (*kind, *tag, &rest[*tags as usize - 1..])
+            }
+            _ => return Err(at_line(line, "the element has no physical tag")),
+        };
+        let corners = elements.iter().find(|element| face_number(**element) == kind);
+        let size = corners.map_or(3, |element| 2 * element.corners());
+        let nodes = nodes.get(..size).ok_or_else(|| at_line(line, MALFORMED))?;
+        if corners.is_some() {
+            let node = |id: &u64| {
+                let undefined = || at_line(line, "the element refers to an undefined node");
+                let position = positions.get(id).ok_or_else(undefined)?;
+                Ok(*indices.entry(*id).or_insert_with(|| {
                     mesh.nodes.push(*position);
                     mesh.nodes.len() - 1
-                });
-            }
-            mesh.faces.push(face);
-            mesh.surfaces.push(physical);
-        } else if kind == LINE_3 {
-            let Some(boundary) = Boundary::ALL.into_iter().find(|b| b.tag() == physical) else {
-                return Err(fields.error("the boundary curve has an unknown physical tag"));
+                }))
             };
-            let ids: [u64; 3] = [fields.next()?, fields.next()?, fields.next()?];
-            edges.push((boundary, ids, fields.line));
+            mesh.faces.push(nodes.iter().map(node).collect::<Result<_, Fault>>()?);
+            mesh.surfaces.push(tag as u32);
+        } else if kind == LINE_3 {
+            let boundary = Boundary::ALL.into_iter().find(|b| u64::from(b.tag()) == tag);
+            let unknown = || at_line(line, "the boundary curve has an unknown physical tag");
+            edges.push((boundary.ok_or_else(unknown)?, [nodes[0], nodes[1], nodes[2]], line));
         } else {
-            return Err(fields.error("the element is neither the expected face nor a 3-node line"));
+            let what = "the element is neither the expected face nor a 3-node line";
+            return Err(at_line(line, what));
         }
     }
     if mesh.faces.is_empty() {
-        return Err(MshError::Empty);
+        return Err(Fault::from("the mesh file contains no faces".to_owned()));
     }
     for (boundary, ids, line) in edges {
         let [Some(a), Some(b), Some(c)] = ids.map(|id| indices.get(&id).copied()) else {
-            let what = "the boundary edge belongs to no face";
-            return Err(MshError::Line { line, what });
+            return Err(at_line(line, "the boundary edge belongs to no face"));
         };
         mesh.edges.push((boundary, [a, b, c]));
     }
@@ -160,46 +146,32 @@ pub fn read_msh(bytes: &[u8], elements: &[ElementKind]) -> Result<PlaneMesh, Msh
 }
 
 /// The numbered lines of $NAME ... $EndNAME, whose count must equal the number in the first line.
-fn section<'a, 't>(
-    lines: &'a [(usize, &'t str)],
-    name: &'static str,
-) -> Result<&'a [(usize, &'t str)], MshError> {
+fn section<'t>(
+    lines: &[(usize, &'t str)],
+    name: &str,
+) -> Result<impl Iterator<Item = (usize, &'t str)>, Fault> {
     let find = |marker: String| lines.iter().position(|(_, line)| line.trim() == marker);
-    let (Some(start), Some(end)) = (find(format!("${name}")), find(format!("$End{name}"))) else {
-        return Err(MshError::NoSection(name));
-    };
-    let [(number, count), rows @ ..] = lines.get(start + 1..end).unwrap_or_default() else {
-        return Err(MshError::NoSection(name));
+    let (start, end) = (find(format!("${name}")), find(format!("$End{name}")));
+    let rows = start.zip(end).and_then(|(start, end)| lines.get(start + 1..end)?.split_first());
+    let Some(((line, count), rows)) = rows else {
+        let what = format!("the mesh file has no section ${name}");
+        return Err(fault("", what, "gmsh did not finish writing it"));
     };
     if count.trim().parse() != Ok(rows.len()) {
-        return Err(MshError::Line {
-            line: number + 1,
-            what: "the section does not have the announced number of lines",
-        });
+        return Err(at_line(*line, "the section does not have the announced number of lines"));
     }
-    Ok(rows)
+    Ok(rows.to_vec().into_iter())
 }
 
-/// The fields of one line.
-struct Fields<'t> {
-    line: usize,
-    fields: std::str::SplitWhitespace<'t>,
+const MALFORMED: &str = "a number is missing or malformed";
+
+/// The number in a field of a line.
+fn number<T: FromStr>(field: Option<&str>, line: usize) -> Result<T, Fault> {
+    field.and_then(|field| field.parse().ok()).ok_or_else(|| at_line(line, MALFORMED))
 }
 
-impl<'t> Fields<'t> {
-    fn new(number: usize, line: &'t str) -> Self {
-        Self { line: number + 1, fields: line.split_whitespace() }
-    }
-
-    fn next<T: std::str::FromStr>(&mut self) -> Result<T, MshError> {
-        let field = self.fields.next().and_then(|field| field.parse().ok());
-        field.ok_or_else(|| self.error("a number is missing or malformed"))
-    }
-
-    fn error(&self, what: &'static str) -> MshError {
-        let line = self.line;
-        MshError::Line { line, what }
-    }
+fn at_line(line: usize, what: &str) -> Fault {
+    fault(format!("line {line} of the mesh file"), what, "")
 }
 
 #[cfg(test)]
@@ -211,7 +183,7 @@ mod tests {
         1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n5 .5 0 0\n6 1 .5 0\n7 .5 1 0\n8 0 .5 0\n$EndNodes\n\
         $Elements\n2\n1 8 2 2 7 2 3 6\n2 16 2 100 1 1 2 3 4 5 6 7 8\n$EndElements\n";
 
-    fn read(bytes: &[u8]) -> Result<PlaneMesh, MshError> {
+    fn read(bytes: &[u8]) -> Result<PlaneMesh, Fault> {
         read_msh(bytes, &[ElementKind::Brick])
     }
 
@@ -221,7 +193,7 @@ mod tests {
         let mesh = read_msh(triangle.as_bytes(), &[ElementKind::Wedge]).unwrap();
         assert_eq!(mesh.faces, [[0, 1, 2, 3, 4, 5]]);
         let error = read_msh(SQUARE.as_bytes(), &[ElementKind::Wedge]).unwrap_err();
-        assert!(matches!(error, MshError::Line { line: 18, .. }), "{error}");
+        assert_eq!(error.place, "line 18 of the mesh file", "{error}");
     }
 
     #[test]
@@ -244,7 +216,7 @@ mod tests {
         ];
         for (old, new, expected) in cases {
             let error = read(SQUARE.replace(old, new).as_bytes()).unwrap_err();
-            assert!(matches!(error, MshError::Line { line, .. } if line == expected), "{error}");
+            assert_eq!(error.place, format!("line {expected} of the mesh file"), "{error}");
         }
     }
 

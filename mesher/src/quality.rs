@@ -1,9 +1,7 @@
 //! The checks that a mesh must pass before it is solved.
 
-use crate::element::ElementKind;
-use crate::mesh::WindowMesh;
-use crate::msh::{Boundary, PlaneMesh, sides};
-use crate::window::Window;
+use crate::{Boundary, ElementKind, PlaneMesh, Window, WindowMesh, sides};
+use support::fault::{Fault, fault};
 
 /// Maximum accepted ratio of the longest to the shortest in-plane edge of an element.
 const MAX_ASPECT: f64 = 40.0;
@@ -25,39 +23,26 @@ pub struct MeshQuality {
     pub area_error: f64,
 }
 
-/// Why a mesh is rejected.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[allow(missing_docs, reason = "the message of a variant is its documentation")]
-pub enum MeshDefect {
-    #[error("element {element} is folded: its Jacobian is {jacobian} mm^3 at a Gauss point")]
-    Folded { element: usize, jacobian: f64 },
-    #[error(
-        "element {element} is a sliver: the ratio of its longest to its shortest edge is \
-         {aspect} > {MAX_ASPECT}"
-    )]
-    Sliver { element: usize, aspect: f64 },
-    #[error("the area of the mesh is {area} mm^2, but its shape has {exact} mm^2")]
-    Area { area: f64, exact: f64 },
-    #[error("the mesh has no edge on {0:?}")]
-    NoBoundary(Boundary),
-}
-
 impl WindowMesh {
     /// Returns the quality measures of the mesh, or its first defect.
-    pub fn quality(&self) -> Result<MeshQuality, MeshDefect> {
+    pub fn quality(&self) -> Result<MeshQuality, Fault> {
         for boundary in [Boundary::ArcA, Boundary::ArcB] {
             if self.plane.edges.iter().all(|(of, _)| *of != boundary) {
-                return Err(MeshDefect::NoBoundary(boundary));
+                return Err(Fault::from(format!("the mesh has no edge on {boundary:?}")));
             }
         }
         let (jacobian_ratio, largest_aspect) = check_elements(&self.plane, &self.gauss_volumes)?;
         let (area, exact) = (self.volume() / self.thickness, Window(&self.design).area());
         let area_error = (area - exact).abs() / exact;
         if area_error > MAX_AREA_ERROR {
-            return Err(MeshDefect::Area { area, exact });
+            return Err(wrong_area(area, exact));
         }
         Ok(MeshQuality { jacobian_ratio, aspect: largest_aspect, area, area_error })
     }
+}
+
+pub(crate) fn wrong_area(area: f64, exact: f64) -> Fault {
+    Fault::from(format!("the area of the mesh is {area} mm^2, but its shape has {exact} mm^2"))
 }
 
 /// The minimum ratio of Jacobians and the maximum aspect ratio of solid elements, layers of the
@@ -65,16 +50,16 @@ impl WindowMesh {
 pub(crate) fn check_elements(
     plane: &PlaneMesh,
     gauss_volumes: &[Vec<f64>],
-) -> Result<(f64, f64), MeshDefect> {
+) -> Result<(f64, f64), Fault> {
     let mut jacobian_ratio = 1.0_f64;
     for (element, volumes) in gauss_volumes.iter().enumerate() {
-        let kind = ElementKind::of_face(&plane.faces[element % plane.faces.len()]);
+        let kind = ElementKind::of(&plane.faces[element % plane.faces.len()]);
         let jacobians = (0..).zip(volumes).map(|(point, v)| v / kind.gauss_weight(point));
         let minimum = jacobians.clone().fold(f64::INFINITY, f64::min);
         let maximum = jacobians.fold(0.0, f64::max);
         if minimum <= 0.0 || minimum.is_nan() {
-            let jacobian = minimum;
-            return Err(MeshDefect::Folded { element, jacobian });
+            let what = format!("its Jacobian is {minimum} mm^3 at a Gauss point");
+            return Err(fault(format!("element {element} is folded"), what, ""));
         }
         jacobian_ratio = jacobian_ratio.min(minimum / maximum);
     }
@@ -87,7 +72,9 @@ pub(crate) fn check_elements(
         let longest = lengths.clone().fold(0.0, f64::max);
         let aspect = longest / lengths.fold(f64::INFINITY, f64::min);
         if aspect > MAX_ASPECT {
-            return Err(MeshDefect::Sliver { element, aspect });
+            let what =
+                format!("the ratio of its longest to its shortest edge is {aspect} > {MAX_ASPECT}");
+            return Err(fault(format!("element {element} is a sliver"), what, ""));
         }
         largest_aspect = largest_aspect.max(aspect);
     }

@@ -1,12 +1,10 @@
 //! A sheet as solid elements: its plane mesh extruded to layers, with a bump at every hinge.
 
-use crate::extrusion::{Extrusion, Levels};
-use crate::msh::PlaneMesh;
-use crate::quality::{MAX_AREA_ERROR, MeshDefect, check_elements};
-use crate::sheet_shape::{PlacedWindow, SheetShape};
-use crate::tier::Imperfection;
-use crate::vectors::{cross, dot, minus, unit};
-use crate::window::{Side, Window};
+use crate::{
+    Extrusion, Imperfection, Levels, MAX_AREA_ERROR, PlacedWindow, PlaneMesh, SheetShape, Side,
+    Window, check_elements, cross, dot, minus, unit, wrong_area,
+};
+use support::fault::Fault;
 
 /// Largest distance of a node from the arc of its window, over r_win.
 const ON_RIM: f64 = 1e-6;
@@ -47,7 +45,7 @@ pub struct SheetMesh {
 }
 
 impl SheetMesh {
-    pub(crate) fn new(shape: &SheetShape, plane: PlaneMesh) -> Result<Self, MeshDefect> {
+    pub(crate) fn new(shape: &SheetShape, plane: PlaneMesh) -> Result<Self, Fault> {
         let panels = shape.panels.len();
         let parts: Vec<Part> = (plane.surfaces.iter())
             .map(|tag| match (*tag as usize).saturating_sub(1) {
@@ -69,7 +67,7 @@ impl SheetMesh {
         let volume: f64 = solid.gauss_volumes.iter().flatten().sum();
         let (area, exact) = (volume / shape.thickness, shape.area());
         if (area - exact).abs() > MAX_AREA_ERROR * exact {
-            return Err(MeshDefect::Area { area, exact });
+            return Err(wrong_area(area, exact));
         }
         Ok(Self {
             middle: solid.levels.level(shape.layers),
@@ -191,16 +189,22 @@ impl SheetShape {
 
     /// Area of the sheet (mm^2): windows, and panels without the sectors of their windows.
     fn area(&self) -> f64 {
-        let windows = self.windows.iter().map(|window| {
-            let of_window = Window(&window.design).area();
+        let windows = self.windows.iter().map(|placed| {
+            let (window, radius) = (Window(&placed.design), placed.design.r_win);
             // What the finished panels have in the half-disc is not theirs: the two sectors from
-            // the crossing of their edges to the arcs.
-            let in_panels =
-                std::iter::zip(Side::BOTH, window.panels).filter_map(|(side, place)| {
-                    let (panel, corner) = place?;
-                    Some(Self::sector(window, side, self.panels[panel].corners[corner]))
-                });
-            of_window - in_panels.sum::<f64>()
+            // the crossing of their edges, at the corner of a panel, to the arcs.
+            let sector = |(side, place): (Side, Option<(usize, usize)>)| {
+                let (panel, corner) = place?;
+                let apex = placed.frame.local(self.panels[panel].corners[corner]);
+                let kerf = window.kerf_at_radius(side, radius);
+                let free = [radius * side.sign(), 0.0];
+                let angle = window.arc_angle(side);
+                let triangle = 0.5 * cross(minus(kerf, apex), minus(free, apex)).abs();
+                let segment = 0.5 * radius * radius * (angle - angle.sin());
+                Some(triangle + segment)
+            };
+            let sectors = std::iter::zip(Side::BOTH, placed.panels).filter_map(sector);
+            window.area() - sectors.sum::<f64>()
         });
         let panels = self.panels.iter().map(|panel| {
             let corners = panel.corners;
@@ -208,17 +212,5 @@ impl SheetShape {
             0.5 * twice.sum::<f64>()
         });
         windows.sum::<f64>() + panels.sum::<f64>()
-    }
-
-    /// Area (mm^2) between the corner of a panel and the arc of its window.
-    fn sector(placed: &PlacedWindow, side: Side, corner: [f64; 2]) -> f64 {
-        let (window, radius) = (Window(&placed.design), placed.design.r_win);
-        let kerf = window.kerf_at_radius(side, radius);
-        let free = [radius * side.sign(), 0.0];
-        let apex = placed.frame.local(corner);
-        let angle = window.arc_angle(side);
-        let triangle = 0.5 * cross(minus(kerf, apex), minus(free, apex)).abs();
-        let segment = 0.5 * radius * radius * (angle - angle.sin());
-        triangle + segment
     }
 }

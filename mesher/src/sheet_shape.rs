@@ -3,8 +3,7 @@
 //! A panel is bounded by finished edges, half a kerf inside of the lines of its cuts, and ends at
 //! the arcs of its windows.
 
-use crate::frame::Frame;
-use crate::tier::Structured;
+use crate::Structured;
 use hinge::HingeDesign;
 use serde::{Deserialize, Serialize};
 
@@ -72,21 +71,47 @@ impl PanelShape {
     }
 }
 
-/// Why a sheet has no mesh.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[allow(missing_docs, reason = "the message of a variant is its documentation")]
-pub enum InvalidSheet {
-    #[error(
-        "panel {panel} is too small for its windows: its {edge} edge is {short} mm too short; use a smaller r_win or \
-         larger panels"
-    )]
-    SmallPanel { panel: usize, edge: &'static str, short: f64 },
-    #[error(
-        "the window of hinge {window} does not end on the edges of panel {panel}: it is {off} mm away from them"
-    )]
-    BesideEdge { window: usize, panel: usize, off: f64 },
-    #[error(
-        "the point ({x:.3}, {y:.3}) mm at which panel {panel} is held or pulled {what}: move it"
-    )]
-    Mark { panel: usize, x: f64, y: f64, what: &'static str },
+/// An origin and the direction of the x axis.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Frame {
+    /// Position of the origin (mm).
+    pub origin: [f64; 2],
+    /// Unit vector along the x axis.
+    pub e_x: [f64; 2],
+}
+
+impl Default for Frame {
+    /// The frame in which positions are given.
+    fn default() -> Self {
+        Self { origin: [0.0; 2], e_x: [1.0, 0.0] }
+    }
+}
+
+impl Frame {
+    /// The position of the point (x, y) of the frame (mm).
+    pub fn point(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+        let ([o_x, o_y], [c, s]) = (self.origin, self.e_x);
+        [o_x + c * x - s * y, o_y + s * x + c * y]
+    }
+
+    /// The coordinates in the frame of a point (mm).
+    pub fn local(&self, point: [f64; 2]) -> [f64; 2] {
+        let [c, s] = self.e_x;
+        let [x, y] = [0, 1].map(|i| point[i] - self.origin[i]);
+        [c * x + s * y, c * y - s * x]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn local_coordinates_are_those_of_the_point() {
+        let frame = Frame { origin: [3.0, -2.0], e_x: [0.6, 0.8] };
+        assert_eq!(frame.point([0.0, 0.0]), frame.origin);
+        let [x, y] = frame.local(frame.point([1.5, -0.5]));
+        assert!((x - 1.5).abs() + (y + 0.5).abs() < 1e-15);
+        assert_eq!(Frame::default().point([0.25, -7.0]), [0.25, -7.0]);
+    }
 }

@@ -1,7 +1,6 @@
 //! A picture of the plane mesh.
 
-use crate::mesh::WindowMesh;
-use crate::msh::{Boundary, sides};
+use crate::{Boundary, WindowMesh, sides};
 use std::fmt::Write;
 
 /// Picture width (px); the window's diameter fills it.

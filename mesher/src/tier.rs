@@ -1,10 +1,12 @@
 //! Named mesh tiers: mesh fineness of the window, with CPU time and errors.
 
-use crate::element::ElementKind;
+use crate::ElementKind;
 use hinge::{HingeDesign, Regime};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::time::Duration;
+use strum::{IntoEnumIterator, VariantNames};
+use support::fault::Fault;
 
 /// A named mesh fineness; for each regime in order of increasing CPU time.
 ///
@@ -54,11 +56,12 @@ use std::time::Duration;
     JsonSchema,
     strum::Display,
     strum::EnumString,
-    strum::IntoStaticStr,
+    strum::EnumIter,
+    strum::VariantNames,
 )]
 #[serde(rename_all = "kebab-case")]
 #[strum(serialize_all = "kebab-case")]
-#[strum(parse_err_ty = UnknownTier, parse_err_fn = UnknownTier::new)]
+#[strum(parse_err_ty = Fault, parse_err_fn = unknown)]
 pub enum Tier {
     /// 36 bricks in one layer; 2.5 CPU seconds a ray.
     Tiny,
@@ -142,18 +145,18 @@ pub struct Imperfection {
 /// measured.
 type Spec = (Regime, PlaneRecipe, usize, f64, f64);
 
-/// All tiers, in the order of [`Tier`].
+/// The tiers, in the order of [`Tier`].
 #[rustfmt::skip]
-const TIERS: [(Tier, Spec); 9] = [
-    (Tier::Tiny, (Regime::Film, structured([2, 8, 2, 3], 0.15), 1, 2.5, 25.0)),
-    (Tier::Small, (Regime::Film, structured([2, 14, 2, 4], 0.105), 2, 6.3, 25.0)),
-    (Tier::Default, (Regime::Film, structured([3, 20, 3, 6], 0.07), 2, 17.0, 30.0)),
-    (Tier::Fine, (Regime::Film, structured([4, 26, 4, 8], 0.0525), 2, 39.0, 45.0)),
-    (Tier::Reference, (Regime::Film, structured([6, 40, 6, 12], 0.035), 2, 126.0, 95.0)),
-    (Tier::Paper, (Regime::Film, WEDGES, 1, 171.0, 115.0)),
-    (Tier::PlateTiny, (Regime::Plate, structured([2, 8, 2, 3], 0.25), 2, 3.0, 25.0)),
-    (Tier::Plate, (Regime::Plate, structured([4, 8, 3, 4], 0.25), 2, 8.0, 25.0)),
-    (Tier::PlateReference, (Regime::Plate, structured([8, 16, 4, 8], 0.125), 3, 70.0, 85.0)),
+const TIERS: [Spec; 9] = [
+    (Regime::Film, structured([2, 8, 2, 3], 0.15), 1, 2.5, 25.0),
+    (Regime::Film, structured([2, 14, 2, 4], 0.105), 2, 6.3, 25.0),
+    (Regime::Film, structured([3, 20, 3, 6], 0.07), 2, 17.0, 30.0),
+    (Regime::Film, structured([4, 26, 4, 8], 0.0525), 2, 39.0, 45.0),
+    (Regime::Film, structured([6, 40, 6, 12], 0.035), 2, 126.0, 95.0),
+    (Regime::Film, WEDGES, 1, 171.0, 115.0),
+    (Regime::Plate, structured([2, 8, 2, 3], 0.25), 2, 3.0, 25.0),
+    (Regime::Plate, structured([4, 8, 3, 4], 0.25), 2, 8.0, 25.0),
+    (Regime::Plate, structured([8, 16, 4, 8], 0.125), 3, 70.0, 85.0),
 ];
 
 /// The mesh of the paper.
@@ -177,11 +180,11 @@ const fn structured(
 impl Tier {
     /// All tiers; the tiers of a regime are in order of increasing CPU time.
     pub fn all() -> impl Iterator<Item = Self> {
-        TIERS.into_iter().map(|(tier, _)| tier)
+        Self::iter()
     }
 
     fn spec(self) -> Spec {
-        TIERS[self as usize].1
+        TIERS[self as usize]
     }
 
     /// The cheaper tier on which a sheet is balanced before windows of this one are solved; `None`
@@ -228,22 +231,12 @@ impl Tier {
     pub fn time_limit(self) -> Duration {
         Duration::from_secs_f64((60.0 * self.usual_cpu_seconds()).max(1200.0))
     }
-
-    /// The name used in configurations and on the command line.
-    pub fn name(self) -> &'static str {
-        self.into()
-    }
 }
 
-/// An unknown tier name; the message lists the known ones.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("unknown mesh tier `{0}`; choose {known}", known = Tier::all().map(Tier::name).collect::<Vec<_>>().join(", "))]
-pub struct UnknownTier(String);
-
-impl UnknownTier {
-    fn new(name: &str) -> Self {
-        Self(name.to_owned())
-    }
+/// The error for a name that is no tier.
+fn unknown(name: &str) -> Fault {
+    let known = Tier::VARIANTS.join(", ");
+    Fault::from(format!("unknown mesh tier `{name}`; choose {known}"))
 }
 
 impl MeshRecipe {
@@ -268,9 +261,9 @@ impl Imperfection {
 
     /// Height (mm) of the bump at (x, y).
     pub(crate) fn height(&self, design: &HingeDesign, thickness: f64, x: f64, y: f64) -> f64 {
-        let [x_share, y_share] = [x / self.widths[0], y / self.widths[1]].map(|v| v / design.w_lig);
+        let [x_ratio, y_ratio] = [x / self.widths[0], y / self.widths[1]].map(|v| v / design.w_lig);
         let decay = 1.0 - ((x * x + y * y) / design.r_win.powi(2)).powi(2);
-        self.amplitude * thickness * (-x_share * x_share - y_share * y_share).exp() * decay
+        self.amplitude * thickness * (-x_ratio * x_ratio - y_ratio * y_ratio).exp() * decay
     }
 }
 
@@ -280,9 +273,8 @@ mod tests {
 
     #[test]
     fn names_round_trip_and_the_finest_tiers_have_no_finer_one() {
-        for (place, (tier, _)) in TIERS.into_iter().enumerate() {
-            assert_eq!(tier as usize, place);
-            assert_eq!(tier.name().parse(), Ok(tier));
+        for tier in Tier::all() {
+            assert_eq!(tier.to_string().parse(), Ok(tier));
             assert!(tier.finer().is_none_or(|finer| finer > tier));
         }
         assert_eq!(Tier::Reference.finer(), None);

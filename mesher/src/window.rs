@@ -4,7 +4,6 @@
 //! Arc A runs from (-r_win, 0) to the kerf face on panel A, arc B from the kerf face on panel B
 //! to (r_win, 0). All coordinates are in the hinge frame, in mm.
 
-use crate::vectors::{cross, dot};
 use hinge::HingeDesign;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
@@ -114,6 +113,24 @@ fn sector(radius: f64, angle: f64) -> f64 {
 fn arc(centre: [f64; 2], radius: f64, from: [f64; 2], to: [f64; 2], angle: f64) -> f64 {
     let chord = [to[0] - from[0], to[1] - from[1]];
     sector(radius, angle) + 0.5 * cross(centre, chord)
+}
+
+pub(crate) fn minus(p: [f64; 2], q: [f64; 2]) -> [f64; 2] {
+    [p[0] - q[0], p[1] - q[1]]
+}
+
+pub(crate) fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
+    a[0] * b[0] + a[1] * b[1]
+}
+
+pub(crate) fn cross(a: [f64; 2], b: [f64; 2]) -> f64 {
+    a[0] * b[1] - a[1] * b[0]
+}
+
+/// The unit vector from `p` to `q`.
+pub(crate) fn unit(p: [f64; 2], q: [f64; 2]) -> [f64; 2] {
+    let [x, y] = minus(q, p);
+    [x / x.hypot(y), y / x.hypot(y)]
 }
 
 #[cfg(test)]

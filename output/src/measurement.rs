@@ -8,13 +8,13 @@ mod tables;
 
 pub use agreement::{Agreement, OpeningSpread, Spread};
 
+use analysis::measured_openings::{MeasuredOpening, MeasuredPanel, openings, scatter, slip};
+use analysis::measured_points::FittedPoint;
+use analysis::measured_sheet::MeasuredSheet;
+use analysis::path_fit::Fit;
 use design::geometry::plane::point;
 use design::sheet::cut_sheet::Sheet;
 use faer::c64;
-use scene::analysis::measured_openings::{MeasuredOpening, MeasuredPanel, openings, scatter, slip};
-use scene::analysis::measured_points::FittedPoint;
-use scene::analysis::measured_sheet::MeasuredSheet;
-use scene::analysis::path_fit::Fit;
 use serde::Serialize;
 
 /// A measured sheet in numbers.

@@ -1,39 +1,38 @@
 //! The report of a design run: the objective before and after, all hinges, warnings.
 
 mod budget;
-mod creep_and_springback;
+mod deployed;
 mod estimate;
-mod fact_sheet;
+mod facts;
+mod findings;
 mod hinge_row;
 pub(crate) mod numbers;
-mod rules;
-mod self_weight;
+mod reached;
 mod text;
-mod warning;
 
 pub(crate) use budget::BUDGET_HEADING;
+pub(crate) use deployed::{extent, miss};
 pub(crate) use estimate::force_spreads;
-pub(crate) use fact_sheet::{extent, miss};
 pub(crate) use numbers::rounded;
 pub(crate) use text::worst_first;
 
 pub use budget::Budget;
-pub use creep_and_springback::{CreepAndSpringback, Released};
-pub use estimate::Estimate;
-pub use fact_sheet::{FactSheet, Reached, SpotCheckFacts, WeightFacts};
+pub use facts::Fact;
+pub use findings::{Rule, Warning, rules};
 pub use hinge_row::HingeRow;
-pub use self_weight::{Lying, SelfWeight};
-pub use warning::{Concern, Warning};
+pub use reached::Reached;
 
 use crate::cut_file::{CutLines, FabricationError};
-use crate::report::rules::{RuleInput, RunContext};
+use crate::report::deployed::{DeployedDesign, FinishedRun, left_out};
+use crate::report::facts::facts;
+use crate::report::findings::findings;
+use analysis::design_checks::DesignChecks;
+use analysis::error_budget::ErrorBudget;
 use design::objective::design_problem::Deployment;
 use design::objective::scores::Scores;
 use design::optimise::outer_loop::Ended;
-use scene::analysis::design_checks::DesignChecks;
-use scene::analysis::error_budget::ErrorBudget;
 use scene::design_run::Designed;
-use scene::{CoarseSearch, Level, LevelDifference, Scene};
+use scene::{CoarseSearch, Level, Scene};
 use serde::Serialize;
 use support::severity::Severity;
 
@@ -48,8 +47,6 @@ pub struct Report {
     pub coarse_searches: Vec<CoarseSearch>,
     /// Number of steps after the start.
     pub steps: usize,
-    /// Number of steps that were halved because a design had no objective value.
-    pub setbacks: usize,
     /// The terms of the scores in words, with their units.
     #[serde(skip)]
     pub terms: Vec<String>,
@@ -57,15 +54,25 @@ pub struct Report {
     pub before: Scores,
     /// Scores of the best design.
     pub after: Scores,
-    /// Standard deviations of the scene's ensemble on the path of the best design, if there is an
-    /// ensemble.
-    pub estimate: Option<Estimate>,
-    /// By how much each cause of errors moves the best design; `None` without a learned hinge law
+    /// How far each cause of errors moves the best design; `None` without a learned hinge law
     /// or without an equilibrium.
     pub budget: Option<Budget>,
     /// What the sheet is made of, how far it opens under which load, and what the hinge law rests
     /// on.
-    pub facts: FactSheet,
+    pub facts: Vec<Fact>,
+    /// Load and stroke at the end of the path; `None` without equilibrium, or if nothing moves the
+    /// sheet.
+    #[serde(skip)]
+    pub reached: Option<Reached>,
+    /// How much of the hinges is modelled.
+    #[serde(skip)]
+    level: Level,
+    /// Extent of the flat sheet along x and y (mm).
+    #[serde(skip)]
+    flat_size: [f64; 2],
+    /// Whether the hinge law has a training domain.
+    #[serde(skip)]
+    has_domain: bool,
     /// Whether a cut file was written.
     pub cut_file: bool,
     /// All hinges of the best design.
@@ -82,13 +89,8 @@ pub fn warnings(
     deployment: &Deployment,
     cuts: &Result<CutLines, FabricationError>,
 ) -> Vec<Warning> {
-    rules::warnings(&RuleInput {
-        scene,
-        deployment,
-        cuts,
-        hinges: &HingeRow::all(scene, deployment),
-        run: None,
-    })
+    let hinges = HingeRow::all(scene, deployment);
+    findings(&DeployedDesign { scene, deployment, cuts, hinges, run: None, severities: Vec::new() })
 }
 
 impl Report {
@@ -109,47 +111,7 @@ impl Report {
 
     /// How far the outline is from the target, which is the first that a person asks.
     pub fn miss(&self) -> String {
-        miss(self.after.outline_error, self.facts.flat_size)
-    }
-
-    /// The searches at coarser levels: the error of each, measured by the next finer one.
-    pub fn coarse_search_lines(&self) -> Vec<String> {
-        let searches = self.coarse_searches.iter().map(|search| {
-            let percent = |load| format!(", the load by {} %", rounded(100.0 * load, 2));
-            let peak = |peak| format!(", D_peak by {}", rounded(peak, 2));
-            let LevelDifference {
-                corners,
-                load,
-                damage,
-            } = search.difference;
-            let reference = match search.finer {
-                Level::Final => "finite elements of every hinge".to_owned(),
-                finer => format!("`{finer}`"),
-            };
-            format!(
-                "searched at the level `{}` in {} steps: its corners differ from {reference} by {} mm at most{}{}; tolerance: {} mm",
-                search.level,
-                search.steps,
-                rounded(corners[1], 2),
-                load.map_or(String::new(), percent),
-                damage.map_or(String::new(), peak),
-                rounded(search.tolerance, 3)
-            )
-        });
-        let mut lines: Vec<String> = searches.collect();
-        if self.coarse_searches.last().is_some_and(|last| !last.suffices()) {
-            lines.push(match self.steps {
-                _ if self.facts.level == Level::Final => {
-                    "not converged: all rounds of finite elements were made".into()
-                }
-                0 => "that is less than the mesh of the windows is known to: see its row of the error budget".into(),
-                _ => format!(
-                    "searched on at `{}`, and no level is finer: `kirigami verify --equilibrium` compares with finite elements",
-                    self.facts.level
-                ),
-            });
-        }
-        lines
+        miss(self.after.outline_error, self.flat_size)
     }
 
     /// How the search ended.
@@ -175,46 +137,51 @@ impl Report {
         checks: DesignChecks,
         force: bool,
     ) -> Self {
-        let deployment = &designed.best.deployment;
+        let (deployment, problem) = (&designed.best.deployment, &designed.problem);
+        let run = FinishedRun {
+            designed,
+            after: Scores::new(&problem.objective, &designed.best),
+            checks,
+            reached: Reached::new(scene, problem, deployment),
+        };
         let hinges = HingeRow::all(scene, deployment);
-        let facts = FactSheet::new(scene, &designed.problem, deployment, &hinges);
-        let last = designed.coarse_searches.last();
-        let by_elements = last.filter(|search| search.finer == Level::Final);
-        let residual = by_elements.map(|search| search.difference.corners[1]);
-        let errors = ErrorBudget::new(scene, &designed.problem, deployment, residual);
-        let dead_loads = scene.config.has_loads() && scene.config.drive.is_none();
-        let budget = errors.map(|errors| Budget::new(errors, &facts.self_weight, dead_loads));
-        let after = Scores::new(&designed.problem.objective, &designed.best);
-        let warnings = rules::warnings(&RuleInput {
+        let mut deployed = DeployedDesign {
             scene,
             deployment,
             cuts,
-            hinges: &hinges,
-            run: Some(RunContext { designed, facts: &facts, after: &after, checks: &checks }),
-        });
+            hinges,
+            run: Some(&run),
+            severities: Vec::new(),
+        };
+        let warnings = findings(&deployed);
+        deployed.severities = warnings.iter().map(|found| found.severity).collect();
+        let (facts, flat_size) = (facts(&deployed, &run), deployed.flat_size());
+        let hinges = deployed.hinges;
+        let (search, coarse_searches) = (&designed.search, &designed.coarse_searches);
+        let last = coarse_searches.last().filter(|search| search.finer == Level::Final);
+        let residual = last.map(|search| search.difference.corners[1]);
+        let errors = ErrorBudget::new(scene, problem, deployment, residual);
+        let dead_loads = scene.config.has_loads() && scene.config.drive.is_none();
         let mut report = Self {
             cut_file: false,
             title: scene.config.title.clone(),
             ended: designed.ended.clone(),
-            coarse_searches: designed.coarse_searches.clone(),
-            steps: designed.search.last().step,
-            setbacks: designed
-                .search
-                .history
-                .iter()
-                .filter(|record| record.setback.is_some())
-                .count(),
-            terms: designed.problem.objective.labels(),
-            before: match designed.coarse_searches.first() {
+            coarse_searches: coarse_searches.clone(),
+            steps: search.last().step,
+            terms: problem.objective.labels(),
+            before: match coarse_searches.first() {
                 Some(first) => first.start.clone(),
-                None => Scores::new(&designed.problem.objective, &designed.start),
+                None => Scores::new(&problem.objective, &designed.start),
             },
-            after,
-            estimate: Estimate::new(scene.networks(), deployment),
-            budget,
+            after: run.after,
+            budget: errors.map(|errors| Budget::new(errors, left_out(scene), dead_loads)),
             facts,
+            reached: run.reached,
+            level: scene.config.level,
+            flat_size,
+            has_domain: scene.surrogate().is_some(),
             warnings,
-            checks,
+            checks: run.checks,
             hinges,
         };
         report.cut_file = cuts.is_ok() && (force || report.errors().next().is_none());

@@ -8,10 +8,10 @@ use crate::cut_file::{
 use crate::drawing;
 use crate::report::{Report, Warning};
 use crate::run_page::run_page;
+use analysis::design_checks::CHECKS_FILE;
 use design::objective::design_problem::Deployment;
 use design::sheet::kinematics::deployed_boundaries;
 use scene::Scene;
-use scene::analysis::design_checks::CHECKS_FILE;
 use scene::design_run::Designed;
 use scene::placement::placed;
 use scene::run_inputs::STATE_FILE;

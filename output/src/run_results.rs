@@ -3,32 +3,24 @@
 use crate::cut_file::{CutLines, SheetDrawing};
 use crate::report::Report;
 use crate::run_files::{RUN_FILES, Results, Writer};
+use analysis::design_checks::DesignChecks;
 use scene::Scene;
-use scene::analysis::design_checks::DesignChecks;
 use scene::design_run::{Designed, InverseDesignError};
 use std::io;
 use std::path::Path;
+use support::fault::{Fault, fault};
 use support::file_error::FileError;
 use support::whole_file;
-
-/// A result that could not be written.
-#[derive(Debug, thiserror::Error)]
-#[error("cannot write {0}")]
-pub struct ResultsError(#[from] FileError);
 
 /// Writes the results of [`RUN_FILES`]: the picture of the flat sheet for a design with cut lines,
 /// the cut files for a design without errors, or if `force`.
 ///
 /// If no cut file is written, the report states why, and the cut files of an earlier design are
 /// removed.
-pub fn write_results(
-    scene: &Scene,
-    designed: &Designed,
-    force: bool,
-) -> Result<Report, ResultsError> {
+pub fn write_results(scene: &Scene, designed: &Designed, force: bool) -> Result<Report, Fault> {
     let best = &designed.best.deployment;
     let cuts = CutLines::of(scene, best);
-    let checks = DesignChecks::read(&scene.output(), &designed.search.best)?;
+    let checks = DesignChecks::read(&scene.output(), &designed.search.best).map_err(unwritten)?;
     let report = Report::new(scene, designed, &cuts, checks, force);
     let drawn = cuts.as_ref().ok().filter(|_| report.cut_file);
     let results = Results {
@@ -47,9 +39,13 @@ pub fn write_results(
             Some(bytes) => whole_file::write(&path, &bytes),
             None => remove_with_pixels(&path),
         });
-        written.map_err(FileError::at(&path))?;
+        written.map_err(FileError::at(&path)).map_err(unwritten)?;
     }
     Ok(report)
+}
+
+fn unwritten(error: FileError) -> Fault {
+    fault("", format!("cannot write {error}"), "")
 }
 
 /// Removes the files of an earlier run of the scene, so that the next one begins at the start

@@ -2,16 +2,21 @@
 //! the argument.
 
 use numpy::ndarray::ArrayD;
-use numpy::{IntoPyArray, PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
-use pyo3::exceptions::{PyTypeError, PyValueError};
-use pyo3::prelude::*;
+use numpy::{Element, IntoPyArray, PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
+use pyo3::{
+    exceptions::{PyTypeError, PyValueError},
+    prelude::*,
+};
 use serde::Serialize;
+use std::convert::Infallible;
 
-/// An array of float64.
-pub(crate) type Doubles<'py> = Bound<'py, PyArrayDyn<f64>>;
+/// An argument of a function.
+pub(crate) type Argument<'py> = Bound<'py, PyAny>;
 
-/// Finite real numbers in the order of the indices, from any order in memory.
+/// Finite real numbers of an argument in the order of the indices, from any order in memory.
 pub(crate) struct Numbers {
+    /// The name of the argument.
+    pub name: &'static str,
     /// The last index runs fastest.
     pub values: Vec<f64>,
     /// Empty for a single number.
@@ -19,62 +24,53 @@ pub(crate) struct Numbers {
 }
 
 impl Numbers {
-    /// A single number.
-    pub fn single(value: f64) -> Self {
-        Self { values: vec![value], shape: Vec::new() }
+    /// The numbers of an array, of nested lists or a number. Integers and short floats are
+    /// converted, as they are exact.
+    pub(crate) fn read(argument: &Argument, name: &'static str) -> PyResult<Self> {
+        let direct = argument.cast_exact::<PyArrayDyn<f64>>();
+        let numbers = if let Some(array) = direct.ok().filter(|array| is_regular(array)) {
+            copied(array, name)
+        } else {
+            copied(converted(argument, name)?.cast()?, name)
+        };
+        if let Some(position) = numbers.values.iter().position(|value| !value.is_finite()) {
+            let (index, value) = (index(position, &numbers.shape), numbers.values[position]);
+            return Err(PyValueError::new_err(format!(
+                "`{name}`{index} = {value} is not a finite number"
+            )));
+        }
+        Ok(numbers)
     }
 
-    /// One value for each of the `count` elements of a shape.
-    pub fn filled(self, name: &str, shape: &[usize], count: usize) -> PyResult<Vec<f64>> {
+    /// One value for each element of a shape.
+    pub(crate) fn filled(self, shape: &[usize]) -> PyResult<Vec<f64>> {
         if self.shape.is_empty() {
-            return Ok(vec![self.values[0]; count]);
+            return Ok(vec![self.values[0]; shape.iter().product()]);
         }
-        if self.shape != shape {
-            let expected = format!("a number or {}", tuple(shape));
-            return Err(wrong_shape(name, &self.shape, &expected));
+        match self.shape == shape {
+            true => Ok(self.values),
+            false => Err(self.wrong_shape(&format!("a number or {}", tuple(shape)))),
         }
-        Ok(self.values)
+    }
+
+    /// The error of an argument of another shape.
+    pub(crate) fn wrong_shape(&self, expected: &str) -> PyErr {
+        let (name, found) = (self.name, tuple(&self.shape));
+        PyValueError::new_err(format!("`{name}` has the shape {found}, expected {expected}"))
     }
 }
 
-/// The numbers of an argument: an array, nested lists or a number. Integers and short floats are
-/// converted, as they are exact.
-pub(crate) fn numbers(argument: &Bound<PyAny>, name: &str) -> PyResult<Numbers> {
-    let direct = argument.cast_exact::<PyArrayDyn<f64>>();
-    let numbers = if let Some(array) = direct.ok().filter(|array| is_regular(array)) {
-        copied(array)
-    } else {
-        copied(converted(argument, name)?.cast()?)
-    };
-    if let Some(place) = numbers.values.iter().position(|value| !value.is_finite()) {
-        let value = numbers.values[place];
-        return Err(PyValueError::new_err(format!(
-            "`{name}`{} = {value} is not a finite number",
-            index(place, &numbers.shape)
-        )));
-    }
-    Ok(numbers)
-}
-
-/// The numbers of an argument of a given shape, in which `None` is any length; `expected` is the
-/// shape in words.
+/// The numbers of an argument of a given shape.
 pub(crate) fn shaped(
-    argument: &Bound<PyAny>,
-    name: &str,
-    shape: &[Option<usize>],
-    expected: &str,
-) -> PyResult<Numbers> {
-    let numbers = numbers(argument, name)?;
-    let fits = |(length, given): (&Option<usize>, &usize)| length.is_none_or(|n| n == *given);
-    if numbers.shape.len() != shape.len() || !shape.iter().zip(&numbers.shape).all(fits) {
-        return Err(wrong_shape(name, &numbers.shape, expected));
+    argument: &Argument,
+    name: &'static str,
+    shape: &[usize],
+) -> PyResult<Vec<f64>> {
+    let numbers = Numbers::read(argument, name)?;
+    match numbers.shape == shape {
+        true => Ok(numbers.values),
+        false => Err(numbers.wrong_shape(&tuple(shape))),
     }
-    Ok(numbers)
-}
-
-/// The error of an argument of another shape.
-pub(crate) fn wrong_shape(name: &str, found: &[usize], expected: &str) -> PyErr {
-    PyValueError::new_err(format!("`{name}` has the shape {}, expected {expected}", tuple(found)))
 }
 
 /// A shape as Python prints it.
@@ -86,33 +82,59 @@ pub(crate) fn tuple(shape: &[usize]) -> String {
 }
 
 /// A new array.
-pub(crate) fn array<'py>(py: Python<'py>, values: Vec<f64>, shape: &[usize]) -> Doubles<'py> {
-    ArrayD::from_shape_vec(shape, values).expect("as many values as the shape has").into_pyarray(py)
+pub(crate) struct Array<T = f64> {
+    values: Vec<T>,
+    shape: Vec<usize>,
 }
 
-/// A new array of truth values.
-pub(crate) fn bools<'py>(
-    py: Python<'py>,
-    values: Vec<bool>,
-    shape: &[usize],
-) -> Bound<'py, PyArrayDyn<bool>> {
-    ArrayD::from_shape_vec(shape, values).expect("as many values as the shape has").into_pyarray(py)
+/// The array of values; the lengths of its shape are given in parts.
+pub(crate) fn array<T>(values: impl IntoIterator<Item = T>, shape: &[&[usize]]) -> Array<T> {
+    Array { values: values.into_iter().collect(), shape: shape.concat() }
 }
 
-/// A new array of three numbers for each panel, or each hinge.
-pub(crate) fn triples<'py>(py: Python<'py>, values: &[[f64; 3]]) -> Doubles<'py> {
-    array(py, values.as_flattened().to_vec(), &[values.len(), 3])
+/// The one-dimensional array of values.
+pub(crate) fn list(values: Vec<f64>) -> Array {
+    Array { shape: vec![values.len()], values }
+}
+
+/// The array of `N` numbers for each panel, or each hinge.
+pub(crate) fn rows<const N: usize>(rows: impl IntoIterator<Item = [f64; N]>) -> Array {
+    let values: Vec<f64> = rows.into_iter().flatten().collect();
+    Array { shape: vec![values.len() / N, N], values }
+}
+
+/// The corners of panels, an array of shape (panels, 4, 2).
+pub(crate) fn quadrilaterals(corners: &[[[f64; 2]; 4]]) -> Array {
+    array(corners.as_flattened().as_flattened().to_vec(), &[&[corners.len(), 4, 2]])
+}
+
+impl<'py, T: Element> IntoPyObject<'py> for Array<T> {
+    type Target = PyArrayDyn<T>;
+    type Output = Bound<'py, Self::Target>;
+    type Error = Infallible;
+
+    fn into_pyobject(self, py: Python<'py>) -> Result<Self::Output, Infallible> {
+        let array = ArrayD::from_shape_vec(self.shape, self.values);
+        Ok(array.expect("as many values as the shape has").into_pyarray(py))
+    }
 }
 
 /// A value as the dicts, lists and numbers of its JSON.
-pub(crate) fn plain<'py>(py: Python<'py>, value: &impl Serialize) -> PyResult<Bound<'py, PyAny>> {
-    let text = serde_json::to_string(value).expect("these are numbers and text");
-    py.import("json")?.call_method1("loads", (text,))
+pub(crate) struct Plain(String);
+
+/// The value in Python.
+pub(crate) fn plain(value: &impl Serialize) -> Plain {
+    Plain(serde_json::to_string(value).expect("these are numbers and text"))
 }
 
-/// The lengths of `shape` followed by others.
-pub(crate) fn followed_by(shape: &[usize], by: &[usize]) -> Vec<usize> {
-    [shape, by].concat()
+impl<'py> IntoPyObject<'py> for Plain {
+    type Target = PyAny;
+    type Output = Argument<'py>;
+    type Error = PyErr;
+
+    fn into_pyobject(self, py: Python<'py>) -> PyResult<Self::Output> {
+        py.import("json")?.call_method1("loads", (self.0,))
+    }
 }
 
 /// Whether every element is at a multiple of its size from the others, as a field of a structured
@@ -127,11 +149,10 @@ pub(crate) fn finite(name: &str, value: f64) -> PyResult<f64> {
     if value.is_finite() {
         return Ok(value);
     }
-    let message = format!("`{name}` = {value} is not a finite number");
-    Err(PyValueError::new_err(message))
+    Err(PyValueError::new_err(format!("`{name}` = {value} is not a finite number")))
 }
 
-fn copied(array: &Bound<PyArrayDyn<f64>>) -> Numbers {
+fn copied(array: &Bound<PyArrayDyn<f64>>, name: &'static str) -> Numbers {
     let shape = array.shape().to_vec();
     let read = array.readonly();
     // A contiguous slice may be in the order of Fortran.
@@ -139,11 +160,11 @@ fn copied(array: &Bound<PyArrayDyn<f64>>) -> Numbers {
         Ok(values) if array.is_c_contiguous() => values.to_vec(),
         _ => read.as_array().iter().copied().collect(),
     };
-    Numbers { values, shape }
+    Numbers { name, values, shape }
 }
 
 /// A value as a NumPy array of float64, if that loses nothing.
-fn converted<'py>(argument: &Bound<'py, PyAny>, name: &str) -> PyResult<Bound<'py, PyAny>> {
+fn converted<'py>(argument: &Argument<'py>, name: &str) -> PyResult<Argument<'py>> {
     let numpy = argument.py().import("numpy")?;
     let wrong = |what: String| {
         PyTypeError::new_err(format!("`{name}` is {what}, expected real numbers (float64)"))
@@ -162,9 +183,9 @@ fn converted<'py>(argument: &Bound<'py, PyAny>, name: &str) -> PyResult<Bound<'p
     array.call_method1("astype", ("float64",))
 }
 
-/// The index of a place, as Python writes it; empty for a single number.
-fn index(place: usize, shape: &[usize]) -> String {
-    let mut rest = place;
+/// The index of a position, as Python writes it; empty for a single number.
+fn index(position: usize, shape: &[usize]) -> String {
+    let mut rest = position;
     let mut indices: Vec<String> = Vec::new();
     for length in shape.iter().rev() {
         indices.insert(0, (rest % length).to_string());

@@ -1,14 +1,14 @@
-//! Deployed sheets: a path of load steps, or the state at full load alone.
+//! Deployed sheets: a path of load steps, or only the state at full load.
 
-use crate::arrays::{Doubles, array, bools, plain, triples};
-use crate::errors;
-use crate::flat_sheet::{Sheet, quadrilaterals};
-use design::equilibrium::load_step::LoadStep;
-use design::hinge_law::HingeDamage;
-use design::objective::response::Response;
-use design::sheet::kinematics::deployed_corners;
-use design::{DesignError, DesignProblem};
-use numpy::PyArrayDyn;
+use crate::{
+    arrays::{Array, Plain, array, plain, quadrilaterals, rows},
+    errors,
+    flat_sheet::Sheet,
+};
+use design::{
+    DesignProblem, equilibrium::load_step::LoadStep, hinge_law::HingeDamage,
+    objective::response::Response, sheet::kinematics::deployed_corners,
+};
 use pyo3::prelude::*;
 use std::sync::Arc;
 
@@ -34,30 +34,24 @@ impl Deployment {
         self.deployment.at_full_load().map_err(errors::design)
     }
 
-    fn by_step<'py, const N: usize, R: IntoIterator<Item = [f64; N]>>(
+    fn by_step<T, R: IntoIterator<Item = T>>(
         &self,
-        py: Python<'py>,
         shape: &[usize],
         of: impl Fn(&LoadStep) -> R,
-    ) -> Doubles<'py> {
-        let steps = self.deployment.path.iter();
-        let values: Vec<f64> = steps.flat_map(of).flatten().collect();
-        array(py, values, &[&[self.deployment.path.len()], shape].concat())
+    ) -> Array<T> {
+        let path = &self.deployment.path;
+        array(path.iter().flat_map(of), &[&[path.len()], shape])
     }
 
     fn hinges(&self) -> usize {
         self.deployment.sheet.hinges.len()
     }
 
-    fn damaged<'py>(
-        &self,
-        py: Python<'py>,
-        of: impl Fn(&HingeDamage) -> Option<f64>,
-    ) -> Doubles<'py> {
+    fn damaged(&self, of: impl Fn(&HingeDamage) -> Option<f64>) -> Array {
         let hinges = self.hinges();
-        self.by_step(py, &[hinges], |step| {
+        self.by_step(&[hinges], |step| {
             let known = |h: usize| step.damage.get(h).and_then(&of).filter(|_| step.inside[h]);
-            (0..hinges).map(|h| [known(h).unwrap_or(f64::NAN)]).collect::<Vec<_>>()
+            (0..hinges).map(|h| known(h).unwrap_or(f64::NAN)).collect::<Vec<_>>()
         })
     }
 }
@@ -68,8 +62,8 @@ impl Deployment {
     /// domain), `almost`, `limit-point` (the sheet jumped to another branch) or `diverged` (no
     /// equilibrium was found: the path ends).
     #[getter]
-    fn status<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyAny>>> {
-        self.deployment.path.iter().map(|step| plain(py, &step.status)).collect()
+    fn status(&self) -> Vec<Plain> {
+        self.deployment.path.iter().map(|step| plain(&step.status)).collect()
     }
 
     /// Whether the path was followed from the flat sheet; False if it was corrected from a path
@@ -81,87 +75,82 @@ impl Deployment {
 
     /// zeta of every load step.
     #[getter]
-    fn load_factor<'py>(&self, py: Python<'py>) -> Doubles<'py> {
-        self.by_step(py, &[], |step| [[step.load_factor]])
+    fn load_factor(&self) -> Array {
+        self.by_step(&[], |step| [step.load_factor])
     }
 
     /// Maximum unbalanced force over the maximum force, per load step.
     #[getter]
-    fn residual<'py>(&self, py: Python<'py>) -> Doubles<'py> {
-        self.by_step(py, &[], |step| [[step.residual]])
+    fn residual(&self) -> Array {
+        self.by_step(&[], |step| [step.residual])
     }
 
     /// Pi of (10) (N mm), per load step.
     #[getter]
-    fn potential<'py>(&self, py: Python<'py>) -> Doubles<'py> {
-        self.by_step(py, &[], |step| [[step.potential]])
+    fn potential(&self) -> Array {
+        self.by_step(&[], |step| [step.potential])
     }
 
     /// Motions (u_x, u_y, phi) of the panels (mm, mm, rad), shape (steps, panels, 3).
     #[getter]
-    fn configuration<'py>(&self, py: Python<'py>) -> Doubles<'py> {
+    fn configuration(&self) -> Array {
         let panels = self.deployment.sheet.panels.len();
-        self.by_step(py, &[panels, 3], |step| step.configuration.clone())
+        self.by_step(&[panels, 3], |step| step.configuration.as_flattened().to_vec())
     }
 
     /// Corners SW, SE, NE, NW of the panels (mm), shape (steps, panels, 4, 2).
     #[getter]
-    fn corners<'py>(&self, py: Python<'py>) -> Doubles<'py> {
+    fn corners(&self) -> Array {
         let sheet = &self.deployment.sheet;
-        self.by_step(py, &[sheet.panels.len(), 4, 2], |step| {
-            deployed_corners(sheet, &step.configuration).concat()
+        self.by_step(&[sheet.panels.len(), 4, 2], |step| {
+            deployed_corners(sheet, &step.configuration).concat().concat()
         })
     }
 
     /// (a, s, theta) of the hinges (mm, mm, rad), shape (steps, hinges, 3).
     #[getter]
-    fn deformation<'py>(&self, py: Python<'py>) -> Doubles<'py> {
-        self.by_step(py, &[self.hinges(), 3], |step| {
-            step.deformations.iter().map(|eps| eps.to_array()).collect::<Vec<_>>()
+    fn deformation(&self) -> Array {
+        self.by_step(&[self.hinges(), 3], |step| {
+            step.deformations.iter().flat_map(|eps| eps.to_array()).collect::<Vec<_>>()
         })
     }
 
     /// Energies of the hinges, contact included (N mm), shape (steps, hinges).
     #[getter]
-    fn energy<'py>(&self, py: Python<'py>) -> Doubles<'py> {
-        self.by_step(py, &[self.hinges()], |step| {
-            step.energies.iter().map(|energy| [*energy]).collect::<Vec<_>>()
-        })
+    fn energy(&self) -> Array {
+        self.by_step(&[self.hinges()], |step| step.energies.clone())
     }
 
-    /// D of the hinges, shape (steps, hinges); nan where it is not known: outside the training
+    /// D of the hinges, shape (steps, hinges); nan where it is unknown: outside the training
     /// domain, or without a learned law.
     #[getter]
-    fn damage<'py>(&self, py: Python<'py>) -> Doubles<'py> {
-        self.damaged(py, |damage| Some(damage.d))
+    fn damage(&self) -> Array {
+        self.damaged(|damage| Some(damage.d))
     }
 
     /// D_peak of the hinges, shape (steps, hinges): a ligament tears at 1; nan where it is not
     /// known.
     #[getter]
-    fn damage_peak<'py>(&self, py: Python<'py>) -> Doubles<'py> {
-        self.damaged(py, |damage| damage.d_peak)
+    fn damage_peak(&self) -> Array {
+        self.damaged(|damage| damage.d_peak)
     }
 
     /// Whether each hinge is inside the training domain, shape (steps, hinges).
     #[getter]
-    fn inside<'py>(&self, py: Python<'py>) -> Bound<'py, PyArrayDyn<bool>> {
-        let path = &self.deployment.path;
-        let inside = path.iter().flat_map(|step| step.inside.iter().copied());
-        bools(py, inside.collect(), &[path.len(), self.hinges()])
+    fn inside(&self) -> Array<bool> {
+        self.by_step(&[self.hinges()], |step| step.inside.clone())
     }
 
     /// Forces (F_x, F_y, M) by which the supports hold the panels at full load (N, N, N mm), shape
     /// (panels, 3); zero where a panel is free.
     #[getter]
-    fn reactions<'py>(&self, py: Python<'py>) -> PyResult<Doubles<'py>> {
+    fn reactions(&self) -> PyResult<Array> {
         let last = self.at_full_load()?;
-        let mechanics = self.problem.model.mechanics();
-        let mechanics = mechanics.ok_or_else(|| errors::design(DesignError::NoMechanics))?;
+        let mechanics = self.problem.model.equilibrium().map_err(errors::design)?;
         let sheet = &self.deployment.sheet;
         let law = mechanics.law.prepare(&sheet.designs());
         let hinged = mechanics.hinged(sheet, &*law, false);
-        Ok(triples(py, &mechanics.solver.reactions(hinged, &last.configuration)))
+        Ok(rows(mechanics.solver.reactions(hinged, &last.configuration)))
     }
 
     /// The flat sheet.
@@ -184,15 +173,15 @@ impl Deployment {
 impl State {
     /// Deployed corners SW, SE, NE, NW of the panels (mm), shape (panels, 4, 2).
     #[getter]
-    fn corners<'py>(&self, py: Python<'py>) -> Doubles<'py> {
-        quadrilaterals(py, &self.0.corners())
+    fn corners(&self) -> Array {
+        quadrilaterals(&self.0.corners())
     }
 
     /// Forces (F_x, F_y, M) by which the supports hold the panels (N, N, N mm), shape (panels, 3);
     /// zero where a panel is free.
     #[getter]
-    fn reactions<'py>(&self, py: Python<'py>) -> Doubles<'py> {
-        triples(py, &self.0.reactions)
+    fn reactions(&self) -> Array {
+        rows(self.0.reactions.clone())
     }
 
     /// zeta: 1 under dead loads; under a prescribed stroke the load over the load of the scene.
@@ -203,21 +192,20 @@ impl State {
 
     /// Motions (u_x, u_y, phi) of the panels (mm, mm, rad), shape (panels, 3).
     #[getter]
-    fn configuration<'py>(&self, py: Python<'py>) -> Doubles<'py> {
-        triples(py, &self.0.state().configuration)
+    fn configuration(&self) -> Array {
+        rows(self.0.state().configuration.clone())
     }
 
     /// (a, s, theta) of the hinges (mm, mm, rad), shape (hinges, 3).
     #[getter]
-    fn deformation<'py>(&self, py: Python<'py>) -> Doubles<'py> {
-        let deformations = self.0.state().deformations.iter();
-        triples(py, &deformations.map(|eps| eps.to_array()).collect::<Vec<_>>())
+    fn deformation(&self) -> Array {
+        rows(self.0.state().deformations.iter().map(|eps| eps.to_array()))
     }
 
     /// How the state was found, as in `Deployment.status`.
     #[getter]
-    fn status<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        plain(py, &self.0.state().status)
+    fn status(&self) -> Plain {
+        plain(&self.0.state().status)
     }
 
     /// Whether the path to the state was followed from the flat sheet; False if the state was

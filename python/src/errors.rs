@@ -1,9 +1,7 @@
 //! Errors as Python exceptions. The message is the message of the command line.
 
 use design::DesignError;
-use pyo3::create_exception;
-use pyo3::exceptions::PyException;
-use pyo3::prelude::*;
+use pyo3::{create_exception, exceptions::PyException, prelude::*};
 use std::fmt::Display;
 
 create_exception!(
@@ -49,14 +47,17 @@ pub(crate) fn scene(error: impl Display) -> PyErr {
 }
 
 /// The same exception, with the element of a batch in its message.
-pub(crate) fn of_element(py: Python, element: usize, error: PyErr) -> PyErr {
-    let message = format!("element {element}: {}", error.value(py));
-    let kind = error.get_type(py).call1((message,));
-    kind.map_or(error, PyErr::from_value)
+pub(crate) fn of_element(element: usize, error: PyErr) -> PyErr {
+    Python::attach(|py| {
+        let message = format!("element {element}: {}", error.value(py));
+        let kind = error.get_type(py).call1((message,));
+        kind.map_or(error, PyErr::from_value)
+    })
 }
 
 /// The exception of a design without a value or a gradient.
-pub(crate) fn design(error: DesignError) -> PyErr {
+pub(crate) fn design(error: impl Into<DesignError>) -> PyErr {
+    let error = error.into();
     let message = error.to_string();
     match error {
         DesignError::NoEquilibrium { .. } => NoEquilibrium::new_err(message),

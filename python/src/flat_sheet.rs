@@ -1,16 +1,20 @@
 //! Cut patterns and flat sheets.
 
-use crate::arrays::{Doubles, array, numbers, shaped, triples, tuple};
-use crate::errors;
-use design::pattern::coordinates::PatternCoordinates;
-use design::pattern::cut_pattern::CutPattern;
-use design::sheet::cut_sheet::{HingePoint, SheetOptions};
-use design::sheet::ideal_deployment::ideal_deployment;
-use design::sheet::kinematics::deployed_corners;
-use design::{Grid, Outline};
+use crate::{
+    arrays::{Argument, Array, Numbers, list, quadrilaterals, rows, shaped},
+    errors,
+};
+use design::{
+    Grid, Outline,
+    pattern::{coordinates::PatternCoordinates, cut_pattern::CutPattern},
+    sheet::{
+        cut_sheet::{Hinge, HingePoint, SheetOptions},
+        ideal_deployment::{check_opening, ideal_deployment},
+        kinematics::deployed_corners,
+    },
+};
 use hinge::HingeConstants;
-use pyo3::exceptions::PyValueError;
-use pyo3::prelude::*;
+use pyo3::{exceptions::PyValueError, prelude::*};
 use std::sync::Arc;
 
 /// A cut pattern that deploys rigidly, (2)-(5), of m x n panels.
@@ -40,51 +44,45 @@ impl Pattern {
     fn new(
         m: usize,
         n: usize,
-        corners: &Bound<PyAny>,
-        r: Option<&Bound<PyAny>>,
-        tau: Option<&Bound<PyAny>>,
+        corners: &Argument,
+        r: Option<&Argument>,
+        tau: Option<&Argument>,
     ) -> PyResult<Self> {
         if m < 2 || n < 2 {
             let error = format!("a pattern has at least 2 x 2 panels, not {m} x {n}");
             return Err(PyValueError::new_err(error));
         }
         let grid = Grid { m, n };
-        let given = numbers(corners, "corners")?;
+        let given = Numbers::read(corners, "corners")?;
         let outline = match (given.shape.as_slice(), given.values.as_slice()) {
             ([2], [width, height]) => Outline::rectangle(*width, *height),
             ([4, 2], points) => {
                 Outline { corners: std::array::from_fn(|k| [points[2 * k], points[2 * k + 1]]) }
             }
-            (shape, _) => {
-                return Err(crate::arrays::wrong_shape("corners", shape, "(4, 2) or (2,)"));
-            }
+            _ => return Err(given.wrong_shape("(4, 2) or (2,)")),
         };
         let mut values = PatternCoordinates::uniform(grid).values();
         let interior = grid.aspect_ratio_count();
         let (ratios, positions) = values.split_at_mut(interior);
         for (part, argument, name) in [(ratios, r, "r"), (positions, tau, "tau")] {
             if let Some(argument) = argument {
-                let given = shaped(argument, name, &[Some(part.len())], &tuple(&[part.len()]))?;
-                part.copy_from_slice(&given.values);
+                part.copy_from_slice(&shaped(argument, name, &[part.len()])?);
             }
         }
-        let wrong = |error| errors::design(design::DesignError::Pattern(error));
-        let coordinates = PatternCoordinates::from_values(grid, &values).map_err(wrong)?;
-        Ok(Self(CutPattern::new(grid, outline, &coordinates).map_err(wrong)?))
+        let coordinates = PatternCoordinates::from_values(grid, &values).map_err(errors::design)?;
+        Ok(Self(CutPattern::new(grid, outline, &coordinates).map_err(errors::design)?))
     }
 
     /// Void aspect ratios of the interior cuts, row by row.
     #[getter]
-    fn r<'py>(&self, py: Python<'py>) -> Doubles<'py> {
-        array(py, self.0.r.clone(), &[self.0.r.len()])
+    fn r(&self) -> Array {
+        list(self.0.r.clone())
     }
 
     /// Positions of the cuts on the edges bottom, right, top, left, as fractions of the edge.
     #[getter]
-    fn tau<'py>(&self, py: Python<'py>) -> Doubles<'py> {
-        let tau = self.0.tau.concat();
-        let count = tau.len();
-        array(py, tau, &[count])
+    fn tau(&self) -> Array {
+        list(self.0.tau.concat())
     }
 
     /// Number of hinges.
@@ -102,54 +100,50 @@ impl Pattern {
 impl Sheet {
     #[new]
     #[pyo3(signature = (pattern, w_lig, slit_width=0.2))]
-    fn new(pattern: &Pattern, w_lig: &Bound<PyAny>, slit_width: f64) -> PyResult<Self> {
-        let hinges = pattern.hinges();
-        let widths = numbers(w_lig, "w_lig")?.filled("w_lig", &[hinges], hinges)?;
+    fn new(pattern: &Pattern, w_lig: &Argument, slit_width: f64) -> PyResult<Self> {
+        let widths = Numbers::read(w_lig, "w_lig")?.filled(&[pattern.hinges()])?;
         let constants = HingeConstants { kerf: slit_width, ..HingeConstants::PAPER };
         let options = SheetOptions { hinge_point: HingePoint::CutTip, process: constants.into() };
         let sheet = design::Sheet::new(&pattern.0, &widths, options);
-        let wrong = |error| errors::design(design::DesignError::Sheet(error));
-        Ok(Self(Arc::new(sheet.map_err(wrong)?)))
+        Ok(Self(Arc::new(sheet.map_err(errors::design)?)))
     }
 
     /// Corners SW, SE, NE, NW of every panel (mm), row by row, shape (panels, 4, 2).
     #[getter]
-    fn corners<'py>(&self, py: Python<'py>) -> Doubles<'py> {
+    fn corners(&self) -> Array {
         let corners: Vec<_> = self.0.panels.iter().map(|panel| panel.corners).collect();
-        quadrilaterals(py, &corners)
+        quadrilaterals(&corners)
     }
 
     /// The points of the panels whose motions are (u_x, u_y): centroids, or where a panel is held
     /// or pulled (mm), shape (panels, 2).
     #[getter]
-    fn references<'py>(&self, py: Python<'py>) -> Doubles<'py> {
-        points(py, self.0.panels.iter().map(|panel| panel.reference))
+    fn references(&self) -> Array {
+        rows(self.0.panels.iter().map(|panel| panel.reference))
     }
 
     /// The two panels A and B of every hinge, shape (hinges, 2).
     #[getter]
     fn hinge_panels(&self) -> Vec<[usize; 2]> {
-        self.0.hinges.iter().map(|hinge| [hinge.panel_a(), hinge.panel_b()]).collect()
+        self.0.hinges.iter().map(Hinge::panels).collect()
     }
 
     /// The tips O of the main cuts (mm), shape (hinges, 2).
     #[getter]
-    fn tips<'py>(&self, py: Python<'py>) -> Doubles<'py> {
-        points(py, self.0.hinges.iter().map(|hinge| hinge.tip))
+    fn tips(&self) -> Array {
+        rows(self.0.hinges.iter().map(|hinge| hinge.tip))
     }
 
     /// Ligament widths (mm), shape (hinges,).
     #[getter]
-    fn w_lig<'py>(&self, py: Python<'py>) -> Doubles<'py> {
-        let widths = self.0.hinges.iter().map(|hinge| hinge.w_lig);
-        array(py, widths.collect(), &[self.0.hinges.len()])
+    fn w_lig(&self) -> Array {
+        list(self.0.hinges.iter().map(|hinge| hinge.w_lig).collect())
     }
 
     /// Cut angles alpha (rad), shape (hinges,).
     #[getter]
-    fn alpha<'py>(&self, py: Python<'py>) -> Doubles<'py> {
-        let angles = self.0.hinges.iter().map(|hinge| hinge.alpha);
-        array(py, angles.collect(), &[self.0.hinges.len()])
+    fn alpha(&self) -> Array {
+        list(self.0.hinges.iter().map(|hinge| hinge.alpha).collect())
     }
 
     /// Indices (panel, corner) of the corners on the outline, counter-clockwise, into `corners`.
@@ -160,29 +154,15 @@ impl Sheet {
 
     /// The kinematic deployment with every hinge open by `opening` (rad): motions (u_x, u_y, phi)
     /// of the panels (mm, mm, rad), shape (panels, 3), and their corners, shape (panels, 4, 2).
-    fn deploy<'py>(&self, py: Python<'py>, opening: f64) -> PyResult<(Doubles<'py>, Doubles<'py>)> {
-        if !opening.is_finite() {
-            return Err(errors::design(design::DesignError::Opening(opening)));
-        }
+    fn deploy(&self, opening: f64) -> PyResult<(Array, Array)> {
+        check_opening(opening).map_err(errors::design)?;
         let configuration = ideal_deployment(&self.0, opening);
         let corners = deployed_corners(&self.0, &configuration);
-        Ok((triples(py, &configuration), quadrilaterals(py, &corners)))
+        Ok((rows(configuration), quadrilaterals(&corners)))
     }
 
     fn __repr__(&self) -> String {
         let (panels, hinges) = (self.0.panels.len(), self.0.hinges.len());
         format!("Sheet({panels} panels, {hinges} hinges)")
     }
-}
-
-/// The corners of panels as an array of shape (panels, 4, 2).
-pub(crate) fn quadrilaterals<'py>(py: Python<'py>, corners: &[[[f64; 2]; 4]]) -> Doubles<'py> {
-    let flat = corners.as_flattened().as_flattened().to_vec();
-    array(py, flat, &[corners.len(), 4, 2])
-}
-
-fn points<'py>(py: Python<'py>, points: impl Iterator<Item = [f64; 2]>) -> Doubles<'py> {
-    let flat: Vec<f64> = points.flatten().collect();
-    let count = flat.len() / 2;
-    array(py, flat, &[count, 2])
 }

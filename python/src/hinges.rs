@@ -1,19 +1,16 @@
-//! The learned hinge energy: weights, hinges prepared for evaluation, and what is known of their
-//! states.
+//! The learned hinge energy: weights, hinges prepared for evaluation, and the domain and
+//! spread of their states.
 
-use crate::arrays::{
-    Doubles, Numbers, array, bools, followed_by, numbers, plain, tuple, wrong_shape,
+use crate::{
+    arrays::{Argument, Array, Numbers, Plain, array, plain, tuple},
+    errors,
+    waiting::unlocked,
 };
-use crate::errors;
-use crate::waiting::unlocked;
 use design::hinge_law::{HingeDamage, HingeEnergy, Order, PreparedLaw, PreparedSurrogate};
 use hinge::{DesignGradient, HingeConstants, HingeDeformation, HingeDesign};
-use numpy::PyArrayDyn;
-use pyo3::exceptions::PyValueError;
-use pyo3::prelude::*;
+use pyo3::{exceptions::PyValueError, prelude::*};
 use rayon::prelude::*;
-use std::path::PathBuf;
-use std::sync::Arc;
+use std::{path::PathBuf, sync::Arc};
 use surrogate::mean_and_variance;
 
 /// The learned energy of a hinge, W(a, s, theta; w_lig, alpha), with its continuation outside the
@@ -33,16 +30,16 @@ pub(crate) struct Surrogate {
 
 /// Hinges of given designs, prepared once for any number of evaluations.
 #[pyclass(frozen, module = "kirigami")]
-pub(crate) struct Hinges(Arc<Prepared>);
+pub(crate) struct Hinges(Arc<PreparedHinges>);
 
 /// Hinges that one thread evaluates together.
 const CHUNK: usize = 2048;
 
 type Law = PreparedSurrogate<Arc<surrogate::Surrogate>>;
 
-struct Prepared {
+struct PreparedHinges {
     networks: Vec<Arc<surrogate::Surrogate>>,
-    /// Of the first network, one for each chunk of the designs.
+    /// Laws of the first network, one for each chunk of the designs.
     laws: Vec<Law>,
     designs: Vec<HingeDesign>,
     shape: Vec<usize>,
@@ -52,9 +49,9 @@ struct Prepared {
 /// spread when they are read.
 #[pyclass(frozen, module = "kirigami")]
 pub(crate) struct HingeStates {
-    hinges: Arc<Prepared>,
+    hinges: Arc<PreparedHinges>,
     deformations: Vec<HingeDeformation>,
-    /// Of each chunk.
+    /// Energies of each chunk.
     energies: Vec<Vec<HingeEnergy>>,
     order: Order,
 }
@@ -65,10 +62,10 @@ impl Surrogate {
     /// training, whose disagreement is the spread.
     #[new]
     #[pyo3(signature = (weights, ensemble=Vec::new()))]
-    fn new(py: Python, weights: PathBuf, ensemble: Vec<PathBuf>) -> PyResult<Self> {
+    fn new(weights: PathBuf, ensemble: Vec<PathBuf>) -> PyResult<Self> {
         let files = std::iter::once(weights).chain(ensemble);
         let files: Vec<PathBuf> = files.map(std::path::absolute).collect::<Result<_, _>>()?;
-        let networks = unlocked(py, || {
+        let networks = unlocked(|| {
             (files.iter())
                 .map(|file| surrogate::Surrogate::load(file).map(Arc::new))
                 .collect::<Result<_, _>>()
@@ -80,8 +77,8 @@ impl Surrogate {
     /// The same as `Surrogate(weights, ensemble)`.
     #[staticmethod]
     #[pyo3(signature = (weights, ensemble=Vec::new()))]
-    fn load(py: Python, weights: PathBuf, ensemble: Vec<PathBuf>) -> PyResult<Self> {
-        Self::new(py, weights, ensemble)
+    fn load(weights: PathBuf, ensemble: Vec<PathBuf>) -> PyResult<Self> {
+        Self::new(weights, ensemble)
     }
 
     /// What the class is made of again when it is unpickled.
@@ -92,8 +89,8 @@ impl Surrogate {
 
     /// The card of the weights: units, scaling, training data, training domain, test errors.
     #[getter]
-    fn card<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        plain(py, self.networks[0].card())
+    fn card(&self) -> Plain {
+        plain(self.networks[0].card())
     }
 
     /// Hinges prepared for evaluation.
@@ -104,12 +101,11 @@ impl Surrogate {
     #[pyo3(signature = (w_lig, alpha, hole=None))]
     fn hinges(
         &self,
-        py: Python,
-        w_lig: &Bound<PyAny>,
-        alpha: &Bound<PyAny>,
-        hole: Option<&Bound<PyAny>>,
+        w_lig: &Argument,
+        alpha: &Argument,
+        hole: Option<&Argument>,
     ) -> PyResult<Hinges> {
-        self.prepared(py, None, w_lig, alpha, hole)
+        self.prepared(None, w_lig, alpha, hole)
     }
 
     /// The states (a, s, theta), an array of shape (..., 3) in (mm, mm, rad), of hinges of the
@@ -118,17 +114,16 @@ impl Surrogate {
     #[pyo3(signature = (states, w_lig, alpha, hole=None, order="tangent"))]
     fn __call__(
         &self,
-        py: Python,
-        states: &Bound<PyAny>,
-        w_lig: &Bound<PyAny>,
-        alpha: &Bound<PyAny>,
-        hole: Option<&Bound<PyAny>>,
+        states: &Argument,
+        w_lig: &Argument,
+        alpha: &Argument,
+        hole: Option<&Argument>,
         order: &str,
     ) -> PyResult<HingeStates> {
         let states = read_states(states)?;
         let shape = &states.shape[..states.shape.len() - 1];
-        let hinges = self.prepared(py, Some(shape), w_lig, alpha, hole)?;
-        hinges.evaluated(py, states, order)
+        let hinges = self.prepared(Some(shape), w_lig, alpha, hole)?;
+        hinges.evaluated(states, order)
     }
 
     fn __repr__(&self) -> String {
@@ -140,32 +135,28 @@ impl Surrogate {
 impl Surrogate {
     fn prepared(
         &self,
-        py: Python,
         shape: Option<&[usize]>,
-        w_lig: &Bound<PyAny>,
-        alpha: &Bound<PyAny>,
-        hole: Option<&Bound<PyAny>>,
+        w_lig: &Argument,
+        alpha: &Argument,
+        hole: Option<&Argument>,
     ) -> PyResult<Hinges> {
         let constants = self.networks[0].card().hinge;
         let given = [("w_lig", Some(w_lig)), ("alpha", Some(alpha)), ("hole", hole)];
         let mut columns = Vec::new();
         for (name, argument) in given {
             columns.push(match argument {
-                Some(argument) => (name, numbers(argument, name)?),
-                None => (name, Numbers::single(constants.fillet_ratio)),
+                Some(argument) => Numbers::read(argument, name)?,
+                None => Numbers { name, values: vec![constants.fillet_ratio], shape: Vec::new() },
             });
         }
-        let widest = columns.iter().map(|(_, numbers)| &numbers.shape);
+        let widest = columns.iter().map(|numbers| &numbers.shape);
         let shape = match shape {
             Some(shape) => shape.to_vec(),
             None => widest.max_by_key(|shape| shape.len()).cloned().unwrap_or_default(),
         };
-        let count = shape.iter().product();
-        let columns: Vec<Vec<f64>> = columns
-            .into_iter()
-            .map(|(name, numbers)| numbers.filled(name, &shape, count))
-            .collect::<PyResult<_>>()?;
-        let designs: Vec<HingeDesign> = (0..count)
+        let filled = columns.into_iter().map(|numbers| numbers.filled(&shape));
+        let columns: Vec<Vec<f64>> = filled.collect::<PyResult<_>>()?;
+        let designs: Vec<HingeDesign> = (0..columns[0].len())
             .map(|h| {
                 let fillet_ratio = columns[2][h];
                 HingeConstants { fillet_ratio, ..constants }.hinge(columns[0][h], columns[1][h])
@@ -176,15 +167,15 @@ impl Surrogate {
             design.validate().map_err(wrong)
         })?;
         let networks = self.networks.clone();
-        let laws = unlocked(py, || prepared(&networks[0], &designs))?;
-        Ok(Hinges(Arc::new(Prepared { networks, laws, designs, shape })))
+        let laws = unlocked(|| prepared(&networks[0], &designs))?;
+        Ok(Hinges(Arc::new(PreparedHinges { networks, laws, designs, shape })))
     }
 }
 
-fn read_states(states: &Bound<PyAny>) -> PyResult<Numbers> {
-    let states = numbers(states, "states")?;
+fn read_states(states: &Argument) -> PyResult<Numbers> {
+    let states = Numbers::read(states, "states")?;
     if states.shape.last() != Some(&3) {
-        return Err(wrong_shape("states", &states.shape, "(..., 3): (a, s, theta)"));
+        return Err(states.wrong_shape("(..., 3): (a, s, theta)"));
     }
     Ok(states)
 }
@@ -210,8 +201,8 @@ impl Hinges {
     /// order: "value" evaluates W, "forces" its gradient, "tangent" its Hessian, "design" the
     /// derivatives in (w_lig, alpha, hole) too.
     #[pyo3(signature = (states, order="tangent"))]
-    fn __call__(&self, py: Python, states: &Bound<PyAny>, order: &str) -> PyResult<HingeStates> {
-        self.evaluated(py, read_states(states)?, order)
+    fn __call__(&self, states: &Argument, order: &str) -> PyResult<HingeStates> {
+        self.evaluated(read_states(states)?, order)
     }
 
     /// The shape of the hinges.
@@ -222,17 +213,17 @@ impl Hinges {
 }
 
 impl Hinges {
-    fn evaluated(&self, py: Python, states: Numbers, order: &str) -> PyResult<HingeStates> {
+    fn evaluated(&self, states: Numbers, order: &str) -> PyResult<HingeStates> {
         let order = read_order(order)?;
-        let expected = followed_by(&self.0.shape, &[3]);
+        let expected = [&self.0.shape[..], &[3]].concat();
         if states.shape != expected {
-            return Err(wrong_shape("states", &states.shape, &tuple(&expected)));
+            return Err(states.wrong_shape(&tuple(&expected)));
         }
         let (deformations, _) = states.values.as_chunks::<3>();
         let deformations: Vec<HingeDeformation> =
             deformations.iter().map(|state| HingeDeformation::from(*state)).collect();
         let hinges = Arc::clone(&self.0);
-        let energies = unlocked(py, || {
+        let energies = unlocked(|| {
             by_chunk(&hinges.laws, &deformations, |law, states| law.energies(states, order))
         })?;
         Ok(HingeStates { hinges, deformations, energies, order })
@@ -243,81 +234,82 @@ impl Hinges {
 impl HingeStates {
     /// W (N mm), of the shape of the hinges.
     #[getter]
-    fn energy<'py>(&self, py: Python<'py>) -> Doubles<'py> {
-        self.column(py, |energy| [energy.w], &[])
+    fn energy(&self) -> Array {
+        self.column(|energy| [energy.w], &[])
     }
 
     /// (F_a, F_s, M_theta) = dW/d(a, s, theta) (N, N, N mm), shape (..., 3).
     #[getter]
-    fn forces<'py>(&self, py: Python<'py>) -> PyResult<Doubles<'py>> {
+    fn forces(&self) -> PyResult<Array> {
         self.needs(Order::Forces, "forces")?;
-        Ok(self.column(py, |energy| energy.forces, &[3]))
+        Ok(self.column(|energy| energy.forces, &[3]))
     }
 
     /// d2W/d(a, s, theta)^2, shape (..., 3, 3).
     #[getter]
-    fn tangent<'py>(&self, py: Python<'py>) -> PyResult<Doubles<'py>> {
+    fn tangent(&self) -> PyResult<Array> {
         self.needs(Order::Tangent, "tangent")?;
-        Ok(self.column(py, |energy| flat(energy.tangent), &[3, 3]))
+        Ok(self.column(|energy| energy.tangent.into_iter().flatten(), &[3, 3]))
     }
 
     /// dW/d(w_lig, alpha, hole) at constant (a, s, theta), shape (..., 3).
     #[getter]
-    fn by_design<'py>(&self, py: Python<'py>) -> PyResult<Doubles<'py>> {
+    fn by_design(&self) -> PyResult<Array> {
         self.needs(Order::Design, "design")?;
-        Ok(self.column(py, |energy| energy.design.to_array(), &[3]))
+        Ok(self.column(|energy| energy.design.to_array(), &[3]))
     }
 
     /// d2W/d(a, s, theta)d(w_lig, alpha, hole), shape (..., 3, 3).
     #[getter]
-    fn forces_by_design<'py>(&self, py: Python<'py>) -> PyResult<Doubles<'py>> {
+    fn forces_by_design(&self) -> PyResult<Array> {
         self.needs(Order::Design, "design")?;
-        Ok(self.column(py, |energy| flat(energy.mixed.map(DesignGradient::to_array)), &[3, 3]))
+        Ok(self
+            .column(|energy| energy.mixed.into_iter().flat_map(DesignGradient::to_array), &[3, 3]))
     }
 
     /// D, the mean plastic strain of the ligament over that at fracture; nan outside the training
-    /// domain, where it is not known.
+    /// domain, where it is unknown.
     #[getter]
-    fn damage<'py>(&self, py: Python<'py>) -> PyResult<Doubles<'py>> {
-        self.damaged(py, |damage| Some(damage.d))
+    fn damage(&self) -> PyResult<Array> {
+        self.damaged(|damage| Some(damage.d))
     }
 
     /// D_peak, the damage of the most strained 1 % of the ligament: it tears at 1. nan outside the
     /// training domain, and if the weights do not predict it.
     #[getter]
-    fn damage_peak<'py>(&self, py: Python<'py>) -> PyResult<Doubles<'py>> {
-        self.damaged(py, |damage| damage.d_peak)
+    fn damage_peak(&self) -> PyResult<Array> {
+        self.damaged(|damage| damage.d_peak)
     }
 
     /// Depth in the training domain: 1 at its centre, 0 at its edge, negative outside.
     #[getter]
-    fn depth<'py>(&self, py: Python<'py>) -> Doubles<'py> {
+    fn depth(&self) -> Array {
         let domain = self.hinges.networks[0].domain();
         let depths = std::iter::zip(&self.hinges.designs, &self.deformations)
             .map(|(design, state)| domain.depth(design, state));
-        array(py, depths.collect(), &self.hinges.shape)
+        array(depths, &[&self.hinges.shape])
     }
 
     /// Whether each state, the width, the angle and the hole of its hinge are inside the training
     /// domain (bool).
     #[getter]
-    fn inside<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<bool>>> {
+    fn inside(&self) -> PyResult<Array<bool>> {
         let inside = || by_chunk(&self.hinges.laws, &self.deformations, Law::inside);
-        let inside = unlocked(py, inside)?.concat();
-        Ok(bools(py, inside, &self.hinges.shape))
+        let inside = unlocked(inside)?.concat();
+        Ok(array(inside, &[&self.hinges.shape]))
     }
 
     /// Standard deviation over the networks of the ensemble of (W, F_a, F_s, M_theta), shape (...,
     /// 4).
     #[getter]
-    fn spread<'py>(&self, py: Python<'py>) -> PyResult<Doubles<'py>> {
-        let Prepared { networks, designs, shape, .. } = &*self.hinges;
+    fn spread(&self) -> PyResult<Array> {
+        let PreparedHinges { networks, designs, shape, .. } = &*self.hinges;
         if networks.len() == 1 {
             return Err(PyValueError::new_err(
                 "one network has no spread: load its ensemble, Surrogate.load(weights, ensemble=[...])",
             ));
         }
-        let spreads = unlocked(py, || {
+        let spreads = unlocked(|| {
             let forces =
                 |law: &Law, states: &[HingeDeformation]| law.energies(states, Order::Forces);
             let of_networks: Vec<Vec<HingeEnergy>> = (networks.iter())
@@ -331,9 +323,9 @@ impl HingeStates {
                 });
                 mean_and_variance(values)[1].sqrt()
             };
-            (0..4 * designs.len()).map(|i| spread(i / 4, i % 4)).collect()
+            (0..4 * designs.len()).map(|i| spread(i / 4, i % 4)).collect::<Vec<_>>()
         })?;
-        Ok(array(py, spreads, &followed_by(shape, &[4])))
+        Ok(array(spreads, &[shape, &[4]]))
     }
 }
 
@@ -347,21 +339,16 @@ impl HingeStates {
         Ok(())
     }
 
-    fn column<'py, const N: usize>(
+    fn column<R: IntoIterator<Item = f64>>(
         &self,
-        py: Python<'py>,
-        of: impl Fn(&HingeEnergy) -> [f64; N],
+        of: impl Fn(&HingeEnergy) -> R,
         shape: &[usize],
-    ) -> Doubles<'py> {
-        let values = self.energies.iter().flatten().flat_map(of).collect();
-        array(py, values, &followed_by(&self.hinges.shape, shape))
+    ) -> Array {
+        let values = self.energies.iter().flatten().flat_map(of);
+        array(values, &[&self.hinges.shape, shape])
     }
 
-    fn damaged<'py>(
-        &self,
-        py: Python<'py>,
-        of: impl Fn(&HingeDamage) -> Option<f64> + Sync,
-    ) -> PyResult<Doubles<'py>> {
+    fn damaged(&self, of: impl Fn(&HingeDamage) -> Option<f64> + Sync) -> PyResult<Array> {
         let known = |law: &Law, states: &[HingeDeformation]| -> Vec<f64> {
             let damages = law.damage(states, false);
             let known = std::iter::zip(&damages, law.inside(states));
@@ -369,8 +356,8 @@ impl HingeStates {
             known.map(|damage| damage.unwrap_or(f64::NAN)).collect()
         };
         let values = || by_chunk(&self.hinges.laws, &self.deformations, known);
-        let values = unlocked(py, values)?.concat();
-        Ok(array(py, values, &self.hinges.shape))
+        let values = unlocked(values)?.concat();
+        Ok(array(values, &[&self.hinges.shape]))
     }
 }
 
@@ -392,12 +379,4 @@ fn by_chunk<T: Send>(
     }
     let chunks = laws.par_iter().zip(states.par_chunks(CHUNK));
     chunks.map(|(law, states)| of(law, states)).collect()
-}
-
-fn flat([a, b, c]: [[f64; 3]; 3]) -> [f64; 9] {
-    let mut flat = [0.0; 9];
-    flat[..3].copy_from_slice(&a);
-    flat[3..6].copy_from_slice(&b);
-    flat[6..].copy_from_slice(&c);
-    flat
 }

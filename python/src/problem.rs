@@ -1,28 +1,38 @@
 //! A prepared design problem: its scene is read once, its solves start from the last state.
 
-use crate::arrays::{
-    Doubles, Numbers, array, finite, numbers, plain, shaped, triples, tuple, wrong_shape,
+mod inputs;
+
+use self::inputs::{Warm, read_level, read_method, scene_of};
+use crate::{
+    arrays::{Argument, Array, Numbers, Plain, finite, list, plain, rows, shaped},
+    deployment::{Deployment, State},
+    errors,
+    flat_sheet::Sheet,
+    waiting::{unlocked, while_polling},
 };
-use crate::deployment::{Deployment, State};
-use crate::errors;
-use crate::flat_sheet::Sheet;
-use crate::waiting::{unlocked, while_polling};
-use design::equilibrium::warm_start::WarmStart;
-use design::objective::response::{Conditions, Response, ResponseCotangent, ResponseGradient};
 use design::{
-    DesignError, DesignProblem, DesignVector, Evaluation, SearchMethod, SearchState, optimise,
+    DesignError, DesignProblem, DesignVector, SearchState,
+    objective::response::{Response, ResponseCotangent},
+    optimise,
 };
-use pyo3::exceptions::{PyTypeError, PyValueError};
-use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyList, PyTuple};
+use pyo3::{
+    exceptions::{PyTypeError, PyValueError},
+    prelude::*,
+    types::{PyDict, PySlice},
+};
 use rayon::prelude::*;
-use scene::design_run::{design_of_run, stored_design};
-use scene::run_inputs::scene_file;
-use scene::{Level, Scene, SceneConfig};
-use std::ops::Range;
-use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use scene::{
+    Scene,
+    design_run::{design_of_run, stored_design},
+    run_inputs::scene_file,
+};
+use std::{
+    path::PathBuf,
+    sync::{
+        Arc, Mutex,
+        atomic::{AtomicBool, Ordering},
+    },
+};
 
 /// A design problem: sheet, material, supports, loads, target and objective of a scene.
 ///
@@ -41,43 +51,27 @@ pub(crate) struct Problem {
     stop: Arc<AtomicBool>,
 }
 
-/// What the next solves start from.
-#[derive(Default)]
-struct Warm {
-    path: Known,
-    state: Known,
+/// One of many equilibria, or why there is none.
+#[derive(IntoPyObject)]
+enum BatchElement {
+    Found(State),
+    Missing(PyErr),
 }
 
-/// Load steps that are known, and how many solves have been corrected from one another since the
-/// last followed path.
-#[derive(Default)]
-struct Known {
-    path: Option<Arc<WarmStart>>,
-    corrected: usize,
-}
-
-impl Known {
-    /// The path to start from; none when the next one is to be followed from the flat sheet.
-    fn usable(&self, follow_every: usize) -> Option<Arc<WarmStart>> {
-        self.path.clone().filter(|_| self.corrected + 1 < follow_every)
-    }
-
-    fn keep(&mut self, deployment: &design::Deployment) {
-        self.corrected = if deployment.followed { 0 } else { self.corrected + 1 };
-        self.path = Some(Arc::new(deployment.warm_start()));
-    }
+/// The gradient of a function of the equilibrium, as a dict.
+#[derive(IntoPyObject)]
+struct Pullback {
+    design: Array,
+    loads: Array,
+    thickness: Option<f64>,
+    stress: Option<f64>,
 }
 
 #[pymethods]
 impl Problem {
     #[new]
     #[pyo3(signature = (scene, folder=None, level=None))]
-    fn new(
-        py: Python,
-        scene: &Bound<PyAny>,
-        folder: Option<PathBuf>,
-        level: Option<&str>,
-    ) -> PyResult<Self> {
+    fn new(scene: &Argument, folder: Option<PathBuf>, level: Option<&str>) -> PyResult<Self> {
         let scene = if let Ok(keys) = scene.cast::<PyDict>() {
             scene_of(keys, &folder.unwrap_or_default())?
         } else {
@@ -86,7 +80,7 @@ impl Problem {
                     "`scene` is neither a path nor a dict with the keys of a scene",
                 )
             })?;
-            unlocked(py, || {
+            unlocked(|| {
                 let path = scene_file(&path).map_err(errors::scene)?;
                 Scene::read(&path).map_err(errors::scene)
             })??
@@ -95,7 +89,7 @@ impl Problem {
             Some(name) => scene.at_level(read_level(name)?).map_err(errors::scene)?,
             None => scene,
         };
-        let mut problem = unlocked(py, || scene.problem())?.map_err(errors::scene)?;
+        let mut problem = unlocked(|| scene.problem())?.map_err(errors::scene)?;
         let stop = Arc::<AtomicBool>::default();
         problem.stop_by(Arc::clone(&stop));
         Ok(Self {
@@ -115,8 +109,8 @@ impl Problem {
 
     /// The start design of the scene, shape (size,).
     #[getter]
-    fn start<'py>(&self, py: Python<'py>) -> Doubles<'py> {
-        array(py, self.start.to_flat(), &[self.size()])
+    fn start(&self) -> Array {
+        list(self.start.to_flat())
     }
 
     /// The parts of a design by name, as slices: `z`, the logits of the void aspect ratios; `ell`,
@@ -129,12 +123,11 @@ impl Problem {
         let ell = pattern.ell.iter().map(Vec::len).sum();
         let opening = usize::from(self.start.opening.is_some());
         let lengths = [pattern.z.len(), ell, self.start.omega.len(), opening];
-        let mut end = 0;
+        let mut start = 0;
         for (name, length) in ["z", "ell", "omega", "opening"].into_iter().zip(lengths) {
-            let Range { start, end: stop } = end..end + length;
-            end = stop;
-            let slice = py.import("builtins")?.call_method1("slice", (start, stop))?;
-            blocks.set_item(name, slice)?;
+            let end = start + length as isize;
+            blocks.set_item(name, PySlice::new(py, start, end, 1))?;
+            start = end;
         }
         Ok(blocks)
     }
@@ -153,8 +146,8 @@ impl Problem {
 
     /// (F_x, F_y, M) on every panel at full load (N, N, N mm), shape (panels, 3).
     #[getter]
-    fn loads<'py>(&self, py: Python<'py>) -> PyResult<Doubles<'py>> {
-        Ok(triples(py, self.mechanics()?.solver.loads()))
+    fn loads(&self) -> PyResult<Array> {
+        Ok(rows(self.mechanics()?.solver.loads().to_vec()))
     }
 
     /// Names of the inputs in which the equilibrium has a derivative: the design, the loads and, if
@@ -169,15 +162,10 @@ impl Problem {
 
     /// The design with other ligament widths (mm), a number or an array of shape (hinges,), inside
     /// the range of the scene.
-    fn with_widths<'py>(
-        &self,
-        py: Python<'py>,
-        x: &Bound<PyAny>,
-        w_lig: &Bound<PyAny>,
-    ) -> PyResult<Doubles<'py>> {
+    fn with_widths(&self, x: &Argument, w_lig: &Argument) -> PyResult<Array> {
         let mut design = self.design_of(x)?;
         let hinges = design.omega.len();
-        let widths = numbers(w_lig, "w_lig")?.filled("w_lig", &[hinges], hinges)?;
+        let widths = Numbers::read(w_lig, "w_lig")?.filled(&[hinges])?;
         let range = self.problem.widths;
         for (h, (omega, &width)) in design.omega.iter_mut().zip(&widths).enumerate() {
             if !(range.w_minus < width && width < range.w_plus) {
@@ -188,13 +176,11 @@ impl Problem {
             }
             *omega = range.omega(width);
         }
-        let flat = design.to_flat();
-        let size = flat.len();
-        Ok(array(py, flat, &[size]))
+        Ok(list(design.to_flat()))
     }
 
     /// The flat sheet of a design.
-    fn sheet(&self, x: &Bound<PyAny>) -> PyResult<Sheet> {
+    fn sheet(&self, x: &Argument) -> PyResult<Sheet> {
         let (_, sheet) = self.problem.cut(&self.design_of(x)?).map_err(errors::design)?;
         Ok(Sheet(Arc::new(sheet)))
     }
@@ -209,9 +195,8 @@ impl Problem {
     #[pyo3(signature = (x, loads=None, thickness=None, stress=1.0, warm=true))]
     fn deploy(
         &self,
-        py: Python,
-        x: &Bound<PyAny>,
-        loads: Option<Bound<PyAny>>,
+        x: &Argument,
+        loads: Option<Argument>,
         thickness: Option<f64>,
         stress: f64,
         warm: bool,
@@ -219,7 +204,7 @@ impl Problem {
         let problem = self.under(loads.as_ref(), thickness, stress)?;
         let design = self.design_of(x)?;
         let known = self.known(warm, |warm| &warm.path);
-        let deployment = self.solved(py, || problem.deploy_near(&design, known.as_deref()))?;
+        let deployment = self.solved(|| problem.deploy_near(&design, known.as_deref()))?;
         let deployment = deployment.map_err(errors::design)?;
         self.warm().path.keep(&deployment);
         Ok(Deployment::new(problem, deployment))
@@ -229,27 +214,25 @@ impl Problem {
     #[pyo3(signature = (x, loads=None, thickness=None, stress=1.0, warm=true))]
     fn equilibrium(
         &self,
-        py: Python,
-        x: &Bound<PyAny>,
-        loads: Option<Bound<PyAny>>,
+        x: &Argument,
+        loads: Option<Argument>,
         thickness: Option<f64>,
         stress: f64,
         warm: bool,
     ) -> PyResult<Deployment> {
         self.mechanics()?;
-        let deployment = self.deploy(py, x, loads, thickness, stress, warm)?;
+        let deployment = self.deploy(x, loads, thickness, stress, warm)?;
         deployment.at_full_load()?;
         Ok(deployment)
     }
 
-    /// The equilibrium at full load alone: deployed corners, reactions, load factor. It costs a
+    /// Only the equilibrium at full load: deployed corners, reactions, load factor. It costs a
     /// fraction of the path.
     #[pyo3(signature = (x, loads=None, thickness=None, stress=1.0, warm=true))]
     fn solve(
         &self,
-        py: Python,
-        x: &Bound<PyAny>,
-        loads: Option<Bound<PyAny>>,
+        x: &Argument,
+        loads: Option<Argument>,
         thickness: Option<f64>,
         stress: f64,
         warm: bool,
@@ -257,7 +240,7 @@ impl Problem {
         let problem = self.under(loads.as_ref(), thickness, stress)?;
         let design = self.design_of(x)?;
         let known = self.known(warm, |warm| &warm.state);
-        let response = self.solved(py, || problem.response(&design, known.as_deref()))?;
+        let response = self.solved(|| problem.response(&design, known.as_deref()))?;
         let response = response.map_err(errors::design)?;
         self.warm().state.keep(&response.deployment);
         Ok(State(response))
@@ -270,19 +253,18 @@ impl Problem {
     /// Returns a list of n states. strict: the first equilibrium that is not found is raised;
     /// otherwise its place holds the exception.
     #[pyo3(signature = (x, loads=None, thickness=None, stress=None, strict=true))]
-    fn solve_many<'py>(
+    fn solve_many(
         &self,
-        py: Python<'py>,
-        x: &Bound<PyAny>,
-        loads: Option<&Bound<PyAny>>,
-        thickness: Option<&Bound<PyAny>>,
-        stress: Option<&Bound<PyAny>>,
+        x: &Argument,
+        loads: Option<&Argument>,
+        thickness: Option<&Argument>,
+        stress: Option<&Argument>,
         strict: bool,
-    ) -> PyResult<Bound<'py, PyList>> {
+    ) -> PyResult<Vec<BatchElement>> {
         let many = self.many(x, loads, thickness, stress)?;
         let known = self.known(true, |warm| &warm.state);
         let stop = AtomicBool::new(false);
-        let answers = while_polling(py, &stop, || {
+        let answers = while_polling(&stop, || {
             many.par_iter()
                 .map(|(design, conditions)| {
                     (!stop.load(Ordering::Relaxed)).then(|| {
@@ -292,15 +274,14 @@ impl Problem {
                 })
                 .collect::<Option<Vec<Result<Response, DesignError>>>>()
         })?;
-        let list = PyList::empty(py);
-        for (i, answer) in answers.unwrap_or_default().into_iter().enumerate() {
-            match answer.map_err(errors::design) {
-                Ok(response) => list.append(State(response))?,
-                Err(error) if strict => return Err(errors::of_element(py, i, error)),
-                Err(error) => list.append(error.into_value(py))?,
-            }
-        }
-        Ok(list)
+        let answers = answers.unwrap_or_default().into_iter().enumerate();
+        answers
+            .map(|(i, answer)| match answer.map_err(errors::design) {
+                Ok(response) => Ok(BatchElement::Found(State(response))),
+                Err(error) if strict => Err(errors::of_element(i, error)),
+                Err(error) => Ok(BatchElement::Missing(error)),
+            })
+            .collect()
     }
 
     /// The gradient in the inputs of a function of the equilibrium at full load, from its gradient
@@ -315,73 +296,55 @@ impl Problem {
         clippy::too_many_arguments,
         reason = "inputs and outputs of the equilibrium, by keyword in Python"
     )]
-    fn pullback<'py>(
+    fn pullback(
         &self,
-        py: Python<'py>,
-        x: &Bound<PyAny>,
-        configuration: &Bound<PyAny>,
-        corners: &Bound<PyAny>,
-        reactions: &Bound<PyAny>,
+        x: &Argument,
+        configuration: &Argument,
+        corners: &Argument,
+        reactions: &Argument,
         load_factor: f64,
-        loads: Option<Bound<PyAny>>,
+        loads: Option<Argument>,
         thickness: Option<f64>,
         stress: f64,
-    ) -> PyResult<Bound<'py, PyDict>> {
+    ) -> PyResult<Pullback> {
         let problem = self.under(loads.as_ref(), thickness, stress)?;
         let design = self.design_of(x)?;
         let configuration = self.by_panel(configuration, "configuration")?;
         let load_factor = finite("load_factor", load_factor)?;
-        let panels = problem.topology.panel_count();
-        let expected = tuple(&[panels, 4, 2]);
-        let corners = shaped(corners, "corners", &[Some(panels), Some(4), Some(2)], &expected)?;
+        let corners = shaped(corners, "corners", &[problem.topology.panel_count(), 4, 2])?;
         let by = ResponseCotangent {
-            corners: (corners.values.as_chunks::<8>().0.iter())
+            corners: (corners.as_chunks::<8>().0.iter())
                 .map(|row| std::array::from_fn(|c| [row[2 * c], row[2 * c + 1]]))
                 .collect(),
             reactions: self.by_panel(reactions, "reactions")?,
             load_factor,
         };
-        let gradient = unlocked(py, || {
+        let gradient = unlocked(|| {
             let response = problem.response_at(&design, &configuration)?;
             problem.response_pullback(&design, &response, &by)
         })?;
-        let ResponseGradient { design, loads, thickness: of_thickness, stress: of_stress } =
-            gradient.map_err(errors::design)?;
-        let gradient = PyDict::new(py);
-        let flat = design.to_flat();
-        let size = flat.len();
-        gradient.set_item("design", array(py, flat, &[size]))?;
-        gradient.set_item("loads", triples(py, &loads))?;
-        // From logarithms to mm and to the factor.
+        let gradient = gradient.map_err(errors::design)?;
+        // Derivatives in mm and in the factor.
         let thickness = thickness.unwrap_or(self.thickness());
-        gradient.set_item("thickness", of_thickness.map(|slope| slope / thickness))?;
-        gradient.set_item("stress", of_stress.map(|slope| slope / stress))?;
-        Ok(gradient)
+        Ok(Pullback {
+            design: list(gradient.design.to_flat()),
+            loads: rows(gradient.loads),
+            thickness: gradient.thickness.map(|slope| slope / thickness),
+            stress: gradient.stress.map(|slope| slope / stress),
+        })
     }
 
     /// The objective (16) of the scene (mm^2) and its gradient, shape (size,).
     #[pyo3(signature = (x, warm=true))]
-    fn loss_and_gradient<'py>(
-        &self,
-        py: Python<'py>,
-        x: &Bound<PyAny>,
-        warm: bool,
-    ) -> PyResult<(f64, Doubles<'py>)> {
-        let evaluation = self.evaluated(py, x, warm)?;
-        let gradient = evaluation.gradient.to_flat();
-        Ok((evaluation.loss, array(py, gradient, &[self.size()])))
+    fn loss_and_gradient(&self, x: &Argument, warm: bool) -> PyResult<(f64, Array)> {
+        let evaluation = self.evaluated(x, warm)?;
+        Ok((evaluation.loss, list(evaluation.gradient.to_flat())))
     }
 
     /// The terms of the objective by name, unweighted.
     #[pyo3(signature = (x, warm=true))]
-    fn terms<'py>(
-        &self,
-        py: Python<'py>,
-        x: &Bound<PyAny>,
-        warm: bool,
-    ) -> PyResult<Bound<'py, PyAny>> {
-        let evaluation = self.evaluated(py, x, warm)?;
-        plain(py, &evaluation.terms)
+    fn terms(&self, x: &Argument, warm: bool) -> PyResult<Plain> {
+        Ok(plain(&self.evaluated(x, warm)?.terms))
     }
 
     /// The search of the scene, Algorithm 1, in memory: no file is written.
@@ -390,15 +353,14 @@ impl Problem {
     /// the search ends if it returns True. Ctrl-C ends it after the step. Returns (x, why it ended,
     /// the history, one dict a step).
     #[pyo3(signature = (start=None, steps=None, method=None, learning_rate=None, callback=None))]
-    fn design<'py>(
+    fn design(
         &self,
-        py: Python<'py>,
-        start: Option<&Bound<PyAny>>,
+        start: Option<&Argument>,
         steps: Option<usize>,
         method: Option<&str>,
         learning_rate: Option<f64>,
         callback: Option<Py<PyAny>>,
-    ) -> PyResult<Bound<'py, PyTuple>> {
+    ) -> PyResult<(Array, Plain, Plain)> {
         let optimiser = self.scene.config.optimiser;
         let start = start.map_or(Ok(self.start.clone()), |x| self.design_of(x))?;
         let method = match method {
@@ -412,36 +374,33 @@ impl Problem {
             Python::attach(|py| {
                 py.check_signals()?;
                 if let Some(callback) = &callback {
-                    let record = plain(py, search.last())?;
-                    let ends = callback.call1(py, (record,))?.is_truthy(py)?;
+                    let ends = callback.call1(py, (plain(search.last()),))?.is_truthy(py)?;
                     stop.fetch_or(ends, Ordering::Relaxed);
                 }
                 Ok::<_, PyErr>(())
             })
         };
-        let (search, ended) = unlocked(py, || {
+        let (search, ended) = unlocked(|| {
             let evaluation = problem.evaluate(&start).map_err(errors::design)?;
             let mut search = SearchState::new(problem, start, &evaluation, method, rate);
             report(&search)?;
             let ended = optimise(problem, &mut search, steps, &stop, &mut |search| report(search))?;
             Ok::<_, PyErr>((search, ended))
         })??;
-        let best = array(py, search.best.to_flat(), &[self.size()]);
-        let (ended, history) = (plain(py, &ended)?, plain(py, &search.history)?);
-        PyTuple::new(py, [best.into_any(), ended, history])
+        Ok((list(search.best.to_flat()), plain(&ended), plain(&search.history)))
     }
 
     /// The design of the run of this scene, or in a file (`state.json` of a run, or a design
     /// alone), shape (size,).
     #[pyo3(signature = (file=None))]
-    fn stored<'py>(&self, py: Python<'py>, file: Option<PathBuf>) -> PyResult<Doubles<'py>> {
+    fn stored(&self, file: Option<PathBuf>) -> PyResult<Array> {
         let design = match file {
             Some(file) => stored_design(&file, &self.scene).map_err(errors::scene)?,
             None => design_of_run(&self.scene).map_err(errors::scene)?.ok_or_else(|| {
                 errors::scene(format!("there is no run in {}", self.scene.output().display()))
             })?,
         };
-        Ok(array(py, design.to_flat(), &[self.size()]))
+        Ok(list(design.to_flat()))
     }
 
     /// Forgets the last states: the next solves follow their paths from the flat sheet.
@@ -451,163 +410,14 @@ impl Problem {
 
     /// The keys of the scene with absolute paths, of which the problem is made again when it is
     /// unpickled, without its last states.
-    fn __getnewargs__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>,)> {
+    fn __getnewargs__(&self) -> PyResult<(Plain,)> {
         let keys = self.scene.located().map_err(errors::scene)?;
         let keys = toml::Value::try_from(&keys).map_err(errors::scene)?;
-        Ok((plain(py, &keys)?,))
+        Ok((plain(&keys),))
     }
 
     fn __repr__(&self) -> String {
         let grid = self.problem.topology.grid;
         format!("Problem({:?}, {} x {} panels)", self.scene.config.title, grid.m, grid.n)
-    }
-}
-
-impl Problem {
-    /// The result of `solve`, without the GIL; Ctrl-C ends the path that it follows, and is raised.
-    fn solved<T: Send>(&self, py: Python, solve: impl FnOnce() -> T + Send) -> PyResult<T> {
-        self.stop.store(false, Ordering::Relaxed);
-        while_polling(py, &self.stop, solve)
-    }
-
-    fn mechanics(&self) -> PyResult<&design::Mechanics> {
-        let mechanics = self.problem.model.mechanics();
-        mechanics.ok_or_else(|| errors::design(DesignError::NoMechanics))
-    }
-
-    fn warm(&self) -> MutexGuard<'_, Warm> {
-        self.warm.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-
-    fn known(&self, warm: bool, part: impl Fn(&Warm) -> &Known) -> Option<Arc<WarmStart>> {
-        let follow_every = self.scene.config.solver.follow_every;
-        part(&self.warm()).usable(follow_every).filter(|_| warm)
-    }
-
-    fn design_of(&self, x: &Bound<PyAny>) -> PyResult<DesignVector> {
-        let size = self.size();
-        let flat = shaped(x, "x", &[Some(size)], &tuple(&[size]))?;
-        Ok(self.start.with_flat(&flat.values))
-    }
-
-    fn by_panel(&self, argument: &Bound<PyAny>, name: &str) -> PyResult<Vec<[f64; 3]>> {
-        let panels = self.problem.topology.panel_count();
-        let given = shaped(argument, name, &[Some(panels), Some(3)], &tuple(&[panels, 3]))?;
-        Ok(given.values.as_chunks::<3>().0.to_vec())
-    }
-
-    /// The problem with other loads, another thickness (mm) and other stresses than the scene has.
-    fn under(
-        &self,
-        loads: Option<&Bound<PyAny>>,
-        thickness: Option<f64>,
-        stress: f64,
-    ) -> PyResult<Arc<DesignProblem>> {
-        let loads = loads.map(|loads| self.by_panel(loads, "loads"));
-        let conditions = Conditions {
-            loads: loads.transpose()?,
-            thickness: match thickness {
-                Some(thickness) => finite("thickness", thickness)? / self.thickness(),
-                None => 1.0,
-            },
-            stress: finite("stress", stress)?,
-        };
-        if conditions == Conditions::default() {
-            return Ok(Arc::clone(&self.problem));
-        }
-        Ok(Arc::new(self.problem.under(&conditions).map_err(errors::design)?))
-    }
-
-    fn evaluated(&self, py: Python, x: &Bound<PyAny>, warm: bool) -> PyResult<Evaluation> {
-        let design = self.design_of(x)?;
-        let known = self.known(warm, |warm| &warm.path);
-        let evaluation =
-            self.solved(py, || self.problem.evaluate_near(&design, known.as_deref()))?;
-        let evaluation = evaluation.map_err(errors::design)?;
-        self.warm().path.keep(&evaluation.deployment);
-        Ok(evaluation)
-    }
-
-    /// The inputs of many solves.
-    fn many(
-        &self,
-        x: &Bound<PyAny>,
-        loads: Option<&Bound<PyAny>>,
-        thickness: Option<&Bound<PyAny>>,
-        stress: Option<&Bound<PyAny>>,
-    ) -> PyResult<Vec<(DesignVector, Conditions)>> {
-        let read = |argument: Option<&Bound<PyAny>>, name| {
-            argument.map(|argument| numbers(argument, name)).transpose()
-        };
-        let given = [
-            ("x", Some(numbers(x, "x")?), vec![self.size()]),
-            ("loads", read(loads, "loads")?, vec![self.problem.topology.panel_count(), 3]),
-            ("thickness", read(thickness, "thickness")?, vec![]),
-            ("stress", read(stress, "stress")?, vec![]),
-        ];
-        let mut count = None;
-        for (name, numbers, one) in &given {
-            let Some(Numbers { shape, .. }) = numbers else {
-                continue;
-            };
-            if shape == one {
-                continue;
-            }
-            let many = shape.first().copied().unwrap_or(0);
-            let expected = |n: String| format!("{} or ({n}, ...) of these", tuple(one));
-            if shape.len() != one.len() + 1 || shape[1..] != one[..] {
-                return Err(wrong_shape(name, shape, &expected("n".into())));
-            }
-            if count.is_some_and(|count| count != many) {
-                return Err(wrong_shape(name, shape, &expected(count.unwrap_or(0).to_string())));
-            }
-            count = Some(many);
-        }
-        let [x, loads, thickness, stress] = given.map(|(_, numbers, one)| {
-            let length: usize = one.iter().product();
-            move |i: usize| -> Option<Vec<f64>> {
-                let values = &numbers.as_ref()?.values;
-                let first = if values.len() == length { 0 } else { i * length };
-                Some(values[first..first + length].to_vec())
-            }
-        });
-        let inputs = (0..count.unwrap_or(1)).map(|i| {
-            let design = self.start.with_flat(&x(i).unwrap_or_default());
-            let conditions = Conditions {
-                loads: loads(i).map(|loads| loads.as_chunks::<3>().0.to_vec()),
-                thickness: thickness(i).map_or(1.0, |mm| mm[0] / self.thickness()),
-                stress: stress(i).map_or(1.0, |factor| factor[0]),
-            };
-            (design, conditions)
-        });
-        Ok(inputs.collect())
-    }
-}
-
-/// The scene with the keys of a dict.
-fn scene_of(keys: &Bound<PyDict>, folder: &Path) -> PyResult<Scene> {
-    let py = keys.py();
-    let text: String = py.import("kirigami.files")?.call_method1("_json", (keys,))?.extract()?;
-    let path = folder.join("scene (dict)");
-    let keys: toml::Value = serde_json::from_str(&text).map_err(errors::scene)?;
-    let text = toml::to_string(&keys).map_err(errors::scene)?;
-    let config: SceneConfig = support::toml_file::parse(&text, &path).map_err(errors::scene)?;
-    unlocked(py, || Scene::new(config, &path))?.map_err(errors::scene)
-}
-
-fn read_level(name: &str) -> PyResult<Level> {
-    Level::named(name).ok_or_else(|| {
-        let names = Level::ALL.map(Level::name).join(", ");
-        PyValueError::new_err(format!("`level` is \"{name}\", expected one of {names}"))
-    })
-}
-
-fn read_method(name: &str) -> PyResult<SearchMethod> {
-    match name {
-        "adam" => Ok(SearchMethod::Adam),
-        "lbfgs" => Ok(SearchMethod::Lbfgs),
-        _ => Err(PyValueError::new_err(format!(
-            "`method` is \"{name}\", expected \"adam\" or \"lbfgs\""
-        ))),
     }
 }

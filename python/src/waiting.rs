@@ -1,19 +1,22 @@
 //! Calls without the GIL, and Ctrl-C during those that take long.
 
-use pyo3::exceptions::PyRuntimeError;
-use pyo3::prelude::*;
-use std::panic::resume_unwind;
-use std::sync::OnceLock;
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::{RecvTimeoutError, channel};
-use std::time::Duration;
+use pyo3::{exceptions::PyRuntimeError, prelude::*};
+use std::{
+    panic::resume_unwind,
+    sync::{
+        OnceLock,
+        atomic::{AtomicBool, Ordering},
+        mpsc::{RecvTimeoutError, channel},
+    },
+    time::Duration,
+};
 
 /// How often Python is asked for signals.
 const POLL: Duration = Duration::from_millis(50);
 
 /// The result of `work`, without the GIL; an error in a fork of the process that began to compute,
 /// whose threads are missing here.
-pub(crate) fn unlocked<T: Send>(py: Python, work: impl FnOnce() -> T + Send) -> PyResult<T> {
+pub(crate) fn unlocked<T: Send>(work: impl FnOnce() -> T + Send) -> PyResult<T> {
     static OWNER: OnceLock<u32> = OnceLock::new();
     if *OWNER.get_or_init(std::process::id) != std::process::id() {
         return Err(PyRuntimeError::new_err(
@@ -21,17 +24,16 @@ pub(crate) fn unlocked<T: Send>(py: Python, work: impl FnOnce() -> T + Send) -> 
              multiprocessing.get_context(\"spawn\")",
         ));
     }
-    Ok(py.detach(work))
+    Ok(Python::attach(|py| py.detach(work)))
 }
 
 /// The result of `work`, which ends early when `stop` becomes true: at Ctrl-C, which is then
 /// raised.
 pub(crate) fn while_polling<T: Send>(
-    py: Python,
     stop: &AtomicBool,
     work: impl FnOnce() -> T + Send,
 ) -> PyResult<T> {
-    unlocked(py, || {
+    unlocked(|| {
         std::thread::scope(|scope| {
             let (done, finished) = channel();
             let worker = scope.spawn(move || {

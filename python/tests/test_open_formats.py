@@ -1,7 +1,8 @@
-"""Files that others read without the package: the reader of the docs page, databases, run folders; and the stubs."""
+"""Files that others read without the package: the reader of the examples, databases, run folders; and the stubs."""
 
 import json
 import re
+import runpy
 import subprocess
 import sys
 
@@ -11,11 +12,8 @@ import pytest
 from conftest import DATA, REPOSITORY, SCENES
 
 
-def test_the_reader_of_the_docs_page_agrees_with_the_kernel(film):
-    page = (REPOSITORY / "docs" / "PYTHON.md").read_text()
-    (code,) = re.findall(r"```python reader\n(.*?)```", page, re.DOTALL)
-    reader = {}
-    exec(code, reader)
+def test_the_reader_of_the_examples_agrees_with_the_kernel(film):
+    reader = runpy.run_path(REPOSITORY / "python" / "examples" / "read_weights.py")
     tensors = reader["read_safetensors"](DATA / "pet-0.5mm" / "medium.safetensors")
     card = json.loads((DATA / "pet-0.5mm" / "medium.json").read_text())
     random = np.random.default_rng(5)

@@ -1,8 +1,8 @@
 //! Supports and loads as written in a scene, with panels named by [column, row].
 
 use design::pattern::grid::{EDGES, Grid};
-use design::sheet::topology::Topology;
 use design::sheet::cut_sheet::PanelPoint;
+use design::sheet::topology::Topology;
 use hinge::STANDARD_GRAVITY;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

@@ -76,7 +76,8 @@ impl Scene {
         let down = config.posture.and_then(|posture| posture.down());
         let panels = config.loads.iter().map(|load| load.on(topology, down));
         let edges = config.edge_loads.iter();
-        let edges = edges.map(|load| load.on(topology, EDGES[load.edge as usize].map(|k| corners[k])));
+        let edges =
+            edges.map(|load| load.on(topology, EDGES[load.edge as usize].map(|k| corners[k])));
         let openings = config.opening_couples.iter().map(|load| load.on(topology, turns));
         Actuation {
             attachments: config.attached().map(|it| it.on(topology)).collect(),

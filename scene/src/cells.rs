@@ -57,14 +57,18 @@ impl From<&Topology> for CellsConfig {
 impl CellsConfig {
     /// The panels and hinges that it describes.
     fn topology(&self, grid: Grid) -> Result<Topology, Fault> {
-        let wrong = |what: String| fault("cells", what, "write them again by `kirigami init --target`");
+        let wrong =
+            |what: String| fault("cells", what, "write them again by `kirigami init --target`");
         let fits = |row: &String| {
             row.chars().count() == grid.m - 1 && row.chars().all(|c| c == KEPT || c == LEFT_OUT)
         };
         if self.voids.len() != grid.n - 1 || !self.voids.iter().all(fits) {
             return Err(wrong(format!(
                 "`voids` are not {} rows of {} characters `{KEPT}` and `{LEFT_OUT}`, the voids between {} x {} cells",
-                grid.n - 1, grid.m - 1, grid.m, grid.n
+                grid.n - 1,
+                grid.m - 1,
+                grid.m,
+                grid.n
             )));
         }
         let rows = self.voids.iter().rev();
@@ -79,7 +83,9 @@ impl CellsConfig {
         }
         for TrimmedPanel { panel: [p, q], corners } in &self.trimmed {
             let Some(number) = topology.panel(*p, *q) else {
-                return Err(wrong(format!("`trimmed` names the cell [{p}, {q}], which is no panel")));
+                return Err(wrong(format!(
+                    "`trimmed` names the cell [{p}, {q}], which is no panel"
+                )));
             };
             let simple = corners.len() > 2 && corners.iter().flatten().all(|x| x.abs() < 100.0);
             if !simple || area(corners) <= 0.0 || self_crossing(corners).is_some() {

@@ -13,7 +13,6 @@ use crate::solved_hinges::SolvedHingesError;
 use crate::target::Target;
 use design::geometry::polygon::{contains, distance, edges, mean};
 use design::pattern::cut_pattern::CutPattern;
-use design::pattern::pattern_error::PatternError;
 use design::sheet::topology::Topology;
 use hinge::InvalidDesign;
 use std::collections::{BTreeMap, BTreeSet};
@@ -97,10 +96,7 @@ fn sheet(scene: &SceneConfig) -> Result<(), InvalidScene> {
         return Err(InvalidScene::SizeOrCorners);
     }
     let outline = scene.sheet.outline();
-    if !outline.is_convex() {
-        let corners = outline.corners;
-        return Err(InvalidScene::Corners(PatternError::Outline { corners }));
-    }
+    outline.check().map_err(InvalidScene::Corners)?;
     within("the size of sheet.corners", outline.size(), [20.0, 2e4], "mm")?;
     let [columns, rows] = scene.sheet.panels;
     if columns.saturating_mul(rows) > 100_000 {
@@ -196,9 +192,8 @@ fn attachments(scene: &SceneConfig, topology: &Topology) -> Result<(), InvalidSc
         inside(scene, topology, attached.key, panel, at)?;
     }
     for (panel, at) in points {
-        let loaded = |edge: &EdgeLoadConfig| {
-            edge.edge.panels(topology).contains(&topology.number(panel))
-        };
+        let loaded =
+            |edge: &EdgeLoadConfig| edge.edge.panels(topology).contains(&topology.number(panel));
         if at != At::default() && scene.edge_loads.iter().any(loaded) {
             return Err(InvalidScene::EdgeAndPoint { panel });
         }
@@ -210,7 +205,8 @@ fn attachments(scene: &SceneConfig, topology: &Topology) -> Result<(), InvalidSc
 fn fastening(
     scene: &SceneConfig,
     topology: &Topology,
-    attached: &Attached) -> Result<(), InvalidScene> {
+    attached: &Attached,
+) -> Result<(), InvalidScene> {
     let key = attached.key.clone();
     let edge = attached.at.edge();
     if attached.clip.is_some() {
@@ -237,7 +233,10 @@ fn fastening(
 fn inside(
     scene: &SceneConfig,
     topology: &Topology,
-    key: String, panel: [usize; 2], at: At) -> Result<(), InvalidScene> {
+    key: String,
+    panel: [usize; 2],
+    at: At,
+) -> Result<(), InvalidScene> {
     let At::Point(at) = at else {
         return Ok(());
     };

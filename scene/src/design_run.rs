@@ -218,7 +218,7 @@ impl BegunRun {
     }
 
     /// The search at its start.
-    pub(crate) fn begun(&self) -> SearchState {
+    pub fn begun(&self) -> SearchState {
         let (optimiser, start) = (&self.scene.config.optimiser, self.scene.start());
         let (method, rate) = (optimiser.method, optimiser.learning_rate);
         SearchState::new(&self.problem, start, &self.start, method, rate)

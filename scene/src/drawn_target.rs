@@ -31,7 +31,7 @@ pub fn place_drawing(
 impl TargetShape {
     /// The shape after a motion and a change of size. `points` are samples of it, which stand for a
     /// polygon that is in a file.
-    pub(crate) fn placed(self, place: &Similarity, points: &[[f64; 2]]) -> Self {
+    pub fn placed(self, place: &Similarity, points: &[[f64; 2]]) -> Self {
         let at = |p: [f64; 2]| point(place.of(complex(p))).map(rounded);
         let scaled = |length: f64| rounded(length * place.scale());
         let turned = |deg: f64| rounded(deg + place.rotation().to_degrees());

@@ -4,10 +4,7 @@ use crate::posture::Posture;
 use crate::solved_hinges::SolvedHingesError;
 use crate::springback_file::SpringbackFileError;
 use crate::target::TargetError;
-use design::equilibrium::solver::EquilibriumError;
 use design::equilibrium::tangent::MIN_PIVOT_RATIO;
-use design::hinge_law::InvalidContact;
-use design::pattern::pattern_error::PatternError;
 use hinge::{InvalidDesign, InvalidMaterial};
 use std::path::PathBuf;
 use support::fault::Fault;
@@ -27,15 +24,13 @@ pub enum InvalidScene {
     #[error(transparent)]
     Target(#[from] TargetError),
     #[error(transparent)]
-    Equilibrium(#[from] EquilibriumError),
-    #[error(transparent)]
     Material(#[from] InvalidMaterial),
     #[error("title contains the control character {0:?}: remove it")]
     Title(char),
     #[error("sheet: give either size or corners")]
     SizeOrCorners,
     #[error("sheet.corners: {0}")]
-    Corners(PatternError),
+    Corners(Fault),
     #[error("sheet.panels = [{columns}, {rows}] violates columns * rows <= 100000")]
     Panels { columns: usize, rows: usize },
     #[error("ligament.range and process, at w_lig = {w_lig} mm: {source}")]
@@ -60,7 +55,7 @@ pub enum InvalidScene {
     )]
     NoSlit { min: f64, taken: f64, panel: f64 },
     #[error("start: {0}")]
-    Start(PatternError),
+    Start(Fault),
     #[error("start.w_lig has {found} entries; the sheet has {hinges} hinges")]
     StartWidths { found: usize, hinges: usize },
     #[error(
@@ -173,8 +168,6 @@ pub enum InvalidScene {
          {MIN_PIVOT_RATIO:.0e} rotations are lost in the rounding of the translations. Raise k_theta, or lower k_a and k_s"
     )]
     Soft { ratio: f64 },
-    #[error(transparent)]
-    Contact(#[from] InvalidContact),
     #[error(
         "supports, loads, edge_loads, opening_couples, drive: level = \"pin\" has no equilibrium: remove these \
          sections, or use level = \"linear\""

@@ -175,7 +175,7 @@ impl SceneConfig {
     }
 
     /// Removes supports, loads and drive.
-    pub(crate) fn clear_actuation(&mut self) {
+    pub fn clear_actuation(&mut self) {
         self.supports.clear();
         self.loads.clear();
         self.edge_loads.clear();

@@ -3,13 +3,22 @@
 //! A scene names its level, and only the hinge law of that level is loaded: `level = "linear"`
 //! reads no weights. Paths are relative to the scene file. The admissible values stand with their
 //! keys. [`Scene::read`] reads a scene and [`Scene::problem`] makes it a design problem;
-//! [`design_run`] searches and keeps its run folder. What is computed of a deployed sheet is in
-//! [`analysis`], the sheet for a silhouette in [`fit`], the outlines of drawings in [`drawing`].
+//! [`design_run`] searches and keeps its run folder; the outlines of drawings are in [`drawing`].
+//!
+//! ```
+//! use scene::Scene;
+//! use std::path::Path;
+//!
+//! # let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("../configs/scenes");
+//! let scene = Scene::read(&scenes.join("pin-7x7.toml"))?;
+//! let (problem, start) = (scene.problem()?, scene.start());
+//! assert!(problem.loss(&start)?.is_finite());
+//! # Ok::<_, Box<dyn std::error::Error>>(())
+//! ```
 
-#![warn(missing_docs)]
+#![cfg_attr(not(test), warn(unreachable_pub))]
 
 mod actuation;
-pub mod analysis;
 mod boundary_values;
 mod cells;
 mod checked_scene;
@@ -19,7 +28,7 @@ mod cutting;
 pub mod design_run;
 pub mod drawing;
 mod drawn_target;
-pub mod fit;
+
 mod hinge_model;
 mod invalid_scene;
 mod keys;

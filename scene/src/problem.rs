@@ -5,10 +5,10 @@ use crate::keys::SceneConfig;
 use crate::loaded_hinge::HingeBehaviour;
 use crate::scene_error::SceneError;
 use crate::sheet_config::StartConfig;
-use design::equilibrium::solver::{EquilibriumError, EquilibriumSolver};
+use design::equilibrium::solver::EquilibriumSolver;
 use design::objective::design_problem::{DesignProblem, Mechanics, Model};
 use design::objective::loss::Objective;
-use design::objective::terms::Setting;
+use design::objective::terms::TermContext;
 use design::pattern::design_vector::{DesignVector, WidthChart};
 use design::pattern::grid::Grid;
 use rand::{RngExt, SeedableRng};
@@ -76,7 +76,7 @@ impl Scene {
     }
 
     fn objective(&self, model: &Model) -> Objective {
-        self.config.objective.objective(&Setting {
+        self.config.objective.objective(&TermContext {
             target: &self.target.points,
             law: model.mechanics().map(|mechanics| &*mechanics.law),
             mean_panel_area: self.config.sheet.mean_panel_area(),
@@ -96,13 +96,14 @@ impl Scene {
         Ok(Model::Equilibrium(Box::new(Mechanics { law, contact: Some(contact), solver })))
     }
 
-    fn solver(&self) -> Result<EquilibriumSolver, EquilibriumError> {
+    fn solver(&self) -> Result<EquilibriumSolver, support::fault::Fault> {
         let level = self.config.level;
         let settings = level.solver(self.config.solver);
         let actuation = self.actuation();
         let (supports, loads) = (actuation.boundary_supports(), actuation.boundary_loads());
         let steps = level.load_steps(self.config.load_steps);
-        let solver = EquilibriumSolver::new(self.topology.clone(), &supports, &loads, steps, settings)?;
+        let solver =
+            EquilibriumSolver::new(self.topology.clone(), &supports, &loads, steps, settings)?;
         let solver =
             solver.attached_at(actuation.attachments).with_weight(self.weight_by_area())?;
         match self.config.drive {

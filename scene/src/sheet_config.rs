@@ -3,7 +3,6 @@
 use design::pattern::coordinates::{PatternCoordinates, logistic, partial_sums};
 use design::pattern::cut_pattern::Outline;
 use design::pattern::grid::Grid;
-use design::pattern::pattern_error::PatternError;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -74,7 +73,7 @@ impl StartConfig {
     }
 
     /// The start pattern of the search.
-    pub fn pattern(&self, grid: Grid) -> Result<PatternCoordinates, PatternError> {
+    pub fn pattern(&self, grid: Grid) -> Result<PatternCoordinates, support::fault::Fault> {
         let uniform = PatternCoordinates::uniform(grid);
         let start = PatternCoordinates {
             z: match &self.r {

@@ -4,7 +4,8 @@ use crate::keys::{SceneConfig, resolved};
 use hinge::SheetMaterial;
 use std::f64::consts::FRAC_PI_2;
 use std::path::{Path, PathBuf};
-use surrogate::{Springback, SpringbackError};
+use support::fault::Fault;
+use surrogate::Springback;
 
 /// Why a law of released hinges is not for the hinges of a scene.
 #[derive(Debug, thiserror::Error)]
@@ -30,7 +31,7 @@ pub enum SpringbackMismatch {
 #[allow(missing_docs, reason = "the message of a variant is its documentation")]
 pub enum SpringbackFileError {
     #[error("surrogate.springback: {0}")]
-    Read(#[from] SpringbackError),
+    Read(#[from] Fault),
     #[error("surrogate.springback: {}: {source}; or remove the key", file.display())]
     Other { file: PathBuf, source: SpringbackMismatch },
 }

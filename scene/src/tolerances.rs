@@ -3,9 +3,6 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A tolerance is so many standard deviations.
-const TOLERANCE: f64 = 2.0;
-
 /// Tolerances of the cut sheet for the error budget of the report, as two standard deviations. A
 /// run continues under other values, which change its report only.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -18,9 +15,4 @@ pub struct ToleranceConfig {
     /// Tolerance +- of the thickness of the sheet (mm).
     #[schemars(range(min = 0.0, max = 1.0))]
     pub thickness: Option<f64>,
-}
-
-/// The standard deviation of a quantity with a tolerance.
-pub(crate) fn standard_deviation(tolerance: f64) -> f64 {
-    tolerance / TOLERANCE
 }

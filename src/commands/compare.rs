@@ -4,15 +4,15 @@
 use crate::commands::inspect::scene_args::Inspected;
 use crate::commands::points_file::PointsFile;
 use crate::ui::{picture, run_folder};
+use analysis::measured_points::Mark;
+use analysis::measured_sheet::MeasuredSheet;
+use analysis::shape_path::ShapePath;
 use anyhow::{Context, Result, ensure};
 use clap::Args;
 use design::sheet::cut_sheet::Sheet;
 use output::drawing;
 use output::measurement::MeasurementReport;
 use scene::Scene;
-use scene::analysis::measured_points::Mark;
-use scene::analysis::measured_sheet::MeasuredSheet;
-use scene::analysis::shape_path::ShapePath;
 use std::collections::BTreeSet;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};

@@ -1,22 +1,13 @@
 //! `kirigami cut`: the cut files of a designed sheet, and tiles of paper.
 
 use crate::commands::inspect::scene_args::Inspected;
-use crate::ui::run_folder;
-use anyhow::{Context, Result, ensure};
+use anyhow::Result;
+use app::cut::{CheckedCut, MachineFile, SheetFiles, machine_named, paper};
 use clap::Args;
-use design::objective::design_problem::Deployment;
-use output::cut_file::{
-    CutDrawing, CutLines, FabricationError, Features, Machine, Machines, OVERLAP, SheetDrawing,
-    Tiling, Totals, attachment_list, cut_list, cut_summary, dxf, mark_errors, svg, tiles_pdf,
-};
-use output::report::{Warning, warnings};
-use scene::{Paper, Scene};
-use serde::Serialize;
+use output::cut_file::{Machine, Machines, OVERLAP, Tiling};
+use scene::Paper;
 use serde_json::json;
-use std::fmt::{self, Display, Formatter};
-use std::path::{Path, PathBuf};
-use support::nearest::nearest;
-use support::severity::Severity;
+use std::path::PathBuf;
 
 /// Write the cut files of a designed sheet, or tiles for hand cutting
 ///
@@ -49,46 +40,12 @@ pub struct CutCommand {
     json: bool,
 }
 
-/// A design that may be cut.
-struct Checked {
-    scene: Scene,
-    /// What the design is.
-    named: String,
-    deployment: Deployment,
-    cuts: CutLines,
-    /// The errors of a design whose files are forced.
-    errors: Vec<String>,
-}
-
-/// The files of a sheet.
-struct SheetFiles {
-    totals: Totals,
-    tiling: Option<Tiling>,
-    written: Written,
-}
-
-/// Writes tiles for a paper, besides the usual files, in the run in a folder.
-pub(crate) fn tiles_of_run(run: &Path, paper: &str) -> Result<Written> {
-    let paper = self::paper(paper).map_err(anyhow::Error::msg)?;
-    let run = Checked::new(&Inspected::of(run), false)?;
-    Ok(run.cut(Some(paper), None)?.written)
-}
-
-/// Writes the file of a machine in the run in a folder.
-pub(crate) fn machine_file_of_run(run: &Path, name: &str) -> Result<(Written, Vec<Verdict>)> {
-    let machines = Machines::shipped();
-    let machine = self::machine(&machines, name)?;
-    let run = Checked::new(&Inspected::of(run), false)?;
-    let file = run.cut_for(&machines, machine, None, false)?;
-    Ok((file.written, file.verdicts))
-}
-
 impl CutCommand {
     pub(crate) fn run(&self) -> Result<()> {
         let (machines, out) = (Machines::shipped(), self.out.as_deref());
         let machine = self.machine.as_deref();
-        let machine = machine.map(|name| self::machine(&machines, name)).transpose()?;
-        let checked = Checked::new(&self.designed, self.force)?;
+        let machine = machine.map(|name| machine_named(&machines, name)).transpose()?;
+        let checked = CheckedCut::new(self.designed.chosen(), self.force)?;
         match machine {
             None => self.print(&checked.cut(self.paper, out)?),
             Some(machine) => {
@@ -130,219 +87,5 @@ impl CutCommand {
         println!("{}: {}; {named}\n{features}", machine.name, machine.says);
         verdicts.iter().for_each(|verdict| println!("{verdict}"));
         println!("written to {}", written.folder.display());
-    }
-}
-
-impl Checked {
-    /// Reads and deploys the design; an error if it has errors, unless it is forced.
-    fn new(designed: &Inspected, force: bool) -> Result<Self> {
-        let (scene, design, named) = designed.read_run()?;
-        let deployment = scene.problem()?.deploy(&design)?;
-        let cuts = CutLines::of(&scene, &deployment);
-        let found = warnings(&scene, &deployment, &cuts);
-        let errors = found.iter().filter(|it| it.severity == Severity::Error);
-        let errors: Vec<String> = errors.map(Warning::to_string).collect();
-        let cuts = cuts?;
-        ensure!(
-            force || errors.is_empty(),
-            "no cut file: {}; --force writes one",
-            errors.join("; ")
-        );
-        Ok(Self { scene, named, deployment, cuts, errors })
-    }
-
-    /// Writes the cut files, and tiles.
-    fn cut(&self, paper: Option<Paper>, out: Option<&Path>) -> Result<SheetFiles> {
-        let Self { scene, cuts, .. } = self;
-        let sheet = &self.deployment.sheet;
-        let mut whole = SheetDrawing::new(cuts, sheet, &scene.material);
-        let mut annotated = whole.annotated();
-        for drawing in [&mut annotated, &mut whole.numbered] {
-            mark_errors(drawing, &self.errors);
-        }
-        let tiles = paper.map(|paper| {
-            let tiling = Tiling::new(paper, whole.numbered.bounds())?;
-            Ok::<_, FabricationError>((paper, tiling))
-        });
-        let tiles = tiles.transpose()?;
-        let out = self.out_or(out, "cut");
-        let _held = run_folder::hold(&out)?;
-        remove_earlier(&out)?;
-        let mut written = Written::to(&out)?;
-        written.drawing(&annotated)?;
-        written.file("cut-list.csv", &cut_list(sheet, cuts))?;
-        written.file("attachments.csv", &attachment_list(cuts))?;
-        written.file("cut-summary.csv", &cut_summary(cuts, &whole.totals))?;
-        if let Some((paper, tiling)) = &tiles {
-            let title = &scene.config.title;
-            let pdf = tiles_pdf(&whole.numbered, tiling, title, &whole.notes);
-            written.file(&tiles_name(*paper), &pdf)?;
-        }
-        Ok(SheetFiles { totals: whole.totals, tiling: tiles.map(|(_, tiling)| tiling), written })
-    }
-
-    /// Writes the file of a machine.
-    fn cut_for(
-        &self,
-        machines: &Machines,
-        machine: &Machine,
-        out: Option<&Path>,
-        force: bool,
-    ) -> Result<MachineFile> {
-        let mut drawing = machine.drawing(&self.cuts)?;
-        mark_errors(&mut drawing, &self.errors);
-        let features = self.cuts.features();
-        let services = machines.service.iter().filter(|it| it.machine == machine.name);
-        let verdicts: Vec<Verdict> = services
-            .map(|service| Verdict {
-                name: service.name.clone(),
-                source: service.source.clone(),
-                refuses: service.refusals(&features, self.scene.material.thickness),
-            })
-            .collect();
-        let accepted = verdicts.iter().any(|verdict| verdict.refuses.is_empty());
-        let said: Vec<String> = verdicts.iter().map(Verdict::to_string).collect();
-        ensure!(
-            force || accepted || verdicts.is_empty(),
-            "no service cuts this sheet: {}; --force writes the file",
-            said.join("; ")
-        );
-        let out = self.out_or(out, &format!("cut/{}", machine.name));
-        let _held = run_folder::hold(&out)?;
-        let mut written = Written::to(&out)?;
-        written.drawing(&drawing)?;
-        Ok(MachineFile { verdicts, features, named: self.named.clone(), written })
-    }
-
-    /// The folder of the files: by default one in the run folder of the scene.
-    fn out_or(&self, out: Option<&Path>, folder: &str) -> PathBuf {
-        out.map_or_else(|| self.scene.output().join(folder), Path::to_owned)
-    }
-}
-
-/// Files that were written.
-pub(crate) struct Written {
-    folder: PathBuf,
-    names: Vec<String>,
-}
-
-impl Written {
-    /// No file yet, in a folder that exists.
-    fn to(folder: &Path) -> Result<Self> {
-        Ok(Self { folder: folder.canonicalize()?, names: Vec::new() })
-    }
-
-    fn file(&mut self, name: &str, contents: &(impl AsRef<[u8]> + ?Sized)) -> Result<()> {
-        run_folder::write(&self.folder, name, contents)?;
-        self.names.push(name.to_owned());
-        Ok(())
-    }
-
-    /// The DXF and the SVG of a drawing.
-    fn drawing(&mut self, drawing: &CutDrawing) -> Result<()> {
-        write_drawing(&self.folder, "cut", drawing)?;
-        self.names.extend(["cut.dxf", "cut.svg"].map(str::to_owned));
-        Ok(())
-    }
-}
-
-impl Display for Written {
-    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        write!(f, "{} in {}", self.names.join(", "), self.folder.display())
-    }
-}
-
-/// The answer of a service to a sheet.
-#[derive(Clone, Serialize)]
-pub(crate) struct Verdict {
-    name: String,
-    source: String,
-    refuses: Vec<String>,
-}
-
-impl Display for Verdict {
-    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        match &self.refuses[..] {
-            [] => write!(f, "{}: no published limit is broken", self.name),
-            refuses => write!(f, "{} refuses {}", self.name, refuses.join(", ")),
-        }
-    }
-}
-
-/// The file of a machine, and the answers of services to it.
-struct MachineFile {
-    /// The design.
-    named: String,
-    features: Features,
-    verdicts: Vec<Verdict>,
-    written: Written,
-}
-
-/// The machine with a name.
-pub(crate) fn machine<'a>(machines: &'a Machines, name: &str) -> Result<&'a Machine> {
-    let machine = machines.machine.iter().find(|machine| machine.name == name);
-    machine.with_context(|| {
-        let known = machines.machine.iter().map(|machine| &*machine.name);
-        let known: Vec<&str> = known.collect();
-        let near = nearest(name, known.iter().copied());
-        let near = near.map_or(String::new(), |near| format!("; did you mean {near}?"));
-        format!("unknown machine {name}: use {}{near}", known.join(", "))
-    })
-}
-
-/// Writes the DXF and the SVG of a drawing.
-pub(crate) fn write_drawing(out: &Path, name: &str, drawing: &CutDrawing) -> Result<()> {
-    run_folder::write(out, &format!("{name}.dxf"), &dxf(drawing))?;
-    run_folder::write(out, &format!("{name}.svg"), &svg(drawing))
-}
-
-/// Removes tiles of an earlier call, which may be of another design.
-fn remove_earlier(folder: &Path) -> Result<()> {
-    for entry in std::fs::read_dir(folder)? {
-        let entry = entry?;
-        let path = entry.path();
-        if entry.file_type()?.is_file() && is_tiles(&entry.file_name().to_string_lossy()) {
-            std::fs::remove_file(&path)
-                .with_context(|| format!("cannot remove {}", path.display()))?;
-        }
-    }
-    Ok(())
-}
-
-/// Whether a file with this name is written with --paper.
-fn is_tiles(name: &str) -> bool {
-    let paper = (name.strip_prefix("tiles-")).and_then(|rest| rest.strip_suffix(".pdf"));
-    paper.and_then(|paper| self::paper(paper).ok()).is_some_and(|paper| name == tiles_name(paper))
-}
-
-fn tiles_name(paper: Paper) -> String {
-    format!("tiles-{paper}.pdf")
-}
-
-fn paper(name: &str) -> Result<Paper, String> {
-    let refused = |_| "must be a5, a4, a3, a2, a1, a0, letter or tabloid".into();
-    name.parse().map_err(refused)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn only_files_that_a_cut_writes_are_removed() {
-        let folder = tempfile::tempdir().unwrap();
-        let own = ["tiles-of-mine.pdf", "tiles-a4.pdf.bak", "cut.dxf"];
-        let ours = ["tiles-a3.pdf", "tiles-letter.pdf"];
-        for name in own.iter().chain(&ours) {
-            std::fs::write(folder.path().join(name), "").unwrap();
-        }
-        std::fs::create_dir(folder.path().join("tiles-a5.pdf")).unwrap();
-        remove_earlier(folder.path()).unwrap();
-        for name in own.iter().chain(&["tiles-a5.pdf"]) {
-            assert!(folder.path().join(name).exists(), "{name}");
-        }
-        for name in ours {
-            assert!(!folder.path().join(name).exists(), "{name}");
-        }
     }
 }

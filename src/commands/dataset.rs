@@ -2,8 +2,6 @@
 
 mod compare;
 
-pub(crate) use compare::correction;
-
 use crate::ui::output_file;
 use anyhow::{Result, ensure};
 use clap::Args;

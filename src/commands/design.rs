@@ -2,26 +2,23 @@
 
 #[cfg(feature = "pipeline")]
 mod by_elements;
-mod many_runs;
 
-use crate::commands::design::many_runs::{Run, compare, refuse_shared_folders};
-use crate::fitting::fit_to_target;
 use crate::ui::exit::Unfinished;
 use crate::ui::progress::{Progress, announce};
-use crate::ui::with_unit::Accuracy;
-use crate::ui::{animation, interrupt, picture, processors, run_folder, with_unit};
+use crate::ui::with_unit::{self, Accuracy};
+use crate::ui::{interrupt, processors};
+use analysis::refinement::refine;
 use anyhow::{Context, Result, bail, ensure};
+use app::design::{ended, hold, search, write_refined};
+use app::design_runs::{Run, compare, refuse_shared_folders};
+use app::fitting::fit_to_target;
 use clap::Args;
 use design::objective::scores::shown;
 use design::objective::term::in_words;
-use design::optimise::outer_loop::{Ended, StepRecord};
-use output::drawing::deployment_frames;
-use output::report::{Report, Warning};
-use output::run_files::{ANIMATION, RUN_FILES, Writer};
-use output::run_results::{remove_run, write_results};
-use scene::analysis::refinement::refine;
-use scene::design_run::{BegunRun, Designed, Earlier, LEVELS, OnStep};
-use scene::run_inputs::{SCENE_FILE, holds_a_run, scene_file};
+use design::optimise::outer_loop::StepRecord;
+use output::report::Report;
+use scene::design_run::OnStep;
+use scene::run_inputs::scene_file;
 use scene::{Level, Scene, SceneConfig};
 use std::path::{Path, PathBuf};
 use support::worker_pool::{NoThread, Reports, work_through};
@@ -82,12 +79,6 @@ pub struct DesignCommand {
     json: bool,
 }
 
-/// Width of the pictures (px).
-const PICTURE_WIDTH: u32 = 1600;
-/// Width (px) and maximum number of the frames of the animation.
-const FRAME_WIDTH: u32 = 640;
-const MOST_FRAMES: usize = 40;
-
 impl DesignCommand {
     pub(crate) fn run(&self) -> Result<()> {
         let out = self.out.as_deref().map(std::path::absolute).transpose()?;
@@ -103,7 +94,7 @@ impl DesignCommand {
                     let folder = scene.output().canonicalize()?;
                     println!("{}\nwritten to {}", report.document(), folder.display());
                 }
-                check(&scene, &report)
+                ended(&scene, &report)
             }
             _ => {
                 ensure!(!self.json, "--json prints the report of one run: name one scene");
@@ -157,8 +148,8 @@ impl DesignCommand {
         let (mut left, mut failed, mut done) = (runs.len(), 0, 0);
         let work = |i: usize, reports: &Reports<(usize, Result<()>)>| {
             let designed = self.design(&scenes[i], &mut |_, _| {});
-            let ended = designed.and_then(|report| check(&scenes[i], &report));
-            reports.send((i, ended));
+            let end = designed.and_then(|report| ended(&scenes[i], &report));
+            reports.send((i, end));
         };
         work_through(runs.len(), workers, stop, &work, &mut |(i, ended)| {
             done += 1;
@@ -191,22 +182,20 @@ impl DesignCommand {
 
     /// One run: its search and its results.
     fn design(&self, scene: &Scene, progress: OnStep) -> Result<Report> {
-        refuse_files_of_others(&scene.output())?;
-        let _held = run_folder::hold(&scene.output())?;
-        if self.restart {
-            remove_run(scene)?;
-            let levels = scene.output().join(LEVELS);
-            if levels.exists() {
-                std::fs::remove_dir_all(&levels)
-                    .with_context(|| format!("cannot remove {}", levels.display()))?;
-            }
-        }
+        let _held = hold(scene, self.restart)?;
+        let stop = interrupt::stop_flag()?;
         match self.within {
             None if self.by_elements(scene.config.level) => {
                 self.search_by_elements(scene, progress)
             }
-            None => self.search(scene, progress),
-            Some(accuracy) => self.refine(scene, accuracy, progress),
+            None => search(scene, self.force, stop, progress),
+            Some(accuracy) => {
+                let tolerance = match accuracy {
+                    Accuracy::Length(mm) => mm,
+                    Accuracy::Part(part) => part * scene.config.sheet.outline().size(),
+                };
+                write_refined(&refine(scene, tolerance, stop, progress)?, self.force)
+            }
         }
     }
 
@@ -220,32 +209,6 @@ impl DesignCommand {
         bail!(
             "the level `final` needs finite elements: install the whole program, as the README says"
         )
-    }
-
-    /// A search at the level of the scene.
-    fn search(&self, scene: &Scene, progress: OnStep) -> Result<Report> {
-        let (run, stop) = (BegunRun::new(scene.clone(), None)?, interrupt::stop_flag()?);
-        let designed = run.search(&Earlier::default(), None, stop, progress)?;
-        write_run(scene, &designed, self.force)
-    }
-
-    /// Searches from the cheapest level to one that is accurate enough.
-    fn refine(&self, scene: &Scene, accuracy: Accuracy, progress: OnStep) -> Result<Report> {
-        let tolerance = match accuracy {
-            Accuracy::Length(mm) => mm,
-            Accuracy::Part(part) => part * scene.config.sheet.outline().size(),
-        };
-        self.write_refined(refine(scene, tolerance, interrupt::stop_flag()?, progress)?)
-    }
-
-    /// Writes the results of a design that was found on several levels.
-    fn write_refined(&self, designed: Designed) -> Result<Report> {
-        let scene = &designed.scene;
-        if designed.ended == Ended::Stopped {
-            let made = designed.search.last().step;
-            bail!(Unfinished { left: scene.config.optimiser.steps - made, what: "design steps" });
-        }
-        write_run(scene, &designed, self.force)
     }
 
     /// A scene with the changes of the command line and the changes of `change`.
@@ -289,52 +252,6 @@ fn with_level_bars<T>(scene: &Scene, searches: impl FnOnce(OnStep) -> T) -> T {
     found
 }
 
-/// An error if a run would replace files of its folder that no run has written.
-fn refuse_files_of_others(folder: &Path) -> Result<()> {
-    if holds_a_run(folder) {
-        return Ok(());
-    }
-    let names = RUN_FILES.iter().map(|file| file.name).chain([SCENE_FILE]);
-    let found: Vec<&str> =
-        names.filter(|name| folder.join(name).symlink_metadata().is_ok()).collect();
-    ensure!(
-        found.is_empty(),
-        "the run would replace {} in {}, which no run has written: choose another folder, with --out or the key `output`, or \
-         move the files",
-        found.join(", "),
-        folder.display()
-    );
-    Ok(())
-}
-
-/// Writes the results of a run to its folder, with pictures and animation.
-pub(crate) fn write_run(scene: &Scene, designed: &Designed, force: bool) -> Result<Report> {
-    let report = write_results(scene, designed, force)?;
-    rasterise(&scene.output())?;
-    let frames = deployment_frames(scene, designed, MOST_FRAMES);
-    animation::save(&frames, &scene.output().join(ANIMATION), FRAME_WIDTH)?;
-    Ok(report)
-}
-
-/// An error if a run is not at its end, or has no cut file.
-fn check(scene: &Scene, report: &Report) -> Result<()> {
-    match &report.ended {
-        Ended::Completed | Ended::Settled => {}
-        Ended::Stopped => bail!(Unfinished {
-            left: scene.config.optimiser.steps - report.steps,
-            what: "design steps"
-        }),
-        Ended::Stuck { reason } => bail!("the search is stuck: {reason}"),
-    }
-    let errors: Vec<String> = report.errors().map(Warning::to_string).collect();
-    ensure!(
-        report.cut_file,
-        "no cut file: {}; --force writes one where the geometry allows it",
-        errors.join("; ")
-    );
-    Ok(())
-}
-
 /// A step in one line: the loss and its non-zero terms, outline error, for a learned law the
 /// fraction inside its training domain.
 fn progress_line(step: &StepRecord, learned: bool) -> String {
@@ -354,18 +271,4 @@ fn progress_line(step: &StepRecord, learned: bool) -> String {
         terms.join(", "),
         scores.outline_error,
     )
-}
-
-/// Writes the PNG of every picture in the run folder that has an SVG.
-fn rasterise(folder: &Path) -> Result<()> {
-    let pictures = RUN_FILES.iter().filter(|file| matches!(file.writer, Writer::Pictures));
-    for file in pictures {
-        let vector = folder.join(file.name).with_extension("svg");
-        if vector.exists() {
-            let svg = std::fs::read_to_string(&vector)
-                .with_context(|| format!("cannot read {}", vector.display()))?;
-            picture::save(&svg, &vector.with_extension(""), PICTURE_WIDTH)?;
-        }
-    }
-    Ok(())
 }

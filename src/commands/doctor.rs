@@ -1,8 +1,8 @@
 //! `kirigami doctor`: the build, and whether what it needs is found.
 
-use crate::commands::WHOLE_BUILD;
-use crate::new_project::WEIGHTS;
 use anyhow::{Result, ensure};
+use app::WHOLE_BUILD;
+use app::new_project::WEIGHTS;
 use clap::Args;
 #[cfg(feature = "pipeline")]
 use fe_driver::CCX;

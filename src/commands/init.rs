@@ -1,8 +1,13 @@
 //! `kirigami init`
 
-use crate::new_project::NewProject;
+mod size_args;
+
+use crate::commands::init::size_args::{length, size, stock};
 use anyhow::Result;
+use app::new_project::NewProject;
 use clap::Args;
+use scene::Stock;
+use std::path::PathBuf;
 
 /// Create a folder with material, campaign, training and scene for a sheet of your own
 ///
@@ -17,13 +22,51 @@ use clap::Args;
 /// configs/targets/leaf.svg
 #[derive(Args)]
 pub struct InitCommand {
-    #[command(flatten)]
-    project: NewProject,
+    /// Folder to create
+    #[arg(value_name = "FOLDER")]
+    folder: PathBuf,
+    /// Sheet material (TOML) [default: configs/materials/polypropylene-3mm.toml, below 2 mm of
+    /// thickness pet-0.5mm.toml]
+    #[arg(long, value_name = "FILE")]
+    material: Option<PathBuf>,
+    /// Thickness of the sheet (mm) [default: the thickness in the material file]
+    #[arg(long, value_name = "MM")]
+    thickness: Option<f64>,
+    /// Width and height of the sheet (mm) [default: 210x297 for plates up to 3 mm and films up to
+    /// 0.1 mm, larger in proportion to the thickness]
+    #[arg(long, value_name = "WIDTHxHEIGHT", value_parser = size)]
+    size: Option<[f64; 2]>,
+    /// The stock that the sheet is cut from: a5 to a0, letter, tabloid, or width and height (mm).
+    /// The sheet is smaller by twice the margin, the over-run and half a kerf, so that its cuts fit
+    #[arg(long, value_name = "STOCK", value_parser = stock, conflicts_with = "size")]
+    stock: Option<Stock>,
+    /// Border of the stock that the machine cannot cut (mm) [default: 0]
+    #[arg(long, value_name = "MM", value_parser = length, requires = "stock")]
+    margin: Option<f64>,
+    /// Outline that the sheet opens onto (SVG or DXF; FILE#2 is the second largest of several), in
+    /// any position and of any size: outline, cuts and pulls of the sheet are fitted to it
+    /// [default: the opened sheet's rectangle]
+    #[arg(long, value_name = "FILE")]
+    target: Option<PathBuf>,
+    /// Weights for this material [default: those for it among the shipped ones]
+    #[arg(long, value_name = "FILE")]
+    weights: Option<PathBuf>,
 }
 
 impl InitCommand {
     pub(crate) fn run(&self) -> Result<()> {
-        println!("{}", self.project.create()?);
+        let project = NewProject {
+            folder: self.folder.clone(),
+            material: self.material.clone(),
+            thickness: self.thickness,
+            size: self.size,
+            stock: self.stock,
+            margin: self.margin,
+            target: self.target.clone(),
+            weights: self.weights.clone(),
+            any_width: false,
+        };
+        println!("{}", project.create()?);
         Ok(())
     }
 }

@@ -1,12 +1,12 @@
 //! `kirigami levels`: what every level of a scene costs, and how far it is from the finest.
 
-use crate::commands::design_checks::record;
 use crate::commands::inspect::scene_args::Inspected;
 use crate::ui::progress::announce;
 use crate::ui::{charts, interrupt, output_file};
+use analysis::levels::{LevelCost, Levels, levels};
 use anyhow::Result;
+use app::design_checks::record;
 use clap::Args;
-use scene::analysis::levels::{LevelCost, Levels, levels};
 use serde::Serialize;
 use std::path::PathBuf;
 use support::document::Document;
@@ -57,7 +57,7 @@ impl LevelsCommand {
         } else {
             println!("{name}\n\n{}", document(&found));
         }
-        if self.inspected.is_run(&scene) {
+        if self.inspected.chosen().is_run(&scene) {
             record(&scene, &design, |checks| checks.levels = Some(found))?;
         }
         Ok(())

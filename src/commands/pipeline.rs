@@ -4,7 +4,7 @@
 use crate::commands::{campaign, dataset, mesh, solve, surrogate, train, verify};
 
 subcommands! {
-    pub enum PipelineCommand {
+    pub(crate) enum PipelineCommand {
         Mesh(mesh::MeshCommand),
         Solve(solve::SolveCommand),
         Campaign(campaign::CampaignCommand),

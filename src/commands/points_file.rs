@@ -1,9 +1,9 @@
 //! The CSV file of measured points; errors name file, line and column.
 
+use analysis::measured_points::{Mark, MeasuredPoint};
 use anyhow::{Context, Result, anyhow, bail, ensure};
 use clap::ValueEnum;
 use design::geometry::similarity::Scale;
-use scene::analysis::measured_points::{Mark, MeasuredPoint};
 use std::collections::HashMap;
 use std::path::Path;
 use support::csv_table::{NamedTable, name_and_unit};
@@ -47,7 +47,7 @@ impl Unit {
 impl PointsFile {
     /// Reads a file of points of a sheet with so many panels; lengths are in mm, or in the unit of
     /// the column `unit`.
-    pub fn read(path: &Path, panels: usize, y_down: bool) -> Result<Self> {
+    pub(super) fn read(path: &Path, panels: usize, y_down: bool) -> Result<Self> {
         let NamedTable { head, rows } =
             NamedTable::read(path).map_err(|error| anyhow!("cannot read {error}"))?;
         let located = |line: u64| format!("{}:{line}", path.display());
@@ -84,7 +84,7 @@ impl PointsFile {
     }
 
     /// Whether the scale of the points is known: the scale of pixels is not.
-    pub fn scale(&self) -> Scale {
+    pub(super) fn scale(&self) -> Scale {
         match self.unit {
             Unit::Px => Scale::Free,
             _ => Scale::Given,

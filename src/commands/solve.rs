@@ -1,4 +1,4 @@
-//! `kirigami solve`: one window solved along one ray or recorded path, printed as a table.
+//! `kirigami solve`: one window solved along one ray, printed as a table.
 
 use crate::commands::solve_args::{FeSolver, LIMIT};
 use crate::commands::window_args::WindowArgs;
@@ -8,20 +8,19 @@ use crate::ui::progress::watched;
 use crate::ui::{interrupt, run_folder};
 use anyhow::{Error, Result, bail};
 use clap::Args;
-use fe_driver::{DeformationPath, HingePath, Solver, WindowProblem, WindowSolve, reached};
+use fe_driver::{Cause, Ray, Solver, WindowProblem, WindowSolve, reached};
 use hinge::{HingeDeformation, HingeSample, SheetMaterial};
 use mesher::Tier;
 use serde_json::json;
 use std::path::PathBuf;
-use std::time::Duration;
 use support::table::{Cell, Table};
 
 /// Solve one hinge window by finite elements and print its ray
 ///
-/// Panel A is fixed. Panel B is driven from the undeformed state straight to the given deformation,
-/// or along a recorded path. Every converged increment is one row. Writes window.vtu for ParaView
-/// and meshio: displacements, plastic strain and stress of the last increment. Example, the paper's
-/// hinge folded to 45 degrees: kirigami solve --theta-deg 45 --tier tiny
+/// Panel A is fixed. Panel B is driven from the undeformed state straight to the given deformation.
+/// Every converged increment is one row. Writes window.vtu for ParaView and meshio: displacements,
+/// plastic strain and stress of the last increment. Example, the paper's hinge folded to 45
+/// degrees: kirigami solve --theta-deg 45 --tier tiny
 #[derive(Args)]
 #[command(allow_negative_numbers = true)]
 pub struct SolveCommand {
@@ -36,10 +35,6 @@ pub struct SolveCommand {
     /// Shear at the end of the ray, divided by the ligament width
     #[arg(long, value_name = "RATIO", default_value_t = 0.0)]
     eta_s: f64,
-    /// Recorded path instead of a ray: a CSV file with the columns eta_a, eta_s, theta_deg and,
-    /// if the states are not equally spaced, lambda
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["theta_deg", "eta_a", "eta_s"])]
-    path: Option<PathBuf>,
     /// Sheet material (TOML)
     #[arg(long, value_name = "FILE", default_value = "configs/materials/pet-0.5mm.toml")]
     material: PathBuf,
@@ -47,9 +42,6 @@ pub struct SolveCommand {
     /// plate-reference
     #[arg(long, value_name = "TIER", default_value_t = Tier::Default)]
     tier: Tier,
-    /// Time limit of the solver (s); time in which the machine is suspended does not count
-    #[arg(long, value_name = "S", default_value_t = LIMIT.as_secs(), value_parser = clap::value_parser!(u64).range(1..=86_400))]
-    time_limit_s: u64,
     /// Folder for the mesh, the input deck, the log and the solver's output
     #[arg(long, value_name = "FOLDER", default_value = "runs/solve")]
     out: PathBuf,
@@ -61,26 +53,19 @@ pub struct SolveCommand {
 impl SolveCommand {
     pub(crate) fn run(&self) -> Result<()> {
         let design = self.window.design()?;
-        let w_lig = design.w_lig;
-        let path = match &self.path {
-            Some(file) => DeformationPath::read(file, w_lig)?,
-            None => {
-                let theta = self.theta_deg.to_radians();
-                let end = HingeDeformation::from_eta(self.eta_a, self.eta_s, theta, w_lig);
-                DeformationPath::ray(end, self.tier.regime(), w_lig)
-            }
-        };
+        let theta = self.theta_deg.to_radians();
+        let end = HingeDeformation::from_eta(self.eta_a, self.eta_s, theta, design.w_lig);
+        let hinge = Ray { design, end }.driven(self.tier.regime());
         input_file::require(&self.material, "--material")?;
         let material = SheetMaterial::load(&self.material)?;
         let _held = run_folder::hold(&self.out)?;
         let stop = interrupt::stop_flag()?;
         let solver = FeSolver { print_all: true, ..FeSolver::find()? };
-        let problem = WindowProblem::new(HingePath { design, path }, &material, self.tier);
+        let problem = WindowProblem::new(hinge, &material, self.tier);
         let solve = WindowSolve::new(problem, &solver.versions());
-        let limit = Duration::from_secs(self.time_limit_s);
         let solution =
-            watched(1, || reached(&self.out), || solver.attempt(&solve, &self.out, limit, stop))
-                .map_err(|error| match error.is_stop() {
+            watched(1, || reached(&self.out), || solver.attempt(&solve, &self.out, LIMIT, stop))
+                .map_err(|error| match error.cause == Cause::Stop {
                     true => Unfinished { left: 1, what: "ray" }.into(),
                     false => Error::from(error),
                 })?;

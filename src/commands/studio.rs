@@ -1,10 +1,5 @@
 //! `kirigami studio`
 
-use crate::studio::engine::Engine;
-use crate::studio::event::Post;
-use crate::studio::project::Project;
-use crate::studio::server::Studio;
-use crate::studio::static_page;
 use crate::ui::{interrupt, with_unit};
 use anyhow::Result;
 use clap::Args;
@@ -12,6 +7,11 @@ use rand::random;
 use scene::{Level, Scene};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use studio::engine::Engine;
+use studio::event::Post;
+use studio::project::Project;
+use studio::server::Studio;
+use studio::static_page;
 
 /// Draw a sheet in the browser, watch it open, and design it
 ///

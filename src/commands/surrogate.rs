@@ -1,10 +1,7 @@
 //! `kirigami surrogate`: the card of exported weights, and their errors.
 
 mod card;
-mod errors;
 mod test;
-
-pub(crate) use test::{print_errors, record};
 
 use anyhow::Result;
 use clap::Args;

@@ -8,7 +8,7 @@ use std::f64::consts::PI;
 /// One hinge; lengths in mm, angles in degrees.
 #[derive(Args)]
 #[command(next_help_heading = "Hinge design")]
-pub struct WindowArgs {
+pub(super) struct WindowArgs {
     /// Ligament width: the material left between the tip of the main cut and the secondary cut (mm)
     #[arg(long, value_name = "MM", default_value_t = 18.0)]
     pub w_lig: f64,
@@ -28,7 +28,7 @@ pub struct WindowArgs {
 
 impl WindowArgs {
     /// The hinge design, or an error if it cannot be cut.
-    pub fn design(&self) -> Result<HingeDesign> {
+    pub(super) fn design(&self) -> Result<HingeDesign> {
         let design = HingeDesign {
             w_lig: self.w_lig,
             alpha: self.alpha_deg.to_radians(),

@@ -1,5 +1,6 @@
 //! Exit codes and the error message of a command.
 
+pub use app::failure::{Unfinished, message};
 use std::io::Write;
 use std::process::{ExitCode, Termination};
 use support::caught_panic;
@@ -16,16 +17,6 @@ pub enum Exit {
     /// 75 (EX_TEMPFAIL of sysexits.h): stopped before its work was done; the same command
     /// continues.
     Unfinished,
-}
-
-/// A run that was stopped before its work was finished.
-#[derive(Debug, thiserror::Error)]
-#[error("stopped with {left} {what} left; run the same command again to continue")]
-pub struct Unfinished {
-    /// Number of items left.
-    pub left: usize,
-    /// The items, in the plural.
-    pub what: &'static str,
 }
 
 impl Exit {
@@ -98,13 +89,4 @@ impl Termination for Exit {
             Self::Unfinished => 75.into(),
         }
     }
-}
-
-/// The error and its causes, each printed once.
-pub(crate) fn message(error: &anyhow::Error) -> String {
-    error.chain().fold(String::new(), |text, cause| match cause.to_string() {
-        cause if text.contains(&cause) => text,
-        cause if text.is_empty() => cause,
-        cause => format!("{text}: {cause}"),
-    })
 }

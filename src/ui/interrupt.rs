@@ -1,13 +1,12 @@
 //! Signals. The first Ctrl-C requests a clean stop; the second ends the program at once.
 
-use anyhow::Result;
-use std::sync::atomic::AtomicBool;
+use anyhow::{Context, Result};
+use std::sync::atomic::{AtomicBool, Ordering};
+use support::worker_pool::NoThread;
 
-#[cfg(unix)]
 static LISTENING: AtomicBool = AtomicBool::new(false);
 static STOP: AtomicBool = AtomicBool::new(false);
 
-#[cfg(unix)]
 /// Ends the program without a message when the reader of its output is gone, as in `kirigami solve |
 /// head`, where a Rust program would panic by default.
 pub fn end_quietly_when_nobody_reads() {
@@ -16,12 +15,8 @@ pub fn end_quietly_when_nobody_reads() {
     let _ = unsafe { signal(Signal::SIGPIPE, SigHandler::SigDfl) };
 }
 
-#[cfg(unix)]
 /// A flag that the first Ctrl-C (or SIGTERM) sets; the second ends the program.
 pub fn stop_flag() -> Result<&'static AtomicBool> {
-    use anyhow::Context;
-    use std::sync::atomic::Ordering;
-    use support::worker_pool::NoThread;
     if !LISTENING.swap(true, Ordering::Relaxed) {
         ctrlc::set_handler(|| {
             if STOP.swap(true, Ordering::Relaxed) {
@@ -35,11 +30,5 @@ pub fn stop_flag() -> Result<&'static AtomicBool> {
         })
         .context("cannot listen for Ctrl-C")?;
     }
-    Ok(&STOP)
-}
-
-/// A page in a browser gets no signals.
-#[cfg(not(unix))]
-pub fn stop_flag() -> Result<&'static AtomicBool> {
     Ok(&STOP)
 }

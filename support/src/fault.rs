@@ -1,6 +1,7 @@
 //! An error that no caller tells from another: it is read by a person.
 
 use std::fmt;
+use std::path::Path;
 
 /// Where something is wrong (a file, line, key or job), what is wrong, and what to do. Empty texts
 /// are left out of the message. An error that a caller matches is a variant of an enum instead.
@@ -21,6 +22,23 @@ pub fn fault(
     remedy: impl Into<String>,
 ) -> Fault {
     Fault { place: place.into(), what: what.into(), remedy: remedy.into() }
+}
+
+impl From<String> for Fault {
+    /// A mistake in words, without a place.
+    fn from(what: String) -> Self {
+        fault("", what, "")
+    }
+}
+
+/// Maps the error of reading `path`, for use in `map_err`.
+pub fn unread<E: fmt::Display>(path: &Path) -> impl FnOnce(E) -> Fault {
+    move |error| fault("", format!("cannot read {}: {error}", path.display()), "")
+}
+
+/// Maps the error of writing `path`, for use in `map_err`.
+pub fn unwritten<E: fmt::Display>(path: &Path) -> impl FnOnce(E) -> Fault {
+    move |error| fault("", format!("cannot write {}: {error}", path.display()), "")
 }
 
 impl fmt::Display for Fault {

@@ -1,5 +1,6 @@
 //! The error of an operation on a file.
 
+use crate::fault::{Fault, fault};
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -18,5 +19,11 @@ impl FileError {
     pub fn at<E: Into<io::Error>>(path: &Path) -> impl FnOnce(E) -> Self {
         let path = path.to_owned();
         move |source| Self { path, source: source.into() }
+    }
+}
+
+impl From<FileError> for Fault {
+    fn from(FileError { path, source }: FileError) -> Self {
+        fault(path.display().to_string(), source.to_string(), "")
     }
 }

@@ -1,4 +1,4 @@
-//! The limits of the keys of configuration files. The range of a number stands once, as
+//! The limits of the keys of configuration files. The range of a number is stated once, as
 //! `schemars(range(..))` of its field, and its unit in the first parentheses of the field's
 //! documentation, as in "Thickness of the sheet (mm)".
 
@@ -10,16 +10,8 @@ use std::fmt;
 /// A number outside the range of its key. The message names both and, if a factor of 1000 would
 /// correct the number, the probable one.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("{key} = {}{unit} violates {}{}", shown(self.value), self.rule(), self.hint())]
-pub struct OutOfRange {
-    /// The path of the key, as in `loads[0].force`.
-    pub key: String,
-    /// The number.
-    pub value: f64,
-    /// A blank and its unit; empty if it has none.
-    unit: String,
-    range: Range,
-}
+#[error("{0}")]
+pub struct OutOfRange(String);
 
 /// The smallest and the largest admissible number; infinite without a limit.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -38,20 +30,24 @@ pub fn check<T: JsonSchema>(config: &impl Serialize) -> Result<(), OutOfRange> {
 
 /// Checks a number whose range depends on other keys.
 pub fn within(key: &str, value: f64, [min, max]: [f64; 2], unit: &str) -> Result<(), OutOfRange> {
-    let range = Range(min, max);
-    if value.is_finite() && range.contains(value) {
+    let range = min..=max;
+    if value.is_finite() && range.contains(&value) {
         return Ok(());
     }
-    let gap = if unit.is_empty() { "" } else { " " };
-    Err(OutOfRange { key: key.to_owned(), value, unit: format!("{gap}{unit}"), range })
-}
-
-/// A number, with an exponent if it has more digits than a person reads.
-fn shown(value: f64) -> String {
-    match value.abs() {
-        size if size < 1e16 => value.to_string(),
-        _ => format!("{value:e}"),
-    }
+    let unit = if unit.is_empty() { String::new() } else { format!(" {unit}") };
+    let [least, most] = [min, max].map(without_rounding);
+    let rule = match (min.is_finite(), max.is_finite()) {
+        (true, true) => format!("{least} <= {key} <= {most}{unit}"),
+        (true, false) => format!("{least} <= {key}{unit}"),
+        (false, true) => format!("{key} <= {most}{unit}"),
+        (false, false) => format!("{key} is finite"),
+    };
+    let mut slips = [1e3, 1e-3].map(|factor| without_rounding(factor * value)).into_iter();
+    let meant = slips.find(|meant| !unit.is_empty() && range.contains(meant));
+    let hint = meant.map_or(String::new(), |meant| format!("; did you mean {meant}{unit}?"));
+    // More digits than a person reads become an exponent.
+    let value = if value.abs() < 1e16 { value.to_string() } else { format!("{value:e}") };
+    Err(OutOfRange(format!("{key} = {value}{unit} violates {rule}{hint}")))
 }
 
 /// The unit that a description states in its first parentheses; empty if there is none.
@@ -128,14 +124,10 @@ impl Range {
             limit("maximum").unwrap_or(f64::INFINITY),
         )
     }
-
-    fn contains(self, value: f64) -> bool {
-        (self.0..=self.1).contains(&value)
-    }
 }
 
 impl fmt::Display for Range {
-    /// In words, as in `0.02 to 10`; empty without limits.
+    /// The limits in words, as in `0.02 to 10`; empty without limits.
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let short = |x: f64| {
             if x == 0.0 || (1e-3..1e5).contains(&x.abs()) {
@@ -150,26 +142,6 @@ impl fmt::Display for Range {
             (false, true) => write!(f, "at most {}", short(self.1)),
             (false, false) => Ok(()),
         }
-    }
-}
-
-impl OutOfRange {
-    fn rule(&self) -> String {
-        let Self { key, unit, .. } = self;
-        let [min, max] = [self.range.0, self.range.1].map(without_rounding);
-        match (min.is_finite(), max.is_finite()) {
-            (true, true) => format!("{min} <= {key} <= {max}{unit}"),
-            (true, false) => format!("{min} <= {key}{unit}"),
-            (false, true) => format!("{key} <= {max}{unit}"),
-            (false, false) => format!("{key} is finite"),
-        }
-    }
-
-    fn hint(&self) -> String {
-        let slips = [1e3, 1e-3].map(|factor| without_rounding(factor * self.value));
-        let meant = slips.into_iter().find(|meant| self.range.contains(*meant));
-        let meant = meant.filter(|_| !self.unit.is_empty());
-        meant.map_or(String::new(), |meant| format!("; did you mean {meant}{}?", self.unit))
     }
 }
 

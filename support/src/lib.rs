@@ -1,7 +1,7 @@
 //! Domain-independent utilities: configuration files, ranges of their keys, misspelt names, input
 //! files, CSV tables, VTK files, atomic file writes, lock files, external programs, temporary
 //! folders, notes of what a command does, a pool of threads, panics of libraries, tables and
-//! reports for people, shards of a list of jobs, memory of the machine, the severity of findings.
+//! reports for people, memory of the machine, the severity of findings.
 //!
 //! ```
 //! use support::table::{Cell, Columns};
@@ -13,13 +13,23 @@
 //! assert_eq!(page, "| hinge | error of W |\n|---|---|\n| 18 mm | 1.2 % |\n");
 //! ```
 
-#![warn(missing_docs)]
+#![cfg_attr(not(test), warn(unreachable_pub))]
+
+/// Appends a formatted line to a string.
+#[macro_export]
+macro_rules! add_line {
+    ($text:expr, $($part:tt)*) => {{
+        use std::fmt::Write;
+        writeln!($text, $($part)*).expect("a string takes every line")
+    }};
+}
 
 pub mod caught_panic;
 pub mod csv_table;
 pub mod document;
 pub mod fault;
 pub mod file_error;
+pub mod interpolation;
 pub mod key_limits;
 pub mod lock_file;
 #[cfg(unix)]
@@ -35,7 +45,6 @@ pub mod relative_path;
 pub mod scratch;
 pub mod sealed_json;
 pub mod severity;
-pub mod shard;
 pub mod statistics;
 pub mod table;
 pub mod text_file;

@@ -12,7 +12,7 @@ pub fn try_hold(path: &Path) -> io::Result<File> {
     hold_by(path, |file| file.try_lock().map_err(io::Error::from))
 }
 
-/// Like [`try_hold`], but waits while another process has locked the file.
+/// Does the same as [`try_hold`], but waits while another process has locked the file.
 pub fn hold(path: &Path) -> io::Result<File> {
     hold_by(path, File::lock)
 }

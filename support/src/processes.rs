@@ -62,7 +62,7 @@ pub fn cpu_seconds(pid: u32) -> Option<f64> {
     Some((ticks(11)? + ticks(12)?) / USER_HZ)
 }
 
-/// Maximum resident memory so far of a running process (MiB), from /proc.
+/// Maximum resident memory of a running process until now (MiB), from /proc.
 pub(crate) fn memory_mib(pid: u32) -> Option<f64> {
     let status = std::fs::read_to_string(format!("/proc/{pid}/status")).ok()?;
     let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;

@@ -11,10 +11,10 @@ mod process_group;
 mod tool_error;
 
 pub use output_files::{output_file, remove_stale, tail};
-pub use tool_error::ToolError;
+pub use tool_error::{ToolEnd, ToolError};
 
 use crate::processes::memory_mib;
-use crate::program::process_group::{Group, POLL};
+use crate::program::process_group::{Group, MAX_FILE_MIB, POLL};
 use crate::scratch::Scratch;
 use crate::verbose;
 use nix::sys::signal::Signal;
@@ -74,15 +74,22 @@ const LONGEST_POLL: Duration = Duration::from_secs(1);
 /// signal causes.
 const SAME_SIGNAL: Duration = Duration::from_millis(500);
 
+impl ToolKind {
+    fn not_found(&self, place: &str) -> ToolError {
+        let Self { name, variable, install, .. } = self;
+        ToolEnd::Unusable.error(format!(
+            "{name} was not found {place}; install it ({install}) or set {variable} to its path"
+        ))
+    }
+}
+
 impl Tool {
     /// Finds the program by its environment variable or on PATH.
     pub fn find(kind: &'static ToolKind) -> Result<Self, ToolError> {
         match std::env::var_os(kind.variable) {
             Some(program) => Self::at(kind, Path::new(&program)),
             None => {
-                let program =
-                    search_path(kind.name).ok_or(ToolError::NotFound { kind, program: None })?;
-                Self::at(kind, &program)
+                Self::at(kind, &search_path(kind.name).ok_or_else(|| kind.not_found("on PATH"))?)
             }
         }
     }
@@ -94,7 +101,7 @@ impl Tool {
             program: std::path::absolute(program)
                 .ok()
                 .filter(|program| program.is_file())
-                .ok_or_else(|| ToolError::NotFound { kind, program: Some(program.to_owned()) })?,
+                .ok_or_else(|| kind.not_found(&format!("at {}", program.display())))?,
             version: String::new(),
         };
         tool.version = tool.ask_version()?;
@@ -111,11 +118,17 @@ impl Tool {
         let answered =
             (run.status.code()).is_some_and(|status| self.kind.version_statuses.contains(&status));
         let version = (self.kind.version_in)(&printed).filter(|_| answered);
-        version.map(str::to_owned).ok_or_else(|| ToolError::NoVersion {
-            kind: self.kind,
-            program: self.program.clone(),
-            status: run.status,
-            printed,
+        version.map(str::to_owned).ok_or_else(|| {
+            let ToolKind { name, variable, version_flag, install, .. } = self.kind;
+            let (program, status) = (self.program.display(), run.status);
+            let printed = match &*printed {
+                "" => "nothing".to_owned(),
+                printed => format!("`{printed}`"),
+            };
+            ToolEnd::Unusable.error(format!(
+                "{program} cannot be used as {name}: `{version_flag}` ended with {status} and printed no version of \
+                 it, but {printed}; install it ({install}) or set {variable} to its path"
+            ))
         })
     }
 
@@ -161,19 +174,22 @@ impl Tool {
         let mut group = Group::spawn(&self.program, arguments, folder, log)
             .map_err(|source| self.cannot_start(source))?;
         let name = self.kind.name;
+        let stopped = || ToolEnd::Stopped.error(format!("{name} was stopped on request"));
         let mut peak_memory_mib = None;
         while !group.has_ended() {
             peak_memory_mib = memory_mib(group.id()).or(peak_memory_mib);
             if stop.load(Ordering::Relaxed) {
                 group.end();
-                return Err(ToolError::Stopped { name });
+                return Err(stopped());
             }
             running += last.elapsed().min(LONGEST_POLL);
             last = Instant::now();
             if running > limit {
                 group.end();
+                let limit = limit.as_secs_f64();
+                let message = format!("{name} was terminated at its time limit of {limit} s");
                 let cpu_seconds = group.cpu_seconds();
-                return Err(ToolError::TimedOut { name, limit, cpu_seconds });
+                return Err(ToolError { cpu_seconds, ..ToolEnd::TimedOut.error(message) });
             }
             std::thread::sleep(POLL.min(Duration::from_millis(1) + running / 10));
         }
@@ -181,7 +197,11 @@ impl Tool {
         let cpu_seconds = group.cpu_seconds();
         let status = group.wait().map_err(|source| self.cannot_start(source))?;
         if status.signal() == Some(Signal::SIGXFSZ as i32) {
-            return Err(ToolError::TooMuchOutput { name, cpu_seconds });
+            let message = format!(
+                "{name} wrote a file of over {MAX_FILE_MIB} MiB, or over the limit of `ulimit -f`, and was terminated: \
+                 no window needs 1 GiB, so it would fill the disk"
+            );
+            return Err(ToolError { cpu_seconds, ..ToolEnd::TooMuchOutput.error(message) });
         }
         if let Some(signal) = status.signal().or_else(|| signal_of_child(status)) {
             // A service manager or a scheduler signals all processes of a job at once: the request
@@ -189,11 +209,13 @@ impl Tool {
             let patience = Instant::now() + SAME_SIGNAL;
             while Instant::now() < patience {
                 if stop.load(Ordering::Relaxed) {
-                    return Err(ToolError::Stopped { name });
+                    return Err(stopped());
                 }
                 std::thread::sleep(POLL);
             }
-            return Err(ToolError::Killed { name, signal, cpu_seconds });
+            let message =
+                format!("{name} was killed by signal {signal} (out of memory, or killed by hand)");
+            return Err(ToolError { cpu_seconds, ..ToolEnd::Killed.error(message) });
         }
         Ok(Run { status, cpu_seconds, wall_seconds: running.as_secs_f64(), peak_memory_mib })
     }
@@ -203,11 +225,14 @@ impl Tool {
         if run.status.success() {
             return Ok(());
         }
-        Err(ToolError::Failed { name: self.kind.name, status: run.status, tail: tail(log) })
+        let (name, status, tail) = (self.kind.name, run.status, tail(log));
+        Err(ToolEnd::Failed
+            .error(format!("{name} failed with {status}; the end of its log:\n{tail}")))
     }
 
     fn cannot_start(&self, source: std::io::Error) -> ToolError {
-        ToolError::Start { program: self.program.clone(), source }
+        let program = self.program.display();
+        ToolEnd::Unusable.error(format!("cannot run {program}: {source}"))
     }
 }
 
@@ -275,8 +300,8 @@ mod tests {
         let script = "trap '' TERM; sleep 1000 & echo $!; while true; do :; done";
         let (ended, log) = run(script, Duration::from_millis(200), false);
         let error = ended.unwrap_err();
-        assert!(matches!(error, ToolError::TimedOut { .. }), "{error}");
-        assert!(error.cpu_seconds().unwrap() > 0.0, "{error:?}");
+        assert_eq!(error.end, ToolEnd::TimedOut, "{error}");
+        assert!(error.cpu_seconds.unwrap() > 0.0, "{error:?}");
         assert_ends(&log);
     }
 
@@ -309,7 +334,7 @@ mod tests {
         let mut command = Command::new("setsid");
         command.args(["sh", "-c", "sleep 1000; true"]);
         let mut left = command.env(FOLDER, folder.path()).spawn().unwrap();
-        // Until exec, it has the environment of this test.
+        // The process has the environment of this test until exec.
         std::thread::sleep(Duration::from_millis(200));
         let log = folder.path().join("log");
         let never = AtomicBool::new(false);
@@ -322,21 +347,25 @@ mod tests {
     fn a_program_that_fills_the_disk_is_ended() {
         let (ended, _) = run("exec truncate -s 2G huge", LONG, false);
         let error = ended.unwrap_err();
-        assert!(matches!(error, ToolError::TooMuchOutput { .. }), "{error}");
+        assert_eq!(error.end, ToolEnd::TooMuchOutput, "{error}");
     }
 
     #[test]
     fn signals_and_stops_are_distinguished() {
         let (killed, _) = run("kill -9 $$", LONG, false);
-        assert!(matches!(killed, Err(ToolError::Killed { signal: 9, .. })));
+        let is = |ended: Result<Run, ToolError>, end, said: &str| {
+            let error = ended.unwrap_err();
+            error.end == end && error.message.contains(said)
+        };
+        assert!(is(killed, ToolEnd::Killed, "signal 9 "));
         // A shell that does not replace itself by the program says by its exit code how that ended;
         // 201 is no signal.
         let (wrapped, _) = run("sh -c 'kill -15 $$'; exit $?", LONG, false);
-        assert!(matches!(wrapped, Err(ToolError::Killed { signal: 15, .. })));
+        assert!(is(wrapped, ToolEnd::Killed, "signal 15 "));
         let (refused, _) = run("exit 201", LONG, false);
         assert_eq!(refused.unwrap().status.code(), Some(201));
         let (stopped, _) = run("sleep 1000", LONG, true);
-        assert!(matches!(stopped, Err(ToolError::Stopped { .. })));
+        assert!(is(stopped, ToolEnd::Stopped, "on request"));
     }
 
     /// A program is what its name says only if it prints a version and exits as after one.
@@ -362,8 +391,8 @@ mod tests {
             (":", "nothing"),
         ] {
             let error = found(script).unwrap_err();
-            assert!(matches!(error, ToolError::NoVersion { .. }), "{error}");
-            assert!(error.to_string().contains(said), "{error}");
+            assert!(error.message.contains("printed no version"), "{error}");
+            assert!(error.message.contains(said), "{error}");
         }
     }
 

@@ -52,7 +52,7 @@ fn without_following(options: &mut OpenOptions) -> &mut OpenOptions {
     std::os::unix::fs::OpenOptionsExt::custom_flags(options, libc::O_NOFOLLOW | libc::O_NONBLOCK)
 }
 
-/// Of a link, and of a pipe without a reader.
+/// Whether the error is caused by a link, or by a pipe without a reader.
 #[cfg(unix)]
 fn is_link_or_pipe(error: &io::Error) -> bool {
     use nix::libc;

@@ -26,9 +26,3 @@ pub fn root_mean_square(values: impl IntoIterator<Item = f64>) -> f64 {
         .fold((0.0_f64, 0.0), |(count, sum), value| (count + 1.0, sum + value * value));
     (sum / count.max(1.0)).sqrt()
 }
-
-/// A number of the normal distribution with the deviation 1 from two of the uniform distribution
-/// between 0 and 1 (Box and Muller, "A note on the generation of random normal deviates", 1958).
-pub fn normal([first, second]: [f64; 2]) -> f64 {
-    (-2.0 * (1.0 - first).ln()).sqrt() * (std::f64::consts::TAU * second).cos()
-}

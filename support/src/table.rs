@@ -10,7 +10,7 @@ const WIDEST: f64 = 1e7;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cell {
     shown: String,
-    /// The unrounded number, if it is one; empty if it is not known.
+    /// The unrounded number, if it is one; empty if unknown.
     stored: String,
 }
 
@@ -24,7 +24,7 @@ impl Cell {
     }
 
     /// A number with a fixed number of decimals, which a file holds unrounded; of a large one three
-    /// digits are shown. `-` if it is not known, `None` or NaN.
+    /// digits are shown. `-` if unknown, `None` or NaN.
     pub fn fixed(value: impl Into<Option<f64>>, decimals: usize) -> Self {
         let value = value.into().filter(|value| !value.is_nan());
         let shown = |value: f64| match value.abs() < WIDEST {
@@ -35,7 +35,7 @@ impl Cell {
         Self::known(cell, "-")
     }
 
-    /// A fraction, shown in per cent; a file holds the fraction. `-` if it is not known.
+    /// A fraction, shown in per cent; a file holds the fraction. `-` if unknown.
     pub fn percent(fraction: impl Into<Option<f64>>, decimals: usize) -> Self {
         let fraction = fraction.into().filter(|fraction| !fraction.is_nan());
         let cell = fraction.map(|x| Self::number(x, format!("{:.decimals$} %", 100.0 * x)));
@@ -48,7 +48,7 @@ impl Cell {
         Self { shown, stored }
     }
 
-    /// Shown as `absent` and stored as an empty cell if not known.
+    /// Shown as `absent` and stored as an empty cell if unknown.
     pub fn known(cell: Option<Self>, absent: &str) -> Self {
         cell.unwrap_or_else(|| Self { shown: absent.to_owned(), stored: String::new() })
     }

@@ -6,7 +6,7 @@ use encoding_rs::{Encoding, UTF_16BE, UTF_16LE, WINDOWS_1252};
 use std::io::{self, ErrorKind};
 use std::path::Path;
 
-/// First bytes of files that are no texts, with what they are and the way out.
+/// First bytes of files that are no texts, with what they are and the remedy.
 const OTHERS: [(&[u8], &str); 12] = [
     (b"PK\x03\x04", "a workbook (xlsx) or another ZIP archive: save its sheet as CSV"),
     (b"\xD0\xCF\x11\xE0", "a workbook (xls): save its sheet as CSV"),

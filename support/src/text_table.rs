@@ -8,9 +8,9 @@ use crate::text_file;
 use std::cmp::Reverse;
 use std::path::Path;
 
-/// What separates cells, in the order of preference; a blank stands for any number of them.
+/// What separates cells, in the order of preference; a blank means any number of them.
 const SEPARATORS: [u8; 4] = *b";\t, ";
-/// Signs between groups of three digits besides `,` and `.`: blanks of every width, and the
+/// Signs between groups of three digits other than `,` and `.`: blanks of every width, and the
 /// apostrophes of Switzerland.
 const GROUPING: [char; 6] = [' ', '\u{a0}', '\u{2009}', '\u{202f}', '\'', '’'];
 
@@ -212,7 +212,7 @@ mod tests {
             let expected = [[0.007, 999.123], [-1000.5, 1_234_567.25]];
             assert_eq!(numbers(text), expected, "{text}");
         }
-        // Without a number that only groups explain, a comma is the decimal sign.
+        // Unless only groups explain a number, a comma is the decimal sign.
         assert_eq!(numbers("1,125;2,250\n3,500;4,750\n"), [[1.125, 2.25], [3.5, 4.75]]);
     }
 

@@ -1,12 +1,12 @@
 //! Reading TOML configuration files. An unknown key is an error that names the most similar known
 //! key; an array with more elements than its type has is an error.
 
-use crate::file_error::FileError;
+use crate::fault::{Fault, fault};
 use crate::nearest::nearest;
 use crate::text_file;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use toml::de::{DeTable, DeValue};
 use toml::{Spanned, Value};
 
@@ -15,44 +15,30 @@ const DECIMAL_POINT: &str = "the decimal sign is a point (40.5, not 40,5)";
 
 /// Why a configuration file cannot be read; the message names the file, the line and the key.
 #[derive(Debug, thiserror::Error)]
-#[allow(missing_docs, reason = "the message of a variant is its documentation")]
-pub enum ConfigError {
-    #[error("cannot read {0}")]
-    Read(#[from] FileError),
-    #[error(
-        "{path}:{line}: unknown key `{key}`{nearest}",
-        path = .path.display(),
-        nearest = nearest.as_ref().map(|n| format!("; did you mean `{n}`?")).unwrap_or_default()
-    )]
-    UnknownKey { path: PathBuf, line: usize, key: String, nearest: Option<String> },
-    #[error("{path}:{line}: {message}", path = .path.display())]
-    Syntax { path: PathBuf, line: usize, message: String },
-}
+#[error("{0}")]
+pub struct ConfigError(Fault);
 
 /// Reads a TOML file into `T`, which should deny unknown fields.
 pub fn read<T: DeserializeOwned + Serialize>(path: &Path) -> Result<T, ConfigError> {
-    let text = text_file::read(path).map_err(FileError::at(path))?;
+    let text = text_file::read(path).map_err(|error| {
+        ConfigError(fault(format!("cannot read {}", path.display()), error.to_string(), ""))
+    })?;
     parse(&text, path)
 }
 
 /// Parses TOML text; errors name `path`.
 pub fn parse<T: DeserializeOwned + Serialize>(text: &str, path: &Path) -> Result<T, ConfigError> {
     let located = |message: &str, start: usize| {
-        let path = path.to_owned();
         let line = 1 + text[..start].matches('\n').count();
-        match unknown_field(message) {
-            Some((key, known)) => ConfigError::UnknownKey {
-                path,
-                line,
-                nearest: nearest(&key, known.iter().map(String::as_str)).map(str::to_owned),
-                key,
-            },
-            None => ConfigError::Syntax {
-                path,
-                line,
-                message: plain(message, text.lines().nth(line - 1).unwrap_or_default()),
-            },
-        }
+        let what = match unknown_field(message) {
+            Some((key, known)) => {
+                let near = nearest(&key, known.iter().map(String::as_str));
+                let near = near.map_or(String::new(), |name| format!("; did you mean `{name}`?"));
+                format!("unknown key `{key}`{near}")
+            }
+            None => plain(message, text.lines().nth(line - 1).unwrap_or_default()),
+        };
+        ConfigError(fault(format!("{}:{line}", path.display()), what, ""))
     };
     let refused = |error: toml::de::Error| {
         let start = error.span().map_or(0, |span| span.start);
@@ -113,7 +99,7 @@ fn plain(message: &str, line: &str) -> String {
         key if key.is_empty() || message.starts_with("missing") => String::new(),
         key => format!("`{key}`: "),
     };
-    // A number alone: in an array the comma stands between two numbers.
+    // One number: in an array the comma separates two numbers.
     let value = value.split('#').next().unwrap_or_default().trim();
     let number = value.split_once(',').is_some_and(|(whole, rest)| {
         let digits =
@@ -217,7 +203,7 @@ mod tests {
         assert!(short.contains("length 1"), "{short}");
     }
 
-    /// As text that is copied from a page has them.
+    /// Text that is copied from a page has them.
     #[test]
     fn characters_that_look_like_others_are_shown() {
         for (from, to, shown) in

@@ -2,11 +2,10 @@
 //! ParaView and meshio.
 //!
 //! Numbers are stored inline in binary: base64 of a 64-bit length followed by the values, little
-//! endian. They are therefore exact, and may be NaN where a value is not known.
+//! endian. They are therefore exact, and may be NaN where a value is unknown.
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
-use std::fmt::Write;
 
 /// A cell type, by its number in VTK.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -90,13 +89,12 @@ impl UnstructuredGrid {
         array(&mut text, "UInt8", "types", 1, kinds);
         text += "</Cells>\n";
         for (part, fields) in [("PointData", &self.point_data), ("CellData", &self.cell_data)] {
-            // Writing to a string cannot fail.
-            let _ = writeln!(text, "<{part}>");
+            add_line!(text, "<{part}>");
             for Field { name, components, values } in fields {
                 let bytes = values.iter().flat_map(|x| x.to_le_bytes());
                 array(&mut text, "Float64", name, *components, bytes);
             }
-            let _ = writeln!(text, "</{part}>");
+            add_line!(text, "</{part}>");
         }
         text + "</Piece>\n</UnstructuredGrid>\n</VTKFile>\n"
     }
@@ -111,7 +109,7 @@ fn array(
 ) {
     let bytes: Vec<u8> = bytes.into_iter().collect();
     let framed = [&(bytes.len() as u64).to_le_bytes(), &bytes[..]].concat();
-    let _ = writeln!(
+    add_line!(
         text,
         "<DataArray type=\"{number}\" Name=\"{name}\" NumberOfComponents=\"{components}\" format=\"binary\">{}\
          </DataArray>",
@@ -125,7 +123,7 @@ pub fn collection(grids: &[(f64, usize, String)]) -> String {
         "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n<Collection>\n"
             .to_owned();
     for (time, part, file) in grids {
-        let _ = writeln!(text, "<DataSet timestep=\"{time}\" part=\"{part}\" file=\"{file}\"/>");
+        add_line!(text, "<DataSet timestep=\"{time}\" part=\"{part}\" file=\"{file}\"/>");
     }
     text + "</Collection>\n</VTKFile>\n"
 }

@@ -34,7 +34,7 @@ impl Unnamed {
         #[cfg(unix)]
         file.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
         let file = file.tempfile_in(folder(path))?;
-        // On a file system without locks nothing is removed.
+        // A file system without locks removes no file.
         let _ = file.as_file().try_lock();
         remove_abandoned(path, file.as_file());
         Ok(Self(file))
@@ -146,7 +146,7 @@ mod tests {
         old("a.json.partial");
         let at_work = old("a.jsonXyZ789.partial");
         at_work.lock().unwrap();
-        // Of a writer that has not locked it yet.
+        // Its writer has not locked it yet.
         File::create(folder.path().join("a.jsonnew123.partial")).unwrap();
         write(&path, b"new").unwrap();
         let entries = std::fs::read_dir(&folder).unwrap();

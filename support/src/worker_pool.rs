@@ -53,7 +53,7 @@ pub fn work_through<M: Send, E: From<NoThread>>(
     let (next, halt) = (AtomicUsize::new(0), AtomicBool::new(false));
     let (sender, receiver) = mpsc::channel();
     if cfg!(target_family = "wasm") {
-        // Without threads: each item, then its messages.
+        // No threads: each item, then its messages.
         let reports = Reports { sender, halt: &halt };
         let mut outcome = Ok(());
         for item in 0..count {

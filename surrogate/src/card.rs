@@ -1,9 +1,10 @@
 //! The card of a weight file: units, scaling, training domain, provenance, test errors.
 
 use crate::features::{LOG_WIDTH, Standardisation, feature_names};
-use crate::network::InvalidWeights;
+use crate::network::{finite, other_shape};
 use hinge::{HingeConstants, TrainingDomain};
 use serde::{Deserialize, Deserializer, Serialize};
+use support::fault::{Fault, fault};
 
 /// Format version of the weight file and its card; no other version is read.
 pub const FORMAT_VERSION: u32 = 9;
@@ -61,7 +62,7 @@ pub struct Card {
     pub bent_rays: bool,
     /// Hash of the database file.
     pub dataset_hash: String,
-    /// For fine-tuned weights: [`Surrogate::hash`] of the initial weights.
+    /// [`Surrogate::hash`] of the initial weights of fine-tuned ones.
     ///
     /// [`Surrogate::hash`]: crate::Surrogate::hash
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -146,7 +147,7 @@ pub struct TestErrors {
     pub m_theta: FitError,
     /// Error of D.
     pub damage: FitError,
-    /// Error of D_peak; not known if no head predicts it.
+    /// Error of D_peak; unknown if no head predicts it.
     pub damage_peak: FitError,
 }
 
@@ -154,17 +155,36 @@ pub struct TestErrors {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ErrorBin {
-    /// `eta_a`, `eta_s`, `theta_deg` (the coordinates of the domain,
-    /// [`TrainingDomain::coordinates`]), `w_lig`, `alpha_deg`, `fillet_ratio`, or `edge`, which is
-    /// [`TrainingDomain::depth`]: 0 at the edge of the training domain and 1 at its centre.
-    pub quantity: String,
+    /// The quantity.
+    pub quantity: BinQuantity,
     /// Lower and upper limit; the upper limit belongs to the next bin.
     pub range: [f64; 2],
     /// Errors on the rows of the bin.
     pub errors: TestErrors,
 }
 
-/// Deviation of predictions from their targets; NaN if it is not known, which is `null` in a card.
+/// A quantity by which test rows are binned.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, strum::Display)]
+#[serde(rename_all = "snake_case")]
+#[strum(serialize_all = "snake_case")]
+pub enum BinQuantity {
+    /// Axial coordinate of the domain, [`TrainingDomain::coordinates`].
+    EtaA,
+    /// Shear coordinate of the domain.
+    EtaS,
+    /// Rotation (deg).
+    ThetaDeg,
+    /// Ligament width (mm).
+    WLig,
+    /// Angle of the cuts (deg).
+    AlphaDeg,
+    /// Radius of the hole over the ligament width.
+    FilletRatio,
+    /// [`TrainingDomain::depth`]: 0 at the edge of the training domain and 1 at its centre.
+    Edge,
+}
+
+/// Deviation of predictions from their targets; NaN if unknown, which is `null` in a card.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FitError {
@@ -177,7 +197,7 @@ pub struct FitError {
 }
 
 impl FitError {
-    /// Without a known target that is not zero.
+    /// The error without a known target that is not zero.
     pub fn unknown() -> Self {
         Self { relative_rmse: f64::NAN, median: f64::NAN }
     }
@@ -223,7 +243,7 @@ impl Card {
         self.hinge.kerf *= factor;
         self.hinge.r_win *= factor;
         for bin in &mut self.error_bins {
-            if bin.quantity == "w_lig" {
+            if bin.quantity == BinQuantity::WLig {
                 bin.range = bin.range.map(|w_lig| factor * w_lig);
             }
         }
@@ -237,14 +257,15 @@ impl Card {
 
     /// Rejects other units or features, scales that are not positive, and means that are not
     /// finite.
-    pub(crate) fn validate(&self) -> Result<(), InvalidWeights> {
+    pub(crate) fn validate(&self) -> Result<(), Fault> {
         let names = feature_names(self.domain.holes.is_some());
         for (key, found, expected) in [
             ("units", self.units.clone(), UNITS.into()),
             ("features", self.features.join(", "), names.join(", ")),
         ] {
             if found != expected {
-                return Err(InvalidWeights::OtherConvention { key, expected, found });
+                let what = format!("the {key} of the card are {found}, expected {expected}");
+                return Err(fault("", what, ""));
             }
         }
         let damages = self.damage_scales().into_iter();
@@ -257,28 +278,19 @@ impl Card {
         let Standardisation { mean, std } = &self.standardisation;
         for (tensor, values) in [("feat_mean", mean), ("feat_std", std)] {
             if values.len() != names.len() {
-                return Err(InvalidWeights::Shape {
-                    tensor: tensor.into(),
-                    expected: format!("[{}]", names.len()),
-                    found: vec![values.len()],
-                });
+                let expected = format!("[{}]", names.len());
+                return Err(other_shape(tensor, &expected, &[values.len()]));
             }
         }
         let deviations = names.iter().zip(std.iter().copied());
         let deviations = deviations.map(|(name, std)| (format!("feat_std of {name}"), std));
         for (name, value) in scales.chain(deviations) {
             if !(value > 0.0 && value.is_finite()) {
-                return Err(InvalidWeights::NotPositive { name, value });
+                let what = format!("`{name}` = {value} violates 0 < {name} < infinity");
+                return Err(fault("", what, ""));
             }
         }
-        if let Some(index) = mean.iter().position(|value| !value.is_finite()) {
-            return Err(InvalidWeights::NotFinite {
-                tensor: "feat_mean".into(),
-                index,
-                value: mean[index],
-            });
-        }
-        Ok(())
+        finite("feat_mean", mean)
     }
 }
 

@@ -1,6 +1,6 @@
 //! W of (14) and its derivatives in the hinge deformation and in (w_lig, alpha, rho_f).
 //!
-//! With r = chi(xi) - chi(xi(0, g)), J = d chi / d xi and J0 = d chi(xi(0, g)) / d g,
+//! Let r = chi(xi) - chi(xi(0, g)), J = d chi / d xi and J0 = d chi(xi(0, g)) / d g. Then
 //!
 //! ```text
 //! W                     = W_s |r|^2
@@ -9,10 +9,10 @@
 //! ```
 //!
 //! where lambda is the adjoint of a unit, seeded by r. chi(xi(0, g)) depends on the features of the
-//! design, so that dW/dg = 2 W_s (J - J0)' r, and d2W/dxi dg is reduced by 2 W_s J' J0.
+//! design, so dW/dg = 2 W_s (J - J0)' r, and d2W/dxi dg is reduced by 2 W_s J' J0.
 
 use crate::features::{FEATURES, features, pull_back};
-use crate::hinge_energy::{DEFORMATION_FEATURES, DESIGN, HingeEnergy, Order};
+use crate::hinge_energy::{DEFORMATION_FEATURES, HingeEnergy, Order};
 use crate::mlp_kernels::{Passes, chunk_size, packed_index, packed_len};
 use crate::network::Network;
 use crate::reference_ligament;
@@ -21,6 +21,9 @@ use hinge::{HingeDeformation, HingeDesign, HingeGradient, NetLigament};
 use rayon::prelude::*;
 use std::cell::RefCell;
 use std::ops::Range;
+
+/// Number of quantities of the design.
+const DESIGN: usize = FEATURES - DEFORMATION_FEATURES;
 
 /// Hinge designs with chi(xi(0, g)) and its derivatives, which do not depend on the deformation.
 #[derive(Clone, Debug)]

@@ -1,14 +1,10 @@
-//! The energy of one hinge with its derivatives, and how many of them are computed.
+//! The energy of one hinge with the derivatives that are asked for.
 
-use crate::features::FEATURES;
 use hinge::DesignGradient;
 
 /// Number of features of the deformation; the others, log w_lig, alpha and rho_f, depend on the
 /// design only.
 pub(crate) const DEFORMATION_FEATURES: usize = 3;
-/// Number of quantities of the design.
-pub(crate) const DESIGN: usize = FEATURES - DEFORMATION_FEATURES;
-
 /// The derivatives to compute; each order includes all earlier ones.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Order {

@@ -33,7 +33,7 @@
 //! # Ok::<_, surrogate::WeightsError>(())
 //! ```
 
-#![warn(missing_docs)]
+#![cfg_attr(not(test), warn(unreachable_pub))]
 
 mod card;
 mod damage;
@@ -50,8 +50,8 @@ mod tanh;
 mod weights;
 
 pub use card::{
-    Card, DistillationRecord, ErrorBin, FORMAT_VERSION, FitError, SpotCheck, Teacher, TestErrors,
-    UNITS,
+    BinQuantity, Card, DistillationRecord, ErrorBin, FORMAT_VERSION, FitError, SpotCheck, Teacher,
+    TestErrors, UNITS,
 };
 pub use damage::HingeDamage;
 pub use energy::Prepared;
@@ -59,7 +59,7 @@ pub use ensemble::mean_and_variance;
 pub use features::{FEATURE_NAMES, Standardisation, feature_names, features};
 pub use hinge_energy::{HingeEnergy, Order};
 pub use model::{Layers, Surrogate};
-pub use network::{InvalidWeights, Layer, Network, Tensor};
-pub use springback::{Springback, SpringbackError, SpringbackErrors};
+pub use network::{Layer, Network, Tensor};
+pub use springback::{Springback, SpringbackErrors};
 pub use tanh::tanh_in_place;
 pub use weights::WeightsError;

@@ -70,13 +70,13 @@ thread_local! {
 
 impl Passes {
     /// Lends the buffers of this thread to `work`, which must not call this function again.
-    pub fn lent<T>(work: impl FnOnce(&mut Self) -> T) -> T {
+    pub(crate) fn lent<T>(work: impl FnOnce(&mut Self) -> T) -> T {
         PASSES.with_borrow_mut(work)
     }
 
     /// Computes the outputs and their derivatives in the features `tangents`, for a chunk of
     /// hinges.
-    pub fn forward(
+    pub(crate) fn forward(
         &mut self,
         network: &Network,
         features: &[[f64; FEATURES]],
@@ -148,7 +148,7 @@ impl Passes {
     /// Computes the gradient in the features of a function of the outputs, given its gradient
     /// `seed` in the outputs (one column per output). Adds the contribution of the network's
     /// curvature to its Hessian to `curvature`, packed as in [`accumulate_products`].
-    pub fn reverse(&mut self, network: &Network, seed: &[f64], curvature: &mut [f64]) {
+    pub(crate) fn reverse(&mut self, network: &Network, seed: &[f64], curvature: &mut [f64]) {
         let (n, rows) = (self.n, self.rows());
         self.weight.resize(n, 0.0);
         self.adjoint.clear();
@@ -169,7 +169,7 @@ impl Passes {
 
     /// Adds J'J to `packed`, where J is the derivative of the outputs in the features of the
     /// tangents.
-    pub fn add_gauss_newton(&mut self, packed: &mut [f64]) {
+    pub(crate) fn add_gauss_newton(&mut self, packed: &mut [f64]) {
         let rows = self.rows();
         self.weight.clear();
         self.weight.resize(self.n, 1.0);
@@ -182,12 +182,12 @@ impl Passes {
     }
 
     /// Values and tangents of each output: n values, then n derivatives for each tangent.
-    pub fn outputs(&self) -> impl Iterator<Item = &[f64]> {
+    pub(crate) fn outputs(&self) -> impl Iterator<Item = &[f64]> {
         self.output.chunks_exact(self.rows())
     }
 
     /// The gradient that [`Passes::reverse`] computed for one hinge of the chunk.
-    pub fn gradient(&self, hinge: usize) -> [f64; FEATURES] {
+    pub(crate) fn gradient(&self, hinge: usize) -> [f64; FEATURES] {
         std::array::from_fn(|k| self.gradient[k * self.n + hinge])
     }
 

@@ -4,11 +4,12 @@ use crate::card::{Card, ErrorBin, SpotCheck, TestErrors};
 use crate::damage::{self, HingeDamage};
 use crate::energy::{self, Prepared};
 use crate::hinge_energy::{HingeEnergy, Order};
-use crate::network::{InvalidWeights, Layer, Network};
+use crate::network::{Layer, Network, missing};
 use crate::reference_ligament;
 use hinge::{
     HingeDeformation, HingeDesign, HingeSample, NetLigament, Regime, SheetMaterial, TrainingDomain,
 };
+use support::fault::Fault;
 
 /// The networks of (14), with the card that contains their scaling and provenance.
 #[derive(Clone, Debug)]
@@ -50,7 +51,7 @@ impl Surrogate {
     ///
     /// The input of the networks is the standardised features. Each head has one output. There must
     /// be a head of D_peak if, and only if, the card has a scale for it.
-    pub fn from_parts(layers: Layers, card: Card) -> Result<Self, InvalidWeights> {
+    pub fn from_parts(layers: Layers, card: Card) -> Result<Self, Fault> {
         card.validate()?;
         let Layers { chi, chi_d, chi_p } = layers;
         let network =
@@ -60,9 +61,7 @@ impl Surrogate {
         let chi_p = match (chi_p, card.peak_scale) {
             (None, None) => None,
             (layers, Some(_)) => Some(network("chi_p", layers.unwrap_or_default(), Some(1))?),
-            (Some(_), None) => {
-                return Err(InvalidWeights::Missing { tensor: "d_scale of chi_p".into() });
-            }
+            (Some(_), None) => return Err(missing("d_scale of chi_p")),
         };
         Ok(Self { chi, chi_d, chi_p, card })
     }
@@ -84,7 +83,7 @@ impl Surrogate {
     /// The surrogate of the same material at `factor` times the thickness, exact for geometrically
     /// similar hinges.
     ///
-    /// The window is rate-independent and has no length of its own, so that with all lengths
+    /// The window is rate-independent and has no length of its own, so with all lengths
     /// multiplied by `factor`, W is multiplied by its cube, and D and D_peak do not change. A hinge
     /// of width w_lig therefore has `factor`^3 times the energy of the hinge w_lig / `factor` of
     /// this surrogate, at the same (eta_a, eta_s, theta).
@@ -189,7 +188,7 @@ impl Surrogate {
         self.card.damage_scale
     }
 
-    /// Computes the quantities that depend on the designs alone: chi(xi(0, g)) and its derivative
+    /// Computes the quantities that depend only on the designs: chi(xi(0, g)) and its derivative
     /// in g.
     pub fn prepare(&self, designs: &[HingeDesign]) -> Prepared {
         Prepared::new(&self.chi, designs, self.card.hinge.fillet_ratio)

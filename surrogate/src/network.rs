@@ -2,6 +2,7 @@
 
 use crate::features::{FEATURES, Standardisation};
 use faer::Mat;
+use support::fault::{Fault, fault};
 
 /// An array of a weight file, in row-major order.
 #[derive(Clone, Debug, PartialEq)]
@@ -19,22 +20,6 @@ pub struct Layer {
     pub weight: Tensor,
     /// The constant term, of shape (outputs).
     pub bias: Tensor,
-}
-
-/// Why weights or a card are not valid.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[allow(missing_docs, reason = "the message of a variant is its documentation")]
-pub enum InvalidWeights {
-    #[error("tensor `{tensor}` is missing; train or export the weights again")]
-    Missing { tensor: String },
-    #[error("tensor `{tensor}` has the shape {found:?}, expected {expected}")]
-    Shape { tensor: String, expected: String, found: Vec<usize> },
-    #[error("tensor `{tensor}` contains {value} at index {index}; every weight must be finite")]
-    NotFinite { tensor: String, index: usize, value: f64 },
-    #[error("`{name}` = {value} violates 0 < {name} < infinity")]
-    NotPositive { name: String, value: f64 },
-    #[error("the {key} of the card are {found}, expected {expected}")]
-    OtherConvention { key: &'static str, expected: String, found: String },
 }
 
 /// y = W_L tanh(... tanh(W_0 x + b_0) ...) + b_L, whose input x is the features (13), not
@@ -63,9 +48,9 @@ impl Network {
         layers: Vec<Layer>,
         outputs: Option<usize>,
         standardisation: &Standardisation,
-    ) -> Result<Self, InvalidWeights> {
+    ) -> Result<Self, Fault> {
         if layers.is_empty() {
-            return Err(InvalidWeights::Missing { tensor: format!("{name}.0.weight") });
+            return Err(missing(&format!("{name}.0.weight")));
         }
         let mut inputs = standardisation.mean.len();
         for (index, Layer { weight, bias }) in layers.iter().enumerate() {
@@ -123,10 +108,29 @@ impl Affine {
     }
 }
 
+pub(crate) fn missing(tensor: &str) -> Fault {
+    fault("", format!("tensor `{tensor}` is missing; train or export the weights again"), "")
+}
+
+pub(crate) fn other_shape(tensor: &str, expected: &str, found: &[usize]) -> Fault {
+    let what = format!("tensor `{tensor}` has the shape {found:?}, expected {expected}");
+    fault("", what, "")
+}
+
+/// Rejects a value that is not finite.
+pub(crate) fn finite(tensor: &str, values: &[f64]) -> Result<(), Fault> {
+    let Some(index) = values.iter().position(|value| !value.is_finite()) else {
+        return Ok(());
+    };
+    let value = values[index];
+    let what = format!("tensor `{tensor}` contains {value} at index {index}");
+    Err(fault("", what + "; every weight must be finite", ""))
+}
+
 impl Tensor {
     /// Checks that the shape is `expected` (`None`: any positive length) and that every value is
     /// finite.
-    fn check(&self, name: &str, expected: &[Option<usize>]) -> Result<(), InvalidWeights> {
+    fn check(&self, name: &str, expected: &[Option<usize>]) -> Result<(), Fault> {
         let matches = self.shape.len() == expected.len()
             && self
                 .shape
@@ -139,19 +143,8 @@ impl Tensor {
                 .iter()
                 .map(|length| length.map_or("any".into(), |length| length.to_string()))
                 .collect();
-            return Err(InvalidWeights::Shape {
-                tensor: name.into(),
-                expected: format!("[{}]", lengths.join(", ")),
-                found: self.shape.clone(),
-            });
+            return Err(other_shape(name, &format!("[{}]", lengths.join(", ")), &self.shape));
         }
-        match self.values.iter().position(|value| !value.is_finite()) {
-            Some(index) => Err(InvalidWeights::NotFinite {
-                tensor: name.into(),
-                index,
-                value: self.values[index],
-            }),
-            None => Ok(()),
-        }
+        finite(name, &self.values)
     }
 }

@@ -17,10 +17,10 @@ use hinge::{HingeConstants, HingeDeformation, HingeDesign, ReleasedHinge};
 use serde::{Deserialize, Serialize};
 use std::array::from_fn;
 use std::f64::consts::FRAC_PI_2;
-use std::path::{Path, PathBuf};
-use support::file_error::FileError;
+use std::path::Path;
+use support::fault::{Fault, fault, unread};
 use support::regular_file;
-use support::sealed_json::{self, SealError};
+use support::sealed_json;
 
 /// The even and the odd terms: products of two of the factors (1, ln w_lig, eta_a, theta, alpha -
 /// 90 deg, eta_s), of which the last two change sign in the mirrored hinge.
@@ -71,11 +71,11 @@ pub struct Springback {
     spans: [f64; 2],
     /// Coefficients of (d_a, d_theta, d_s, u_{theta a}), a row a term.
     stiffness_even: [[f64; 4]; TERMS[0]],
-    /// Of (u_{s a}, u_{s theta}).
+    /// Coefficients of (u_{s a}, u_{s theta}).
     stiffness_odd: [[f64; 2]; TERMS[1]],
-    /// Of (e_a, e_theta).
+    /// Coefficients of (e_a, e_theta).
     rest_even: [[f64; 2]; TERMS[0]],
-    /// Of e_s.
+    /// Coefficients of e_s.
     rest_odd: [[f64; 1]; TERMS[1]],
 }
 
@@ -91,16 +91,6 @@ pub struct SpringbackErrors {
     pub sprung: [f64; 3],
     /// Root mean square of |K - K_fe| / |K_fe|, Frobenius norms in units of (w_lig, w_lig, 1).
     pub stiffness: f64,
-}
-
-/// Why there is no law.
-#[derive(Debug, thiserror::Error)]
-#[allow(missing_docs, reason = "the message of a variant is its documentation")]
-pub enum SpringbackError {
-    #[error("cannot read {0}")]
-    Read(#[source] FileError),
-    #[error("{path} is not a law of released hinges: {source}", path = .path.display())]
-    File { path: PathBuf, source: SealError },
 }
 
 impl Springback {
@@ -138,12 +128,12 @@ impl Springback {
     }
 
     /// Reads a law from its file.
-    pub fn load(path: &Path) -> Result<Self, SpringbackError> {
-        let bytes =
-            regular_file::read(path).map_err(FileError::at(path)).map_err(SpringbackError::Read)?;
-        let law: Self = sealed_json::from_slice(&bytes)
-            .map_err(|source| SpringbackError::File { path: path.to_owned(), source })?;
-        Ok(law)
+    pub fn load(path: &Path) -> Result<Self, Fault> {
+        let bytes = regular_file::read(path).map_err(unread(path))?;
+        sealed_json::from_slice(&bytes).map_err(|error| {
+            let what = format!("{} is not a law of released hinges: {error}", path.display());
+            fault("", what, "")
+        })
     }
 
     /// The factors of the terms.
@@ -190,6 +180,7 @@ fn product<const T: usize, const N: usize>(terms: &[f64; T], rows: &[[f64; N]; T
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::path::PathBuf;
     use support::statistics::root_mean_square;
 
     fn plate(name: &str) -> PathBuf {
@@ -283,7 +274,7 @@ mod tests {
         let path = folder.path().join("springback.json");
         let text = std::fs::read_to_string(plate("springback.json")).unwrap();
         std::fs::write(&path, text.replace("\"hinges\": 45", "\"hinges\": 46")).unwrap();
-        let damaged = Springback::load(&path);
-        assert!(matches!(damaged, Err(SpringbackError::File { .. })));
+        let damaged = Springback::load(&path).unwrap_err().to_string();
+        assert!(damaged.contains("is not a law of released hinges"), "{damaged}");
     }
 }

@@ -15,110 +15,96 @@
 use crate::card::{Card, FORMAT_VERSION};
 use crate::features::Standardisation;
 use crate::model::{Layers, Surrogate};
-use crate::network::{InvalidWeights, Layer, Tensor};
+use crate::network::{Layer, Tensor, missing, other_shape};
 use safetensors::tensor::TensorView;
-use safetensors::{Dtype, SafeTensorError, SafeTensors};
+use safetensors::{Dtype, SafeTensors};
 use std::collections::BTreeMap;
+use std::fmt::Display;
 use std::io;
 use std::path::{Path, PathBuf};
-use support::file_error::FileError;
-use support::regular_file;
-use support::sealed_json::{self, SealError};
+use support::fault::{Fault, fault, unread, unwritten};
+use support::{regular_file, sealed_json, whole_file};
 
 /// Why a surrogate could not be read or written.
 #[derive(Debug, thiserror::Error)]
-#[allow(missing_docs, reason = "the message of a variant is its documentation")]
-pub enum WeightsError {
-    #[error("cannot read {0}")]
-    Read(#[source] FileError),
-    #[error("cannot write {0}")]
-    Write(#[source] FileError),
-    #[error(
-        "{weights} has no card: {card} is missing; copy both files from the same place",
-        weights = .weights.display(), card = .card.display()
-    )]
-    MissingCard { weights: PathBuf, card: PathBuf },
-    #[error("{path} is not a card of a surrogate: {source}", path = .path.display())]
-    Card { path: PathBuf, source: SealError },
-    #[error(
-        "{path} has the format version {found}, but this program reads version {FORMAT_VERSION} alone: train the weights \
-         again, or use the program that wrote them",
-        path = .path.display()
-    )]
-    UnknownVersion { path: PathBuf, found: u64 },
-    #[error(
-        "{path} is a database (Parquet), but weights (.safetensors) are expected; `kirigami train` makes weights from a \
-         database",
-        path = .path.display()
-    )]
-    Database { path: PathBuf },
-    #[error("{path} is not a safetensors file: {source}", path = .path.display())]
-    Malformed { path: PathBuf, source: SafeTensorError },
-    #[error("{path}: tensor `{tensor}` is not part of a known network", path = .path.display())]
-    Extra { path: PathBuf, tensor: String },
-    #[error("{path}: tensor `{tensor}` is {found:?}, expected F64 or F32", path = .path.display())]
-    Type { path: PathBuf, tensor: String, found: Dtype },
-    #[error(
-        "{path}: `{tensor}` differs from the value in the card; the two files are from different \
-         trainings, so copy both from the same place",
-        path = .path.display()
-    )]
-    OtherCard { path: PathBuf, tensor: &'static str },
-    #[error(
-        "{path} is not the file that its card describes (BLAKE3 {found}, not {expected}): it is damaged, or the card is \
-         of another training; copy the two files together",
-        path = .path.display()
-    )]
-    Hash { path: PathBuf, expected: String, found: String },
-    #[error("{path}: {source}", path = .path.display())]
-    Invalid { path: PathBuf, source: InvalidWeights },
-}
+#[error(transparent)]
+pub struct WeightsError(#[from] Fault);
 
 impl Surrogate {
     /// Reads `X.safetensors` and its card `X.json`.
     pub fn load(weights: &Path) -> Result<Self, WeightsError> {
-        load(weights)
+        refuse_database(weights)?;
+        let bytes = regular_file::read(weights).map_err(unread(weights))?;
+        let mut tensors = read_tensors(weights, &bytes)?;
+        let mut card = Card::of(weights)?;
+        let expected = card.weights_hash.take().unwrap_or_default();
+        let found = blake3::hash(&bytes).to_hex().to_string();
+        if found != expected {
+            let what = format!(
+                "is not the file that its card describes (BLAKE3 {found}, not {expected}): it is \
+                 damaged, or the card is of another training; copy the two files together"
+            );
+            return Err(other_file(weights, what).into());
+        }
+        Ok(from_tensors(&mut tensors, card).map_err(at(weights))?)
     }
 
     /// Writes `X.safetensors` and its card `X.json`, each atomically.
     pub fn save(&self, weights: &Path) -> Result<(), WeightsError> {
-        save(self, weights)
+        let mut tensors: Vec<(String, Tensor)> = Vec::new();
+        let Layers { chi, chi_d, chi_p } = self.layers();
+        let networks = [("chi", chi), ("chi_d", chi_d)];
+        for (name, layers) in networks.into_iter().chain(chi_p.map(|layers| ("chi_p", layers))) {
+            for (index, Layer { weight, bias }) in layers.into_iter().enumerate() {
+                tensors.push((format!("{name}.{index}.weight"), weight));
+                tensors.push((format!("{name}.{index}.bias"), bias));
+            }
+        }
+        for (name, tensor) in scaling(self.card()) {
+            tensors.push((name.into(), tensor));
+        }
+        let bytes: Vec<Vec<u8>> = tensors.iter().map(|(_, tensor)| to_bytes(tensor)).collect();
+        let views = std::iter::zip(&tensors, &bytes).map(|((name, tensor), bytes)| {
+            Ok((name, TensorView::new(Dtype::F64, tensor.shape.clone(), bytes)?))
+        });
+        let views: Result<Vec<_>, _> = views.collect();
+        let file = views
+            .and_then(|views| safetensors::serialize(views, None))
+            .map_err(|error| malformed(weights, error))?;
+        let path = card_path(weights);
+        let stamped = Card {
+            weights_hash: Some(blake3::hash(&file).to_hex().to_string()),
+            ..self.card().clone()
+        };
+        let mut card = sealed_json::to_vec(&stamped).map_err(|error| no_card(&path, error))?;
+        card.push(b'\n');
+        whole_file::write(weights, &file).map_err(unwritten(weights))?;
+        Ok(whole_file::write(&path, &card).map_err(unwritten(&path))?)
     }
 }
 
-fn load(weights: &Path) -> Result<Surrogate, WeightsError> {
-    refuse_database(weights)?;
-    let bytes =
-        regular_file::read(weights).map_err(FileError::at(weights)).map_err(WeightsError::Read)?;
-    let mut tensors = read_tensors(weights, &bytes)?;
-    let mut card = Card::of(weights)?;
-    let expected = card.weights_hash.take().unwrap_or_default();
-    let found = blake3::hash(&bytes).to_hex().to_string();
-    if found != expected {
-        return Err(WeightsError::Hash { path: weights.to_owned(), expected, found });
-    }
-    let invalid = |source| WeightsError::Invalid { path: weights.to_owned(), source };
-    let chi = take_layers(&mut tensors, "chi").map_err(invalid)?;
-    let chi_d = take_layers(&mut tensors, "chi_d").map_err(invalid)?;
-    let chi_p = card.peak_scale.map(|_| take_layers(&mut tensors, "chi_p"));
-    let chi_p = chi_p.transpose().map_err(invalid)?;
+/// The surrogate of the tensors of a file, all of which must belong to it.
+fn from_tensors(tensors: &mut BTreeMap<String, Tensor>, card: Card) -> Result<Surrogate, Fault> {
+    let chi = take_layers(tensors, "chi")?;
+    let chi_d = take_layers(tensors, "chi_d")?;
+    let chi_p = card.peak_scale.map(|_| take_layers(tensors, "chi_p")).transpose()?;
     for (tensor, expected) in scaling(&card) {
-        let found = take(&mut tensors, tensor).map_err(invalid)?;
+        let found = take(tensors, tensor)?;
         if found.shape != expected.shape {
-            return Err(invalid(InvalidWeights::Shape {
-                tensor: tensor.into(),
-                expected: format!("{:?}", expected.shape),
-                found: found.shape,
-            }));
+            return Err(other_shape(tensor, &format!("{:?}", expected.shape), &found.shape));
         }
         if found.values != expected.values {
-            return Err(WeightsError::OtherCard { path: weights.to_owned(), tensor });
+            let what = format!(
+                "`{tensor}` differs from the value in the card; the two files are from different \
+                 trainings, so copy both from the same place"
+            );
+            return Err(fault("", what, ""));
         }
     }
     if let Some((tensor, _)) = tensors.pop_first() {
-        return Err(WeightsError::Extra { path: weights.to_owned(), tensor });
+        return Err(fault("", format!("tensor `{tensor}` is not part of a known network"), ""));
     }
-    Surrogate::from_parts(Layers { chi, chi_d, chi_p }, card).map_err(invalid)
+    Surrogate::from_parts(Layers { chi, chi_d, chi_p }, card)
 }
 
 impl Card {
@@ -129,85 +115,72 @@ impl Card {
             format_version: u64,
         }
         refuse_database(weights)?;
-        let path = card_path(weights);
-        let text = regular_file::read(&path).map_err(|source| match source.kind() {
+        let path = &card_path(weights);
+        let text = regular_file::read(path).map_err(|error| match error.kind() {
             io::ErrorKind::NotFound => {
-                WeightsError::MissingCard { weights: weights.to_owned(), card: path.clone() }
+                let card = path.display();
+                let what =
+                    format!("has no card: {card} is missing; copy both files from the same place");
+                other_file(weights, what)
             }
-            _ => WeightsError::Read(FileError::at(&path)(source)),
+            _ => unread(path)(error),
         })?;
-        let malformed = |source| WeightsError::Card { path: path.clone(), source };
-        let version: Version =
-            serde_json::from_slice(&text).map_err(SealError::from).map_err(malformed)?;
-        if version.format_version != u64::from(FORMAT_VERSION) {
-            return Err(WeightsError::UnknownVersion {
-                path: path.clone(),
-                found: version.format_version,
-            });
+        let Version { format_version } =
+            serde_json::from_slice(&text).map_err(|error| no_card(path, error))?;
+        if format_version != u64::from(FORMAT_VERSION) {
+            let what = format!(
+                "has the format version {format_version}, but this program reads only version \
+                 {FORMAT_VERSION}: train the weights again, or use the program that wrote them"
+            );
+            return Err(other_file(path, what).into());
         }
-        sealed_json::from_slice(&text).map_err(malformed)
+        Ok(sealed_json::from_slice(&text).map_err(|error| no_card(path, error))?)
     }
 }
 
-fn refuse_database(weights: &Path) -> Result<(), WeightsError> {
-    if weights.extension().is_some_and(|kind| kind == "parquet") {
-        let path = weights.to_owned();
-        return Err(WeightsError::Database { path });
+fn refuse_database(weights: &Path) -> Result<(), Fault> {
+    if weights.extension().is_none_or(|kind| kind != "parquet") {
+        return Ok(());
     }
-    Ok(())
+    Err(other_file(
+        weights,
+        "is a database (Parquet), but weights (.safetensors) are expected; `kirigami train` makes \
+         weights from a database",
+    ))
 }
 
-fn save(surrogate: &Surrogate, weights: &Path) -> Result<(), WeightsError> {
-    let mut tensors: Vec<(String, Tensor)> = Vec::new();
-    let Layers { chi, chi_d, chi_p } = surrogate.layers();
-    let networks = [("chi", chi), ("chi_d", chi_d)];
-    for (name, layers) in networks.into_iter().chain(chi_p.map(|layers| ("chi_p", layers))) {
-        for (index, Layer { weight, bias }) in layers.into_iter().enumerate() {
-            tensors.push((format!("{name}.{index}.weight"), weight));
-            tensors.push((format!("{name}.{index}.bias"), bias));
-        }
-    }
-    for (name, tensor) in scaling(surrogate.card()) {
-        tensors.push((name.into(), tensor));
-    }
-    let bytes: Vec<Vec<u8>> = tensors.iter().map(|(_, tensor)| to_bytes(tensor)).collect();
-    let views: Result<Vec<_>, _> = tensors
-        .iter()
-        .zip(&bytes)
-        .map(|((name, tensor), bytes)| {
-            Ok((name, TensorView::new(Dtype::F64, tensor.shape.clone(), bytes)?))
-        })
-        .collect();
-    let file = views
-        .and_then(|views| safetensors::serialize(views, None))
-        .map_err(|source| WeightsError::Malformed { path: weights.to_owned(), source })?;
-    let path = card_path(weights);
-    let stamped = Card {
-        weights_hash: Some(blake3::hash(&file).to_hex().to_string()),
-        ..surrogate.card().clone()
-    };
-    let mut card = sealed_json::to_vec(&stamped)
-        .map_err(|source| WeightsError::Card { path: path.clone(), source: source.into() })?;
-    card.push(b'\n');
-    write(weights, &file)?;
-    write(&path, &card)
+/// The fault of a file: its path is the subject of the sentence `what`.
+fn other_file(path: &Path, what: impl Display) -> Fault {
+    fault("", format!("{} {what}", path.display()), "")
+}
+
+fn no_card(path: &Path, error: impl Display) -> Fault {
+    other_file(path, format!("is not a card of a surrogate: {error}"))
+}
+
+fn malformed(path: &Path, error: impl Display) -> Fault {
+    other_file(path, format!("is not a safetensors file: {error}"))
+}
+
+/// Maps a fault in the contents of `path`, for use in `map_err`.
+fn at(path: &Path) -> impl FnOnce(Fault) -> Fault {
+    move |fault| Fault { place: path.display().to_string(), ..fault }
 }
 
 fn card_path(weights: &Path) -> PathBuf {
     weights.with_extension("json")
 }
 
-fn read_tensors(path: &Path, bytes: &[u8]) -> Result<BTreeMap<String, Tensor>, WeightsError> {
-    let file = SafeTensors::deserialize(bytes)
-        .map_err(|source| WeightsError::Malformed { path: path.to_owned(), source })?;
+fn read_tensors(path: &Path, bytes: &[u8]) -> Result<BTreeMap<String, Tensor>, Fault> {
+    let file = SafeTensors::deserialize(bytes).map_err(|error| malformed(path, error))?;
     file.iter()
         .map(|(name, view)| match to_tensor(&view) {
             Some(tensor) => Ok((name.to_owned(), tensor)),
-            None => Err(WeightsError::Type {
-                path: path.to_owned(),
-                tensor: name.to_owned(),
-                found: view.dtype(),
-            }),
+            None => {
+                let found = view.dtype();
+                let what = format!("tensor `{name}` is {found:?}, expected F64 or F32");
+                Err(at(path)(fault("", what, "")))
+            }
         })
         .collect()
 }
@@ -247,10 +220,7 @@ fn scaling(card: &Card) -> [(&'static str, Tensor); 4] {
 }
 
 /// Layers 0, 1, ... of a network, up to the highest number in the file.
-fn take_layers(
-    tensors: &mut BTreeMap<String, Tensor>,
-    network: &str,
-) -> Result<Vec<Layer>, InvalidWeights> {
+fn take_layers(tensors: &mut BTreeMap<String, Tensor>, network: &str) -> Result<Vec<Layer>, Fault> {
     let layer_of = |name: &String| -> Option<usize> {
         let (layer, _) = name.strip_prefix(network)?.strip_prefix('.')?.split_once('.')?;
         layer.parse().ok()
@@ -266,12 +236,6 @@ fn take_layers(
         .collect()
 }
 
-fn take(tensors: &mut BTreeMap<String, Tensor>, name: &str) -> Result<Tensor, InvalidWeights> {
-    tensors.remove(name).ok_or_else(|| InvalidWeights::Missing { tensor: name.into() })
-}
-
-fn write(path: &Path, bytes: &[u8]) -> Result<(), WeightsError> {
-    support::whole_file::write(path, bytes)
-        .map_err(FileError::at(path))
-        .map_err(WeightsError::Write)
+fn take(tensors: &mut BTreeMap<String, Tensor>, name: &str) -> Result<Tensor, Fault> {
+    tensors.remove(name).ok_or_else(|| missing(name))
 }

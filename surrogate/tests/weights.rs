@@ -10,7 +10,7 @@ use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 use support::sealed_json;
-use surrogate::{FORMAT_VERSION, InvalidWeights, Order, Surrogate, WeightsError};
+use surrogate::{FORMAT_VERSION, Order, Surrogate, WeightsError};
 use tempfile::TempDir;
 
 /// A copy of the files of a surrogate, to be changed and written.
@@ -81,23 +81,18 @@ impl File {
         self.card = self.card.replace(from, to);
     }
 
+    /// Fails unless the file is refused with its path and a text.
     #[track_caller]
-    fn invalid(&self) -> InvalidWeights {
-        match self.load().unwrap_err() {
-            WeightsError::Invalid { source, path } => {
-                assert_eq!(path, self.path());
-                source
-            }
-            other => panic!("{other}"),
-        }
+    fn assert_refused(&self, part: &str) {
+        let error = self.load().unwrap_err().to_string();
+        let of_file = error.starts_with(&self.path().display().to_string());
+        assert!(of_file && error.contains(part), "{error}");
     }
 
     /// Fails unless the file is refused for a tensor that is in no surrogate of its card.
     #[track_caller]
     fn assert_extra(&self, name: &str) {
-        let error = self.load().unwrap_err();
-        let extra = matches!(&error, WeightsError::Extra { tensor, .. } if tensor == name);
-        assert!(extra, "{error}");
+        self.assert_refused(&format!("tensor `{name}` is not part of a known network"));
     }
 }
 
@@ -138,25 +133,22 @@ fn float32_weights_are_read() {
     let apart = (wide - narrow).abs();
     assert!(0.0 < apart && apart < 1e-5 * wide, "{wide} {narrow}");
     file.tensors.get_mut("chi.0.bias").unwrap().0 = Dtype::I64;
-    let error = file.load().unwrap_err();
-    let refused = matches!(error, WeightsError::Type { found: Dtype::I64, .. });
-    assert!(refused, "{error}");
+    file.assert_refused("tensor `chi.0.bias` is I64");
 }
 
 #[test]
 fn missing_files_are_named() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("chi.safetensors");
-    let error = Surrogate::load(&path).unwrap_err();
-    assert!(matches!(error, WeightsError::Read(_)), "{error}");
+    let error = Surrogate::load(&path).unwrap_err().to_string();
+    assert!(error.starts_with(&format!("cannot read {}", path.display())), "{error}");
     std::fs::copy(cases().join("chi_tiny.safetensors"), &path).unwrap();
-    let error = Surrogate::load(&path).unwrap_err();
-    let expected = path.with_extension("json");
-    let refused = matches!(&error, WeightsError::MissingCard { card, .. } if *card == expected);
-    assert!(refused, "{error}");
+    let error = Surrogate::load(&path).unwrap_err().to_string();
+    let expected = format!("{} is missing", path.with_extension("json").display());
+    assert!(error.contains(&expected), "{error}");
     let nowhere = folder.path().join("none/chi.safetensors");
-    let error = tiny().save(&nowhere).unwrap_err();
-    assert!(matches!(error, WeightsError::Write(_)), "{error}");
+    let error = tiny().save(&nowhere).unwrap_err().to_string();
+    assert!(error.starts_with("cannot write "), "{error}");
 }
 
 #[test]
@@ -174,8 +166,7 @@ fn a_corner_of_the_box_of_all_states_may_be_outside_the_covered_states() {
 fn a_head_without_a_scale_and_a_scale_without_a_head_are_errors() {
     let mut file = File::of("chi_domain");
     file.tensors.retain(|name, _| !name.starts_with("chi_p."));
-    let tensor = "chi_p.0.weight".into();
-    assert_eq!(file.invalid(), InvalidWeights::Missing { tensor });
+    file.assert_refused("tensor `chi_p.0.weight` is missing");
     let mut file = File::of("chi_domain");
     file.replace("\"peak_scale\": 0.31,", "");
     let scale = file.values("d_scale")[0];
@@ -197,15 +188,12 @@ fn cards_of_other_versions_shapes_and_trainings_are_errors() {
     let version = u64::from(FORMAT_VERSION);
     for other in [0, version - 1, version + 1] {
         let stated = |version: u64| format!("\"format_version\": {version}");
-        let error = with_card(&stated(version), &stated(other));
-        let refused = matches!(error, WeightsError::UnknownVersion { found, .. } if found == other);
-        assert!(refused, "{error}");
+        let error = with_card(&stated(version), &stated(other)).to_string();
+        assert!(error.contains(&format!("has the format version {other}")), "{error}");
     }
-    let error = with_card("\"energy_scale\": 85.0", "\"energy_scale\": 86.0");
-    let refused = matches!(error, WeightsError::OtherCard { tensor, .. } if tensor == "w_scale");
-    assert!(refused, "{error}");
     let peak = "\"peak_scale\": 0.3, \"damage_scale\"";
     for (from, to, expected) in [
+        ("\"energy_scale\": 85.0", "\"energy_scale\": 86.0", "`w_scale` differs from the value"),
         ("\"damage_scale\"", peak, "chi_p.0.weight"),
         ("\"material\"", "\"materiel\"", "materiel"),
         ("[0.375,", "[-0.375,", "half_range > 0"),
@@ -224,9 +212,8 @@ fn any_broken_safetensors_is_an_error() {
     let bytes = std::fs::read(file.path()).unwrap();
     for length in [0, 1, 7, 8, 9, 100, bytes.len() / 2, bytes.len() - 1] {
         std::fs::write(file.path(), &bytes[..length]).unwrap();
-        let error = Surrogate::load(&file.path()).unwrap_err();
-        let malformed = matches!(error, WeightsError::Malformed { .. });
-        assert!(malformed, "{length}: {error}");
+        let error = Surrogate::load(&file.path()).unwrap_err().to_string();
+        assert!(error.contains("is not a safetensors file"), "{length}: {error}");
     }
 }
 
@@ -235,8 +222,7 @@ fn missing_and_unknown_tensors_are_named() {
     for name in ["chi.0.bias", "chi.1.weight", "chi_d.2.weight", "feat_std", "d_scale"] {
         let mut file = File::new();
         file.tensors.remove(name);
-        let tensor = name.into();
-        assert_eq!(file.invalid(), InvalidWeights::Missing { tensor });
+        file.assert_refused(&format!("tensor `{name}` is missing"));
     }
     let mut file = File::new();
     file.set("chi.x.weight", &[1], &[1.0]);
@@ -256,12 +242,7 @@ fn wrong_shapes_name_the_tensor_and_both_shapes() {
         let mut file = File::new();
         let values = file.values(name);
         file.set(name, shape, &values);
-        let expected = InvalidWeights::Shape {
-            tensor: name.into(),
-            expected: wanted.into(),
-            found: shape.into(),
-        };
-        assert_eq!(file.invalid(), expected);
+        file.assert_refused(&format!("`{name}` has the shape {shape:?}, expected {wanted}"));
     }
 }
 
@@ -273,9 +254,7 @@ fn weights_that_are_not_finite_name_tensor_and_index() {
         {
             let mut file = File::of(name);
             file.change(tensor, |values| values[index] = value);
-            let message = file.invalid().to_string();
-            let expected = format!("tensor `{tensor}` contains {value} at index {index}");
-            assert!(message.contains(&expected), "{message}");
+            file.assert_refused(&format!("tensor `{tensor}` contains {value} at index {index}"));
         }
     }
 }
@@ -288,12 +267,12 @@ fn scales_that_are_not_positive_are_errors() {
         let mut file = File::new();
         file.set(name, &[1], &[bad]);
         file.replace(&format!("\"{key}\": {from}"), &format!("\"{key}\": {bad:?}"));
-        assert!(matches!(file.invalid(), InvalidWeights::NotPositive { .. }));
+        file.assert_refused(&format!("{bad} violates 0 < "));
     }
     let mut file = File::new();
     file.set("feat_std", &[5], &[0.1, 0.1, 0.0, 0.45, 0.45]);
     file.replace("[0.1, 0.1, 0.35", "[0.1, 0.1, 0.0");
-    assert!(file.invalid().to_string().contains("feat_std of theta"));
+    file.assert_refused("feat_std of theta");
 }
 
 #[test]
@@ -340,8 +319,8 @@ fn damaged_and_exchanged_files_are_refused() {
     let card = |weights: &PathBuf| weights.with_extension("json");
     let whole = [&one, &card(&one)].map(|path| std::fs::read(path).unwrap());
     std::fs::copy(card(&other), card(&one)).unwrap();
-    let exchanged = Surrogate::load(&one);
-    assert!(matches!(exchanged, Err(WeightsError::Hash { .. })));
+    let exchanged = Surrogate::load(&one).unwrap_err().to_string();
+    assert!(exchanged.contains("is not the file that its card describes"), "{exchanged}");
     for (path, text) in [&one, &card(&one)].into_iter().zip(&whole) {
         for i in (0..text.len()).step_by(1 + text.len() / 150) {
             std::fs::write(&one, &whole[0]).unwrap();

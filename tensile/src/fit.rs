@@ -1,8 +1,7 @@
 //! The law of a material from its specimens: mean modulus, mean hardening curve, fracture strain,
 //! and the table of the finite elements.
 
-use crate::drawing::{Drawing, beyond_maximum_force};
-use crate::error::TensileError;
+use crate::cold_drawing::{ColdDrawing, beyond_maximum_force};
 use crate::landmarks::Draw;
 use crate::mean_curve::mean_curve;
 use crate::record::{Record, RecordOptions};
@@ -10,6 +9,7 @@ use crate::specimen::{End, Specimen, SpecimenOptions};
 use crate::thinning::thinned;
 use serde::Serialize;
 use std::path::PathBuf;
+use support::fault::{Fault, fault};
 
 /// What is known about a material besides the records of its specimens.
 #[derive(Clone, Copy, Debug)]
@@ -39,9 +39,9 @@ pub struct Statistic {
 pub enum Origin {
     /// From rows at which the strain is uniform.
     Measured,
-    /// In the running neck, from the work of the machine; see `drawing`.
+    /// In the running neck, from the work of the machine; see `cold_drawing`.
     Drawn,
-    /// Beyond the maximum force, by Considere's condition; see `drawing`.
+    /// Beyond the maximum force, by Considere's condition; see `cold_drawing`.
     Extrapolated,
 }
 
@@ -154,10 +154,7 @@ impl MaterialFit {
 
     /// Reads and evaluates the record of each specimen with its own options, and fits one law to
     /// all.
-    pub fn new(
-        records: &[(PathBuf, RecordOptions)],
-        options: &FitOptions,
-    ) -> Result<Self, TensileError> {
+    pub fn new(records: &[(PathBuf, RecordOptions)], options: &FitOptions) -> Result<Self, Fault> {
         let mut specimens = Vec::new();
         for (path, record) in records {
             for record in Record::read_all(path, record)? {
@@ -211,7 +208,7 @@ fn hardening(
     specimens: &[Specimen],
     young: f64,
     draw: Option<(Statistic, Statistic)>,
-) -> Result<(Vec<HardeningRow>, Option<f64>), TensileError> {
+) -> Result<(Vec<HardeningRow>, Option<f64>), Fault> {
     let before: Vec<&[[f64; 2]]> = specimens.iter().map(|specimen| &*specimen.before).collect();
     let end = Statistic::new(before.iter().map(|curve| last(curve)[1])).mean;
     let mut uniform = mean_curve(&before, end);
@@ -219,8 +216,8 @@ fn hardening(
         return Ok((marked(&uniform, Origin::Measured), None));
     };
     let top = last(&uniform);
-    let drawing = Drawing::new(top, plateau.mean, ratio.mean, young).ok_or_else(|| {
-        TensileError::Specimens(format!(
+    let drawing = ColdDrawing::new(top, plateau.mean, ratio.mean, young).ok_or_else(|| {
+        refused(format!(
             "the natural draw ratio {:.3} is not beyond the upper yield at the plastic strain {:.3}: check --draw-ratio, \
              the initial section over the section of the drawn neck",
             ratio.mean, top[1]
@@ -235,7 +232,7 @@ fn hardening(
 }
 
 /// Specimens that draw and specimens that do not have no common curve.
-fn same_kind(specimens: &[Specimen]) -> Result<(), TensileError> {
+fn same_kind(specimens: &[Specimen]) -> Result<(), Fault> {
     let draws = |specimen: &&Specimen| specimen.draw.is_some();
     let names = |these: Vec<&Specimen>| {
         let names: Vec<String> =
@@ -246,7 +243,7 @@ fn same_kind(specimens: &[Specimen]) -> Result<(), TensileError> {
     if drawn.is_empty() || others.is_empty() {
         Ok(())
     } else {
-        Err(TensileError::Specimens(format!(
+        Err(refused(format!(
             "{} have a draw plateau, {} have none: fit them apart, or leave out specimens that broke early",
             names(drawn),
             names(others)
@@ -274,6 +271,11 @@ fn drawn_curve(specimens: &[Specimen], start: [f64; 2]) -> Vec<[f64; 2]> {
     rows.map(|row| [row[0] + offset, row[1] + start[1]]).collect()
 }
 
+/// What is wrong with the specimens together.
+fn refused(what: String) -> Fault {
+    fault("", what, "")
+}
+
 struct Fracture {
     strain: f64,
     scatter: Option<f64>,
@@ -284,13 +286,13 @@ fn fracture(
     specimens: &[Specimen],
     options: &FitOptions,
     curve: &[HardeningRow],
-) -> Result<Fracture, TensileError> {
+) -> Result<Fracture, Fault> {
     let end = curve[curve.len() - 1].strain;
     if let Some(strain) = options.fracture_strain {
         return if strain >= end {
             Ok(Fracture { strain, scatter: None, source: FractureSource::Given })
         } else {
-            Err(TensileError::Specimens(format!(
+            Err(refused(format!(
                 "--fracture-strain {strain} is less than the plastic strain {end:.4} that the specimens reach on \
                  average: it is ln(A0 / A), from the section A of the broken specimen"
             )))
@@ -309,7 +311,7 @@ fn fracture(
     };
     let scatter = Statistic::new(specimens.iter().map(reached)).deviation;
     if let Some(scatter) = scatter.filter(|scatter| *scatter > end) {
-        return Err(TensileError::Specimens(format!(
+        return Err(refused(format!(
             "the specimens have a fracture strain of {end:.4} ± {scatter:.4}, which is none: give --fracture-strain, or \
              leave out specimens that broke early"
         )));

@@ -26,7 +26,7 @@ pub(super) struct Name {
 }
 
 impl Name {
-    pub fn of(label: &str) -> Self {
+    pub(crate) fn of(label: &str) -> Self {
         let label = label.replace(" / ", "/");
         let mut name = Self::default();
         for part in label.split_inclusive([')', ']', '}', '>']) {
@@ -105,22 +105,22 @@ impl Name {
     }
 
     /// Whether every word is known.
-    pub fn is_known(&self) -> bool {
+    pub(crate) fn is_known(&self) -> bool {
         self.unknown.is_empty()
     }
 
     /// Whether a word is the name of a quantity.
-    pub fn is_near_quantity(&self) -> bool {
+    pub(crate) fn is_near_quantity(&self) -> bool {
         self.has("force stress strain extension")
     }
 
     /// Whether a word is the name of a dimension.
-    pub fn is_near_dimension(&self) -> bool {
+    pub(crate) fn is_near_dimension(&self) -> bool {
         self.has("width thickness length gauge-length")
     }
 
     /// The quantity that the name of a column describes.
-    pub fn quantity(&self) -> Option<Quantity> {
+    pub(crate) fn quantity(&self) -> Option<Quantity> {
         let measured_in =
             |quantity: Quantity| self.units.iter().any(|unit| quantity.factor(unit).is_some());
         let local = self.has("true");
@@ -142,7 +142,7 @@ impl Name {
 
     /// The dimension of a specimen that the name describes in known words alone: the option of the
     /// command line without its dashes.
-    pub fn dimension(&self) -> Option<&'static str> {
+    pub(crate) fn dimension(&self) -> Option<&'static str> {
         let [long, gauge] = [self.has("gauge-length"), self.has("length") && self.has("gauge")];
         let stated = [
             ("width", self.has("width")),
@@ -156,7 +156,7 @@ impl Name {
     }
 
     /// The unit of a quantity; the error is a text that may be another unit.
-    pub fn unit(&self, quantity: Quantity) -> Result<Option<&str>, &str> {
+    pub(crate) fn unit(&self, quantity: Quantity) -> Result<Option<&str>, &str> {
         let Some(last) = self.units.last() else {
             return self.unknown.last().map_or(Ok(None), |text| Err(text));
         };

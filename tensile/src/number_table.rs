@@ -4,11 +4,12 @@
 //! Lines before the first row of numbers are a preamble. Of these, the last one, or the last one
 //! above a row of units, names the columns. Lines that start with `#` are comments.
 
-use crate::error::TensileError;
+use crate::in_file;
 use crate::name::Name;
 use crate::quantity::{are_units, bare};
 use std::collections::BTreeMap;
 use std::path::Path;
+use support::fault::{Fault, fault};
 use support::file_error::FileError;
 use support::text_table::{NumberStyle, TextRow, TextTable};
 use support::{regular_file, text_file};
@@ -29,13 +30,12 @@ pub(super) struct NumberTable {
 
 impl NumberTable {
     /// The tables of a file, and its BLAKE3 hash, 16 hexadecimal digits.
-    pub fn read_all(path: &Path) -> Result<(Vec<Self>, String), TensileError> {
-        let bytes = regular_file::read(path).map_err(FileError::at(path))?;
+    pub(crate) fn read_all(path: &Path) -> Result<(Vec<Self>, String), Fault> {
+        let unread = |error| fault("", format!("cannot read {}", FileError::at(path)(error)), "");
+        let bytes = regular_file::read(path).map_err(unread)?;
         let hash = blake3::hash(&bytes).to_hex()[..16].to_owned();
-        let text = text_file::decoded(&bytes).map_err(FileError::at(path))?;
-        let tables = Self::parse(&text)
-            .map_err(|what| TensileError::File { path: path.to_owned(), what })?;
-        Ok((tables, hash))
+        let text = text_file::decoded(&bytes).map_err(unread)?;
+        Ok((Self::parse(&text).map_err(in_file(path))?, hash))
     }
 
     fn parse(text: &str) -> Result<Vec<Self>, String> {
@@ -75,7 +75,7 @@ impl NumberTable {
 
     /// The tables of specimens that stand side by side, with the same names in the same order;
     /// `None` if there is one.
-    pub fn side_by_side(&self) -> Option<Vec<Self>> {
+    pub(crate) fn side_by_side(&self) -> Option<Vec<Self>> {
         // Specimens may be numbered.
         let letters = |c: char| !c.is_ascii_digit();
         let name = |label: &String| label.to_lowercase().chars().filter(|c| letters(*c)).collect();
@@ -104,13 +104,13 @@ impl NumberTable {
     }
 
     /// The number in a cell, or its text if it is not a finite number.
-    pub fn number<'a>(&self, row: &'a TextRow, column: usize) -> Result<f64, &'a str> {
+    pub(crate) fn number<'a>(&self, row: &'a TextRow, column: usize) -> Result<f64, &'a str> {
         let text = row.cells.get(column).map_or("", String::as_str);
         self.style.number(text).ok_or(text)
     }
 
     /// A number to the right of the last column: a sign in another number separates the cells.
-    pub fn beyond<'a>(&self, row: &'a TextRow) -> Option<&'a str> {
+    pub(crate) fn beyond<'a>(&self, row: &'a TextRow) -> Option<&'a str> {
         let mut cells = row.cells.iter().skip(self.labels.len());
         let cell = cells.find(|cell| self.style.number(cell).is_some())?;
         Some(cell)
@@ -118,7 +118,7 @@ impl NumberTable {
 
     /// A row in which the decimal sign of a column separates thousands: 999 is followed by 1.003,
     /// and all numbers with the sign have three digits after it.
-    pub fn thousands(&self, column: usize) -> Option<&TextRow> {
+    pub(crate) fn thousands(&self, column: usize) -> Option<&TextRow> {
         let sign = if self.style.comma { ',' } else { '.' };
         let (mut found, mut whole) = (None, 0.0_f64);
         for row in &self.rows {

@@ -1,6 +1,6 @@
 //! The record of one tensile test: load and deformation of every row, in MPa and as a ratio.
 
-use crate::error::TensileError;
+use crate::in_file;
 use crate::name::Name;
 use crate::number_table::NumberTable;
 use crate::preamble::{self, StatedDimension};
@@ -10,6 +10,7 @@ use crate::quantity::Quantity::{
 use serde::Serialize;
 use std::fmt;
 use std::path::{Path, PathBuf};
+use support::fault::{Fault, fault};
 use support::text_table::TextRow;
 
 /// What a file does not say about its columns and its specimen.
@@ -91,7 +92,7 @@ pub struct ReadColumn {
 
 impl Record {
     /// The records of a file, one a specimen; options that name columns read one specimen.
-    pub fn read_all(path: &Path, options: &RecordOptions) -> Result<Vec<Self>, TensileError> {
+    pub(crate) fn read_all(path: &Path, options: &RecordOptions) -> Result<Vec<Self>, Fault> {
         let (tables, hash) = NumberTable::read_all(path)?;
         let beside = |table: NumberTable| match table.side_by_side() {
             Some(tables) if options.columns.is_empty() => tables,
@@ -112,8 +113,8 @@ impl Record {
         table: &NumberTable,
         options: &RecordOptions,
         hash: &str,
-    ) -> Result<Self, TensileError> {
-        let refuse = |what| TensileError::File { path: path.to_owned(), what };
+    ) -> Result<Self, Fault> {
+        let refuse = in_file(path);
         let columns = columns(&table.labels, options).map_err(refuse)?;
         let [load, deformation] = pair(&columns, &table.labels).map_err(refuse)?;
         let load = &ReadColumn::new(load, &table.labels, options).map_err(refuse)?;
@@ -131,8 +132,9 @@ impl Record {
                 unused.push(format!("column {}", title(index, label)));
             }
         }
-        let at =
-            |row: &TextRow, what| TensileError::Row { path: path.to_owned(), line: row.line, what };
+        let at = |row: &TextRow, what: String| {
+            fault(format!("{}:{}", path.display(), row.line), what, "")
+        };
         for column in [load, deformation] {
             if let Some(row) = table.thousands(column.number - 1) {
                 let what = format!("column {} {THOUSANDS}", column.title());

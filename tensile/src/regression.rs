@@ -14,7 +14,7 @@ pub(super) struct Regression {
 }
 
 impl Regression {
-    pub fn new(rows: &[[f64; 2]]) -> Self {
+    pub(crate) fn new(rows: &[[f64; 2]]) -> Self {
         let count = rows.len() as f64;
         let mean = [0, 1].map(|of| rows.iter().map(|row| row[of]).sum::<f64>() / count);
         let (mut squares, mut products, mut total) = (0.0, 0.0, 0.0);

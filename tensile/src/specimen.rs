@@ -10,7 +10,7 @@
 //! 5. Where the strain is uniform, nominal rows become local ones (`local_curve`).
 
 use crate::cleaning::{Cause, Cleaned, DroppedRow, cleaned};
-use crate::error::TensileError;
+use crate::in_file;
 use crate::landmarks::{Draw, draw, offset_yield, uniform_end};
 use crate::linear_part::LinearPart;
 use crate::local_curve::{first_part, second_part, true_row};
@@ -21,6 +21,7 @@ use crate::regression::Regression;
 use serde::Serialize;
 use std::collections::BTreeSet;
 use std::path::PathBuf;
+use support::fault::{Fault, fault};
 
 /// What is known about the material or its specimens besides the records.
 #[derive(Clone, Copy, Debug, Default)]
@@ -118,12 +119,11 @@ const EXTENSOMETER: f64 = 0.75;
 
 impl Specimen {
     /// Evaluates a record.
-    pub(super) fn new(record: &Record, options: &SpecimenOptions) -> Result<Self, TensileError> {
-        let file = |what: String| TensileError::File { path: record.path.clone(), what };
+    pub(super) fn new(record: &Record, options: &SpecimenOptions) -> Result<Self, Fault> {
+        let file = in_file(&record.path);
         if record.deformation == PlasticStrain {
             return Err(file(
-                "contains plastic strains: it is a hardening table already; write its rows into `plastic` of the material \
-                 file, or name it there as `tensile_csv`"
+                "contains plastic strains: it is a hardening table already; write its rows into `plastic` of the material file"
                     .into(),
             ));
         }
@@ -144,8 +144,7 @@ impl Specimen {
         let draw = if is_local {
             None
         } else {
-            draw(smooth, elastic, noise[1], options.draw_ratio)
-                .map_err(|fault| file(fault.to_string()))?
+            draw(smooth, elastic, noise[1], options.draw_ratio).map_err(file)?
         };
         let (last, end) = match (&draw, is_local) {
             (_, true) => (smooth.len() - 1, End::Uniform),
@@ -222,12 +221,13 @@ fn is_local(record: &Record) -> bool {
 }
 
 /// The monotone part of a record as a nominal curve.
-fn nominal_curve(record: &Record) -> Result<Cleaned, TensileError> {
-    let mut cleaned = cleaned(&record.rows).map_err(|line| TensileError::Row {
-        path: record.path.clone(),
-        line,
-        what: "from here on the strain falls for most of the file: sort the rows by time, and give each specimen its own file"
-            .into(),
+fn nominal_curve(record: &Record) -> Result<Cleaned, Fault> {
+    let mut cleaned = cleaned(&record.rows).map_err(|line| {
+        fault(
+            format!("{}:{line}", record.path.display()),
+            "from here on the strain falls for most of the file",
+            "sort the rows by time, and give each specimen its own file",
+        )
     })?;
     if is_local(record) {
         for row in &mut cleaned.curve {

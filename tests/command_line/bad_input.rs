@@ -29,7 +29,7 @@ fn the_message_about_a_missing_program_states_how_to_install_it() {
     // A program that cannot be loaded, and another one, which prints a number.
     for (status, printed) in [(127, "libspooles.so.2.2: cannot open"), (0, "line 4, in x")] {
         let script = format!("#!/bin/sh\necho '{printed}' >&2\nexit {status}\n");
-        std::fs::write(work.path("ccx"), script).unwrap();
+        work.write("ccx", script);
         std::fs::set_permissions(work.path("ccx"), PermissionsExt::from_mode(0o755)).unwrap();
         let text = doctor("ccx");
         assert!(text.contains(printed), "{text}");
@@ -54,14 +54,14 @@ fn the_solver_runs_in_its_own_environment() {
     solve.env("KIRIGAMI_CCX", ccx);
     solve.env("CCX_NPROC_STIFFNESS", "4").env("OMP_NUM_THREADS", "4");
     failure(solve.env("HOME", "/somewhere").env("SECRET", "1"));
-    let seen = std::fs::read_to_string(work.path("runs/solve/environment.txt")).unwrap();
+    let seen = work.read("runs/solve/environment.txt");
     for line in ["CCX_NPROC_STIFFNESS=1", "OMP_NUM_THREADS=1"] {
         assert!(seen.lines().any(|it| it == line), "{seen}");
     }
     assert!(!seen.contains("SECRET") && !seen.contains("/somewhere"), "{seen}");
 }
 
-/// As `kirigami ... > /dev/full`, and as into a pipe that is full and does not block.
+/// Output goes to `/dev/full`, or into a pipe that is full and does not block.
 #[test]
 fn output_that_cannot_be_written_is_an_error_and_no_panic() {
     let work = Workplace::new();
@@ -93,7 +93,7 @@ fn counts_have_an_upper_bound() {
         format!("campaign run {DEMO} --jobs 0"),
         format!("campaign submit {DEMO} --shards 1000001 --time 1"),
         format!("campaign submit {DEMO} --shards 1 --time 525601"),
-        format!("verify {SCENE} --sample 1000001"),
+        format!("verify {SCENE} --equilibrium --rounds 1000001"),
     ] {
         let output = work.program(&arguments).output().unwrap();
         assert_eq!(output.status.code(), Some(2), "{arguments}");
@@ -135,7 +135,6 @@ fn a_pipe_in_place_of_a_file_is_refused() {
         "campaign plan pipe.toml",
         "train pipe.parquet",
         "surrogate card pipe.safetensors",
-        "solve --path pipe.toml --tier tiny",
         "design pipe.toml",
         "design target.toml",
         "material fit pipe.csv --name film --thickness 0.1 --density-kg-m3 1000",

@@ -23,8 +23,7 @@ fn a_designed_sheet_is_cut_on_paper() {
     let work = Workplace::new();
     work.output(&format!("design {SCENE} --steps 3 --out run"));
     let cut = format!("cut {SCENE} --design run/state.json --out files");
-    let text = work.output(&format!("{cut} --paper a3"));
-    assert!(text.contains("84 holes, 48 slits") && text.contains("rows x "), "{text}");
+    work.prints(&format!("{cut} --paper a3"), &["84 holes, 48 slits", "rows x "]);
     for name in
         ["cut.dxf", "cut.svg", "cut-list.csv", "attachments.csv", "cut-summary.csv", "tiles-a3.pdf"]
     {
@@ -32,8 +31,7 @@ fn a_designed_sheet_is_cut_on_paper() {
     }
     // Files of the last call do not remain.
     work.edit(SCENE, &[("[cutting]", "[cutting]\nmargin = 3.0")]);
-    let json = work.output(&format!("{cut} --json"));
-    let json: serde_json::Value = serde_json::from_str(&json).unwrap();
+    let json = work.json(&format!("{cut} --json"));
     assert_eq!(json["totals"]["holes"], 84);
     assert!(!work.path("files/tiles-a3.pdf").exists());
     // Other cutting settings are not another run.
@@ -45,10 +43,9 @@ fn a_designed_sheet_is_cut_on_paper() {
 fn a_sheet_is_cut_for_a_machine() {
     let work = Workplace::new();
     // Before the search.
-    let said = work.output(&format!("cut {SCENE} --for laser-service --design start"));
-    assert!(
-        said.contains("SendCutSend refuses") && said.contains("(process.slit_width)"),
-        "{said}"
+    work.prints(
+        &format!("cut {SCENE} --for laser-service --design start"),
+        &["SendCutSend refuses", "(process.slit_width)"],
     );
     let said = work.output(
         "cut configs/scenes/a4-plate-service.toml --for laser-service --design start --out drilled",
@@ -59,8 +56,7 @@ fn a_sheet_is_cut_for_a_machine() {
     for name in ["cut.dxf", "cut.svg"] {
         assert!(work.path(folder).join(name).exists(), "{name}");
     }
-    let json = work.output(&format!("cut {SCENE} --for knife --design start --json"));
-    let json: serde_json::Value = serde_json::from_str(&json).unwrap();
+    let json = work.json(&format!("cut {SCENE} --for knife --design start --json"));
     assert_eq!(json["features"]["slot"], 0.2);
     assert_eq!(json["services"], serde_json::json!([]));
 }
@@ -72,28 +68,25 @@ fn a_sheet_for_a_service_is_cut_by_a_laser_of_its_own_kerf() {
     let scene = "configs/scenes/a4-plate-service.toml";
     let cut = format!("cut {scene} --design start --out cut");
     for machine in ["ponoko", "lightburn", "knife"] {
-        let message = work.error(&format!("{cut} --for {machine}"));
-        assert!(message.contains("set cutting.kerf"), "{message}");
+        work.refuses(&format!("{cut} --for {machine}"), &["set cutting.kerf"]);
     }
     work.edit(scene, &[("[surrogate]", "[cutting]\nkerf = 0.2\n\n[surrogate]")]);
     for machine in ["ponoko", "lightburn"] {
         work.output(&format!("{cut} --for {machine}"));
-        let file = std::fs::read_to_string(work.path("cut/cut.svg")).unwrap();
+        let file = work.read("cut/cut.svg");
         // The page is 5 mm larger on each side than the path of the beam.
         assert!(file.contains("width=\"220.2mm\" height=\"307.2mm\""), "{machine}");
         // Slits and outline alone: no hole is a path of its own.
         assert!(!file.contains("HOLES"), "{machine}");
     }
-    let message = work.error(&format!("{cut} --for knife"));
-    assert!(message.contains("1.5 mm wide") && message.contains("lines of 0.2 mm"), "{message}");
+    work.refuses(&format!("{cut} --for knife"), &["1.5 mm wide", "lines of 0.2 mm"]);
 }
 
 #[test]
 fn a_file_that_every_service_refuses_is_not_written() {
     let work = Workplace::new();
     let cut = "cut configs/scenes/a4-plate.toml --for laser-service --design start --out files";
-    let message = work.error(cut);
-    assert!(message.contains("no service cuts this sheet: SendCutSend refuses"), "{message}");
+    work.refuses(cut, &["no service cuts this sheet: SendCutSend refuses"]);
     assert!(!work.path("files").exists());
     work.output(&format!("{cut} --force"));
 }
@@ -106,8 +99,7 @@ fn a_sheet_larger_than_its_stock_is_a_warning() {
     work.edit(SCENE, &[("[cutting]", &stock(2823.0))]);
     assert!(!work.output(&design).contains("the stock has"));
     work.edit(SCENE, &[("2823", "2821")]);
-    let said = work.output(&design);
-    assert!(said.contains("the stock has 2801.0 x 2880.0 mm"), "{said}");
+    work.prints(&design, &["the stock has 2801.0 x 2880.0 mm"]);
 }
 
 /// The stock of a scene is also the name of a paper.
@@ -115,6 +107,5 @@ fn a_sheet_larger_than_its_stock_is_a_warning() {
 fn a_stock_is_a_paper_or_two_sides() {
     let work = Workplace::new();
     work.edit(SCENE, &[("[cutting]", "[cutting]\nstock = \"a0\"")]);
-    let said = work.output(&format!("design {SCENE} --steps 1"));
-    assert!(said.contains("the stock has 841.0 x 1189.0 mm"), "{said}");
+    work.prints(&format!("design {SCENE} --steps 1"), &["the stock has 841.0 x 1189.0 mm"]);
 }

@@ -32,8 +32,7 @@ fn losses_and_cut_files_of_the_shipped_scenes_do_not_change() {
     let mut found = String::new();
     for scene in [scenes("configs/scenes"), scenes("configs/examples")].concat() {
         let (name, scene) = (scene.file_stem().unwrap().to_str().unwrap(), scene.display());
-        let listing = work.output(&format!("inspect gradient {scene} --design start --json"));
-        let listing: serde_json::Value = serde_json::from_str(&listing).unwrap();
+        let listing = work.json(&format!("inspect gradient {scene} --design start --json"));
         work.output(&format!("cut {scene} --design start --out {name} --force"));
         let drawing = std::fs::read(work.path(name).join("cut.dxf")).unwrap();
         let (loss, hash) = (&listing["loss"], blake3::hash(&drawing).to_hex());
@@ -85,7 +84,7 @@ fn picture(scene: &Path) -> String {
     )
 }
 
-/// With `KIRIGAMI_WRITE=1` the pictures are written instead.
+/// The pictures are written instead with `KIRIGAMI_WRITE=1`.
 #[test]
 fn the_pictures_of_the_finished_sheets_show_them() {
     for scene in scenes("configs/examples") {

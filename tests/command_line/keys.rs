@@ -7,6 +7,7 @@ use dataset::ColumnMeaning;
 use fe_driver::Campaign;
 use hinge::SheetMaterial;
 use kirigami::cli::Cli;
+use output::report::{Rule, rules};
 use scene::SceneConfig;
 use schemars::{Schema, schema_for};
 use serde_json::Value;
@@ -113,7 +114,7 @@ fn table<'a>(
     keys: impl Iterator<Item = (&'a String, &'a Value)>,
     schema: &Value,
 ) {
-    writeln!(page, "\n| key | type | range | default | meaning |\n|---|---|---|---|---|").unwrap();
+    writeln!(page, "\n| key | value | default | meaning |\n|---|---|---|---|").unwrap();
     for (key, property) in keys {
         let default = match property.get("default") {
             _ if required(schema, key) => "required".to_owned(),
@@ -121,7 +122,8 @@ fn table<'a>(
             Some(default) => format!("`{default}`"),
         };
         let (kind, range, meaning) = (kind(property), range(property), text(property));
-        writeln!(page, "| `{key}` | {kind} | {range} | {default} | {meaning} |").unwrap();
+        let comma = if range.is_empty() { "" } else { ", " };
+        writeln!(page, "| `{key}` | {kind}{comma}{range} | {default} | {meaning} |").unwrap();
     }
 }
 
@@ -214,7 +216,7 @@ fn the_page_of_keys_is_what_the_types_say() {
 /// The table of columns in docs/CAMPAIGN.md.
 fn column_table() -> String {
     let mut table = "| column | unit | meaning |\n|---|---|---|\n".to_owned();
-    for ColumnMeaning { name, unit, meaning } in dataset::columns() {
+    for ColumnMeaning { name, unit, meaning, .. } in &dataset::COLUMNS {
         writeln!(table, "| `{name}` | {unit} | {meaning} |").unwrap();
     }
     table
@@ -253,6 +255,20 @@ fn assert_table(page: &str, table: &str) {
         let run = "run `KIRIGAMI_WRITE=1 cargo test --test command_line keys`";
         assert!(&text[begin..begin + length] == table, "{page}: {run}");
     }
+}
+
+/// The table of docs/WARNINGS.md.
+fn rule_table() -> String {
+    let mut table = "| finding | meaning | remedy |\n|---|---|---|\n".to_owned();
+    for Rule { subject, severity, meaning, remedy, .. } in rules() {
+        writeln!(table, "| {severity}: {subject} | {meaning} | {remedy} |").unwrap();
+    }
+    table
+}
+
+#[test]
+fn the_page_of_warnings_has_every_rule() {
+    assert_table("docs/WARNINGS.md", &rule_table());
 }
 
 #[test]

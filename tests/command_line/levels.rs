@@ -18,15 +18,14 @@ fn a_design_within_an_accuracy_is_searched_on_the_cheapest_level_that_has_it() {
     let [search] = &report["coarse_searches"].as_array().unwrap()[..] else {
         panic!("{}", report["coarse_searches"]);
     };
-    assert_eq!(
-        [&search["level"], &search["finer"], &report["facts"]["level"]],
-        ["draft", "standard", "standard"]
-    );
+    let mut facts = report["facts"].as_array().unwrap().iter();
+    let level = &facts.find(|fact| fact["label"] == "level").unwrap()["value"];
+    assert_eq!([&search["level"], &search["finer"], level], ["draft", "standard", "standard"]);
     let largest = search["difference"]["corners"][1].as_f64().unwrap();
     assert!(largest > 0.0 && largest < 0.5, "{largest}");
     let loss = |scores: &Value| scores["loss"].as_f64().unwrap();
     assert!(loss(&report["after"]) < 0.95 * loss(&report["before"]));
-    let text = std::fs::read_to_string(work.path("plate/report.txt")).unwrap();
+    let text = work.read("plate/report.txt");
     assert!(text.lines().next().unwrap().ends_with("level standard"), "{text}");
     assert!(text.contains("tolerance: 0.5 mm"), "{text}");
     // The outline error rises while the loss falls, and the report says by which parts.
@@ -44,8 +43,10 @@ fn a_design_within_an_accuracy_is_searched_on_the_cheapest_level_that_has_it() {
 #[test]
 fn an_accuracy_that_no_level_has_is_said() {
     let work = Workplace::new();
-    let report = work.output(&format!("design {PLATE} --out plate --quiet --within 0.001mm"));
-    assert!(report.contains("less than the mesh of the windows"), "{report}");
+    work.prints(
+        &format!("design {PLATE} --out plate --quiet --within 0.001mm"),
+        &["less than the mesh of the windows"],
+    );
 }
 
 #[test]
@@ -57,10 +58,9 @@ fn levels_are_compared_at_one_design() {
         .map(|level| level["level"].as_str().unwrap())
         .collect();
     assert_eq!(names, ["pin", "linear", "draft", "standard", "fine"]);
-    let picture = std::fs::read_to_string(work.path("levels.svg")).unwrap();
+    let picture = work.read("levels.svg");
     assert!(picture.contains("draft") && picture.contains("mesh of the windows"));
-    let text = work.output(&levels);
-    assert!(text.contains("no level lowers: window mesh"), "{text}");
+    work.prints(&levels, &["no level lowers: window mesh"]);
     let draft = work.output(&format!("inspect equilibrium {PLATE} --design start --level draft"));
     // The weight comes on at negative load factors.
     let loaded = (draft.lines())
@@ -73,18 +73,17 @@ fn levels_are_compared_at_one_design() {
 fn the_levels_of_a_run_are_in_its_report() {
     let work = Workplace::new();
     work.output(&format!("design {PLATE} --out plate --steps 1 --quiet"));
-    let report =
-        |work: &Workplace| json(&std::fs::read_to_string(work.path("plate/report.json")).unwrap());
+    let report = |work: &Workplace| json(&work.read("plate/report.json"));
     assert!(report(&work)["checks"]["levels"].is_null());
     let cut = std::fs::read(work.path("plate/cut.dxf")).unwrap();
     let measured = json(&work.output("levels plate --json --quiet"));
     let found = report(&work);
     assert_eq!(found["checks"]["levels"]["levels"], measured["levels"]);
     assert_eq!(std::fs::read(work.path("plate/cut.dxf")).unwrap(), cut);
-    let text = std::fs::read_to_string(work.path("plate/report.txt")).unwrap();
+    let text = work.read("plate/report.txt");
     let row = text.lines().find(|line| line.starts_with(" levels "));
     assert!(row.is_some_and(|row| row.contains("to `fine`")), "{text}");
-    let page = std::fs::read_to_string(work.path("plate/run.html")).unwrap();
+    let page = work.read("plate/run.html");
     assert!(page.contains("\"search\":"), "no levels on the page");
     work.output(&format!("design {PLATE} --out plate --steps 2 --quiet"));
     assert!(report(&work)["checks"]["levels"].is_null());

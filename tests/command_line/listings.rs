@@ -23,7 +23,7 @@ fn printed(work: &Workplace, command: &str, sections: &str, options: &str) -> Va
          [ligament]\nstart = 15.0\nrange = [5.0, 25.0]\n\
          [optimiser]\nsteps = 1\nlearning_rate = 0.1\n"
     );
-    std::fs::write(work.path("case.toml"), scene).unwrap();
+    work.write("case.toml", scene);
     let text = work.output(&format!("inspect {command} case.toml --json {options}"));
     serde_json::from_str(&text).unwrap()
 }

@@ -6,6 +6,7 @@ mod bad_input;
 #[path = "../common/mod.rs"]
 mod common;
 mod cutting;
+mod dependencies;
 mod documents;
 mod extremes;
 mod foreign_files;

@@ -27,10 +27,8 @@ fn records_of_a_film_become_a_material_file_that_is_checked() {
     {
         assert!(printed.contains(text), "{text}: {printed}");
     }
-    let message = work.error(FIT);
-    assert!(message.contains("film.toml exists") && message.contains("--replace"), "{message}");
-    let json = work.output(&format!("{FIT} --replace --json"));
-    let json: Value = serde_json::from_str(&json).unwrap();
+    work.refuses(FIT, &["film.toml exists", "--replace"]);
+    let json = work.json(&format!("{FIT} --replace --json"));
     for (path, expected, tolerance) in [
         ("/fit/young/mean", 3000.0, 0.03),
         ("/fit/offset_yield/mean", FACTOR * 38.654, 0.02),
@@ -54,9 +52,8 @@ fn records_of_a_film_become_a_material_file_that_is_checked() {
     }
 
     let check = "material check runs/material/film.toml configs/scenes/pet-7x7.toml";
-    let printed = work.output(check);
-    assert!(printed.contains("*PLASTIC") && printed.contains("Gamma"), "{printed}");
-    let checked: Value = serde_json::from_str(&work.output(&format!("{check} --json"))).unwrap();
+    work.prints(check, &["*PLASTIC", "Gamma"]);
+    let checked: Value = work.json(&format!("{check} --json"));
     assert_eq!(checked["law_hash"], json["law_hash"]);
     // The panels of the scene: 4200 mm over 7.
     let [edge, gamma] =
@@ -82,8 +79,7 @@ fn the_unit_of_every_column_is_printed() {
     assert!(!printed.contains("note: no unit"), "{printed}");
 
     work.edit("configs/tensile/strip-1.csv", &[("(s);(mm);(N)\n", "")]);
-    let message = work.error(&format!("{FIT} --replace"));
-    assert!(message.contains("has the force in column 3 `Load` without a unit"), "{message}");
+    work.refuses(&format!("{FIT} --replace"), &["has the force in column 3 `Load` without a unit"]);
     let printed = work.output(&format!("{FIT} --replace --units force=N"));
     let extension = row(&printed, " extension ");
     assert_eq!(extension[4..], ["not", "stated", "1", "mm"]);
@@ -104,7 +100,7 @@ fn what_a_fit_does_not_use_is_printed() {
         "Width,10,mm\nLayer thickness,0.2,mm\nStrain (1),Stress (MPa)\n{}",
         rows.collect::<String>()
     );
-    std::fs::write(work.path("tough.csv"), text).unwrap();
+    work.write("tough.csv", text);
     let printed = work.output(
         "material fit tough.csv --name tough --thickness 2 --density-kg-m3 1000 --draw-ratio 3 --gauge-length 50",
     );

@@ -29,11 +29,11 @@ fn measure(work: &Workplace, name: &str, corners: &[[[f64; 2]; 4]]) {
         }
     }
     text += "# measured with a ruler";
-    std::fs::write(work.path(name), text).unwrap();
+    work.write(name, text);
 }
 
 fn compared(work: &Workplace, options: &str) -> Value {
-    serde_json::from_str(&work.output(&format!("compare {SCENE} --json {options}"))).unwrap()
+    work.json(&format!("compare {SCENE} --json {options}"))
 }
 
 #[test]
@@ -41,7 +41,7 @@ fn a_measured_sheet_is_compared_with_its_path() {
     let (work, steps) = designed();
     // Without a design, the design of the scene's run folder is meant.
     work.output(&format!("compare {SCENE} --template --out template"));
-    let template = std::fs::read_to_string(work.path("template/template.csv")).unwrap();
+    let template = work.read("template/template.csv");
     assert_eq!(template.lines().count(), 1 + 5 * 49);
     assert!(work.path("template/numbering.png").exists());
     assert!(work.error(&format!("compare {SCENE} --template --out template")).contains("exists"));
@@ -64,10 +64,9 @@ fn a_measured_sheet_is_compared_with_its_path() {
     assert_eq!((rows("residuals.csv"), rows("openings.csv")), (4 * 49, 84));
 
     // The sheet before deployment, in the same frame: nothing slipped.
-    let pattern = work.output(&format!(
+    let pattern = work.json(&format!(
         "inspect deploy {SCENE} --design runs/linear-7x7/state.json --opening-deg 0 --json"
     ));
-    let pattern: Value = serde_json::from_str(&pattern).unwrap();
     let flat: Vec<[[f64; 2]; 4]> =
         serde_json::from_value(pattern["panel_corners"].clone()).unwrap();
     measure(&work, "closed.csv", &flat);
@@ -82,9 +81,9 @@ fn a_measured_sheet_is_compared_with_its_path() {
 fn semicolons_and_decimal_commas_are_read() {
     let (work, steps) = designed();
     measure(&work, "points.csv", &steps[9]);
-    let points = std::fs::read_to_string(work.path("points.csv")).unwrap();
+    let points = work.read("points.csv");
     let german = points.replace(',', ";").replace('.', ",");
-    std::fs::write(work.path("german.csv"), german).unwrap();
+    work.write("german.csv", german);
     let [usual, german] = ["points.csv", "german.csv"].map(|file| compared(&work, file));
     assert_eq!(usual["openings"].as_array().unwrap().len(), 84);
     assert_eq!(usual["openings"], german["openings"]);
@@ -98,8 +97,7 @@ fn parsed(path: &Path, check: impl FnOnce(&roxmltree::Document)) {
 #[test]
 fn a_deployment_is_exported_state_by_state() {
     let (work, steps) = designed();
-    let printed = work.output(&format!("export {SCENE} --out export"));
-    assert!(printed.contains("11 states"), "{printed}");
+    work.prints(&format!("export {SCENE} --out export"), &["11 states"]);
     parsed(&work.path("export/sheet.pvd"), |series| {
         let sets: Vec<_> =
             series.descendants().filter(|node| node.has_tag_name("DataSet")).collect();

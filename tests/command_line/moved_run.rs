@@ -23,7 +23,7 @@ fn moved_run() -> Workplace {
     std::fs::rename(work.path("runs/demo/design"), work.path("moved")).unwrap();
     std::fs::remove_dir_all(work.path("configs")).unwrap();
     std::fs::remove_dir_all(work.path("runs")).unwrap();
-    std::fs::write(work.path("before.json"), before).unwrap();
+    work.write("before.json", before);
     work
 }
 
@@ -35,7 +35,7 @@ fn a_run_is_replayed_from_its_folder_alone() {
     let steps = |text: &str| -> serde_json::Value {
         serde_json::from_str::<serde_json::Value>(text).unwrap()["steps"].clone()
     };
-    let before = std::fs::read_to_string(work.path("before.json")).unwrap();
+    let before = work.read("before.json");
     assert!(
         steps(&before).is_array() && steps(&after) == steps(&before),
         "the same weights, material and loads give the same equilibria"
@@ -51,9 +51,8 @@ fn a_run_is_replayed_from_its_folder_alone() {
             points += &format!("P{panel},{corner},{x},{y}\n");
         }
     }
-    std::fs::write(work.path("points.csv"), points).unwrap();
-    let report = work.output("compare moved points.csv --json");
-    let report: Value = serde_json::from_str(&report).unwrap();
+    work.write("points.csv", points);
+    let report = work.json("compare moved points.csv --json");
     let rms = report["full"]["corners"]["rms"].as_f64().unwrap();
     assert!(rms < 1e-6, "{report}");
 
@@ -65,12 +64,12 @@ fn a_run_is_replayed_from_its_folder_alone() {
 
     work.output("material check moved/inputs/material.toml moved");
     // The design of the run, unless the start design is asked for.
-    let verify = "verify moved --sample 1 --tier tiny --out verified";
-    for (option, name) in
-        [("", "The design moved/state.json: "), (" --design start", "The start design of moved: ")]
-    {
-        let page = work.output(&format!("{verify}{option}"));
-        assert!(page.contains(name), "{page}");
+    let verify = "verify moved --equilibrium --rounds 1 --tier tiny --out verified";
+    for (option, name) in [
+        ("", "Equilibrium of the design moved/state.json "),
+        (" --design start", "Equilibrium of the start design of moved "),
+    ] {
+        work.prints(&format!("{verify}{option}"), &[name]);
     }
 
     // The search continues there, too.
@@ -92,13 +91,11 @@ fn a_changed_copy_is_refused() {
         let last = changed.len() - 1;
         changed[last] ^= 1;
         std::fs::write(&path, changed).unwrap();
-        let message = work.error("cut moved");
-        assert!(message.contains(name) && message.contains("BLAKE3"), "{message}");
+        work.refuses("cut moved", &[name, "BLAKE3"]);
         std::fs::write(&path, original).unwrap();
     }
     work.output("cut moved --force");
 
     std::fs::create_dir(work.path("empty")).unwrap();
-    let message = work.error("cut empty");
-    assert!(message.contains("without the state of a run"), "{message}");
+    work.refuses("cut empty", &["without the state of a run"]);
 }

@@ -6,15 +6,14 @@ use toml_edit::{Array, value};
 
 /// The keys of a scene as a table.
 fn keys(work: &Workplace, scene: &str) -> toml_edit::DocumentMut {
-    let text = std::fs::read_to_string(work.path(scene)).unwrap();
+    let text = work.read(scene);
     text.parse().unwrap()
 }
 
 #[test]
 fn a_project_with_weights_is_designed_at_once() {
     let work = Workplace::new();
-    let said = work.output("init sheet --thickness 0.1 --size 210x297");
-    assert!(said.contains("kirigami design sheet/scene.toml"), "{said}");
+    work.prints("init sheet --thickness 0.1 --size 210x297", &["kirigami design sheet/scene.toml"]);
     // The shipped sheet of A4 is the project of this size.
     let [project, shipped] =
         ["sheet/scene.toml", "configs/scenes/a4-polyester.toml"].map(|file| keys(&work, file));
@@ -38,8 +37,7 @@ fn a_project_with_weights_is_designed_at_once() {
 
     work.output("design sheet/scene.toml --steps 2");
     assert!(work.path("sheet/design/cut.dxf").exists());
-    let message = work.error("init sheet --thickness 0.1");
-    assert!(message.contains("sheet exists already"), "{message}");
+    work.refuses("init sheet --thickness 0.1", &["sheet exists already"]);
 }
 
 #[test]
@@ -51,11 +49,7 @@ fn a_project_without_weights_begins_with_its_campaign() {
     // Lengths of the campaign are the lengths of the film, times the ratio of the thicknesses.
     let campaign = keys(&work, "steel/campaign.toml");
     assert_eq!(campaign["design"]["r_win"].as_float(), Some(300.0));
-    let message = work.error("design steel/scene.toml");
-    assert!(
-        message.contains("there is no file") && message.contains("weights.safetensors"),
-        "{message}"
-    );
+    work.refuses("design steel/scene.toml", &["there is no file", "weights.safetensors"]);
     work.edit_campaign(
         "steel/campaign.toml",
         |campaign| {
@@ -91,9 +85,10 @@ fn a_project_without_weights_begins_with_its_campaign() {
 #[test]
 fn a_drawing_becomes_the_target() {
     let work = Workplace::new();
-    let said =
-        work.output("init leaf --thickness 0.1 --size 420x594 --target configs/targets/leaf.svg");
-    assert!(said.contains("kirigami verify leaf/scene.toml"), "{said}");
+    work.prints(
+        "init leaf --thickness 0.1 --size 420x594 --target configs/targets/leaf.svg",
+        &["kirigami verify leaf/scene.toml"],
+    );
     let scene = keys(&work, "leaf/scene.toml");
     let svg = &scene["target"]["svg"];
     // The scene says that its paths are relative.
@@ -107,12 +102,11 @@ fn a_drawing_becomes_the_target() {
 #[test]
 fn a_project_with_all_defaults_is_designed() {
     let work = Workplace::new();
-    let said = work.output("init plate");
-    assert!(said.contains("Nothing holds its panels there"), "{said}");
+    work.prints("init plate", &["Nothing holds its panels there"]);
     // Boards hold a sheet that is fitted to a drawing.
     let heart = "init heart --target configs/targets/heart.svg --size 300x300";
     work.output(heart);
-    let readme = std::fs::read_to_string(work.path("heart/README.md")).unwrap();
+    let readme = work.read("heart/README.md");
     assert!(!readme.contains("Nothing holds"), "{readme}");
     work.output("init film --thickness 0.5");
     for (project, thickness, sides) in
@@ -126,7 +120,7 @@ fn a_project_with_all_defaults_is_designed() {
     }
 }
 
-/// With ligaments of 0.93 thicknesses, as in the shipped plate of polypropylene, both would leave
+/// Ligaments of 0.93 thicknesses, as in the shipped plate of polypropylene, would let both leave
 /// their plane.
 #[test]
 fn plates_of_other_materials_stay_in_their_plane() {
@@ -135,13 +129,12 @@ fn plates_of_other_materials_stay_in_their_plane() {
         work.output(&format!("init plate --material configs/materials/{material}.toml"));
         let widest = keys(&work, "plate/scene.toml")["ligament"]["range"][1].clone();
         assert!(widest.as_float().unwrap() < 2.2, "{widest}");
-        let said = work.output("design plate/scene.toml");
-        assert!(said.contains("by themselves they stay"), "{said}");
+        work.prints("design plate/scene.toml", &["by themselves they stay"]);
         std::fs::remove_dir_all(work.path("plate")).unwrap();
     }
 }
 
-/// As `material check` says.
+/// The same that `material check` says.
 #[test]
 fn a_material_that_tears_before_it_opens_is_refused() {
     let work = Workplace::new();
@@ -160,14 +153,18 @@ fn a_material_that_tears_before_it_opens_is_refused() {
 fn weights_of_a_film_do_not_serve_a_plate() {
     let work = Workplace::new();
     let film = "--material configs/materials/pet-0.5mm.toml";
-    let said = work.output(&format!("init plate {film} --thickness 3"));
-    assert!(said.contains("kirigami campaign run plate/campaign.toml"), "{said}");
+    work.prints(
+        &format!("init plate {film} --thickness 3"),
+        &["kirigami campaign run plate/campaign.toml"],
+    );
     let campaign = keys(&work, "plate/campaign.toml");
     assert_eq!(campaign["tier"].as_str(), Some("plate"));
-    // In the thickness of the film's weights, the law is theirs.
+    // The law is the weights' own in their thickness.
     work.edit("plate/material.toml", &[("thickness = 3.0", "thickness = 0.5")]);
-    let message = work.error("design plate/scene.toml --weights data/pet-0.5mm/medium.safetensors");
-    assert!(message.contains("no law holds for both"), "{message}");
+    work.refuses(
+        "design plate/scene.toml --weights data/pet-0.5mm/medium.safetensors",
+        &["no law holds for both"],
+    );
 }
 
 /// The sheet of a stock is smaller than the stock by its margins and by what is cut beyond its

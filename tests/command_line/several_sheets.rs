@@ -10,7 +10,7 @@ const SCENES: &str = "configs/scenes/pin-7x7.toml configs/scenes/linear-7x7.toml
 
 /// The cells of the column `name`, one per run.
 fn column(work: &Workplace, name: &str) -> Vec<String> {
-    let text = std::fs::read_to_string(work.path("sheets/designs.csv")).unwrap();
+    let text = work.read("sheets/designs.csv");
     let mut lines = text.lines().map(|line| line.split(',').collect::<Vec<_>>());
     let header = lines.next().unwrap();
     let at = header.iter().position(|column| *column == name).unwrap();
@@ -83,12 +83,10 @@ fn a_link_or_a_pipe_in_place_of_a_lock_is_refused_at_once() {
     std::fs::create_dir(work.path("run")).unwrap();
     std::os::unix::fs::symlink(&victim, work.path("run/lock")).unwrap();
     let design = "design configs/scenes/pin-7x7.toml --steps 1 --out run";
-    let message = work.error(design);
-    assert!(message.contains("run/lock: a link, a pipe"), "{message}");
+    work.refuses(design, &["run/lock: a link, a pipe"]);
     assert_eq!(std::fs::read_to_string(victim).unwrap(), "kept");
     std::fs::remove_file(work.path("run/lock")).unwrap();
     let pipe = std::process::Command::new("mkfifo").arg(work.path("run/lock")).status();
     assert!(pipe.unwrap().success());
-    let message = work.error(design);
-    assert!(message.contains("run/lock: a link, a pipe"), "{message}");
+    work.refuses(design, &["run/lock: a link, a pipe"]);
 }

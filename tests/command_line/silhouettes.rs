@@ -56,8 +56,10 @@ fn a_scene_is_fitted_to_its_target() {
 #[test]
 fn a_fit_needs_hinges_that_carry_loads() {
     let work = Workplace::new();
-    let refused = work.error("-q design configs/scenes/pin-7x7.toml --fit --out pins");
-    assert!(refused.contains("its search is on pins already"), "{refused}");
+    work.refuses(
+        "-q design configs/scenes/pin-7x7.toml --fit --out pins",
+        &["its search is on pins already"],
+    );
     work.output("design configs/scenes/linear-7x7.toml --fit --steps 1 --force --out springs");
     assert!(work.path("springs/report.json").exists());
 }
@@ -71,7 +73,7 @@ fn the_same_drawing_becomes_the_same_scene() {
         work.output(&format!(
             "init {folder} --target configs/targets/leaf.svg --thickness 3 --size 210x297"
         ));
-        std::fs::read_to_string(work.path(&format!("{folder}/scene.toml"))).unwrap()
+        work.read(&format!("{folder}/scene.toml"))
     };
     assert_eq!(scene("one"), scene("other"));
 }

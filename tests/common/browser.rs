@@ -9,10 +9,10 @@ use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
 /// Longest time that a page may take for what a test waits for.
-pub const PATIENCE: Duration = Duration::from_secs(90);
+pub(crate) const PATIENCE: Duration = Duration::from_secs(90);
 
 /// A tab; the browser ends with it.
-pub struct Tab {
+pub(crate) struct Tab {
     browser: Child,
     to: File,
     from: BufReader<File>,
@@ -23,7 +23,7 @@ pub struct Tab {
 
 impl Tab {
     /// Opens a page.
-    pub fn open(address: &str) -> Self {
+    pub(crate) fn open(address: &str) -> Self {
         let profile = tempfile::tempdir().unwrap();
         let pipes = ["to", "from"].map(|name| profile.path().join(name));
         let made = Command::new("mkfifo").args(&pipes).status().unwrap();
@@ -56,14 +56,14 @@ impl Tab {
     }
 
     /// Opens another page, or the same one again.
-    pub fn go(&mut self, address: &str) {
+    pub(crate) fn go(&mut self, address: &str) {
         self.call("Page.navigate", json!({ "url": address }));
         // A drawing has no script that says so.
         self.wait("document.documentElement?.nodeName === 'svg' || document.documentElement?.dataset.ready === 'true'");
     }
 
     /// The result of a command of the protocol.
-    pub fn call(&mut self, method: &str, parameters: Value) -> Value {
+    pub(crate) fn call(&mut self, method: &str, parameters: Value) -> Value {
         self.sent += 1;
         let mut message = json!({ "id": self.sent, "method": method, "params": parameters });
         if let Some(session) = &self.session {
@@ -83,7 +83,7 @@ impl Tab {
     }
 
     /// The value of an expression in the page.
-    pub fn value(&mut self, expression: &str) -> Value {
+    pub(crate) fn value(&mut self, expression: &str) -> Value {
         let question =
             json!({ "expression": expression, "returnByValue": true, "awaitPromise": true });
         let mut answer = self.call("Runtime.evaluate", question);
@@ -92,7 +92,7 @@ impl Tab {
     }
 
     /// Waits until an expression is true.
-    pub fn wait(&mut self, expression: &str) {
+    pub(crate) fn wait(&mut self, expression: &str) {
         let begin = Instant::now();
         while self.value(expression) != json!(true) {
             let page = "document.body?.innerText";
@@ -106,7 +106,7 @@ impl Tab {
     }
 
     /// The middle of the element that a selector names (px).
-    pub fn place(&mut self, selector: &str) -> [f64; 2] {
+    pub(crate) fn place(&mut self, selector: &str) -> [f64; 2] {
         let middle = format!(
             "(() => {{ const e = document.querySelector({selector:?}); e.scrollIntoView({{ block: 'center' }}); \
              const b = e.getBoundingClientRect(); return [b.x + b.width / 2, b.y + b.height / 2]; }})()"
@@ -114,14 +114,14 @@ impl Tab {
         serde_json::from_value(self.value(&middle)).unwrap()
     }
 
-    pub fn click(&mut self, selector: &str) {
+    pub(crate) fn click(&mut self, selector: &str) {
         let at = self.place(selector);
         self.mouse("mousePressed", at);
         self.mouse("mouseReleased", at);
     }
 
     /// Presses the pointer at a place, moves it in steps and releases it.
-    pub fn drag(&mut self, [x, y]: [f64; 2], [dx, dy]: [f64; 2]) {
+    pub(crate) fn drag(&mut self, [x, y]: [f64; 2], [dx, dy]: [f64; 2]) {
         const STEPS: i32 = 20;
         self.mouse("mousePressed", [x, y]);
         for i in 1..=STEPS {
@@ -138,25 +138,25 @@ impl Tab {
     }
 
     /// What the window shows, as a PNG.
-    pub fn picture(&mut self) -> Vec<u8> {
+    pub(crate) fn picture(&mut self) -> Vec<u8> {
         self.bytes("Page.captureScreenshot", json!({}))
     }
 
     /// The bytes that a command returns as base64.
-    pub fn bytes(&mut self, method: &str, parameters: Value) -> Vec<u8> {
+    pub(crate) fn bytes(&mut self, method: &str, parameters: Value) -> Vec<u8> {
         let mut result = self.call(method, parameters);
         let text: String = serde_json::from_value(result["data"].take()).unwrap();
         base64::engine::general_purpose::STANDARD.decode(text).unwrap()
     }
 
     /// Makes the screen `dark` or `light`.
-    pub fn prefer(&mut self, scheme: &str) {
+    pub(crate) fn prefer(&mut self, scheme: &str) {
         let feature = json!({ "name": "prefers-color-scheme", "value": scheme });
         self.call("Emulation.setEmulatedMedia", json!({ "features": [feature] }));
     }
 
     /// Drops a file onto an element.
-    pub fn drop_file(&mut self, file: &str, selector: &str) {
+    pub(crate) fn drop_file(&mut self, file: &str, selector: &str) {
         let [x, y] = self.place(selector);
         for kind in ["dragEnter", "dragOver", "drop"] {
             let data = json!({ "items": [], "files": [file], "dragOperationsMask": 1 });
@@ -165,7 +165,7 @@ impl Tab {
         }
     }
 
-    pub fn press(&mut self, key: &str) {
+    pub(crate) fn press(&mut self, key: &str) {
         for kind in ["keyDown", "keyUp"] {
             self.call("Input.dispatchKeyEvent", json!({ "type": kind, "key": key }));
         }

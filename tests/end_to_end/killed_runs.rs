@@ -179,8 +179,8 @@ fn a_campaign_killed_twenty_times_gives_the_same_database() {
     assert!(interrupted >= 10, "only {interrupted} runs were killed before their end");
 }
 
-/// With its rays on two meshes. Of the spot check, whose file has four states of a ray, nothing can
-/// be restored.
+/// The rays are on two meshes. The spot check, whose file has four states of a ray, cannot be
+/// restored.
 #[test]
 fn a_lost_folder_is_restored_from_the_database() {
     let replay = Replay::of(&[
@@ -246,8 +246,7 @@ fn a_run_that_ends_early_has_its_own_exit_code() {
     assert_eq!(plan["reasons"], serde_json::json!({}));
 }
 
-/// As after the failure of a node whose processes still run, and on a file system whose locks end
-/// at the host.
+/// The processes of a failed node may still run, and locks of a file system end at the host.
 #[test]
 fn a_ray_that_two_hosts_solve_is_counted_once() {
     let replay = Replay::new();
@@ -363,7 +362,7 @@ fn two_runs_without_locks_give_the_rows_of_one() {
     assert_eq!(replay.left_over("twice"), Vec::<PathBuf>::new());
 }
 
-/// As if the machine had been suspended.
+/// A stopped process is what a suspended machine has.
 #[test]
 fn time_in_which_the_run_is_suspended_does_not_count() {
     let work = Workplace::new();

@@ -52,7 +52,7 @@ fn shorten(work: &Workplace) {
 /// learn.csv.
 fn spot_check(work: &Workplace) -> (String, String) {
     let summary = work.output("dataset summary learned/spot-check.parquet");
-    let table = std::fs::read_to_string(work.path("learned/learn.csv")).unwrap();
+    let table = work.read("learned/learn.csv");
     let round = table.lines().nth(1).unwrap();
     (summary, round.split(',').nth(4).unwrap().to_owned())
 }
@@ -93,9 +93,8 @@ fn a_stopped_run_is_continued_and_its_folder_belongs_to_one_material() {
 
     // No round reaches an error of zero, so that all rays are solved.
     let options = format!("{OPTIONS} --accuracy 0.0001%");
-    let message = work.error(&learn(POLYPROPYLENE, &options));
-    assert!(message.contains("all 24 rays"), "{message}");
-    let table = std::fs::read_to_string(work.path("learned/learn.csv")).unwrap();
+    work.refuses(&learn(POLYPROPYLENE, &options), &["all 24 rays"]);
+    let table = work.read("learned/learn.csv");
     let numbers = |row: &str| -> Vec<f64> {
         let cells = row.split(',').take(7);
         cells.map(|cell| cell.parse().unwrap()).collect()
@@ -116,11 +115,11 @@ fn a_stopped_run_is_continued_and_its_folder_belongs_to_one_material() {
     }
     let next = printed.lines().find_map(|line| line.strip_prefix("next:    kirigami "));
     work.output(next.unwrap());
-    let scene = std::fs::read_to_string(work.path("learned/sheet/scene.toml")).unwrap();
+    let scene = work.read("learned/sheet/scene.toml");
     assert!(scene.contains("weights = \"../weights.safetensors\""), "{scene}");
     assert_eq!(std::fs::metadata(&fits).unwrap().modified().unwrap(), before);
     // Accurate enough are also the weights of six rays, but more are solved.
-    let card = std::fs::read_to_string(work.path("learned/weights.json")).unwrap();
+    let card = work.read("learned/weights.json");
     let card: serde_json::Value = serde_json::from_str(&card).unwrap();
     assert!(card["training_rays"].as_u64().unwrap() > 6, "{card}");
     assert_eq!(card["spot_check"]["errors"]["rows"], 64);
@@ -167,8 +166,7 @@ fn a_stopped_run_is_continued_and_its_folder_belongs_to_one_material() {
 fn no_weights_are_trained_that_too_few_states_would_test() {
     let work = Workplace::new();
     let options = "--tier tiny --spot-rays 3 --accuracy 6% --forces 6% --out learned";
-    let message = work.error(&learn(POLYPROPYLENE, options));
-    assert!(message.contains("12 states on 3 rays are too few to assess"), "{message}");
+    work.refuses(&learn(POLYPROPYLENE, options), &["12 states on 3 rays are too few to assess"]);
     assert!(!work.path("learned/campaign").exists());
 }
 
@@ -181,10 +179,9 @@ fn unsuitable_weights_are_refused_before_a_window_is_solved() {
     let sharper = Surrogate::from_parts(small.layers(), card).unwrap();
     let path = work.path("sharper");
     sharper.save(&path.with_added_extension("safetensors")).unwrap();
-    let message = work.error(&learn_from(&[path.to_str().unwrap()], POLYPROPYLENE, OPTIONS));
-    assert!(
-        message.contains("sharper.safetensors") && message.contains("damage_sharpness"),
-        "{message}"
+    work.refuses(
+        &learn_from(&[path.to_str().unwrap()], POLYPROPYLENE, OPTIONS),
+        &["sharper.safetensors", "damage_sharpness"],
     );
     assert!(!work.path("learned/campaign").exists());
 }

@@ -15,6 +15,8 @@ mod power_loss;
 mod regenerated;
 mod run_page;
 mod scale;
+mod scripted_slurm;
 mod slurm;
 mod static_page;
 mod studio;
+mod studio_page;

@@ -93,13 +93,11 @@ fn a_database_becomes_weights_that_predict_it() {
         "{tested}"
     );
 
-    let card = work.output(&format!("surrogate card {WEIGHTS}"));
-    assert!(card.contains("PET film 0.5 mm") && card.contains("edge"), "{card}");
+    work.prints(&format!("surrogate card {WEIGHTS}"), &["PET film 0.5 mm", "edge"]);
 
     let tuned = format!("{train} --from {WEIGHTS} --out runs/tuned.safetensors");
     work.output(&tuned);
-    let card = work.output("surrogate card runs/tuned.safetensors");
-    assert!(card.contains("fine-tuned"), "{card}");
+    work.prints("surrogate card runs/tuned.safetensors", &["fine-tuned"]);
 }
 
 #[test]
@@ -118,24 +116,23 @@ fn a_training_that_was_killed_before_it_saved_a_state_starts_again() {
     work.output(&train);
     // A training that is complete is not made again.
     let trained = std::fs::read(work.path(WEIGHTS)).unwrap();
-    let error = work.error(&train);
-    assert!(error.contains("own.safetensors exists"), "{error}");
+    work.refuses(&train, &["own.safetensors exists"]);
     assert_eq!(std::fs::read(work.path(WEIGHTS)).unwrap(), trained);
 }
 
 #[test]
 fn input_that_cannot_be_evaluated_gives_an_error() {
     let work = workplace();
-    std::fs::write(work.path("own.csv"), "job,W\n0,1.5\n").unwrap();
-    let error = work.error("dataset summary own.csv");
-    assert!(error.contains("own.csv is no Parquet file"), "{error}");
+    work.write("own.csv", "job,W\n0,1.5\n");
+    work.refuses("dataset summary own.csv", &["own.csv is no Parquet file"]);
     let absolute = work.path("own.safetensors").display().to_string();
     for out in ["./own.safetensors", "runs/../own.safetensors", &absolute] {
-        let error = work.error(&format!("train {DATABASE} --out {out} --replace"));
-        assert!(error.contains("replace the database's manifest"), "{error}");
+        work.refuses(
+            &format!("train {DATABASE} --out {out} --replace"),
+            &["replace the database's manifest"],
+        );
     }
-    let error = work.error(&format!("train {DATABASE} --out own.safetensors --replace"));
-    assert!(error.contains("manifest"), "{error}");
+    work.refuses(&format!("train {DATABASE} --out own.safetensors --replace"), &["manifest"]);
 }
 
 /// A database, and one of the same rays whose energies and forces are 5 % higher.
@@ -143,41 +140,38 @@ fn input_that_cannot_be_evaluated_gives_an_error() {
 fn a_database_is_compared_with_another_of_the_same_rays() {
     let work = workplace();
     database(1.05).write(&work.path("stiff.parquet"), false).unwrap();
-    let output =
-        work.output(&format!("dataset compare stiff.parquet {DATABASE} --out results/tiers"));
-    assert!(output.contains("300 states of 30 rays"), "{output}");
-    let page = std::fs::read_to_string(work.path("results/tiers/compare.md")).unwrap();
+    work.prints(
+        &format!("dataset compare stiff.parquet {DATABASE} --out results/tiers"),
+        &["300 states of 30 rays"],
+    );
+    let page = work.read("results/tiers/compare.md");
     let row = "| F_s | 5.00 % | 5.00 % | 5.00 % | 5.00 % |";
     assert!(page.contains(row), "{page}");
 }
 
-/// The tensile curve of a testing machine becomes the material of a campaign.
+/// The tensile curve of a testing machine becomes the material of a solve.
 #[test]
 fn a_measured_curve_is_a_material() {
     let work = Workplace::new();
-    let file = "configs/materials/s235-1.5mm.toml";
     let mut curve = "engineering_strain,engineering_stress_mpa\n0,0\n".to_owned();
     for i in 1..=400 {
         let strain = 5e-4 * f64::from(i);
         let stress = (210e3 * strain).min(235.0 + 900.0 * strain / (1.0 + 3.0 * strain));
         writeln!(curve, "{strain},{stress}").unwrap();
     }
-    std::fs::write(work.path("configs/materials/curve.csv"), curve).unwrap();
-    let text = std::fs::read_to_string(work.path(file)).unwrap();
-    let (head, _) = text.split_once("plastic = [").unwrap();
-    std::fs::write(work.path(file), format!("{head}tensile_csv = \"curve.csv\"\n")).unwrap();
-    let solve = format!("solve --material {file} --tier tiny --theta-deg 3");
-    let json = work.output(&format!("{solve} --json"));
-    let solved: serde_json::Value = serde_json::from_str(&json).unwrap();
+    work.write("curve.csv", curve);
+    let fit =
+        "material fit curve.csv --name steel --thickness 1.5 --density-kg-m3 7850 --young 210000";
+    work.output(fit);
+    let solve = "solve --material runs/material/steel.toml --tier tiny --theta-deg 3";
+    let solved = work.json(&format!("{solve} --json"));
     let yields = solved["material"]["plastic"][0][0].as_f64().unwrap();
     assert!((235.0..245.0).contains(&yields), "{yields}");
 
-    std::fs::remove_file(work.path("configs/materials/curve.csv")).unwrap();
-    let error = work.error(&solve);
-    assert!(error.contains("curve.csv"), "{error}");
-    std::fs::write(work.path(file), head).unwrap();
-    let error = work.error(&solve);
-    assert!(error.contains("`plastic` and `tensile_csv`"), "{error}");
+    let text = work.read("runs/material/steel.toml");
+    let (head, _) = text.split_once("plastic = [").unwrap();
+    work.write("runs/material/steel.toml", head);
+    work.refuses(solve, &["plastic"]);
 }
 
 /// The corrected rays of the default mesh have about half the error in W of the uncorrected ones.
@@ -207,7 +201,7 @@ fn a_database_is_corrected_by_some_rays_of_a_finer_mesh() {
         "train {SHIPPED} --config configs/training/demo.toml --out runs/corrected.safetensors"
     ));
     assert_eq!(differences(&trained, "W"), [after], "{trained}");
-    let card = std::fs::read_to_string(work.path("runs/corrected.json")).unwrap();
+    let card = work.read("runs/corrected.json");
     let card: serde_json::Value = serde_json::from_str(&card).unwrap();
     assert_eq!(card["tier"], "default corrected to reference");
     let database = Database::read(&work.path(SHIPPED)).unwrap();
@@ -217,7 +211,7 @@ fn a_database_is_corrected_by_some_rays_of_a_finer_mesh() {
 }
 
 /// The differences of a quantity over all states (%), in each table of a text.
-pub fn differences<const TABLES: usize>(text: &str, quantity: &str) -> [f64; TABLES] {
+pub(crate) fn differences<const TABLES: usize>(text: &str, quantity: &str) -> [f64; TABLES] {
     let row = format!(" {quantity} ");
     let rows = (text.lines()).filter(|line| line.starts_with(&row) && line.contains(" % "));
     let first = |row: &str| row.split(' ').find_map(|word| word.parse().ok());
@@ -227,7 +221,7 @@ pub fn differences<const TABLES: usize>(text: &str, quantity: &str) -> [f64; TAB
 
 /// The rows of the comparison of the seeds, without the last column, the names of the weights.
 fn compared(work: &Workplace, name: &str) -> Vec<String> {
-    let text = std::fs::read_to_string(work.path(&format!("runs/{name}-seeds.csv"))).unwrap();
+    let text = work.read(&format!("runs/{name}-seeds.csv"));
     let rows = text.lines().map(|line| line.rsplit_once(',').unwrap().0);
     rows.map(str::to_owned).collect()
 }

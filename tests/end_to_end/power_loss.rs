@@ -29,7 +29,7 @@ impl Disk {
                 self.unsynced_names.insert((*path).to_owned());
             }
             ("rename" | "renameat" | "renameat2", [.., from, to]) => {
-                // From now on, the disk may hold the new name.
+                // The disk may hold the new name.
                 assert!(
                     !self.unsynced_contents.contains(*from) || !is_data(to),
                     "{to} may be left with a part of its contents"
@@ -121,7 +121,7 @@ fn a_loss_of_power_at_any_moment_leaves_whole_files_and_whole_jobs() {
         .current_dir(work.path(""))
         .stdout(Stdio::null());
     assert!(traced.status().unwrap().success());
-    let trace = std::fs::read_to_string(work.path("trace")).unwrap();
+    let trace = work.read("trace");
 
     let mut disk = Disk::default();
     let mut results = 0;

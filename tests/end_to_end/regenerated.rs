@@ -180,7 +180,7 @@ fn rays_on_a_finer_mesh_correct_the_others() {
     let rays = database(&work, "hinges.parquet");
     assert_eq!(rays.on_both_meshes().len(), 20);
     let spot = database(&work, "spot-check.parquet");
-    assert_eq!(spot.manifest().tier, "small");
+    assert_eq!(spot.manifest().tier.to_string(), "small");
     for name in NETWORKS {
         let card = network(&work, name).card().clone();
         assert_eq!(card.tier, "tiny corrected to small");

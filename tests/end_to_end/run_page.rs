@@ -111,7 +111,7 @@ fn a_learned_sheet_shows_damage_and_the_training_domain() {
     let design = "design configs/scenes/pet-3x3.toml --steps 1 --out run \
                   --weights data/pet-0.5mm/small.safetensors";
     assert!(work.error(design).contains("no cut file"));
-    let report = std::fs::read_to_string(work.path("run/report.json")).unwrap();
+    let report = work.read("run/report.json");
     let report: Value = serde_json::from_str(&report).unwrap();
     let hinges = report["hinges"].as_array().unwrap();
     let inside = |row: &Value| row["inside"].as_bool().unwrap();
@@ -153,8 +153,7 @@ fn a_browser_reads_the_cut_file_as_large_as_the_sheet() {
     let work = Workplace::new();
     let scene = concat!(env!("CARGO_MANIFEST_DIR"), "/configs/scenes/a4-plate-service.toml");
     let cut = format!("cut {scene} --for laser-service --design start --json --out cut");
-    let said = work.output(&cut);
-    let said: Value = serde_json::from_str(&said).unwrap();
+    let said = work.json(&cut);
     let mut tab = Tab::open(&format!("file://{}", work.path("cut/cut.svg").display()));
     let found = tab.value(
         "(() => { const box = document.querySelector('#OUTLINE path').getBBox(), view = document.documentElement.viewBox.baseVal; \

@@ -54,8 +54,6 @@ fn database() -> Database {
                 ..HingeSample::default()
             },
             material: "benchmark".into(),
-            tier: "none".into(),
-            solved_tier: "none".into(),
             ..Row::default()
         }
     });

@@ -12,7 +12,7 @@ pub(crate) struct Affine {
 }
 
 impl Affine {
-    pub fn forward(&self, inputs: Tensor<2>) -> Tensor<2> {
+    pub(crate) fn forward(&self, inputs: Tensor<2>) -> Tensor<2> {
         inputs.matmul(self.weight.clone()) + self.bias.clone().unsqueeze()
     }
 }

@@ -3,35 +3,37 @@
 use crate::validation::Parity;
 use dataset::Row;
 use hinge::TrainingDomain;
-use surrogate::ErrorBin;
+use surrogate::{BinQuantity, ErrorBin};
 
 /// Number of bins of each quantity, all of the same width.
 const BINS: usize = 5;
-
-/// The quantity by which rows are binned.
-type Quantity<'a> = &'a dyn Fn(&Row) -> f64;
 
 /// Errors on `rows`, whose targets and predictions are `parity`, by compression, shear, rotation,
 /// ligament width, cut angle, hole if it is a feature, and distance from the edge of the domain.
 /// Bins without rows are omitted.
 pub(crate) fn error_bins(parity: &Parity, rows: &[Row], domain: &TrainingDomain) -> Vec<ErrorBin> {
-    let degrees = |[minimum, maximum]: [f64; 2]| [minimum.to_degrees(), maximum.to_degrees()];
-    let edge = |row: &Row| domain.depth(&row.design, &row.sample.deformation()).max(0.0);
-    let coordinates = |row: &Row| domain.coordinates(&row.design, &row.sample.deformation());
+    let degrees = |range: [f64; 2]| range.map(f64::to_degrees);
     let [eta_a, eta_s, theta] = domain.bounds();
-    let hole = |row: &Row| row.design.fillet_ratio;
-    let hole: Option<(&str, [f64; 2], Quantity)> =
-        (domain.holes).map(|range| ("fillet_ratio", range, &hole as Quantity));
-    let quantities: [(&str, [f64; 2], Quantity); 6] = [
-        ("eta_a", eta_a, &|row| coordinates(row)[0]),
-        ("eta_s", eta_s, &|row| coordinates(row)[1]),
-        ("theta_deg", degrees(theta), &|row| row.sample.theta.to_degrees()),
-        ("w_lig", domain.w_lig, &|row| row.design.w_lig),
-        ("alpha_deg", degrees(domain.alpha), &|row| row.design.alpha.to_degrees()),
-        ("edge", [0.0, 1.0], &edge),
+    let quantities = [
+        (BinQuantity::EtaA, eta_a),
+        (BinQuantity::EtaS, eta_s),
+        (BinQuantity::ThetaDeg, degrees(theta)),
+        (BinQuantity::WLig, domain.w_lig),
+        (BinQuantity::AlphaDeg, degrees(domain.alpha)),
+        (BinQuantity::Edge, [0.0, 1.0]),
     ];
+    let hole = domain.holes.map(|range| (BinQuantity::FilletRatio, range));
     let mut bins = Vec::new();
-    for (quantity, [minimum, maximum], value) in quantities.into_iter().chain(hole) {
+    for (quantity, [minimum, maximum]) in quantities.into_iter().chain(hole) {
+        let value = |Row { design, sample, .. }: &Row| match quantity {
+            BinQuantity::EtaA => domain.coordinates(design, &sample.deformation())[0],
+            BinQuantity::EtaS => domain.coordinates(design, &sample.deformation())[1],
+            BinQuantity::ThetaDeg => sample.theta.to_degrees(),
+            BinQuantity::WLig => design.w_lig,
+            BinQuantity::AlphaDeg => design.alpha.to_degrees(),
+            BinQuantity::FilletRatio => design.fillet_ratio,
+            BinQuantity::Edge => domain.depth(design, &sample.deformation()).max(0.0),
+        };
         let width = (maximum - minimum) / BINS as f64;
         for bin in 0..BINS {
             let lower = minimum + bin as f64 * width;
@@ -39,7 +41,7 @@ pub(crate) fn error_bins(parity: &Parity, rows: &[Row], domain: &TrainingDomain)
             let indices: Vec<usize> = (0..rows.len()).filter(|&i| inside(&rows[i])).collect();
             if !indices.is_empty() {
                 bins.push(ErrorBin {
-                    quantity: quantity.into(),
+                    quantity,
                     range: [lower, lower + width],
                     errors: parity.of_rows(&indices).errors(),
                 });
@@ -82,10 +84,10 @@ mod tests {
         for quantity in
             ["eta_a", "eta_s", "theta_deg", "w_lig", "alpha_deg", "fillet_ratio", "edge"]
         {
-            let of = bins.iter().filter(|bin| bin.quantity == quantity);
+            let of = bins.iter().filter(|bin| bin.quantity.to_string() == quantity);
             assert_eq!(of.map(|bin| bin.errors.rows).sum::<usize>(), 3, "{quantity}");
         }
-        let widest = bins.iter().rfind(|bin| bin.quantity == "w_lig").unwrap();
+        let widest = bins.iter().rfind(|bin| bin.quantity == BinQuantity::WLig).unwrap();
         assert_eq!(widest.range, [21.0, 25.0]);
         assert!((widest.errors.energy.relative_rmse - 0.4).abs() < 1e-12);
     }

@@ -2,7 +2,8 @@
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use support::key_limits::{self, OutOfRange};
+use support::fault::{Fault, fault};
+use support::key_limits;
 use surrogate::Surrogate;
 
 /// Sizes, loss weights and optimiser of one training.
@@ -48,16 +49,6 @@ fn is_zero(count: &usize) -> bool {
     *count == 0
 }
 
-/// A value that violates a rule of the configuration.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[allow(missing_docs, reason = "the message of a variant is its documentation")]
-pub enum InvalidConfig {
-    #[error(transparent)]
-    OutOfRange(#[from] OutOfRange),
-    #[error("{key} = {value} violates {rule}")]
-    Rule { key: &'static str, value: String, rule: &'static str },
-}
-
 impl TrainingConfig {
     /// The same configuration with the network sizes of given weights.
     pub fn with_sizes_of(self, weights: &Surrogate) -> Self {
@@ -71,8 +62,8 @@ impl TrainingConfig {
     }
 
     /// Rejects impossible values; the error names the key and the rule.
-    pub fn validate(&self) -> Result<(), InvalidConfig> {
-        key_limits::check::<Self>(self)?;
+    pub fn validate(&self) -> Result<(), Fault> {
+        key_limits::check::<Self>(self).map_err(|error| fault("", error.to_string(), ""))?;
         let checks = [
             (
                 "embedding",
@@ -90,7 +81,9 @@ impl TrainingConfig {
             ),
         ];
         match checks.into_iter().find(|(.., holds)| !holds) {
-            Some((key, value, rule, _)) => Err(InvalidConfig::Rule { key, value, rule }),
+            Some((key, value, rule, _)) => {
+                Err(fault("", format!("{key} = {value} violates {rule}"), ""))
+            }
             None => Ok(()),
         }
     }

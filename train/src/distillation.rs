@@ -21,7 +21,7 @@ pub struct Distillation {
 /// What a network is trained on: the rows of a database, and the median of an ensemble.
 #[derive(Clone, Copy, Debug)]
 pub struct TrainingData<'a> {
-    /// The rows. Scales, training domain, validation and test are of these alone.
+    /// The rows. Scales, training domain, validation and test are only of these.
     pub database: &'a Database,
     /// Further states for the training.
     pub distillation: Option<&'a Distillation>,
@@ -50,28 +50,23 @@ impl Distillation {
         let (designs, deformations): (Vec<_>, Vec<_>) = states.iter().copied().unzip();
         let predicted: Vec<Vec<HingeSample>> =
             (members.iter()).map(|member| member.samples(&designs, &deformations)).collect();
-        let of_state = |state: usize| {
+        let samples = designs.into_iter().enumerate().map(|(state, design)| {
             let members: Vec<_> = predicted.iter().map(|member| &member[state]).collect();
-            medians(&members)
-        };
-        let samples: Vec<_> = (designs.into_iter().enumerate())
-            .map(|(state, design)| (design, of_state(state)))
-            .collect();
+            (design, medians(&members))
+        });
+        let samples: Vec<_> = samples.collect();
+        let bytes = serde_json::to_vec(&samples).expect("designs and samples are numbers");
         let record = DistillationRecord {
-            teachers: members.iter().map(teacher).collect(),
-            hash: hash(&samples),
+            teachers: (members.iter())
+                .map(|network| Teacher {
+                    weights: network.hash(),
+                    fine_tuned_from: network.card().fine_tuned_from.clone(),
+                })
+                .collect(),
+            hash: blake3::hash(&bytes).to_hex().to_string(),
         };
         Self { record, samples }
     }
-}
-
-fn teacher(network: &Surrogate) -> Teacher {
-    Teacher { weights: network.hash(), fine_tuned_from: network.card().fine_tuned_from.clone() }
-}
-
-fn hash(samples: &[(HingeDesign, HingeSample)]) -> String {
-    let bytes = serde_json::to_vec(samples).expect("designs and samples are numbers");
-    blake3::hash(&bytes).to_hex().to_string()
 }
 
 /// The medians of W, forces and damage at one state. D_peak is unknown if one network does not

@@ -1,6 +1,6 @@
 //! Confidence intervals of the errors of weights: how much they would differ at other rays.
 //!
-//! States on one ray have like errors, so that whole rays are drawn with replacement (the cluster
+//! States on one ray have similar errors, so whole rays are drawn with replacement (the cluster
 //! bootstrap of Davison and Hinkley, Bootstrap Methods and their Application, 1997, section 3.8).
 
 use crate::validation::Parity;
@@ -29,11 +29,11 @@ pub struct ErrorInterval {
 }
 
 impl ErrorInterval {
-    /// Fewest rays of which other rays can be foretold.
+    /// Minimum number of rays that predict the errors of other rays.
     pub const LEAST_RAYS: usize = 6;
 
     /// The errors of W and of the three forces together at the rows, whose rays are their jobs;
-    /// `None` below six rays, and if a force is not known or zero everywhere.
+    /// `None` below six rays, and if a force is unknown or zero everywhere.
     pub fn of(surrogate: &Surrogate, rows: &[Row]) -> Option<[Self; 2]> {
         let parity = Parity::new(surrogate, rows);
         let points: [Vec<[f64; 2]>; QUANTITIES] =

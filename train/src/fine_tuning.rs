@@ -13,7 +13,7 @@
 //! pretrained networks.
 
 use crate::config::{DAMAGE_SHARPNESS, TrainingConfig};
-use crate::error::TrainError;
+use crate::error::{TrainError, failed};
 use crate::export::layers;
 use crate::mirror;
 use crate::networks::{Networks, options};
@@ -33,13 +33,17 @@ pub(crate) struct Initial {
 impl Initial {
     /// The pretrained weights for the windows of a database, fitted to the training rows, which
     /// include their mirror images.
-    pub fn new(
+    pub(crate) fn new(
         pretrained: &Surrogate,
         rows: &[Row],
         manifest: &Manifest,
     ) -> Result<Self, TrainError> {
         if pretrained.card().domain.holes.is_some() && manifest.domain.holes.is_none() {
-            return Err(TrainError::OneHole);
+            return Err(failed(
+                "the initial weights are for holes of several radii, but the database has holes of one radius; start with \
+                 weights for one radius, or with random weights"
+                    .into(),
+            ));
         }
         let pretrained = at_size_of(pretrained, &manifest.hinge);
         let parity = Parity::new(&pretrained, rows);
@@ -97,17 +101,28 @@ pub fn check_pretrained(pretrained: &Surrogate, config: &TrainingConfig) -> Resu
     let expected: Vec<_> = std::iter::once(config.embedding.clone()).chain(damage).collect();
     let found = given.widths();
     if found != expected {
-        return Err(TrainError::OtherSizes { expected, found });
+        return Err(failed(format!(
+            "the initial weights have the layers {found:?}, but the configuration has {expected:?} \
+             (embedding and damage heads); change the configuration, or start with random weights"
+        )));
     }
     let found = pretrained.card().damage_sharpness;
     if found != DAMAGE_SHARPNESS {
-        return Err(TrainError::OtherSharpness { found });
+        return Err(failed(format!(
+            "the initial weights have `damage_sharpness = {found}`, and a training has \
+             {DAMAGE_SHARPNESS}; start with random weights"
+        )));
     }
     let exact = options(DType::F64);
     let folded = Networks::from_layers(&given, &exact);
     let unchanged = layers(&folded)? == given;
     let centred = mirror::is_centred(&pretrained.card().standardisation);
-    if unchanged && centred { Ok(()) } else { Err(TrainError::NotSymmetric) }
+    if unchanged && centred {
+        return Ok(());
+    }
+    Err(failed(
+        "the initial weights do not have the mirror symmetry; start with random weights".into(),
+    ))
 }
 
 /// The factor of the predictions that is closest to the targets.
@@ -119,7 +134,7 @@ fn factor(points: impl Iterator<Item = [f64; 2]>) -> f64 {
 }
 
 /// Changes a first layer such that its outputs for inputs standardised by `to` are those for inputs
-/// standardised by `from` before. They do not depend on a feature that `to` alone has, the radius
+/// standardised by `from` before. They do not depend on a feature that only `to` has, the radius
 /// of the hole.
 fn restandardise(first: &mut Layer, from: &Standardisation, to: &Standardisation) {
     let [known, features] = [from, to].map(|features| features.mean.len());

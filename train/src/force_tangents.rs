@@ -5,7 +5,7 @@
 //! a_l = tanh(a_{l-1}) W_l + b_l,   T_l,k = ((1 - tanh(a_{l-1})^2) T_{l-1,k}) W_l
 //! ```
 //!
-//! All lines are ordinary tensor operations, so that one reverse pass gives the parameter gradient
+//! All lines are ordinary tensor operations, so one reverse pass gives the parameter gradient
 //! of a loss that contains forces. The undeformed states, the deformed states and the three
 //! tangents are multiplied by each layer's weight in one matrix product.
 

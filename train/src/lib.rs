@@ -17,13 +17,12 @@
 //! # Ok::<_, Box<dyn std::error::Error>>(())
 //! ```
 
-#![warn(missing_docs)]
+#![cfg_attr(not(test), warn(unreachable_pub))]
 
 mod affine;
 mod bins;
 mod config;
 mod distillation;
-mod epoch;
 mod error;
 mod error_interval;
 mod export;
@@ -32,18 +31,15 @@ mod force_tangents;
 mod loss;
 mod mirror;
 mod networks;
-mod optimiser;
 mod samples;
 mod state;
 mod training;
 mod validation;
 
-pub use config::{InvalidConfig, TrainingConfig};
+pub use config::TrainingConfig;
 pub use distillation::{Distillation, TrainingData};
-pub use epoch::Epoch;
 pub use error::TrainError;
 pub use error_interval::ErrorInterval;
 pub use fine_tuning::check_pretrained;
-pub use state::StateError;
-pub use training::{Start, Trained, Training, train};
+pub use training::{Epoch, Start, Trained, Training, train};
 pub use validation::{Parity, spot_check};

@@ -38,7 +38,7 @@ pub(crate) enum Fold {
 
 impl Fold {
     /// (inputs, outputs) of the trained part of a layer of this shape.
-    pub fn shape(self, [inputs, outputs]: [usize; 2]) -> [usize; 2] {
+    pub(crate) fn shape(self, [inputs, outputs]: [usize; 2]) -> [usize; 2] {
         match self {
             Self::First | Self::Hidden => [inputs, outputs / 2],
             Self::Invariant => [inputs / 2, outputs],
@@ -46,7 +46,7 @@ impl Fold {
     }
 
     /// The whole layer with the trained part `part`.
-    pub fn unfold(self, part: Affine) -> Affine {
+    pub(crate) fn unfold(self, part: Affine) -> Affine {
         let Affine { weight, bias } = part;
         let paired = |bias: Tensor<1>| Tensor::cat(vec![bias.clone(), bias.flip([0])], 0);
         match self {
@@ -69,7 +69,7 @@ impl Fold {
     }
 
     /// The trained part of a whole layer.
-    pub fn fold(self, whole: Affine) -> Affine {
+    pub(crate) fn fold(self, whole: Affine) -> Affine {
         let Affine { weight, bias } = whole;
         let [inputs, outputs] = self.shape(weight.dims());
         Affine {

@@ -46,8 +46,8 @@ pub(crate) fn options(dtype: DType) -> TensorCreationOptions {
 
 impl Networks {
     /// Initial networks with Xavier's uniform weights and zero biases. The random numbers do not
-    /// come from the backend, so that a seed gives the same weights on every backend.
-    pub fn new(
+    /// come from the backend, so a seed gives the same weights on every backend.
+    pub(crate) fn new(
         config: &TrainingConfig,
         features: usize,
         with_peak: bool,
@@ -72,7 +72,7 @@ impl Networks {
     }
 
     /// The networks of a weight file.
-    pub fn from_layers(layers: &Layers, options: &TensorCreationOptions) -> Self {
+    pub(crate) fn from_layers(layers: &Layers, options: &TensorCreationOptions) -> Self {
         let network = |layers: &[Layer], folds: Vec<Fold>| {
             let layers = layers.iter().zip(folds);
             Mlp {
@@ -91,7 +91,7 @@ impl Networks {
     }
 
     /// The same networks, the first `layers` layers of each of which no optimiser step changes.
-    pub fn frozen(self, layers: usize) -> Self {
+    pub(crate) fn frozen(self, layers: usize) -> Self {
         let freeze = |mut network: Mlp| {
             let freeze = |(index, layer): (usize, Dense)| {
                 if index < layers { layer.no_grad() } else { layer }
@@ -103,7 +103,7 @@ impl Networks {
     }
 
     /// The damage heads.
-    pub fn heads(&self) -> impl Iterator<Item = &Mlp> {
+    pub(crate) fn heads(&self) -> impl Iterator<Item = &Mlp> {
         std::iter::once(&self.chi_d).chain(&self.chi_p)
     }
 }
@@ -124,7 +124,7 @@ fn head_folds(layers: usize) -> Vec<Fold> {
 
 impl Mlp {
     /// The layers as evaluated.
-    pub fn affine(&self) -> Vec<Affine> {
+    pub(crate) fn affine(&self) -> Vec<Affine> {
         self.layers.iter().map(Dense::affine).collect()
     }
 }

@@ -1,16 +1,17 @@
 //! Rows as inputs and targets of the networks: standardised features, scaled targets, batches.
 
-use crate::error::TrainError;
+use crate::error::{TrainError, failed};
 use crate::mirror;
 use burn::tensor::{Tensor, TensorCreationOptions, TensorData};
 use dataset::Row;
 use hinge::{HingeDeformation, HingeDesign, HingeSample, NetLigament};
+use support::statistics;
 use surrogate::{Card, FEATURE_NAMES, Standardisation, feature_names, features};
 
 /// The scales of (14) and (15), computed from the training rows.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Scales {
-    /// Of the hinges that the networks see; [`NetLigament`].
+    /// Standardisation of the hinges that the networks see; [`NetLigament`].
     pub standardisation: Standardisation,
     /// The hole of these hinges, over w_lig.
     pub hole: f64,
@@ -69,16 +70,18 @@ impl Scales {
     ///
     /// `hole` is the hole of the hinges that the networks see, over w_lig, and `names` are their
     /// features. The rows include their mirror images.
-    pub fn new(rows: &[Row], hole: f64, names: &[&'static str]) -> Result<Self, TrainError> {
+    pub(crate) fn new(rows: &[Row], hole: f64, names: &[&'static str]) -> Result<Self, TrainError> {
         let count = rows.len() as f64;
         let root_mean_square = |target: &'static str, value: fn(&Row) -> f64| {
-            let sum: f64 = rows.iter().map(|row| value(row).powi(2)).sum();
-            let scale = (sum / count).sqrt();
+            let scale = statistics::root_mean_square(rows.iter().map(value));
             refuse_outlier(rows, target, value)?;
             if scale > 0.0 && scale.is_finite() {
                 Ok(scale)
             } else {
-                Err(TrainError::NoScale { target, scale })
+                Err(failed(format!(
+                    "the root mean square of {target} over the training rows is {scale}, so it cannot be fitted; check the \
+                     database"
+                )))
             }
         };
         let xi: Vec<[f64; FEATURES]> = (rows.iter())
@@ -100,7 +103,11 @@ impl Scales {
             // The rounding error of the mean gives a constant feature a standard deviation of this
             // size.
             if !(std[k] > 1e-12 * mean[k].abs() && std[k].is_finite()) {
-                return Err(TrainError::ConstantFeature { feature, value: mean[k] });
+                return Err(failed(format!(
+                    "the feature `{feature}` is {} in every training row, so the network cannot \
+                     learn its effect; vary it in the campaign",
+                    mean[k]
+                )));
             }
         }
         let with_peak = rows.iter().filter(|row| row.sample.d_peak.is_some()).count();
@@ -128,7 +135,7 @@ impl Scales {
     }
 
     /// The scales of trained weights; the scales of the forces are computed from the rows.
-    pub fn from_card(card: &Card, rows: &[Row]) -> Result<Self, TrainError> {
+    pub(crate) fn from_card(card: &Card, rows: &[Row]) -> Result<Self, TrainError> {
         Ok(Self {
             standardisation: card.standardisation.clone(),
             energy: card.energy_scale,
@@ -139,12 +146,12 @@ impl Scales {
     }
 
     /// Number of features that the networks see.
-    pub fn features(&self) -> usize {
+    pub(crate) fn features(&self) -> usize {
         self.standardisation.mean.len()
     }
 
     /// One state in these scales.
-    pub fn sample(&self, design: &HingeDesign, sample: &HingeSample) -> Sample {
+    pub(crate) fn sample(&self, design: &HingeDesign, sample: &HingeSample) -> Sample {
         let Standardisation { mean, std } = &self.standardisation;
         let standardise = |xi: [f64; FEATURES]| -> [f64; FEATURES] {
             std::array::from_fn(|k| mean.get(k).map_or(0.0, |mean| (xi[k] - mean) / std[k]))
@@ -186,13 +193,14 @@ fn refuse_outlier(
     let usual = sorted.get(9 * sorted.len() / 10).copied().unwrap_or(0.0);
     let outlier = rows.iter().find(|row| value(row).abs() > OUTLIER * usual);
     match outlier.filter(|_| usual > 0.0) {
-        Some(row) => Err(TrainError::Outlier {
-            target,
-            job: row.job.clone(),
-            lambda: row.sample.lambda,
-            value: value(row),
-            times: value(row).abs() / usual,
-        }),
+        Some(row) => Err(failed(format!(
+            "job {}, lambda = {}: {target} = {:e} is {:.0} times the 90 % quantile of the training \
+             rows and would dominate the loss; check that job or remove its rows",
+            row.job,
+            row.sample.lambda,
+            value(row),
+            value(row).abs() / usual
+        ))),
         None => Ok(()),
     }
 }
@@ -204,7 +212,11 @@ fn d_peak(row: &Row) -> f64 {
 
 impl Batch {
     /// The samples with the first `features` of their inputs.
-    pub fn new(samples: &[Sample], features: usize, options: &TensorCreationOptions) -> Self {
+    pub(crate) fn new(
+        samples: &[Sample],
+        features: usize,
+        options: &TensorCreationOptions,
+    ) -> Self {
         let seen = |of: fn(&Sample) -> [f64; FEATURES]| columns(samples, options, of);
         let undeformed = seen(|sample| sample.origin).narrow(1, 0, features);
         let deformed = seen(|sample| sample.inputs).narrow(1, 0, features);
@@ -219,7 +231,7 @@ impl Batch {
     }
 
     /// Inputs of the deformed states, (n, features).
-    pub fn deformed(&self) -> Tensor<2> {
+    pub(crate) fn deformed(&self) -> Tensor<2> {
         self.states.clone().narrow(0, 1, 1).squeeze_dim(0)
     }
 }

@@ -12,7 +12,7 @@ use surrogate::{FitError, SpotCheck, Surrogate, TestErrors};
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Parity {
     /// Targets (`reference`) and predictions (`value`), in the order of the rows. Quantities that
-    /// are not known, or that the surrogate does not predict, are NaN.
+    /// are unknown, or that the surrogate does not predict, are NaN.
     pub states: Vec<ComparedState>,
 }
 
@@ -98,9 +98,9 @@ impl Parity {
 
     /// The relative root mean square error of each network, by which its best epoch is chosen: the
     /// geometric mean of the known errors of W and the forces; the error of D; and the error of
-    /// D_peak. NaN if it is not known. The geometric mean prevents a few states of large force,
+    /// D_peak. NaN if it is unknown. The geometric mean prevents a few states of large force,
     /// which dominate the loss, from determining the choice. The error of each state is limited to
-    /// the root mean square of its quantity, so that a single ray far from all training rays does
+    /// the root mean square of its quantity, so a single ray far from all training rays does
     /// not determine the choice.
     pub(crate) fn network_errors(&self) -> [f64; 3] {
         let [w, f_a, f_s, m_theta, damage, damage_peak] =
@@ -134,7 +134,7 @@ fn known(points: impl Iterator<Item = [f64; 2]>) -> impl Iterator<Item = [f64; 2
     points.filter(|[target, _]| !target.is_nan())
 }
 
-/// Errors of points [target, prediction] relative to the targets; not known if no target is known,
+/// Errors of points [target, prediction] relative to the targets; unknown if no target is known,
 /// or all are zero.
 pub(crate) fn fit_error(points: impl Iterator<Item = [f64; 2]>) -> FitError {
     let points: Vec<[f64; 2]> = known(points).collect();

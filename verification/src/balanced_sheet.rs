@@ -9,9 +9,9 @@
 //! are expensive: the sheet is balanced on a cheaper mesh first ([`Tier::draft`]), from which the
 //! finest one begins, and the difference between both is the error of the cheaper mesh.
 
-use crate::recorded_path::paths_of;
-use crate::replay::{ElementWindows, UnsolvedHinge};
-use crate::verification_error::VerificationError;
+use crate::element_windows::{ElementWindows, UnsolvedHinge};
+use crate::verification_error::{VerificationError, refused};
+use analysis::error_budget::ErrorBudget;
 use design::geometry::polygon::{bounds, distance};
 use design::hinge_law::{CorrectedLaw, Correction, HingeLaw, MissingForces, Order};
 use design::objective::design_problem::{Deployment, DesignError, DesignProblem, Model};
@@ -20,7 +20,6 @@ use design::sheet::kinematics::{corner_distances, deployed_corners};
 use hinge::HingeSample;
 use mesher::Tier;
 use scene::Scene;
-use scene::analysis::error_budget::ErrorBudget;
 use serde::Serialize;
 use std::sync::Arc;
 
@@ -48,7 +47,7 @@ pub struct Round {
 
 /// A sheet in equilibrium with the forces of finite elements.
 pub struct Balanced {
-    /// By the hinge law alone, followed by the deployment with the corrected law of each round.
+    /// The deployment by the hinge law, followed by the deployment with the corrected law of each round.
     deployments: Vec<Deployment>,
     /// The last state of each hinge by finite elements, in the last round that solved it; `None` if
     /// no round did.
@@ -107,7 +106,7 @@ pub fn balanced(
     let draft = windows.tier.draft().map(|tier| (tier, DRAFT_ROUNDS));
     let meshes: Vec<_> = draft.into_iter().chain([(windows.tier, rounds)]).collect();
     if rounds == 0 {
-        return Err(VerificationError::NoRounds);
+        return Err(refused("at least one round is needed"));
     }
     let mut problem = scene.problem()?;
     let law = law_of(&mut problem)?.clone();
@@ -192,10 +191,8 @@ impl Iteration<'_> {
         found: &mut Balanced,
     ) -> Result<(), VerificationError> {
         let deployed = found.by_elements();
-        let solved = windows.solve(&paths_of(deployed), &self.scene.material)?;
-        let ends = solved.samples.iter();
-        let ends: Vec<Option<HingeSample>> =
-            ends.map(|samples| samples.as_ref()?.last().copied()).collect();
+        let solved = windows.solve(deployed, &self.scene.material)?;
+        let ends = solved.ends;
         let force_error = force_error(&self.problem.model, deployed, &ends);
         self.add_missing_forces(deployed, &ends);
         let last = found.rounds.last().filter(|round| round.tier == windows.tier);
@@ -223,7 +220,7 @@ impl Iteration<'_> {
     ///
     /// The slopes between states that hardly differ are slopes of the noise of their forces, and
     /// may throw the sheet far away. A step longer than the `last` one is therefore compared with
-    /// the step by the newest forces alone, on the tangent of the law, and the shorter step is
+    /// the step only by the newest forces, on the tangent of the law, and the shorter step is
     /// made; after a step by the newest forces the earlier forces are forgotten. After an error the
     /// problem has the law that it had before.
     fn step(
@@ -293,17 +290,19 @@ impl Iteration<'_> {
 fn law_of(problem: &mut DesignProblem) -> Result<&mut Arc<dyn HingeLaw>, VerificationError> {
     match &mut problem.model {
         Model::Equilibrium(mechanics) => Ok(&mut mechanics.law),
-        Model::Ideal { .. } => Err(VerificationError::NoStiffness),
+        Model::Ideal { .. } => Err(refused(
+            "hinge paths need a hinge law with stiffness: the scene has level = \"pin\"",
+        )),
     }
 }
 
 impl Balanced {
-    /// The deployment by the hinge law alone.
+    /// The deployment by the hinge law.
     pub fn by_law(&self) -> &Deployment {
         &self.deployments[0]
     }
 
-    /// The error budget of the deployment by the hinge law alone, before finite elements: see
+    /// The error budget of the deployment by the hinge law, before finite elements: see
     /// [`ErrorBudget::new`].
     pub fn budget(&self, scene: &Scene) -> Result<Option<ErrorBudget>, VerificationError> {
         let problem = scene.problem()?;

@@ -8,7 +8,7 @@ use hinge::{HingeDeformation, HingeDesign};
 const DISTILLATION_STATES: usize = 20_000;
 
 /// The states at which one network learns the median of several, drawn uniformly inside the region.
-/// If they lie on rays of the campaign alone, the network is free in the corners that no ray
+/// If they lie only on rays of the campaign, the network is free in the corners that no ray
 /// passes: the moment of one such network of steel was wrong by 27 times the root mean square
 /// there, although the moments of the several networks were not (docs/TRIED.md). Some states lie
 /// outside the training domain of the solved rays: the networks extrapolate there, and the one

@@ -1,25 +1,25 @@
 //! A design searched for with finite elements for its hinges: the level `final`.
 //!
 //! The search runs at `standard`. The sheet it finds is balanced with finite elements for every
-//! hinge ([`balanced`]), by how much that moves the corners of its panels is the error of the
+//! hinge ([`balanced`]), the movement of its panel corners by that is the error of the
 //! search, and the law that is corrected to the solved hinges takes the place of the learned one.
 //! The search goes on with it, until a further balance moves the corners by less than [`BALANCED`],
 //! or all rounds are made.
 
 use crate::balanced_sheet::{BALANCED, Balanced, DRAFT_ROUNDS, balanced};
-use crate::replay::ElementWindows;
+use crate::element_windows::ElementWindows;
 use crate::verification_error::VerificationError;
+use analysis::level_difference::AtLevel;
 use design::optimise::outer_loop::Ended;
 use mesher::Tier;
-use scene::analysis::level_difference::AtLevel;
 use scene::design_run::{BegunRun, Designed, Earlier, LEVELS, OnStep};
 use scene::{Level, Scene, SolvedHinge, SolvedHinges};
 use std::sync::atomic::AtomicBool;
 use support::file_error::FileError;
 
-/// Most searches, each of which is followed by a balance.
+/// Maximum number of searches, each followed by a balance.
 const SEARCHES: usize = 3;
-/// Most rounds of a balance on the mesh of the windows.
+/// Maximum number of rounds of a balance on the mesh of the windows.
 const ROUNDS: usize = 3;
 /// The file of solved hinges, in the folder of the search that found them.
 const SOLVED_HINGES: &str = "solved-hinges.json";

@@ -5,12 +5,14 @@
 //! that no training contains.
 
 use crate::rows::collected;
-use crate::verification_error::VerificationError;
+use crate::verification_error::{VerificationError, every_ray_failed};
 use dataset::{Database, Row};
 use fe_driver::{Campaign, Progress, RunOptions, Shard, Solver, run, status};
+use std::collections::VecDeque;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
+use support::table::{Cell, Columns, Table};
 use surrogate::{SpotCheck, Surrogate};
 use train::{ErrorInterval, spot_check};
 
@@ -40,9 +42,9 @@ pub struct LearningTask<'a> {
 /// Root mean square errors, relative to the root mean square of the quantity (%).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Accuracy {
-    /// Of W.
+    /// Error of W.
     pub energy: f64,
-    /// Of F_a, F_s and M together.
+    /// Error of F_a, F_s and M together.
     pub forces: f64,
 }
 
@@ -62,27 +64,9 @@ pub struct LearningRound {
     /// The errors of W and of the forces there, with their intervals; `None` if too few rays have
     /// states in the training domain.
     pub intervals: Option<[ErrorInterval; 2]>,
-}
-
-/// What a caller does in every round.
-pub trait LearningSteps {
-    /// Its error.
-    type Error: From<VerificationError>;
-
-    /// Shows the progress of the rays.
-    fn solving(&mut self, progress: &Progress);
-
-    /// Trains weights on the rows of the first `rays` rays; also returns the time that it took (s).
-    fn train(&mut self, rays: usize, database: &Database) -> Result<(Surrogate, f64), Self::Error>;
-
-    /// Takes a finished round with its weights. `is_latest` is false while the rays of the next
-    /// round are known from an earlier run: only later weights end the rounds.
-    fn round(
-        &mut self,
-        round: &LearningRound,
-        weights: Surrogate,
-        is_latest: bool,
-    ) -> Result<(), Self::Error>;
+    /// `false` while an earlier run has solved rays of the next round: only later weights end the
+    /// rounds.
+    pub is_latest: bool,
 }
 
 /// Why the rounds ended.
@@ -101,124 +85,143 @@ pub enum LearningEnd {
     AllRays,
 }
 
-/// Fewest rays on which a round that the deadline ends is trained: a geometry in each part of the
+/// Minimum number of rays on which a round that the deadline ends is trained: a geometry in each part of the
 /// split, and some more.
 const LEAST_RAYS: usize = 6;
 
-/// Makes rounds until the weights are accurate enough, all rays are solved, or the time is over. A
+/// The rounds until the weights are accurate enough, all rays are solved, or the time is over. A
 /// round that the deadline ends early is trained on the rays that it has.
-pub fn learn<S: LearningSteps>(task: LearningTask, steps: &mut S) -> Result<LearningEnd, S::Error> {
-    let solved = closed_before(task.folder)?;
-    let counts = counts(task.first_rays, solved, task.campaign.rays());
-    let mut counts = counts.into_iter().peekable();
-    let mut trained = 0;
-    while let Some(rays) = counts.next() {
-        if let Some(end) = solve_first(rays, task, steps)? {
-            let tally = status(task.folder).map_err(VerificationError::from)?.tally;
-            let stopped = task.stop.load(Ordering::Relaxed);
-            // Rays with rows.
-            let known = tally.complete + tally.partial;
-            if !stopped && known >= LEAST_RAYS && tally.closed() > trained {
-                let round = round(tally.closed(), task, true, steps)?;
-                if round.is_within(task.accuracy) {
-                    return Ok(LearningEnd::Accurate);
-                }
-            }
-            return Ok(end);
-        }
-        let is_latest = counts.peek().is_none_or(|next| *next > solved);
-        let round = round(rays, task, is_latest, steps)?;
-        trained = rays;
-        if !is_latest {
-            continue;
-        }
-        if round.is_within(task.accuracy) {
-            return Ok(LearningEnd::Accurate);
-        }
-        if let Some(next) = counts.peek()
-            && task.deadline.is_some_and(|deadline| Instant::now() >= deadline)
-        {
-            let (left, what) = (next - rays, "rays of the next round");
-            return Ok(LearningEnd::Unfinished { left, what });
-        }
-    }
-    Ok(LearningEnd::AllRays)
-}
-
-/// Trains on the `rays` rays that are solved, and tests the weights.
-fn round<S: LearningSteps>(
-    rays: usize,
-    task: LearningTask,
+pub struct Learning<'a> {
+    task: LearningTask<'a>,
+    /// Number of rays that earlier runs have solved.
+    solved: usize,
+    /// Numbers of rays of the rounds that are left.
+    counts: VecDeque<usize>,
+    /// Number of rays of the last training.
+    trained: usize,
     is_latest: bool,
-    steps: &mut S,
-) -> Result<LearningRound, S::Error> {
-    let database = collected(task.folder)?;
-    let (weights, training_s) = steps.train(rays, &database)?;
-    let round = LearningRound::new(task, &weights, training_s)?;
-    let weights = weights.with_spot_check(round.check.clone());
-    steps.round(&round, weights, is_latest)?;
-    Ok(round)
+    end: Option<LearningEnd>,
 }
 
-/// Number of rays that earlier runs have solved.
-fn closed_before(folder: &Path) -> Result<usize, VerificationError> {
-    if !folder.exists() {
-        return Ok(0);
+impl<'a> Learning<'a> {
+    /// The rounds that earlier runs have left; nothing is solved yet.
+    pub fn new(task: LearningTask<'a>) -> Result<Self, VerificationError> {
+        let folder = task.folder;
+        let solved = if folder.exists() { status(folder)?.tally.closed() } else { 0 };
+        let counts = counts(task.first_rays, solved, task.campaign.rays()).into();
+        Ok(Self { task, solved, counts, trained: 0, is_latest: false, end: None })
     }
-    Ok(status(folder)?.tally.closed())
-}
 
-/// Solves the first `rays` rays of the campaign; the end of the rounds if some of them are left.
-fn solve_first<S: LearningSteps>(
-    rays: usize,
-    task: LearningTask,
-    steps: &mut S,
-) -> Result<Option<LearningEnd>, VerificationError> {
-    let options = RunOptions {
-        shard: Shard::WHOLE,
-        workers: task.workers,
-        time_limit: (task.deadline)
-            .map(|deadline| deadline.saturating_duration_since(Instant::now())),
-        retry: false,
-    };
-    let first = task.campaign.first_rays(rays);
-    let progress = &mut |progress: &Progress| steps.solving(progress);
-    let tally = run(&first, task.folder, task.solver, &options, task.stop, progress)?.tally;
-    if tally.to_run() > 0 {
-        let (left, what) = (tally.to_run(), "rays of this round");
-        return Ok(Some(LearningEnd::Unfinished { left, what }));
+    /// Solves the rays of the next round. Returns the rows of all rays so far, to train weights on,
+    /// with the number of their rays, or why there is no further round.
+    pub fn solve(
+        &mut self,
+        progress: &mut dyn FnMut(&Progress),
+    ) -> Result<Result<(usize, Database), LearningEnd>, VerificationError> {
+        if let Some(end) = self.end {
+            return Ok(Err(end));
+        }
+        let Some(mut rays) = self.counts.pop_front() else {
+            return Ok(Err(LearningEnd::AllRays));
+        };
+        let task = &self.task;
+        let options = RunOptions {
+            shard: Shard::WHOLE,
+            workers: task.workers,
+            time_limit: (task.deadline)
+                .map(|deadline| deadline.saturating_duration_since(Instant::now())),
+            retry: false,
+        };
+        let first = task.campaign.first_rays(rays);
+        let tally = run(&first, task.folder, task.solver, &options, task.stop, progress)?.tally;
+        self.is_latest = self.counts.front().is_none_or(|next| *next > self.solved);
+        if tally.to_run() > 0 {
+            let (left, what) = (tally.to_run(), "rays of this round");
+            let end = LearningEnd::Unfinished { left, what };
+            let tally = status(task.folder)?.tally;
+            let with_rows = tally.complete + tally.partial;
+            rays = tally.closed();
+            if task.stop.load(Ordering::Relaxed) || with_rows < LEAST_RAYS || rays <= self.trained {
+                return Ok(Err(end));
+            }
+            (self.end, self.is_latest) = (Some(end), true);
+        } else if tally.failed > 0 && tally.complete + tally.partial == 0 {
+            return Err(every_ray_failed(task.folder).into());
+        }
+        self.trained = rays;
+        Ok(Ok((rays, collected(task.folder)?)))
     }
-    if tally.failed > 0 && tally.complete + tally.partial == 0 {
-        let jobs = task.folder.join("jobs");
-        return Err(VerificationError::EveryRayFailed(jobs));
-    }
-    Ok(None)
-}
 
-impl LearningRound {
-    fn new(
-        task: LearningTask,
-        weights: &Surrogate,
+    /// Tests the weights of a round, whose training took `training_s`, and records the errors on
+    /// their card.
+    pub fn test(
+        &mut self,
+        weights: Surrogate,
         training_s: f64,
-    ) -> Result<Self, VerificationError> {
+    ) -> Result<(LearningRound, Surrogate), VerificationError> {
+        let task = &self.task;
         let tally = status(task.folder)?.tally;
         let inside = |row: &&Row| weights.contains(&row.design, &row.sample.deformation());
         let inside: Vec<Row> = task.spot.iter().filter(inside).cloned().collect();
-        let intervals = ErrorInterval::of(weights, &inside);
-        Ok(Self {
+        let intervals = ErrorInterval::of(&weights, &inside);
+        let round = LearningRound {
             rays: tally.closed(),
             complete: tally.complete,
             cpu_s: tally.cpu_seconds,
             training_s,
-            check: spot_check(weights, task.spot, &task.campaign.tier.to_string()),
-            intervals: intervals.and_then(|_| ErrorInterval::of(weights, task.spot)),
-        })
+            check: spot_check(&weights, task.spot, &task.campaign.tier.to_string()),
+            intervals: intervals.and_then(|_| ErrorInterval::of(&weights, task.spot)),
+            is_latest: self.is_latest,
+        };
+        let Accuracy { energy, forces } = task.accuracy;
+        let accurate =
+            (round.intervals).is_some_and(|[w, other]| w.error <= energy && other.error <= forces);
+        if accurate && self.is_latest {
+            self.end = Some(LearningEnd::Accurate);
+        } else if let Some(next) = self.counts.front()
+            && self.is_latest
+            && self.end.is_none()
+            && task.deadline.is_some_and(|deadline| Instant::now() >= deadline)
+        {
+            let (left, what) = (next - self.trained, "rays of the next round");
+            self.end = Some(LearningEnd::Unfinished { left, what });
+        }
+        let weights = weights.with_spot_check(round.check.clone());
+        Ok((round, weights))
     }
+}
 
-    fn is_within(&self, accuracy: Accuracy) -> bool {
-        let errors = self.intervals.map(|both| both.map(|found| found.error));
-        errors.is_some_and(|[w, forces]| w <= accuracy.energy && forces <= accuracy.forces)
+impl LearningRound {
+    /// The rounds, one a row; `-` if an error is unknown, without its interval if it has none.
+    pub fn table(rounds: &[Self]) -> Table {
+        let mut columns = Columns::new()
+            .column("rays", |round: &Self| round.rays)
+            .column("to their end", |round| {
+                Cell::percent(round.complete as f64 / round.rays as f64, 0)
+            })
+            .column("solver CPU\ns", |round| Cell::fixed(round.cpu_s, 0))
+            .column("training\ns", |round| Cell::fixed(round.training_s, 0))
+            .column("states", |round| round.check.errors.rows)
+            .column("inside", |round| round.check.inside);
+        let names = ["W\n%", "F_a\n%", "F_s\n%", "M\n%", "D\n%", "D_peak\n%"];
+        for (i, name) in names.into_iter().enumerate() {
+            columns =
+                columns.column(name, move |round| Cell::fixed(round.check.errors.percents()[i], 2));
+        }
+        columns
+            .column("forces\n%", |round| Cell::fixed(round.check.errors.forces_percent(), 2))
+            .column("W, 95 %", |round| interval(round, 0))
+            .column("forces, 95 %", |round| interval(round, 1))
+            .table(rounds)
     }
+}
+
+fn interval(round: &LearningRound, which: usize) -> String {
+    let intervals = round.intervals.as_ref();
+    intervals.map_or("-".into(), |both| {
+        let [low, high] = both[which].interval;
+        format!("{low:.2} to {high:.2}")
+    })
 }
 
 /// Numbers of rays of the rounds: each twice the one before, the `solved` rays of earlier runs, and

@@ -4,15 +4,14 @@
 //! | task | entry point |
 //! |---|---|
 //! | rows of a database from solved windows, and back | [`rows`], [`collected`], [`collected_windows`] |
-//! | the hinges of a sheet solved along their paths, against a surrogate | [`recorded_paths`], [`Replay`] |
 //! | a sheet in equilibrium with the forces of finite elements | [`balanced`], [`SheetErrors`] |
 //! | a design searched for with finite elements for its hinges | [`final_design`] |
 //! | the whole sheet, every window and every panel | [`SheetTask`], [`SheetCheck`] |
 //! | errors of weights at random states | [`spot_check`], [`SpotStates`] |
-//! | rays of a campaign solved in rounds until weights are accurate | [`learn`] |
+//! | rays of a campaign solved in rounds until weights are accurate | [`Learning`] |
 //!
 //! Windows are solved by a [`SolveService`](fe_driver::SolveService). One that fails ends no task:
-//! it is named in the result, which says what it leaves unknown. The example checks weights at
+//! it is named in the result, which states what it leaves unknown. The example checks weights at
 //! eight states:
 //!
 //! ```no_run
@@ -44,24 +43,20 @@
 //! # Ok::<_, Box<dyn std::error::Error>>(())
 //! ```
 
-#![warn(missing_docs)]
+#![cfg_attr(not(test), warn(unreachable_pub))]
 
 mod balanced_sheet;
 mod compared_states;
 mod distillation_states;
+mod element_windows;
 mod final_design;
 mod learning;
-mod networks;
 mod patch;
-mod recorded_path;
-mod replay;
-mod replay_page;
-mod round_table;
 mod rows;
 mod sheet_check;
-mod sheet_cost;
 mod sheet_errors;
 mod sheet_page;
+mod sheet_task;
 mod spot_check;
 mod verification_error;
 mod whole_sheet;
@@ -71,15 +66,13 @@ pub use balanced_sheet::{
 };
 pub use compared_states::{SCALE, spread_table};
 pub use distillation_states::distillation_states;
+pub use element_windows::{ElementWindows, UnsolvedHinge, verification_tier};
 pub use final_design::{final_design, most_cpu_seconds};
-pub use learning::{Accuracy, LearningEnd, LearningRound, LearningSteps, LearningTask, learn};
-pub use networks::verification_tier;
-pub use recorded_path::{RecordedPath, paths_of, recorded_paths};
-pub use replay::{ElementWindows, Replay, ReplayedHinge, UnsolvedHinge};
-pub use rows::{InvalidRow, collected, collected_windows, rows};
-pub use sheet_check::{HingeCheck, PanelCheck, SheetCheck, SheetTask, StateCheck};
-pub use sheet_cost::SheetCost;
+pub use learning::{Accuracy, Learning, LearningEnd, LearningRound, LearningTask};
+pub use rows::{collected, collected_windows, rows};
+pub use sheet_check::{HingeCheck, PanelCheck, SheetCheck, StateCheck};
 pub use sheet_errors::SheetErrors;
+pub use sheet_task::SheetTask;
 pub use spot_check::{SpotStates, spot_check};
-pub use verification_error::VerificationError;
-pub use whole_sheet::usual_sheet_tier;
+pub use verification_error::{VerificationError, every_ray_failed};
+pub use whole_sheet::{SheetCost, usual_sheet_tier};

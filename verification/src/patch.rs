@@ -1,11 +1,11 @@
 //! A part of a sheet that is too large to be solved as a whole: 3 x 3 panels, joined to panels that
 //! move as the hinge law predicts.
 
-use crate::verification_error::VerificationError;
+use crate::verification_error::{VerificationError, refused};
 use design::objective::design_problem::Deployment;
 use design::pattern::grid::Grid;
 use design::sheet::cut_sheet::Sheet;
-use fe_driver::{DrivenRim, Held, Keeping, Pulled, SheetProblem};
+use fe_driver::{DrivenRim, Held, OutOfPlaneRestraint, Pulled, SheetProblem};
 use mesher::{PlacedWindow, Side};
 
 /// Panels and hinges of a sheet, by their indices, in increasing order.
@@ -17,7 +17,7 @@ pub(crate) struct SheetPart {
 
 impl SheetPart {
     /// All of a sheet.
-    pub fn whole(sheet: &Sheet) -> Self {
+    pub(crate) fn whole(sheet: &Sheet) -> Self {
         Self {
             panels: (0..sheet.panels.len()).collect(),
             hinges: (0..sheet.hinges.len()).collect(),
@@ -25,10 +25,16 @@ impl SheetPart {
     }
 
     /// The panel [column, row] with those around it, and all their hinges.
-    pub fn around(sheet: &Sheet, [column, row]: [usize; 2]) -> Result<Self, VerificationError> {
+    pub(crate) fn around(
+        sheet: &Sheet,
+        [column, row]: [usize; 2],
+    ) -> Result<Self, VerificationError> {
         let Grid { m, n } = sheet.topology.grid;
         if column >= m || row >= n {
-            return Err(VerificationError::NoSuchPanel { column, row, m, n });
+            return Err(refused(format!(
+                "there is no panel [{column}, {row}]: the sheet has {m} columns and {n} rows, \
+                 counted from 0"
+            )));
         }
         let near =
             |panel: &usize| (panel % m).abs_diff(column) <= 1 && (panel / m).abs_diff(row) <= 1;
@@ -41,7 +47,7 @@ impl SheetPart {
     }
 
     /// This part of the whole sheet `whole`; the panels around it move as in the deployment.
-    pub fn of(
+    pub(crate) fn of(
         &self,
         whole: SheetProblem,
         deployment: &Deployment,
@@ -49,8 +55,11 @@ impl SheetPart {
         if self.panels.len() == whole.shape.panels.len() {
             return Ok(whole);
         }
-        if whole.keeping == Keeping::Nothing && whole.down.is_some() {
-            return Err(VerificationError::HangingPatch);
+        if whole.restraint == OutOfPlaneRestraint::Nothing && whole.down.is_some() {
+            return Err(refused(
+                "a patch of a hanging sheet must be held flat: its weight comes on before the \
+                 loads. Use --support held-flat",
+            ));
         }
         let place = |panel: usize| self.panels.binary_search(&panel).ok();
         let mut part = whole.clone();
@@ -61,7 +70,10 @@ impl SheetPart {
             .filter_map(|pulled| place(pulled.panel).map(|panel| Pulled { panel, ..*pulled }))
             .collect();
         if part.stroke.take().is_some() && !part.pulled.is_empty() {
-            return Err(VerificationError::DrivenPatch);
+            return Err(refused(
+                "the patch contains a panel that is pulled by a prescribed stroke, whose load it \
+                 does not know: choose another patch",
+            ));
         }
         part.shape.panels =
             (self.panels.iter()).map(|panel| whole.shape.panels[*panel].clone()).collect();

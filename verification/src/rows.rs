@@ -1,13 +1,9 @@
-//! Solved windows as rows of a database, and back. A database is a table of text and numbers; this
-//! is the only place where kinds of failure, tiers and versions are written to it and read from it.
+//! Solved windows as rows of a database, and back.
 
 use crate::verification_error::VerificationError;
-use dataset::{Database, Row, SplitPlan};
-use fe_driver::{
-    CollectedWindow, FailureKind, Solved, ToolVersions, UnknownFailure, finished_windows,
-};
+use dataset::{Database, Fidelity, Row, SplitPlan};
+use fe_driver::{CollectedWindow, Solved, finished_windows};
 use hinge::HingeSample;
-use mesher::{Tier, UnknownTier};
 use std::path::Path;
 
 /// Rows with these samples of a solved window.
@@ -16,19 +12,18 @@ pub fn rows(
     samples: impl IntoIterator<Item = HingeSample>,
 ) -> impl Iterator<Item = Row> {
     let (solve, record) = (&window.solve, &window.record);
-    let (problem, tools) = (&solve.problem, &solve.tools);
+    let problem = &solve.problem;
     let row = Row {
         job: window.id.clone(),
         design: problem.hinge.design,
         sample: HingeSample::default(),
-        failure: (record.failure).map_or(String::new(), |kind| kind.to_string()),
+        failure: record.failure,
         material: problem.material.name.clone(),
         material_hash: problem.material.law_hash(),
         settings_hash: solve.settings_hash(),
-        tier: problem.tier.to_string(),
-        solved_tier: record.tier.to_string(),
-        gmsh: tools.gmsh.clone(),
-        ccx: tools.ccx.clone(),
+        tier: Fidelity::Solved(problem.tier),
+        solved_tier: record.tier,
+        tools: solve.tools.clone(),
         cpu_s: record.cpu_seconds,
     };
     let of_sample = move |sample| Row { sample, ..row.clone() };
@@ -45,45 +40,18 @@ pub fn collected(folder: &Path) -> Result<Database, VerificationError> {
     Ok(Database::collect(all, &SplitPlan::default())?)
 }
 
-/// A row that is not of a solved window.
-#[derive(Debug, thiserror::Error)]
-#[error("job {job}: {reason}")]
-pub struct InvalidRow {
-    job: String,
-    reason: UnknownName,
-}
-
-#[derive(Debug, thiserror::Error)]
-enum UnknownName {
-    #[error(transparent)]
-    Failure(#[from] UnknownFailure),
-    #[error(transparent)]
-    Tier(#[from] UnknownTier),
-}
-
 /// The solves that the rows come from; `rows` must be sorted by job and lambda.
-pub fn collected_windows(rows: &[Row]) -> Result<Vec<CollectedWindow>, InvalidRow> {
+pub fn collected_windows(rows: &[Row]) -> Vec<CollectedWindow> {
     let window = |rows: &[Row]| {
-        let job = rows[0].job.clone();
-        collected_window(rows).map_err(|reason| InvalidRow { job, reason })
+        let row = rows[0].clone();
+        CollectedWindow {
+            id: row.job,
+            tools: row.tools,
+            solved_tier: row.solved_tier,
+            samples: rows.iter().map(|row| row.sample).collect(),
+            cpu_seconds: row.cpu_s,
+            failure: row.failure,
+        }
     };
     rows.chunk_by(|a, b| a.job == b.job).map(window).collect()
-}
-
-/// The solve that the rows come from; `rows` must not be empty.
-fn collected_window(rows: &[Row]) -> Result<CollectedWindow, UnknownName> {
-    let row = &rows[0];
-    let failure: Option<FailureKind> = match row.failure.as_str() {
-        "" => None,
-        name => Some(name.parse()?),
-    };
-    let solved_tier: Tier = row.solved_tier.parse()?;
-    Ok(CollectedWindow {
-        id: row.job.clone(),
-        tools: ToolVersions { gmsh: row.gmsh.clone(), ccx: row.ccx.clone() },
-        solved_tier,
-        samples: rows.iter().map(|row| row.sample).collect(),
-        cpu_seconds: row.cpu_s,
-        failure,
-    })
 }

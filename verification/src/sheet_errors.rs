@@ -3,10 +3,10 @@
 use crate::balanced_sheet::{
     BALANCED, BALANCED_FORCES, BalanceEnd, Balanced, Round, movements, size,
 };
+use analysis::error_budget::{Effect, ErrorBudget, ErrorCause};
 use design::hinge_law::DamageMeasure;
 use design::objective::design_problem::Deployment;
 use mesher::Tier;
-use scene::analysis::error_budget::{Cause, Effect, ErrorBudget};
 use serde::Serialize;
 use support::document::Document;
 use support::statistics::rms_and_maximum;
@@ -96,7 +96,7 @@ impl SheetErrors {
             load_factor: ends[0].load_factor,
             errors: errors.collect(),
             between,
-            budget: budget.map(|budget| budget.sum(Cause::is_seen_by_elements)),
+            budget: budget.map(|budget| budget.sum(ErrorCause::is_seen_by_elements)),
             outside: (0..hinges.len()).filter(leaves).collect(),
             hinges,
         }

@@ -4,13 +4,13 @@ use crate::rows::rows;
 use crate::verification_error::VerificationError;
 use dataset::Row;
 use fe_driver::{
-    Campaign, JobPart, SolveService, Solved, SpotPath, Unsolved, WindowProblem, WindowSolve,
-    finished_windows,
+    Campaign, JobPart, SolveService, Solved, SpotPath, WindowProblem, WindowSolve, finished_windows,
 };
 use hinge::{HingeSample, SheetMaterial};
 use mesher::Tier;
 use std::collections::HashMap;
 use std::path::Path;
+use support::fault::Fault;
 
 /// The states on paths that the solver followed to their end.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -18,7 +18,7 @@ pub struct SpotStates {
     /// One row a state; the rows of a window have one job.
     pub rows: Vec<Row>,
     /// The windows of the other paths.
-    pub unsolved: Vec<Unsolved>,
+    pub unsolved: Vec<Fault>,
     /// Number of states on the other paths, at which nothing is known.
     pub unknown_states: usize,
     /// Solver CPU time of the paths that it followed to their end (s).
@@ -81,7 +81,7 @@ impl SpotStates {
             }
             Err(unsolved) => {
                 self.unknown_states += path.fractions.len();
-                self.unsolved.push(*unsolved);
+                self.unsolved.push(unsolved);
             }
         }
     }

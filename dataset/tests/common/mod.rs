@@ -1,7 +1,9 @@
 //! Rows of ten jobs, each with five increments.
 
-use dataset::{Database, DatasetError, Row, SplitPlan};
+use dataset::{Database, DatasetError, Fidelity, Row, SplitPlan};
+use fe_driver::{FailureKind, ToolVersions};
 use hinge::{HingeConstants, HingeSample};
+use mesher::Tier;
 
 pub fn row(job: usize, lambda: f64) -> Row {
     Row {
@@ -17,14 +19,13 @@ pub fn row(job: usize, lambda: f64) -> Row {
             d: 0.01 * lambda,
             ..HingeSample::default()
         },
-        failure: if job == 2 { "diverged" } else { "" }.into(),
+        failure: (job == 2).then_some(FailureKind::Diverged),
         material: "film".into(),
         material_hash: "f11f".into(),
         settings_hash: "5e77".into(),
-        tier: "default".into(),
-        solved_tier: if job == 3 { "fine" } else { "default" }.into(),
-        gmsh: "4.8.4".into(),
-        ccx: "2.20".into(),
+        tier: Fidelity::default(),
+        solved_tier: if job == 3 { Tier::Fine } else { Tier::Default },
+        tools: ToolVersions { gmsh: "4.8.4".into(), ccx: "2.20".into() },
         cpu_s: 9.5,
     }
 }
@@ -38,16 +39,16 @@ pub fn rows() -> Vec<Row> {
 
 /// The first rays of [`rows`] on the mesh `reference`.
 pub fn finer(rays: usize) -> Vec<Row> {
-    on_tier("reference", &rows()[5 * (10 - rays)..])
+    on_tier(Tier::Reference, &rows()[5 * (10 - rays)..])
 }
 
 /// The rays on another mesh, each under another name.
-pub fn on_tier(tier: &str, rows: &[Row]) -> Vec<Row> {
+pub fn on_tier(tier: Tier, rows: &[Row]) -> Vec<Row> {
     let solved = |row: &Row| Row {
         job: format!("{tier}-{}", row.job),
         settings_hash: format!("5e77-{tier}"),
-        tier: tier.into(),
-        solved_tier: tier.into(),
+        tier: Fidelity::Solved(tier),
+        solved_tier: tier,
         cpu_s: 40.0,
         ..row.clone()
     };

@@ -1,18 +1,17 @@
 //! Databases of two meshes: some of the rays are there on a finer one too.
 
 use crate::common::{collect, finer, on_tier, row, rows};
-use dataset::{Collected, Database, DatasetError, FinerMesh, Part, Row, SplitPlan};
+use dataset::{Collected, Database, DatasetError, Fidelity, FinerMesh, Part, Row, SplitPlan};
+use mesher::Tier;
 
 fn both() -> Database {
     collect([rows(), finer(4)].concat()).unwrap()
 }
 
 /// The column in which rows must not differ, but do.
-fn mixed(rows: Vec<Row>) -> &'static str {
-    match collect(rows).unwrap_err() {
-        DatasetError::Mixed { column, .. } => column,
-        other => panic!("{other}"),
-    }
+fn mixed(rows: Vec<Row>) -> String {
+    let error = collect(rows).unwrap_err().to_string();
+    error.split([' ', '=']).nth(2).unwrap().to_owned()
 }
 
 #[test]
@@ -49,12 +48,12 @@ fn counts_split_and_domain_are_of_the_rays_alone() {
     // One of the rays on the finer mesh is partial, and one goes on beyond its end, where it would
     // widen the domain.
     let beyond = row(3, 1.2);
-    let further = on_tier("reference", std::slice::from_ref(&beyond));
+    let further = on_tier(Tier::Reference, std::slice::from_ref(&beyond));
     let database = collect([rows(), finer(4), further].concat()).unwrap();
     let (manifest, alone) = (database.manifest(), collect(rows()).unwrap());
     let wide = collect([rows(), vec![beyond]].concat()).unwrap();
     assert_ne!(wide.manifest().domain, alone.manifest().domain);
-    let expected = FinerMesh { tier: "reference".into(), rays: 4, cpu_s: 160.0 };
+    let expected = FinerMesh { tier: Fidelity::Solved(Tier::Reference), rays: 4, cpu_s: 160.0 };
     assert_eq!(manifest.finer, Some(expected));
     assert_eq!(alone.manifest().finer, None);
     assert_eq!((manifest.rows, database.rows().len()), (71, 71));
@@ -83,16 +82,16 @@ fn the_finer_mesh_has_fewer_rays_or_longer_solves() {
     let finer_rays = |rows: Vec<Row>| {
         let database = collect(rows).unwrap();
         let finer = database.manifest().finer.clone().unwrap();
-        assert_eq!(finer.tier, "reference");
+        assert_eq!(finer.tier, Fidelity::Solved(Tier::Reference));
         (finer.rays, database.on_both_meshes().len())
     };
     // A ray that failed on the other mesh has no use.
-    let one_more = || on_tier("reference", &[row(10, 1.0)]);
+    let one_more = || on_tier(Tier::Reference, &[row(10, 1.0)]);
     assert_eq!(finer_rays([rows(), finer(4), one_more()].concat()), (5, 4));
     assert_eq!(finer_rays([rows(), finer(10)].concat()), (10, 10));
 
     assert_eq!(mixed([rows(), one_more()].concat()), "tier");
-    let third = on_tier("tiny", &rows()[..5]);
+    let third = on_tier(Tier::Tiny, &rows()[..5]);
     assert_eq!(mixed([rows(), finer(4), third].concat()), "tier");
     let as_long = finer(10).into_iter().map(|row| Row { cpu_s: 9.5, ..row });
     assert_eq!(mixed(rows().into_iter().chain(as_long).collect()), "tier");
@@ -117,12 +116,12 @@ fn the_rays_of_both_meshes_are_straight_or_bend_alike() {
 
 #[test]
 fn the_rows_of_a_ray_are_of_one_mesh() {
-    for change in ["default", "reference"] {
+    for change in [Tier::Default, Tier::Reference].map(Fidelity::Solved) {
         let mut both = [rows(), finer(4)].concat();
         let other = both.iter_mut().find(|row| row.tier != change).unwrap();
-        other.tier = change.into();
+        other.tier = change;
         let column = mixed(both);
-        assert!(["tier", "settings_hash"].contains(&column), "{column}");
+        assert!(["tier", "settings_hash"].contains(&&*column), "{column}");
     }
 }
 

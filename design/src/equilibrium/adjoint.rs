@@ -1,7 +1,8 @@
 //! The adjoint of the equilibria; (20). With g_i the gradient of the objective with respect to q_i,
 //!
 //! ```text
-//! H_i lambda_i = g_i,     dL/dp -= sum_i sum_h d/dp [ grad W(eps_h(q_i, p); p) . D eps_h(q_i, p)[lambda_i] ]
+//! H_i lambda_i = g_i,     dL/dp -= sum_i sum_h d/dp [ grad W(eps_h(q_i, p); p) . D eps_h(q_i,
+//! p)[lambda_i] ]
 //! ```
 //!
 //! which is local to each hinge in p = (attachment point, reference points, angle of e_sec, w_lig,
@@ -16,18 +17,19 @@
 //! function that depends on them, by g_r, lambda is -g_r there, and the equations of the free
 //! degrees of freedom have the right-hand side g_i + H g_r.
 
-use crate::equilibrium::corrector::Branch;
-use crate::equilibrium::hinged_sheet::HingedSheet;
-use crate::equilibrium::load_step::LoadStep;
-use crate::equilibrium::potential::Stage;
-use crate::equilibrium::refined_solve::refined_solve;
-use crate::equilibrium::solver::EquilibriumSolver;
-use crate::equilibrium::weight::add_weight_gradient;
-use crate::geometry::plane::{add, complex};
-use crate::hinge_law::{HingeGradient, Order};
-use crate::sheet::cut_sheet::SheetGradient;
-use crate::sheet::kinematics::{HingeGeometryGradient, HingeMotion};
-use crate::sheet::panel_vectors::{add_at_hinge, at_hinge};
+use crate::{
+    equilibrium::{
+        corrector::Branch, hinged_sheet::HingedSheet, load_step::LoadStep, potential::PathStage,
+        refined_solve::refined_solve, solver::EquilibriumSolver, weight::add_weight_gradient,
+    },
+    geometry::plane::{add, complex},
+    hinge_law::{HingeGradient, Order},
+    sheet::{
+        cut_sheet::SheetGradient,
+        kinematics::{HingeGeometryGradient, HingeMotion},
+        panel_vectors::{add_at_hinge, at_hinge},
+    },
+};
 use std::borrow::Cow;
 use support::vectors::{self, dot};
 
@@ -46,16 +48,16 @@ pub struct SingularTangent {
 pub(crate) struct PathGradient<'a> {
     /// `by_states[h][i]`: in hinge h at load step i.
     pub by_states: &'a [Vec<HingeGradient>],
-    /// In the load factor of the last load step; read under displacement control only.
+    /// Gradient in the load factor of the last load step; read under displacement control only.
     pub by_load_factor: f64,
-    /// In the last configuration.
+    /// Gradient in the last configuration.
     pub by_last: Vec<[f64; 3]>,
-    /// In the forces (F_x, F_y, M) of the supports in the last state; zero at free degrees of
-    /// freedom. `None` if it depends on none.
+    /// Gradient in the forces (F_x, F_y, M) of the supports in the last state; zero at free degrees
+    /// of freedom. `None` if it depends on none.
     pub by_reactions: Option<Vec<[f64; 3]>>,
 }
 
-/// What the adjoint computes besides the gradient with respect to the sheet.
+/// Results of the adjoint other than the gradient in the sheet.
 pub(crate) struct AdjointSums {
     /// Gradient with respect to (F_x, F_y, M) of every panel at full load.
     pub loads: Vec<[f64; 3]>,
@@ -72,6 +74,7 @@ pub(crate) struct AdjointSums {
 /// The gradient, with respect to the sheet, of a function of the path: the direct dependence
 /// through the hinge states, and the dependence through the equilibria. The result is added to
 /// `by_sheet`.
+#[expect(clippy::too_many_lines, reason = "one derivation, read from top to bottom")]
 pub(crate) fn adjoint(
     solver: &EquilibriumSolver,
     sheet: HingedSheet,
@@ -141,9 +144,8 @@ pub(crate) fn adjoint(
             let weights = std::array::from_fn(|c| by_state.state[c] - against(energy.tangent[c]));
             let turning = motions[h].rates_geometry_gradient(energy.forces, virtual_motion);
             let stretching = motions[h].geometry_gradient(weights);
-            let panels = [hinge.panel_a(), hinge.panel_b()];
-            add_geometry(by_sheet, h, panels, &stretching, 1.0);
-            add_geometry(by_sheet, h, panels, &turning, -1.0);
+            add_geometry(by_sheet, h, hinge.panels(), &stretching, 1.0);
+            add_geometry(by_sheet, h, hinge.panels(), &turning, -1.0);
             if sheet.law.has_constants() {
                 let eps = step.deformations[h].to_array();
                 (0..3).for_each(|c| sums.constants[h][c] -= eps[c] * rates[c]);
@@ -174,7 +176,7 @@ fn held_motion(
 ) -> HeldMotion {
     let mut motion = vec![[0.0; 3]; by_reactions.len()];
     add_motions(&mut motion, by_reactions, -1.0);
-    let potential = Branch::new(solver, sheet, Stage::Actuation).potential(1.0);
+    let potential = Branch::new(solver, sheet, PathStage::Actuation).potential(1.0);
     let state = potential.state(step.configuration.clone());
     let state = state.expect("the energy of an equilibrium is finite");
     HeldMotion { resistance: potential.resistance(&state, &motion), motion }

@@ -13,16 +13,20 @@
 //!
 //! The increments do not depend on the load steps, which are read off the path between them.
 
-use crate::equilibrium::corrector::{Branch, Corrected, Point};
-use crate::equilibrium::displacement_control::HeldFactor;
-use crate::equilibrium::hinged_sheet::HingedSheet;
-use crate::equilibrium::load_step::DescentEnd;
-use crate::equilibrium::newton::{Failure, Minimum};
-use crate::equilibrium::potential::{Stage, State, moved};
-use crate::equilibrium::predictor::{Arc, PathPoint, bisected};
-use crate::equilibrium::solver::EquilibriumSolver;
-use crate::hinge_law::Order;
-use crate::sheet::kinematics::Configuration;
+use crate::{
+    equilibrium::{
+        corrector::{Branch, Corrected, Point},
+        displacement_control::HeldFactor,
+        hinged_sheet::HingedSheet,
+        load_step::DescentEnd,
+        newton::{Failure, Minimum},
+        potential::{PathStage, PotentialState, moved},
+        predictor::{PathArc, PathPoint, bisected},
+        solver::EquilibriumSolver,
+    },
+    hinge_law::Order,
+    sheet::kinematics::Configuration,
+};
 
 /// Length of the first increment of a branch. Lengths are in rad, or in panel sizes for hinge
 /// translations.
@@ -58,7 +62,7 @@ pub(crate) struct Follower<'a> {
     pub branch: Branch<'a>,
     pub last: Point,
     /// The increment that ends in `last`; `None` at the beginning of a branch.
-    pub arc: Option<Arc>,
+    pub arc: Option<PathArc>,
     /// Ratio of lengths by the rates at the two ends of the arc.
     stretch: f64,
     /// Length of the next increment.
@@ -76,21 +80,21 @@ pub(crate) struct Follower<'a> {
 impl<'a> Follower<'a> {
     /// The beginning of the path, an equilibrium at the load parameter 0; `None` if its energy is
     /// not finite. A start that is not stable is left.
-    pub fn new(
+    pub(crate) fn new(
         solver: &'a EquilibriumSolver,
         sheet: HingedSheet<'a>,
-        stage: Stage,
+        stage: PathStage,
         start: Configuration,
     ) -> Option<Self> {
         let mut branch = Branch::new(solver, sheet, stage);
         let potential = branch.potential(0.0);
         let state = potential.state(start.clone())?;
-        let place = PathPoint { at: 0.0, configuration: start, forces: state.forces() };
+        let position = PathPoint { at: 0.0, configuration: start, forces: state.forces() };
         let (_, factor) = branch.factor(&potential, &state);
-        let stable = factor.filter(|factor| factor.unstable_directions() == 0);
+        let stable = factor.filter(HeldFactor::is_stable);
         let mut follower = Self {
             branch,
-            last: Point::still(place.clone()),
+            last: Point::still(position.clone()),
             arc: None,
             stretch: 1.0,
             length: FIRST,
@@ -101,39 +105,39 @@ impl<'a> Follower<'a> {
         };
         let begin = match stable {
             Some(factor) => Some(follower.branch.exact(0.0, state, factor)),
-            None => follower.branch.settled(place.clone()).ok(),
+            None => follower.branch.settled(position.clone()).ok(),
         };
         if let Some(begin) = begin {
-            let moved = follower.branch.distance(&begin.state, &begin.place, &place);
+            let moved = follower.branch.distance(&begin.state, &begin.position, &position);
             follower.jumps = usize::from(moved > LEAP);
             follower.restart(begin);
         }
         Some(follower)
     }
 
-    /// The predicted place at a length ahead.
+    /// The predicted position at a length ahead.
     fn ahead(&self, length: f64) -> PathPoint {
-        let mut place = match &self.arc {
-            Some(arc) => arc.place(arc.length + length * self.stretch),
-            None => PathPoint::sum([(1.0, &self.last.place), (length, &self.last.rate)]),
+        let mut position = match &self.arc {
+            Some(arc) => arc.position(arc.length + length * self.stretch),
+            None => PathPoint::sum([(1.0, &self.last.position), (length, &self.last.rate)]),
         };
         if self.at_ahead(length) >= 1.0 {
-            place.at = 1.0;
+            position.at = 1.0;
         }
-        self.branch.hold(&mut place, &self.last.place);
-        place
+        self.branch.hold(&mut position, &self.last.position);
+        position
     }
 
     fn at_ahead(&self, length: f64) -> f64 {
         match &self.arc {
             Some(arc) => arc.at(arc.length + length * self.stretch),
-            None => self.last.place.at + length * self.last.rate.at,
+            None => self.last.position.at + length * self.last.rate.at,
         }
     }
 
     /// One increment, or a jump from the end of the branch to another; the failure where the path
     /// ends.
-    pub fn advance(&mut self) -> Result<(), Failure> {
+    pub(crate) fn advance(&mut self) -> Result<(), Failure> {
         match self.increment() {
             Some(()) => Ok(()),
             None => self.skip_ahead(),
@@ -176,9 +180,9 @@ impl<'a> Follower<'a> {
             let stable = self.branch.is_stable(&mut corrected);
             let point = self.branch.point(corrected, Some(&self.last.rate));
             let fold = point.rate.at <= 0.0;
-            // Between stable states the load falls only past limit points between them, or, by
+            // The load between stable states falls only past limit points between them, or, by
             // less, by rounding.
-            let fallen = self.last.place.at - point.place.at > NOWHERE;
+            let fallen = self.last.position.at - point.position.at > NOWHERE;
             let passed = stable && !fold && fallen && length > RESOLVED[0];
             if !stable || passed {
                 let resolution = RESOLVED[usize::from(!fold && !passed)];
@@ -201,14 +205,14 @@ impl<'a> Follower<'a> {
         }
     }
 
-    pub fn is_exhausted(&self) -> bool {
+    fn is_exhausted(&self) -> bool {
         let solver = self.branch.solver;
         self.tried > solver.settings.max_increments || solver.is_stopped()
     }
 
     /// Restarts from a stable equilibrium at a higher load; the first failure if there is none.
     fn skip_ahead(&mut self) -> Result<(), Failure> {
-        let from = self.last.place.clone();
+        let from = self.last.position.clone();
         let mut first = None;
         let partial = SKIPPED.map(|ahead| from.at + ahead);
         for at in partial.into_iter().filter(|at| *at < 1.0).chain([1.0]) {
@@ -236,26 +240,26 @@ impl<'a> Follower<'a> {
 
     /// The arc from the last point to another, and the ratio of lengths by the rates at its two
     /// ends.
-    fn arc_to(&self, point: &Point) -> (Arc, f64) {
+    fn arc_to(&self, point: &Point) -> (PathArc, f64) {
         let last = &self.last;
-        let product = |place: &PathPoint| {
-            (self.branch).product(&last.rate.configuration, &place.configuration)
+        let product = |position: &PathPoint| {
+            (self.branch).product(&last.rate.configuration, &position.configuration)
         };
-        let along = |place: &PathPoint| product(place) / product(&last.rate);
-        let change = PathPoint::sum([(1.0, &point.place), (-1.0, &last.place)]);
+        let along = |position: &PathPoint| product(position) / product(&last.rate);
+        let change = PathPoint::sum([(1.0, &point.position), (-1.0, &last.position)]);
         let (length, stretch) =
             if last.is_still() { (change.at, 1.0) } else { (along(&change), along(&point.rate)) };
-        let arc = Arc {
-            from: last.place.clone(),
+        let arc = PathArc {
+            from: last.position.clone(),
             from_rate: last.rate.clone(),
-            to: point.place.clone(),
+            to: point.position.clone(),
             to_rate: PathPoint::sum([(1.0 / stretch, &point.rate)]),
             length,
         };
         (arc, stretch)
     }
 
-    fn accept(&mut self, point: Point, (arc, stretch): (Arc, f64), next: f64) {
+    fn accept(&mut self, point: Point, (arc, stretch): (PathArc, f64), next: f64) {
         let left = |(distance, resolution)| ((distance - arc.length) / stretch, resolution);
         self.unstable = self.unstable.map(left).filter(|(distance, _)| *distance > 0.0);
         let before = std::mem::replace(&mut self.last, point);
@@ -270,7 +274,7 @@ impl<'a> Follower<'a> {
     /// The jump that dead loads cause at the end of the branch; `beyond` is the unstable point next
     /// to it.
     fn jump(&mut self, beyond: Point, fold: bool) -> Option<()> {
-        let start = if fold { self.beyond_limit_point(&beyond) } else { beyond.place };
+        let start = if fold { self.beyond_limit_point(&beyond) } else { beyond.position };
         let start = self.step_past_returns(start);
         self.restart_on_stable_branch(start, fold).ok()
     }
@@ -283,29 +287,30 @@ impl<'a> Follower<'a> {
         limit_point: bool,
     ) -> Result<(), Failure> {
         let landed = self.branch.settled(start)?;
-        let moved = (self.branch).distance(&landed.state, &landed.place, &self.last.place);
+        let moved = (self.branch).distance(&landed.state, &landed.position, &self.last.position);
         self.jumps += usize::from(limit_point || moved > LEAP);
         self.restart(landed);
         Ok(())
     }
 
-    /// A place at the load of the limit point, past it: there the unstable equilibrium is the ridge
-    /// of the energy, from which the sheet moves away. Nearer to the limit point if panels overlap.
+    /// A position at the load of the limit point, past it: there the unstable equilibrium is the
+    /// ridge of the energy, from which the sheet moves away. Nearer to the limit point if panels
+    /// overlap.
     fn beyond_limit_point(&self, beyond: &Point) -> PathPoint {
         let (arc, _) = self.arc_to(beyond);
         let top = bisected(0.0, arc.length, |length| arc.slope(length) > 0.0);
-        let at = arc.at(top).max(self.last.place.at);
-        let mut places = [1.0, 0.3, 0.1, 0.0].map(|part| {
-            let mut place = arc.place(top + part * (arc.length - top));
-            place.at = at;
-            self.branch.hold(&mut place, &self.last.place);
-            place
+        let at = arc.at(top).max(self.last.position.at);
+        let mut positions = [1.0, 0.3, 0.1, 0.0].map(|part| {
+            let mut position = arc.position(top + part * (arc.length - top));
+            position.at = at;
+            self.branch.hold(&mut position, &self.last.position);
+            position
         });
-        let finite = |place: &PathPoint| self.branch.state(place, Order::Forces).is_some();
-        let found = places.iter().position(finite).unwrap_or(0);
-        places.swap(0, found);
-        let [place, ..] = places;
-        place
+        let finite = |position: &PathPoint| self.branch.state(position, Order::Forces).is_some();
+        let found = positions.iter().position(finite).unwrap_or(0);
+        positions.swap(0, found);
+        let [position, ..] = positions;
+        position
     }
 
     /// A start ahead of a jump, the farther the more jumps have ended where they began.
@@ -316,7 +321,7 @@ impl<'a> Follower<'a> {
         let (few, first) = RETURNS;
         if returns > few {
             start.at = (start.at + first * 10f64.powi(returns - few)).min(1.0);
-            self.branch.hold(&mut start, &self.last.place);
+            self.branch.hold(&mut start, &self.last.position);
         }
         start
     }
@@ -328,7 +333,7 @@ impl<'a> Follower<'a> {
     }
 
     /// Begins a branch at the last point.
-    pub fn begin(&mut self) {
+    pub(crate) fn begin(&mut self) {
         (self.arc, self.stretch) = (None, 1.0);
         (self.length, self.unstable) = (FIRST, None);
     }
@@ -336,8 +341,8 @@ impl<'a> Follower<'a> {
 
 impl Branch<'_> {
     /// The distance of the path from the middle of an arc, by factors of a tangent near its end.
-    fn midpoint_error(&self, arc: &Arc, point: &Point) -> f64 {
-        let middle = arc.place(0.5 * arc.length);
+    fn midpoint_error(&self, arc: &PathArc, point: &Point) -> f64 {
+        let middle = arc.position(0.5 * arc.length);
         let potential = self.potential(middle.at);
         potential
             .state_up_to(middle.configuration, Order::Forces)
@@ -350,10 +355,10 @@ impl Branch<'_> {
             })
     }
 
-    /// Whether a corrected place is stable. If the tangent near it is not, its own decides.
+    /// Whether a corrected position is stable. If the tangent near it is not, its own decides.
     fn is_stable(&mut self, corrected: &mut Corrected) -> bool {
-        if corrected.factor.unstable_directions() > 0 {
-            let PathPoint { at, configuration, .. } = corrected.place.clone();
+        if !corrected.factor.is_stable() {
+            let PathPoint { at, configuration, .. } = corrected.position.clone();
             let potential = self.potential(at);
             if let Some(state) = potential.state(configuration)
                 && let (_, Some(factor)) = self.factor(&potential, &state)
@@ -361,22 +366,22 @@ impl Branch<'_> {
                 *corrected = Corrected { error: corrected.error, ..self.exact(at, state, factor) };
             }
         }
-        corrected.factor.unstable_directions() == 0
+        corrected.factor.is_stable()
     }
 
-    /// The stable equilibrium that is reached downhill from a place at constant load.
-    pub fn settled(&mut self, start: PathPoint) -> Result<Corrected, Failure> {
+    /// The stable equilibrium that is reached downhill from a position at constant load.
+    pub(crate) fn settled(&mut self, start: PathPoint) -> Result<Corrected, Failure> {
         let Minimum { state, factor, .. } = self.minimum(&start)?;
-        match factor.filter(|factor| factor.unstable_directions() == 0) {
+        match factor.filter(HeldFactor::is_stable) {
             Some(factor) => Ok(self.exact(start.at, state, factor)),
             None => Err(Failure { residual: state.residual, end: DescentEnd::Stagnated }),
         }
     }
 
     /// An equilibrium with the factors of its own tangent.
-    fn exact(&self, at: f64, state: State, factor: HeldFactor) -> Corrected {
+    fn exact(&self, at: f64, state: PotentialState, factor: HeldFactor) -> Corrected {
         Corrected {
-            place: PathPoint {
+            position: PathPoint {
                 at,
                 configuration: state.configuration.clone(),
                 forces: state.forces(),
@@ -388,16 +393,25 @@ impl Branch<'_> {
         }
     }
 
-    /// The minimum of the potential that is reached downhill from a place at constant load.
-    pub fn minimum(&mut self, start: &PathPoint) -> Result<Minimum, Failure> {
+    /// The stable equilibrium near a predicted position, at its load, or else the minimum that is
+    /// reached downhill from it.
+    pub(crate) fn stable_near(&mut self, start: &PathPoint) -> Result<Minimum, Failure> {
+        match self.balanced(start.clone()).filter(Minimum::is_stable) {
+            Some(found) => Ok(found),
+            None => self.minimum(start),
+        }
+    }
+
+    /// The minimum of the potential that is reached downhill from a position at constant load.
+    pub(crate) fn minimum(&mut self, start: &PathPoint) -> Result<Minimum, Failure> {
         let potential = self.potential(start.at);
         let configuration = start.configuration.clone();
         potential.minimise(configuration, &mut self.effort)
     }
 
-    /// The maximum rotation or hinge translation between two places, in the frames of a state near
-    /// them.
-    pub fn distance(&self, near: &State, to: &PathPoint, from: &PathPoint) -> f64 {
+    /// The maximum rotation or hinge translation between two positions, in the frames of a state
+    /// near them.
+    pub(crate) fn distance(&self, near: &PotentialState, to: &PathPoint, from: &PathPoint) -> f64 {
         let motion = moved(&to.configuration, &from.configuration, -1.0);
         self.potential(from.at).length(near, &motion)
     }

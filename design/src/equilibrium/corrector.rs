@@ -1,7 +1,7 @@
 //! Equilibria on a branch of the path: prediction corrected by Newton's method, in the plane normal
 //! to the path or at a given load.
 //!
-//! With d_0 the correction at constant load, q' the rate with the load and p the rate along the
+//! Let d_0 be the correction at constant load, q' the rate with the load and p the rate along the
 //! path, the correction in the plane is
 //!
 //! ```text
@@ -11,14 +11,18 @@
 //! which is regular where the load has a maximum along the path. One factorisation serves as many
 //! corrections as it contracts fast enough.
 
-use crate::equilibrium::displacement_control::HeldFactor;
-use crate::equilibrium::hinged_sheet::HingedSheet;
-use crate::equilibrium::load_step::Effort;
-use crate::equilibrium::newton::Minimum;
-use crate::equilibrium::potential::{Potential, Stage, State, moved};
-use crate::equilibrium::predictor::PathPoint;
-use crate::equilibrium::solver::EquilibriumSolver;
-use crate::hinge_law::Order;
+use crate::{
+    equilibrium::{
+        displacement_control::HeldFactor,
+        hinged_sheet::HingedSheet,
+        load_step::Effort,
+        newton::Minimum,
+        potential::{PathStage, Potential, PotentialState, moved},
+        predictor::PathPoint,
+        solver::EquilibriumSolver,
+    },
+    hinge_law::Order,
+};
 
 /// Maximum number of corrections.
 const CORRECTIONS: usize = 10;
@@ -43,7 +47,7 @@ const RATE: (f64, usize) = (1e-3, 3);
 /// The equilibria of a sheet under the loads, stroke and support motions of a solver.
 pub(crate) struct Branch<'a> {
     pub solver: &'a EquilibriumSolver,
-    pub stage: Stage,
+    pub stage: PathStage,
     pub sheet: HingedSheet<'a>,
     /// Lower bound of the force that residuals are relative to (N).
     pub force: f64,
@@ -56,10 +60,10 @@ pub(crate) struct Branch<'a> {
 
 /// An equilibrium close enough to the path to follow it.
 pub(crate) struct Corrected {
-    pub place: PathPoint,
-    /// The state at the place, the factors of a tangent near it, and the rate with the load
+    pub position: PathPoint,
+    /// The state at the position, the factors of a tangent near it, and the rate with the load
     /// parameter by them.
-    pub state: State,
+    pub state: PotentialState,
     pub factor: HeldFactor,
     pub rate: Vec<[f64; 3]>,
     /// Length of the first correction: the error of the prediction (rad, or panel sizes).
@@ -67,12 +71,12 @@ pub(crate) struct Corrected {
 }
 
 struct Linearised {
-    state: State,
+    state: PotentialState,
     values: Vec<f64>,
     factor: HeldFactor,
 }
 
-struct Correction {
+struct NewtonCorrection {
     at: f64,
     motion: Vec<[f64; 3]>,
     /// rad, or panel sizes
@@ -80,33 +84,37 @@ struct Correction {
 }
 
 pub(crate) struct Point {
-    pub place: PathPoint,
+    pub position: PathPoint,
     /// The rate along the path; the fastest hinge moves by one (rad, or panel sizes).
     pub rate: PathPoint,
     /// Maximum rate of rotation (rad).
     pub turning: f64,
-    /// Factors of a tangent near the place.
+    /// Factors of a tangent near the position.
     pub factor: Option<HeldFactor>,
 }
 
 impl Point {
-    /// A place without a known rate: from there the path goes on by its load parameter.
-    pub fn still(place: PathPoint) -> Self {
+    /// A position without a known rate: from there the path goes on by its load parameter.
+    pub(crate) fn still(position: PathPoint) -> Self {
         let rate = PathPoint {
             at: 1.0,
-            configuration: vec![[0.0; 3]; place.configuration.len()],
-            forces: vec![[0.0; 3]; place.forces.len()],
+            configuration: vec![[0.0; 3]; position.configuration.len()],
+            forces: vec![[0.0; 3]; position.forces.len()],
         };
-        Self { place, rate, turning: 0.0, factor: None }
+        Self { position, rate, turning: 0.0, factor: None }
     }
 
-    pub fn is_still(&self) -> bool {
+    pub(crate) fn is_still(&self) -> bool {
         self.rate.configuration.as_flattened().iter().all(|rate| *rate == 0.0)
     }
 }
 
 impl<'a> Branch<'a> {
-    pub fn new(solver: &'a EquilibriumSolver, sheet: HingedSheet<'a>, stage: Stage) -> Self {
+    pub(crate) fn new(
+        solver: &'a EquilibriumSolver,
+        sheet: HingedSheet<'a>,
+        stage: PathStage,
+    ) -> Self {
         let area: f64 = sheet.sheet.panels.iter().map(|panel| panel.area).sum();
         let mut branch = Self {
             solver,
@@ -125,7 +133,7 @@ impl<'a> Branch<'a> {
     }
 
     /// The potential at a point of the path.
-    pub fn potential(&self, at: f64) -> Potential<'a> {
+    pub(crate) fn potential(&self, at: f64) -> Potential<'a> {
         Potential {
             solver: self.solver,
             stage: self.stage,
@@ -136,45 +144,46 @@ impl<'a> Branch<'a> {
         }
     }
 
-    /// Moves supports and stroke of a place to their values at its load parameter; their values in
-    /// `known` must be right.
-    pub fn hold(&self, place: &mut PathPoint, known: &PathPoint) {
+    /// Moves supports and stroke of a position to their values at its load parameter; their values
+    /// in `known` must be right.
+    pub(crate) fn hold(&self, position: &mut PathPoint, known: &PathPoint) {
         let ahead = match self.stage {
-            Stage::Weight => 0.0,
-            Stage::Actuation => place.at - known.at,
+            PathStage::Weight => 0.0,
+            PathStage::Actuation => position.at - known.at,
         };
         for support in &self.solver.supports {
             let (panel, dof) = (support.panel, support.dof.index());
-            place.configuration[panel][dof] =
+            position.configuration[panel][dof] =
                 known.configuration[panel][dof] + ahead * support.value;
         }
         if let Some((stroke, full)) = &self.solver.drive {
-            let of =
-                |place: &PathPoint| stroke.of(&self.solver.pattern.gather(&place.configuration));
-            let short = of(known) + ahead * full - of(place);
+            let of = |position: &PathPoint| {
+                stroke.of(&self.solver.pattern.gather(&position.configuration))
+            };
+            let short = of(known) + ahead * full - of(position);
             let motion = self.solver.pattern.spread(&stroke.motion(short));
-            place.configuration = moved(&place.configuration, &motion, 1.0);
+            position.configuration = moved(&position.configuration, &motion, 1.0);
         }
     }
 
-    /// The equilibrium near a predicted place: in the plane normal to the rate `normal`, or at the
-    /// load of the place. Otherwise the error of the prediction if that is larger than `limit`,
-    /// infinite if the corrections do not converge.
-    pub fn close(
+    /// The equilibrium near a predicted position: in the plane normal to the rate `normal`, or at
+    /// the load of the position. Otherwise the error of the prediction if that is larger than
+    /// `limit`, infinite if the corrections do not converge.
+    pub(crate) fn close(
         &mut self,
-        mut place: PathPoint,
+        mut position: PathPoint,
         normal: Option<&PathPoint>,
         limit: f64,
     ) -> Result<Corrected, f64> {
         const DIVERGED: f64 = f64::INFINITY;
         let (mut error, mut before) = (None, DIVERGED);
         for _ in 0..CORRECTIONS {
-            let near = self.state(&place, Order::Tangent).and_then(|state| {
-                let expected = Some(place.forces.clone());
-                self.linearised(place.at, State { expected, ..state })
+            let near = self.state(&position, Order::Tangent).and_then(|state| {
+                let expected = Some(position.forces.clone());
+                self.linearised(position.at, PotentialState { expected, ..state })
             });
             let mut near = near.ok_or(DIVERGED)?;
-            let rate = self.rate(&self.potential(place.at), &near.state, &near.factor);
+            let rate = self.rate(&self.potential(position.at), &near.state, &near.factor);
             let in_plane = normal.map(|normal| (&rate[..], normal));
             let mut last = self.correction(&near.state, &near.factor, in_plane);
             if last.length.is_nan() || last.length > DIVERGENCE * before {
@@ -185,24 +194,24 @@ impl<'a> Branch<'a> {
                 return Err(error);
             }
             before = last.length;
-            place = self.corrected(place.at, &near.state, &last);
+            position = self.corrected(position.at, &near.state, &last);
             // The other corrections need only the forces of the hinges.
             let mut next = before;
             while next > CLOSE {
-                let state = self.state(&place, Order::Forces).ok_or(DIVERGED)?;
+                let state = self.state(&position, Order::Forces).ok_or(DIVERGED)?;
                 near.state = state.with_stiffness_of(&near.state);
                 let again = self.correction(&near.state, &near.factor, in_plane);
                 if again.length.is_nan() || again.length > CONTRACTION * last.length {
                     break;
                 }
-                place = self.corrected(place.at, &near.state, &again);
+                position = self.corrected(position.at, &near.state, &again);
                 next = again.length * again.length / last.length;
                 last = again;
             }
             if next <= CLOSE {
-                let state = self.state(&place, Order::Tangent).ok_or(DIVERGED)?;
+                let state = self.state(&position, Order::Tangent).ok_or(DIVERGED)?;
                 return Ok(Corrected {
-                    place: PathPoint { forces: state.forces(), ..place },
+                    position: PathPoint { forces: state.forces(), ..position },
                     state,
                     factor: near.factor,
                     rate,
@@ -213,17 +222,18 @@ impl<'a> Branch<'a> {
         Err(DIVERGED)
     }
 
-    /// The equilibrium near a predicted place, at its load, with a residual within the tolerance.
-    pub fn balanced(&mut self, mut place: PathPoint) -> Option<Minimum> {
+    /// The equilibrium near a predicted position, at its load, with a residual within the
+    /// tolerance.
+    pub(crate) fn balanced(&mut self, mut position: PathPoint) -> Option<Minimum> {
         let tolerance = self.solver.settings.tolerance;
         let mut before = f64::INFINITY;
         for _ in 0..CORRECTIONS {
-            let mut state = self.state(&place, Order::Tangent)?;
+            let mut state = self.state(&position, Order::Tangent)?;
             if state.is_balanced(tolerance) {
-                return self.linearised(place.at, state).map(Minimum::from);
+                return self.linearised(position.at, state).map(Minimum::from);
             }
-            state.expected = Some(place.forces.clone());
-            let mut near = self.linearised(place.at, state)?;
+            state.expected = Some(position.forces.clone());
+            let mut near = self.linearised(position.at, state)?;
             let first = self.correction(&near.state, &near.factor, None);
             if first.length.is_nan() || first.length > DIVERGENCE * before {
                 return None;
@@ -232,7 +242,7 @@ impl<'a> Branch<'a> {
             let mut next = before * before;
             let mut last = first;
             let mut polished = false;
-            place = self.corrected(place.at, &near.state, &last);
+            position = self.corrected(position.at, &near.state, &last);
             for _ in 0..CORRECTIONS {
                 // One more correction makes a balanced state as smooth in the design as rounding
                 // allows.
@@ -244,16 +254,16 @@ impl<'a> Branch<'a> {
                 } else {
                     Order::Tangent
                 };
-                let mut state = self.state(&place, order)?;
+                let mut state = self.state(&position, order)?;
                 state.rounding = state.rounding.max(near.state.rounding);
                 let balanced = state.is_balanced(tolerance);
                 if balanced && ready {
                     // Factors of a tangent this close serve as its own, after refinement.
                     if before > NEAR {
-                        return self.linearised(place.at, state).map(Minimum::from);
+                        return self.linearised(position.at, state).map(Minimum::from);
                     }
                     return Some(Minimum {
-                        tangent: self.potential(place.at).tangent(&state),
+                        tangent: self.potential(position.at).tangent(&state),
                         factor: Some(near.factor),
                         state,
                     });
@@ -265,7 +275,7 @@ impl<'a> Branch<'a> {
                     break;
                 }
                 near.state = state.with_stiffness_of(&near.state);
-                place = self.corrected(place.at, &near.state, &again);
+                position = self.corrected(position.at, &near.state, &again);
                 next = again.length * again.length / last.length;
                 last = again;
             }
@@ -273,23 +283,23 @@ impl<'a> Branch<'a> {
         None
     }
 
-    /// The state at a place; `None` if its energy is not finite.
-    pub fn state(&self, place: &PathPoint, order: Order) -> Option<State> {
-        let configuration = place.configuration.clone();
-        self.potential(place.at).state_up_to(configuration, order)
+    /// The state at a position; `None` if its energy is not finite.
+    pub(crate) fn state(&self, position: &PathPoint, order: Order) -> Option<PotentialState> {
+        let configuration = position.configuration.clone();
+        self.potential(position.at).state_up_to(configuration, order)
     }
 
-    fn linearised(&mut self, at: f64, state: State) -> Option<Linearised> {
+    fn linearised(&mut self, at: f64, state: PotentialState) -> Option<Linearised> {
         let potential = self.potential(at);
         let (values, factor) = self.factor(&potential, &state);
         Some(Linearised { state, values, factor: factor? })
     }
 
     /// The tangent of a state and its factors.
-    pub fn factor(
+    pub(crate) fn factor(
         &mut self,
         potential: &Potential,
-        state: &State,
+        state: &PotentialState,
     ) -> (Vec<f64>, Option<HeldFactor>) {
         self.effort.factorisations += 1;
         let values = potential.tangent(state);
@@ -301,10 +311,10 @@ impl<'a> Branch<'a> {
     /// normal to the path, or at constant load.
     fn correction(
         &mut self,
-        state: &State,
+        state: &PotentialState,
         factor: &HeldFactor,
         in_plane: Option<(&[[f64; 3]], &PathPoint)>,
-    ) -> Correction {
+    ) -> NewtonCorrection {
         let direct = self.direct(state, factor);
         let (motion, at) = match in_plane {
             Some((rate, normal)) => self.in_plane(&direct, rate, normal),
@@ -312,10 +322,10 @@ impl<'a> Branch<'a> {
         };
         let length = self.potential(0.0).length(state, &motion);
         self.effort.iterations += usize::from(length > 0.0);
-        Correction { at, motion, length }
+        NewtonCorrection { at, motion, length }
     }
 
-    fn corrected(&self, at: f64, state: &State, by: &Correction) -> PathPoint {
+    fn corrected(&self, at: f64, state: &PotentialState, by: &NewtonCorrection) -> PathPoint {
         let rates = self.potential(at).force_rates(state, &by.motion);
         PathPoint {
             at: at + by.at,
@@ -325,14 +335,14 @@ impl<'a> Branch<'a> {
     }
 
     /// The correction d_0 of a state at constant load.
-    pub fn direct(&self, state: &State, factor: &HeldFactor) -> Vec<[f64; 3]> {
+    pub(crate) fn direct(&self, state: &PotentialState, factor: &HeldFactor) -> Vec<[f64; 3]> {
         let downhill: Vec<f64> = state.gradient.iter().map(|g| -g).collect();
         let pattern = &self.solver.pattern;
         pattern.spread(&factor.solve(pattern, &downhill))
     }
 
     /// The correction in the plane normal to the path, and the correction of the load parameter.
-    pub fn in_plane(
+    pub(crate) fn in_plane(
         &self,
         direct: &[[f64; 3]],
         rate: &[[f64; 3]],
@@ -344,26 +354,26 @@ impl<'a> Branch<'a> {
     }
 
     /// The product of two motions; lengths are divided by the size of a panel.
-    pub fn product(&self, a: &[[f64; 3]], b: &[[f64; 3]]) -> f64 {
+    pub(crate) fn product(&self, a: &[[f64; 3]], b: &[[f64; 3]]) -> f64 {
         let scale = 1.0 / (self.panel_size * self.panel_size);
         std::iter::zip(a, b)
             .map(|([ax, ay, phi], [bx, by, psi])| scale * (ax * bx + ay * by) + phi * psi)
             .sum()
     }
 
-    /// The point of the branch at a corrected place, seen along the rate `before`.
-    pub fn point(&self, corrected: Corrected, before: Option<&PathPoint>) -> Point {
-        let Corrected { place, state, factor, rate, .. } = corrected;
-        let potential = self.potential(place.at);
+    /// The point of the branch at a corrected position, seen along the rate `before`.
+    pub(crate) fn point(&self, corrected: Corrected, before: Option<&PathPoint>) -> Point {
+        let Corrected { position, state, factor, rate, .. } = corrected;
+        let potential = self.potential(position.at);
         let rate = self.refined_rate(&potential, &state, &factor, rate);
         let size = potential.length(&state, &rate);
-        // Without any motion the path is followed by its load parameter.
+        // A path without any motion is followed by its load parameter.
         let size = if size > 0.0 { size } else { 1.0 };
         // A stable branch goes on to higher loads, however sharply it turns where hinges lock;
         // beyond a limit point the path goes on in the direction in which it came.
-        let unstable = factor.unstable_directions() > 0;
-        let backwards = before
-            .is_some_and(|before| unstable && self.product(&before.configuration, &rate) < 0.0);
+        let backwards = before.is_some_and(|before| {
+            !factor.is_stable() && self.product(&before.configuration, &rate) < 0.0
+        });
         let scale = if backwards { -1.0 / size } else { 1.0 / size };
         let forces = potential.force_rates(&state, &rate);
         let rate = PathPoint { at: 1.0, configuration: rate, forces };
@@ -372,7 +382,7 @@ impl<'a> Branch<'a> {
         Point {
             turning: rate.configuration.iter().fold(0.0, turning),
             rate,
-            place,
+            position,
             factor: Some(factor),
         }
     }
@@ -381,7 +391,7 @@ impl<'a> Branch<'a> {
     fn refined_rate(
         &self,
         potential: &Potential,
-        state: &State,
+        state: &PotentialState,
         factor: &HeldFactor,
         mut rate: Vec<[f64; 3]>,
     ) -> Vec<[f64; 3]> {
@@ -401,9 +411,14 @@ impl<'a> Branch<'a> {
     }
 
     /// The rate of the configuration with the load parameter.
-    pub fn rate(&self, potential: &Potential, state: &State, factor: &HeldFactor) -> Vec<[f64; 3]> {
+    pub(crate) fn rate(
+        &self,
+        potential: &Potential,
+        state: &PotentialState,
+        factor: &HeldFactor,
+    ) -> Vec<[f64; 3]> {
         let solver = self.solver;
-        let (supports, stroke) = if self.stage == Stage::Actuation {
+        let (supports, stroke) = if self.stage == PathStage::Actuation {
             let stroke = solver.drive.as_ref().map_or(0.0, |(_, stroke)| *stroke);
             (solver.support_motions(), stroke)
         } else {

@@ -27,7 +27,7 @@ impl Stroke {
     /// The stroke of the loads (F_x, F_y, M), given in `loads` with three entries per panel, in the
     /// free degrees of freedom; `None` without any load. If there are only couples, F is the sum of
     /// the couples and the stroke is an angle.
-    pub fn new(loads: &[[f64; 3]], gathered: &[f64]) -> Option<Self> {
+    pub(crate) fn new(loads: &[[f64; 3]], gathered: &[f64]) -> Option<Self> {
         magnitude(loads).map(|(size, of_forces)| Self {
             direction: gathered.iter().map(|f| f / size).collect(),
             size,
@@ -35,17 +35,17 @@ impl Stroke {
         })
     }
 
-    pub fn direction(&self) -> &[f64] {
+    pub(crate) fn direction(&self) -> &[f64] {
         &self.direction
     }
 
     /// The stroke of a configuration, given by its free degrees of freedom (mm).
-    pub fn of(&self, free: &[f64]) -> f64 {
+    pub(crate) fn of(&self, free: &[f64]) -> f64 {
         dot(&self.direction, free)
     }
 
     /// The gradient of the stroke of a configuration with respect to the loads.
-    pub fn by_loads(&self, loads: &[[f64; 3]], configuration: &[[f64; 3]]) -> Vec<[f64; 3]> {
+    pub(crate) fn by_loads(&self, loads: &[[f64; 3]], configuration: &[[f64; 3]]) -> Vec<[f64; 3]> {
         let stroke = work(loads, configuration) / self.size;
         let by_load = |([x, y, m], q): (&[f64; 3], &[f64; 3])| {
             let force = x.hypot(*y);
@@ -62,18 +62,18 @@ impl Stroke {
     }
 
     /// Whether the sum F is differentiable in each component of the load on a panel.
-    pub fn smooth_in(&self, &[x, y, m]: &[f64; 3]) -> [bool; 3] {
+    pub(crate) fn smooth_in(&self, &[x, y, m]: &[f64; 3]) -> [bool; 3] {
         let pulled = x.hypot(y) > 0.0;
         if self.of_forces { [pulled, pulled, true] } else { [false, false, m != 0.0] }
     }
 
     /// The stroke of the adjoint of a function with the given derivative in the load factor.
-    pub fn slack(&self, by_load_factor: f64) -> f64 {
+    pub(crate) fn slack(&self, by_load_factor: f64) -> f64 {
         -by_load_factor / self.size
     }
 
-    /// A motion with the given stroke, used when no better prediction is known.
-    pub fn motion(&self, stroke: f64) -> Vec<f64> {
+    /// A motion with the given stroke, used without a better prediction.
+    pub(crate) fn motion(&self, stroke: f64) -> Vec<f64> {
         let square = dot(&self.direction, &self.direction);
         self.direction.iter().map(|c| stroke * c / square).collect()
     }
@@ -100,7 +100,11 @@ struct Border {
 
 impl HeldFactor {
     /// `None` if the stroke cannot be prescribed.
-    pub fn new(pattern: &TangentPattern, factor: Factor, stroke: Option<&Stroke>) -> Option<Self> {
+    pub(crate) fn new(
+        pattern: &TangentPattern,
+        factor: Factor,
+        stroke: Option<&Stroke>,
+    ) -> Option<Self> {
         let border = stroke.map(|stroke| {
             let mut response = stroke.direction.clone();
             pattern.solve(&factor, &mut response);
@@ -114,21 +118,26 @@ impl HeldFactor {
         border.as_ref().is_none_or(regular).then_some(Self { factor, shifted: false, border })
     }
 
-    /// Number of directions of negative curvature, at constant stroke if that is prescribed. The
-    /// border adds one negative pivot, or removes one if the force of the sheet decreases with the
-    /// stroke.
-    pub fn unstable_directions(&self) -> usize {
+    /// Whether there is no direction of negative curvature, at constant stroke if that is
+    /// prescribed. The border adds one negative pivot, or removes one if the force of the sheet
+    /// decreases with the stroke.
+    pub(crate) fn is_stable(&self) -> bool {
         let softening = (self.border.as_ref()).is_some_and(|border| border.compliance < 0.0);
-        (self.factor.negative_pivots).saturating_sub(usize::from(softening))
+        self.factor.negative_pivots <= usize::from(softening)
     }
 
     /// The x for the right-hand side `b` and d = 0.
-    pub fn solve(&self, pattern: &TangentPattern, b: &[f64]) -> Vec<f64> {
+    pub(crate) fn solve(&self, pattern: &TangentPattern, b: &[f64]) -> Vec<f64> {
         self.solve_bordered(pattern, b, 0.0).0
     }
 
     /// x and mu; mu is 0 under load control.
-    pub fn solve_bordered(&self, pattern: &TangentPattern, b: &[f64], d: f64) -> (Vec<f64>, f64) {
+    pub(crate) fn solve_bordered(
+        &self,
+        pattern: &TangentPattern,
+        b: &[f64],
+        d: f64,
+    ) -> (Vec<f64>, f64) {
         let mut x = b.to_vec();
         pattern.solve(&self.factor, &mut x);
         let Some(border) = &self.border else {

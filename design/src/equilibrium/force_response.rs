@@ -2,23 +2,29 @@
 //! of (F_a, F_s, M_theta) at hinge h and B the rates of the hinge states,
 //!
 //! ```text
-//! H dq + mu c = -B^T df,    c . dq = 0,    dP = -mu            prescribed stroke c . q, load P
-//! H dq = -B^T df,                          dP = 0              dead loads
-//! H dq = -B^T df,                          dP = v . B^T df     supports moved by U, v = dq/d(displacement) on the path
+//! H dq + mu c = -B^T df,    c . dq = 0,    dP = -mu            prescribed stroke c . q, load P H
+//! dq = -B^T df,                          dP = 0              dead loads H dq = -B^T df,
+//! dP = v . B^T df     supports moved by U, v = dq/d(displacement) on the path
 //! ```
 //!
 //! which takes one solve with the factors of the tangent.
 
-use crate::equilibrium::adjoint::SINGULAR;
-use crate::equilibrium::displacement_control::{Stroke, magnitude};
-use crate::equilibrium::hinged_sheet::HingedSheet;
-use crate::equilibrium::load_step::LoadStep;
-use crate::equilibrium::refined_solve::refined_solve;
-use crate::equilibrium::solver::EquilibriumSolver;
-use crate::hinge_law::Order;
-use crate::sheet::cut_sheet::Sheet;
-use crate::sheet::kinematics::{Configuration, HingeMotion};
-use crate::sheet::panel_vectors::{add_at_hinge, at_hinge};
+use crate::{
+    equilibrium::{
+        adjoint::SINGULAR,
+        displacement_control::{Stroke, magnitude},
+        hinged_sheet::HingedSheet,
+        load_step::LoadStep,
+        refined_solve::refined_solve,
+        solver::EquilibriumSolver,
+    },
+    hinge_law::Order,
+    sheet::{
+        cut_sheet::Sheet,
+        kinematics::{Configuration, HingeMotion},
+        panel_vectors::{add_at_hinge, at_hinge},
+    },
+};
 use support::vectors::dot;
 
 /// An equilibrium whose hinge forces may have errors.
@@ -34,7 +40,7 @@ pub struct ForceResponse<'a> {
 
 /// What an error of the hinge forces changes.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Response {
+pub struct SheetChange {
     /// Changes of the motions (u_x, u_y, phi) of the panels (mm, mm, rad).
     pub motions: Configuration,
     /// Change of the load that the prescribed displacement takes (N; N mm if couples or rotations
@@ -64,7 +70,7 @@ impl<'a> ForceResponse<'a> {
 
     /// The response to errors (F_a, F_s, M_theta) of the forces of some hinges, given with their
     /// indices (N, N, N mm); `None` if the tangent is singular.
-    pub fn to(&self, errors: &[(usize, [f64; 3])]) -> Option<Response> {
+    pub fn to(&self, errors: &[(usize, [f64; 3])]) -> Option<SheetChange> {
         let mut forces = vec![[0.0; 3]; self.sheet.panels.len()];
         for &(h, error) in errors {
             let on_panels = self.motions[h].forces(error).map(|force| -force);
@@ -76,7 +82,7 @@ impl<'a> ForceResponse<'a> {
             work.sum()
         });
         let by_stroke = self.solver.is_driven().then_some(-mu);
-        Some(Response { motions, load: by_path.or(by_stroke) })
+        Some(SheetChange { motions, load: by_path.or(by_stroke) })
     }
 
     fn solve(&self, forces: &[[f64; 3]], stroke: Option<&Stroke>) -> Option<(Configuration, f64)> {

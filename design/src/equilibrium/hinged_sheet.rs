@@ -1,7 +1,9 @@
 //! The sheet together with the stored energy of its hinges.
 
-use crate::hinge_law::{Contact, HingeEnergy, Order, PreparedLaw};
-use crate::sheet::cut_sheet::Sheet;
+use crate::{
+    hinge_law::{Contact, HingeEnergy, Order, PreparedLaw},
+    sheet::cut_sheet::Sheet,
+};
 use hinge::HingeDeformation;
 
 /// The sheet together with the energy of its hinges.

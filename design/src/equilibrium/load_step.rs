@@ -1,15 +1,20 @@
 //! The state of the sheet at one step of the equilibrium path, and how it was found.
 
-use crate::equilibrium::displacement_control::{HeldFactor, Stroke};
-use crate::equilibrium::solver::EquilibriumSolver;
-use crate::hinge_law::{HingeDamage, HingeEnergy, Order};
-use crate::sheet::cut_sheet::Sheet;
-use crate::sheet::kinematics::{Configuration, hinge_deformations};
+use crate::{
+    equilibrium::{
+        displacement_control::{HeldFactor, Stroke},
+        solver::EquilibriumSolver,
+    },
+    hinge_law::{HingeDamage, HingeEnergy, Order},
+    sheet::{
+        cut_sheet::Sheet,
+        kinematics::{Configuration, hinge_deformations},
+    },
+};
 use hinge::HingeDeformation;
 use serde::Serialize;
 use std::fmt;
-use support::statistics::root_mean_square;
-use support::vectors::dot;
+use support::{statistics::root_mean_square, vectors::dot};
 
 /// How a load step ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]

@@ -3,19 +3,25 @@
 //! Newton's method follows the path in increments of its own, and the load steps are read off it:
 //! the cubic between two points of the path is the start of a correction at the load of the step.
 
-use crate::equilibrium::continuation::{Follower, LEAP};
-use crate::equilibrium::corrector::{Branch, Point};
-use crate::equilibrium::displacement_control::{HeldFactor, work};
-use crate::equilibrium::hinged_sheet::HingedSheet;
-use crate::equilibrium::load_step::{DescentEnd, LoadStep, Status, StepTangent};
-use crate::equilibrium::newton::{Failure, Minimum};
-use crate::equilibrium::potential::{Stage, State, moved};
-use crate::equilibrium::predictor::PathPoint;
-use crate::equilibrium::solver::EquilibriumSolver;
-use crate::equilibrium::weight::weights_of_panels;
-use crate::hinge_law::Order;
-use crate::sheet::kinematics::{Configuration, HingeMotion};
-use crate::sheet::panel_vectors::add_at_hinge;
+use crate::{
+    equilibrium::{
+        continuation::{Follower, LEAP},
+        corrector::{Branch, Point},
+        displacement_control::work,
+        hinged_sheet::HingedSheet,
+        load_step::{DescentEnd, LoadStep, Status, StepTangent},
+        newton::{Failure, Minimum},
+        potential::{PathStage, PotentialState, moved},
+        predictor::PathPoint,
+        solver::EquilibriumSolver,
+        weight::weights_of_panels,
+    },
+    hinge_law::Order,
+    sheet::{
+        kinematics::{Configuration, HingeMotion},
+        panel_vectors::add_at_hinge,
+    },
+};
 
 /// The end of an increment of a path.
 #[derive(Clone, Debug)]
@@ -52,7 +58,7 @@ impl EquilibriumSolver {
             return Vec::new();
         }
         let start = self.start(sheet.sheet).unwrap_or_else(|| self.flat());
-        self.read(sheet, Stage::Weight, start, self.ends(Stage::Weight))
+        self.read(sheet, PathStage::Weight, start, self.ends(PathStage::Weight))
     }
 
     /// Load factor and configuration of the sheet before the loads: flat, or under its weight.
@@ -67,19 +73,19 @@ impl EquilibriumSolver {
     /// # Panics
     /// If the sheet or the start has another grid than the solver.
     pub(crate) fn path_from(&self, sheet: HingedSheet, start: Configuration) -> Vec<LoadStep> {
-        self.read(sheet, Stage::Actuation, start, self.ends(Stage::Actuation))
+        self.read(sheet, PathStage::Actuation, start, self.ends(PathStage::Actuation))
     }
 
     /// The load parameters of the load steps, from the sheet before the loads to full load.
     pub fn load_parameters(&self) -> impl Iterator<Item = f64> + use<> {
-        self.ends(Stage::Actuation)
+        self.ends(PathStage::Actuation)
     }
 
     /// The load parameters of the load steps of a part of the path.
-    pub(crate) fn ends(&self, stage: Stage) -> impl Iterator<Item = f64> + use<> {
+    pub(crate) fn ends(&self, stage: PathStage) -> impl Iterator<Item = f64> + use<> {
         let steps = match stage {
-            Stage::Weight => self.weight_steps(),
-            Stage::Actuation => self.steps,
+            PathStage::Weight => self.weight_steps(),
+            PathStage::Actuation => self.steps,
         };
         (1..=steps).map(move |i| i as f64 / steps as f64)
     }
@@ -90,9 +96,9 @@ impl EquilibriumSolver {
     ///
     /// # Panics
     /// If the grids of sheet and solver differ.
-    pub fn readings(&self, sheet: HingedSheet, parameters: &[f64]) -> Vec<LoadStep> {
+    pub fn load_steps_at(&self, sheet: HingedSheet, parameters: &[f64]) -> Vec<LoadStep> {
         let (_, start) = self.before_loads(sheet);
-        self.read(sheet, Stage::Actuation, start, parameters.iter().copied())
+        self.read(sheet, PathStage::Actuation, start, parameters.iter().copied())
     }
 
     /// The load step at full load in a configuration that is in equilibrium there, as one of a path
@@ -101,7 +107,7 @@ impl EquilibriumSolver {
     /// # Panics
     /// If the grids of sheet and solver differ.
     pub fn full_load(&self, sheet: HingedSheet, configuration: Configuration) -> LoadStep {
-        let mut branch = Branch::new(self, sheet, Stage::Actuation);
+        let mut branch = Branch::new(self, sheet, PathStage::Actuation);
         let potential = branch.potential(1.0);
         let Some(state) = potential.state_up_to(configuration.clone(), Order::Design) else {
             return not_finite(sheet, configuration);
@@ -144,7 +150,7 @@ impl EquilibriumSolver {
     /// The forces (F_x, F_y, M) by which the supports hold the panels in an equilibrium at full
     /// load (N, N, N mm); zero at free degrees of freedom.
     pub fn reactions(&self, sheet: HingedSheet, configuration: &[[f64; 3]]) -> Vec<[f64; 3]> {
-        let potential = Branch::new(self, sheet, Stage::Actuation).potential(1.0);
+        let potential = Branch::new(self, sheet, PathStage::Actuation).potential(1.0);
         let state = potential.state_up_to(configuration.to_vec(), Order::Forces);
         let state = state.expect("the energy of an equilibrium is finite");
         self.at_supports(&state.unbalanced)
@@ -155,7 +161,7 @@ impl EquilibriumSolver {
     fn read(
         &self,
         sheet: HingedSheet,
-        stage: Stage,
+        stage: PathStage,
         start: Configuration,
         ends: impl Iterator<Item = f64>,
     ) -> Vec<LoadStep> {
@@ -185,10 +191,10 @@ impl EquilibriumSolver {
     /// If the grids of sheet and solver differ.
     pub fn increments(&self, sheet: HingedSheet) -> Vec<Increment> {
         let (_, start) = self.before_loads(sheet);
-        let follower = self.follower(sheet, Stage::Actuation, start);
+        let follower = self.follower(sheet, PathStage::Actuation, start);
         let ends = follower.into_iter().flat_map(|mut follower| {
             std::iter::from_fn(move || {
-                let goes_on = follower.last.place.at < 1.0 && follower.advance().is_ok();
+                let goes_on = follower.last.position.at < 1.0 && follower.advance().is_ok();
                 goes_on.then(|| follower.end_of_increment())
             })
         });
@@ -199,7 +205,7 @@ impl EquilibriumSolver {
     fn follower<'a>(
         &'a self,
         sheet: HingedSheet<'a>,
-        stage: Stage,
+        stage: PathStage,
         start: Configuration,
     ) -> Option<Follower<'a>> {
         assert_eq!(
@@ -237,14 +243,14 @@ impl Follower<'_> {
     fn end_of_increment(&self) -> Increment {
         let state = self.last_state(Order::Forces);
         Increment {
-            at: self.last.place.at,
+            at: self.last.position.at,
             load_factor: state.load_factor,
             configuration: state.configuration,
         }
     }
 
-    fn last_state(&self, order: Order) -> State {
-        let state = self.branch.state(&self.last.place, order);
+    fn last_state(&self, order: Order) -> PotentialState {
+        let state = self.branch.state(&self.last.position, order);
         state.expect("this state was computed before")
     }
 
@@ -256,7 +262,7 @@ impl Follower<'_> {
 
     /// The equilibrium at `to` on the path.
     fn followed(&mut self, to: f64) -> Result<Minimum, Failure> {
-        while self.last.place.at < to {
+        while self.last.position.at < to {
             if let Err(failure) = self.advance() {
                 // A sheet without stiffness is at rest in any state; beyond the increments the load
                 // steps go on.
@@ -270,20 +276,14 @@ impl Follower<'_> {
                 return Ok(minimum);
             }
         }
-        let mut place = match &self.arc {
-            Some(arc) => arc.reading(to),
-            None => PathPoint { at: to, ..self.last.place.clone() },
+        let mut position = match &self.arc {
+            Some(arc) => arc.at_load(to),
+            None => PathPoint { at: to, ..self.last.position.clone() },
         };
-        self.branch.hold(&mut place, &self.last.place);
-        let start = place.clone();
-        let found = self.branch.balanced(place);
-        let stable = |held: &HeldFactor| held.unstable_directions() == 0;
-        let minimum = match found.filter(|found| found.factor.as_ref().is_some_and(stable)) {
-            Some(found) => found,
-            None => self.branch.minimum(&start)?,
-        };
-        let moved = self.branch.moved(&minimum, &start);
-        // Without an arc the start is a place at a higher load.
+        self.branch.hold(&mut position, &self.last.position);
+        let minimum = self.branch.stable_near(&position)?;
+        let moved = self.branch.moved(&minimum, &position);
+        // The start without an arc is a position at a higher load.
         self.jumps += usize::from(self.arc.is_some() && moved > LEAP);
         Ok(minimum)
     }
@@ -291,8 +291,8 @@ impl Follower<'_> {
     /// The minimum at `to` that is reached from the last point, from where the path goes on, and
     /// its distance.
     fn minimised(&mut self, to: f64) -> Result<(Minimum, f64), Failure> {
-        let mut start = PathPoint { at: to, ..self.last.place.clone() };
-        self.branch.hold(&mut start, &self.last.place);
+        let mut start = PathPoint { at: to, ..self.last.position.clone() };
+        self.branch.hold(&mut start, &self.last.position);
         let minimum = self.branch.minimum(&start)?;
         let moved = self.branch.moved(&minimum, &start);
         self.last = Point::still(PathPoint {
@@ -307,7 +307,7 @@ impl Follower<'_> {
 
 impl Branch<'_> {
     /// The load step at a minimum, `jumps` jumps after the last.
-    pub fn load_step(&mut self, minimum: Minimum, jumps: usize) -> LoadStep {
+    pub(crate) fn load_step(&mut self, minimum: Minimum, jumps: usize) -> LoadStep {
         let status = self.status(&minimum, jumps > 0);
         let tangent = StepTangent { values: minimum.tangent, factor: minimum.factor };
         self.force = minimum.state.force;
@@ -317,13 +317,13 @@ impl Branch<'_> {
     /// The load step in a state, with what it cost since the last.
     fn reported(
         &mut self,
-        state: State,
+        state: PotentialState,
         tangent: Option<StepTangent>,
         status: Status,
         jumps: usize,
     ) -> LoadStep {
         let effort = std::mem::take(&mut self.effort);
-        // Under a drive the minimised function does not contain the work of the loads.
+        // The minimised function under a drive does not contain the work of the loads.
         let driven = match self.solver.drive {
             Some(_) => state.load_factor * work(&self.solver.loads, &state.configuration),
             None => 0.0,
@@ -355,22 +355,21 @@ impl Branch<'_> {
         }
     }
 
-    /// The maximum rotation or hinge translation from a place to a minimum.
-    pub fn moved(&self, minimum: &Minimum, start: &PathPoint) -> f64 {
+    /// The maximum rotation or hinge translation from a position to a minimum.
+    pub(crate) fn moved(&self, minimum: &Minimum, start: &PathPoint) -> f64 {
         let motion = moved(&minimum.state.configuration, &start.configuration, -1.0);
         let potential = self.potential(start.at);
         potential.length(&minimum.state, &motion)
     }
 
     fn status(&self, minimum: &Minimum, jumped: bool) -> Status {
-        let stable = (minimum.factor.as_ref()).is_some_and(|held| held.unstable_directions() == 0);
         let settings = &self.solver.settings;
         // Rounding may explain a residual above the loose tolerance; it is no converged state
         // nevertheless.
         let balanced = minimum.state.is_balanced(settings.tolerance)
             && minimum.state.residual <= settings.loose_tolerance();
         let law = self.sheet.law;
-        if !balanced || !stable {
+        if !balanced || !minimum.is_stable() {
             Status::Almost
         } else if jumped {
             Status::LimitPoint

@@ -1,6 +1,6 @@
 //! Minimisation of the potential (10) at one load factor by a damped Newton method.
 //!
-//! With S the diagonal of the tangent at the start, a step solves (H + sigma S) d = -grad Pi with
+//! Let S be the diagonal of the tangent at the start. A step solves (H + sigma S) d = -grad Pi with
 //! the smallest tested sigma that makes the matrix positive definite. It is shortened until the
 //! rotations are moderate, and accepted if Pi decreases by a fraction of the predicted decrease.
 //!
@@ -10,10 +10,14 @@
 //! by their rates (Magisano, Leonetti and Garcea 2017), until the state is stationary or no descent
 //! step is found.
 
-use crate::equilibrium::displacement_control::HeldFactor;
-use crate::equilibrium::load_step::{DescentEnd, Effort};
-use crate::equilibrium::potential::{Potential, State, moved};
-use crate::sheet::kinematics::Configuration;
+use crate::{
+    equilibrium::{
+        displacement_control::HeldFactor,
+        load_step::{DescentEnd, Effort},
+        potential::{Potential, PotentialState, moved},
+    },
+    sheet::kinematics::Configuration,
+};
 use support::vectors::dot;
 
 /// Maximum length of a step: rotations in rad, hinge translations in panel sizes.
@@ -35,10 +39,16 @@ const NEGATIVE_CURVATURE: f64 = -1e-11;
 pub(crate) const LEVEL: f64 = 1e-9;
 
 pub(crate) struct Minimum {
-    pub state: State,
+    pub state: PotentialState,
     pub tangent: Vec<f64>,
     /// `None` if the tangent is singular.
     pub factor: Option<HeldFactor>,
+}
+
+impl Minimum {
+    pub(crate) fn is_stable(&self) -> bool {
+        self.factor.as_ref().is_some_and(HeldFactor::is_stable)
+    }
 }
 
 /// A minimisation that ended without a minimum.
@@ -49,14 +59,19 @@ pub(crate) struct Failure {
 }
 
 impl Failure {
-    pub const EXHAUSTED: Self = Self { residual: f64::INFINITY, end: DescentEnd::Increments };
-    pub const STOPPED: Self = Self { residual: f64::INFINITY, end: DescentEnd::Stopped };
-    pub const NOT_FINITE: Self = Self { residual: f64::INFINITY, end: DescentEnd::NotFinite };
+    pub(crate) const EXHAUSTED: Self =
+        Self { residual: f64::INFINITY, end: DescentEnd::Increments };
+    pub(crate) const STOPPED: Self = Self { residual: f64::INFINITY, end: DescentEnd::Stopped };
+    const NOT_FINITE: Self = Self { residual: f64::INFINITY, end: DescentEnd::NotFinite };
 }
 
 impl Potential<'_> {
     /// A minimum near `start`, at lower energy.
-    pub fn minimise(&self, start: Configuration, effort: &mut Effort) -> Result<Minimum, Failure> {
+    pub(crate) fn minimise(
+        &self,
+        start: Configuration,
+        effort: &mut Effort,
+    ) -> Result<Minimum, Failure> {
         let settings = &self.solver.settings;
         let mut state = self.state(start).ok_or(Failure::NOT_FINITE)?;
         let (mut scale, mut memory) = (None, Vec::new());
@@ -70,7 +85,7 @@ impl Potential<'_> {
             let scale = scale.get_or_insert_with(|| self.solver.pattern.shift_scale(&tangent));
             effort.factorisations += 1;
             let factor = self.factorise(&tangent, std::mem::take(&mut memory));
-            let stable = factor.as_ref().filter(|factor| factor.unstable_directions() == 0);
+            let stable = factor.as_ref().filter(|factor| factor.is_stable());
             let next = match stable {
                 Some(_) if stationary => None,
                 Some(factor) => self.step(&state, factor, &mut longest),
@@ -108,7 +123,12 @@ impl Potential<'_> {
     /// The state after a damped Newton step; `None` if no state along it is better, or if the
     /// residual is small and no longer halves. `longest` is the maximum step length (see
     /// [`length`](Self::length)), adapted after every step.
-    fn step(&self, state: &State, factor: &HeldFactor, longest: &mut f64) -> Option<State> {
+    fn step(
+        &self,
+        state: &PotentialState,
+        factor: &HeldFactor,
+        longest: &mut f64,
+    ) -> Option<PotentialState> {
         let settings = &self.solver.settings;
         let downhill: Vec<f64> = state.gradient.iter().map(|g| -g).collect();
         let direction = factor.solve(&self.solver.pattern, &downhill);
@@ -148,7 +168,7 @@ impl Potential<'_> {
 
     /// The factors of the tangent, stored in `memory` of earlier factors, with the border under
     /// displacement control.
-    pub fn factorise(&self, tangent: &[f64], memory: Vec<f64>) -> Option<HeldFactor> {
+    pub(crate) fn factorise(&self, tangent: &[f64], memory: Vec<f64>) -> Option<HeldFactor> {
         let factor = self.solver.pattern.factorise(tangent, memory)?;
         HeldFactor::new(&self.solver.pattern, factor, self.solver.stroke())
     }
@@ -169,7 +189,7 @@ impl Potential<'_> {
             let shifted = pattern.shifted(tangent, scale.iter().map(|entry| *shift * entry));
             effort.factorisations += 1;
             match self.factorise(&shifted, Vec::new()) {
-                Some(mut factor) if factor.unstable_directions() == 0 => {
+                Some(mut factor) if factor.is_stable() => {
                     factor.shifted = true;
                     return Some(factor);
                 }
@@ -184,11 +204,11 @@ impl Potential<'_> {
     /// tangent.
     fn escape(
         &self,
-        state: &State,
+        state: &PotentialState,
         tangent: &[f64],
         scale: &[f64],
         factor: &HeldFactor,
-    ) -> Option<State> {
+    ) -> Option<PotentialState> {
         // A start vector that no symmetry of the sheet makes orthogonal to the direction.
         let mut direction: Vec<f64> = (1..=scale.len()).map(|i| (i as f64).sqrt().sin()).collect();
         for _ in 0..20 {

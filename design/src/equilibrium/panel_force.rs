@@ -1,4 +1,4 @@
-//! The weight of a panel as a force, besides the forces of its hinges.
+//! The weight of a panel as a force, in addition to the forces of its hinges.
 
 /// A force on a panel in one of its positions, with its derivative.
 #[derive(Clone, Copy, Default)]
@@ -13,7 +13,7 @@ pub(crate) struct PanelForce {
 
 impl PanelForce {
     /// The resistance of the stiffness to a motion.
-    pub fn resistance(&self, motion: &[f64; 3]) -> [f64; 3] {
+    pub(crate) fn resistance(&self, motion: &[f64; 3]) -> [f64; 3] {
         self.stiffness.map(|row| row[0] * motion[0] + row[1] * motion[1] + row[2] * motion[2])
     }
 }

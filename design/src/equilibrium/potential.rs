@@ -1,6 +1,6 @@
 //! The potential (10) of a configuration at one point of the path, with its first two derivatives.
 //!
-//! Under load control the load factor zeta is given. Under displacement control the stroke c . q of
+//! The load factor zeta is given under load control. Under displacement control the stroke c . q of
 //! the loads is prescribed, c being their direction, and zeta is the multiplier with the smallest
 //! residual,
 //!
@@ -12,19 +12,23 @@
 //! configuration with that stroke. If there are a weight or loads held constant, U contains their
 //! work with negative sign.
 
-use crate::equilibrium::hinged_sheet::HingedSheet;
-use crate::equilibrium::panel_force::PanelForce;
-use crate::equilibrium::solver::EquilibriumSolver;
-use crate::equilibrium::weight::weights_of_panels;
-use crate::hinge_law::{HingeEnergy, Order};
-use crate::sheet::kinematics::{Configuration, HingeMotion};
-use crate::sheet::panel_vectors::{add_at_hinge, at_hinge};
+use crate::{
+    equilibrium::{
+        hinged_sheet::HingedSheet, panel_force::PanelForce, solver::EquilibriumSolver,
+        weight::weights_of_panels,
+    },
+    hinge_law::{HingeEnergy, Order},
+    sheet::{
+        kinematics::{Configuration, HingeMotion},
+        panel_vectors::{add_at_hinge, at_hinge},
+    },
+};
 use hinge::HingeDeformation;
 use support::vectors::dot;
 
 /// What grows along a part of the path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Stage {
+pub(crate) enum PathStage {
     /// The weight, without loads, motions of supports or a stroke.
     Weight,
     /// Loads, motions of supports and the stroke, under the whole weight.
@@ -35,7 +39,7 @@ pub(crate) enum Stage {
 pub(crate) struct Potential<'a> {
     pub solver: &'a EquilibriumSolver,
     pub sheet: HingedSheet<'a>,
-    pub stage: Stage,
+    pub stage: PathStage,
     /// The load parameter: the part of the weight that is on; then zeta, unless the stroke of the
     /// loads is prescribed.
     pub at: f64,
@@ -50,7 +54,7 @@ pub(crate) struct Potential<'a> {
 const HINGES_OF_A_PANEL: f64 = 4.0;
 
 /// The potential and its first derivatives at a configuration.
-pub(crate) struct State {
+pub(crate) struct PotentialState {
     pub configuration: Configuration,
     pub motions: Vec<HingeMotion>,
     pub energies: Vec<HingeEnergy>,
@@ -81,19 +85,19 @@ pub(crate) struct State {
     pub force: f64,
 }
 
-impl State {
+impl PotentialState {
     /// Whether the residual is within the tolerance or the rounding error.
-    pub fn is_balanced(&self, tolerance: f64) -> bool {
+    pub(crate) fn is_balanced(&self, tolerance: f64) -> bool {
         self.residual <= tolerance.max(self.rounding)
     }
 
     /// (F_a, F_s, M_theta) per hinge.
-    pub fn forces(&self) -> Vec<[f64; 3]> {
+    pub(crate) fn forces(&self) -> Vec<[f64; 3]> {
         self.energies.iter().map(|energy| energy.forces).collect()
     }
 
     /// The state with the stiffness of the hinges in a state near it.
-    pub fn with_stiffness_of(mut self, near: &Self) -> Self {
+    pub(crate) fn with_stiffness_of(mut self, near: &Self) -> Self {
         for (energy, near) in std::iter::zip(&mut self.energies, &near.energies) {
             energy.tangent = near.tangent;
         }
@@ -106,19 +110,23 @@ impl State {
         expected.map_or(self.energies[hinge].forces, |expected| expected[hinge])
     }
 
-    pub fn deformations(&self) -> Vec<HingeDeformation> {
+    pub(crate) fn deformations(&self) -> Vec<HingeDeformation> {
         self.motions.iter().map(HingeMotion::deformation).collect()
     }
 }
 
 impl Potential<'_> {
     /// The state with all that the tangent needs; `None` if the potential is not finite.
-    pub fn state(&self, configuration: Configuration) -> Option<State> {
+    pub(crate) fn state(&self, configuration: Configuration) -> Option<PotentialState> {
         self.state_up_to(configuration, Order::Tangent)
     }
 
     /// The state with the derivatives of the hinge energies up to `order`, at least the forces.
-    pub fn state_up_to(&self, configuration: Configuration, order: Order) -> Option<State> {
+    pub(crate) fn state_up_to(
+        &self,
+        configuration: Configuration,
+        order: Order,
+    ) -> Option<PotentialState> {
         let (sheet, solver) = (self.sheet.sheet, self.solver);
         let motions = HingeMotion::all(sheet, &configuration);
         let deformations: Vec<HingeDeformation> =
@@ -139,8 +147,8 @@ impl Potential<'_> {
         }
         let (load_factor, worked) = match (&self.solver.drive, self.stage) {
             (Some(_), _) => (self.multiplier(&inner), 0.0),
-            (None, Stage::Weight) => (0.0, 0.0),
-            (None, Stage::Actuation) => (self.at, self.at),
+            (None, PathStage::Weight) => (0.0, 0.0),
+            (None, PathStage::Actuation) => (self.at, self.at),
         };
         let unbalanced: Vec<[f64; 3]> = std::iter::zip(&inner, &solver.loads)
             .map(|(inner, load)| std::array::from_fn(|d| inner[d] - load_factor * load[d]))
@@ -158,12 +166,12 @@ impl Potential<'_> {
         let loads = constant + load_factor.abs() * self.largest(solver.loads.iter().copied());
         let hinges = self.largest(energies.iter().map(|energy| energy.forces));
         let force = self.force.max(loads).max(hinges);
-        // Without any force nothing is unbalanced.
+        // A sheet without any force is balanced.
         let over_force = |unbalanced: f64| match force {
             0.0 => 0.0,
             _ => unbalanced / force,
         };
-        let state = State {
+        let state = PotentialState {
             weight: self.weight_on(),
             potential: terms.clone().sum(),
             magnitude: terms.map(f64::abs).sum(),
@@ -209,14 +217,14 @@ impl Potential<'_> {
     }
 
     /// Maximum of forces and moments, as a force (N).
-    pub fn largest(&self, forces: impl Iterator<Item = [f64; 3]>) -> f64 {
+    pub(crate) fn largest(&self, forces: impl Iterator<Item = [f64; 3]>) -> f64 {
         forces
             .map(|[x, y, moment]| (x * x + y * y).sqrt().max(moment.abs() / self.panel_size))
             .fold(0.0, f64::max)
     }
 
     /// H of (20); away from an equilibrium with the predicted hinge forces.
-    pub fn tangent(&self, state: &State) -> Vec<f64> {
+    pub(crate) fn tangent(&self, state: &PotentialState) -> Vec<f64> {
         // A panel belongs to the block of the first of its hinges.
         let mut on_panels = self.on_panels(&state.configuration);
         let mut take = |panel: usize| on_panels.get_mut(panel).map(std::mem::take);
@@ -253,28 +261,28 @@ impl Potential<'_> {
     /// The part of the weight that is on.
     fn weight_on(&self) -> f64 {
         match self.stage {
-            Stage::Weight => self.at,
-            Stage::Actuation => 1.0,
+            PathStage::Weight => self.at,
+            PathStage::Actuation => 1.0,
         }
     }
 
     /// The forces on the panels (F_x, F_y, M) that grow with the load parameter in a state, by
     /// their rates.
-    pub fn driving(&self, state: &State) -> Vec<[f64; 3]> {
+    pub(crate) fn driving(&self, state: &PotentialState) -> Vec<[f64; 3]> {
         let solver = self.solver;
         match (self.stage, &solver.drive) {
-            (Stage::Weight, _) => {
+            (PathStage::Weight, _) => {
                 weights_of_panels(self.sheet.sheet, solver.weight, &state.configuration)
                     .map(|weight| weight.force)
                     .collect()
             }
-            (Stage::Actuation, None) => solver.loads.to_vec(),
-            (Stage::Actuation, Some(_)) => vec![[0.0; 3]; solver.loads.len()],
+            (PathStage::Actuation, None) => solver.loads.to_vec(),
+            (PathStage::Actuation, Some(_)) => vec![[0.0; 3]; solver.loads.len()],
         }
     }
 
     /// The rates of the hinge forces under a motion of all panels.
-    pub fn force_rates(&self, state: &State, motion: &[[f64; 3]]) -> Vec<[f64; 3]> {
+    pub(crate) fn force_rates(&self, state: &PotentialState, motion: &[[f64; 3]]) -> Vec<[f64; 3]> {
         let hinges = state.motions.iter().zip(&state.energies);
         std::iter::zip(&self.sheet.sheet.hinges, hinges)
             .map(|(hinge, (hinge_motion, energy))| {
@@ -285,7 +293,7 @@ impl Potential<'_> {
     }
 
     /// H times a motion of all panels, including the supported ones.
-    pub fn resistance(&self, state: &State, motion: &[[f64; 3]]) -> Vec<[f64; 3]> {
+    pub(crate) fn resistance(&self, state: &PotentialState, motion: &[[f64; 3]]) -> Vec<[f64; 3]> {
         let mut forces = vec![[0.0; 3]; motion.len()];
         for (h, hinge) in self.sheet.sheet.hinges.iter().enumerate() {
             let (hinge_motion, energy) = (&state.motions[h], &state.energies[h]);
@@ -303,12 +311,17 @@ impl Potential<'_> {
         forces
     }
 
-    pub fn moved(&self, state: &State, motion: &[[f64; 3]], fraction: f64) -> Option<State> {
+    pub(crate) fn moved(
+        &self,
+        state: &PotentialState,
+        motion: &[[f64; 3]],
+        fraction: f64,
+    ) -> Option<PotentialState> {
         self.state(moved(&state.configuration, motion, fraction))
     }
 
     /// Maximum panel rotation (rad) or hinge translation (panel sizes) of a motion.
-    pub fn length(&self, state: &State, motion: &[[f64; 3]]) -> f64 {
+    pub(crate) fn length(&self, state: &PotentialState, motion: &[[f64; 3]]) -> f64 {
         std::iter::zip(&self.sheet.sheet.hinges, &state.motions)
             .map(|(hinge, hinge_motion)| {
                 let motions = at_hinge(hinge, motion);

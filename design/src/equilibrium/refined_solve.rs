@@ -5,9 +5,11 @@
 //! then, S being the magnitudes of the diagonal: refinement removes the effect of the shift if the
 //! equations have a solution, and the backward error shows whether they have.
 
-use crate::equilibrium::displacement_control::{HeldFactor, Stroke};
-use crate::equilibrium::load_step::StepTangent;
-use crate::equilibrium::tangent::TangentPattern;
+use crate::equilibrium::{
+    displacement_control::{HeldFactor, Stroke},
+    load_step::StepTangent,
+    tangent::TangentPattern,
+};
 
 /// Maximum number of refinement rounds; they end when the error no longer halves.
 const REFINEMENTS: usize = 20;
@@ -26,7 +28,8 @@ pub(crate) struct Refined {
     pub error: f64,
 }
 
-/// For the right-hand sides (b, d). `None` if not even a shifted tangent can be factorised.
+/// Solution for the right-hand sides (b, d); `None` if not even a shifted tangent can be
+/// factorised.
 pub(crate) fn refined_solve(
     pattern: &TangentPattern,
     tangent: &StepTangent,

@@ -8,56 +8,30 @@
 //! displacement; its work is subtracted. In unloading the work of the forces that held the sheet is
 //! subtracted.
 
-use crate::equilibrium::displacement_control::{Stroke, magnitude, work};
-use crate::equilibrium::settings::SolverSettings;
-use crate::equilibrium::supports::{Dof, Load, Support, hold_rigid_body};
-use crate::equilibrium::tangent::TangentPattern;
-use crate::equilibrium::weight::hung_from;
-use crate::sheet::cut_sheet::{AttachmentPoint, Sheet};
-use crate::sheet::kinematics::Configuration;
-use crate::sheet::topology::Topology;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
-
-/// Supports, loads or settings that do not define an equilibrium problem.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[allow(missing_docs, reason = "the message of a variant is its documentation")]
-pub enum EquilibriumError {
-    #[error("{what} on panel {panel}: the panels of the sheet are 0..{panels}")]
-    NoSuchPanel { what: &'static str, panel: usize, panels: usize },
-    #[error("{what} of {value} on panel {panel} is not a finite number")]
-    NotFinite { what: &'static str, panel: usize, value: f64 },
-    #[error("{dof:?} of panel {panel} is supported twice")]
-    SupportedTwice { panel: usize, dof: Dof },
-    #[error(
-        "panel {panel} is loaded in {dof:?}, where it is supported: loads act on free degrees of freedom"
-    )]
-    LoadOnSupport { panel: usize, dof: Dof },
-    #[error(
-        "the supports leave the sheet free to move as a rigid body: support at least three \
-         degrees of freedom, such as one clamp or a pin and a roller; one pin is enough for a sheet that hangs by its \
-         weight, without a prescribed stroke, from a point that is not its centre of gravity"
-    )]
-    Unsupported,
-    #[error(
-        "without the supports that moved it the sheet is free to move as a rigid body, and its unloaded position is undetermined. \
-         Hold it by supports that do not move"
-    )]
-    HeldByMoved,
-    #[error("the weight {0:?} N/mm^2 is not finite")]
-    Weight([f64; 2]),
-    #[error("the stroke {0} mm is not a finite number")]
-    Stroke(f64),
-    #[error("displacement control needs a load, whose stroke is prescribed")]
-    NothingDrives,
-    #[error("{0} load steps: use at least 1")]
-    NoSteps(usize),
-}
+use crate::{
+    equilibrium::{
+        displacement_control::{Stroke, magnitude, work},
+        settings::SolverSettings,
+        supports::{Dof, Load, Support, hold_rigid_body},
+        tangent::TangentPattern,
+        weight::hung_from,
+    },
+    sheet::{
+        cut_sheet::{AttachmentPoint, Sheet},
+        kinematics::Configuration,
+        topology::Topology,
+    },
+};
+use std::sync::{
+    Arc,
+    atomic::{AtomicBool, Ordering},
+};
+use support::fault::{Fault, fault};
 
 /// Number of load steps in which the weight comes on.
 const WEIGHT_STEPS: usize = 2;
 
-/// Supports and loads of a sheet, with everything that depends on its topology alone.
+/// Supports and loads of a sheet, with everything that depends only on its topology.
 #[derive(Clone, Debug)]
 pub struct EquilibriumSolver {
     pub(crate) topology: Arc<Topology>,
@@ -74,7 +48,7 @@ pub struct EquilibriumSolver {
     pub(crate) attachment_points: Box<[AttachmentPoint]>,
     /// Loads held constant from the beginning of the path.
     pub(crate) held: Box<[[f64; 3]]>,
-    /// Under displacement control, the direction of the stroke and its value at full load.
+    /// Direction of the stroke and its value at full load, under displacement control.
     pub(crate) drive: Option<(Box<Stroke>, f64)>,
     /// Shared by the solvers of one sheet with other loads.
     pub(crate) pattern: Arc<TangentPattern>,
@@ -90,37 +64,33 @@ impl EquilibriumSolver {
         loads: &[Load],
         steps: usize,
         settings: SolverSettings,
-    ) -> Result<Self, EquilibriumError> {
+    ) -> Result<Self, Fault> {
         let topology = topology.into();
         if steps == 0 {
-            return Err(EquilibriumError::NoSteps(steps));
+            return Err(fault("", "0 load steps", "use at least 1"));
         }
-        let check = |what, panel, value: f64| {
-            let panels = topology.panel_count();
-            if panel >= panels {
-                return Err(EquilibriumError::NoSuchPanel { what, panel, panels });
+        let panels = topology.panel_count();
+        let check = |what: &str, panel: usize| match panel < panels {
+            true => Ok(()),
+            false => {
+                let what = format!("{what} on panel {panel}");
+                Err(fault(what, format!("the panels of the sheet are 0..{panels}"), ""))
             }
-            if !value.is_finite() {
-                return Err(EquilibriumError::NotFinite { what, panel, value });
-            }
-            Ok(())
         };
-        let mut supported = vec![[false; 3]; topology.panel_count()];
+        let mut supported = vec![[false; 3]; panels];
         for &Support { panel, dof, value } in supports {
-            check("a support", panel, value)?;
+            check("a support", panel)?;
+            finite("a support", panel, value)?;
             if std::mem::replace(&mut supported[panel][dof.index()], true) {
-                return Err(EquilibriumError::SupportedTwice { panel, dof });
+                return Err(fault("", format!("{dof:?} of panel {panel} is supported twice"), ""));
             }
         }
-        let mut total = vec![[0.0; 3]; topology.panel_count()];
+        let mut total = vec![[0.0; 3]; panels];
         for &Load { panel, dof, value } in loads {
-            check("a load", panel, value)?;
-            if supported[panel][dof.index()] {
-                return Err(EquilibriumError::LoadOnSupport { panel, dof });
-            }
+            check("a load", panel)?;
             total[panel][dof.index()] += value;
         }
-        Ok(Self {
+        let solver = Self {
             settings,
             steps,
             pattern: Arc::new(TangentPattern::new(&topology, supported.as_flattened())),
@@ -128,11 +98,12 @@ impl EquilibriumSolver {
             supports: supports.into(),
             weight: [0.0; 2],
             attachment_points: Box::default(),
-            held: vec![[0.0; 3]; total.len()].into(),
-            loads: total.into(),
+            held: vec![[0.0; 3]; panels].into(),
+            loads: vec![[0.0; 3]; panels].into(),
             drive: None,
             stop: Arc::default(),
-        })
+        };
+        solver.loaded(&total)
     }
 
     /// Ends the paths that are followed with
@@ -151,18 +122,16 @@ impl EquilibriumSolver {
     ///
     /// # Panics
     /// If there is not one load for each panel.
-    pub fn loaded(mut self, loads: &[[f64; 3]]) -> Result<Self, EquilibriumError> {
+    pub fn loaded(mut self, loads: &[[f64; 3]]) -> Result<Self, Fault> {
         assert_eq!(loads.len(), self.loads.len(), "one load per panel");
         for (panel, load) in loads.iter().enumerate() {
-            if let Some(&value) = load.iter().find(|value| !value.is_finite()) {
-                let what = "a load";
-                return Err(EquilibriumError::NotFinite { what, panel, value });
-            }
+            load.iter().try_for_each(|value| finite("a load", panel, *value))?;
         }
         let held = self.supports.iter();
         if let Some(support) = held.into_iter().find(|s| loads[s.panel][s.dof.index()] != 0.0) {
             let Support { panel, dof, .. } = *support;
-            return Err(EquilibriumError::LoadOnSupport { panel, dof });
+            let what = format!("panel {panel} is loaded in {dof:?}, where it is supported");
+            return Err(fault("", what, "loads act on free degrees of freedom"));
         }
         self.loads = loads.into();
         match self.drive.take() {
@@ -217,7 +186,7 @@ impl EquilibriumSolver {
     }
 
     /// The displacement of a configuration along the loads, by which a stroke is prescribed: their
-    /// work over the sum of their magnitudes (mm; rad if there are couples alone). `None` without
+    /// work over the sum of their magnitudes (mm; rad if there are only couples). `None` without
     /// loads.
     pub fn displacement(&self, configuration: &[[f64; 3]]) -> Option<f64> {
         let (size, _) = magnitude(&self.loads)?;
@@ -232,12 +201,13 @@ impl EquilibriumSolver {
     /// The same supports and loads under displacement control: the load factors follow from the
     /// strokes i/steps of `stroke` (mm), the work of the full loads divided by the sum of their
     /// magnitudes.
-    pub fn driven(mut self, stroke: f64) -> Result<Self, EquilibriumError> {
+    pub fn driven(mut self, stroke: f64) -> Result<Self, Fault> {
         if !stroke.is_finite() {
-            return Err(EquilibriumError::Stroke(stroke));
+            return Err(fault("", format!("the stroke {stroke} mm is not a finite number"), ""));
         }
         let direction = Stroke::new(&self.loads, &self.pattern.gather(&self.loads));
-        let direction = direction.ok_or(EquilibriumError::NothingDrives)?;
+        let what = "displacement control needs a load, whose stroke is prescribed";
+        let direction = direction.ok_or_else(|| fault("", what, ""))?;
         self.drive = Some((Box::new(direction), stroke));
         Ok(self)
     }
@@ -255,9 +225,9 @@ impl EquilibriumSolver {
     }
 
     /// The same problem with a weight of `by_area` (N/mm^2) in the plane of the sheet.
-    pub fn with_weight(mut self, by_area: [f64; 2]) -> Result<Self, EquilibriumError> {
+    pub fn with_weight(mut self, by_area: [f64; 2]) -> Result<Self, Fault> {
         if !by_area.iter().all(|component| component.is_finite()) {
-            return Err(EquilibriumError::Weight(by_area));
+            return Err(fault("", format!("the weight {by_area:?} N/mm^2 is not finite"), ""));
         }
         self.weight = by_area;
         Ok(self)
@@ -275,8 +245,12 @@ impl EquilibriumSolver {
 
     /// An error if the supports leave a sheet free to move as a rigid body and its weight does not
     /// hold it.
-    pub fn check_supports(&self, sheet: &Sheet) -> Result<(), EquilibriumError> {
-        self.start(sheet).map(|_| ()).ok_or(EquilibriumError::Unsupported)
+    pub fn check_supports(&self, sheet: &Sheet) -> Result<(), Fault> {
+        let remedy = "support at least three degrees of freedom, such as one clamp or a pin and a roller; \
+                      one pin is enough for a sheet that hangs by its weight, without a prescribed stroke, from \
+                      a point that is not its centre of gravity";
+        let what = "the supports leave the sheet free to move as a rigid body";
+        self.start(sheet).map(drop).ok_or_else(|| fault("", what, remedy))
     }
 
     /// The unloaded sheet: flat, and turned about a nail from which it hangs; `None` if it is free
@@ -297,4 +271,9 @@ impl EquilibriumSolver {
     pub fn flat(&self) -> Configuration {
         vec![[0.0; 3]; self.topology.panel_count()]
     }
+}
+
+fn finite(what: &str, panel: usize, value: f64) -> Result<(), Fault> {
+    let what = || format!("{what} of {value} on panel {panel} is not a finite number");
+    value.is_finite().then_some(()).ok_or_else(|| fault("", what(), ""))
 }

@@ -1,16 +1,22 @@
 //! LDL^T of a sparse symmetric matrix without pivoting, by faer: column by column for few unknowns,
 //! otherwise by supernodes, dense blocks of columns.
 
-use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
-use faer::linalg::cholesky::ldlt::factor::LdltRegularization;
-use faer::mat::MatMut;
-use faer::sparse::linalg::cholesky::{
-    CholeskySymbolicParams, LdltRef, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering,
-    factorize_symbolic_cholesky, supernodal::SupernodalLdltRef,
+use faer::{
+    Conj, Par, Side,
+    dyn_stack::{MemBuffer, MemStack, StackReq},
+    linalg::cholesky::ldlt::factor::LdltRegularization,
+    mat::MatMut,
+    sparse::{
+        SparseColMatRef, SymbolicSparseColMat,
+        linalg::{
+            SupernodalThreshold, SymbolicSupernodalParams, amd,
+            cholesky::{
+                CholeskySymbolicParams, LdltRef, SymbolicCholesky, SymbolicCholeskyRaw,
+                SymmetricOrdering, factorize_symbolic_cholesky, supernodal::SupernodalLdltRef,
+            },
+        },
+    },
 };
-use faer::sparse::linalg::{SupernodalThreshold, SymbolicSupernodalParams, amd};
-use faer::sparse::{SparseColMatRef, SymbolicSparseColMat};
-use faer::{Conj, Par, Side};
 use std::cell::RefCell;
 
 /// Number of unknowns from which the supernodal factorisation is faster (measured).
@@ -52,8 +58,8 @@ pub(crate) fn elimination_ranks(matrix: &SymbolicSparseColMat<usize>) -> Vec<usi
 
 impl SparseLdl {
     /// The factorisation in the order of the columns.
-    pub fn new(matrix: SymbolicSparseColMat<usize>) -> Self {
-        // Without a given ordering faer analyses the upper triangle, whichever side is passed.
+    pub(crate) fn new(matrix: SymbolicSparseColMat<usize>) -> Self {
+        // faer without a given ordering analyses the upper triangle, whichever side is passed.
         let upper = matrix.transpose().to_col_major();
         let cholesky = factorize_symbolic_cholesky(
             upper.expect("indices fit in usize").as_ref(),
@@ -78,12 +84,12 @@ impl SparseLdl {
     }
 
     /// Where the columns of the matrix start, and the row of each entry.
-    pub fn entries(&self) -> (&[usize], &[usize]) {
+    pub(crate) fn entries(&self) -> (&[usize], &[usize]) {
         (self.matrix.col_ptr(), self.matrix.row_idx())
     }
 
     /// Number of stored entries of L and D.
-    pub fn factor_entries(&self) -> usize {
+    fn factor_entries(&self) -> usize {
         self.cholesky.len_val()
     }
 
@@ -99,7 +105,7 @@ impl SparseLdl {
 
     /// LDL^T of the matrix with the entries `values`, stored in `factor`; `None` if a pivot
     /// vanishes.
-    pub fn factorise(&self, values: &[f64], factor: &mut Vec<f64>) -> Option<()> {
+    pub(crate) fn factorise(&self, values: &[f64], factor: &mut Vec<f64>) -> Option<()> {
         factor.resize(self.factor_entries(), 0.0);
         let matrix = SparseColMatRef::new(self.matrix.as_ref(), values);
         let result = self.with_scratch(|stack| {
@@ -117,7 +123,7 @@ impl SparseLdl {
     }
 
     /// D, in the order of elimination.
-    pub fn pivots(&self, factor: &[f64]) -> Vec<f64> {
+    pub(crate) fn pivots(&self, factor: &[f64]) -> Vec<f64> {
         match self.cholesky.raw() {
             SymbolicCholeskyRaw::Simplicial(symbolic) => {
                 let starts = &symbolic.col_ptr()[..symbolic.ncols()];
@@ -134,7 +140,7 @@ impl SparseLdl {
     }
 
     /// Solves with the factor, in place.
-    pub fn solve(&self, factor: &[f64], x: &mut [f64]) {
+    pub(crate) fn solve(&self, factor: &[f64], x: &mut [f64]) {
         let rows = x.len();
         self.with_scratch(|stack| {
             LdltRef::new(&self.cholesky, factor).solve_in_place_with_conj(

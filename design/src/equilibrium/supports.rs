@@ -29,7 +29,7 @@ pub struct Support {
     pub panel: usize,
     /// The supported degree of freedom.
     pub dof: Dof,
-    /// At full load (mm or rad); it grows with the load factor.
+    /// Value at full load (mm or rad); it grows with the load factor.
     pub value: f64,
 }
 
@@ -40,7 +40,7 @@ pub struct Load {
     pub panel: usize,
     /// The degree of freedom that the load does work on.
     pub dof: Dof,
-    /// At full load: a force (N) for a translation, a moment (N mm) for the rotation.
+    /// Value at full load: a force (N) for a translation, a moment (N mm) for the rotation.
     pub value: f64,
 }
 

@@ -2,8 +2,10 @@
 //! symbolic analysis is done once per topology and set of supports; free degrees of freedom are
 //! numbered in elimination order.
 
-use crate::equilibrium::sparse_ldl::{SparseLdl, elimination_ranks};
-use crate::sheet::topology::Topology;
+use crate::{
+    equilibrium::sparse_ldl::{SparseLdl, elimination_ranks},
+    sheet::topology::Topology,
+};
 use faer::sparse::SymbolicSparseColMat;
 use std::collections::BTreeSet;
 

@@ -5,27 +5,23 @@
 //! Supports that rest and the weight of the sheet stay; supports that moved the sheet are removed,
 //! too.
 
-use crate::equilibrium::corrector::Branch;
-use crate::equilibrium::hinged_sheet::HingedSheet;
-use crate::equilibrium::load_step::LoadStep;
-use crate::equilibrium::potential::Stage;
-use crate::equilibrium::solver::{EquilibriumError, EquilibriumSolver};
-use crate::equilibrium::supports::Support;
-use crate::hinge_law::Order;
-use crate::sheet::cut_sheet::Sheet;
-use crate::sheet::kinematics::Configuration;
+use crate::{
+    equilibrium::{
+        corrector::Branch, hinged_sheet::HingedSheet, load_step::LoadStep, potential::PathStage,
+        solver::EquilibriumSolver, supports::Support,
+    },
+    hinge_law::Order,
+    sheet::{cut_sheet::Sheet, kinematics::Configuration},
+};
+use support::fault::{Fault, fault};
 
 /// Number of steps in which the loads are taken off.
 const STEPS: usize = 10;
 
 impl EquilibriumSolver {
-    /// The load steps from the configuration `start`, of which the last one is without loads. Their
+    /// The load steps from the configuration `start`; the last one is without loads. Their
     /// load factor is the part of the holding forces that is left.
-    pub fn unload(
-        &self,
-        sheet: HingedSheet,
-        start: Configuration,
-    ) -> Result<Vec<LoadStep>, EquilibriumError> {
+    pub fn unload(&self, sheet: HingedSheet, start: Configuration) -> Result<Vec<LoadStep>, Fault> {
         let mut free = self.unloaded(sheet.sheet)?;
         if let Some(holding) = free.holding(sheet, start.clone()) {
             free.loads = holding.iter().map(|force| force.map(|x| -x)).collect();
@@ -36,7 +32,7 @@ impl EquilibriumSolver {
     }
 
     /// The same problem without loads, and without the supports that moved the sheet.
-    fn unloaded(&self, sheet: &Sheet) -> Result<Self, EquilibriumError> {
+    fn unloaded(&self, sheet: &Sheet) -> Result<Self, Fault> {
         let resting = self.supports.iter().filter(|support| support.value == 0.0);
         let resting: Vec<Support> = resting.copied().collect();
         let free = Self {
@@ -44,16 +40,15 @@ impl EquilibriumSolver {
             attachment_points: self.attachment_points.clone(),
             ..Self::new(self.topology.clone(), &resting, &[], STEPS, self.settings)?
         };
-        match free.check_supports(sheet) {
-            Ok(()) => Ok(free),
-            Err(_) => Err(EquilibriumError::HeldByMoved),
-        }
+        let what = "without the supports that moved it the sheet is free to move as a rigid body, and its \
+                    unloaded position is undetermined. Hold it by supports that do not move";
+        free.check_supports(sheet).map_err(|_| fault("", what, "")).map(|()| free)
     }
 
     /// The forces (F_x, F_y, M) on the free panels that balance a configuration without loads;
     /// `None` if its energy is not finite.
     fn holding(&self, sheet: HingedSheet, configuration: Configuration) -> Option<Vec<[f64; 3]>> {
-        let potential = Branch::new(self, sheet, Stage::Actuation).potential(0.0);
+        let potential = Branch::new(self, sheet, PathStage::Actuation).potential(0.0);
         let state = potential.state_up_to(configuration, Order::Forces)?;
         Some(self.pattern.spread(&state.gradient))
     }

@@ -13,14 +13,17 @@
 //! jump that appears between two load steps is not noticed: paths must be followed from the flat
 //! sheet now and then.
 
-use crate::equilibrium::corrector::Branch;
-use crate::equilibrium::hinged_sheet::HingedSheet;
-use crate::equilibrium::load_step::{LoadStep, Status};
-use crate::equilibrium::newton::Minimum;
-use crate::equilibrium::potential::{Stage, moved};
-use crate::equilibrium::predictor::PathPoint;
-use crate::equilibrium::solver::EquilibriumSolver;
-use crate::hinge_law::{HingeEnergy, Order, PreparedLaw};
+use crate::{
+    equilibrium::{
+        corrector::Branch,
+        hinged_sheet::HingedSheet,
+        load_step::{LoadStep, Status},
+        potential::{PathStage, moved},
+        predictor::PathPoint,
+        solver::EquilibriumSolver,
+    },
+    hinge_law::{HingeEnergy, Order, PreparedLaw},
+};
 use hinge::{HingeDeformation, HingeDesign};
 use support::vectors::dot;
 
@@ -75,31 +78,25 @@ impl EquilibriumSolver {
     /// not complete or jumps, or if a state is not a stable equilibrium close to the known one:
     /// then the path must be followed.
     pub fn path_near(&self, sheet: HingedSheet, known: &WarmStart) -> Option<Vec<LoadStep>> {
-        if known.steps.len() != self.weight_steps() + self.steps {
-            return None;
-        }
-        let (weighed, loaded) = known.steps.split_at(self.weight_steps());
+        let (weighed, loaded) = known.steps.split_at_checked(self.weight_steps())?;
         let near = |stage, steps| {
             let ends: Vec<f64> = self.ends(stage).collect();
             self.steps_near(sheet, stage, &ends, &known.designs, steps)
         };
-        let mut path = near(Stage::Weight, weighed)?;
-        path.extend(near(Stage::Actuation, loaded)?);
+        let mut path = near(PathStage::Weight, weighed)?;
+        path.extend(near(PathStage::Actuation, loaded)?);
         Some(path)
     }
 
-    /// The [`readings`](Self::readings) of a sheet near another one of which `known` are the
-    /// readings at the same parameters; `None` as for a path.
-    pub fn readings_near(
+    /// The [load steps](Self::load_steps_at) of a sheet near another one, whose load steps at the
+    /// same parameters are `known`; `None` as for a path.
+    pub fn load_steps_near(
         &self,
         sheet: HingedSheet,
         parameters: &[f64],
         known: &WarmStart,
     ) -> Option<Vec<LoadStep>> {
-        if known.steps.len() != parameters.len() {
-            return None;
-        }
-        self.steps_near(sheet, Stage::Actuation, parameters, &known.designs, &known.steps)
+        self.steps_near(sheet, PathStage::Actuation, parameters, &known.designs, &known.steps)
     }
 
     /// A stable equilibrium at full load next to the last state of a known path: where Newton's
@@ -108,23 +105,19 @@ impl EquilibriumSolver {
     pub(crate) fn full_load_near(&self, sheet: HingedSheet, known: &WarmStart) -> Option<LoadStep> {
         let last = known.steps.last()?;
         let changes = changes(sheet, &known.designs);
-        let mut branch = Branch::new(self, sheet, Stage::Actuation);
+        let mut branch = Branch::new(self, sheet, PathStage::Actuation);
         let start = branch.carried_over(1.0, last, &changes)?;
-        let stable = |found: &Minimum| {
-            let factor = found.factor.as_ref();
-            factor.is_some_and(|held| held.unstable_directions() == 0)
-        };
-        let found = branch.balanced(start.clone()).filter(stable);
-        let found = found.or_else(|| branch.minimum(&start).ok())?;
+        let found = branch.stable_near(&start).ok()?;
         let step = branch.load_step(found, 0);
         (step.status != Status::Almost).then_some(step)
     }
 
-    /// The load steps that end at load parameters, each from the known one there.
+    /// The load steps that end at load parameters, each from the known one there; `None` unless
+    /// there is one for each.
     fn steps_near(
         &self,
         sheet: HingedSheet,
-        stage: Stage,
+        stage: PathStage,
         ends: &[f64],
         designs: &[HingeDesign],
         known: &[LoadStep],
@@ -132,7 +125,7 @@ impl EquilibriumSolver {
         let smooth = |step: &LoadStep| {
             matches!(step.status, Status::Converged | Status::LeftDomain) && step.jumps == 0
         };
-        if !known.iter().all(smooth) {
+        if known.len() != ends.len() || !known.iter().all(smooth) {
             return None;
         }
         let changes = changes(sheet, designs);
@@ -171,19 +164,19 @@ impl Branch<'_> {
 
     /// Moves a known state to the stroke at its load parameter, which loads in another direction
     /// change.
-    fn hold_stroke(&self, place: &mut PathPoint) {
+    fn hold_stroke(&self, position: &mut PathPoint) {
         let Some((stroke, full)) = &self.solver.drive else {
             return;
         };
         let target = match self.stage {
-            Stage::Weight => 0.0,
-            Stage::Actuation => place.at * full,
+            PathStage::Weight => 0.0,
+            PathStage::Actuation => position.at * full,
         };
         let pattern = &self.solver.pattern;
-        let short = target - stroke.of(&pattern.gather(&place.configuration));
+        let short = target - stroke.of(&pattern.gather(&position.configuration));
         if short.abs() > ROUNDED * full.abs() {
             let motion = pattern.spread(&stroke.motion(short));
-            place.configuration = moved(&place.configuration, &motion, 1.0);
+            position.configuration = moved(&position.configuration, &motion, 1.0);
         }
     }
 
@@ -209,6 +202,6 @@ impl Branch<'_> {
         let found = branch.close(start, None, f64::INFINITY).ok();
         self.effort.iterations += branch.effort.iterations;
         self.effort.factorisations += branch.effort.factorisations;
-        Some(found?.place)
+        Some(found?.position)
     }
 }

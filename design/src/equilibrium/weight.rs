@@ -1,6 +1,6 @@
 //! The weight of the panels, in the plane of the sheet.
 //!
-//! With w the weight of a unit of area (a vector in the plane), A the area of a panel, c its
+//! Let w be the weight of a unit of area (a vector in the plane), A the area of a panel, c its
 //! centroid and r its reference point, the weight has the work w A . (u + R(phi) (c - r)). Its
 //! moment about the reference point turns with the panel:
 //!
@@ -8,10 +8,14 @@
 //! F = w A,     M = (R(phi) (c - r)) x F,     -dM/dphi = (R(phi) (c - r)) . F
 //! ```
 
-use crate::equilibrium::panel_force::PanelForce;
-use crate::geometry::plane::{I, add, complex, cross, dot, turn};
-use crate::sheet::cut_sheet::{Panel, Sheet, SheetGradient};
-use crate::sheet::kinematics::Configuration;
+use crate::{
+    equilibrium::panel_force::PanelForce,
+    geometry::plane::{I, add, complex, cross, dot, turn},
+    sheet::{
+        cut_sheet::{Panel, Sheet, SheetGradient},
+        kinematics::Configuration,
+    },
+};
 use faer::c64;
 
 /// Distance of the centre of gravity from a nail, relative to the size of the sheet, below which

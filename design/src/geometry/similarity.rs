@@ -1,8 +1,8 @@
 //! The rigid motion, with or without a change of scale, that maps one set of labelled points onto
 //! another.
 //!
-//! In complex numbers it is z -> turn z + shift: |turn| is the scale and arg(turn) the rotation.
-//! With p' and m' relative to their means, sum |m - turn p - shift|^2 is least at
+//! It is, in complex numbers, z -> turn z + shift: |turn| is the scale and arg(turn) the rotation.
+//! If p' and m' are relative to their means, sum |m - turn p - shift|^2 is least at
 //!
 //! ```text
 //! turn = sum conj(p') m' / sum |p'|^2,     shift = mean(m) - turn mean(p),

@@ -15,8 +15,10 @@
 //! Edges that coincide enclose nothing, in any order. Heights are measured along an oblique axis:
 //! an edge without height would have no derivative.
 
-use crate::geometry::plane::{complex, point, turn};
-use crate::geometry::polygon::{area, counter_clockwise, edges, side};
+use crate::geometry::{
+    plane::{complex, point, turn},
+    polygon::{area, counter_clockwise, edges, side},
+};
 
 /// Rotation of the polygons before they are cut into slabs (rad).
 const OBLIQUE: f64 = 0.7;
@@ -47,7 +49,7 @@ pub fn symmetric_difference(outline: &[[f64; 2]], target: &[[f64; 2]]) -> (f64, 
 }
 
 /// An edge with height.
-struct Edge {
+struct ObliqueEdge {
     low: [f64; 2],
     high: [f64; 2],
     /// Change of w across the edge from left to right.
@@ -57,7 +59,7 @@ struct Edge {
 }
 
 /// The edges of a rotated polygon inside which w is larger by `inside` if it is counter-clockwise.
-fn oblique_edges(polygon: &[[f64; 2]], inside: i32) -> Vec<Edge> {
+fn oblique_edges(polygon: &[[f64; 2]], inside: i32) -> Vec<ObliqueEdge> {
     let turned = |vertex: &[f64; 2]| point(complex(*vertex) * turn(OBLIQUE));
     let turned: Vec<[f64; 2]> = polygon.iter().map(turned).collect();
     let edge = |(i, (from, to)): (usize, ([f64; 2], [f64; 2]))| {
@@ -68,12 +70,12 @@ fn oblique_edges(polygon: &[[f64; 2]], inside: i32) -> Vec<Edge> {
             (to, from, inside, [next, i])
         };
         let ends = Some(ends);
-        (low[1] < high[1]).then_some(Edge { low, high, step, ends })
+        (low[1] < high[1]).then_some(ObliqueEdge { low, high, step, ends })
     };
     edges(&turned).enumerate().filter_map(edge).collect()
 }
 
-impl Edge {
+impl ObliqueEdge {
     fn slope(&self) -> f64 {
         (self.high[0] - self.low[0]) / (self.high[1] - self.low[1])
     }
@@ -99,7 +101,7 @@ impl Edge {
 }
 
 /// The heights of all ends and crossings of edges, sorted by their lower ends.
-fn heights(all: &[Edge]) -> Vec<f64> {
+fn heights(all: &[ObliqueEdge]) -> Vec<f64> {
     let ends = all.iter().flat_map(|edge| [edge.low[1], edge.high[1]]);
     let mut heights: Vec<f64> = ends.collect();
     for (i, edge) in all.iter().enumerate() {
@@ -112,7 +114,7 @@ fn heights(all: &[Edge]) -> Vec<f64> {
 }
 
 /// The edges through each slab between neighbouring heights.
-fn by_slabs<'a>(all: &'a [Edge], heights: &[f64]) -> Vec<Vec<&'a Edge>> {
+fn by_slabs<'a>(all: &'a [ObliqueEdge], heights: &[f64]) -> Vec<Vec<&'a ObliqueEdge>> {
     let mut slabs = vec![Vec::new(); heights.len().saturating_sub(1)];
     for edge in all {
         let first = heights.partition_point(|height| *height < edge.low[1]);
@@ -125,9 +127,10 @@ fn by_slabs<'a>(all: &'a [Edge], heights: &[f64]) -> Vec<Vec<&'a Edge>> {
 }
 
 /// The area within a slab; its gradient is added to `gradient`.
-fn trapezoids([bottom, top]: [f64; 2], edges: &[&Edge], gradient: &mut [[f64; 2]]) -> f64 {
+fn trapezoids([bottom, top]: [f64; 2], edges: &[&ObliqueEdge], gradient: &mut [[f64; 2]]) -> f64 {
     let (middle, height) = (0.5 * (bottom + top), top - bottom);
-    let mut sorted: Vec<(f64, &Edge)> = edges.iter().map(|it| (it.at(middle), *it)).collect();
+    let mut sorted: Vec<(f64, &ObliqueEdge)> =
+        edges.iter().map(|it| (it.at(middle), *it)).collect();
     sorted.sort_by(|a, b| a.0.total_cmp(&b.0));
     let (mut area, mut w, mut left) = (0.0, 0i32, 0.0);
     for (x, edge) in sorted {

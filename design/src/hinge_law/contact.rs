@@ -2,7 +2,8 @@
 //! pi - theta at the neighbouring corner of the void; text of (11).
 //!
 //! ```text
-//! E(phi) = -k (phi - phi_cut)^2 ln((phi - phi_min) / (phi_cut - phi_min))   for phi_min < phi < phi_cut
+//! E(phi) = -k (phi - phi_cut)^2 ln((phi - phi_min) / (phi_cut - phi_min))   for phi_min < phi <
+//! phi_cut
 //! ```
 //!
 //! It is zero above phi_cut, infinite at and below phi_min, and C^2 in between and at phi_cut.
@@ -10,6 +11,7 @@
 use crate::hinge_law::law::HingeEnergy;
 use hinge::HingeDeformation;
 use std::f64::consts::PI;
+use support::fault::{Fault, fault};
 
 /// The constants of the barrier.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,32 +24,21 @@ pub struct Contact {
     phi_cut: f64,
 }
 
-/// Constants with which the flat sheet is stressed, or that define no barrier.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error(
-    "contact with stiffness = {stiffness} N mm, phi_min = {phi_min} rad, phi_cut = {phi_cut} rad \
-     violates stiffness > 0 and -pi < phi_min < phi_cut <= 0 (the closed sheet has phi = 0)"
-)]
-pub struct InvalidContact {
-    /// Stiffness of the rejected barrier (N mm).
-    pub stiffness: f64,
-    /// Its void angle at which the barrier becomes infinite (rad).
-    pub phi_min: f64,
-    /// Its void angle at which contact begins (rad).
-    pub phi_cut: f64,
-}
-
 impl Contact {
     /// A barrier with the given stiffness (N mm) between `phi_cut`, where it begins, and `phi_min`
     /// (rad).
-    pub fn new(stiffness: f64, phi_min: f64, phi_cut: f64) -> Result<Self, InvalidContact> {
+    pub fn new(stiffness: f64, phi_min: f64, phi_cut: f64) -> Result<Self, Fault> {
         let valid = stiffness > 0.0
             && stiffness.is_finite()
             && -PI < phi_min
             && phi_min < phi_cut
             && phi_cut <= 0.0;
         if !valid {
-            return Err(InvalidContact { stiffness, phi_min, phi_cut });
+            let what = format!(
+                "contact with stiffness = {stiffness} N mm, phi_min = {phi_min} rad, phi_cut = {phi_cut} rad \
+                 violates stiffness > 0 and -pi < phi_min < phi_cut <= 0 (the closed sheet has phi = 0)"
+            );
+            return Err(fault("", what, ""));
         }
         Ok(Self { stiffness, phi_min, phi_cut })
     }

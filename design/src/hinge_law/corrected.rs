@@ -1,7 +1,8 @@
 //! A hinge law corrected to measured forces at some states of each hinge.
 //!
 //! ```text
-//! W_c(x) = W(x) + sum_j b_j . (u_j(x) E_j(x) - u_j(0) E_j(0)),      u_j(x) = (x - x_j) / l,      E_j = exp(-|u_j|^2 / 2)
+//! W_c(x) = W(x) + sum_j b_j . (u_j(x) E_j(x) - u_j(0) E_j(0)),      u_j(x) = (x - x_j) / l,
+//! E_j = exp(-|u_j|^2 / 2)
 //! ```
 //!
 //! x = (eta_a, eta_s, theta), x_j are the flat hinge and the states at which the forces were
@@ -13,18 +14,19 @@
 //! that is not nearly flat is met exactly, earlier ones within a noise: finite elements depend on
 //! the path, and differences of nearly equal states are no tangent. As a function of (a, s, theta)
 //! the correction is fixed by the design at which the forces were measured, also for a design close
-//! to it: derivatives in the design are the derivatives of the law alone. (Solak, Murray-Smith,
+//! to it: derivatives in the design are only derivatives of the law. (Solak, Murray-Smith,
 //! Leithead, Leith, Rasmussen, "Derivative observations in Gaussian process models of dynamic
 //! systems", 2003.)
 
 use crate::hinge_law::law::{
     DamageMeasure, HingeDamage, HingeEnergy, HingeLaw, Order, PreparedLaw,
 };
-use faer::linalg::solvers::{Llt, Solve};
-use faer::{Col, Mat, Side};
+use faer::{
+    Col, Mat, Side,
+    linalg::solvers::{Llt, Solve},
+};
 use hinge::{HingeDeformation, HingeDesign, TrainingDomain};
-use std::array::from_fn;
-use std::sync::Arc;
+use std::{array::from_fn, sync::Arc};
 use support::vectors::dot;
 
 /// A hinge law with a correction for each hinge of one sheet.

@@ -32,7 +32,7 @@ impl DamageMeasure {
 
 /// A stored-energy function of the hinge deformation, for any hinge design.
 pub trait HingeLaw: Send + Sync {
-    /// Computes what depends on the designs alone.
+    /// Computes what depends only on the designs.
     fn prepare<'a>(&'a self, designs: &[HingeDesign]) -> Box<dyn PreparedLaw + 'a>;
 
     /// D_s of (17) for a measure, if the law predicts it.

@@ -26,7 +26,7 @@ impl HingeLaw for LinearLaw {
         Box::new(self)
     }
 
-    /// The constants of another thickness are not known.
+    /// The constants of another thickness are unknown.
     fn scaled(&self, thickness: f64, stress: f64) -> Option<Arc<dyn HingeLaw>> {
         let scaled = |constants: &[f64; 3]| constants.map(|constant| stress * constant);
         (thickness == 1.0).then(|| -> Arc<dyn HingeLaw> {

@@ -10,7 +10,7 @@ use support::vectors;
 
 /// The mean of laws with one training domain.
 pub struct MeanLaw {
-    /// At least one law.
+    /// The laws, at least one.
     pub laws: Vec<Arc<dyn HingeLaw>>,
 }
 
@@ -47,14 +47,14 @@ impl PreparedLaw for PreparedMean<'_> {
     fn energies(&self, deformations: &[HingeDeformation], order: Order) -> Vec<HingeEnergy> {
         self.mean(
             |law| law.energies(deformations, order),
-            |mean, part, share| {
-                mean.w += share * part.w;
-                vectors::add(&mut mean.forces, &part.forces, share);
+            |mean, part, fraction| {
+                mean.w += fraction * part.w;
+                vectors::add(&mut mean.forces, &part.forces, fraction);
                 let (sum, rows) = (mean.tangent.as_flattened_mut(), part.tangent.as_flattened());
-                vectors::add(sum, rows, share);
-                mean.design += part.design * share;
+                vectors::add(sum, rows, fraction);
+                mean.design += part.design * fraction;
                 let rows = mean.mixed.iter_mut().zip(part.mixed);
-                rows.for_each(|(mean, part)| *mean += part * share);
+                rows.for_each(|(mean, part)| *mean += part * fraction);
             },
         )
     }
@@ -62,12 +62,12 @@ impl PreparedLaw for PreparedMean<'_> {
     fn damage(&self, deformations: &[HingeDeformation], with_gradient: bool) -> Vec<HingeDamage> {
         self.mean(
             |law| law.damage(deformations, with_gradient),
-            |mean, part, share| {
-                mean.d += share * part.d;
-                mean.gradient += part.gradient * share;
+            |mean, part, fraction| {
+                mean.d += fraction * part.d;
+                mean.gradient += part.gradient * fraction;
                 let peaks = mean.d_peak.zip(part.d_peak);
-                mean.d_peak = peaks.map(|(mean, part)| mean + share * part);
-                mean.peak_gradient += part.peak_gradient * share;
+                mean.d_peak = peaks.map(|(mean, part)| mean + fraction * part);
+                mean.peak_gradient += part.peak_gradient * fraction;
             },
         )
     }
@@ -89,16 +89,16 @@ impl PreparedMean<'_> {
         of: impl Fn(&dyn PreparedLaw) -> Vec<T>,
         add: impl Fn(&mut T, &T, f64),
     ) -> Vec<T> {
-        let share = 1.0 / self.laws.len() as f64;
+        let fraction = 1.0 / self.laws.len() as f64;
         let mut laws = self.laws.iter().map(|law| of(&**law));
         let mut mean = laws.next().unwrap_or_default();
         mean.iter_mut().for_each(|first| {
             let whole = first.clone();
-            add(first, &whole, share - 1.0);
+            add(first, &whole, fraction - 1.0);
         });
         for law in laws {
             for (mean, part) in mean.iter_mut().zip(&law) {
-                add(mean, part, share);
+                add(mean, part, fraction);
             }
         }
         mean

@@ -5,7 +5,7 @@ use crate::hinge_law::law::{HingeEnergy, Order, PreparedLaw};
 use hinge::{HingeDeformation, HingeDesign, ReleasedHinge};
 use surrogate::Springback;
 
-/// The law of the released hinges of one sheet, in its order. It knows no damage, and does not
+/// The law of the unloaded hinges of one sheet, in its order. It knows no damage, and does not
 /// depend on the designs.
 #[derive(Clone, Copy, Debug)]
 pub struct ReleasedLaw<'a>(pub &'a [ReleasedHinge]);
@@ -22,9 +22,9 @@ impl PreparedLaw for ReleasedLaw<'_> {
     }
 }
 
-/// What becomes of the hinges of a sheet that is unloaded: the learned law, for another thickness.
+/// The learned law of unloaded hinges, for another thickness.
 ///
-/// With all lengths in proportion to the thickness, F_a and F_s grow with its square and M_theta
+/// If all lengths are in proportion to the thickness, F_a and F_s grow with its square and M_theta
 /// with its cube.
 #[derive(Clone, Copy, Debug)]
 pub struct Release<'a> {

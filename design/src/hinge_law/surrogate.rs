@@ -1,8 +1,9 @@
 //! The learned hinge energy (14) inside its training domain, and its continuation outside.
 //!
 //! ```text
-//! W_law(x; g) = W(y(x); g) + k (W_s + W(y(x); g)) e^3 / (e + delta),        e = max(0, gamma(x) - 1)
-//! y(x) = c + (x - c) psi(gamma) / gamma,              psi = 1 + delta z / (1 + z^3)^(1/3),  z = e / delta
+//! W_law(x; g) = W(y(x); g) + k (W_s + W(y(x); g)) e^3 / (e + delta),        e = max(0, gamma(x) -
+//! 1) y(x) = c + (x - c) psi(gamma) / gamma,              psi = 1 + delta z / (1 + z^3)^(1/3),  z =
+//! e / delta
 //! ```
 //!
 //! gamma is the gauge of the domain and c its centre. Inside, y = x. Outside, y stays within delta
@@ -18,9 +19,7 @@ use crate::hinge_law::law::{
     PreparedLaw,
 };
 use hinge::{HingeDeformation, HingeDesign, Jet, TrainingDomain};
-use std::array::from_fn;
-use std::ops::Deref;
-use std::sync::Arc;
+use std::{array::from_fn, ops::Deref, sync::Arc};
 use surrogate::{Prepared, Surrogate};
 
 /// delta: maximum distance outside the domain at which the network is evaluated, relative to the
@@ -81,7 +80,7 @@ pub struct PreparedSurrogate<S> {
 }
 
 impl<S: Deref<Target = Surrogate>> PreparedSurrogate<S> {
-    /// Computes what depends on the designs alone.
+    /// Computes what depends only on the designs.
     pub fn new(surrogate: S, designs: &[HingeDesign]) -> Self {
         let (mapped, angle_slopes): (Vec<HingeDesign>, Vec<f64>) = designs
             .iter()
@@ -362,7 +361,7 @@ mod tests {
         assert_eq!(at(Order::Tangent), expected);
     }
 
-    /// Along lines from the centre outwards the force that returns a hinge does not fall: no ridge,
+    /// On lines from the centre outwards the force that returns a hinge does not fall: no ridge,
     /// no second minimum, no snap. In the states of the edge of the shipped weights `small`.
     #[test]
     fn beyond_the_edge_the_force_does_not_fall() {

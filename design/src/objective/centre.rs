@@ -5,8 +5,10 @@
 //! c = 1/(6 A) sum (p_i + p_i+1) (p_i x p_i+1),     A = 1/2 sum p_i x p_i+1
 //! ```
 
-use crate::geometry::plane::{I, complex, cross, dot, point};
-use crate::geometry::polygon::mean;
+use crate::geometry::{
+    plane::{I, complex, cross, dot, point},
+    polygon::mean,
+};
 use faer::c64;
 
 /// The centroid of the area inside an outline.

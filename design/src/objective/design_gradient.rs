@@ -1,19 +1,25 @@
 //! The objective and its gradient in the design by the forward chain in reverse: lines 6-7 of
 //! Algorithm 1.
 
-use crate::equilibrium::adjoint::{PathGradient, adjoint};
-use crate::equilibrium::load_step::LoadStep;
-use crate::equilibrium::warm_start::WarmStart;
-use crate::geometry::plane::add;
-use crate::hinge_law::{HingeGradient, PreparedLaw};
-use crate::objective::design_problem::{
-    Deployment, DesignError, DesignProblem, Evaluation, Mechanics, Sensitivities,
+use crate::{
+    equilibrium::{
+        adjoint::{PathGradient, adjoint},
+        load_step::LoadStep,
+        warm_start::WarmStart,
+    },
+    geometry::plane::add,
+    hinge_law::{HingeGradient, PreparedLaw},
+    objective::design_problem::{
+        Deployment, DesignError, DesignProblem, Evaluation, Mechanics, Sensitivities,
+    },
+    pattern::design_vector::DesignVector,
+    sheet::{
+        cut_sheet::{Sheet, SheetGradient},
+        ideal_deployment::ideal_deployment_pullback,
+        kinematics::deployed_pullback,
+        topology::PanelCorner,
+    },
 };
-use crate::pattern::design_vector::DesignVector;
-use crate::sheet::cut_sheet::{Sheet, SheetGradient};
-use crate::sheet::ideal_deployment::ideal_deployment_pullback;
-use crate::sheet::kinematics::deployed_pullback;
-use crate::sheet::topology::PanelCorner;
 
 /// The partial derivatives of a function of a deployment.
 pub(super) struct Partials<'a> {
@@ -21,25 +27,25 @@ pub(super) struct Partials<'a> {
     pub path: &'a [LoadStep],
     /// The panel corners whose deployed positions the function depends on.
     pub outline: &'a [PanelCorner],
-    /// In their deployed positions.
+    /// Gradient in their deployed positions.
     pub by_outline: &'a [[f64; 2]],
-    /// In each hinge at each step of `path`.
+    /// Gradient in each hinge at each step of `path`.
     pub by_states: &'a [Vec<HingeGradient>],
-    /// In the load factor of the last step.
+    /// Gradient in the load factor of the last step.
     pub by_load_factor: f64,
-    /// In the flat sheet, at fixed states and designs of its hinges.
+    /// Gradient in the flat sheet, at fixed states and designs of its hinges.
     pub by_sheet: SheetGradient,
-    /// In size and rotation of a fitted target.
+    /// Gradient in size and rotation of a fitted target.
     pub by_fit: [f64; 2],
-    /// In the forces of the supports in the last step; `None` if all are zero.
+    /// Gradient in the forces of the supports in the last step; `None` if all are zero.
     pub by_reactions: Option<Vec<[f64; 3]>>,
 }
 
 /// The gradient of a function of a deployment.
 pub(super) struct Gradient {
-    /// In the design.
+    /// Gradient in the design.
     pub design: DesignVector,
-    /// In the constants of the problem.
+    /// Gradient in the constants of the problem.
     pub sensitivities: Sensitivities,
     /// [`AdjointSums::virtual_motion`](crate::equilibrium::adjoint::AdjointSums::virtual_motion);
     /// empty without equilibrium.
@@ -108,8 +114,8 @@ impl DesignProblem {
                 let slope = ideal_deployment_pullback(sheet, theta, &by_compared, &mut by_sheet);
                 by_opening = design.opening.map(|_| slope);
             }
-            (None, None) => return Err(DesignError::NoMechanics),
-            (None, Some((mechanics, law))) => {
+            (None, law) => {
+                let (mechanics, law) = law.expect("a law without an opening angle");
                 let sums = adjoint(
                     &mechanics.solver,
                     mechanics.hinged(sheet, law, true),

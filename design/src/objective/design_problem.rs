@@ -1,52 +1,45 @@
 //! The forward chain theta -> pattern -> sheet -> equilibria -> objective, and its gradient by the
 //! same chain in reverse: lines 2-7 of Algorithm 1.
 
-use crate::equilibrium::adjoint::SingularTangent;
-use crate::equilibrium::hinged_sheet::HingedSheet;
-use crate::equilibrium::load_step::{DescentEnd, LoadStep, Status, residual_in_words};
-use crate::equilibrium::solver::{EquilibriumError, EquilibriumSolver};
-use crate::equilibrium::warm_start::WarmStart;
-use crate::hinge_law::{Contact, DamageMeasure, HingeLaw, PreparedLaw};
-use crate::objective::loss::{Objective, ObjectiveValue, TermValues};
-use crate::objective::term::Deployed;
-use crate::pattern::cut_pattern::{CutPattern, Outline};
-use crate::pattern::design_vector::{DesignVector, WidthChart};
-use crate::pattern::fit_variables::FitVariables;
-use crate::pattern::pattern_error::PatternError;
-use crate::sheet::cut_sheet::{Sheet, SheetError, SheetOptions};
-use crate::sheet::ideal_deployment::ideal_deployment;
-use crate::sheet::kinematics::deployed;
-use crate::sheet::topology::{PanelCorner, Topology};
+use crate::{
+    equilibrium::{
+        adjoint::SingularTangent,
+        hinged_sheet::HingedSheet,
+        load_step::{DescentEnd, LoadStep, Status, residual_in_words},
+        solver::EquilibriumSolver,
+        warm_start::WarmStart,
+    },
+    hinge_law::{Contact, DamageMeasure, HingeLaw, PreparedLaw},
+    objective::{
+        loss::{Objective, ObjectiveValue, TermValues},
+        term::Deployed,
+    },
+    pattern::{
+        cut_pattern::{CutPattern, Outline},
+        design_vector::{DesignVector, WidthChart},
+        fit_variables::FitVariables,
+    },
+    sheet::{
+        cut_sheet::{Sheet, SheetOptions},
+        ideal_deployment::{check_opening, ideal_deployment},
+        kinematics::deployed,
+        topology::{PanelCorner, Topology},
+    },
+};
 use hinge::TrainingDomain;
 use serde::Serialize;
-use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
-use support::verbose;
+use std::sync::{Arc, atomic::AtomicBool};
+use support::{
+    fault::{Fault, fault},
+    verbose,
+};
 
 /// Why a design has no objective value.
 #[derive(Debug, thiserror::Error)]
 #[allow(missing_docs, reason = "the message of a variant is its documentation")]
 pub enum DesignError {
     #[error(transparent)]
-    Pattern(#[from] PatternError),
-    #[error(transparent)]
-    Sheet(#[from] SheetError),
-    #[error(transparent)]
-    Equilibrium(#[from] EquilibriumError),
-    #[error("the level `pin` has no equilibrium: set level = \"linear\" or \"standard\"")]
-    NoMechanics,
-    #[error(
-        "a sheet with these errors cannot exist: a ligament, the thickness or the stresses are not positive"
-    )]
-    ImpossibleSheet,
-    #[error("the target has no points")]
-    EmptyTarget,
-    #[error(
-        "the hinge law does not determine the hinges of a sheet of another thickness, or of a stronger material: use level = \"standard\""
-    )]
-    NoSimilarLaw,
-    #[error("the opening angle {0} rad is not a finite number")]
-    Opening(f64),
+    Fault(#[from] Fault),
     #[error(
         "no equilibrium was found beyond load factor {reached:.4} ({}){}",
         residual_in_words(*residual),
@@ -85,6 +78,12 @@ impl Model {
             Self::Ideal { .. } => None,
             Self::Equilibrium(mechanics) => Some(mechanics),
         }
+    }
+
+    /// The same; an error if all hinges are pins.
+    pub fn equilibrium(&self) -> Result<&Mechanics, Fault> {
+        let remedy = "set level = \"linear\" or \"standard\"";
+        self.mechanics().ok_or_else(|| fault("", "the level `pin` has no equilibrium", remedy))
     }
 
     /// The training domain of the hinge law, if it has one.
@@ -128,11 +127,11 @@ pub struct Deployment {
 /// The gradient of L with respect to quantities that are constant during the design.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Sensitivities {
-    /// With respect to the outline's corners, at fixed r and tau.
+    /// Gradient in the outline's corners, at fixed r and tau.
     pub outline: [[f64; 2]; 4],
-    /// With respect to (F_x, F_y, M) of each panel at full load; empty without equilibrium.
+    /// Gradient in (F_x, F_y, M) of each panel at full load; empty without equilibrium.
     pub loads: Vec<[f64; 3]>,
-    /// With respect to (k_a, k_s, k_theta) of each hinge; empty without equilibrium, zero unless
+    /// Gradient in (k_a, k_s, k_theta) of each hinge; empty without equilibrium, zero unless
     /// the law is (11).
     pub constants: Vec<[f64; 3]>,
 }
@@ -160,7 +159,7 @@ impl Deployment {
         WarmStart { designs: self.sheet.designs(), steps: self.path.clone() }
     }
 
-    /// The load steps of the weight alone; none without weight.
+    /// The load steps of only the weight; none without weight.
     pub fn weight_steps(&self) -> &[LoadStep] {
         let partial = self.path.iter().take_while(|step| step.weight < 1.0).count();
         match partial {
@@ -254,7 +253,7 @@ impl DesignProblem {
 
     /// The sheet of a pattern with the given ligament widths (mm), held and pulled where the
     /// problem's sheet is.
-    pub(crate) fn sheet(&self, pattern: &CutPattern, w_lig: &[f64]) -> Result<Sheet, SheetError> {
+    pub(crate) fn sheet(&self, pattern: &CutPattern, w_lig: &[f64]) -> Result<Sheet, Fault> {
         let sheet = Sheet::of_cells(pattern, self.topology.clone(), w_lig, self.options)?;
         Ok(match self.model.mechanics() {
             Some(mechanics) => sheet.attached_at(mechanics.solver.attachment_points()),
@@ -289,9 +288,7 @@ impl DesignProblem {
         let (path, followed, law) = match &self.model {
             Model::Ideal { opening } => {
                 let theta = design.opening.unwrap_or(*opening);
-                if !theta.is_finite() {
-                    return Err(DesignError::Opening(theta));
-                }
+                check_opening(theta)?;
                 let ideal = LoadStep::ideal(&sheet, ideal_deployment(&sheet, theta));
                 (vec![ideal], true, None)
             }
@@ -311,13 +308,8 @@ impl DesignProblem {
     /// L(theta) without its gradient.
     pub fn loss(&self, design: &DesignVector) -> Result<f64, DesignError> {
         let deployment = self.deploy(design)?;
-        self.loss_of(&deployment)
-    }
-
-    /// L of a deployed sheet at full load.
-    pub fn loss_of(&self, deployment: &Deployment) -> Result<f64, DesignError> {
         let outline = deployment.sheet.free_outline_corners();
-        Ok(self.evaluate_deployed(deployment, &outline)?.loss)
+        Ok(self.evaluate_deployed(&deployment, &outline)?.loss)
     }
 
     pub(super) fn evaluate_deployed(
@@ -326,7 +318,7 @@ impl DesignProblem {
         outline: &[PanelCorner],
     ) -> Result<ObjectiveValue, DesignError> {
         if self.objective.shape.target.is_empty() {
-            return Err(DesignError::EmptyTarget);
+            return Err(fault("", "the target has no points", "").into());
         }
         deployment.at_full_load()?;
         Ok(self.objective.evaluate(&Deployed {
@@ -353,15 +345,19 @@ pub fn converged(step: &LoadStep) -> Result<&LoadStep, DesignError> {
 impl Mechanics {
     /// The mechanics at `thickness` times the thickness and `stress` times the stress at every
     /// strain. Its weight grows with the thickness; contact is not changed.
-    pub(crate) fn scaled(&self, thickness: f64, stress: f64) -> Result<Self, DesignError> {
+    pub(crate) fn scaled(&self, thickness: f64, stress: f64) -> Result<Self, Fault> {
         if !(thickness > 0.0 && stress > 0.0 && thickness.is_finite() && stress.is_finite()) {
-            return Err(DesignError::ImpossibleSheet);
+            let why = "a ligament, the thickness or the stresses are not positive";
+            return Err(fault("a sheet with these errors cannot exist", why, ""));
         }
         let mut similar =
             Self { law: Arc::clone(&self.law), contact: self.contact, solver: self.solver.clone() };
         if (thickness, stress) != (1.0, 1.0) {
             let law = self.law.scaled(thickness, stress);
-            similar.law = law.ok_or(DesignError::NoSimilarLaw)?;
+            let what = "the hinge law does not determine the hinges of a sheet of another thickness, \
+                        or of a stronger material";
+            let remedy = "use level = \"standard\"";
+            similar.law = law.ok_or_else(|| fault("", what, remedy))?;
             similar.solver.weight = self.solver.weight.map(|weight| thickness * weight);
         }
         Ok(similar)

@@ -1,9 +1,11 @@
 //! Functionals of the deformation path of the hinges; (17)-(19): means over the hinges of a
 //! function of one measure along the path of a hinge.
 
-use crate::equilibrium::load_step::LoadStep;
-use crate::hinge_law::{DamageMeasure, HingeGradient};
-use crate::objective::term::{Deployed, TermGradient};
+use crate::{
+    equilibrium::load_step::LoadStep,
+    hinge_law::{DamageMeasure, HingeGradient},
+    objective::term::{Deployed, MeasureGradient, TermGradient},
+};
 
 /// A dimensionless measure of the state of a hinge.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -17,13 +19,13 @@ pub enum HingeMeasure {
 }
 
 impl HingeMeasure {
-    /// Its place in [`TermGradient::by_measures`].
-    fn index(self) -> usize {
+    /// The derivative in the measure.
+    fn of(self, gradient: &mut MeasureGradient) -> &mut f64 {
         match self {
-            Self::AxialOpening => 0,
-            Self::Shear => 1,
-            Self::Damage(DamageMeasure::Mean) => 2,
-            Self::Damage(DamageMeasure::Peak) => 3,
+            Self::AxialOpening => &mut gradient.eta_a,
+            Self::Shear => &mut gradient.eta_s,
+            Self::Damage(DamageMeasure::Mean) => &mut gradient.damage,
+            Self::Damage(DamageMeasure::Peak) => &mut gradient.peak_damage,
         }
     }
 
@@ -31,9 +33,8 @@ impl HingeMeasure {
     fn along(self, at: &Deployed, hinge: usize) -> Vec<f64> {
         let w_lig = at.sheet.hinges[hinge].w_lig;
         let value = |step: &LoadStep| match self {
-            Self::AxialOpening | Self::Shear => {
-                Some(step.deformations[hinge].eta(w_lig)[self.index()])
-            }
+            Self::AxialOpening => Some(step.deformations[hinge].eta(w_lig)[0]),
+            Self::Shear => Some(step.deformations[hinge].eta(w_lig)[1]),
             Self::Damage(measure) => Some(measure.known(step.damage.get(hinge)?).unwrap_or(0.0)),
         };
         at.path.iter().filter_map(value).collect()
@@ -54,7 +55,7 @@ impl HingeMeasure {
             let (value, slopes) = function(&self.along(at, h));
             mean += per_hinge * value;
             for (sum, slope) in std::iter::zip(sums, slopes) {
-                sum[self.index()] += slope;
+                *self.of(sum) += slope;
             }
         }
         mean
@@ -68,14 +69,14 @@ pub(crate) fn add_by_states(at: &Deployed, gradient: &mut TermGradient) {
     for (h, (by_measures, by_states)) in by_hinges.enumerate() {
         let w_lig = at.sheet.hinges[h].w_lig;
         let by_steps = std::iter::zip(by_measures, by_states);
-        for (step, (&[by_eta_a, by_eta_s, by_mean, by_peak], sums)) in at.path.iter().zip(by_steps)
-        {
+        for (step, (by, sums)) in at.path.iter().zip(by_steps) {
             let [eta_a, eta_s] = step.deformations[h].eta(w_lig);
-            let by_width = -(by_eta_a * eta_a + by_eta_s * eta_s) / w_lig;
+            let by_width = -(by.eta_a * eta_a + by.eta_s * eta_s) / w_lig;
             let mut slopes =
-                HingeGradient::from([by_eta_a / w_lig, by_eta_s / w_lig, 0.0, by_width, 0.0, 0.0]);
+                HingeGradient::from([by.eta_a / w_lig, by.eta_s / w_lig, 0.0, by_width, 0.0, 0.0]);
             if let Some(damage) = step.damage.get(h) {
-                let measures = [(by_mean, damage.gradient), (by_peak, damage.peak_gradient)];
+                let measures =
+                    [(by.damage, damage.gradient), (by.peak_damage, damage.peak_gradient)];
                 for (by_damage, gradient) in measures.into_iter().filter(|(by, _)| *by != 0.0) {
                     slopes += gradient * by_damage;
                 }

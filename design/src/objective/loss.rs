@@ -1,9 +1,11 @@
 //! The design objective: the Chamfer distance of the deployed outline to the target, functionals of
 //! the deformation paths of the hinges (16), and penalties.
 
-use crate::objective::hinge_measures::add_by_states;
-use crate::objective::shape::Shape;
-use crate::objective::term::{Deployed, Term, TermGradient, Weighted, in_words};
+use crate::objective::{
+    hinge_measures::add_by_states,
+    shape::Shape,
+    term::{Deployed, Term, TermGradient, Weighted, in_words},
+};
 use indexmap::IndexMap;
 
 /// The unweighted terms of the objective by name, in their order.
@@ -26,17 +28,12 @@ pub(crate) struct ObjectiveValue {
     /// L of (16).
     pub loss: f64,
     pub terms: TermValues,
-    /// Of the loss; the gradient in the measures of the hinges is contained in that in their
-    /// states.
+    /// Gradient of the loss; the gradient in the states of the hinges contains the gradient in
+    /// their measures.
     pub gradient: TermGradient,
 }
 
 impl Objective {
-    /// The Chamfer distance alone.
-    pub fn from_shape(shape: Shape) -> Self {
-        Self { shape, functionals: Vec::new(), penalties: Vec::new() }
-    }
-
     /// The terms of one sheet with their weights, in the order of [`TermValues`].
     pub(crate) fn terms(&self) -> impl Iterator<Item = (&dyn Term, f64)> {
         let others = self.functionals.iter().chain(&self.penalties);
@@ -79,7 +76,7 @@ impl Objective {
             functionals.map(|Weighted { weight, term }| value(&**term, *weight, true)).sum();
         let mut loss = shape + functionals;
         for Weighted { weight, term } in &self.penalties {
-            // Without weight a penalty may be infinite: panels may then have any shape.
+            // A penalty without weight may be infinite: panels may then have any shape.
             loss += value(&**term, *weight, *weight != 0.0);
         }
         add_by_states(at, &mut gradient);

@@ -9,29 +9,35 @@
 //! stresses, by a factor e, and the thickness t change the function by
 //!
 //! ```text
-//! d/dlog e = -sum_h f_h . D eps_h[lambda],    d/dlog t = -sum_h (df_h/dlog t) . D eps_h[lambda] + lambda . (weight)
+//! d/dlog e = -sum_h f_h . D eps_h[lambda],    d/dlog t = -sum_h (df_h/dlog t) . D eps_h[lambda] +
+//! lambda . (weight)
 //! ```
 //!
 //! A hinge of another thickness is a geometrically similar one, W(a, s, theta, w_lig; t) = t^3
 //! W(a/t, s/t, theta, w_lig/t; 1), so that Euler's theorem gives df/dlog t from the second
 //! derivatives of W.
 
-use crate::equilibrium::hinged_sheet::HingedSheet;
-use crate::equilibrium::load_step::LoadStep;
-use crate::equilibrium::solver::EquilibriumSolver;
-use crate::equilibrium::warm_start::WarmStart;
-use crate::equilibrium::weight::weights_of_panels;
-use crate::hinge_law::{HingeEnergy, HingeGradient, Order};
-use crate::objective::design_gradient::Partials;
-use crate::objective::design_problem::{Deployment, DesignError, DesignProblem, Model, converged};
-use crate::pattern::design_vector::DesignVector;
-use crate::sheet::cut_sheet::SheetGradient;
-use crate::sheet::kinematics::{HingeMotion, deployed_corners};
-use crate::sheet::panel_vectors::at_hinge;
+use crate::{
+    equilibrium::{
+        hinged_sheet::HingedSheet, load_step::LoadStep, solver::EquilibriumSolver,
+        warm_start::WarmStart, weight::weights_of_panels,
+    },
+    hinge_law::{HingeEnergy, HingeGradient, Order},
+    objective::{
+        design_gradient::Partials,
+        design_problem::{Deployment, DesignError, DesignProblem, Model, converged},
+    },
+    pattern::design_vector::DesignVector,
+    sheet::{
+        cut_sheet::SheetGradient,
+        kinematics::{HingeMotion, deployed_corners},
+        panel_vectors::at_hinge,
+    },
+};
 use hinge::HingeDeformation;
 use support::vectors::dot;
 
-/// What the equilibrium of a design depends on besides it; by default what the problem says.
+/// Inputs of the equilibrium other than the design; by default the inputs of the problem.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Conditions {
     /// (F_x, F_y, M) on every panel at full load (N, N, N mm); `None` for the loads of the problem.
@@ -50,7 +56,7 @@ impl Default for Conditions {
 
 /// The equilibrium at full load.
 pub struct Response {
-    /// Its path is the last state alone.
+    /// Its path is only the last state.
     pub deployment: Deployment,
     /// Forces (F_x, F_y, M) by which the supports hold every panel (N, N, N mm), about the point
     /// where it is held; zero where it is free.
@@ -72,34 +78,34 @@ impl Response {
 /// The gradient of a function in the outputs of a response.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ResponseCotangent {
-    /// In the deployed corners of every panel.
+    /// Gradient in the deployed corners of every panel.
     pub corners: Vec<[[f64; 2]; 4]>,
-    /// In the reactions.
+    /// Gradient in the reactions.
     pub reactions: Vec<[f64; 3]>,
-    /// In the load factor.
+    /// Gradient in the load factor.
     pub load_factor: f64,
 }
 
 /// The gradient of a function of a response in the inputs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ResponseGradient {
-    /// In the design.
+    /// Gradient in the design.
     pub design: DesignVector,
-    /// In (F_x, F_y, M) on every panel at full load; zero at the supports, where no load is
-    /// possible, and under a prescribed stroke in the forces on panels without a force: the sum of
-    /// all magnitudes, which the stroke refers to, has a kink there.
+    /// Gradient in (F_x, F_y, M) on every panel at full load; zero at the supports, where no load
+    /// is possible, and under a prescribed stroke in the forces on panels without a force: the sum
+    /// of all magnitudes, which the stroke refers to, has a kink there.
     pub loads: Vec<[f64; 3]>,
-    /// In the logarithm of the thickness; `None` if the hinge law does not determine it.
+    /// Gradient in the logarithm of the thickness; `None` if the hinge law does not determine it.
     pub thickness: Option<f64>,
-    /// In the logarithm of all stresses at equal strain; `None` if the hinge law does not determine
-    /// it.
+    /// Gradient in the logarithm of all stresses at equal strain; `None` if the hinge law does not
+    /// determine it.
     pub stress: Option<f64>,
 }
 
 impl DesignProblem {
     /// The same problem under other conditions.
     pub fn under(&self, conditions: &Conditions) -> Result<Self, DesignError> {
-        let mechanics = self.model.mechanics().ok_or(DesignError::NoMechanics)?;
+        let mechanics = self.model.equilibrium()?;
         let mut mechanics = mechanics.scaled(conditions.thickness, conditions.stress)?;
         if let Some(loads) = &conditions.loads {
             mechanics.solver = mechanics.solver.loaded(loads)?;
@@ -121,9 +127,9 @@ impl DesignProblem {
         known: Option<&WarmStart>,
     ) -> Result<Response, DesignError> {
         self.responded(design, |solver, hinged| {
-            let near = known.and_then(|known| solver.readings_near(hinged, &FULL_LOAD, known));
+            let near = known.and_then(|known| solver.load_steps_near(hinged, &FULL_LOAD, known));
             let followed = near.is_none();
-            (near.unwrap_or_else(|| solver.readings(hinged, &FULL_LOAD)), followed)
+            (near.unwrap_or_else(|| solver.load_steps_at(hinged, &FULL_LOAD)), followed)
         })
     }
 
@@ -138,7 +144,7 @@ impl DesignProblem {
         self.responded(design, |solver, hinged| {
             match known.and_then(|known| solver.full_load_near(hinged, known)) {
                 Some(step) => (vec![step], false),
-                None => (solver.readings(hinged, &FULL_LOAD), true),
+                None => (solver.load_steps_at(hinged, &FULL_LOAD), true),
             }
         })
     }
@@ -159,13 +165,13 @@ impl DesignProblem {
         design: &DesignVector,
         solve: impl FnOnce(&EquilibriumSolver, HingedSheet) -> (Vec<LoadStep>, bool),
     ) -> Result<Response, DesignError> {
-        let mechanics = self.model.mechanics().ok_or(DesignError::NoMechanics)?;
+        let mechanics = self.model.equilibrium()?;
         let (pattern, sheet) = self.cut(design)?;
         mechanics.solver.check_supports(&sheet)?;
         let law = mechanics.law.prepare(&sheet.designs());
         let hinged = mechanics.hinged(&sheet, &*law, false);
         let (path, followed) = solve(&mechanics.solver, hinged);
-        let state = path.last().expect("there is one reading, or where the path ends");
+        let state = path.last().expect("there is one step, or where the path ends");
         let reactions = mechanics.solver.reactions(hinged, &converged(state)?.configuration);
         drop(law);
         Ok(Response {
@@ -182,7 +188,7 @@ impl DesignProblem {
         response: &Response,
         by: &ResponseCotangent,
     ) -> Result<ResponseGradient, DesignError> {
-        let mechanics = self.model.mechanics().ok_or(DesignError::NoMechanics)?;
+        let mechanics = self.model.equilibrium()?;
         let (sheet, state) = (&response.deployment.sheet, response.state());
         let designs = sheet.designs();
         let law = mechanics.law.prepare(&designs);

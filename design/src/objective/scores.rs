@@ -1,9 +1,13 @@
 //! The objective of one design and its terms, as stored for each step and reported.
 
-use crate::equilibrium::load_step::LoadStep;
-use crate::geometry::chamfer::chamfer;
-use crate::objective::design_problem::{Deployment, Evaluation};
-use crate::objective::loss::{Objective, TermValues};
+use crate::{
+    equilibrium::load_step::LoadStep,
+    geometry::chamfer::chamfer,
+    objective::{
+        design_problem::{Deployment, Evaluation},
+        loss::{Objective, TermValues},
+    },
+};
 use serde::{Deserialize, Serialize};
 
 /// The objective of one design.

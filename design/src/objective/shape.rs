@@ -1,11 +1,17 @@
 //! The shape term of the objective: the Chamfer distance of the deployed outline to the target. Its
 //! points P are the panel corners on the outline that belong to no hinge.
 
-use crate::geometry::chamfer::chamfer;
-use crate::geometry::plane::{I, complex, dot, point};
-use crate::objective::centre;
-use crate::objective::term::{Deployed, Term, TermGradient};
-use crate::pattern::fit_variables::FitVariables;
+use crate::{
+    geometry::{
+        chamfer::chamfer,
+        plane::{I, complex, dot, point},
+    },
+    objective::{
+        centre,
+        term::{Deployed, Term, TermGradient},
+    },
+    pattern::fit_variables::FitVariables,
+};
 use faer::c64;
 
 /// The distance of the deployed outline to a target.
@@ -38,7 +44,7 @@ impl Term for Shape {
 }
 
 impl Shape {
-    /// With the paper's coverage weight 1/2, to the points `target` (mm).
+    /// The distance to the points `target` (mm) with the coverage weight 1/2 of the paper.
     pub fn new(target: Vec<[f64; 2]>) -> Self {
         Self { target, coverage_weight: 0.5, centred: false }
     }
@@ -86,8 +92,8 @@ impl Shape {
     }
 }
 
-/// From the sheet to the target as the scene has it: a target of twice the size has a sheet of half
-/// the size.
+/// Scale and rotation of the sheet to the target as in the scene: a target of twice the size has a
+/// sheet of half the size.
 fn turn(fit: Option<FitVariables>) -> c64 {
     fit.map_or(c64::ONE, |fit| c64::cis(-fit.rotation) * (-fit.ln_size).exp())
 }

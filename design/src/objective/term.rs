@@ -1,12 +1,13 @@
 //! What a term of the objective is: a function of a deployed sheet, with its derivatives in what
 //! the sheet consists of.
 
-use crate::equilibrium::load_step::LoadStep;
-use crate::hinge_law::HingeGradient;
-use crate::pattern::fit_variables::FitVariables;
-use crate::sheet::cut_sheet::{Sheet, SheetGradient};
-use std::fmt::Debug;
-use std::sync::Arc;
+use crate::{
+    equilibrium::load_step::LoadStep,
+    hinge_law::HingeGradient,
+    pattern::fit_variables::FitVariables,
+    sheet::cut_sheet::{Sheet, SheetGradient},
+};
+use std::{fmt::Debug, sync::Arc};
 use support::vectors;
 
 /// A term of the objective.
@@ -36,7 +37,7 @@ pub fn in_words(name: &str) -> String {
 /// A term with its weight.
 #[derive(Clone, Debug)]
 pub struct Weighted {
-    /// In mm^2 over the unit of the term.
+    /// Weight, in mm^2 over the unit of the term.
     pub weight: f64,
     /// The term.
     pub term: Arc<dyn Term>,
@@ -66,17 +67,51 @@ pub struct Deployed<'a> {
 /// The gradient of weighted terms.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TermGradient {
-    /// In the deployed positions of P.
+    /// Gradient in the deployed positions of P.
     pub by_outline: Vec<[f64; 2]>,
-    /// Of the sum over hinges, of which terms are the mean: in the measures (eta_a, eta_s, D,
-    /// D_peak) of a hinge at a load step.
-    pub by_measures: Vec<Vec<[f64; 4]>>,
-    /// In the state and the design of each hinge at each load step.
+    /// Gradient in the measures of each hinge at each load step, for the sum over hinges instead of
+    /// their mean.
+    pub by_measures: Vec<Vec<MeasureGradient>>,
+    /// Gradient in the state and the design of each hinge at each load step.
     pub by_states: Vec<Vec<HingeGradient>>,
-    /// In the flat sheet, at fixed states and designs of its hinges.
+    /// Gradient in the flat sheet, at fixed states and designs of its hinges.
     pub by_sheet: SheetGradient,
-    /// In size and rotation of a fitted target.
+    /// Gradient in size and rotation of a fitted target.
     pub by_fit: [f64; 2],
+}
+
+/// A sum over the panels of functions of their corners, times `scale`. `function` adds its value
+/// to the sum, and its gradient.
+pub(crate) fn over_panels(
+    at: &Deployed,
+    weight: f64,
+    scale: f64,
+    gradient: &mut TermGradient,
+    function: impl Fn(&[[f64; 2]; 4], &mut f64, &mut [[f64; 2]; 4]),
+) -> f64 {
+    let mut value = 0.0;
+    for (panel, sums) in std::iter::zip(&at.sheet.panels, &mut gradient.by_sheet.corners) {
+        let mut by_corners = [[0.0; 2]; 4];
+        function(&panel.corners, &mut value, &mut by_corners);
+        let entries = by_corners.as_flattened().iter();
+        for (sum, entry) in std::iter::zip(sums.as_flattened_mut(), entries) {
+            *sum += weight * (scale * entry);
+        }
+    }
+    scale * value
+}
+
+/// The gradient in the measures of a hinge at a load step.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct MeasureGradient {
+    /// Derivative in eta_a.
+    pub eta_a: f64,
+    /// Derivative in eta_s.
+    pub eta_s: f64,
+    /// Derivative in D.
+    pub damage: f64,
+    /// Derivative in D_peak.
+    pub peak_damage: f64,
 }
 
 impl TermGradient {
@@ -85,7 +120,7 @@ impl TermGradient {
         let (hinges, steps) = (at.sheet.hinges.len(), at.path.len());
         Self {
             by_outline: vec![[0.0; 2]; at.outline.len()],
-            by_measures: vec![vec![[0.0; 4]; steps]; hinges],
+            by_measures: vec![vec![MeasureGradient::default(); steps]; hinges],
             by_states: vec![vec![HingeGradient::default(); steps]; hinges],
             by_sheet: SheetGradient::zeros(&at.sheet.topology),
             by_fit: [0.0; 2],
@@ -97,11 +132,30 @@ impl TermGradient {
         let sums = self.by_outline.as_flattened_mut();
         vectors::add(sums, by_outline.as_flattened(), weight);
     }
+}
 
-    /// Adds `weight` times a gradient in the flat corners of every panel.
-    pub fn add_by_corners(&mut self, weight: f64, by_corners: &[[[f64; 2]; 4]]) {
-        let sums = self.by_sheet.corners.as_flattened_mut().as_flattened_mut();
-        let entries = by_corners.as_flattened().as_flattened();
-        vectors::add(sums, entries, weight);
+/// A term of panels with the given corners, and its gradient in them.
+#[cfg(test)]
+pub(crate) fn on_panels(term: &dyn Term, panels: &[[[f64; 2]; 4]]) -> (f64, Vec<[[f64; 2]; 4]>) {
+    use crate::{
+        pattern::{
+            coordinates::PatternCoordinates,
+            cut_pattern::{CutPattern, Outline},
+            grid::Grid,
+        },
+        sheet::cut_sheet::{HingePoint, SheetOptions},
+    };
+    let grid = Grid { m: 2, n: 2 };
+    let uniform = PatternCoordinates::uniform(grid);
+    let pattern = CutPattern::new(grid, Outline::rectangle(2.0, 2.0), &uniform).unwrap();
+    let process = hinge::HingeConstants::PAPER.into();
+    let options = SheetOptions { hinge_point: HingePoint::Corner, process };
+    let mut sheet = Sheet::new(&pattern, &[0.1; 4], options).unwrap();
+    sheet.panels.truncate(panels.len());
+    for (panel, corners) in sheet.panels.iter_mut().zip(panels) {
+        panel.corners = *corners;
     }
+    let at = Deployed { sheet: &sheet, path: &[], outline: &[], fit: None };
+    let mut gradient = TermGradient::zeros(&at);
+    (term.evaluate(&at, 1.0, &mut gradient), gradient.by_sheet.corners)
 }

@@ -12,7 +12,7 @@ mod symmetric_difference;
 
 pub use compression::Compression;
 pub use cut_angles::CutAngles;
-pub use damage::Damage;
+pub use damage::DamageFunctional;
 pub use domain::DomainPenalty;
 pub use fastenings::Fastenings;
 pub use panel_shape::PanelShape;
@@ -20,11 +20,11 @@ pub use panel_width::PanelWidth;
 pub use shear::Shear;
 pub use symmetric_difference::SymmetricDifference;
 
-use crate::hinge_law::{DamageMeasure, HingeLaw};
-use crate::objective::loss::Objective;
-use crate::objective::shape::Shape;
-use crate::objective::term::Weighted;
-use crate::sheet::cut_sheet::AttachmentPoint;
+use crate::{
+    hinge_law::{DamageMeasure, HingeLaw},
+    objective::{loss::Objective, shape::Shape, term::Weighted},
+    sheet::cut_sheet::AttachmentPoint,
+};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -74,7 +74,7 @@ pub struct ObjectiveConfig {
 }
 
 /// The sheet that an objective is for.
-pub struct Setting<'a> {
+pub struct TermContext<'a> {
     /// Points on the target, evenly spaced (mm).
     pub target: &'a [[f64; 2]],
     /// `None` for a sheet on pins, which has no supports and is centred on its target.
@@ -89,17 +89,17 @@ pub struct Setting<'a> {
 
 impl ObjectiveConfig {
     /// The objective for a sheet.
-    pub fn objective(&self, setting: &Setting) -> Objective {
-        let area = setting.mean_panel_area;
-        let scale = (setting.law).and_then(|law| law.damage_scale(self.damage_measure));
-        let domain = setting.law.and_then(|law| law.domain());
+    pub fn objective(&self, context: &TermContext) -> Objective {
+        let area = context.mean_panel_area;
+        let scale = (context.law).and_then(|law| law.damage_scale(self.damage_measure));
+        let domain = context.law.and_then(|law| law.domain());
         // Only a learned hinge has a window. Two window radii and a gap: the windows do not lie on
         // one line.
-        let min_distance = domain.map_or(0.0, |_| 3.0 * setting.r_win);
+        let min_distance = domain.map_or(0.0, |_| 3.0 * context.r_win);
         let (minimum, limited) = (self.min_panel_width, f64::from(self.min_panel_width > 0.0));
         // Temperatures are a tenth of typical values.
         let (domain, temperature) = (domain.cloned(), 0.01);
-        let damage = Damage {
+        let damage = DamageFunctional {
             measure: self.damage_measure,
             // No scale is needed without damage.
             scale: scale.unwrap_or(1.0),
@@ -111,11 +111,11 @@ impl ObjectiveConfig {
             Weighted::new(self.domain * area, DomainPenalty { domain }),
         ];
         let is_fastened = |at: &AttachmentPoint| at.hole.or(at.clip).is_some();
-        if setting.attachments.iter().any(is_fastened) {
-            let attachments = setting.attachments.clone();
+        if context.attachments.iter().any(is_fastened) {
+            let attachments = context.attachments.clone();
             penalties.push(Weighted::new(FASTENINGS * area, Fastenings { attachments }));
         }
-        let shape = self.shape(setting);
+        let shape = self.shape(context);
         if self.symmetric_difference > 0.0 {
             let difference = SymmetricDifference::new(shape.clone());
             penalties.push(Weighted::new(self.symmetric_difference * area, difference));
@@ -131,10 +131,10 @@ impl ObjectiveConfig {
         }
     }
 
-    fn shape(&self, setting: &Setting) -> Shape {
+    fn shape(&self, context: &TermContext) -> Shape {
         let mut shape =
-            Shape { target: Vec::new(), coverage_weight: COVERAGE, centred: setting.law.is_none() };
-        shape.target = shape.placed(setting.target, None);
+            Shape { target: Vec::new(), coverage_weight: COVERAGE, centred: context.law.is_none() };
+        shape.target = shape.placed(context.target, None);
         shape
     }
 }
@@ -192,14 +192,14 @@ mod tests {
         let circle = angles.map(|t| [90.0 + 60.0 * t.cos(), 10.0 + 60.0 * t.sin()]);
         let state = [[-0.02, 0.03], [-0.02, 0.02], [0.0, 0.1]];
         let domain = TrainingDomain::from_box(state, [1.0, 2.5], [0.8, 1.5]);
-        let mut objective = config.objective(&Setting {
+        let mut objective = config.objective(&TermContext {
             target: &circle.collect::<Vec<_>>(),
             law: Some(&Law(domain)),
             mean_panel_area: 10.0,
             r_win: 10.0,
             attachments: Vec::new(),
         });
-        let angles = Weighted::new(0.8, CutAngles { least: 1.3 });
+        let angles = Weighted::new(0.8, CutAngles { minimum: 1.3 });
         objective.penalties.push(angles);
         objective
     }

@@ -20,7 +20,7 @@ pub struct Adam {
 }
 
 impl Adam {
-    /// For `n` unknowns; the first step of every unknown has the length `learning_rate`.
+    /// The state for `n` unknowns; the first step of every unknown has the length `learning_rate`.
     pub fn new(n: usize, learning_rate: f64) -> Self {
         Self { learning_rate, step: 0, mean: vec![0.0; n], square: vec![0.0; n] }
     }

@@ -1,10 +1,12 @@
 //! Step halving: a step of the outer loop that leads to a design without objective value, or to one
 //! that the search does not accept, is halved until it leads to an acceptable design.
 
-use crate::equilibrium::warm_start::WarmStart;
-use crate::objective::design_problem::{DesignProblem, Evaluation};
-use crate::optimise::search::Search;
-use crate::pattern::design_vector::DesignVector;
+use crate::{
+    equilibrium::warm_start::WarmStart,
+    objective::design_problem::{DesignProblem, Evaluation},
+    optimise::search::Optimiser,
+    pattern::design_vector::DesignVector,
+};
 
 /// Maximum number of halvings of one step.
 pub(crate) const MAX_HALVINGS: u32 = 12;
@@ -21,7 +23,7 @@ pub(crate) struct Setback {
 /// states why the last point had no value, if it had none.
 pub(crate) fn evaluate_or_back_off(
     problem: &DesignProblem,
-    search: &Search,
+    search: &Optimiser,
     good: &DesignVector,
     mut proposal: DesignVector,
     known: Option<&WarmStart>,
@@ -78,7 +80,11 @@ mod tests {
             widths: WidthChart { w_minus: 0.05, w_plus: 0.1 },
             options: SheetOptions { hinge_point: HingePoint::Corner, process: process.into() },
             model: Model::Ideal { opening: 0.5 },
-            objective: Objective::from_shape(Shape::new(vec![[3.0, 3.0]])),
+            objective: Objective {
+                shape: Shape::new(vec![[3.0, 3.0]]),
+                functionals: Vec::new(),
+                penalties: Vec::new(),
+            },
         }
     }
 
@@ -88,7 +94,7 @@ mod tests {
         let proposed = |z: f64| {
             let mut proposal = good.clone();
             proposal.pattern.z.fill(z);
-            let adam = Search::Adam(Adam::new(0, 0.1));
+            let adam = Optimiser::Adam(Adam::new(0, 0.1));
             evaluate_or_back_off(&problem(), &adam, &good, proposal, None)
         };
         let (design, _, setback) = proposed(1.0).unwrap();

@@ -12,13 +12,13 @@ const PAIRS: usize = 20;
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(transparent)]
 pub(crate) struct Memory {
-    pairs: VecDeque<Pair>,
+    pairs: VecDeque<CurvaturePair>,
 }
 
 /// A step and the change of the gradient along it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Pair {
+struct CurvaturePair {
     step: Vec<f64>,
     change: Vec<f64>,
     product: f64,
@@ -30,7 +30,7 @@ impl Memory {
         let product = dot(&step, &change);
         if product > 0.0 {
             self.pairs.truncate(PAIRS - 1);
-            self.pairs.push_front(Pair { step, change, product });
+            self.pairs.push_front(CurvaturePair { step, change, product });
         }
     }
 
@@ -40,7 +40,7 @@ impl Memory {
 
     /// Whether all stored pairs have `n` coordinates.
     pub(crate) fn fits(&self, n: usize) -> bool {
-        let fits = |pair: &Pair| pair.step.len() == n && pair.change.len() == n;
+        let fits = |pair: &CurvaturePair| pair.step.len() == n && pair.change.len() == n;
         self.pairs.iter().all(fits)
     }
 
@@ -68,7 +68,7 @@ impl Memory {
     }
 }
 
-/// A step no coordinate of which is longer than `longest`.
+/// The step, shortened until no coordinate is longer than `longest`.
 pub(crate) fn shortened(mut step: Vec<f64>, longest: f64) -> Vec<f64> {
     let reach = (step.iter()).fold(0.0, |reach, entry| f64::max(reach, entry.abs()));
     if reach > longest {

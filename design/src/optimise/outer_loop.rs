@@ -11,12 +11,18 @@
 //! halved until an equilibrium exists. Steps depend only on the problem and the search state, so a
 //! search continued from a saved state follows the trajectory of an uninterrupted one.
 
-use crate::equilibrium::warm_start::WarmStart;
-use crate::objective::design_problem::{DesignProblem, Evaluation, Model};
-use crate::objective::scores::Scores;
-use crate::optimise::backing_off::{MAX_HALVINGS, Setback, evaluate_or_back_off};
-use crate::optimise::search::{Search, SearchMethod};
-use crate::pattern::design_vector::DesignVector;
+use crate::{
+    equilibrium::warm_start::WarmStart,
+    objective::{
+        design_problem::{DesignProblem, Evaluation, Model},
+        scores::Scores,
+    },
+    optimise::{
+        backing_off::{MAX_HALVINGS, Setback, evaluate_or_back_off},
+        search::{Optimiser, SearchMethod},
+    },
+    pattern::design_vector::DesignVector,
+};
 use serde::{Deserialize, Serialize};
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -55,14 +61,14 @@ pub enum Ended {
     },
 }
 
-/// Everything that the next step depends on, besides the problem.
+/// Everything that the next step depends on, except the problem.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct SearchState {
     /// The last design that was evaluated.
     pub(crate) design: DesignVector,
     /// The next design that the search evaluates.
     pub(crate) proposal: DesignVector,
-    pub(crate) search: Search,
+    pub(crate) search: Optimiser,
     /// The design with the minimum loss of those whose path was followed from the flat sheet, also
     /// at a pause.
     pub best: DesignVector,
@@ -169,7 +175,7 @@ impl SearchState {
         method: SearchMethod,
         learning_rate: f64,
     ) -> Self {
-        let search = Search::new(method, learning_rate, start.to_flat().len());
+        let search = Optimiser::new(method, learning_rate, start.to_flat().len());
         Self::with(search, problem, start, evaluation)
     }
 
@@ -184,7 +190,7 @@ impl SearchState {
     }
 
     fn with(
-        search: Search,
+        search: Optimiser,
         problem: &DesignProblem,
         start: DesignVector,
         evaluation: &Evaluation,
@@ -239,7 +245,7 @@ impl SearchState {
         &mut self,
         problem: &DesignProblem,
     ) -> Result<(DesignVector, Evaluation, Setback), Ended> {
-        // After a followed design that is not better than the candidate, the candidate is followed.
+        // The candidate is followed after a followed design that is not better.
         if self.last().followed {
             self.confirm(problem)?;
         }
@@ -342,14 +348,14 @@ impl SearchState {
     ) {
         let (followed, loss) = (evaluation.deployment.followed, evaluation.loss);
         let scored = Scored { design: design.clone(), loss, step: self.history.len() };
-        let least = self.candidate.as_ref().unwrap_or(&self.best_followed).loss;
+        let lowest = self.candidate.as_ref().unwrap_or(&self.best_followed).loss;
         match followed {
             true if loss < self.best_followed.loss => {
                 self.candidate.take_if(|candidate| candidate.loss >= loss);
                 self.best = design.clone();
                 self.best_followed = scored;
             }
-            false if loss < least => self.candidate = Some(scored),
+            false if loss < lowest => self.candidate = Some(scored),
             _ => {}
         }
         if followed {

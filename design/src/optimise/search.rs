@@ -1,8 +1,10 @@
 //! How the next design is proposed: by Adam, as in Algorithm 1, or by L-BFGS with backtracking,
 //! which needs a fraction of Adam's evaluations on designs with equilibrium.
 
-use crate::optimise::adam::Adam;
-use crate::optimise::lbfgs_memory::{Memory, shortened};
+use crate::optimise::{
+    adam::Adam,
+    lbfgs_memory::{Memory, shortened},
+};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use support::vectors::dot;
@@ -29,7 +31,7 @@ pub enum SearchMethod {
 /// The state of the optimiser: all that a resumed run needs.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub(crate) enum Search {
+pub(crate) enum Optimiser {
     Adam(Adam),
     Lbfgs(Lbfgs),
 }
@@ -42,21 +44,21 @@ pub(crate) struct Lbfgs {
     learning_rate: f64,
     memory: Memory,
     /// The point of the last proposal; `None` before the first.
-    from: Option<Point>,
+    from: Option<SearchPoint>,
 }
 
 /// An evaluated point, and the slope of the loss along the step from it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Point {
+struct SearchPoint {
     x: Vec<f64>,
     loss: f64,
     gradient: Vec<f64>,
     slope: f64,
 }
 
-impl Search {
-    /// For `n` coordinates.
+impl Optimiser {
+    /// The optimiser of `n` coordinates.
     pub(crate) fn new(method: SearchMethod, learning_rate: f64, n: usize) -> Self {
         match method {
             SearchMethod::Adam => Self::Adam(Adam::new(n, learning_rate)),
@@ -89,7 +91,7 @@ impl Search {
         match self {
             Self::Adam(adam) => adam.dimension() == n,
             Self::Lbfgs(lbfgs) => {
-                let fits = |point: &Point| point.x.len() == n && point.gradient.len() == n;
+                let fits = |point: &SearchPoint| point.x.len() == n && point.gradient.len() == n;
                 lbfgs.memory.fits(n) && lbfgs.from.iter().all(fits)
             }
         }
@@ -107,8 +109,12 @@ impl Search {
                     let change = less(gradient, &from.gradient);
                     lbfgs.memory.remember(less(x, &from.x), change);
                 }
-                lbfgs.from =
-                    Some(Point { x: x.to_vec(), loss, gradient: gradient.to_vec(), slope: 0.0 });
+                lbfgs.from = Some(SearchPoint {
+                    x: x.to_vec(),
+                    loss,
+                    gradient: gradient.to_vec(),
+                    slope: 0.0,
+                });
                 lbfgs.step()
             }
         }
@@ -164,7 +170,7 @@ mod tests {
 
     #[test]
     fn lbfgs_follows_a_curved_valley_and_reports_when_no_step_is_left() {
-        let mut search = Search::new(SearchMethod::Lbfgs, 0.1, 2);
+        let mut search = Optimiser::new(SearchMethod::Lbfgs, 0.1, 2);
         let mut x = vec![-1.2, 1.0];
         let (mut loss, mut gradient) = valley(&x);
         let mut evaluations = 1;
@@ -191,7 +197,7 @@ mod tests {
         assert!(evaluations < 300, "{evaluations}");
         assert!(search.fits(2) && !search.fits(3));
         // Adam accepts any step and has no other to offer.
-        let mut adam = Search::new(SearchMethod::Adam, 0.1, 2);
+        let mut adam = Optimiser::new(SearchMethod::Adam, 0.1, 2);
         adam.increment(&x, loss, &gradient);
         assert!(adam.accepts(1e9, 1.0));
         assert_eq!(adam.retry(), None);

@@ -5,8 +5,8 @@
 //! ```
 
 use crate::pattern::grid::Grid;
-use crate::pattern::pattern_error::PatternError;
 use serde::{Deserialize, Serialize};
+use support::fault::{Fault, fault};
 
 /// Unconstrained coordinates of a pattern (5), or a gradient in them.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -35,7 +35,7 @@ impl PatternCoordinates {
     }
 
     /// Coordinates of the pattern with given [`values`](Self::values).
-    pub fn from_values(grid: Grid, values: &[f64]) -> Result<Self, PatternError> {
+    pub fn from_values(grid: Grid, values: &[f64]) -> Result<Self, Fault> {
         let (r, mut rest) = values.split_at(grid.aspect_ratio_count().min(values.len()));
         let tau = grid.edge_cut_counts().map(|count| {
             let (edge, others) = rest.split_at(count.min(rest.len()));
@@ -48,21 +48,21 @@ impl PatternCoordinates {
     }
 
     /// The logits z of given aspect ratios.
-    pub fn z_of(r: &[f64]) -> Result<Vec<f64>, PatternError> {
+    pub fn z_of(r: &[f64]) -> Result<Vec<f64>, Fault> {
         let inside = |r: f64| r > 0.0 && r < 1.0;
         match r.iter().position(|r| !inside(*r)) {
-            Some(index) => Err(PatternError::Interval { name: "r", index, value: r[index] }),
+            Some(index) => Err(outside_interval("r", index, r[index])),
             None => Ok(r.iter().map(|r| logit(*r)).collect()),
         }
     }
 
     /// Logits of given boundary positions on the four edges: the logarithms of their intervals.
-    pub fn ell_of(tau: &[Vec<f64>; 4]) -> Result<[Vec<f64>; 4], PatternError> {
+    pub fn ell_of(tau: &[Vec<f64>; 4]) -> Result<[Vec<f64>; 4], Fault> {
         for tau in tau {
             let widths = intervals(tau);
             if let Some(index) = widths.iter().position(|width| *width <= 0.0 || width.is_nan()) {
                 let index = index.min(tau.len() - 1);
-                return Err(PatternError::Interval { name: "tau", index, value: tau[index] });
+                return Err(outside_interval("tau", index, tau[index]));
             }
         }
         let logits = |tau: &Vec<f64>| intervals(tau).iter().map(|width| width.ln()).collect();
@@ -70,7 +70,7 @@ impl PatternCoordinates {
     }
 
     /// An error unless the coordinates are finite and as many as the grid has.
-    pub fn check(&self, grid: Grid) -> Result<(), PatternError> {
+    pub fn check(&self, grid: Grid) -> Result<(), Fault> {
         let expected = grid.edge_cut_counts().map(|count| count + 1);
         let blocks = [
             ("z", &self.z, grid.aspect_ratio_count()),
@@ -81,21 +81,25 @@ impl PatternCoordinates {
         ];
         for (name, values, expected) in blocks {
             if values.len() != expected {
-                return Err(PatternError::Count {
-                    name,
-                    found: values.len(),
-                    expected,
-                    m: grid.m,
-                    n: grid.n,
-                });
+                let (found, Grid { m, n }) = (values.len(), grid);
+                let what = format!(
+                    "{name} has {found} entries; a sheet of {m} x {n} panels needs {expected}"
+                );
+                return Err(fault("", what, ""));
             }
             if let Some(index) = values.iter().position(|value| !value.is_finite()) {
                 let value = values[index];
-                return Err(PatternError::NotFinite { name, index, value });
+                let what = format!("{name}[{index}] = {value} is not a finite number");
+                return Err(fault("", what, ""));
             }
         }
         Ok(())
     }
+}
+
+fn outside_interval(name: &str, index: usize, value: f64) -> Fault {
+    let range = format!("0 < {name} < 1, increasing along each edge");
+    fault("", format!("{name}[{index}] = {value} violates {range}"), "")
 }
 
 /// The logistic function sigma of (5).
@@ -125,8 +129,13 @@ pub fn partial_sums(ell: &[f64]) -> Vec<f64> {
 
 /// The intervals between neighbouring boundary positions: the softmax weights.
 pub fn intervals(tau: &[f64]) -> Vec<f64> {
-    let ends = std::iter::once(0.0).chain(tau.iter().copied()).chain(std::iter::once(1.0));
+    let ends = with_ends(tau);
     ends.clone().skip(1).zip(ends).map(|(b, a)| b - a).collect()
+}
+
+/// Boundary positions with the two ends of their edge.
+pub(crate) fn with_ends(tau: &[f64]) -> impl Iterator<Item = f64> + Clone {
+    std::iter::once(0.0).chain(tau.iter().copied()).chain(std::iter::once(1.0))
 }
 
 /// The gradient in ell from the gradient in tau.

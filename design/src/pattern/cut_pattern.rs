@@ -9,19 +9,25 @@
 //!
 //! and its exact vector-Jacobian product by the transposed system.
 
-use crate::geometry::plane::{add, complex, cross, dot};
-use crate::geometry::polygon::bounds;
-use crate::pattern::coordinates::{
-    PatternCoordinates, intervals, logistic, partial_sums, partial_sums_pullback,
+use crate::{
+    geometry::{
+        plane::{add, complex, cross, dot},
+        polygon::bounds,
+    },
+    pattern::{
+        coordinates::{
+            PatternCoordinates, intervals, logistic, partial_sums, partial_sums_pullback, with_ends,
+        },
+        grid::{EDGES, Endpoint, Grid},
+    },
 };
-use crate::pattern::grid::{EDGES, Endpoint, Grid};
-use crate::pattern::pattern_error::PatternError;
-use faer::Mat;
-use faer::c64;
-use faer::linalg::solvers::Solve;
-use faer::sparse::linalg::solvers::Lu;
-use faer::sparse::{SparseColMat, Triplet};
+use faer::{
+    Mat, c64,
+    linalg::solvers::Solve,
+    sparse::{SparseColMat, Triplet, linalg::solvers::Lu},
+};
 use serde::{Deserialize, Serialize};
+use support::fault::{Fault, fault};
 
 /// The fixed outline of the flat sheet: corners SW, SE, NE, NW (mm).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -49,13 +55,21 @@ impl Outline {
         f64::max(high[0] - low[0], high[1] - low[1])
     }
 
-    /// Whether the outline is strictly convex with counter-clockwise corners.
-    pub fn is_convex(&self) -> bool {
+    /// An error unless the outline is strictly convex with counter-clockwise corners.
+    pub fn check(&self) -> Result<(), Fault> {
         let corner = |k: usize| complex(self.corners[k % 4]);
-        (0..4).all(|k| {
+        let convex = (0..4).all(|k| {
             let turn = cross(corner(k + 1) - corner(k), corner(k + 2) - corner(k + 1));
             turn > 0.0 && turn.is_finite()
-        })
+        });
+        let what = || {
+            format!(
+                "the outline {:?} is not a convex quadrilateral with its corners \
+                 counter-clockwise from the south-west",
+                self.corners
+            )
+        };
+        convex.then_some(()).ok_or_else(|| fault("", what(), ""))
     }
 }
 
@@ -82,23 +96,22 @@ impl CutPattern {
         grid: Grid,
         outline: Outline,
         coordinates: &PatternCoordinates,
-    ) -> Result<Self, PatternError> {
+    ) -> Result<Self, Fault> {
         let Grid { m, n } = grid;
         if m < 2 || n < 2 {
-            return Err(PatternError::TooFewPanels { m, n });
+            let what = format!("a sheet of {m} x {n} panels has no interior cut");
+            return Err(fault("", what, "use at least 2 x 2"));
         }
-        if !outline.is_convex() {
-            return Err(PatternError::Outline { corners: outline.corners });
-        }
+        outline.check()?;
         coordinates.check(grid)?;
         let r: Vec<f64> = coordinates.z.iter().copied().map(logistic).collect();
         if let Some(index) = r.iter().position(|&r| r <= 0.0 || r >= 1.0) {
-            return Err(PatternError::Collision { name: "z", index });
+            return Err(colliding("z", index));
         }
         let tau = coordinates.ell.each_ref().map(|ell| partial_sums(ell));
         for tau in &tau {
             if let Some(index) = intervals(tau).iter().position(|&interval| interval <= 0.0) {
-                return Err(PatternError::Collision { name: "ell", index });
+                return Err(colliding("ell", index));
             }
         }
         let system = SparseColMat::try_new_from_triplets(
@@ -106,14 +119,14 @@ impl CutPattern {
             grid.point_count(),
             &collinearity(grid, &r),
         )
-        .map_err(|_| PatternError::Singular)?
+        .map_err(|_| singular())?
         .sp_lu()
-        .map_err(|_| PatternError::Singular)?;
+        .map_err(|_| singular())?;
         let solution = system.solve(outline_points(grid, &outline, &tau));
         let points: Vec<[f64; 2]> =
             (0..grid.point_count()).map(|row| [solution[(row, 0)], solution[(row, 1)]]).collect();
         if points.iter().flatten().any(|value| !value.is_finite()) {
-            return Err(PatternError::Singular);
+            return Err(singular());
         }
         Ok(Self { grid, outline, r, tau, points, system })
     }
@@ -151,8 +164,7 @@ impl CutPattern {
             .map(|((i, j), r)| {
                 let [a, b] = self.grid.facing_endpoints(i, j);
                 let slit = complex(self.points[a]) - complex(self.points[b]);
-                let x = self.grid.endpoint(i, j, Endpoint::X);
-                let x_prime = self.grid.endpoint(i, j, Endpoint::XPrime);
+                let [x, x_prime] = self.grid.endpoints(i, j);
                 r * (1.0 - r) * dot(adjoint(x) - adjoint(x_prime), slit)
             })
             .collect();
@@ -162,8 +174,7 @@ impl CutPattern {
             let tau: Vec<f64> = (1..=self.tau[edge].len())
                 .map(|s| {
                     let (i, j) = self.grid.edge_vertex(edge, s);
-                    let x = self.grid.endpoint(i, j, Endpoint::X);
-                    let x_prime = self.grid.endpoint(i, j, Endpoint::XPrime);
+                    let [x, x_prime] = self.grid.endpoints(i, j);
                     dot(adjoint(x) + adjoint(x_prime), end - start)
                 })
                 .collect();
@@ -179,21 +190,29 @@ impl CutPattern {
             let [start, end] = EDGES[edge];
             for (s, tau) in std::iter::zip(1.., tau) {
                 let (i, j) = self.grid.edge_vertex(edge, s);
-                let both =
-                    [Endpoint::X, Endpoint::XPrime].map(|e| adjoint(self.grid.endpoint(i, j, e)));
-                let force = both[0] + both[1];
+                let [x, x_prime] = self.grid.endpoints(i, j).map(&adjoint);
+                let force = x + x_prime;
                 add(&mut corners[start], force * (1.0 - tau));
                 add(&mut corners[end], force * *tau);
             }
         }
         let Grid { m, n } = self.grid;
         for (corner, (i, j)) in std::iter::zip(&mut corners, [(0, 0), (m, 0), (m, n), (0, n)]) {
-            for endpoint in [Endpoint::X, Endpoint::XPrime] {
-                add(corner, adjoint(self.grid.endpoint(i, j, endpoint)));
-            }
+            self.grid.endpoints(i, j).into_iter().for_each(|point| add(corner, adjoint(point)));
         }
         corners
     }
+}
+
+fn colliding(name: &str, index: usize) -> Fault {
+    let what = format!(
+        "{name}[{index}] is so far from 0 that its chart (5) rounds to a bound: two cuts collide"
+    );
+    fault("", what, "")
+}
+
+fn singular() -> Fault {
+    fault("", "the collinearity system of the pattern is singular", "")
 }
 
 /// The matrix of (3)-(4): one row per cut endpoint.
@@ -202,8 +221,7 @@ fn collinearity(grid: Grid, r: &[f64]) -> Vec<Triplet<usize, usize, f64>> {
         (0..grid.point_count()).map(|point| Triplet::new(point, point, 1.0)).collect();
     for ((i, j), &r) in std::iter::zip(grid.interior_vertices(), r) {
         let [a, b] = grid.facing_endpoints(i, j);
-        let x = grid.endpoint(i, j, Endpoint::X);
-        let x_prime = grid.endpoint(i, j, Endpoint::XPrime);
+        let [x, x_prime] = grid.endpoints(i, j);
         entries.extend([
             Triplet::new(x, a, -r),
             Triplet::new(x, b, r - 1.0),
@@ -219,13 +237,11 @@ fn outline_points(grid: Grid, outline: &Outline, tau: &[Vec<f64>; 4]) -> Mat<f64
     let mut points = Mat::zeros(grid.point_count(), 2);
     for (edge, tau) in tau.iter().enumerate() {
         let [start, end] = EDGES[edge].map(|corner| outline.corners[corner]);
-        let positions = std::iter::once(0.0).chain(tau.iter().copied()).chain(std::iter::once(1.0));
-        for (s, tau) in positions.enumerate() {
+        for (s, tau) in with_ends(tau).enumerate() {
             let (i, j) = grid.edge_vertex(edge, s);
-            for endpoint in [Endpoint::X, Endpoint::XPrime] {
+            for point in grid.endpoints(i, j) {
                 for axis in 0..2 {
-                    points[(grid.endpoint(i, j, endpoint), axis)] =
-                        (1.0 - tau) * start[axis] + tau * end[axis];
+                    points[(point, axis)] = (1.0 - tau) * start[axis] + tau * end[axis];
                 }
             }
         }

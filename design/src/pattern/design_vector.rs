@@ -1,9 +1,11 @@
 //! The design vector theta = (z, ell, omega) of (1) in unconstrained coordinates, and the chart of
 //! the ligament widths, w_lig = w_minus + (w_plus - w_minus) sigma(omega).
 
-use crate::pattern::coordinates::{PatternCoordinates, logistic, logit};
-use crate::pattern::fit_variables::FitVariables;
-use crate::pattern::grid::Grid;
+use crate::pattern::{
+    coordinates::{PatternCoordinates, logistic, logit},
+    fit_variables::FitVariables,
+    grid::Grid,
+};
 use serde::{Deserialize, Serialize};
 
 /// All design variables, or a gradient in them.
@@ -36,40 +38,33 @@ impl DesignVector {
     /// All coordinates as one vector: z, ell of the bottom, right, top, left edge, omega, opening,
     /// fit.
     pub fn to_flat(&self) -> Vec<f64> {
-        let fit = self.fit.iter().flat_map(FitVariables::to_flat);
-        self.blocks().flatten().copied().chain(fit).collect()
+        self.clone().coordinates_mut().map(|coordinate| *coordinate).collect()
     }
 
     /// This design with the coordinates of a vector ordered as by [`to_flat`](Self::to_flat);
     /// missing coordinates keep their values.
     pub fn with_flat(&self, flat: &[f64]) -> Self {
         let mut design = self.clone();
-        let mut values = flat.iter();
-        let edges = design.pattern.ell.iter_mut().flatten();
-        let coordinates = design.pattern.z.iter_mut().chain(edges);
-        let fit = (design.fit.as_mut()).map(FitVariables::coordinates_mut);
-        for coordinate in coordinates
-            .chain(&mut design.omega)
-            .chain(&mut design.opening)
-            .chain(fit.into_iter().flatten())
-        {
-            if let Some(&value) = values.next() {
-                *coordinate = value;
-            }
-        }
+        std::iter::zip(design.coordinates_mut(), flat).for_each(|(to, value)| *to = *value);
         design
     }
 
     /// Whether all blocks have the same lengths.
     pub fn same_shape(&self, other: &Self) -> bool {
-        let lengths = |design: &Self| -> Vec<usize> { design.blocks().map(<[f64]>::len).collect() };
-        lengths(self) == lengths(other) && self.fit.is_some() == other.fit.is_some()
+        let lengths = |Self { pattern, omega, opening, fit }: &Self| {
+            let ell = pattern.ell.each_ref().map(Vec::len);
+            (pattern.z.len(), ell, omega.len(), opening.is_some(), fit.is_some())
+        };
+        lengths(self) == lengths(other)
     }
 
-    fn blocks(&self) -> impl Iterator<Item = &[f64]> {
-        std::iter::once(self.pattern.z.as_slice())
-            .chain(self.pattern.ell.iter().map(Vec::as_slice))
-            .chain([self.omega.as_slice(), self.opening.as_slice()])
+    fn coordinates_mut(&mut self) -> impl Iterator<Item = &mut f64> {
+        let PatternCoordinates { z, ell } = &mut self.pattern;
+        z.iter_mut()
+            .chain(ell.iter_mut().flatten())
+            .chain(&mut self.omega)
+            .chain(&mut self.opening)
+            .chain(self.fit.iter_mut().flat_map(FitVariables::coordinates_mut))
     }
 }
 

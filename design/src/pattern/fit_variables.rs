@@ -8,8 +8,7 @@
 //!
 //! between the middle c of the stock and its corner s_i.
 
-use crate::pattern::coordinates::logistic;
-use crate::pattern::cut_pattern::Outline;
+use crate::pattern::{coordinates::logistic, cut_pattern::Outline};
 use serde::{Deserialize, Serialize};
 
 /// The variables of a fit, or a gradient in them.
@@ -25,13 +24,7 @@ pub struct FitVariables {
 }
 
 impl FitVariables {
-    /// As one vector.
-    pub fn to_flat(&self) -> Vec<f64> {
-        let corners = self.corners.as_flattened();
-        [&[self.ln_size, self.rotation], corners].concat()
-    }
-
-    /// The coordinates in the order of [`to_flat`](Self::to_flat).
+    /// All coordinates, in the order of the fields.
     pub(crate) fn coordinates_mut(&mut self) -> impl Iterator<Item = &mut f64> {
         let corners = self.corners.as_flattened_mut();
         [&mut self.ln_size, &mut self.rotation].into_iter().chain(corners)
@@ -58,8 +51,8 @@ impl FitVariables {
     ) -> Self {
         let middle = middle(stock);
         let by_u = |i: usize, c: usize| {
-            let share = logistic(self.corners[i][c]);
-            by_outline[i][c] * share * (1.0 - share) * (stock.corners[i][c] - middle[c])
+            let fraction = logistic(self.corners[i][c]);
+            by_outline[i][c] * fraction * (1.0 - fraction) * (stock.corners[i][c] - middle[c])
         };
         Self { ln_size, rotation, corners: std::array::from_fn(|i| [by_u(i, 0), by_u(i, 1)]) }
     }

@@ -67,6 +67,11 @@ impl Grid {
         2 * (j * (self.m + 1) + i) + endpoint as usize
     }
 
+    /// Indices of x_ij and x'_ij.
+    pub(crate) fn endpoints(&self, i: usize, j: usize) -> [usize; 2] {
+        [Endpoint::X, Endpoint::XPrime].map(|endpoint| self.endpoint(i, j, endpoint))
+    }
+
     /// Index of the panel in column `p` and row `q`.
     pub fn panel(&self, p: usize, q: usize) -> usize {
         q * self.m + p

@@ -1,20 +1,24 @@
 //! The room that the hole or the clip at an attachment point needs.
 
-use crate::geometry::plane::{I, add, complex, dot, point};
-use crate::geometry::polygon::{distance, edges, nearest_on_segment};
-use crate::sheet::cut_sheet::{AttachmentPoint, PanelPoint, Sheet, SheetGradient};
+use crate::{
+    geometry::{
+        plane::{I, add, complex, dot, point},
+        polygon::{distance, edges, nearest_on_segment},
+    },
+    sheet::cut_sheet::{AttachmentPoint, PanelPoint, Sheet, SheetGradient},
+};
 use faer::c64;
 
 /// What a hole or a clip is measured to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Obstacle {
-    /// From the centre of a hole to the line between two corners of the panel.
+    /// Distance from the centre of a hole to the line between two corners of the panel.
     Edge([usize; 2]),
-    /// From the centre of a hole to the tip of a hinge.
+    /// Distance from the centre of a hole to the tip of a hinge.
     HoleToHinge(usize),
-    /// From a clip to the tip of a hinge.
+    /// Distance from a clip to the tip of a hinge.
     ClipToHinge(usize),
-    /// From end to end of the edge on which a clip is.
+    /// Length of the edge on which a clip is.
     Ends([usize; 2]),
 }
 
@@ -36,8 +40,7 @@ impl AttachmentPoint {
     pub fn clearances(&self, sheet: &Sheet) -> Vec<Clearance> {
         let panel = &sheet.panels[self.panel];
         let hinges = sheet.hinges.iter().enumerate();
-        let hinges =
-            hinges.filter(|(_, hinge)| [hinge.panel_a(), hinge.panel_b()].contains(&self.panel));
+        let hinges = hinges.filter(|(_, hinge)| hinge.panels().contains(&self.panel));
         let process = sheet.options.process;
         let (r_win, half_slit) = (process.r_win, 0.5 * process.slit_width);
         let mut clearances = Vec::new();
@@ -116,9 +119,9 @@ impl AttachmentPoint {
             Obstacle::Edge([p, q]) => {
                 by_corners = panel.pullback(self.point, point(away));
                 let [start, end] = [p, q].map(|corner| complex(panel.corners[corner]));
-                let share = dot(to - start, end - start) / (end - start).norm_sqr();
-                by_corners[p] -= away * (1.0 - share);
-                by_corners[q] -= away * share;
+                let along = dot(to - start, end - start) / (end - start).norm_sqr();
+                by_corners[p] -= away * (1.0 - along);
+                by_corners[q] -= away * along;
             }
             Obstacle::HoleToHinge(h) => {
                 by_corners = panel.pullback(self.point, point(away));

@@ -1,4 +1,4 @@
-//! From cut endpoints to rigid panels and hinges: centroids, cut frames, cut angles, cut tips; and
+//! Rigid panels and hinges of the cut endpoints: centroids, cut frames, cut angles, cut tips; and
 //! the exact vector-Jacobian product of this map.
 //!
 //! The slit of C_ij is the segment [A, B]. On each of its flanks is one hinge, at x_ij and at
@@ -10,35 +10,27 @@
 //! alpha = atan2(-m . e_sec_perp, m . e_sec),     O = C + w_lig / sin(alpha) m        (7)
 //! ```
 
-use crate::geometry::plane::{I, add, complex, cross, dot, point};
-use crate::geometry::region::{Contour, Corners, Region};
-use crate::pattern::cut_pattern::{CutPattern, Outline};
-use crate::pattern::grid::{Grid, NE, NW, SE, SW};
-use crate::sheet::cutting_process::CuttingProcess;
-use crate::sheet::topology::{HingeSite, PanelCorner, Topology, Trim};
+pub use crate::sheet::panel::{Panel, PanelPoint};
+use crate::{
+    geometry::{
+        plane::{I, add, complex, cross, dot, point},
+        region::{Contour, Corners, Region},
+    },
+    pattern::{
+        cut_pattern::{CutPattern, Outline},
+        grid::{Grid, NE, NW, SE, SW},
+    },
+    sheet::{
+        cutting_process::CuttingProcess,
+        topology::{HingeSite, PanelCorner, Topology},
+    },
+};
 use faer::c64;
 use hinge::HingeDesign;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
-
-/// Why a pattern and its ligament widths do not define a sheet.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[allow(missing_docs, reason = "the message of a variant is its documentation")]
-pub enum SheetError {
-    #[error("{found} ligament widths for {expected} hinges")]
-    WidthCount { found: usize, expected: usize },
-    #[error("w_lig[{hinge}] = {value} mm is not a positive finite number")]
-    Width { hinge: usize, value: f64 },
-    #[error(
-        "panel {panel} has the area {area} mm^2, which must be positive: its cuts have collapsed"
-    )]
-    PanelArea { panel: usize, area: f64 },
-    #[error(
-        "hinge {hinge} has the cut angle {alpha_deg} deg, outside (0, 180): its cuts have collapsed"
-    )]
-    CutAngle { hinge: usize, alpha_deg: f64 },
-}
+use support::fault::{Fault, fault};
 
 /// The point at which the hinge deformation (8) is measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
@@ -48,18 +40,6 @@ pub enum HingePoint {
     Corner,
     /// The tip O of the main cut, where the window is driven: exact for the surrogate.
     CutTip,
-}
-
-/// A point of a panel in the flat sheet.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub enum PanelPoint {
-    /// The centroid of the area.
-    #[default]
-    Centroid,
-    /// The middle between two corners.
-    Middle([usize; 2]),
-    /// A point that does not move with the cuts (mm).
-    Fixed([f64; 2]),
 }
 
 /// A point at which a panel is held or pulled.
@@ -86,24 +66,6 @@ pub struct SheetOptions {
     pub process: CuttingProcess,
 }
 
-/// A rigid panel in the flat sheet.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Panel {
-    /// SW, SE, NE, NW of its cell (mm).
-    pub corners: [[f64; 2]; 4],
-    /// The polygon that it is, counter-clockwise: the corners, unless it is trimmed (mm).
-    pub boundary: Vec<[f64; 2]>,
-    pub(crate) trim: Option<Trim>,
-    /// The point whose motion is (u_x, u_y), where the panel is held or pulled.
-    pub point: PanelPoint,
-    /// Its position (mm).
-    pub reference: [f64; 2],
-    /// The centroid of the area (mm).
-    pub centroid: [f64; 2],
-    /// mm^2
-    pub area: f64,
-}
-
 /// The ligament that joins two panels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hinge {
@@ -122,7 +84,7 @@ pub struct Hinge {
     /// Material between O and the finished edge of the secondary cut (mm).
     pub w_lig: f64,
     /// Distance of O from the line of the secondary cut (mm): w_lig plus half of the slit, or
-    /// w_lig alone if that line is the outline of the sheet, which is cut to its finished edge.
+    /// only w_lig if that line is the outline of the sheet, which is cut to its finished edge.
     pub set_back: f64,
     /// Angle between the cuts, measured into the material (rad).
     pub alpha: f64,
@@ -150,27 +112,27 @@ pub struct Sheet {
 /// The gradient of a function of the sheet with respect to all quantities of the sheet.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SheetGradient {
-    /// With respect to the corners SW, SE, NE, NW of every panel, at fixed reference, centroid and
+    /// Gradient in the corners SW, SE, NE, NW of every panel, at fixed reference, centroid and
     /// area.
     pub corners: Vec<[[f64; 2]; 4]>,
-    /// With respect to the reference point of every panel.
+    /// Gradient in the reference point of every panel.
     pub references: Vec<[f64; 2]>,
-    /// With respect to the centroid of every panel, at a fixed reference point.
+    /// Gradient in the centroid of every panel, at a fixed reference point.
     pub centroids: Vec<[f64; 2]>,
-    /// With respect to the area of every panel.
+    /// Gradient in the area of every panel.
     pub areas: Vec<f64>,
-    /// With respect to the attachment point of every hinge.
+    /// Gradient in the attachment point of every hinge.
     pub attachments: Vec<[f64; 2]>,
-    /// With respect to the tip of the main cut of every hinge, at a fixed attachment point.
+    /// Gradient in the tip of the main cut of every hinge, at a fixed attachment point.
     pub tips: Vec<[f64; 2]>,
-    /// With respect to the angle of e_sec, per hinge.
+    /// Gradient in the angle of e_sec, per hinge.
     pub frame_angles: Vec<f64>,
-    /// With respect to alpha, per hinge.
+    /// Gradient in alpha, per hinge.
     pub alphas: Vec<f64>,
-    /// With respect to w_lig, per hinge, at a fixed attachment point and a fixed radius of the hole
+    /// Gradient in w_lig, per hinge, at a fixed attachment point and a fixed radius of the hole
     /// over w_lig.
     pub widths: Vec<f64>,
-    /// With respect to the radius of the hole over w_lig, per hinge.
+    /// Gradient in the radius of the hole over w_lig, per hinge.
     pub holes: Vec<f64>,
 }
 
@@ -195,11 +157,7 @@ impl SheetGradient {
 
 impl Sheet {
     /// The sheet of all cells of `pattern` with one ligament width (mm) per hinge.
-    pub fn new(
-        pattern: &CutPattern,
-        w_lig: &[f64],
-        options: SheetOptions,
-    ) -> Result<Self, SheetError> {
+    pub fn new(pattern: &CutPattern, w_lig: &[f64], options: SheetOptions) -> Result<Self, Fault> {
         Self::of_cells(pattern, pattern.grid.into(), w_lig, options)
     }
 
@@ -209,12 +167,11 @@ impl Sheet {
         topology: Arc<Topology>,
         w_lig: &[f64],
         options: SheetOptions,
-    ) -> Result<Self, SheetError> {
+    ) -> Result<Self, Fault> {
         if w_lig.len() != topology.hinge_count() {
-            return Err(SheetError::WidthCount {
-                found: w_lig.len(),
-                expected: topology.hinge_count(),
-            });
+            let (found, expected) = (w_lig.len(), topology.hinge_count());
+            let what = format!("{found} ligament widths for {expected} hinges");
+            return Err(fault("", what, ""));
         }
         let shapes = std::iter::zip(&topology.endpoints, &topology.trims);
         let panels = std::iter::zip(0.., shapes)
@@ -369,128 +326,6 @@ impl Sheet {
     }
 }
 
-impl Panel {
-    fn new(panel: usize, corners: [[f64; 2]; 4], trim: Option<Trim>) -> Result<Self, SheetError> {
-        let boundary = match &trim {
-            None => corners.to_vec(),
-            Some(trim) => trim.iter().map(|at| in_cell(&corners, *at)).collect(),
-        };
-        let mean = boundary.iter().copied().map(complex).sum::<c64>() / boundary.len() as f64;
-        let arms: Vec<c64> = boundary.iter().map(|corner| complex(*corner) - mean).collect();
-        let sectors = sectors(&arms);
-        let area = 0.5 * sectors.iter().sum::<f64>();
-        if !(area > 0.0 && area.is_finite()) {
-            return Err(SheetError::PanelArea { panel, area });
-        }
-        let next = |j: usize| (j + 1) % arms.len();
-        let moment: c64 = (0..arms.len()).map(|j| (arms[j] + arms[next(j)]) * sectors[j]).sum();
-        let centroid = point(mean + moment / (6.0 * area));
-        Ok(Self {
-            corners,
-            boundary,
-            trim,
-            point: PanelPoint::Centroid,
-            reference: centroid,
-            centroid,
-            area,
-        })
-    }
-
-    /// Whether the panel is not its cell.
-    pub fn is_trimmed(&self) -> bool {
-        self.trim.is_some()
-    }
-
-    /// The position of a point of the panel in the flat sheet (mm).
-    pub fn position(&self, point: PanelPoint) -> [f64; 2] {
-        match point {
-            PanelPoint::Centroid => self.centroid,
-            PanelPoint::Middle([from, to]) => {
-                [0, 1].map(|c| 0.5 * (self.corners[from][c] + self.corners[to][c]))
-            }
-            PanelPoint::Fixed(position) => position,
-        }
-    }
-
-    /// The gradient in the corners of a function with the given gradient in one point of the
-    /// boundary.
-    pub(crate) fn corner_pullback(&self, point: usize, gradient: c64) -> [c64; 4] {
-        let [south_east, north_west] = match &self.trim {
-            None => return std::array::from_fn(|corner| f64::from(corner == point) * gradient),
-            Some(trim) => trim[point],
-        };
-        let mut corners = [c64::ZERO; 4];
-        corners[SW] = gradient * (1.0 - south_east - north_west);
-        corners[SE] = gradient * south_east;
-        corners[NW] = gradient * north_west;
-        corners
-    }
-
-    /// The same with a gradient in each point of the boundary.
-    fn boundary_pullback(&self, gradients: &[c64]) -> [c64; 4] {
-        let by_points = gradients.iter().enumerate();
-        by_points.fold([c64::ZERO; 4], |sum, (point, gradient)| {
-            let corners = self.corner_pullback(point, *gradient);
-            std::array::from_fn(|corner| sum[corner] + corners[corner])
-        })
-    }
-
-    /// The gradient in the corners of a function with the given gradient in a point.
-    pub(super) fn pullback(&self, point: PanelPoint, gradient: [f64; 2]) -> [c64; 4] {
-        match point {
-            PanelPoint::Centroid => self.centroid_pullback(gradient),
-            PanelPoint::Middle(ends) => {
-                let mut corners = [c64::ZERO; 4];
-                for corner in ends {
-                    corners[corner] += complex(gradient) / 2.0;
-                }
-                corners
-            }
-            PanelPoint::Fixed(_) => [c64::ZERO; 4],
-        }
-    }
-
-    /// The gradient in the corners of a function with the given derivative in the area.
-    fn area_pullback(&self, derivative: f64) -> [c64; 4] {
-        let count = self.boundary.len();
-        let corner = |j: usize| complex(self.boundary[j % count]);
-        let along = |j: usize| corner(j + 1) - corner(j + count - 1);
-        let by_boundary: Vec<c64> = (0..count).map(|j| -0.5 * derivative * I * along(j)).collect();
-        self.boundary_pullback(&by_boundary)
-    }
-
-    /// The gradient in the corners of a function with the given gradient in the centroid.
-    ///
-    /// With the vectors p_j from the centroid and S_j = p_j x p_(j+1), the area centroid moves by
-    /// sum_j [(dp_j + dp_(j+1)) S_j + (p_j + p_(j+1)) dS_j] / (3 sum_j S_j).
-    fn centroid_pullback(&self, gradient: [f64; 2]) -> [c64; 4] {
-        let gradient = complex(gradient);
-        let arm = |corner: &[f64; 2]| complex(*corner) - complex(self.centroid);
-        let arms: Vec<c64> = self.boundary.iter().map(arm).collect();
-        let sectors = sectors(&arms);
-        let scaled = gradient / (3.0 * sectors.iter().sum::<f64>());
-        let mut by_boundary = vec![c64::ZERO; arms.len()];
-        for j in 0..arms.len() {
-            let next = (j + 1) % arms.len();
-            let by_sector = dot(scaled, arms[j] + arms[next]);
-            by_boundary[j] += scaled * sectors[j] - I * arms[next] * by_sector;
-            by_boundary[next] += scaled * sectors[j] + I * arms[j] * by_sector;
-        }
-        self.boundary_pullback(&by_boundary)
-    }
-}
-
-/// The point SW + x (SE - SW) + y (NW - SW) of a cell.
-fn in_cell(corners: &[[f64; 2]; 4], [x, y]: [f64; 2]) -> [f64; 2] {
-    let along = |c: usize, to: usize| corners[to][c] - corners[SW][c];
-    [0, 1].map(|c| corners[SW][c] + x * along(c, SE) + y * along(c, NW))
-}
-
-/// Twice the signed areas of the triangles between the origin and the panel's edges.
-fn sectors(arms: &[c64]) -> Vec<f64> {
-    (0..arms.len()).map(|j| cross(arms[j], arms[(j + 1) % arms.len()])).collect()
-}
-
 impl Hinge {
     fn new(
         hinge: usize,
@@ -498,9 +333,10 @@ impl Hinge {
         points: &[[f64; 2]],
         [w_lig, set_back]: [f64; 2],
         options: SheetOptions,
-    ) -> Result<Self, SheetError> {
+    ) -> Result<Self, Fault> {
         if !(w_lig > 0.0 && w_lig.is_finite()) {
-            return Err(SheetError::Width { hinge, value: w_lig });
+            let what = format!("w_lig[{hinge}] = {w_lig} mm is not a positive finite number");
+            return Err(fault("", what, ""));
         }
         let unit = |from: usize, to: usize| {
             let segment = complex(points[to]) - complex(points[from]);
@@ -512,7 +348,8 @@ impl Hinge {
         let alpha = cross(main, e_sec).atan2(dot(main, e_sec));
         if !(alpha > 0.0 && alpha < std::f64::consts::PI) {
             let alpha_deg = alpha.to_degrees();
-            return Err(SheetError::CutAngle { hinge, alpha_deg });
+            let what = format!("hinge {hinge} has the cut angle {alpha_deg} deg, outside (0, 180)");
+            return Err(fault("", what, "its cuts have collapsed"));
         }
         let corner = points[site.corner];
         let hinge = Self {
@@ -531,7 +368,7 @@ impl Hinge {
     }
 
     /// The hinge with its tip at another distance from the line of the secondary cut (mm).
-    pub(super) fn with_tip(self, set_back: f64, hinge_point: HingePoint) -> Self {
+    fn with_tip(self, set_back: f64, hinge_point: HingePoint) -> Self {
         let along = complex(self.main) * (set_back / self.alpha.sin());
         let tip = point(complex(self.corner) + along);
         Self {
@@ -543,6 +380,11 @@ impl Hinge {
             set_back,
             ..self
         }
+    }
+
+    /// Indices of panels A and B.
+    pub fn panels(&self) -> [usize; 2] {
+        [self.site.a.0, self.site.b.0]
     }
 
     /// Index of panel A.

@@ -61,21 +61,18 @@ fn earlier_kerf<'de, D: Deserializer<'de>>(_: D) -> Result<(), D::Error> {
     ))
 }
 
-/// Why `[process]` does not define a hole.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-#[error(
-    "[process] needs either fillet_ratio (radius of the hole over w_lig) or hole_diameter (mm)"
-)]
-struct OneHole;
-
 impl TryFrom<ProcessKeys> for CuttingProcess {
-    type Error = OneHole;
+    type Error = &'static str;
 
-    fn try_from(keys: ProcessKeys) -> Result<Self, OneHole> {
+    fn try_from(keys: ProcessKeys) -> Result<Self, Self::Error> {
         let hole = match (keys.fillet_ratio, keys.hole_diameter) {
             (Some(ratio), None) => Hole::Ratio(ratio),
             (None, Some(diameter)) => Hole::Diameter(diameter),
-            (None, None) | (Some(_), Some(_)) => return Err(OneHole),
+            (None, None) | (Some(_), Some(_)) => {
+                return Err(
+                    "[process] needs either fillet_ratio (radius of the hole over w_lig) or hole_diameter (mm)",
+                );
+            }
         };
         let ProcessKeys { slit_width, kerf: (), r_win, .. } = keys;
         Ok(Self { hole, slit_width, r_win })

@@ -1,11 +1,13 @@
 //! The window of a hinge: the half-disc of sheet on which its energy was condensed.
 //!
-//! The flat side lies along the finished edge of the secondary cut and is centred at the foot of
+//! The flat side is on the finished edge of the secondary cut and is centred at the foot of
 //! the perpendicular from the tip O. Hinge energies are additive only if the windows are disjoint
 //! and lie within the two panels that their hinges join.
 
-use crate::geometry::polygon::{clip, common, contains, distance, distance_to_polygon};
-use crate::sheet::cut_sheet::{Hinge, Panel, Sheet};
+use crate::{
+    geometry::polygon::{clip, common, contains, distance, distance_to_polygon},
+    sheet::cut_sheet::{Hinge, Panel, Sheet},
+};
 use std::f64::consts::PI;
 
 /// The window of a hinge in the flat sheet.
@@ -77,7 +79,7 @@ impl Window {
         distance_to_polygon(other.foot, &shared) < other.radius - touch
     }
 
-    /// Whether the arc lies in the two panels, except for its ends on the secondary cut.
+    /// Whether the arc is in the two panels, except for its ends on the secondary cut.
     pub fn within(&self, a: &Panel, b: &Panel) -> bool {
         let arc = self.polygon();
         arc[1..ARC].iter().all(|&point| contains(&a.corners, point) || contains(&b.corners, point))

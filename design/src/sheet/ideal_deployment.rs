@@ -10,10 +10,21 @@
 //! Because every void is a parallelogram, the result is the same along every sequence of hinges
 //! through the sheet. Pitches follow (6).
 
-use crate::geometry::plane::{I, add, complex, dot, point, turn};
-use crate::sheet::cut_sheet::{Sheet, SheetGradient};
-use crate::sheet::kinematics::Configuration;
+use crate::{
+    geometry::plane::{I, add, complex, dot, point, turn},
+    sheet::{
+        cut_sheet::{Sheet, SheetGradient},
+        kinematics::Configuration,
+    },
+};
 use faer::c64;
+use support::fault::{Fault, fault};
+
+/// An error unless the opening angle (rad) is finite.
+pub fn check_opening(theta: f64) -> Result<(), Fault> {
+    let what = || format!("the opening angle {theta} rad is not a finite number");
+    theta.is_finite().then_some(()).ok_or_else(|| fault("", what(), ""))
+}
 
 /// The configuration with every hinge open by `theta` (rad).
 pub fn ideal_deployment(sheet: &Sheet, theta: f64) -> Configuration {
@@ -94,8 +105,9 @@ struct Link {
 fn spanning_tree(sheet: &Sheet) -> Vec<Link> {
     let mut neighbours = vec![Vec::new(); sheet.panels.len()];
     for (hinge, h) in sheet.hinges.iter().enumerate() {
-        neighbours[h.panel_a()].push((hinge, h.panel_b()));
-        neighbours[h.panel_b()].push((hinge, h.panel_a()));
+        let [a, b] = h.panels();
+        neighbours[a].push((hinge, b));
+        neighbours[b].push((hinge, a));
     }
     let mut reached = vec![false; sheet.panels.len()];
     reached[0] = true;

@@ -13,9 +13,13 @@
 //! theta). The sum is arranged in terms that each vanish in the flat sheet, so that small motions
 //! keep their accuracy.
 
-use crate::geometry::plane::{I, complex, cross, dot, point, turn, turn_less_one};
-use crate::geometry::polygon::distance;
-use crate::sheet::cut_sheet::{Panel, Sheet};
+use crate::{
+    geometry::{
+        plane::{I, complex, cross, dot, point, turn, turn_less_one},
+        polygon::distance,
+    },
+    sheet::cut_sheet::{Panel, Sheet},
+};
 use faer::c64;
 use hinge::HingeDeformation;
 
@@ -98,13 +102,13 @@ pub struct HingeMotion {
 /// The gradient of a scalar with respect to the flat geometry in (8).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct HingeGeometryGradient {
-    /// With respect to the attachment point.
+    /// Gradient in the attachment point.
     pub attachment: [f64; 2],
-    /// With respect to the reference point of panel A.
+    /// Gradient in the reference point of panel A.
     pub reference_a: [f64; 2],
-    /// With respect to the reference point of panel B.
+    /// Gradient in the reference point of panel B.
     pub reference_b: [f64; 2],
-    /// With respect to the angle of e_sec.
+    /// Gradient in the angle of e_sec.
     pub frame_angle: f64,
 }
 
@@ -118,8 +122,8 @@ impl HingeMotion {
     /// The kinematics of one hinge, given by its index.
     pub fn new(sheet: &Sheet, hinge: usize, configuration: &[[f64; 3]]) -> Self {
         let hinge = &sheet.hinges[hinge];
-        let (a, b) = (hinge.panel_a(), hinge.panel_b());
-        let (c_a, c_b) = (complex(sheet.panels[a].reference), complex(sheet.panels[b].reference));
+        let [a, b] = hinge.panels();
+        let [c_a, c_b] = [a, b].map(|panel| complex(sheet.panels[panel].reference));
         let ([ax, ay, phi_a], [bx, by, phi_b]) = (configuration[a], configuration[b]);
         let (theta, phibar) = (phi_b - phi_a, 0.5 * (phi_a + phi_b));
         let frame = complex(hinge.e_sec).conj();
@@ -181,8 +185,8 @@ impl HingeMotion {
     /// The 6 x 6 tangent J^T K J + f . d2(eps), in the motions of panels A and B, of an energy with
     /// the stiffness K = `tangent` and the forces f.
     pub fn stiffness(&self, tangent: &[[f64; 3]; 3], forces: [f64; 3]) -> [[f64; 6]; 6] {
-        // In z = (Delta u_x, Delta u_y, phi_k, phi_l); the six motions enter with the signs of
-        // COPIES.
+        // The coordinates are z = (Delta u_x, Delta u_y, phi_k, phi_l); the six motions enter with
+        // the signs of COPIES.
         let [x, y, mean, relative] = self.translation_rates();
         let rates = [x, y, 0.5 * mean - relative, 0.5 * mean + relative];
         let mut jacobian = [[0.0; 4], [0.0; 4], [0.0, 0.0, -1.0, 1.0]];

@@ -7,14 +7,15 @@
 //! lambda(theta) = |d(theta)| / |d(0)|,     lambda_max = (|p| + |q|) / |p + q|     at theta = arg(q / p)
 //! ```
 //!
-//! For the uniform sheet this is (6), with cos(psi) = |p + q| / (|p| + |q|). Every void is a
+//! The uniform sheet has (6), with cos(psi) = |p + q| / (|p| + |q|). Every void is a
 //! parallelogram with the angles theta and pi - theta. For any pattern, panels touch at theta = 0
 //! and at theta = pi and at no angle between.
 
-use crate::geometry::plane::{I, complex};
-use crate::pattern::grid::Grid;
-use crate::sheet::cut_sheet::Sheet;
-use crate::sheet::ideal_deployment::ideal_deployment;
+use crate::{
+    geometry::plane::{I, complex},
+    pattern::grid::Grid,
+    sheet::{cut_sheet::Sheet, ideal_deployment::ideal_deployment},
+};
 use faer::c64;
 use serde::Serialize;
 use std::f64::consts::PI;

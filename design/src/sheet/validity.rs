@@ -1,10 +1,11 @@
 //! Whether a pattern and its ligament widths can be cut and modelled: areas, overlaps, void
 //! sides, space for the windows, cut angles.
 
-use crate::geometry::polygon::{area, common, distance};
-use crate::pattern::cut_pattern::CutPattern;
-use crate::sheet::cut_sheet::Sheet;
-use crate::sheet::kinematics::deployed_corners;
+use crate::{
+    geometry::polygon::{area, common, distance},
+    pattern::cut_pattern::CutPattern,
+    sheet::{cut_sheet::Sheet, kinematics::deployed_corners},
+};
 use hinge::{HingeDesign, TrainingDomain};
 use serde::Serialize;
 
@@ -90,8 +91,7 @@ pub fn overlap(sheet: &Sheet, configuration: &[[f64; 3]]) -> f64 {
 fn hinge_spacings(sheet: &Sheet) -> Vec<f64> {
     let mut of_panel = vec![Vec::new(); sheet.panels.len()];
     for (h, hinge) in sheet.hinges.iter().enumerate() {
-        of_panel[hinge.panel_a()].push(h);
-        of_panel[hinge.panel_b()].push(h);
+        hinge.panels().into_iter().for_each(|panel| of_panel[panel].push(h));
     }
     let mut spacings = vec![f64::INFINITY; sheet.hinges.len()];
     for hinges in of_panel {

@@ -10,7 +10,6 @@
 
 use crate::drawn::Drawn;
 use design::equilibrium::load_step::LoadStep;
-use design::equilibrium::supports::Support;
 use design::hinge_law::Order;
 use design::objective::design_problem::DesignProblem;
 use design::sheet::cut_sheet::Sheet;
@@ -18,7 +17,7 @@ use faer::{Mat, Side, c64};
 use hinge::HingeDeformation;
 
 /// The unbalanced forces and the lowest stiffness of a state.
-pub struct DenseCheck {
+pub(crate) struct DenseCheck {
     /// The largest force on a panel, in this state or before (N).
     pub force: f64,
     /// Maximum unbalanced force, relative to that.
@@ -79,7 +78,7 @@ fn deformation(sheet: &Sheet, hinge: usize, configuration: &[[f64; 3]]) -> Defor
 
 impl DenseCheck {
     /// The state of a load step; `before` is the largest force of those before (N).
-    pub fn new(
+    pub(crate) fn new(
         drawn: &Drawn,
         problem: &DesignProblem,
         sheet: &Sheet,
@@ -140,21 +139,13 @@ impl DenseCheck {
             stiffness[(3 * k + 2, 3 * k + 2)] += arm.re * weight.re + arm.im * weight.im;
             largest = largest.max(weight.re.hypot(weight.im));
         }
-        let mut loads = vec![0.0; 3 * panels];
-        for load in &drawn.loads {
-            loads[3 * load.panel + load.dof.index()] += load.value;
-        }
+        let loads = loads(drawn, panels);
         for (d, load) in loads.iter().enumerate() {
             forces[d] -= step.load_factor * load;
             largest = largest.max(as_force(d, step.load_factor * load));
         }
 
-        let free: Vec<usize> = (0..3 * panels)
-            .filter(|d| {
-                let held = |s: &Support| 3 * s.panel + s.dof.index() == *d;
-                !drawn.supports.iter().any(held)
-            })
-            .collect();
+        let free = free(drawn, panels);
         let unbalanced = free.iter().map(|&d| as_force(d, forces[d]));
         let unbalanced = unbalanced.fold(0.0, f64::max);
         let along = || free.iter().map(|&d| loads[d]).collect::<Vec<f64>>();
@@ -167,6 +158,21 @@ impl DenseCheck {
             lowest: lowest(&stiffness, &free, held),
         }
     }
+}
+
+/// The loads on all motions at full load.
+fn loads(drawn: &Drawn, panels: usize) -> Vec<f64> {
+    let mut loads = vec![0.0; 3 * panels];
+    for load in &drawn.loads {
+        loads[3 * load.panel + load.dof.index()] += load.value;
+    }
+    loads
+}
+
+/// The motions without a support.
+fn free(drawn: &Drawn, panels: usize) -> Vec<usize> {
+    let held = |d: &usize| drawn.supports.iter().any(|s| 3 * s.panel + s.dof.index() == *d);
+    (0..3 * panels).filter(|d| !held(d)).collect()
 }
 
 /// The largest coordinate of the flat and the deployed sheet (mm).

@@ -238,11 +238,11 @@ impl Drawn {
                 contact: contact.map(Result::unwrap),
                 solver,
             })),
-            objective: Objective::from_shape(Shape {
-                target: target.collect(),
-                coverage_weight: 0.5,
-                centred: false,
-            }),
+            objective: Objective {
+                shape: Shape::new(target.collect()),
+                functionals: Vec::new(),
+                penalties: Vec::new(),
+            },
         }
     }
 

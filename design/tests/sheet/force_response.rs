@@ -2,9 +2,9 @@
 //! has them, and in closed form.
 
 use crate::prelude::*;
-use design::equilibrium::force_response::{ForceResponse, Response};
+use analysis::actuation_curve::ActuationCurve;
+use design::equilibrium::force_response::{ForceResponse, SheetChange};
 use design::hinge_law::{CorrectedLaw, Correction, MissingForces};
-use scene::analysis::actuation_curve::ActuationCurve;
 use scene::{SupportConfig, SupportKind};
 
 /// The A4 sheet after a change, without its ensemble.
@@ -45,7 +45,7 @@ fn with_errors(
 }
 
 /// The response to errors of all hinges.
-fn response(problem: &DesignProblem, deployment: &Deployment, errors: &[[f64; 3]]) -> Response {
+fn response(problem: &DesignProblem, deployment: &Deployment, errors: &[[f64; 3]]) -> SheetChange {
     let mechanics = problem.model.mechanics().unwrap();
     let law = mechanics.law.prepare(&deployment.sheet.designs());
     let hinged = mechanics.hinged(&deployment.sheet, &*law, false);

@@ -6,7 +6,7 @@ use crate::prelude::*;
 use design::hinge_law::DamageMeasure;
 use design::objective::response::ResponseCotangent;
 use design::objective::term::Weighted;
-use design::objective::terms::{Compression, Damage, Shear};
+use design::objective::terms::{Compression, DamageFunctional, Shear};
 use serde_json::Value;
 
 /// The Chamfer distance as the paper prints it, and its gradient.
@@ -39,7 +39,7 @@ fn functionals(case: &Value) -> Vec<Weighted> {
     let weight = |name: &str| get(&case["weights"], name);
     let temperature = |name: &str| get(&case["softmax_temperature"], name);
     let [compression, shear] = ["comp", "shear"].map(temperature);
-    let damage = Damage { measure: DamageMeasure::Mean, scale: 1.0, temperature: 0.1 };
+    let damage = DamageFunctional { measure: DamageMeasure::Mean, scale: 1.0, temperature: 0.1 };
     vec![
         Weighted::new(weight("damage"), damage),
         Weighted::new(weight("comp"), Compression { temperature: compression }),

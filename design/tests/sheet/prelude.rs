@@ -7,7 +7,6 @@ pub use crate::random::Random;
 pub use design::equilibrium::hinged_sheet::HingedSheet;
 pub use design::equilibrium::load_step::{LoadStep, Status};
 pub use design::equilibrium::settings::SolverSettings;
-pub use design::equilibrium::solver::EquilibriumError;
 pub use design::equilibrium::supports::{Dof, Load, Support};
 pub use design::hinge_law::{Contact, HingeEnergy, Order, PreparedLaw};
 pub use design::objective::design_problem::*;
@@ -156,4 +155,10 @@ pub fn alone(name: &str, change: impl FnOnce(&mut SceneConfig)) -> Scene {
         }
         change(config);
     })
+}
+
+/// Asserts that the supports leave a sheet free to move.
+pub fn assert_unsupported(solver: &EquilibriumSolver, sheet: &Sheet) {
+    let message = solver.check_supports(sheet).unwrap_err().to_string();
+    assert!(message.starts_with("the supports leave the sheet free to move"), "{message}");
 }

@@ -4,7 +4,7 @@ use crate::prelude::*;
 use design::hinge_law::DamageMeasure;
 use design::objective::term::Weighted;
 use design::objective::terms::{
-    Compression, CutAngles, Damage, DomainPenalty, PanelShape, Shear, SymmetricDifference,
+    Compression, CutAngles, DamageFunctional, DomainPenalty, PanelShape, Shear, SymmetricDifference,
 };
 use design::pattern::fit_variables::FitVariables;
 use hinge::TrainingDomain;
@@ -66,7 +66,7 @@ pub fn problem(model: Model, hinge_point: HingePoint) -> DesignProblem {
         domain: law.map(|_| TrainingDomain::from_box(state, [15.0, 17.0], [1.5, 1.6])),
     };
     let measure = DamageMeasure::Mean;
-    let damage = Damage {
+    let damage = DamageFunctional {
         measure,
         scale: law.and_then(|law| law.damage_scale(measure)).unwrap_or(1.0),
         temperature: 0.1,
@@ -166,7 +166,7 @@ fn a_sheet_and_its_target_are_fitted_to_each_other() {
     let mut problem = problem(Model::Ideal { opening: 0.9 }, HingePoint::Corner);
     problem.objective.shape.centred = true;
     let difference = SymmetricDifference::new(problem.objective.shape.clone());
-    let angles = CutAngles { least: 1.5 };
+    let angles = CutAngles { minimum: 1.5 };
     problem.objective.penalties = vec![Weighted::new(1e5, difference), Weighted::new(1e4, angles)];
     let corners = Random::new(17).numbers(8, 0.4);
     let corners = std::array::from_fn(|i| [1.5 + corners[2 * i], 1.5 + corners[2 * i + 1]]);

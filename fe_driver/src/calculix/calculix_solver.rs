@@ -3,17 +3,10 @@
 //! An attempt is successful if its run is ([`DeckRun`]) and the internal energy agrees with the
 //! work of the reactions.
 
-use crate::calculix::ccx::Ccx;
-use crate::calculix::dat::{Frame, Layout, read_dat};
-use crate::calculix::deck::deck;
-use crate::calculix::deck_run::{DeckRun, read_if_there, time_reached};
-use crate::calculix::model::WindowModel;
-use crate::calculix::response::samples;
-use crate::solve::solve_error::{MAX_ENERGY_RESIDUAL, SolveError};
-use crate::solve::solver::{Solution, Solver};
-use crate::solve::tool_versions::ToolVersions;
-use crate::solve::window_solve::WindowSolve;
-use hinge::HingeSample;
+use crate::{
+    Cause, Ccx, DeckRun, FailureKind, Frame, Layout, Solution, SolveError, Solver, ToolVersions,
+    WindowModel, WindowSolve, deck, read_dat, read_if_there, samples, time_reached,
+};
 use mesher::{Gmsh, WindowMesh, WindowShape};
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
@@ -36,6 +29,10 @@ pub struct CalculiX {
 
 /// Name of the deck and its output in the folder of an attempt.
 const JOB: &str = "window";
+
+/// Maximum |W - work| / W accepted at the end of a complete path. A partial path is not checked;
+/// its samples contain the residual.
+const MAX_ENERGY_RESIDUAL: f64 = 0.01;
 
 /// The lambda that the running attempt in `folder` has reached.
 pub fn reached(folder: &Path) -> f64 {
@@ -101,59 +98,36 @@ impl Solver for CalculiX {
     ) -> Result<Solution, SolveError> {
         let start = Instant::now();
         let mesh = shape(solve).mesh(work, &self.gmsh, limit, stop)?;
-        let solution = (self.model(solve, &mesh)).solve(&self.ccx, work, limit, stop)?;
-        Ok(Solution {
-            wall_seconds: start.elapsed().as_secs_f64(),
-            elements: mesh.elements.len(),
-            ..solution
-        })
+        let model = self.model(solve, &mesh);
+        let invalid = Cause::Problem(FailureKind::InvalidInput);
+        model.material.validate().map_err(|error| invalid.error(error))?;
+        let end = model.path.at(1.0);
+        if !end.to_array().iter().all(|x| x.is_finite()) {
+            let what = "the end of the ray contains a number that is not finite";
+            return Err(invalid.error(format!("{what}: {end:?}")));
+        }
+        let run = DeckRun::new(&self.ccx, &deck(&model), work, JOB, limit, stop)?;
+        let mut solution = run.solution(&model.layout(), |frames| samples(&model, frames));
+        let residual = solution.samples.last().map_or(0.0, |last| last.energy_residual);
+        if solution.stopped.is_none() && residual > MAX_ENERGY_RESIDUAL {
+            solution.samples.clear();
+            let imbalance = Cause::Problem(FailureKind::EnergyImbalance).error(format!(
+                "the energy and the work of the whole ray differ by {residual:.2e} of the energy (limit \
+                 {MAX_ENERGY_RESIDUAL})"
+            ));
+            solution.stopped = Some(imbalance);
+        }
+        solution.wall_seconds = start.elapsed().as_secs_f64();
+        solution.elements = mesh.elements.len();
+        Ok(solution)
     }
 }
 
 impl WindowModel<'_> {
-    /// Solves the window in `folder`; see [`Solver::attempt`].
-    fn solve(
-        &self,
-        ccx: &Ccx,
-        folder: &Path,
-        limit: Duration,
-        stop: &AtomicBool,
-    ) -> Result<Solution, SolveError> {
-        self.material.validate()?;
-        let end = self.path.at(1.0);
-        if !end.to_array().iter().all(|x| x.is_finite()) {
-            return Err(SolveError::Ray(end));
-        }
-        let run = DeckRun::new(ccx, &deck(self), folder, JOB, limit, stop)?;
-        let costs = run.costs();
-        let (samples, stopped) = self.outcome(run);
-        Ok(Solution { samples, stopped, ..costs })
-    }
-
     /// The printed increments of an attempt in `folder`.
     fn frames(&self, folder: &Path) -> Result<Vec<Frame>, SolveError> {
-        let output = folder.join(JOB).with_extension("dat");
-        Ok(read_dat(&read_if_there(&output)?, self.layout())?)
-    }
-
-    /// The valid samples, and why they are not the samples of the whole path.
-    fn outcome(&self, run: DeckRun) -> (Vec<HingeSample>, Option<SolveError>) {
-        let frames = match read_dat(&run.output, self.layout()) {
-            Ok(frames) => frames,
-            Err(error) => return (Vec::new(), Some(error.into())),
-        };
-        if let Err(error) = run.check_increments(frames.iter().map(|frame| frame.lambda)) {
-            return (Vec::new(), Some(error));
-        }
-        let samples = samples(self, &frames);
-        let last = samples.last().copied().unwrap_or_default();
-        match run.stopped_at(last.lambda) {
-            None if last.energy_residual > MAX_ENERGY_RESIDUAL => {
-                let residual = last.energy_residual;
-                (Vec::new(), Some(SolveError::EnergyImbalance { residual }))
-            }
-            stopped => (samples, stopped),
-        }
+        let output = read_if_there(&folder.join(JOB).with_extension("dat"))?;
+        read_dat(&output, self.layout()).map_err(|error| Cause::Machine.error(error))
     }
 
     /// The numbers of rows that one increment of this window prints.

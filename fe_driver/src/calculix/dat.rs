@@ -4,6 +4,8 @@
 //! terminated leaves an incomplete last block: an unterminated line and an incomplete last frame
 //! are dropped. Any input gives either frames or an error that names the line.
 
+use support::fault::{Fault, fault};
+
 /// The numbers of rows that a complete increment prints.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Layout {
@@ -35,18 +37,6 @@ pub struct Frame {
     /// Cauchy stress (xx, yy, zz, xy, xz, yz) at the Gauss points (MPa), element by element.
     pub stress: Vec<[f64; 6]>,
     energies: usize,
-}
-
-/// Why the output of a window solve is rejected.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[allow(missing_docs, reason = "the message of a variant is its documentation")]
-pub enum DatError {
-    #[error("the solver's output, line {line}: {what}")]
-    Line { line: usize, what: &'static str },
-    #[error(
-        "the solver's output is incomplete at lambda = {lambda}, which is not the last increment"
-    )]
-    Incomplete { lambda: f64 },
 }
 
 /// What the rows of a block are.
@@ -83,7 +73,7 @@ const HEADINGS: [(&str, Block); 7] = [
 pub(crate) trait Printed: Sized {
     /// What a complete increment prints.
     type Layout;
-    /// An increment of which nothing is known but its time.
+    /// An increment with only its time.
     fn begin(time: f64) -> Self;
     /// Its time.
     fn time(&self) -> f64;
@@ -100,22 +90,20 @@ pub(crate) trait Printed: Sized {
 }
 
 /// Reads the complete frames of a window, in order of lambda.
-pub fn read_dat(bytes: &[u8], layout: Layout) -> Result<Vec<Frame>, DatError> {
+pub fn read_dat(bytes: &[u8], layout: Layout) -> Result<Vec<Frame>, Fault> {
     read_printed(bytes, &layout)
 }
 
 /// Reads the complete increments, in order of time.
-pub(crate) fn read_printed<F: Printed>(
-    bytes: &[u8],
-    layout: &F::Layout,
-) -> Result<Vec<F>, DatError> {
+pub(crate) fn read_printed<F: Printed>(bytes: &[u8], layout: &F::Layout) -> Result<Vec<F>, Fault> {
     // An unterminated last line may contain a truncated number.
     let end = bytes.iter().rposition(|b| *b == b'\n').map_or(0, |i| i + 1);
     let text = String::from_utf8_lossy(&bytes[..end]);
     let mut frames: Vec<F> = Vec::new();
     let mut block = None;
     for (number, line) in text.lines().enumerate() {
-        let line_error = |what| DatError::Line { line: number + 1, what };
+        let line_error =
+            |what: &str| fault(format!("the solver's output, line {}", number + 1), what, "");
         let line = line.trim();
         if line.is_empty() {
             continue;
@@ -147,7 +135,13 @@ pub(crate) fn read_printed<F: Printed>(
         frames.pop();
     }
     match frames.iter().find(|frame| !frame.is_complete(layout)) {
-        Some(frame) => Err(DatError::Incomplete { lambda: frame.time() }),
+        Some(frame) => {
+            let lambda = frame.time();
+            let what = format!(
+                "the solver's output is incomplete at lambda = {lambda}, which is not the last increment"
+            );
+            Err(Fault::from(what))
+        }
         None => Ok(frames),
     }
 }
@@ -309,7 +303,7 @@ mod tests {
     fn damage_inside_the_output_is_an_error() {
         let missing = two_increments().replacen("         1   8  1.5E-02\n", "", 1);
         let error = read_dat(missing.as_bytes(), LAYOUT).unwrap_err();
-        assert_eq!(error, DatError::Incomplete { lambda: 0.5 });
+        assert!(error.what.contains("incomplete at lambda = 0.5"), "{error}");
         for (old, new) in [
             ("4.25E+01", "NaN"),
             // A node that the mesh does not have.
@@ -321,17 +315,17 @@ mod tests {
         ] {
             let damaged = two_increments().replacen(old, new, 1);
             let error = read_dat(damaged.as_bytes(), LAYOUT).unwrap_err();
-            assert!(matches!(error, DatError::Line { .. }), "{old}: {error}");
+            assert!(error.place.contains(", line "), "{old}: {error}");
         }
     }
 
     proptest! {
         /// However a killed solver truncated its output, the frames read are complete and correct.
         #[test]
-        fn a_truncated_output_gives_its_complete_frames(share in 0.0..1.0f64) {
+        fn a_truncated_output_gives_its_complete_frames(fraction in 0.0..1.0f64) {
             let text = two_increments();
             let whole = read_dat(text.as_bytes(), LAYOUT).unwrap();
-            let cut = (share * text.len() as f64) as usize;
+            let cut = (fraction * text.len() as f64) as usize;
             let frames = read_dat(&text.as_bytes()[..cut], LAYOUT).unwrap();
             prop_assert_eq!(&frames[..], &whole[..frames.len()]);
             prop_assert_eq!(frames.len(), usize::from(cut >= printed(0.5).len()));

@@ -5,72 +5,64 @@
 //! state. All output is printed in every increment, because CalculiX accumulates the total internal
 //! energy between *printed* increments and it would otherwise be wrong.
 
-use crate::calculix::cards::{
-    write_element, write_increments, write_material, write_nodes, write_set,
+use crate::{
+    DeformationPath, DrivenArc, PanelMotion, StepControl, even_lambdas, write_element,
+    write_increments, write_material, write_nodes, write_set,
 };
-use crate::calculix::driven_arc::{DrivenArc, even_lambdas};
-use crate::calculix::model::WindowModel;
-use crate::calculix::panel_motion::PanelMotion;
-use crate::solve::deformation_path::DeformationPath;
-use crate::solve::step_control::StepControl;
-use std::fmt::{self, Write};
+use hinge::SheetMaterial;
+use mesher::WindowMesh;
+use support::add_line;
 
 /// The deck that drives the window along its path.
 pub fn deck(model: &WindowModel) -> String {
     let mut text = String::new();
-    write_deck(&mut text, model).expect("writing to a string cannot fail");
-    text
-}
-
-fn write_deck(d: &mut String, model: &WindowModel) -> fmt::Result {
-    let mesh = model.mesh;
+    let (d, mesh) = (&mut text, model.mesh);
     let turner = mesh.nodes.len() + 1;
     let mover = turner + 1;
-    write_nodes(d, &mesh.nodes)?;
-    writeln!(d, "*NODE,NSET=CONTROL\n{turner},0.,0.,0.\n{mover},0.,0.,0.")?;
+    write_nodes(d, &mesh.nodes);
+    add_line!(d, "*NODE,NSET=CONTROL\n{turner},0.,0.,0.\n{mover},0.,0.,0.");
     let kind = mesh.recipe.element().name();
-    writeln!(d, "*ELEMENT,TYPE={kind},ELSET=EALL")?;
+    add_line!(d, "*ELEMENT,TYPE={kind},ELSET=EALL");
     for (element, nodes) in mesh.elements.iter().enumerate() {
-        write_element(d, element, nodes)?;
+        write_element(d, element, nodes);
     }
-    write_set(d, "NSET", "ARCA", &mesh.arc_a)?;
-    write_set(d, "NSET", "ARCB", &mesh.arc_b)?;
-    write_set(d, "NSET", "BOTTOM", &mesh.bottom)?;
-    write_material(d, model.material)?;
-    writeln!(d, "*SOLID SECTION,ELSET=EALL,MATERIAL=SHEET")?;
+    write_set(d, "NSET", "ARCA", &mesh.arc_a);
+    write_set(d, "NSET", "ARCB", &mesh.arc_b);
+    write_set(d, "NSET", "BOTTOM", &mesh.bottom);
+    write_material(d, model.material);
+    add_line!(d, "*SOLID SECTION,ELSET=EALL,MATERIAL=SHEET");
     let arc = DrivenArc {
         nodes: &mesh.arc_b,
         about: mesh.design.tip(),
         drivers: [turner, mover],
         amplitudes: "Q",
     };
-    arc.write_equations(d, &mesh.nodes)?;
+    arc.write_equations(d, &mesh.nodes);
     let motion = |lambda| PanelMotion::new(&model.path.at(lambda));
-    arc.write_amplitudes(d, &lambdas(model.path), 1.0, motion)?;
+    arc.write_amplitudes(d, &lambdas(model.path), 1.0, motion);
     let turn = model.path.turn();
-    write_step(d, model.step, turn.unwrap_or(1.0))?;
-    writeln!(d, "*BOUNDARY\nARCA,1,3,0.\nARCB,3,3,0.\nCONTROL,3,3,0.")?;
-    arc.write_boundary(d)?;
-    writeln!(d, "*NODE PRINT,NSET=ARCB,FREQUENCY=1\nRF")?;
+    write_step(d, model.step, turn.unwrap_or(1.0));
+    add_line!(d, "*BOUNDARY\nARCA,1,3,0.\nARCB,3,3,0.\nCONTROL,3,3,0.");
+    arc.write_boundary(d);
+    add_line!(d, "*NODE PRINT,NSET=ARCB,FREQUENCY=1\nRF");
     let displaced = if model.print_all { "NALL" } else { "BOTTOM" };
-    writeln!(d, "*NODE PRINT,NSET={displaced},FREQUENCY=1\nU")?;
-    writeln!(d, "*EL PRINT,ELSET=EALL,TOTALS=ONLY,FREQUENCY=1\nELSE")?;
-    writeln!(d, "*EL PRINT,ELSET=EALL,FREQUENCY=1\nPEEQ,S\n*END STEP")?;
-    let Some(turn) = turn else {
-        return Ok(());
-    };
-    // Boundary conditions and output stay as in the step before. Unloading needs no shorter
-    // increments than a whole path.
-    let duration = 1.0 - turn;
-    let unloading =
-        StepControl { greatest: (model.step.greatest / duration).min(1.0), ..*model.step };
-    write_step(d, &unloading, duration)?;
-    writeln!(d, "*END STEP")
+    add_line!(d, "*NODE PRINT,NSET={displaced},FREQUENCY=1\nU");
+    add_line!(d, "*EL PRINT,ELSET=EALL,TOTALS=ONLY,FREQUENCY=1\nELSE");
+    add_line!(d, "*EL PRINT,ELSET=EALL,FREQUENCY=1\nPEEQ,S\n*END STEP");
+    if let Some(turn) = turn {
+        // Boundary conditions and output stay as in the step before. Unloading needs no shorter
+        // increments than a whole path.
+        let duration = 1.0 - turn;
+        let greatest = (model.step.greatest / duration).min(1.0);
+        write_step(d, &StepControl { greatest, ..*model.step }, duration);
+        add_line!(d, "*END STEP");
+    }
+    text
 }
 
 /// The head of a step of the given duration.
-fn write_step(d: &mut String, step: &StepControl, duration: f64) -> fmt::Result {
-    writeln!(d, "*STEP,NLGEOM,INC={}\n*STATIC", step.max_increments)?;
+fn write_step(d: &mut String, step: &StepControl, duration: f64) {
+    add_line!(d, "*STEP,NLGEOM,INC={}\n*STATIC", step.max_increments);
     write_increments(d, step, duration)
 }
 
@@ -81,4 +73,21 @@ fn lambdas(path: &DeformationPath) -> Vec<f64> {
     // Entries closer than the written precision would give one time with two values.
     lambdas.dedup_by(|next, kept| *next - *kept < 1e-9);
     lambdas
+}
+
+/// A meshed window with its path, material and step control.
+#[derive(Clone, Copy, Debug)]
+pub struct WindowModel<'a> {
+    /// The mesh of the window.
+    pub mesh: &'a WindowMesh,
+    /// The path along which arc B is driven.
+    pub path: &'a DeformationPath,
+    /// The sheet material.
+    pub material: &'a SheetMaterial,
+    /// The increments of the solve.
+    pub step: &'a StepControl,
+    /// Whether the displacements of all nodes are printed, for
+    /// [`CalculiX::fields`](crate::CalculiX::fields); if not, only the displacements of the lower
+    /// face are printed, which are a small part of the output.
+    pub print_all: bool,
 }

@@ -3,8 +3,7 @@
 //! CalculiX prints strain and stress at the Gauss points. A cell of the grid has their means by
 //! volume, and the maximum of the plastic strain; nothing is extrapolated to the nodes.
 
-use crate::calculix::dat::Frame;
-use crate::calculix::model::WindowModel;
+use crate::{Frame, WindowModel};
 use mesher::vtk_grid;
 use support::vtk::{Field, UnstructuredGrid};
 

@@ -1,8 +1,6 @@
 //! Converts printed frames to hinge samples: energy, work, forces, damage.
 
-use crate::calculix::dat::Frame;
-use crate::calculix::model::WindowModel;
-use crate::calculix::panel_motion::{PanelMotion, rotated};
+use crate::{Frame, PanelMotion, WindowModel, rotated};
 use hinge::{HingeDeformation, HingeDesign, HingeForces, HingeSample, SheetMaterial};
 use mesher::WindowMesh;
 use std::f64::consts::PI;
@@ -103,8 +101,8 @@ pub(crate) struct Damage {
 }
 
 impl Damage {
-    /// From (strain, volume) at the Gauss points of its window.
-    pub fn new(
+    /// Evaluates (strain, volume) at the Gauss points of the window.
+    pub(crate) fn new(
         mut points: Vec<(f64, f64)>,
         design: &HingeDesign,
         thickness: f64,

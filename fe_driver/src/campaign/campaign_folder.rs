@@ -9,18 +9,14 @@
 //! only prevent that two runs on one host do the same work. Runs on different hosts may solve the
 //! same job twice; it is counted once.
 
-use crate::campaign::definition::CampaignError;
-use crate::campaign::history::{History, history_name, overlaps};
-use crate::record_file::{entries, read_json, write_json};
-use crate::solve::host::host;
-use crate::solve::problem::Solve;
-use crate::solve::solve_folder::SolveStore;
-use crate::solve::tool_versions::ToolVersions;
-use crate::solve::window_solve::WindowSolve;
+use crate::{
+    CampaignError, EventLog, Shard, Solve, SolveStore, Solved, ToolVersions, WindowSolve, entries,
+    history_name, host, overlaps, read_json, write_json,
+};
 use serde::{Deserialize, Serialize};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
+use support::fault::{Fault, fault};
 use support::file_error::FileError;
-use support::shard::Shard;
 use support::{lock_file, whole_file};
 
 /// The folder of a campaign.
@@ -38,7 +34,7 @@ pub(crate) struct Index {
 }
 
 impl Index {
-    pub fn new(name: &str, solves: &[WindowSolve]) -> Self {
+    pub(crate) fn new(name: &str, solves: &[WindowSolve]) -> Self {
         Self {
             name: name.to_owned(),
             tools: solves.first().map(|solve| solve.tools.clone()),
@@ -49,7 +45,7 @@ impl Index {
 
 impl CampaignFolder {
     /// The solves of the jobs.
-    pub fn store(&self) -> SolveStore {
+    pub(crate) fn store(&self) -> SolveStore {
         SolveStore(self.0.join("jobs"))
     }
 
@@ -58,19 +54,21 @@ impl CampaignFolder {
     }
 
     /// Reads `campaign.json`.
-    pub fn index(&self) -> Result<Index, CampaignError> {
-        read_json(&self.index_path())?.ok_or_else(|| CampaignError::NoCampaign(self.0.clone()))
+    pub(crate) fn index(&self) -> Result<Index, CampaignError> {
+        let what = || format!("{} contains no campaign", self.0.display());
+        let index = read_json(&self.index_path())?;
+        Ok(index.ok_or_else(|| fault("", what(), "run a campaign there first"))?)
     }
 
-    /// Rejects a folder that belongs to a campaign with another name.
-    pub fn belongs_to(&self, name: &str) -> Result<(), CampaignError> {
+    /// Reads `campaign.json` if it exists; an error if it is of a campaign with another name.
+    pub(crate) fn known(&self, name: &str) -> Result<Option<Index>, CampaignError> {
         match read_json::<Index>(&self.index_path())? {
-            Some(index) if index.name != name => Err(CampaignError::OtherCampaign {
-                folder: self.0.clone(),
-                found: index.name,
-                requested: name.to_owned(),
-            }),
-            _ => Ok(()),
+            Some(Index { name: found, .. }) if found != name => {
+                let folder = self.0.display();
+                let what = format!("{folder} contains the campaign `{found}`, not `{name}`");
+                Err(fault("", what, "choose another folder").into())
+            }
+            known => Ok(known),
         }
     }
 
@@ -79,38 +77,49 @@ impl CampaignFolder {
     ///
     /// It is an error if a shard that may overlap with this one is locked on this host, or if this
     /// is a part of a campaign whose other parts are solved with other versions of gmsh and ccx.
-    pub fn enter(&self, shard: Shard, index: &Index) -> Result<History, CampaignError> {
+    pub(crate) fn enter(&self, shard: Shard, index: &Index) -> Result<EventLog, CampaignError> {
         let home = self.0.join("hosts").join(host());
         whole_file::create_folder(&home).map_err(FileError::at(&home))?;
         // Shards that start at the same time enter one after the other. Otherwise each would find
         // the lock of the other.
         let door = home.join("lock");
         let _held = lock_file::hold(&door).map_err(FileError::at(&door))?;
-        self.belongs_to(&index.name)?;
-        if shard != Shard::WHOLE {
-            self.refuse_other_versions(index)?;
+        let known = self.known(&index.name)?.and_then(|known| known.tools);
+        // Only the rows of one pair of versions are collected.
+        if shard != Shard::WHOLE
+            && let (Some(known), Some(here)) = (known, &index.tools)
+            && known != *here
+        {
+            let (host, index) = (host(), self.index_path());
+            let index = index.display();
+            Err(Fault::from(format!(
+                "{host} has {here}, but the campaign is solved with {known}: rows of different versions are not \
+                 collected together. Use the same versions on every host; or delete {index}, and all rays are \
+                 solved again with the versions of the next run (no file of a job is lost)"
+            )))?;
         }
         for entry in entries(&home)? {
             if overlaps(shard, &entry.file_name().to_string_lossy()) {
-                History::open(&entry.path())?;
+                EventLog::open(&entry.path())?;
             }
         }
         write_json(&self.index_path(), index)?;
-        History::open(&home.join(history_name(shard)))
+        EventLog::open(&home.join(history_name(shard)))
     }
+}
 
-    /// Rejects versions of gmsh and ccx other than those with which the campaign was last run. Only
-    /// the rows of one pair of versions are collected.
-    fn refuse_other_versions(&self, index: &Index) -> Result<(), CampaignError> {
-        let known = read_json::<Index>(&self.index_path())?.and_then(|known| known.tools);
-        match (known, &index.tools) {
-            (Some(known), Some(here)) if known != *here => Err(CampaignError::OtherVersions {
-                index: self.index_path(),
-                host: host(),
-                here: Box::new(here.clone()),
-                known: Box::new(known),
-            }),
-            _ => Ok(()),
-        }
-    }
+/// The solves of the campaign in `folder` that are closed and have samples, in the order of their
+/// ids, as in a database.
+///
+/// Stale jobs are omitted. Neither gmsh nor ccx needs to be installed.
+pub fn finished_windows(
+    folder: &Path,
+) -> Result<impl Iterator<Item = Result<Solved, FileError>>, CampaignError> {
+    let folder = CampaignFolder(folder.to_owned());
+    let mut ids = folder.index()?.jobs;
+    ids.sort_unstable();
+    let store = folder.store();
+    let windows = ids.into_iter().map(move |id| store.solve(&id).result());
+    let has_samples = |window: &Solved| !window.samples.is_empty();
+    Ok(windows.filter_map(move |window| window.map(|found| found.filter(has_samples)).transpose()))
 }

@@ -5,21 +5,19 @@
 //! again, and the rays of the spot check on the finer of the two, on which weights are tested. The
 //! spot check is drawn in the region that the rays cover.
 
-use crate::campaign::extra_rays::{ExtraRaysError, read_extra_rays};
-use crate::campaign::sampling::RayBox;
-use crate::campaign::spot_paths::{DrawnStates, SpotPath, random_paths};
-use crate::solve::attempts::SolveListError;
-use crate::solve::hinge_path::{HingePath, Ray};
-use crate::solve::tool_versions::ToolVersions;
-use crate::solve::window_solve::{WindowProblem, WindowSolve};
-use hinge::{HingeConstants, InvalidDesign, MaterialError, Regime, SheetMaterial, TrainingDomain};
+use crate::{
+    Ray, RayBox, SolveListError, ToolVersions, WindowProblem, WindowSolve, read_extra_rays,
+};
+use hinge::{HingeConstants, Regime, SheetMaterial};
 use mesher::Tier;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use std::fmt::Display;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
+use support::fault::{Fault, fault};
 use support::file_error::FileError;
-use support::toml_file::{self, ConfigError};
+use support::toml_file;
 
 /// A campaign with its material, from a TOML file of `configs/campaigns/`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -67,57 +65,17 @@ pub struct Campaign {
 
 /// Why a campaign cannot be read, planned, run or collected.
 #[derive(Debug, thiserror::Error)]
-#[allow(missing_docs, reason = "the message of a variant is its documentation")]
 pub enum CampaignError {
+    /// What a person must put right.
     #[error(transparent)]
-    Config(#[from] ConfigError),
-    #[error("{path}: {reason}", path = .path.display())]
-    Invalid { path: PathBuf, reason: String },
-    #[error(transparent)]
-    Material(#[from] MaterialError),
-    #[error(transparent)]
-    FurtherRays(#[from] ExtraRaysError),
+    Fault(#[from] Fault),
+    /// A file cannot be read or written.
     #[error(transparent)]
     File(#[from] FileError),
+    /// A solve has ended the run.
     #[error(transparent)]
     Solve(#[from] SolveListError),
-    #[error(
-        "{folder} contains the campaign `{found}`, not `{requested}`: choose another folder",
-        folder = .folder.display()
-    )]
-    OtherCampaign { folder: PathBuf, found: String, requested: String },
-    #[error(
-        "the campaign has changed since it was run in {folder} ({changes}): run it again first",
-        folder = .folder.display()
-    )]
-    Changed { folder: PathBuf, changes: String },
-    #[error("{0} contains no campaign: run a campaign there first")]
-    NoCampaign(PathBuf),
-    #[error("another run has locked {0}: wait until it ends, or stop it")]
-    Locked(PathBuf),
-    #[error(
-        "{host} has {here}, but the campaign is solved with {known}: rows of different versions are not collected \
-         together. Use the same versions on every host; or delete {index}, and all rays are solved again with the \
-         versions of the next run (no file of a job is lost)",
-        index = .index.display()
-    )]
-    OtherVersions {
-        index: PathBuf,
-        host: String,
-        here: Box<ToolVersions>,
-        known: Box<ToolVersions>,
-    },
-    #[error(
-        "none of the jobs belongs to the campaign (the first is {0}): they were solved with other settings, \
-         with another version of gmsh or ccx, or for another campaign"
-    )]
-    Foreign(String),
 }
-
-/// Number of states on a ray of the spot check: more need fewer solves but cover fewer hinges.
-const STATES_PER_RAY: usize = 4;
-/// Seed of the spot check.
-const SPOT_SEED: u64 = 5;
 
 /// What a job of a campaign is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -131,73 +89,66 @@ pub enum JobPart {
 }
 
 impl Campaign {
-    /// The first defect of the file; `None` if it is valid.
-    fn defect(&self) -> Option<String> {
+    /// An error if the file has a defect.
+    fn check(&self) -> Result<(), String> {
         if self.name.is_empty() || self.name.chars().any(char::is_control) {
-            return Some("name is empty or holds a control character".to_owned());
+            return Err("name is empty or holds a control character".to_owned());
         }
         if self.boxes.is_empty() {
-            return Some("it has no [[rays]]".to_owned());
+            return Err("it has no [[rays]]".to_owned());
         }
         let needs_finer = self.boxes.iter().any(|rays| rays.finer > 0);
         match self.finer_tier {
-            None if needs_finer => return Some("finer needs finer_tier".to_owned()),
+            None if needs_finer => return Err("finer needs finer_tier".to_owned()),
             Some(finer) if finer.regime() != self.tier.regime() || finer <= self.tier => {
                 let tier = self.tier;
-                return Some(format!(
+                return Err(format!(
                     "finer_tier = \"{finer}\" is no finer mesh than tier = \"{tier}\""
                 ));
             }
             _ => {}
         }
-        self.boxes.iter().find_map(RayBox::defect).or_else(|| {
-            Some(format!(
-                "a corner of the box is not a valid design: {}",
-                self.impossible_design()?
-            ))
-        })
+        // The narrowest or the widest hinge, with the smallest hole: all others lie between them.
+        let impossible = |rays: &RayBox| {
+            let constants = HingeConstants { fillet_ratio: rays.fillet_ratio[0], ..self.design };
+            rays.w_lig.into_iter().find_map(|w_lig| {
+                let design = constants.hinge(w_lig, rays.alpha_deg[0].to_radians());
+                let error = design.validate().err()?;
+                Some(format!("a corner of the box is not a valid design: {error}"))
+            })
+        };
+        let mut boxes = self.boxes.iter();
+        let defect = boxes.clone().find_map(RayBox::defect).or_else(|| boxes.find_map(impossible));
+        defect.map_or(Ok(()), Err)
     }
 
-    /// What is wrong if the tier is not for all ligaments of the box.
-    fn other_regime(&self) -> Option<String> {
+    /// An error if the tier is not for all ligaments of the box.
+    fn check_regime(&self) -> Result<(), String> {
         let (regime, material) = (self.tier.regime(), &self.material);
         let other = |w_lig: &f64| material.regime(*w_lig) != regime;
-        let w_lig = (self.boxes.iter().flat_map(|rays| rays.w_lig)).find(other)?;
+        let Some(w_lig) = self.boxes.iter().flat_map(|rays| rays.w_lig).find(other) else {
+            return Ok(());
+        };
         let (tier, thickness) = (self.tier, material.thickness);
         let bound = Regime::WIDEST_PLATE * thickness;
-        Some(format!(
+        Err(format!(
             "tier = \"{tier}\" is for ligaments of a {regime}, but rays.w_lig contains {w_lig} mm: ligaments of up to \
              {bound} mm bend in the plane of a sheet of {thickness} mm (tier \"plate\"), wider ones buckle (tier \
              \"default\"), and no energy holds for both"
         ))
     }
 
-    /// The defect of the narrowest or the widest hinge of a box, with the smallest hole; all others
-    /// lie between them.
-    fn impossible_design(&self) -> Option<InvalidDesign> {
-        let defect = |rays: &RayBox| {
-            let constants = HingeConstants { fillet_ratio: rays.fillet_ratio[0], ..self.design };
-            rays.w_lig.into_iter().find_map(|w_lig| {
-                let design = constants.hinge(w_lig, rays.alpha_deg[0].to_radians());
-                design.validate().err()
-            })
-        };
-        self.boxes.iter().find_map(defect)
-    }
-
     /// Reads a campaign, its material and its further rays.
     pub fn load(path: &Path) -> Result<Self, CampaignError> {
-        let mut campaign: Self = toml_file::read(path)?;
-        let invalid = |reason| CampaignError::Invalid { path: path.to_owned(), reason };
-        if let Some(reason) = campaign.defect() {
-            return Err(invalid(reason));
-        }
+        let other = |error: &dyn Display| Fault::from(error.to_string());
+        let mut campaign: Self = toml_file::read(path).map_err(|error| other(&error))?;
+        let invalid = |reason: String| fault(path.display().to_string(), reason, "");
+        campaign.check().map_err(invalid)?;
         let folder = path.parent().unwrap_or(Path::new(""));
-        campaign.material = SheetMaterial::load(&folder.join(&campaign.material_file))?;
+        let material = SheetMaterial::load(&folder.join(&campaign.material_file));
+        campaign.material = material.map_err(|error| other(&error))?;
         campaign.time_limit = campaign.tier_of(JobPart::Finer).time_limit();
-        if let Some(reason) = campaign.other_regime() {
-            return Err(invalid(reason));
-        }
+        campaign.check_regime().map_err(invalid)?;
         let named = campaign.training.iter_mut();
         for file in named.chain(&mut campaign.pretrained) {
             *file = folder.join(&*file);
@@ -230,40 +181,6 @@ impl Campaign {
         first.further.truncate(left);
         first.spot_rays = 0;
         first
-    }
-
-    /// The states that the rays pass through if they are solved to their ends. They do not depend
-    /// on the number of rays, so that the spot check remains the same when the campaign is
-    /// enlarged. `None` if no ray passes through a state.
-    pub fn region(&self) -> Option<TrainingDomain> {
-        const RAYS: usize = 1500;
-        const STATES: u32 = 10;
-        let regime = self.tier.regime();
-        let of_box = |rays: &RayBox| rays.rays(&self.design, regime, RAYS);
-        let rays = self.boxes.iter().flat_map(of_box);
-        let rays = rays.flat_map(|ray| [ray, ray.mirrored()]);
-        let states = rays.flat_map(|ray| {
-            let HingePath { design, path } = ray.driven(regime);
-            (1..=STATES).map(move |k| (design, path.at(f64::from(k) / f64::from(STATES))))
-        });
-        TrainingDomain::covering(states.collect::<Vec<_>>())
-    }
-
-    /// The states of its region.
-    pub fn drawn<'a>(&'a self, region: &'a TrainingDomain) -> DrawnStates<'a> {
-        DrawnStates { domain: region, constants: &self.design, regime: self.tier.regime() }
-    }
-
-    /// The paths of the spot check.
-    pub fn spot_paths(&self) -> Vec<SpotPath> {
-        let region = (self.spot_rays > 0).then(|| self.region()).flatten();
-        match region {
-            Some(region) => {
-                let states = STATES_PER_RAY * self.spot_rays;
-                random_paths(self.drawn(&region), states, STATES_PER_RAY, SPOT_SEED)
-            }
-            None => Vec::new(),
-        }
     }
 
     /// The jobs in the order in which they are run. Any prefix of them gives a usable database.
@@ -372,7 +289,7 @@ pub(crate) mod tests {
             .collect()
     }
 
-    fn hinges(jobs: &[(JobPart, WindowSolve)]) -> Vec<&HingePath> {
+    fn hinges(jobs: &[(JobPart, WindowSolve)]) -> Vec<&crate::HingePath> {
         jobs.iter().map(|(_, solve)| &solve.problem.hinge).collect()
     }
 
@@ -395,7 +312,7 @@ pub(crate) mod tests {
         let spot = campaign.spot_paths();
         assert_eq!(spot.iter().map(|path| &path.hinge).collect::<Vec<_>>(), all[12..]);
         for path in &spot {
-            assert_eq!(path.fractions.len(), STATES_PER_RAY);
+            assert_eq!(path.fractions.len(), crate::campaign::spot_paths::STATES_PER_RAY);
             let mut states = path.fractions.iter().map(|at| path.hinge.path.at(*at));
             assert!(states.all(|state| region.contains(&path.hinge.design, &state)));
         }

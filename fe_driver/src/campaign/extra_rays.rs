@@ -6,23 +6,13 @@
 //! the campaign's `[design]`. The campaign's key `extra_rays` is the path of the file. Lines that
 //! start with `#` are comments.
 
-use crate::solve::hinge_path::Ray;
+use crate::Ray;
 use hinge::{HingeConstants, HingeDeformation};
 use serde::Deserialize;
 use std::f64::consts::FRAC_PI_2;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use support::csv_table;
-use support::file_error::FileError;
-
-/// A file that is not a valid list of rays.
-#[derive(Debug, thiserror::Error)]
-#[allow(missing_docs, reason = "the message of a variant is its documentation")]
-pub enum ExtraRaysError {
-    #[error(transparent)]
-    File(#[from] FileError),
-    #[error("{path}, ray {row}: {reason}", path = .path.display())]
-    Ray { path: PathBuf, row: usize, reason: String },
-}
+use support::fault::{Fault, fault};
 
 /// One row of the file: a hinge and the end of its ray.
 #[derive(Deserialize)]
@@ -37,13 +27,13 @@ struct Row {
 }
 
 /// Reads the rays of hinges with the constants `common`.
-pub fn read_extra_rays(path: &Path, common: &HingeConstants) -> Result<Vec<Ray>, ExtraRaysError> {
+pub(crate) fn read_extra_rays(path: &Path, common: &HingeConstants) -> Result<Vec<Ray>, Fault> {
     let mut rays = Vec::new();
     let (_, rows) = csv_table::read::<Row>(path)?;
     for (i, (_, row)) in rows.into_iter().enumerate() {
         let ray = row.ray(common);
         if let Some(reason) = row.defect(&ray) {
-            return Err(ExtraRaysError::Ray { path: path.to_owned(), row: i + 1, reason });
+            return Err(fault(format!("{}, ray {}", path.display(), i + 1), reason, ""));
         }
         // A ray that occurs twice is one job.
         if !rays.contains(&ray) {

@@ -1,68 +1,45 @@
 //! The history of a shard: an append-only file of events, locked by the process that writes it.
 
-use crate::campaign::definition::CampaignError;
-use crate::solve::attempts::now;
-use crate::solve::ladder::AttemptKind;
-use crate::solve::solve_folder::SolveRecord;
-use serde::Serialize;
+use crate::{CampaignError, Event, Shard, now};
+use serde_json::json;
 use std::fs::File;
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
+use support::fault::fault;
 use support::file_error::FileError;
 use support::lock_file;
-use support::shard::Shard;
-
-/// An event in the history of a job.
-#[derive(Clone, Copy, Debug, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub(crate) enum Event<'a> {
-    Started { attempt: AttemptKind },
-    Disturbed { attempt: AttemptKind, reason: &'a str },
-    Ended { attempt: AttemptKind, record: &'a SolveRecord },
-    Reopened,
-    Restored,
-}
-
-/// A line of the history.
-#[derive(Serialize)]
-struct Line<'a> {
-    /// Seconds since 1970.
-    time: u64,
-    job: &'a str,
-    event: Event<'a>,
-}
 
 /// The open history of a shard. The shard stays locked until this value is dropped or the process
 /// exits.
 #[derive(Debug)]
-pub(crate) struct History {
+pub(crate) struct EventLog {
     path: PathBuf,
     file: File,
 }
 
-impl History {
+impl EventLog {
     /// Opens the history and locks it; an error if another process has locked it.
-    pub fn open(path: &Path) -> Result<Self, CampaignError> {
+    pub(crate) fn open(path: &Path) -> Result<Self, CampaignError> {
         let held = lock_file::try_hold(path);
         let path = path.to_owned();
         match held {
             Ok(file) => Ok(Self { path, file }),
-            Err(error) if error.kind() == ErrorKind::WouldBlock => Err(CampaignError::Locked(path)),
+            Err(error) if error.kind() == ErrorKind::WouldBlock => {
+                let what = format!("another run has locked {}", path.display());
+                Err(fault("", what, "wait until it ends, or stop it").into())
+            }
             Err(source) => Err(FileError { path, source }.into()),
         }
     }
 
     /// Appends an event of `job`.
-    pub fn note(&mut self, job: &str, event: Event) -> Result<(), FileError> {
-        let time = now();
-        let mut line =
-            serde_json::to_vec(&Line { time, job, event }).map_err(FileError::at(&self.path))?;
-        line.push(b'\n');
-        self.file.write_all(&line).map_err(FileError::at(&self.path))
+    pub(crate) fn note(&mut self, job: &str, event: &Event) -> Result<(), FileError> {
+        let line = json!({ "time": now(), "job": job, "event": event });
+        self.file.write_all(format!("{line}\n").as_bytes()).map_err(FileError::at(&self.path))
     }
 }
 
-impl Drop for History {
+impl Drop for EventLog {
     /// Unlocks the shard immediately. Without the explicit unlock, a solver process between fork
     /// and exec would share the open file and keep the lock.
     fn drop(&mut self) {

@@ -1,18 +1,13 @@
 //! The plan of a run: the jobs that it would solve, and why.
 
-use crate::campaign::campaign_folder::{CampaignFolder, Index};
-use crate::campaign::definition::{Campaign, CampaignError};
-use crate::campaign::status::Tally;
-use crate::record_file::{or_damage, short_hash};
-use crate::solve::problem::Solve;
-use crate::solve::solve_folder::{SolveRecord, SolveState, SolveStore};
-use crate::solve::tool_versions::ToolVersions;
-use crate::solve::window_solve::WindowSolve;
+use crate::{
+    Campaign, CampaignError, CampaignFolder, Index, Shard, Solve, SolveState, Tally, ToolVersions,
+    WindowSolve, short_hash, unless_damaged,
+};
 use mesher::Tier;
 use serde::Serialize;
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::path::Path;
-use support::shard::Shard;
 
 /// The work that a run would do.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -42,25 +37,40 @@ pub fn plan(
     versions: &ToolVersions,
 ) -> Result<Plan, CampaignError> {
     let folder = CampaignFolder(folder.to_owned());
-    folder.belongs_to(&campaign.name)?;
-    let (store, solves) = (folder.store(), || campaign.solves(versions));
-    let stale = stale(&store, &solves().map(|solve| solve.id()).collect())?;
+    folder.known(&campaign.name)?;
+    let (store, solves) = (folder.store(), campaign.solves(versions).collect::<Vec<_>>());
+    let ids: Vec<String> = solves.iter().map(WindowSolve::id).collect();
+    let requested: HashSet<&String> = ids.iter().collect();
+    // Jobs in the folder that do not belong to the campaign, one of each ray by its hash.
+    let (mut stale, mut old_rays) = (0, HashMap::new());
+    for id in store.ids()?.iter().filter(|id| !requested.contains(id)) {
+        // A damaged job of another campaign is ignored.
+        if let Some(Some(solve)) = unless_damaged(store.solve(id).solve::<WindowSolve>())? {
+            stale += 1;
+            old_rays.insert(short_hash(&solve.problem.hinge), solve);
+        }
+    }
     let (mut tally, mut reasons) = (Tally::default(), BTreeMap::new());
     let mut to_run: Vec<Tier> = Vec::new();
-    for solve in solves() {
-        let id = solve.id();
-        let state = store.solve(&id).state()?;
-        tally.add_state(&id, &state);
+    for (id, solve) in std::iter::zip(&ids, &solves) {
+        let state = store.solve(id).state()?;
+        tally.add_state(id, &state);
         let reason = match state {
-            SolveState::Ended(ended) => retry_reason(&ended.1),
-            SolveState::Open { started: true } => Some("interrupted".to_owned()),
-            SolveState::Open { started: false } => Some(new_reason(&solve, &stale)),
-            SolveState::Damaged(reason) => Some(format!("damaged: {reason} (job {id})")),
+            SolveState::Ended(ended) => match (ended.1.failure, ended.1.next) {
+                (Some(failure), Some(next)) => format!("{failure}, next {next}"),
+                _ => continue,
+            },
+            SolveState::Open { started: true } => "interrupted".to_owned(),
+            SolveState::Open { started: false } => {
+                match old_rays.get(&short_hash(&solve.problem.hinge)) {
+                    Some(old) => format!("stale: {} changed", solve.differences(old).join(", ")),
+                    None => "new".to_owned(),
+                }
+            }
+            SolveState::Damaged(reason) => format!("damaged: {reason} (job {id})"),
         };
-        if let Some(reason) = reason {
-            *reasons.entry(reason).or_default() += 1;
-            to_run.push(solve.tier());
-        }
+        *reasons.entry(reason).or_default() += 1;
+        to_run.push(solve.tier());
     }
     let tiers = || to_run.iter();
     Ok(Plan {
@@ -69,7 +79,7 @@ pub fn plan(
         disk_mb: JOB_MB * to_run.len() as f64,
         tally,
         reasons,
-        stale: stale.count,
+        stale,
     })
 }
 
@@ -83,40 +93,4 @@ pub fn prepare(
     let index = Index::new(&campaign.name, &campaign.solves(versions).collect::<Vec<_>>());
     CampaignFolder(folder.to_owned()).enter(Shard::WHOLE, &index)?;
     Ok(())
-}
-
-/// The inputs of the jobs in the folder whose ids are not in `requested`.
-fn stale(store: &SolveStore, requested: &HashSet<String>) -> Result<Stale, CampaignError> {
-    let mut stale = Stale::default();
-    for id in store.ids()?.into_iter().filter(|id| !requested.contains(id)) {
-        // A damaged job of another campaign is ignored.
-        if let Ok(Some(solve)) = or_damage(store.solve(&id).solve::<WindowSolve>())? {
-            stale.count += 1;
-            let ray = short_hash(&solve.problem.hinge);
-            stale.rays.insert(ray, solve);
-        }
-    }
-    Ok(stale)
-}
-
-/// Jobs in the folder that do not belong to the campaign.
-#[derive(Default)]
-struct Stale {
-    count: usize,
-    /// One job of each ray, by the hash of the ray.
-    rays: HashMap<String, WindowSolve>,
-}
-
-/// Why a job with a completed attempt is retried; `None` if it is not.
-fn retry_reason(record: &SolveRecord) -> Option<String> {
-    let (failure, next) = (record.failure?, record.next?);
-    Some(format!("{failure}, next {next}"))
-}
-
-/// Why a job is solved for the first time; its ray may have been solved with other settings.
-fn new_reason(solve: &WindowSolve, stale: &Stale) -> String {
-    match stale.rays.get(&short_hash(&solve.problem.hinge)) {
-        Some(old) => format!("stale: {} changed", solve.differences(old).join(", ")),
-        None => "new".to_owned(),
-    }
 }

@@ -1,18 +1,14 @@
 //! Recreates job folders from collected samples, so that collected jobs are not solved again.
 
-use crate::campaign::campaign_folder::{CampaignFolder, Index};
-use crate::campaign::definition::{Campaign, CampaignError};
-use crate::campaign::history::Event;
-use crate::solve::attempts::now;
-use crate::solve::failure::FailureKind;
-use crate::solve::solve_folder::SolveRecord;
-use crate::solve::tool_versions::ToolVersions;
-use crate::solve::window_solve::WindowSolve;
+use crate::{
+    Campaign, CampaignError, CampaignFolder, Event, FailureKind, Index, Shard, SolveRecord,
+    ToolVersions, WindowSolve, now,
+};
 use hinge::HingeSample;
 use mesher::Tier;
 use std::collections::{HashMap, HashSet};
 use std::path::Path;
-use support::shard::Shard;
+use support::fault::fault;
 
 /// What a database contains of a solve.
 #[derive(Clone, Debug, PartialEq)]
@@ -70,7 +66,10 @@ pub fn restore(
         known.then_some((index, solves))
     };
     let Some((index, solves)) = tools.into_iter().find_map(solves_with) else {
-        return Err(CampaignError::Foreign(first.id.clone()));
+        let id = &first.id;
+        let why = "they were solved with other settings, with another version of gmsh or ccx, or for another campaign";
+        let what = format!("none of the jobs belongs to the campaign (the first is {id})");
+        return Err(fault("", what, why).into());
     };
     let solves: HashMap<_, _> = index.jobs.iter().zip(solves).collect();
     let folder = CampaignFolder(folder.to_owned());
@@ -88,7 +87,7 @@ pub fn restore(
         home.write_solve(solve)?;
         let rows_hash = home.write_samples(&window.samples)?;
         home.write_record(&record(window, rows_hash))?;
-        history.note(&window.id, Event::Restored)?;
+        history.note(&window.id, &Event::Restored)?;
         restored.written += 1;
     }
     Ok(restored)

@@ -1,19 +1,14 @@
 //! Running a campaign: the list of its solves, and a ledger of them.
 
-use crate::campaign::campaign_folder::{CampaignFolder, Index};
-use crate::campaign::definition::{Campaign, CampaignError};
-use crate::campaign::history::{Event, History};
-use crate::campaign::status::Tally;
-use crate::solve::attempts::{Job, SolveEvent, Workers};
-use crate::solve::solve_folder::SolveRecord;
-use crate::solve::solver::Solver;
-use crate::solve::window_solve::WindowSolve;
+use crate::{
+    Campaign, CampaignError, CampaignFolder, Event, EventLog, Index, Job, Shard, SolveRecord,
+    Solver, Tally, WindowSolve, Workers,
+};
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 use support::file_error::FileError;
-use support::shard::Shard;
 
 /// Which jobs a run works on, and how.
 #[derive(Clone, Copy, Debug)]
@@ -66,18 +61,18 @@ pub fn run(
     let mut history = folder.enter(options.shard, &index)?;
     let store = folder.store();
     let jobs: Vec<Job> = (index.jobs.into_iter().zip(solves).enumerate())
-        .filter(|(place, _)| options.shard.holds(*place))
+        .filter(|(index, _)| options.shard.holds(*index))
         .map(|(_, (id, solve))| Job { folder: store.solve(&id), id, solve })
         .collect();
     for job in jobs.iter().filter(|_| options.retry) {
         if job.folder.reopen::<WindowSolve>(|_| true)? {
-            history.note(&job.id, Event::Reopened)?;
+            history.note(&job.id, &Event::Reopened)?;
         }
     }
     let mut ledger = Ledger::new(history, &jobs)?;
     progress(&ledger.progress());
-    workers.work_through(&jobs, stop, &mut |place, event| {
-        let noted = ledger.note(place, event);
+    workers.work_through(&jobs, stop, &mut |index, event| {
+        let noted = ledger.note(index, event);
         progress(&ledger.progress());
         noted
     })?;
@@ -91,13 +86,13 @@ struct Ledger<'a> {
     records: Vec<Option<SolveRecord>>,
     /// [`Progress::disturbed`].
     disturbed: BTreeMap<String, String>,
-    history: History,
+    history: EventLog,
     start: Instant,
     closed_before: usize,
 }
 
 impl<'a> Ledger<'a> {
-    fn new(history: History, jobs: &'a [Job]) -> Result<Self, FileError> {
+    fn new(history: EventLog, jobs: &'a [Job]) -> Result<Self, FileError> {
         let records = jobs.iter().map(|job| job.folder.ended::<WindowSolve>());
         let records = records.collect::<Result<Vec<_>, _>>()?;
         Ok(Self {
@@ -110,21 +105,21 @@ impl<'a> Ledger<'a> {
         })
     }
 
-    fn note(&mut self, place: usize, event: SolveEvent) -> Result<(), FileError> {
-        let id = &self.jobs[place].id;
+    fn note(&mut self, index: usize, event: Event) -> Result<(), FileError> {
+        let id = &self.jobs[index].id;
+        if !matches!(event, Event::Found(_)) {
+            self.history.note(id, &event)?;
+        }
         match event {
-            SolveEvent::Found(record) => self.records[place] = record,
-            SolveEvent::Started(attempt) => self.history.note(id, Event::Started { attempt })?,
-            SolveEvent::Disturbed(attempt, reason) => {
-                let event = Event::Disturbed { attempt, reason: &reason };
-                self.history.note(id, event)?;
+            Event::Found(record) => self.records[index] = record,
+            Event::Disturbed { reason, .. } => {
                 self.disturbed.insert(id.clone(), reason);
             }
-            SolveEvent::Ended(attempt, record) => {
+            Event::Ended { record, .. } => {
                 self.disturbed.remove(id);
-                let record = self.records[place].insert(record);
-                self.history.note(id, Event::Ended { attempt, record })?;
+                self.records[index] = Some(record);
             }
+            Event::Started { .. } | Event::Reopened | Event::Restored => {}
         }
         Ok(())
     }

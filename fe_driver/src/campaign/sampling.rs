@@ -21,7 +21,7 @@
 //! from its axial opening there, 0.5 theta + 0.16 theta^2. For the paper's film and w_full = 8 mm
 //! no ray end stores more than about 500 N mm, five times the energy of a deployed hinge.
 
-use crate::solve::hinge_path::Ray;
+use crate::Ray;
 use hinge::{HingeConstants, HingeDeformation, NetLigament, Regime};
 use rand::seq::SliceRandom;
 use rand::{RngExt, SeedableRng};
@@ -35,7 +35,7 @@ const BLOCK: usize = 40;
 const ROTATION_EVERY: usize = 8;
 /// Fraction of the other rays that end in tension; compared to compression, its range is narrower
 /// and its forces are larger.
-const TENSION_SHARE: f64 = 0.4;
+const TENSION_FRACTION: f64 = 0.4;
 /// Maximum number of rays; a larger number is a typing error.
 const MAX_COUNT: usize = 1_000_000;
 /// Coordinates of the hypercube: log w_lig, alpha, theta, eta_a, eta_s, fillet_ratio.
@@ -104,7 +104,7 @@ impl RayBox {
         pure_rotation: bool,
     ) -> Ray {
         let [log_w, alpha, theta, eta_a, eta_s, hole] = point;
-        let between = |[from, to]: [f64; 2], share: f64| from + (to - from) * share;
+        let between = |[from, to]: [f64; 2], fraction: f64| from + (to - from) * fraction;
         let mut design = common.hinge(
             between(self.w_lig.map(f64::ln), log_w).exp(),
             between(self.alpha_deg, alpha).to_radians(),
@@ -118,9 +118,9 @@ impl RayBox {
             let theta = self.theta_at(theta);
             let range = self.range(w_lig, theta);
             let tension = self.eta_a[1] * range;
-            let eta_a = match eta_a / TENSION_SHARE {
-                share @ ..1.0 => tension * (1.0 - share),
-                _ => self.eta_a[0] * (eta_a - TENSION_SHARE) / (1.0 - TENSION_SHARE),
+            let eta_a = match eta_a / TENSION_FRACTION {
+                fraction @ ..1.0 => tension * (1.0 - fraction),
+                _ => self.eta_a[0] * (eta_a - TENSION_FRACTION) / (1.0 - TENSION_FRACTION),
             };
             let pull = if eta_a > 0.0 { eta_a / tension } else { 0.0 };
             let stretched = self.eta_s * (range * (1.0 - pull * pull)).sqrt();
@@ -135,11 +135,11 @@ impl RayBox {
         Ray { design, end: ligament.actual(&end) }
     }
 
-    /// The quantile of the rotation (degrees): the fraction `share` of the rays ends below it.
-    fn theta_at(&self, share: f64) -> f64 {
+    /// The quantile of the rotation (degrees): this fraction of the rays ends below it.
+    fn theta_at(&self, fraction: f64) -> f64 {
         let [minimum, maximum] = self.theta_deg;
         let median = self.median_deg;
-        match 2.0 * share {
+        match 2.0 * fraction {
             lower @ ..1.0 => minimum + (median - minimum) * lower,
             upper => median + (maximum - median) * (upper - 1.0),
         }
@@ -154,43 +154,35 @@ impl RayBox {
 
     /// The first inequality that the box violates; `None` if it is valid.
     pub(crate) fn defect(&self) -> Option<String> {
+        let Self { w_lig, alpha_deg, fillet_ratio, eta_a, eta_s, .. } = *self;
+        let [minimum, maximum] = self.theta_deg;
+        let theta = [-30.0, minimum, self.median_deg, maximum, 120.0];
         let rules = [
             ((1..=MAX_COUNT).contains(&self.count), "1 <= count <= 1000000"),
             (self.finer <= self.count, "finer <= count"),
-            (0.0 < self.w_lig[0] && self.w_lig[0] <= self.w_lig[1], "0 < w_lig[0] <= w_lig[1]"),
+            (0.0 < w_lig[0] && w_lig.is_sorted(), "0 < w_lig[0] <= w_lig[1]"),
             (
-                0.0 < self.alpha_deg[0]
-                    && self.alpha_deg[0] <= self.alpha_deg[1]
-                    && self.alpha_deg[1] <= 90.0,
+                0.0 < alpha_deg[0] && alpha_deg.is_sorted() && alpha_deg[1] <= 90.0,
                 "0 < alpha_deg[0] <= alpha_deg[1] <= 90 (mirroring gives the rest)",
             ),
             (
-                0.0 < self.fillet_ratio[0]
-                    && self.fillet_ratio[0] <= self.fillet_ratio[1]
-                    && self.fillet_ratio[1] < 1.0,
+                0.0 < fillet_ratio[0] && fillet_ratio.is_sorted() && fillet_ratio[1] < 1.0,
                 "0 < fillet_ratio[0] <= fillet_ratio[1] < 1",
             ),
-            (self.alpha_deg[1] >= 5.0, "alpha_deg[1] >= 5: angles are in degrees, not radians"),
+            (alpha_deg[1] >= 5.0, "alpha_deg[1] >= 5: angles are in degrees, not radians"),
+            (maximum >= 2.5, "theta_deg[1] >= 2.5: rotations are in degrees, not radians"),
             (
-                self.theta_deg[1] >= 2.5,
-                "theta_deg[1] >= 2.5: rotations are in degrees, not radians",
-            ),
-            (
-                -1.0 < self.eta_a[0] && self.eta_a[0] <= 0.0 && 0.0 <= self.eta_a[1],
+                -1.0 < eta_a[0] && [eta_a[0], 0.0, eta_a[1]].is_sorted(),
                 "-1 < eta_a[0] <= 0 <= eta_a[1]",
             ),
-            (self.eta_a[1] < 1.0, "eta_a[1] < 1"),
-            ((0.0..1.0).contains(&self.eta_s), "0 <= eta_s < 1"),
+            (eta_a[1] < 1.0, "eta_a[1] < 1"),
+            ((0.0..1.0).contains(&eta_s), "0 <= eta_s < 1"),
             (
-                -30.0 <= self.theta_deg[0]
-                    && self.theta_deg[0] <= self.median_deg
-                    && self.median_deg <= self.theta_deg[1]
-                    && self.theta_deg[1] > 0.0
-                    && self.theta_deg[1] <= 120.0,
+                theta.is_sorted() && maximum > 0.0,
                 "-30 <= theta_deg[0] <= median_deg <= theta_deg[1] <= 120, theta_deg[1] > 0",
             ),
             (
-                0.0 <= self.full_range_w_lig && self.full_range_w_lig.is_finite(),
+                (0.0..f64::INFINITY).contains(&self.full_range_w_lig),
                 "0 <= full_range_w_lig < infinity (mm)",
             ),
             (
@@ -272,15 +264,15 @@ mod tests {
             assert!(eta_a >= -0.8 && eta_s.abs() <= 0.4 && theta > -5.0);
             assert_eq!(i % 8 == 0, eta_a == 0.0 && eta_s == 0.0 && theta > 74.9);
         }
-        let share = |is: &dyn Fn([f64; 2], f64) -> bool| {
+        let fraction = |is: &dyn Fn([f64; 2], f64) -> bool| {
             let met = rays.iter().filter(|ray| is(ray.end.eta(ray.design.w_lig), ray.end.theta));
             met.count() as f64 / rays.len() as f64
         };
         // 7/8 of the rays are not pure rotations: 1/2 of these end below 25 deg, 4/10 in tension.
         // One in twelve of the rays below 25 deg closes the cut.
-        assert!((share(&|_, theta| theta < 25f64.to_radians()) - 0.44).abs() < 0.03);
-        assert!((share(&|[eta_a, _], _| eta_a > 0.0) - 0.35).abs() < 0.03);
-        assert!((share(&|_, theta| theta < 0.0) - 0.07).abs() < 0.03);
+        assert!((fraction(&|_, theta| theta < 25f64.to_radians()) - 0.44).abs() < 0.03);
+        assert!((fraction(&|[eta_a, _], _| eta_a > 0.0) - 0.35).abs() < 0.03);
+        assert!((fraction(&|_, theta| theta < 0.0) - 0.07).abs() < 0.03);
     }
 
     /// Rays of a plate end around the axial opening of a ligament that turns freely.

@@ -6,7 +6,7 @@
 //! it and u uniform in (0, 1), the state at the distance R u^(1/3) is again uniform. Several states
 //! can therefore lie on one ray.
 
-use crate::solve::hinge_path::{HingePath, Ray};
+use crate::{Campaign, HingePath, Ray, RayBox};
 use hinge::{HingeConstants, Regime, TrainingDomain};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -30,6 +30,47 @@ pub struct DrawnStates<'a> {
     pub constants: &'a HingeConstants,
     /// How rays are driven.
     pub regime: Regime,
+}
+
+/// Number of states on a ray of the spot check: more need fewer solves but cover fewer hinges.
+pub(crate) const STATES_PER_RAY: usize = 4;
+/// Seed of the spot check.
+const SPOT_SEED: u64 = 5;
+
+impl Campaign {
+    /// The states that the rays pass through if they are solved to their ends. They do not depend
+    /// on the number of rays, so that the spot check remains the same when the campaign is
+    /// enlarged. `None` if no ray passes through a state.
+    pub fn region(&self) -> Option<TrainingDomain> {
+        const RAYS: usize = 1500;
+        const STATES: u32 = 10;
+        let regime = self.tier.regime();
+        let of_box = |rays: &RayBox| rays.rays(&self.design, regime, RAYS);
+        let rays = self.boxes.iter().flat_map(of_box);
+        let rays = rays.flat_map(|ray| [ray, ray.mirrored()]);
+        let states = rays.flat_map(|ray| {
+            let HingePath { design, path } = ray.driven(regime);
+            (1..=STATES).map(move |k| (design, path.at(f64::from(k) / f64::from(STATES))))
+        });
+        TrainingDomain::covering(states.collect::<Vec<_>>())
+    }
+
+    /// The states of its region.
+    pub fn drawn<'a>(&'a self, region: &'a TrainingDomain) -> DrawnStates<'a> {
+        DrawnStates { domain: region, constants: &self.design, regime: self.tier.regime() }
+    }
+
+    /// The paths of the spot check.
+    pub fn spot_paths(&self) -> Vec<SpotPath> {
+        let region = (self.spot_rays > 0).then(|| self.region()).flatten();
+        match region {
+            Some(region) => {
+                let states = STATES_PER_RAY * self.spot_rays;
+                random_paths(self.drawn(&region), states, STATES_PER_RAY, SPOT_SEED)
+            }
+            None => Vec::new(),
+        }
+    }
 }
 
 /// `count` states drawn uniformly, `each` of them on one ray.

@@ -1,16 +1,14 @@
 //! The state of a campaign: counts, costs, throughput.
 
-use crate::campaign::campaign_folder::{CampaignFolder, Index};
-use crate::campaign::definition::{Campaign, CampaignError, JobPart};
-use crate::solve::attempts::Job;
-use crate::solve::failure::FailureKind;
-use crate::solve::problem::Solve;
-use crate::solve::solve_folder::{SolveRecord, SolveState};
-use crate::solve::window_solve::WindowSolve;
+use crate::{
+    Campaign, CampaignError, CampaignFolder, FailureKind, Index, Job, JobPart, Solve, SolveRecord,
+    SolveState, WindowSolve,
+};
 use mesher::Tier;
 use serde::Serialize;
 use std::collections::{BTreeMap, HashMap};
 use std::path::Path;
+use support::fault::fault;
 
 /// Numbers of jobs in each state, with their total cost.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
@@ -60,27 +58,25 @@ impl Tally {
     ) -> Self {
         let mut tally = Self::default();
         for (job, record) in jobs {
-            match record {
-                Some(record) => tally.add(&job.id, job.solve.tier(), record),
-                None => tally.open += 1,
-            }
+            tally.add(&job.id, job.solve.tier(), record.as_ref());
         }
         tally
     }
 
     /// Counts the job with this id and state.
     pub(crate) fn add_state(&mut self, id: &str, state: &SolveState) {
+        self.damaged += usize::from(matches!(state, SolveState::Damaged(_)));
         match state {
-            SolveState::Open { .. } => self.open += 1,
-            SolveState::Ended(ended) => self.add(id, ended.0.tier(), &ended.1),
-            SolveState::Damaged(_) => {
-                self.open += 1;
-                self.damaged += 1;
-            }
+            SolveState::Ended(ended) => self.add(id, ended.0.tier(), Some(&ended.1)),
+            SolveState::Open { .. } | SolveState::Damaged(_) => self.open += 1,
         }
     }
 
-    fn add(&mut self, id: &str, tier: Tier, record: &SolveRecord) {
+    fn add(&mut self, id: &str, tier: Tier, record: Option<&SolveRecord>) {
+        let Some(record) = record else {
+            self.open += 1;
+            return;
+        };
         if record.rows > 0 && record.tier != tier {
             self.other_tiers.insert(id.to_owned(), record.tier);
         }
@@ -134,7 +130,7 @@ impl Tally {
         }
     }
 
-    /// The throughput so far; `None` before there are samples of jobs solved in this folder.
+    /// The throughput; `None` before there are samples of jobs solved in this folder.
     fn throughput(&self) -> Option<Throughput> {
         let hours = self.wall_seconds / 3600.0;
         (self.rows_solved_here > 0).then(|| Throughput {
@@ -167,7 +163,7 @@ pub struct Status {
     pub name: String,
     /// Numbers of jobs by their state.
     pub tally: Tally,
-    /// The throughput so far; `None` before a job solved in this folder has samples.
+    /// The throughput; `None` before a job solved in this folder has samples.
     pub throughput: Option<Throughput>,
 }
 
@@ -180,7 +176,7 @@ pub fn known_parts(
     folder: &Path,
 ) -> Result<HashMap<String, JobPart>, CampaignError> {
     let folder = CampaignFolder(folder.to_owned());
-    folder.belongs_to(&campaign.name)?;
+    folder.known(&campaign.name)?;
     let ids = folder.index()?.jobs;
     let store = folder.store();
     let mut known = ids.iter().map(|id| store.solve(id).solve::<WindowSolve>());
@@ -195,13 +191,13 @@ pub fn known_parts(
     let same_tier = jobs.iter().find(|(_, solve)| solve.tier() == known.tier());
     let changes = same_tier.or(jobs.first());
     let changes = changes.map_or(Vec::new(), |(_, solve)| solve.differences(&known));
-    Err(CampaignError::Changed {
-        folder: folder.0,
-        changes: match changes.as_slice() {
-            [] => "its rays".into(),
-            changes => changes.join(", "),
-        },
-    })
+    let changes = match changes.as_slice() {
+        [] => "its rays".to_owned(),
+        changes => changes.join(", "),
+    };
+    let folder = folder.0.display();
+    let what = format!("the campaign has changed since it was run in {folder} ({changes})");
+    Err(fault("", what, "run it again first").into())
 }
 
 /// The state of the campaign in `folder`, as it was last run.
@@ -218,6 +214,7 @@ pub fn status(folder: &Path) -> Result<Status, CampaignError> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Shard;
     use crate::campaign::definition::tests::of_two_boxes;
     use crate::campaign::plan::prepare;
     use crate::campaign::run::{RunOptions, run};
@@ -225,7 +222,6 @@ mod tests {
     use crate::solve::solver::Solver;
     use crate::solve::tests::{healthy, solve_on};
     use std::sync::atomic::AtomicBool;
-    use support::shard::Shard;
 
     fn solved(cpu_seconds: f64, wall_seconds: f64) -> Option<SolveRecord> {
         Some(SolveRecord {
@@ -273,8 +269,8 @@ mod tests {
         let (campaign, solver) = (of_two_boxes(), healthy());
         let known = |campaign: &Campaign| known_parts(campaign, folder.path());
         let error = known(&campaign).unwrap_err();
-        assert!(matches!(error, CampaignError::NoCampaign(_)), "{error}");
-        // Nothing is known of jobs without a file.
+        assert!(error.to_string().contains("contains no campaign"), "{error}");
+        // Jobs without a file are unknown.
         prepare(&campaign, folder.path(), &solver.versions()).unwrap();
         assert_eq!(known(&campaign).unwrap(), HashMap::new());
         let options =
@@ -300,10 +296,7 @@ mod tests {
             let mut changed = campaign.clone();
             change(&mut changed);
             let error = known(&changed).unwrap_err();
-            let CampaignError::Changed { changes, .. } = error else {
-                panic!("{error}");
-            };
-            assert_eq!(changes, expected);
+            assert!(error.to_string().contains(&format!(" ({expected})")), "{error}");
         }
     }
 }

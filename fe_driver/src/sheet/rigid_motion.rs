@@ -20,7 +20,7 @@ pub(crate) struct RigidMotion {
 
 impl RigidMotion {
     /// The motion from the points `before` to the points `after`.
-    pub fn fitted(before: &[[f64; 3]], after: &[[f64; 3]]) -> Self {
+    pub(crate) fn fitted(before: &[[f64; 3]], after: &[[f64; 3]]) -> Self {
         let (from, to) = (mean(before), mean(after));
         let mut s = [[0.0; 3]; 3];
         for (p, q) in std::iter::zip(before, after) {
@@ -35,7 +35,7 @@ impl RigidMotion {
 
     /// The displacement of a point relative to the rigid body: the position of the point less its
     /// position on the body, in the frame of the body.
-    pub fn left(&self, before: [f64; 3], after: [f64; 3]) -> [f64; 3] {
+    pub(crate) fn left(&self, before: [f64; 3], after: [f64; 3]) -> [f64; 3] {
         let r = &self.rotation;
         std::array::from_fn(|i| {
             let turned_back: f64 = (0..3).map(|j| r[j][i] * (after[j] - self.to[j])).sum();

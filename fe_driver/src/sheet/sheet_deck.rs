@@ -4,16 +4,13 @@
 //! displacement of a control node without elements is the stroke. All output is printed in every
 //! increment, because CalculiX accumulates the total internal energy between *printed* increments.
 
-use crate::calculix::cards::{
+use crate::{
+    DrivenArc, Held, PanelMotion, SECONDS, SheetNodes, SheetProblem, even_lambdas, interpolated,
     real, write_amplitude, write_element, write_increments, write_material, write_nodes, write_set,
 };
-use crate::calculix::driven_arc::{DrivenArc, even_lambdas};
-use crate::calculix::panel_motion::PanelMotion;
-use crate::sheet::sheet_nodes::SheetNodes;
-use crate::sheet::sheet_problem::{Held, SECONDS, SheetProblem, interpolated};
 use hinge::STANDARD_GRAVITY;
 use mesher::{ElementKind, Part, SheetMesh, SheetShape, Side};
-use std::fmt::{self, Write};
+use support::add_line;
 
 /// Stiffness of the table below a node (N/mm).
 const TABLE_STIFFNESS: f64 = 0.2;
@@ -45,15 +42,8 @@ fn rim_amplitudes(rim: usize) -> String {
 }
 
 impl SheetModel<'_> {
-    /// The deck.
-    pub fn deck(&self) -> String {
-        let mut text = String::new();
-        self.write(&mut text).expect("writing to a string cannot fail");
-        text
-    }
-
     /// Duration of the step: lambda is the time over it.
-    pub fn duration(&self) -> f64 {
+    pub(crate) fn duration(&self) -> f64 {
         if self.problem.dynamic { SECONDS } else { 1.0 }
     }
 
@@ -74,64 +64,63 @@ impl SheetModel<'_> {
         self.drivers(self.problem.rims.len())[0]
     }
 
-    fn write(&self, d: &mut String) -> fmt::Result {
-        let problem = self.problem;
-        write_nodes(d, &self.mesh.nodes)?;
-        self.write_elements(d)?;
-        write_set(d, "NSET", "MIDDLE", &self.mesh.middle)?;
+    /// The deck.
+    pub(crate) fn deck(&self) -> String {
+        let mut text = String::new();
+        let (d, problem) = (&mut text, self.problem);
+        write_nodes(d, &self.mesh.nodes);
+        self.write_elements(d);
+        write_set(d, "NSET", "MIDDLE", &self.mesh.middle);
         for (i, nodes) in self.nodes.held.iter().enumerate() {
-            write_set(d, "NSET", &format!("HELD{i}"), nodes)?;
+            write_set(d, "NSET", &format!("HELD{i}"), nodes);
         }
-        if !self.nodes.held.is_empty() {
-            write_set(d, "NSET", "HELD", &self.nodes.held.concat())?;
-        }
-        if !self.nodes.pulled.is_empty() {
-            write_set(d, "NSET", "PULLED", &self.nodes.pulled)?;
-        }
-        write_material(d, &problem.material)?;
+        write_set(d, "NSET", "HELD", &self.nodes.held.concat());
+        write_set(d, "NSET", "PULLED", &self.nodes.pulled);
+        write_material(d, &problem.material);
         // kg/m^3 to t/mm^3.
         let density = 1e-12 * problem.material.density_kg_m3;
-        writeln!(d, "*DENSITY\n{}", real(density))?;
-        writeln!(d, "*SOLID SECTION,ELSET=EALL,MATERIAL=SHEET")?;
+        add_line!(d, "*DENSITY\n{}", real(density));
+        add_line!(d, "*SOLID SECTION,ELSET=EALL,MATERIAL=SHEET");
         if problem.contact {
-            self.write_contact(d)?;
+            self.write_contact(d);
         }
-        self.write_table(d)?;
-        self.write_stroke(d)?;
-        self.write_history(d)?;
+        self.write_table(d);
+        self.write_stroke(d);
+        self.write_history(d);
         for rim in 0..self.problem.rims.len() {
-            self.write_rim(d, rim)?;
+            self.write_rim(d, rim);
         }
-        writeln!(d, "*STEP,NLGEOM,INC={}", problem.step.max_increments)?;
+        add_line!(d, "*STEP,NLGEOM,INC={}", problem.step.max_increments);
         if problem.dynamic {
-            writeln!(d, "*DYNAMIC,ALPHA={DAMPING}")?;
+            add_line!(d, "*DYNAMIC,ALPHA={DAMPING}");
         } else {
-            writeln!(d, "*STATIC")?;
+            add_line!(d, "*STATIC");
         }
-        write_increments(d, &problem.step, self.duration())?;
-        self.write_boundary(d)?;
-        self.write_loads(d)?;
-        self.write_output(d)
+        write_increments(d, &problem.step, self.duration());
+        self.write_boundary(d);
+        self.write_loads(d);
+        self.write_output(d);
+        text
     }
 
-    fn write_elements(&self, d: &mut String) -> fmt::Result {
+    fn write_elements(&self, d: &mut String) {
         let mesh = self.mesh;
         for kind in [ElementKind::Brick, ElementKind::Wedge] {
             let mut of_kind = (mesh.elements.iter().enumerate())
-                .filter(|(_, nodes)| ElementKind::of_element(nodes) == kind)
+                .filter(|(_, nodes)| ElementKind::of(nodes) == kind)
                 .peekable();
             if of_kind.peek().is_some() {
-                writeln!(d, "*ELEMENT,TYPE={},ELSET=EALL", kind.name())?;
-                of_kind.try_for_each(|(element, nodes)| write_element(d, element, nodes))?;
+                add_line!(d, "*ELEMENT,TYPE={},ELSET=EALL", kind.name());
+                of_kind.for_each(|(element, nodes)| write_element(d, element, nodes));
             }
         }
         let of = |wanted: &dyn Fn(Part) -> bool| -> Vec<usize> {
             let elements = 0..mesh.elements.len();
             elements.filter(|e| wanted(mesh.part(*e))).collect()
         };
-        write_set(d, "ELSET", "PANELS", &of(&|part| matches!(part, Part::Panel(_))))?;
-        write_set(d, "ELSET", "WINDOWS", &of(&|part| matches!(part, Part::Window(_))))?;
-        (0..self.problem.shape.windows.len()).try_for_each(|hinge| {
+        write_set(d, "ELSET", "PANELS", &of(&|part| matches!(part, Part::Panel(_))));
+        write_set(d, "ELSET", "WINDOWS", &of(&|part| matches!(part, Part::Window(_))));
+        (0..self.problem.shape.windows.len()).for_each(|hinge| {
             let elements = of(&|part| part == Part::Window(hinge));
             write_set(d, "ELSET", &hinge_set(hinge), &elements)
         })
@@ -140,13 +129,13 @@ impl SheetModel<'_> {
     /// Contact of the flanks of every cut, without friction, as stiff as a strip of the material as
     /// deep as the sheet is thick. Panels on ligaments that fold pass each other in space: they
     /// have none.
-    fn write_contact(&self, d: &mut String) -> fmt::Result {
+    fn write_contact(&self, d: &mut String) {
         let shape = &self.problem.shape;
         let stiffness = real(self.problem.material.young / shape.thickness);
-        writeln!(
+        add_line!(
             d,
             "*SURFACE INTERACTION,NAME=FLANKS\n*SURFACE BEHAVIOR,PRESSURE-OVERCLOSURE=LINEAR\n{stiffness}"
-        )?;
+        );
         for (h, window) in shape.windows.iter().enumerate() {
             let flanks = Side::BOTH.map(|side| self.mesh.flank(shape, h, side));
             if !SheetShape::bends_in_plane(window.design.w_lig, shape.thickness)
@@ -155,22 +144,21 @@ impl SheetModel<'_> {
                 continue;
             }
             for (name, faces) in std::iter::zip(["A", "B"], flanks) {
-                writeln!(d, "*SURFACE,NAME=FLANK{h}{name}")?;
+                add_line!(d, "*SURFACE,NAME=FLANK{h}{name}");
                 // The first two sides of an element are its lower and its upper face.
-                let mut faces = faces.iter();
                 faces
-                    .try_for_each(|(element, edge)| writeln!(d, "{},S{}", element + 1, edge + 3))?;
+                    .iter()
+                    .for_each(|(element, edge)| add_line!(d, "{},S{}", element + 1, edge + 3));
             }
-            writeln!(
+            add_line!(
                 d,
                 "*CONTACT PAIR,INTERACTION=FLANKS,TYPE=SURFACE TO SURFACE\nFLANK{h}A,FLANK{h}B"
-            )?;
+            );
         }
-        Ok(())
     }
 
     /// One spring below each supported node, which pushes and does not pull.
-    fn write_table(&self, d: &mut String) -> fmt::Result {
+    fn write_table(&self, d: &mut String) {
         let held = self.nodes.held.concat();
         let mut first = self.mesh.elements.len();
         let supported = match self.nodes.on_table.as_slice() {
@@ -183,29 +171,29 @@ impl SheetModel<'_> {
             supported => supported,
         };
         if supported.is_empty() {
-            return Ok(());
+            return;
         }
         let ground = self.ground();
-        writeln!(d, "*NODE,NSET=GROUND")?;
+        add_line!(d, "*NODE,NSET=GROUND");
         for (i, node) in supported.iter().enumerate() {
             let [x, y, z] = self.mesh.nodes[*node];
             let number = ground + i + 1;
-            writeln!(d, "{number},{},{},{}", real(x), real(y), real(z - TABLE_DEPTH))?;
+            add_line!(d, "{number},{},{},{}", real(x), real(y), real(z - TABLE_DEPTH));
         }
-        writeln!(d, "*ELEMENT,TYPE=SPRINGA,ELSET=TABLE")?;
+        add_line!(d, "*ELEMENT,TYPE=SPRINGA,ELSET=TABLE");
         for (i, node) in supported.iter().enumerate() {
-            write_element(d, first + i, &[ground + i, *node])?;
+            write_element(d, first + i, &[ground + i, *node]);
         }
         // (force, elongation); CalculiX 2.20 reads an empty line before them.
-        writeln!(
+        add_line!(
             d,
             "*SPRING,ELSET=TABLE,NONLINEAR\n\n{},{}\n0.,{}\n{},1000.",
             real(-100.0 * TABLE_STIFFNESS),
             real(TABLE_KINK - 100.0),
             real(TABLE_KINK),
             real(1e-3 * TABLE_STIFFNESS)
-        )?;
-        writeln!(d, "*BOUNDARY\nGROUND,1,3,0.")
+        );
+        add_line!(d, "*BOUNDARY\nGROUND,1,3,0.")
     }
 
     /// The loaded degrees of freedom of nodes, counted from 1, with the direction of the stroke in
@@ -215,33 +203,33 @@ impl SheetModel<'_> {
         let pulled = std::iter::zip(&self.nodes.pulled, &self.problem.pulled);
         pulled
             .flat_map(|(node, pulled)| [0, 1].map(|i| (node + 1, i + 1, pulled.force[i] / total)))
-            .filter(|(.., share)| *share != 0.0)
+            .filter(|(.., fraction)| *fraction != 0.0)
             .collect()
     }
 
-    fn write_stroke(&self, d: &mut String) -> fmt::Result {
+    fn write_stroke(&self, d: &mut String) {
         if self.problem.stroke.is_none() {
-            return Ok(());
+            return;
         }
         let control = self.control() + 1;
-        writeln!(d, "*NODE,NSET=CONTROL\n{control},0.,0.,0.")?;
+        add_line!(d, "*NODE,NSET=CONTROL\n{control},0.,0.,0.");
         let mut terms = self.loaded();
         // The first term is eliminated: the largest is the safest.
         terms.sort_by(|one, other| other.2.abs().total_cmp(&one.2.abs()));
-        writeln!(d, "*EQUATION\n{}", terms.len() + 1)?;
-        for (node, freedom, share) in terms {
-            writeln!(d, "{node},{freedom},{}", real(share))?;
+        add_line!(d, "*EQUATION\n{}", terms.len() + 1);
+        for (node, freedom, fraction) in terms {
+            add_line!(d, "{node},{freedom},{}", real(fraction));
         }
-        writeln!(d, "{control},1,-1.")
+        add_line!(d, "{control},1,-1.")
     }
 
-    fn write_history(&self, d: &mut String) -> fmt::Result {
+    fn write_history(&self, d: &mut String) {
         let history = self.problem.history();
         let in_time = |pairs: Vec<[f64; 2]>| {
             let duration = self.duration();
             (pairs.into_iter()).map(move |[lambda, fraction]| [duration * lambda, fraction])
         };
-        write_amplitude(d, "WEIGHT", in_time(history.weight))?;
+        write_amplitude(d, "WEIGHT", in_time(history.weight));
         write_amplitude(d, "LOADS", in_time(history.loads))
     }
 
@@ -255,89 +243,81 @@ impl SheetModel<'_> {
         }
     }
 
-    fn write_rim(&self, d: &mut String, rim: usize) -> fmt::Result {
+    fn write_rim(&self, d: &mut String, rim: usize) {
         let amplitudes = rim_amplitudes(rim);
         let arc = self.arc(rim, &amplitudes);
         let [turner, mover] = arc.drivers;
-        writeln!(d, "*NODE\n{turner},0.,0.,0.\n{mover},0.,0.,0.")?;
-        arc.write_equations(d, &self.mesh.nodes)?;
-        let path = &self.problem.rims[rim].path;
-        let column =
-            |i: usize| -> Vec<[f64; 2]> { path.iter().map(|state| [state[0], state[i]]).collect() };
-        let columns = [1, 2, 3].map(column);
+        add_line!(d, "*NODE\n{turner},0.,0.,0.\n{mover},0.,0.,0.");
+        arc.write_equations(d, &self.mesh.nodes);
         let motion = |lambda: f64| {
-            let [x, y, theta] = [0, 1, 2].map(|i| interpolated(&columns[i], lambda));
+            let [_, x, y, theta] = interpolated(&self.problem.rims[rim].path, lambda);
             PanelMotion { theta, du: [x, y] }
         };
         let lambdas: Vec<f64> = even_lambdas().collect();
         arc.write_amplitudes(d, &lambdas, self.duration(), motion)
     }
 
-    fn write_boundary(&self, d: &mut String) -> fmt::Result {
+    fn write_boundary(&self, d: &mut String) {
         for (i, Held { motion, .. }) in self.problem.held.iter().enumerate() {
-            writeln!(d, "*BOUNDARY,AMPLITUDE=LOADS")?;
+            add_line!(d, "*BOUNDARY,AMPLITUDE=LOADS");
             for (axis, value) in motion.iter().enumerate() {
                 if let Some(value) = value {
                     let freedom = axis + 1;
-                    writeln!(d, "HELD{i},{freedom},{freedom},{}", real(*value))?;
+                    add_line!(d, "HELD{i},{freedom},{freedom},{}", real(*value));
                 }
             }
-            writeln!(d, "*BOUNDARY\nHELD{i},3,3,0.")?;
+            add_line!(d, "*BOUNDARY\nHELD{i},3,3,0.");
         }
         if !self.nodes.flat.is_empty() {
-            writeln!(d, "*BOUNDARY")?;
-            let mut flat = self.nodes.flat.iter();
-            flat.try_for_each(|node| writeln!(d, "{},3,3,0.", node + 1))?;
+            add_line!(d, "*BOUNDARY");
+            self.nodes.flat.iter().for_each(|node| add_line!(d, "{},3,3,0.", node + 1));
         }
         for (rim, nodes) in self.nodes.rims.iter().enumerate() {
             let amplitudes = rim_amplitudes(rim);
             let arc = self.arc(rim, &amplitudes);
             let [turner, mover] = arc.drivers;
-            writeln!(d, "*BOUNDARY\n{turner},3,3,0.\n{mover},3,3,0.")?;
-            let mut nodes = nodes.iter();
-            nodes.try_for_each(|node| writeln!(d, "{},3,3,0.", node + 1))?;
-            arc.write_boundary(d)?;
+            add_line!(d, "*BOUNDARY\n{turner},3,3,0.\n{mover},3,3,0.");
+            nodes.iter().for_each(|node| add_line!(d, "{},3,3,0.", node + 1));
+            arc.write_boundary(d);
         }
         if let Some(stroke) = self.problem.stroke {
             let control = self.control() + 1;
-            writeln!(d, "*BOUNDARY\n{control},2,3,0.")?;
-            writeln!(d, "*BOUNDARY,AMPLITUDE=LOADS\n{control},1,1,{}", real(stroke))?;
+            add_line!(d, "*BOUNDARY\n{control},2,3,0.");
+            add_line!(d, "*BOUNDARY,AMPLITUDE=LOADS\n{control},1,1,{}", real(stroke));
         }
-        Ok(())
     }
 
-    fn write_loads(&self, d: &mut String) -> fmt::Result {
+    fn write_loads(&self, d: &mut String) {
         if self.problem.stroke.is_none() && !self.nodes.pulled.is_empty() {
             let total = self.problem.total_load();
-            writeln!(d, "*CLOAD,AMPLITUDE=LOADS")?;
-            for (node, freedom, share) in self.loaded() {
-                writeln!(d, "{node},{freedom},{}", real(total * share))?;
+            add_line!(d, "*CLOAD,AMPLITUDE=LOADS");
+            for (node, freedom, fraction) in self.loaded() {
+                add_line!(d, "{node},{freedom},{}", real(total * fraction));
             }
         }
         if let Some([x, y, z]) = self.problem.down {
             // m/s^2 to mm/s^2.
             let gravity = real(1e3 * STANDARD_GRAVITY);
-            writeln!(d, "*DLOAD,AMPLITUDE=WEIGHT")?;
-            writeln!(d, "EALL,GRAV,{gravity},{},{},{}", real(x), real(y), real(z))?;
+            add_line!(d, "*DLOAD,AMPLITUDE=WEIGHT");
+            add_line!(d, "EALL,GRAV,{gravity},{},{},{}", real(x), real(y), real(z));
         }
-        Ok(())
     }
 
-    fn write_output(&self, d: &mut String) -> fmt::Result {
-        writeln!(d, "*NODE PRINT,NSET=MIDDLE,FREQUENCY=1\nU")?;
+    fn write_output(&self, d: &mut String) {
+        add_line!(d, "*NODE PRINT,NSET=MIDDLE,FREQUENCY=1\nU");
         if !self.nodes.pulled.is_empty() {
-            writeln!(d, "*NODE PRINT,NSET=PULLED,FREQUENCY=1\nRF")?;
+            add_line!(d, "*NODE PRINT,NSET=PULLED,FREQUENCY=1\nRF");
         }
         if !self.nodes.held.is_empty() {
-            writeln!(d, "*NODE PRINT,NSET=HELD,FREQUENCY=1,TOTALS=ONLY\nRF")?;
+            add_line!(d, "*NODE PRINT,NSET=HELD,FREQUENCY=1,TOTALS=ONLY\nRF");
         }
         let hinges = (0..self.problem.shape.windows.len()).map(hinge_set);
         for set in hinges.chain(["PANELS".to_owned()]) {
-            writeln!(d, "*EL PRINT,ELSET={set},TOTALS=ONLY,FREQUENCY=1\nELSE")?;
+            add_line!(d, "*EL PRINT,ELSET={set},TOTALS=ONLY,FREQUENCY=1\nELSE");
         }
         if self.problem.dynamic {
-            writeln!(d, "*EL PRINT,ELSET=EALL,TOTALS=ONLY,FREQUENCY=1\nELKE")?;
+            add_line!(d, "*EL PRINT,ELSET=EALL,TOTALS=ONLY,FREQUENCY=1\nELKE");
         }
-        writeln!(d, "*EL PRINT,ELSET=WINDOWS,FREQUENCY=1\nPEEQ\n*END STEP")
+        add_line!(d, "*EL PRINT,ELSET=WINDOWS,FREQUENCY=1\nPEEQ\n*END STEP")
     }
 }

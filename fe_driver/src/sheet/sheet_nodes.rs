@@ -1,9 +1,9 @@
 //! The nodes of a meshed sheet at which it is held, pulled and supported by a table.
 
-use crate::sheet::invalid_sheet_problem::InvalidSheetProblem;
-use crate::sheet::sheet_problem::{Held, Keeping, Place, SheetProblem};
+use crate::{Held, OutOfPlaneRestraint, Place, SheetProblem};
 use mesher::{Part, SheetMesh};
 use std::collections::BTreeSet;
+use support::fault::Fault;
 
 /// Largest distance of a node from the line on which a panel is held (mm).
 const ON_LINE: f64 = 1e-6;
@@ -20,24 +20,24 @@ pub(crate) struct SheetNodes {
     pub pulled: Vec<usize>,
     /// The nodes of each driven rim, in the order of the problem.
     pub rims: Vec<Vec<usize>>,
-    /// Nodes that cannot leave the plane, besides the nodes of supports.
+    /// Nodes that cannot leave the plane, other than the nodes of supports.
     pub flat: Vec<usize>,
     /// Nodes of the lower face that a table supports.
     pub on_table: Vec<usize>,
 }
 
 impl SheetNodes {
-    pub fn new(problem: &SheetProblem, mesh: &SheetMesh) -> Result<Self, InvalidSheetProblem> {
+    pub(crate) fn new(problem: &SheetProblem, mesh: &SheetMesh) -> Result<Self, Fault> {
         let mut held = Vec::with_capacity(problem.held.len());
         for support in &problem.held {
             held.push(mesh.through(&held_nodes(support, mesh)?));
         }
         let pulled = problem.pulled.iter().map(|pulled| {
             let nearest = mesh.nearest(Part::Panel(pulled.panel), pulled.at);
-            let node = nearest.ok_or(InvalidSheetProblem::NoPanel(pulled.panel))?;
+            let node = nearest.ok_or_else(|| no_nodes(pulled.panel))?;
             Ok(mesh.middle[node])
         });
-        let pulled = pulled.collect::<Result<_, InvalidSheetProblem>>()?;
+        let pulled = pulled.collect::<Result<_, Fault>>()?;
         let rims = problem.rims.iter().map(|rim| {
             let nodes = mesh.rim(&problem.shape, rim.window, rim.side);
             mesh.through(&nodes)
@@ -50,13 +50,13 @@ impl SheetNodes {
         };
         let unless_fixed = |nodes: BTreeSet<usize>| nodes.difference(&fixed).copied().collect();
         let mut found = Self { held, pulled, rims, flat: Vec::new(), on_table: Vec::new() };
-        match problem.keeping {
-            Keeping::HeldFlat => {
+        match problem.restraint {
+            OutOfPlaneRestraint::HeldFlat => {
                 let plane: BTreeSet<usize> = panels().collect();
                 let plane: Vec<usize> = plane.into_iter().collect();
                 found.flat = unless_fixed(mesh.through(&plane).into_iter().collect());
             }
-            Keeping::Table => {
+            OutOfPlaneRestraint::Table => {
                 let corners: BTreeSet<usize> = (mesh.plane.faces.iter())
                     .flat_map(|face| face[..face.len() / 2].iter().copied())
                     .collect();
@@ -72,14 +72,18 @@ impl SheetNodes {
                 let supported = supported.filter(|node| corners.contains(node));
                 found.on_table = unless_fixed(supported.map(|node| mesh.bottom[node]).collect());
             }
-            Keeping::Nothing => {}
+            OutOfPlaneRestraint::Nothing => {}
         }
         Ok(found)
     }
 }
 
+fn no_nodes(panel: usize) -> Fault {
+    Fault::from(format!("panel {panel} has no nodes where it is held or pulled"))
+}
+
 /// The plane nodes of a support.
-fn held_nodes(support: &Held, mesh: &SheetMesh) -> Result<Vec<usize>, InvalidSheetProblem> {
+fn held_nodes(support: &Held, mesh: &SheetMesh) -> Result<Vec<usize>, Fault> {
     let part = Part::Panel(support.panel);
     let all = mesh.plane_nodes(part);
     let nodes = match support.place {
@@ -102,7 +106,7 @@ fn held_nodes(support: &Held, mesh: &SheetMesh) -> Result<Vec<usize>, InvalidShe
         Place::Panel | Place::Line(_) => 3,
     };
     if nodes.len() < least {
-        return Err(InvalidSheetProblem::NoPanel(support.panel));
+        return Err(no_nodes(support.panel));
     }
     Ok(nodes)
 }

@@ -1,7 +1,6 @@
 //! What CalculiX prints of a sheet in an increment.
 
-use crate::calculix::dat::{Block, Printed, at_node, numbers};
-use crate::sheet::sheet_deck::{SheetModel, hinge_set};
+use crate::{Block, Printed, SheetModel, at_node, hinge_set, numbers};
 use mesher::{ElementKind, Part};
 
 /// What a complete increment of a sheet prints.
@@ -39,7 +38,7 @@ pub(crate) struct SheetFrame {
 }
 
 impl SheetLayout {
-    pub fn new(model: &SheetModel) -> Self {
+    pub(crate) fn new(model: &SheetModel) -> Self {
         let mesh = model.mesh;
         let points = mesh.elements.iter().enumerate();
         Self {
@@ -49,7 +48,7 @@ impl SheetLayout {
             is_held: !model.nodes.held.is_empty(),
             points: points
                 .map(|(element, nodes)| match mesh.part(element) {
-                    Part::Window(_) => ElementKind::of_element(nodes).gauss_points(),
+                    Part::Window(_) => ElementKind::of(nodes).gauss_points(),
                     Part::Panel(_) => 0,
                 })
                 .collect(),
@@ -58,7 +57,7 @@ impl SheetLayout {
     }
 
     /// The place of a set of elements in [`SheetFrame::energies`].
-    fn place(&self, set: &str) -> Option<usize> {
+    fn index(&self, set: &str) -> Option<usize> {
         if set == "PANELS" {
             return Some(self.hinges);
         }
@@ -110,7 +109,7 @@ impl Printed for SheetFrame {
             Block::Energy => {
                 let [energy] = numbers(fields)?;
                 self.energies.resize(layout.hinges + 1, None);
-                self.energies[layout.place(set)?] = Some(energy);
+                self.energies[layout.index(set)?] = Some(energy);
             }
             Block::KineticEnergy => self.kinetic_energy = Some(numbers::<1>(fields)?[0]),
             Block::PlasticStrain => {

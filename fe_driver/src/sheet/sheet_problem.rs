@@ -4,12 +4,12 @@
 //! The path leads from the flat sheet, lambda = 0, to full load or the full stroke, lambda = 1. How
 //! the weight comes on depends on what keeps the panels in their plane ([`SheetProblem::history`]).
 
-use crate::sheet::invalid_sheet_problem::InvalidSheetProblem;
-use crate::solve::step_control::StepControl;
-use crate::solve::tool_versions::ToolVersions;
+use crate::{StepControl, ToolVersions};
 use hinge::SheetMaterial;
 use mesher::{SheetShape, Side, Tier};
 use serde::{Deserialize, Serialize};
+use support::fault::{Fault, fault};
+use support::interpolation::piece;
 
 /// Version of the geometry, the input deck and the evaluation of sheets. It is increased when a
 /// change of the code changes results; solves of an older version are then stale.
@@ -18,7 +18,7 @@ const RECIPE_VERSION: u32 = 2;
 /// What keeps the panels in their plane.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Keeping {
+pub enum OutOfPlaneRestraint {
     /// The panels cannot leave it; the ligaments can.
     HeldFlat,
     /// A table, from below, without friction.
@@ -31,11 +31,11 @@ pub enum Keeping {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Place {
-    /// Outside of its windows.
+    /// All of it outside of its windows.
     Panel,
-    /// At a point, through the thickness (mm).
+    /// A point, through the thickness (mm).
     Point([f64; 2]),
-    /// Along a straight line between two points of an edge (mm).
+    /// A straight line between two points of an edge (mm).
     Line([[f64; 2]; 2]),
 }
 
@@ -86,7 +86,8 @@ pub struct SheetProblem {
     /// The sheet material.
     pub material: SheetMaterial,
     /// What keeps the panels in their plane.
-    pub keeping: Keeping,
+    #[serde(rename = "keeping")]
+    pub restraint: OutOfPlaneRestraint,
     /// Supports.
     pub held: Vec<Held>,
     /// Loads.
@@ -127,9 +128,9 @@ pub(crate) const SECONDS: f64 = 10.0;
 /// between.
 #[derive(Clone, Debug, PartialEq)]
 pub struct History {
-    /// Of the weight.
+    /// Fraction of the weight.
     pub weight: Vec<[f64; 2]>,
-    /// Of the loads, the stroke and the motions of supports.
+    /// Fraction of the loads, the stroke and the motions of supports.
     pub loads: Vec<[f64; 2]>,
 }
 
@@ -149,30 +150,33 @@ impl SheetProblem {
             weight: vec![[0.0, 0.0], [part, 1.0], [1.0, 1.0]],
             loads: vec![[0.0, 0.0], [part, 0.0], [1.0, 1.0]],
         };
-        match (self.keeping, self.down) {
-            (Keeping::Table, _) if self.dynamic => first(TABLE_FIRST),
-            (Keeping::Table, _) => History { weight: vec![[0.0, 1.0], [1.0, 1.0]], loads: even() },
-            (Keeping::HeldFlat, Some(_)) => first(WEIGHT_FIRST),
-            (Keeping::HeldFlat, None) | (Keeping::Nothing, _) => {
+        match (self.restraint, self.down) {
+            (OutOfPlaneRestraint::Table, _) if self.dynamic => first(TABLE_FIRST),
+            (OutOfPlaneRestraint::Table, _) => {
+                History { weight: vec![[0.0, 1.0], [1.0, 1.0]], loads: even() }
+            }
+            (OutOfPlaneRestraint::HeldFlat, Some(_)) => first(WEIGHT_FIRST),
+            (OutOfPlaneRestraint::HeldFlat, None) | (OutOfPlaneRestraint::Nothing, _) => {
                 History { weight: even(), loads: even() }
             }
         }
     }
 
     /// An error if the problem has no solution.
-    pub fn validate(&self) -> Result<(), InvalidSheetProblem> {
+    pub fn validate(&self) -> Result<(), Fault> {
         if self.total_load() == 0.0 && self.rims.is_empty() {
-            return Err(InvalidSheetProblem::NoLoad);
+            return Err(fault("", "nothing pulls the sheet", "it needs a load"));
         }
         if self.held.is_empty() && self.rims.is_empty() {
-            return Err(InvalidSheetProblem::NothingHeld);
+            return Err(fault("", "no panel is held", "the sheet is free to move"));
         }
         let clamped = |held: &Held| !matches!(held.place, Place::Point(_));
-        if self.keeping == Keeping::Nothing
+        if self.restraint == OutOfPlaneRestraint::Nothing
             && self.rims.is_empty()
             && !self.held.iter().any(clamped)
         {
-            return Err(InvalidSheetProblem::Falls);
+            let what = "nothing keeps the sheet in its plane, and no panel is clamped";
+            return Err(fault("", what, "it would fall out of it; clamp a panel, or hold it flat"));
         }
         Ok(())
     }
@@ -187,17 +191,17 @@ impl SheetProblem {
     }
 
     /// The increments of a sheet: short at first where it may leave its plane.
-    pub fn usual_step(keeping: Keeping, contact: bool) -> StepControl {
+    pub fn usual_step(restraint: OutOfPlaneRestraint, contact: bool) -> StepControl {
         StepControl {
-            initial: match keeping {
-                Keeping::HeldFlat => 0.004,
-                Keeping::Table | Keeping::Nothing => 0.001,
+            initial: match restraint {
+                OutOfPlaneRestraint::HeldFlat => 0.004,
+                OutOfPlaneRestraint::Table | OutOfPlaneRestraint::Nothing => 0.001,
             },
             // A panel that snaps on a table has no static path beyond: shorter increments do not
             // find one.
-            least: match keeping {
-                Keeping::Table => 1e-5,
-                Keeping::HeldFlat | Keeping::Nothing => 1e-6,
+            least: match restraint {
+                OutOfPlaneRestraint::Table => 1e-5,
+                OutOfPlaneRestraint::HeldFlat | OutOfPlaneRestraint::Nothing => 1e-6,
             },
             // Flanks that meet in a longer increment rarely converge.
             greatest: if contact { 0.015 } else { 0.04 },
@@ -221,7 +225,7 @@ impl SheetProblem {
 impl History {
     /// The fraction of the loads at `lambda`.
     pub fn load_fraction(&self, lambda: f64) -> f64 {
-        interpolated(&self.loads, lambda)
+        interpolated(&self.loads, lambda)[1]
     }
 
     /// The lambda at which a fraction of the loads is on, or of the weight if that comes on before
@@ -230,22 +234,17 @@ impl History {
         let table = if weight < 1.0 { &self.weight } else { &self.loads };
         let inverse: Vec<[f64; 2]> =
             (table.iter()).map(|[lambda, fraction]| [*fraction, *lambda]).collect();
-        // Of the lambdas at which nothing is on, the last.
+        // The last lambda at which no load is on.
         let from = inverse.iter().rposition(|[fraction, _]| *fraction == 0.0);
         let wanted = if weight < 1.0 { weight } else { loads };
-        interpolated(&inverse[from.unwrap_or(0)..], wanted)
+        interpolated(&inverse[from.unwrap_or(0)..], wanted)[1]
     }
 }
 
-/// The value at `x` of a table of (x, value), with straight lines between.
-pub(crate) fn interpolated(table: &[[f64; 2]], x: f64) -> f64 {
-    let after = table.partition_point(|[at, _]| *at < x);
-    let (from, to) = (table[after.saturating_sub(1)], table[after.min(table.len() - 1)]);
-    if to[0] > from[0] {
-        from[1] + (x - from[0]) / (to[0] - from[0]) * (to[1] - from[1])
-    } else {
-        to[1]
-    }
+/// The values at `x` of a table of (x, values), with straight lines between.
+pub(crate) fn interpolated<const N: usize>(table: &[[f64; N]], x: f64) -> [f64; N] {
+    let (from, to, fraction) = piece(table, |row| row[0], x);
+    std::array::from_fn(|i| from[i] + fraction * (to[i] - from[i]))
 }
 
 impl SheetSolve {

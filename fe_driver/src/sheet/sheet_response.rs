@@ -1,10 +1,9 @@
-//! From the printed increments of a sheet to its states.
+//! Converts the printed increments of a sheet to its states.
 
-use crate::calculix::response::Damage;
-use crate::sheet::rigid_motion::RigidMotion;
-use crate::sheet::sheet_deck::SheetModel;
-use crate::sheet::sheet_output::SheetFrame;
-use crate::sheet::sheet_states::{HingeState, PanelState, SheetState, SheetStates, SheetSurface};
+use crate::{
+    Damage, HingeState, PanelState, RigidMotion, SheetFrame, SheetModel, SheetState, SheetStates,
+    SheetSurface,
+};
 use mesher::Part;
 use std::collections::HashMap;
 
@@ -30,8 +29,8 @@ pub(crate) fn states(model: &SheetModel, frames: &[SheetFrame]) -> SheetStates {
 }
 
 /// The energy of a window, or of the panels after the last (N mm).
-fn energy(frame: &SheetFrame, place: usize) -> f64 {
-    frame.energies[place].unwrap_or(f64::NAN)
+fn energy(frame: &SheetFrame, index: usize) -> f64 {
+    frame.energies[index].unwrap_or(f64::NAN)
 }
 
 impl SheetModel<'_> {
@@ -50,12 +49,12 @@ impl SheetModel<'_> {
         for ((pulled, force), node) in
             (problem.pulled.iter().zip(&frame.pulls)).zip(&self.nodes.pulled)
         {
-            let place = self.mesh.middle.binary_search(node);
+            let index = self.mesh.middle.binary_search(node);
             for axis in 0..2 {
-                let share = pulled.force[axis] / total;
-                stroke += share * place.map_or(0.0, |place| frame.displacements[place][axis]);
-                load += share * force.map_or(0.0, |force| force[axis]);
-                square += share * share;
+                let fraction = pulled.force[axis] / total;
+                stroke += fraction * index.map_or(0.0, |index| frame.displacements[index][axis]);
+                load += fraction * force.map_or(0.0, |force| force[axis]);
+                square += fraction * fraction;
             }
         }
         SheetState {
@@ -115,11 +114,11 @@ impl SheetModel<'_> {
 
     fn surface(&self, frame: &SheetFrame) -> SheetSurface {
         let mut surface = SheetSurface::default();
-        let mut places = HashMap::new();
+        let mut indices = HashMap::new();
         let (faces, panels) = (&self.mesh.plane.faces, self.problem.shape.panels.len());
         for (face, part) in std::iter::zip(faces, &self.mesh.parts) {
             let corners = face[..face.len() / 2].iter().map(|node| {
-                *places.entry(*node).or_insert_with(|| {
+                *indices.entry(*node).or_insert_with(|| {
                     let [before, _] = self.position(frame, *node);
                     surface.points.push(before);
                     surface.displacements.push(frame.displacements[*node]);

@@ -1,22 +1,12 @@
 //! CalculiX as a solver of sheets: mesh, input deck, process, states.
 
-use crate::calculix::calculix_solver::CalculiX;
-use crate::calculix::dat::read_printed;
-use crate::calculix::deck_run::{DeckRun, time_reached};
-use crate::sheet::sheet_deck::SheetModel;
-use crate::sheet::sheet_nodes::SheetNodes;
-use crate::sheet::sheet_output::{SheetFrame, SheetLayout};
-use crate::sheet::sheet_problem::{SECONDS, SheetProblem, SheetSolve};
-use crate::sheet::sheet_response::states;
-use crate::sheet::sheet_states::SheetStates;
-use crate::solve::failure::FailureKind;
-use crate::solve::ladder::AttemptKind;
-use crate::solve::problem::Solve;
-use crate::solve::solve_error::SolveError;
-use crate::solve::solve_folder::SolveFolder;
-use crate::solve::solver::{Solution, Solver};
-use crate::solve::tool_versions::ToolVersions;
+use crate::{
+    AttemptKind, CalculiX, Cause, DeckRun, FailureKind, SECONDS, SheetLayout, SheetModel,
+    SheetNodes, SheetProblem, SheetSolve, SheetStates, Solution, Solve, SolveError, SolveFolder,
+    Solver, ToolVersions, states, time_reached,
+};
 use mesher::Tier;
+use std::fmt::Display;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
@@ -43,9 +33,9 @@ impl Solve for SheetSolve {
     }
 
     fn description(&self) -> String {
-        let SheetProblem { shape, keeping, .. } = &self.problem;
+        let SheetProblem { shape, restraint, .. } = &self.problem;
         format!(
-            "sheet of {} panels and {} hinges, {keeping:?}, tier {}",
+            "sheet of {} panels and {} hinges, {restraint:?}, tier {}",
             shape.panels.len(),
             shape.windows.len(),
             self.problem.tier
@@ -88,30 +78,19 @@ impl Solver<SheetSolve> for CalculiX {
         work: &Path,
         limit: Duration,
         stop: &AtomicBool,
-    ) -> Result<Solution<SheetSolve>, SolveError> {
+    ) -> Result<Solution<SheetStates>, SolveError> {
         let start = Instant::now();
         let problem = &solve.problem;
-        problem.material.validate()?;
-        problem.validate()?;
+        let invalid = |error: &dyn Display| Cause::Problem(FailureKind::InvalidInput).error(error);
+        problem.material.validate().map_err(|error| invalid(&error))?;
+        problem.validate().map_err(|error| invalid(&error))?;
         let mesh = problem.shape.mesh(work, &self.gmsh, limit, stop)?;
-        let nodes = SheetNodes::new(problem, &mesh)?;
+        let nodes = SheetNodes::new(problem, &mesh).map_err(|error| invalid(&error))?;
         let model = SheetModel { problem, mesh: &mesh, nodes: &nodes };
         let run = DeckRun::new(&self.ccx, &model.deck(), work, JOB, limit, stop)?;
-        let mut solution: Solution<SheetSolve> =
-            Solution { elements: mesh.elements.len(), ..run.costs() };
-        let frames: Result<Vec<SheetFrame>, _> =
-            read_printed(&run.output, &SheetLayout::new(&model));
-        solution.stopped = match frames {
-            Err(error) => Some(error.into()),
-            Ok(frames) => match run.check_increments(frames.iter().map(|frame| frame.time)) {
-                Err(error) => Some(error),
-                Ok(()) => {
-                    solution.samples = states(&model, &frames);
-                    let last = solution.samples.states.last();
-                    run.stopped_at(last.map_or(0.0, |state| state.lambda))
-                }
-            },
-        };
+        let layout = SheetLayout::new(&model);
+        let mut solution = run.solution(&layout, |frames| states(&model, frames));
+        solution.elements = mesh.elements.len();
         solution.wall_seconds = start.elapsed().as_secs_f64();
         Ok(solution)
     }

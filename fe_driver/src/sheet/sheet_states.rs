@@ -1,7 +1,7 @@
 //! What is kept of a sheet solve: the motion of every panel and the energy of every hinge at each
 //! increment, and the surface at the last one.
 
-use crate::solve::problem::SolvedPath;
+use crate::SolvedPath;
 use serde::{Deserialize, Serialize};
 use std::io;
 use support::vtk::{CellKind, Field, UnstructuredGrid};
@@ -20,7 +20,7 @@ pub struct SheetStates {
 /// A converged increment of a sheet.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct SheetState {
-    /// Place on the path, from 0 to 1.
+    /// Position on the path, from 0 to 1.
     pub lambda: f64,
     /// Fraction of the loads or of the stroke that is on.
     pub fraction: f64,

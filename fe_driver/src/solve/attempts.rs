@@ -6,13 +6,11 @@
 //! decides nothing of a result: the same attempt is made again, a few times, and the solve then
 //! stays open.
 
-use crate::solve::failure::Cause;
-use crate::solve::ladder::AttemptKind;
-use crate::solve::problem::{Solve, SolvedPath};
-use crate::solve::solve_error::SolveError;
-use crate::solve::solve_folder::{SolveFolder, SolveRecord};
-use crate::solve::solver::{Solution, Solver};
-use crate::solve::window_solve::WindowSolve;
+use crate::{
+    AttemptKind, Cause, Solution, Solve, SolveError, SolveFolder, SolveRecord, SolvedPath, Solver,
+    WindowSolve,
+};
+use serde::Serialize;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 use support::file_error::FileError;
@@ -59,23 +57,28 @@ pub(crate) struct Workers<'a, S: Solve = WindowSolve> {
     pub deadline: Option<Instant>,
 }
 
-/// What happened to a solve of a list.
-pub(crate) enum SolveEvent {
+/// An event at a solve of a list, as a history states it.
+#[derive(Clone, Debug, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum Event {
     /// Its record when a worker takes it up; another process may have changed it since the list was
-    /// made.
+    /// made. No history states it.
+    #[serde(skip)]
     Found(Option<SolveRecord>),
-    Started(AttemptKind),
-    /// The machine ended it, for this reason.
-    Disturbed(AttemptKind, String),
-    Ended(AttemptKind, SolveRecord),
-}
-
-/// How an attempt ended.
-enum Outcome {
-    Recorded(SolveRecord),
-    Disturbed(String),
-    /// On request.
-    Stopped,
+    Started {
+        attempt: AttemptKind,
+    },
+    /// The machine ended the attempt, for this reason.
+    Disturbed {
+        attempt: AttemptKind,
+        reason: String,
+    },
+    Ended {
+        attempt: AttemptKind,
+        record: SolveRecord,
+    },
+    Reopened,
+    Restored,
 }
 
 impl<S: Solve> Workers<'_, S> {
@@ -84,20 +87,20 @@ impl<S: Solve> Workers<'_, S> {
     ///
     /// When `stop` becomes true, the attempts in flight are terminated and not counted. A later run
     /// continues from there.
-    pub fn work_through(
+    pub(crate) fn work_through(
         &self,
         jobs: &[Job<S>],
         stop: &AtomicBool,
-        note: &mut dyn FnMut(usize, SolveEvent) -> Result<(), FileError>,
+        note: &mut dyn FnMut(usize, Event) -> Result<(), FileError>,
     ) -> Result<(), SolveListError> {
-        let work = |place: usize, reports: &Reports<_>| {
-            let report = |event| reports.send((place, Ok(event)));
-            if let Err(error) = self.solve(&jobs[place], reports.halt(), &report) {
-                reports.send((place, Err(error)));
+        let work = |index: usize, reports: &Reports<_>| {
+            let report = |event| reports.send((index, Ok(event)));
+            if let Err(error) = self.solve(&jobs[index], reports.halt(), &report) {
+                reports.send((index, Err(error)));
             }
         };
-        work_through(jobs.len(), self.count, stop, &work, &mut |(place, event)| {
-            Ok(note(place, event?)?)
+        work_through(jobs.len(), self.count, stop, &work, &mut |(index, event)| {
+            Ok(note(index, event?)?)
         })
     }
 
@@ -106,7 +109,7 @@ impl<S: Solve> Workers<'_, S> {
         &self,
         job: &Job<S>,
         halt: &AtomicBool,
-        report: &dyn Fn(SolveEvent),
+        report: &dyn Fn(Event),
     ) -> Result<(), SolveListError> {
         let may_start = || {
             let in_time = |deadline| Instant::now() < deadline;
@@ -116,31 +119,31 @@ impl<S: Solve> Workers<'_, S> {
             return Ok(());
         }
         let mut record = job.folder.ended::<S>()?;
-        report(SolveEvent::Found(record.clone()));
+        report(Event::Found(record.clone()));
         let mut disturbed = 0;
         while may_start()
             && disturbed < TRIES
             && let Some(attempt) =
                 (record.as_ref()).map_or(Some(AttemptKind::Requested), |record| record.next)
         {
-            report(SolveEvent::Started(attempt));
-            match self.attempt(job, attempt, record.clone(), halt)? {
-                Outcome::Stopped => return Ok(()),
-                Outcome::Disturbed(reason) => {
-                    disturbed += 1;
-                    report(SolveEvent::Disturbed(attempt, reason));
-                }
-                Outcome::Recorded(ended) => {
+            report(Event::Started { attempt });
+            let Some(event) = self.attempt(job, attempt, record.clone(), halt)? else {
+                return Ok(());
+            };
+            match &event {
+                Event::Ended { record: ended, .. } => {
                     disturbed = 0;
-                    report(SolveEvent::Ended(attempt, ended.clone()));
-                    record = Some(ended);
+                    record = Some(ended.clone());
                 }
+                _ => disturbed += 1,
             }
+            report(event);
         }
         Ok(())
     }
 
-    /// Makes one attempt at a job and records its result, unless the machine ended it or a request.
+    /// Makes one attempt at a job and records its result, unless the machine ended it; `None` if it
+    /// was ended on request.
     ///
     /// The samples of the attempt that reached the largest lambda are kept. If another process has
     /// recorded an attempt in the meantime, its record is returned, and the record of this attempt
@@ -151,7 +154,7 @@ impl<S: Solve> Workers<'_, S> {
         attempt: AttemptKind,
         before: Option<SolveRecord>,
         halt: &AtomicBool,
-    ) -> Result<Outcome, SolveListError> {
+    ) -> Result<Option<Event>, SolveListError> {
         let start = Instant::now();
         let solve = job.solve.attempted(attempt);
         job.folder.write_solve(&job.solve)?;
@@ -165,12 +168,12 @@ impl<S: Solve> Workers<'_, S> {
         };
         let failure = match error {
             None => None,
-            Some(error) if error.is_stop() => return Ok(Outcome::Stopped),
-            Some(error) => match Cause::of(&error) {
-                Cause::Problem(kind) => Some((kind, error.to_string())),
+            Some(error) => match error.cause {
+                Cause::Stop => return Ok(None),
+                Cause::Problem(kind) => Some((kind, error.message)),
                 Cause::Machine => {
                     job.folder.keep_work()?;
-                    return Ok(Outcome::Disturbed(error.to_string()));
+                    return Ok(Some(Event::Disturbed { attempt, reason: error.message }));
                 }
                 Cause::Run => {
                     let (job, source) = (job.id.clone(), Box::new(error));
@@ -179,9 +182,9 @@ impl<S: Solve> Workers<'_, S> {
             },
         };
         let now = job.folder.ended::<S>()?;
-        if let Some(theirs) = now.filter(|now| before.as_ref() != Some(now)) {
+        if let Some(record) = now.filter(|now| before.as_ref() != Some(now)) {
             job.folder.remove_work()?;
-            return Ok(Outcome::Recorded(theirs));
+            return Ok(Some(Event::Ended { attempt, record }));
         }
         let mut record = before.unwrap_or_default();
         let reached = solution.samples.reached();
@@ -203,13 +206,13 @@ impl<S: Solve> Workers<'_, S> {
             job.folder.keep_work()?;
         }
         job.folder.write_record(&record)?;
-        Ok(Outcome::Recorded(record))
+        Ok(Some(Event::Ended { attempt, record }))
     }
 }
 
 impl SolveRecord {
     /// Adds what an attempt that has just ended has cost.
-    fn add_cost<S: Solve>(&mut self, solution: &Solution<S>, wall: Duration) {
+    fn add_cost<P>(&mut self, solution: &Solution<P>, wall: Duration) {
         self.iterations += solution.iterations;
         self.cpu_seconds += solution.cpu_seconds.unwrap_or(0.0);
         self.wall_seconds += wall.as_secs_f64();

@@ -4,17 +4,10 @@
 //! like the free turn of a ligament. Paths recorded from deployed sheets measure the error of
 //! ignoring the loading path (section 5.2). All are piecewise linear and start at the undeformed
 //! state.
-//!
-//! A recorded path is a CSV file with the columns `eta_a`, `eta_s`, `theta_deg`, one state per row.
-//! Lines that start with `#` are comments. An optional column `lambda`, which increases to 1, gives
-//! the position of each state along the path; without it the states are equally spaced in lambda.
-//! The undeformed state may be omitted: every path starts there.
 
-use hinge::{HingeDeformation, Regime};
+use hinge::{HingeDeformation, HingeDesign, Regime};
 use serde::{Deserialize, Serialize};
-use std::path::{Path, PathBuf};
-use support::csv_table;
-use support::file_error::FileError;
+use support::interpolation::piece;
 
 /// A piecewise linear path from the undeformed state at lambda = 0 to its end at lambda = 1.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -47,28 +40,6 @@ impl TryFrom<Vec<Knot>> for DeformationPath {
     }
 }
 
-/// Why a file is not a valid deformation path.
-#[derive(Debug, thiserror::Error)]
-#[allow(missing_docs, reason = "the message of a variant is its documentation")]
-pub enum PathError {
-    #[error(transparent)]
-    Read(#[from] FileError),
-    #[error("{path}:{line}: {what}", path = .path.display())]
-    Row { path: PathBuf, line: u64, what: &'static str },
-    #[error("{path}: no row has a deformed state; add at least one", path = .path.display())]
-    Empty { path: PathBuf },
-}
-
-/// One row of a recorded path.
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Row {
-    lambda: Option<f64>,
-    eta_a: f64,
-    eta_s: f64,
-    theta_deg: f64,
-}
-
 impl DeformationPath {
     /// The straight ray to `end`.
     pub fn straight(end: HingeDeformation) -> Self {
@@ -97,36 +68,11 @@ impl DeformationPath {
 
     /// The path through `states`, equally spaced in lambda; `None` without a state.
     pub fn through(states: &[HingeDeformation]) -> Option<Self> {
-        let share = |i: usize| (i + 1) as f64 / states.len() as f64;
+        let fraction = |i: usize| (i + 1) as f64 / states.len() as f64;
         let recorded = states.iter().enumerate();
         let mut knots = vec![(0.0, HingeDeformation::default())];
-        knots.extend(recorded.map(|(i, state)| (share(i), *state)));
+        knots.extend(recorded.map(|(i, state)| (fraction(i), *state)));
         (knots.len() > 1).then_some(Self { knots })
-    }
-
-    /// Reads a recorded path of a hinge with the ligament width `w_lig` (mm).
-    pub fn read(path: &Path, w_lig: f64) -> Result<Self, PathError> {
-        let (_, rows) = csv_table::read(path)?;
-        // The undeformed state is knot 0, whether the file contains it or not.
-        let undeformed = |row: &Row| [row.eta_a, row.eta_s, row.theta_deg] == [0.0; 3];
-        let skipped = usize::from(rows.first().is_some_and(|(_, row)| undeformed(row)));
-        let rows = &rows[skipped..];
-        let mut knots = vec![(0.0, HingeDeformation::default())];
-        for (i, (line, row)) in rows.iter().enumerate() {
-            let share = (i + 1) as f64 / rows.len() as f64;
-            let lambda = row.lambda.unwrap_or(share);
-            if let Some(what) = row.defect(lambda, knots[i].0, i + 1 == rows.len()) {
-                let (path, line) = (path.to_owned(), *line);
-                return Err(PathError::Row { path, line, what });
-            }
-            let theta = row.theta_deg.to_radians();
-            let state = HingeDeformation::from_eta(row.eta_a, row.eta_s, theta, w_lig);
-            knots.push((lambda, state));
-        }
-        match knots.len() {
-            1 => Err(PathError::Empty { path: path.to_owned() }),
-            _ => Ok(Self { knots }),
-        }
     }
 
     /// The values of lambda at which the path may have a corner, including its ends.
@@ -163,27 +109,69 @@ impl DeformationPath {
 
     /// The state at `lambda` in [0, 1].
     pub fn at(&self, lambda: f64) -> HingeDeformation {
-        let after = self.knots.partition_point(|(at, _)| *at < lambda);
-        let (from, to) = (after.saturating_sub(1), after.min(self.knots.len() - 1));
-        let ((l0, x), (l1, y)) = (self.knots[from], self.knots[to]);
-        let share = if l1 > l0 { (lambda - l0) / (l1 - l0) } else { 1.0 };
-        let (x, y) = (x.to_array(), y.to_array());
-        std::array::from_fn(|i| x[i] + share * (y[i] - x[i])).into()
+        let ((_, from), (_, to), fraction) = piece(&self.knots, |(at, _)| *at, lambda);
+        let (x, y) = (from.to_array(), to.to_array());
+        std::array::from_fn(|i| x[i] + fraction * (y[i] - x[i])).into()
     }
 }
 
-impl Row {
-    /// The defect of this row at `lambda`, which follows a row at `before`; `None` if it is valid.
-    fn defect(&self, lambda: f64, before: f64, is_last: bool) -> Option<&'static str> {
-        let numbers = [self.eta_a, self.eta_s, self.theta_deg, lambda];
-        if !numbers.iter().all(|x| x.is_finite()) {
-            Some("a number is not finite")
-        } else if lambda <= before {
-            Some("`lambda` must increase from row to row, from 0 at the undeformed state")
-        } else if is_last != (lambda == 1.0) {
-            Some("`lambda` must be 1 in the last row and smaller in all others")
+/// One design driven from the undeformed state to `end`.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Ray {
+    /// The hinge design.
+    pub design: HingeDesign,
+    /// The deformation at lambda = 1.
+    pub end: HingeDeformation,
+}
+
+impl Ray {
+    /// The ray with its path: see [`DeformationPath::ray`].
+    pub fn driven(self, regime: Regime) -> HingePath {
+        let Self { design, end } = self;
+        let path = DeformationPath::ray(end, regime, design.w_lig);
+        HingePath { design, path }
+    }
+
+    /// The ray of the mirrored design; see [`HingeDeformation::mirrored`].
+    pub fn mirrored(&self) -> Self {
+        Self { design: self.design.mirrored(), end: self.end.mirrored() }
+    }
+}
+
+/// One design driven along a path. In a file, a straight path is its `end` alone.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(from = "InFile", into = "InFile")]
+pub struct HingePath {
+    /// The hinge design.
+    pub design: HingeDesign,
+    /// The path of its deformation.
+    pub path: DeformationPath,
+}
+
+/// A hinge with its path in a file.
+#[derive(Serialize, Deserialize)]
+#[serde(untagged)]
+enum InFile {
+    Ray(Ray),
+    Path { design: HingeDesign, path: DeformationPath },
+}
+
+impl From<InFile> for HingePath {
+    fn from(file: InFile) -> Self {
+        match file {
+            InFile::Ray(ray) => ray.driven(Regime::Film),
+            InFile::Path { design, path } => Self { design, path },
+        }
+    }
+}
+
+impl From<HingePath> for InFile {
+    fn from(HingePath { design, path }: HingePath) -> Self {
+        let end = path.at(1.0);
+        if path == DeformationPath::straight(end) {
+            Self::Ray(Ray { design, end })
         } else {
-            None
+            Self::Path { design, path }
         }
     }
 }
@@ -191,6 +179,7 @@ impl Row {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use hinge::HingeConstants;
 
     /// A ray of a plate bends like the free turn, and passes through every state as the ray to that
     /// state.
@@ -216,12 +205,6 @@ mod tests {
             let film = DeformationPath::ray(state(1.0), Regime::Film, 2.0);
             assert_eq!(film, DeformationPath::straight(state(1.0)));
         }
-    }
-
-    fn read(text: &str) -> Result<DeformationPath, PathError> {
-        let file = tempfile::NamedTempFile::new().unwrap();
-        std::fs::write(file.path(), text).unwrap();
-        DeformationPath::read(file.path(), 20.0)
     }
 
     fn state(eta_a: f64, eta_s: f64, theta_deg: f64) -> HingeDeformation {
@@ -259,9 +242,9 @@ mod tests {
     }
 
     #[test]
-    fn rows_without_lambda_are_equally_spaced_from_the_undeformed_state() {
-        let text = "theta_deg, eta_a, eta_s\n# folds first\n30, 0, 0\n60, -0.2, 0.1\n";
-        let path = read(text).unwrap();
+    fn states_are_equally_spaced_from_the_undeformed_state() {
+        let path = DeformationPath::through(&[state(0.0, 0.0, 30.0), state(-0.2, 0.1, 60.0)]);
+        let path = path.unwrap();
         assert_eq!(path.corners().collect::<Vec<_>>(), [0.0, 0.5, 1.0]);
         assert_eq!(path.at(0.5), state(0.0, 0.0, 30.0));
         assert_eq!(path.at(1.0), state(-0.2, 0.1, 60.0));
@@ -269,40 +252,24 @@ mod tests {
         for (x, y) in middle.iter().zip(state(-0.1, 0.05, 45.0).to_array()) {
             assert!((x - y).abs() < 1e-14);
         }
-        let from_rest = text.replace("30, 0, 0", "0, 0, 0\n30, 0, 0");
-        assert_eq!(read(&from_rest).unwrap(), path);
-        assert_eq!(read(&format!("{text}# end")).unwrap(), path);
+        assert_eq!(DeformationPath::through(&[]), None);
     }
 
     #[test]
-    fn a_given_lambda_is_kept() {
-        let path = read("lambda,eta_a,eta_s,theta_deg\n0,0,0,0\n0.2,0,0,50\n1,0,0,60\n").unwrap();
-        assert_eq!(path.corners().collect::<Vec<_>>(), [0.0, 0.2, 1.0]);
-    }
-
-    #[test]
-    fn errors_name_the_line_and_the_rule() {
-        let rows = |rows: &str| {
-            let text = format!("lambda,eta_a,eta_s,theta_deg\n{rows}");
-            read(&text).unwrap_err().to_string()
-        };
-        let cases = [
-            ("0.5,0,0,10\n0.4,0,0,20\n", ":3: `lambda` must increase"),
-            ("0.5,0,0,10\n0.9,0,0,20\n", ":3: `lambda` must be 1"),
-            ("1,0,0,10\n2,0,0,20\n", ":2: `lambda` must be 1"),
-            ("1,nan,0,10\n", ":2: a number is not finite"),
-            ("1,ten,0,10\n", "line 2: "),
-            ("1,0,0\n", "line 2: "),
-            ("", "no row has a deformed state"),
-            ("0,0,0,0\n", "no row has a deformed state"),
-        ];
-        for (text, expected) in cases {
-            let message = rows(text);
-            assert!(message.contains(expected), "{text}: {message}");
+    fn a_path_is_read_back_and_a_straight_one_is_written_as_its_end() {
+        let design = HingeConstants::PAPER.hinge(18.0, 1.5);
+        let [middle, end] =
+            [0.2, 0.6].map(|theta| HingeDeformation::from_eta(-0.1, 0.3 * theta, theta, 18.0));
+        let ray = Ray { design, end }.driven(Regime::Film);
+        let bent =
+            HingePath { path: DeformationPath::through(&[middle, end]).unwrap(), ..ray.clone() };
+        let text = serde_json::to_string(&ray).unwrap();
+        assert_eq!(text, serde_json::to_string(&Ray { design, end }).unwrap());
+        for hinge in [ray, bent] {
+            let text = serde_json::to_string(&hinge).unwrap();
+            assert_eq!(serde_json::from_str::<HingePath>(&text).unwrap(), hinge);
         }
-        let unknown = read("eta_a,eta_s,theta\n0,0,1\n").unwrap_err().to_string();
-        assert!(unknown.contains("unknown field `theta`"), "{unknown}");
-        let absent = DeformationPath::read(Path::new("/no/such.csv"), 1.0).unwrap_err();
-        assert!(absent.to_string().starts_with("/no/such.csv: "));
+        let empty = text.split("\"end\"").next().unwrap().to_owned() + "\"path\":[]}";
+        assert!(serde_json::from_str::<HingePath>(&empty).is_err());
     }
 }

@@ -1,9 +1,8 @@
 //! What a kind of finite-element problem must state, so that it can be solved, attempted again and
 //! kept.
 
-use crate::record_file::short_hash;
-use crate::solve::failure::FailureKind;
-use crate::solve::ladder::AttemptKind;
+use crate::{AttemptKind, FailureKind, short_hash};
+use hinge::HingeSample;
 use mesher::Tier;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -62,4 +61,30 @@ pub trait SolvedPath: Clone + Debug + Default + PartialEq + Send {
     /// Reads the contents of the file; an error of the kind [`io::ErrorKind::InvalidData`] if they
     /// are damaged.
     fn from_bytes(bytes: &[u8]) -> io::Result<Self>;
+}
+
+impl SolvedPath for Vec<HingeSample> {
+    const FILE: &'static str = "rows.csv";
+
+    fn len(&self) -> usize {
+        self.len()
+    }
+
+    fn reached(&self) -> f64 {
+        self.last().map_or(0.0, |last| last.lambda)
+    }
+
+    fn to_bytes(&self) -> io::Result<Vec<u8>> {
+        let mut writer = csv::Writer::from_writer(Vec::new());
+        for sample in self {
+            writer.serialize(sample)?;
+        }
+        Ok(writer.into_inner().expect("a vector takes every byte"))
+    }
+
+    fn from_bytes(bytes: &[u8]) -> io::Result<Self> {
+        let rows = csv::Reader::from_reader(bytes).into_deserialize();
+        rows.collect::<Result<_, csv::Error>>()
+            .map_err(|error| io::Error::new(io::ErrorKind::InvalidData, error))
+    }
 }

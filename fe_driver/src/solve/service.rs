@@ -1,14 +1,11 @@
 //! Lists of solves whose results are needed at once: a replay, a spot check, a round of an
 //! equilibrium, a study.
 
-use crate::solve::attempts::{Job, SolveEvent, SolveListError, Workers};
-use crate::solve::problem::Solve;
-use crate::solve::solve_folder::SolveStore;
-use crate::solve::solved::Solved;
-use crate::solve::solver::Solver;
-use crate::solve::tool_versions::ToolVersions;
-use crate::solve::window_solve::WindowSolve;
-use std::collections::HashMap;
+use crate::{
+    Event, Job, Solve, SolveListError, SolveStore, Solved, Solver, ToolVersions, WindowSolve,
+    Workers,
+};
+use std::collections::{HashMap, HashSet};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
@@ -36,7 +33,7 @@ impl<S: Solve> SolveService<'_, S> {
     }
 
     /// The results of `solves`, in the same order; equal solves are made once. A solve that fails
-    /// is a result too, after all attempts of the ladder.
+    /// is a result too, after all of its attempts.
     ///
     /// A result of an earlier list is read from the store. A failure that the mechanics did not
     /// cause, as a time limit, is tried again.
@@ -45,18 +42,13 @@ impl<S: Solve> SolveService<'_, S> {
     /// [`SolveListError::Stopped`] if `stop` becomes true before the last solve is done,
     /// [`SolveListError::Disturbed`] if the machine ended every attempt at one of them.
     pub fn solve(&self, solves: &[S]) -> Result<Vec<Solved<S>>, SolveListError> {
-        let mut places = HashMap::new();
-        let mut jobs: Vec<Job<S>> = Vec::new();
-        let mut order = Vec::with_capacity(solves.len());
-        for solve in solves {
-            let id = solve.id();
-            let place = *places.entry(id.clone()).or_insert(jobs.len());
-            order.push(place);
-            if place == jobs.len() {
-                let folder = self.store.solve(&id);
+        let ids: Vec<String> = solves.iter().map(S::id).collect();
+        let (mut known, mut jobs) = (HashSet::new(), Vec::new());
+        for (id, solve) in std::iter::zip(&ids, solves) {
+            if known.insert(id) {
+                let folder = self.store.solve(id);
                 folder.reopen::<S>(|failure| !failure.is_repeatable())?;
-                let solve = solve.clone();
-                jobs.push(Job { id, solve, folder });
+                jobs.push(Job { id: id.clone(), solve: solve.clone(), folder });
             }
         }
         let workers = Workers {
@@ -68,42 +60,42 @@ impl<S: Solve> SolveService<'_, S> {
         let (mut done, all) = (0, jobs.len());
         let mut disturbed = None;
         (self.progress)(done, all);
-        workers.work_through(&jobs, self.stop, &mut |place, event| {
+        workers.work_through(&jobs, self.stop, &mut |index, event| {
             match event {
-                SolveEvent::Found(Some(record)) | SolveEvent::Ended(_, record)
-                    if record.is_closed() =>
-                {
+                Event::Found(Some(record)) | Event::Ended { record, .. } if record.is_closed() => {
                     done += 1;
                     (self.progress)(done, all);
                 }
-                SolveEvent::Disturbed(_, reason) => disturbed = Some((place, reason)),
+                Event::Disturbed { reason, .. } => disturbed = Some((index, reason)),
                 _ => {}
             }
             Ok(())
         })?;
-        let solved = jobs.iter().map(|job| job.folder.result());
-        let solved: Vec<Option<Solved<S>>> = solved.collect::<Result<_, _>>()?;
-        let left = solved.iter().filter(|result| result.is_none()).count();
+        let mut solved: HashMap<&String, Solved<S>> = HashMap::new();
+        for job in &jobs {
+            solved.extend(job.folder.result()?.map(|result| (&job.id, result)));
+        }
+        let left = jobs.len() - solved.len();
         if left > 0 {
             return Err(match disturbed {
-                Some((place, reason)) if !self.stop.load(Ordering::Relaxed) => {
-                    let job = jobs[place].id.clone();
+                Some((index, reason)) if !self.stop.load(Ordering::Relaxed) => {
+                    let job = jobs[index].id.clone();
                     SolveListError::Disturbed { left, job, reason }
                 }
                 _ => SolveListError::Stopped { left },
             });
         }
-        Ok((order.into_iter()).filter_map(|place| solved[place].clone()).collect())
+        Ok(ids.iter().map(|id| solved[id].clone()).collect())
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::solve::failure::AttemptKind;
     use crate::solve::failure::FailureKind;
-    use crate::solve::ladder::AttemptKind;
+    use crate::solve::failure::SolveError;
     use crate::solve::problem::SolvedPath;
-    use crate::solve::solve_error::SolveError;
     use crate::solve::solver::Solution;
     use crate::solve::step_control::StepControl;
     use crate::solve::tests::{FakeSolver, Fault, STIFFNESS, healthy, solve_to};
@@ -151,15 +143,15 @@ mod tests {
         let complete: Vec<bool> = windows.iter().map(|window| window.complete().is_ok()).collect();
         assert_eq!(complete, [true, false, true]);
         assert_eq!(windows[0].samples.len(), 10);
-        // As requested, with shorter increments, on a finer mesh; the increments that converged are
+        // Three attempts: as requested, shorter increments, a finer mesh; converged increments are
         // kept.
         let failed = windows[1].complete().unwrap_err();
-        assert_eq!((failed.attempts, windows[1].samples.len()), (3, 3));
+        assert_eq!((windows[1].record.attempts, windows[1].samples.len()), (3, 3));
         let message = failed.to_string();
         for part in ["w_lig 18.00 mm", "22.92 deg", "diverged at lambda = 0.35", &windows[1].id] {
             assert!(message.contains(part), "{message}");
         }
-        assert!(failed.work.is_dir() && !windows[0].work.exists());
+        assert!(windows[1].work.is_dir() && !windows[0].work.exists());
         // The mechanics would fail again: nothing is solved twice.
         assert_eq!(solve(&diverges, &folder).unwrap(), windows);
         assert_eq!(diverges.attempts(), 5);
@@ -329,11 +321,10 @@ mod tests {
             _: &Path,
             _: Duration,
             _: &AtomicBool,
-        ) -> Result<Solution<Bar>, SolveError> {
+        ) -> Result<Solution<Forces>, SolveError> {
             let steps = f64::from(bar.steps);
             if bar.steps < 4 {
-                let (lambda, tail) = (0.0, String::new());
-                return Err(SolveError::Diverged { lambda, tail });
+                return Err(crate::Cause::Problem(FailureKind::Diverged).error("diverged"));
             }
             let force = |step| bar.stiffness * f64::from(step) / steps;
             Ok(Solution {

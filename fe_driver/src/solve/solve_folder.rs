@@ -7,12 +7,10 @@
 //! its own, `work-<host>-<process>`. The deck and the log of the last attempt that failed remain in
 //! `work`; the decks and logs of other attempts do not: the deck follows from `job.json`.
 
-use crate::record_file::{entries, or_damage, read_json, write_json};
-use crate::solve::failure::FailureKind;
-use crate::solve::host::host;
-use crate::solve::ladder::AttemptKind;
-use crate::solve::problem::{Solve, SolvedPath};
-use crate::solve::window_solve::WindowSolve;
+use crate::{
+    AttemptKind, FailureKind, Solve, SolvedPath, WindowSolve, damaged, entries, read_json,
+    unless_damaged, write_json,
+};
 use mesher::Tier;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
@@ -132,28 +130,26 @@ impl SolveFolder {
     /// The state of the solve. The consistency of its files is checked: the name of the folder must
     /// be the hash of `job.json`, and `result.json` contains the hash of the file of the samples.
     pub(crate) fn state<S: Solve>(&self) -> Result<SolveState<S>, FileError> {
-        let damaged = |reason: &str| Ok(SolveState::Damaged(reason.to_owned()));
-        let solve = match or_damage(self.solve::<S>())? {
-            Ok(solve) => solve,
-            Err(_) => return damaged("job.json cannot be read"),
+        let flaw = |reason: &str| Ok(SolveState::Damaged(reason.to_owned()));
+        let Some(solve) = unless_damaged(self.solve::<S>())? else {
+            return flaw("job.json cannot be read");
         };
-        let record = match or_damage(self.record())? {
-            Ok(record) => record,
-            Err(_) => return damaged("result.json cannot be read, or belongs to another job"),
+        let Some(record) = unless_damaged(self.record())? else {
+            return flaw("result.json cannot be read, or belongs to another job");
         };
         if solve.as_ref().is_some_and(|solve| solve.id() != self.id()) {
-            return damaged("job.json has changed: its hash is not the name of its folder");
+            return flaw("job.json has changed: its hash is not the name of its folder");
         }
         match (solve, record) {
             (solve, None) => Ok(SolveState::Open { started: solve.is_some() }),
-            (None, Some(_)) => damaged("job.json is missing"),
+            (None, Some(_)) => flaw("job.json is missing"),
             (Some(solve), Some(record)) => {
                 let name = S::Samples::FILE;
                 if record.rows > 0 && !self.0.join(name).exists() {
-                    return damaged(&format!("{name} is missing"));
+                    return flaw(&format!("{name} is missing"));
                 }
-                if record.rows > 0 && or_damage(self.bytes(name, &record))?.is_err() {
-                    return damaged(&format!("{name} does not match result.json"));
+                if record.rows > 0 && unless_damaged(self.bytes(name, &record))?.is_none() {
+                    return flaw(&format!("{name} does not match result.json"));
                 }
                 Ok(SolveState::Ended(Box::new((solve, record))))
             }
@@ -172,9 +168,7 @@ impl SolveFolder {
         match read_json::<Named<SolveRecord>>(&path)? {
             Some(named) if named.job != self.id() => {
                 let (other, hint) = (named.job, "delete it, and the next run solves this one");
-                let damage = format!("it is the record of the solve {other}: {hint}");
-                let damage = io::Error::new(io::ErrorKind::InvalidData, damage);
-                Err(FileError::at(&path)(damage))
+                Err(damaged(&path, format!("it is the record of the solve {other}: {hint}")))
             }
             named => Ok(named.map(|named| named.record)),
         }
@@ -198,10 +192,9 @@ impl SolveFolder {
         let path = self.0.join(name);
         let bytes = regular_file::read(&path).map_err(FileError::at(&path))?;
         if blake3::hash(&bytes).to_hex().as_str() != record.rows_hash {
-            let changed =
-                "the rows do not match the hash in result.json: run the same command again";
-            let damage = io::Error::new(io::ErrorKind::InvalidData, changed);
-            return Err(FileError::at(&path)(damage));
+            let hint = "run the same command again";
+            let what = format!("the rows do not match the hash in result.json: {hint}");
+            return Err(damaged(&path, what));
         }
         Ok(bytes)
     }
@@ -233,7 +226,7 @@ impl SolveFolder {
         })
     }
 
-    /// Starts the ladder of a closed solve again if it failed in one of the ways that `may`
+    /// Starts the attempts of a closed solve again if it failed in one of the ways that `may`
     /// accepts; returns whether it did. Its samples are kept until an attempt reaches a larger
     /// lambda.
     pub(crate) fn reopen<S: Solve>(
@@ -317,6 +310,14 @@ fn remove_folder(folder: &Path) -> Result<(), FileError> {
         Err(error) if error.kind() != io::ErrorKind::NotFound => Err(FileError::at(folder)(error)),
         _ => Ok(()),
     }
+}
+
+/// The name of this host, by which the runs that share a folder are distinguished. `KIRIGAMI_HOST`
+/// replaces it where host names are not unique.
+pub(crate) fn host() -> String {
+    let name = std::env::var_os("KIRIGAMI_HOST").or_else(|| nix::unistd::gethostname().ok());
+    let name = name.unwrap_or_else(|| "localhost".into());
+    name.to_string_lossy().replace('/', "_")
 }
 
 #[cfg(test)]

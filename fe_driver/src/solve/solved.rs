@@ -1,10 +1,8 @@
 //! The result of a solve: its samples, or why and where it failed.
 
-use crate::solve::problem::Solve;
-use crate::solve::solve_folder::{SolveFolder, SolveRecord, SolveState};
-use crate::solve::window_solve::WindowSolve;
-use std::fmt;
+use crate::{Solve, SolveFolder, SolveRecord, SolveState, WindowSolve};
 use std::path::PathBuf;
+use support::fault::{Fault, fault};
 use support::file_error::FileError;
 
 /// A solve with its record and its samples.
@@ -19,21 +17,6 @@ pub struct Solved<S: Solve = WindowSolve> {
     /// The converged increments of the attempt that reached furthest; empty without one.
     pub samples: S::Samples,
     /// Folder of its last attempt, which remains if the solve failed.
-    pub work: PathBuf,
-}
-
-/// What was not solved to the end of its path.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Unsolved<S: Solve = WindowSolve> {
-    /// What was to be solved.
-    pub solve: S,
-    /// Number of attempts.
-    pub attempts: u32,
-    /// Lambda of the last converged increment of any attempt.
-    pub lambda: f64,
-    /// The error of the last attempt.
-    pub reason: String,
-    /// Folder of the last attempt, with its deck and its log.
     pub work: PathBuf,
 }
 
@@ -57,31 +40,17 @@ impl SolveFolder {
 
 impl<S: Solve> Solved<S> {
     /// The samples, or why the path was not followed to its end.
-    pub fn complete(&self) -> Result<&S::Samples, Box<Unsolved<S>>> {
-        match self.record.failure {
-            None => Ok(&self.samples),
-            Some(failure) => Err(Box::new(Unsolved {
-                solve: self.solve.clone(),
-                attempts: self.record.attempts,
-                lambda: self.record.lambda,
-                reason: (self.record.message.clone()).unwrap_or_else(|| failure.to_string()),
-                work: self.work.clone(),
-            })),
-        }
-    }
-}
-
-impl<S: Solve> fmt::Display for Unsolved<S> {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+    pub fn complete(&self) -> Result<&S::Samples, Fault> {
+        let Self { solve, record, work, .. } = self;
+        let Some(failure) = record.failure else {
+            return Ok(&self.samples);
+        };
+        let message = record.message.clone().unwrap_or_else(|| failure.to_string());
         // The first line: the others quote the end of the solver's log, which is in the folder.
-        let reason = self.reason.lines().next().unwrap_or_default();
-        write!(
-            f,
-            "{}: {reason} ({} attempts, the furthest to lambda = {:.3}; {})",
-            self.solve.description(),
-            self.attempts,
-            self.lambda,
-            self.work.display()
-        )
+        let reason = message.lines().next().unwrap_or_default();
+        let (attempts, lambda, work) = (record.attempts, record.lambda, work.display());
+        let what =
+            format!("{reason} ({attempts} attempts, the furthest to lambda = {lambda:.3}; {work})");
+        Err(fault(solve.description(), what, ""))
     }
 }

@@ -1,9 +1,8 @@
 //! What a program that solves must do; CalculiX is one, the fake of the tests another.
 
-use crate::solve::problem::Solve;
-use crate::solve::solve_error::SolveError;
-use crate::solve::tool_versions::ToolVersions;
-use crate::solve::window_solve::WindowSolve;
+use crate::{Solve, SolveError, WindowSolve};
+use hinge::HingeSample;
+use serde::{Deserialize, Serialize};
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
@@ -25,7 +24,7 @@ pub trait Solver<S: Solve = WindowSolve>: Sync {
         work: &Path,
         limit: Duration,
         stop: &AtomicBool,
-    ) -> Result<Solution<S>, SolveError>;
+    ) -> Result<Solution<S::Samples>, SolveError>;
 }
 
 impl<S: Solve, T: Solver<S> + ?Sized> Solver<S> for &T {
@@ -39,16 +38,16 @@ impl<S: Solve, T: Solver<S> + ?Sized> Solver<S> for &T {
         work: &Path,
         limit: Duration,
         stop: &AtomicBool,
-    ) -> Result<Solution<S>, SolveError> {
+    ) -> Result<Solution<S::Samples>, SolveError> {
         (**self).attempt(solve, work, limit, stop)
     }
 }
 
 /// The result of an attempt: samples, and whether they reach the end of the path.
-#[derive(Debug)]
-pub struct Solution<S: Solve = WindowSolve> {
+#[derive(Debug, Default)]
+pub struct Solution<P = Vec<HingeSample>> {
     /// The converged increments, in order of lambda; empty if the output is not valid.
-    pub samples: S::Samples,
+    pub samples: P,
     /// Why the samples are not the samples of a valid complete path; `None` for a complete path.
     pub stopped: Option<SolveError>,
     /// Number of elements of the mesh.
@@ -65,17 +64,17 @@ pub struct Solution<S: Solve = WindowSolve> {
     pub iterations: usize,
 }
 
-impl<S: Solve> Default for Solution<S> {
-    fn default() -> Self {
-        Self {
-            samples: S::Samples::default(),
-            stopped: None,
-            elements: 0,
-            cpu_seconds: None,
-            wall_seconds: 0.0,
-            solver_seconds: 0.0,
-            peak_memory_mib: None,
-            iterations: 0,
-        }
+/// Versions of the external programs that determine a result.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct ToolVersions {
+    /// Version of gmsh.
+    pub gmsh: String,
+    /// Version of CalculiX.
+    pub ccx: String,
+}
+
+impl std::fmt::Display for ToolVersions {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        write!(f, "gmsh {} and ccx {}", self.gmsh, self.ccx)
     }
 }

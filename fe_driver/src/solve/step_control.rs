@@ -35,7 +35,7 @@ impl Default for StepControl {
 
 impl StepControl {
     /// The usual increments. A plate does not buckle: longer increments change its energy by 0.1 %,
-    /// and a path has 22 of them in place of 33.
+    /// and a path has 22 of them instead of 33.
     pub fn usual(regime: Regime) -> Self {
         match regime {
             Regime::Film => Self::default(),

@@ -1,12 +1,6 @@
-//! A window solve: its identity, and its ladder of attempts.
+//! A window solve: its identity, and its attempts.
 
-use crate::record_file::short_hash;
-use crate::solve::failure::FailureKind;
-use crate::solve::hinge_path::HingePath;
-use crate::solve::ladder::AttemptKind;
-use crate::solve::problem::Solve;
-use crate::solve::step_control::StepControl;
-use crate::solve::tool_versions::ToolVersions;
+use crate::{AttemptKind, FailureKind, HingePath, Solve, StepControl, ToolVersions, short_hash};
 use hinge::{HingeSample, SheetMaterial};
 use mesher::{MeshRecipe, Tier};
 use serde::{Deserialize, Serialize};
@@ -170,7 +164,7 @@ mod tests {
     use strum::VariantNames;
 
     #[test]
-    fn every_retry_ladder_ends() {
+    fn the_attempts_of_every_solve_end() {
         let next = |tier, lambda| {
             let shorter = AttemptKind::ShorterIncrements;
             solve_on(tier).next_attempt(shorter, FailureKind::Diverged, lambda)

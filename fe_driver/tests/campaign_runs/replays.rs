@@ -232,7 +232,7 @@ fn shards_run_in_parallel_and_complete_the_campaign() {
         }
         for text in ["1/2", "2/2", "1/1", "3/3"] {
             let error = run(text).unwrap_err();
-            assert!(matches!(error, CampaignError::Locked(_)), "{text}: {error}");
+            assert!(error.to_string().contains("another run has locked"), "{text}: {error}");
         }
         assert_eq!(first.join().unwrap().unwrap().complete, 2);
         assert_eq!(second.join().unwrap().unwrap().complete, 1);
@@ -288,7 +288,7 @@ fn collected_jobs_are_not_solved_again() {
     let mut other = campaign(RAYS);
     other.material.young += 1.0;
     let error = restore(&other, folder, &collected).unwrap_err();
-    assert!(matches!(error, CampaignError::Foreign(_)), "{error}");
+    assert!(error.to_string().contains("none of the jobs belongs"), "{error}");
 }
 
 /// Every file of a job, damaged or deleted, makes the job open; nothing of it reaches the database,

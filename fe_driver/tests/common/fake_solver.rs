@@ -1,16 +1,15 @@
 //! A deterministic solver without a program: a hinge of known stiffness, and failures on request.
-//! For tests.
+//! It is used by tests.
 //!
 //! W = (k_a a^2 + k_s s^2 + k_theta theta^2) / 2, D = theta^2 / 100, D_peak = 10 D, in ten equal
 //! increments. Nothing is written to the folder of an attempt.
 #![allow(dead_code)] // every test program uses only a part
 
-use fe_driver::{Solution, SolveError, Solver, ToolVersions, WindowSolve};
+use fe_driver::{Cause, FailureKind, Solution, SolveError, Solver, ToolVersions, WindowSolve};
 use hinge::{HingeDeformation, HingeSample};
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
-use support::program::ToolError;
 
 /// Number of increments of a path.
 const INCREMENTS: u32 = 10;
@@ -34,7 +33,7 @@ pub struct FakeSolver<F> {
     stiffness: [f64; 3],
     /// The fault of an attempt at a solve.
     fault: F,
-    /// Number of attempts so far.
+    /// Number of attempts until now.
     attempts: AtomicUsize,
 }
 
@@ -45,7 +44,7 @@ impl<F: Fn(&WindowSolve) -> Option<Fault>> FakeSolver<F> {
         Self { stiffness, fault, attempts: AtomicUsize::new(0) }
     }
 
-    /// Number of attempts so far.
+    /// Number of attempts until now.
     pub fn attempts(&self) -> usize {
         self.attempts.load(Ordering::Relaxed)
     }
@@ -90,26 +89,24 @@ impl<F: Fn(&WindowSolve) -> Option<Fault> + Sync> Solver for FakeSolver<F> {
         let (end, stopped) = match (self.fault)(solve) {
             None => (1.0, None),
             Some(Fault::Diverges(lambda)) => {
-                let tail = "the increment is too small".to_owned();
-                (lambda, Some(SolveError::Diverged { lambda, tail }))
+                let diverged = Cause::Problem(FailureKind::Diverged);
+                (lambda, Some(diverged.error(format!("the solver diverged at lambda = {lambda}"))))
             }
             Some(Fault::Hangs) => {
                 while start.elapsed() < limit {
                     if stop.load(Ordering::Relaxed) {
-                        return Err(ToolError::Stopped { name: "fake" }.into());
+                        return Err(Cause::Stop.error("stopped"));
                     }
                     std::thread::sleep(Duration::from_millis(1));
                 }
-                let timed_out = ToolError::TimedOut { name: "fake", limit, cpu_seconds: None };
-                (0.0, Some(timed_out.into()))
+                let timed_out = Cause::Problem(FailureKind::TimedOut);
+                (0.0, Some(timed_out.error("fake was terminated at its time limit")))
             }
             Some(Fault::Killed) => {
-                let killed = ToolError::Killed { name: "fake", signal: 9, cpu_seconds: None };
-                return Err(killed.into());
+                return Err(Cause::Machine.error("fake was killed by signal 9"));
             }
             Some(Fault::Missing) => {
-                let (kind, program) = (&fe_driver::CCX, None);
-                return Err(ToolError::NotFound { kind, program }.into());
+                return Err(Cause::Run.error("ccx was not found on PATH"));
             }
         };
         let lambdas = (1..=INCREMENTS).map(|k| f64::from(k) / f64::from(INCREMENTS));

@@ -241,18 +241,14 @@ fn a_superposed_rotation_changes_neither_energy_nor_corotated_forces() {
     let still = DeformationPath::straight(end);
     // The motion of B in the fixed frame: the rotation is theta + beta, and du is rotated by beta,
     // which is R(beta / 2) (a, s) in the mean frame of a fixed panel A.
-    let file = tempfile::NamedTempFile::new().unwrap();
-    let mut text = "eta_a,eta_s,theta_deg\n".to_owned();
-    for k in 1..=720 {
+    let state = |k: u32| {
         let lambda = f64::from(k) / 720.0;
         let [a, s, theta] = end.at(lambda).to_array();
         let (sin, cos) = (0.5 * lambda * beta).sin_cos();
-        let (eta_a, eta_s) = ((cos * a - sin * s) / 18.0, (sin * a + cos * s) / 18.0);
-        let theta_deg = (theta + lambda * beta).to_degrees();
-        writeln!(text, "{eta_a:.17},{eta_s:.17},{theta_deg:.17}").unwrap();
-    }
-    std::fs::write(file.path(), text).unwrap();
-    let turned = DeformationPath::read(file.path(), 18.0).unwrap();
+        let (a, s) = (cos * a - sin * s, sin * a + cos * s);
+        HingeDeformation { a, s, theta: theta + lambda * beta }
+    };
+    let turned = DeformationPath::through(&(1..=720).map(state).collect::<Vec<_>>()).unwrap();
     let last = |deck: &str| *energies_and_forces(&solved(deck), &mesh).last().unwrap();
     let (energy, force) = last(&window_deck(&mesh, &still, &film()));
     let (same, found) = last(&with_panel_a_turned(&mesh, &turned, beta));

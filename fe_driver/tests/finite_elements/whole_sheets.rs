@@ -3,9 +3,9 @@
 
 use crate::common::film;
 use fe_driver::{
-    AttemptKind, CalculiX, DeformationPath, FailureKind, Held, HingePath, Keeping, Place, Pulled,
-    SheetProblem, SheetSolve, SheetState, SheetStates, Solution, Solve, SolveService, SolveStore,
-    Solver, WindowProblem, WindowSolve,
+    AttemptKind, CalculiX, DeformationPath, FailureKind, Held, HingePath, OutOfPlaneRestraint,
+    Place, Pulled, SheetProblem, SheetSolve, SheetState, SheetStates, Solution, Solve,
+    SolveService, SolveStore, Solver, WindowProblem, WindowSolve,
 };
 use hinge::{HingeDeformation, HingeDesign, SheetMaterial};
 use mesher::{Frame, MeshError, PanelShape, PlacedWindow, PlaneRecipe, SheetShape, Tier};
@@ -35,7 +35,7 @@ fn thin() -> SheetMaterial {
 
 /// Two panels side by side, joined at the upper edge. The left one is clamped, the right one is
 /// pulled to the right by a point below the hinge, which opens the cut.
-fn problem(keeping: Keeping, stroke: f64) -> SheetProblem {
+fn problem(keeping: OutOfPlaneRestraint, stroke: f64) -> SheetProblem {
     let PlaneRecipe::Structured(plane) = Tier::Tiny.recipe().plane else {
         panic!("the tier has a structured mesh");
     };
@@ -63,7 +63,7 @@ fn problem(keeping: Keeping, stroke: f64) -> SheetProblem {
         },
         tier: Tier::Tiny,
         material: thin(),
-        keeping,
+        restraint: keeping,
         held: vec![Held { panel: 0, place: Place::Panel, motion: [Some(0.0); 2] }],
         pulled: vec![Pulled { panel: 1, at, force: [2.0, 0.0] }],
         rims: Vec::new(),
@@ -75,7 +75,7 @@ fn problem(keeping: Keeping, stroke: f64) -> SheetProblem {
     }
 }
 
-fn attempt(problem: &SheetProblem) -> Solution<SheetSolve> {
+fn attempt(problem: &SheetProblem) -> Solution<SheetStates> {
     let calculix = CalculiX::find().unwrap();
     let solve = SheetSolve::new(problem.clone(), &calculix.versions());
     let folder = tempfile::tempdir().unwrap();
@@ -107,7 +107,7 @@ fn total_energy(state: &SheetState) -> f64 {
 /// energy. And the work of the load is the energy of the sheet.
 #[test]
 fn a_hinge_of_a_sheet_held_flat_is_its_window() {
-    let sheet = solved(&problem(Keeping::HeldFlat, 8.0));
+    let sheet = solved(&problem(OutOfPlaneRestraint::HeldFlat, 8.0));
     let end = sheet.states.last().unwrap();
     assert_eq!((end.lambda, end.fraction), (1.0, 1.0));
     assert!((end.stroke - 8.0).abs() < 1e-6, "{}", end.stroke);
@@ -150,7 +150,7 @@ fn a_hinge_of_a_sheet_held_flat_is_its_window() {
 /// A ligament that is wide against the thickness pushes panels that nothing holds out of the plane.
 #[test]
 fn a_free_film_tilts() {
-    let sheet = solved(&problem(Keeping::Nothing, 1.0));
+    let sheet = solved(&problem(OutOfPlaneRestraint::Nothing, 1.0));
     let end = sheet.states.last().unwrap();
     let tilt = end.panels[1].tilt().to_degrees();
     assert!((1.0..90.0).contains(&tilt), "{tilt}");
@@ -159,7 +159,7 @@ fn a_free_film_tilts() {
     let steepest = surface.tilts_deg().into_iter().fold(0.0, f64::max);
     assert!(steepest >= 0.9 * tilt, "{steepest} {tilt}");
     // Bumps on the other side: the mirror image in the plane of the sheet.
-    let mut mirrored = problem(Keeping::Nothing, 1.0);
+    let mut mirrored = problem(OutOfPlaneRestraint::Nothing, 1.0);
     mirrored.shape.windows[0].bump = -1.0;
     let mirrored = solved(&mirrored);
     let other = mirrored.states.last().unwrap();
@@ -172,7 +172,7 @@ fn a_free_film_tilts() {
 /// carries its weight.
 #[test]
 fn a_table_carries_the_sheet() {
-    let mut lying = problem(Keeping::Table, 0.05);
+    let mut lying = problem(OutOfPlaneRestraint::Table, 0.05);
     lying.down = Some([0.0, 0.0, -1.0]);
     let sheet = solved(&lying);
     let end = sheet.states.last().unwrap();
@@ -182,7 +182,7 @@ fn a_table_carries_the_sheet() {
 
 #[test]
 fn weight_in_the_plane_comes_on_before_the_stroke() {
-    let mut heavy = problem(Keeping::HeldFlat, 1.0);
+    let mut heavy = problem(OutOfPlaneRestraint::HeldFlat, 1.0);
     heavy.down = Some([0.0, -1.0, 0.0]);
     let sheet = solved(&heavy);
     let first = sheet.states.iter().find(|state| state.lambda < 0.1).unwrap();
@@ -202,9 +202,10 @@ fn weight_in_the_plane_comes_on_before_the_stroke() {
 /// without contact the far ends of the flanks would pass each other.
 #[test]
 fn the_flanks_of_a_cut_that_is_pushed_shut_touch() {
-    let mut shut = problem(Keeping::HeldFlat, 0.0);
+    let mut shut = problem(OutOfPlaneRestraint::HeldFlat, 0.0);
     shut.stroke = None;
-    (shut.contact, shut.step) = (true, SheetProblem::usual_step(Keeping::HeldFlat, true));
+    (shut.contact, shut.step) =
+        (true, SheetProblem::usual_step(OutOfPlaneRestraint::HeldFlat, true));
     shut.shape.thickness = 3.0;
     shut.shape.windows[0].bump = 0.02;
     shut.material.thickness = 3.0;
@@ -225,7 +226,7 @@ fn a_sheet_is_solved_once_and_a_snap_is_followed_with_inertia() {
     let folder = tempfile::tempdir().unwrap();
     let stop = AtomicBool::new(false);
     let calculix = CalculiX::find().unwrap();
-    let solve = SheetSolve::new(problem(Keeping::HeldFlat, 0.5), &calculix.versions());
+    let solve = SheetSolve::new(problem(OutOfPlaneRestraint::HeldFlat, 0.5), &calculix.versions());
     let service = SolveService {
         solver: Box::new(calculix),
         store: SolveStore(folder.path().to_owned()),
@@ -267,7 +268,7 @@ fn sheets_that_cannot_be_solved_are_refused() {
         let found = calculix.attempt(&solve, folder.path(), LIMIT, &stop);
         found.unwrap_err().to_string()
     };
-    let flat = || problem(Keeping::HeldFlat, 1.0);
+    let flat = || problem(OutOfPlaneRestraint::HeldFlat, 1.0);
     let mut small = flat();
     small.shape.panels[1].corners[0][1] = 45.0;
     small.shape.panels[1].corners[1][1] = 45.0;
@@ -281,12 +282,12 @@ fn sheets_that_cannot_be_solved_are_refused() {
     unheld.held.clear();
     let mut still = flat();
     still.pulled.clear();
-    let mut falling = problem(Keeping::Nothing, 1.0);
+    let mut falling = problem(OutOfPlaneRestraint::Nothing, 1.0);
     falling.held[0].place = Place::Point([0.2 * WIDTH, 0.2 * HEIGHT]);
     for (problem, expected) in [
         (small, "panel 1 is too small for its windows"),
         (beside, "does not end on the edges"),
-        (in_window, "lies in the window of a hinge"),
+        (in_window, "is in the window of a hinge"),
         (outside, "is not inside the panel"),
         (unheld, "no panel is held"),
         (still, "nothing pulls the sheet"),
@@ -300,5 +301,5 @@ fn sheets_that_cannot_be_solved_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     let stop = AtomicBool::new(false);
     let error = thin.mesh(folder.path(), &calculix.gmsh, LIMIT, &stop);
-    assert!(matches!(error, Err(MeshError::Thickness(_))));
+    assert!(matches!(error, Err(MeshError::Invalid(_))));
 }

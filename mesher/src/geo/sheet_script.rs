@@ -3,14 +3,12 @@
 
 use super::Script;
 use super::structured::{self, Rim};
-use crate::frame::Frame;
-use crate::sheet_shape::{InvalidSheet, PlacedWindow, SheetShape};
-use crate::vectors::{cross, dot, minus, unit};
-use crate::window::Window;
+use crate::{Frame, PlacedWindow, SheetShape, Window, cross, dot, minus, unit};
+use support::add_line;
 
 /// Names of the edges of a panel, each from its corner to the next.
 const EDGES: [&str; 4] = ["lower", "right", "upper", "left"];
-/// Largest distance of a point that lies on the edge of a panel from it (mm).
+/// Largest distance of a point on the edge of a panel from it (mm).
 const ON_EDGE: f64 = 1e-6;
 /// Shortest part of an edge over r_win: a shorter one would give slivers.
 const LEAST: f64 = 0.02;
@@ -19,13 +17,13 @@ const COARSEST: f64 = 1.1;
 
 /// The script of a sheet. Its faces are named after the panels, 1 and those after it, and then
 /// after the windows.
-pub(crate) fn sheet_script(shape: &SheetShape) -> Result<String, InvalidSheet> {
+pub(crate) fn sheet_script(shape: &SheetShape) -> Result<String, String> {
     let mut geo = Script::default();
     let size = COARSEST * shape.element_size;
-    geo.add(format_args!("Mesh.MeshSizeMax = {size:?};"));
+    add_line!(geo.text, "Mesh.MeshSizeMax = {size:?};");
     // The frontal-Delaunay algorithm, whose triangles recombine to good quadrilaterals.
-    geo.add(format_args!("Mesh.Algorithm = 6;"));
-    geo.add(format_args!("Mesh.RecombinationAlgorithm = 1;"));
+    add_line!(geo.text, "Mesh.Algorithm = 6;");
+    add_line!(geo.text, "Mesh.RecombinationAlgorithm = 1;");
     let mut rims = vec![[const { None }; 4]; shape.panels.len()];
     let mut faces = Vec::new();
     for (number, window) in shape.windows.iter().enumerate() {
@@ -73,7 +71,7 @@ struct PanelOutline<'a> {
 
 impl PanelOutline<'_> {
     /// Adds the panel as one surface, and returns its number.
-    fn add(&self, geo: &mut Script) -> Result<i32, InvalidSheet> {
+    fn add(&self, geo: &mut Script) -> Result<i32, String> {
         let panel = &self.shape.panels[self.panel];
         // Where the outline reaches and leaves each corner, counter-clockwise: one point, or the
         // ends of an arc, which is passed clockwise.
@@ -103,13 +101,13 @@ impl PanelOutline<'_> {
         for mark in marks {
             self.check_mark(mark)?;
             let id = geo.point(mark);
-            geo.add(format_args!("MeshSize {{{id}}} = {size:?};"));
-            geo.add(format_args!("Point{{{id}}} In Surface{{{surface}}};"));
+            add_line!(geo.text, "MeshSize {{{id}}} = {size:?};");
+            add_line!(geo.text, "Point{{{id}}} In Surface{{{surface}}};");
         }
         Ok(surface)
     }
 
-    /// Adds the straight edge from a corner to the next, divided at the marks that lie on it, which
+    /// Adds the straight edge from a corner to the next, divided at the marks on it, which
     /// are removed.
     fn edge(
         &self,
@@ -117,7 +115,7 @@ impl PanelOutline<'_> {
         corner: usize,
         [from, to]: [(i32, [f64; 2]); 2],
         marks: &mut Vec<[f64; 2]>,
-    ) -> Result<Vec<i32>, InvalidSheet> {
+    ) -> Result<Vec<i32>, String> {
         let panel = &self.shape.panels[self.panel];
         let direction = unit(panel.corners[corner], panel.corners[(corner + 1) % 4]);
         let along = |point: [f64; 2]| dot(minus(point, from.1), direction);
@@ -126,11 +124,11 @@ impl PanelOutline<'_> {
             .map(|arc| self.shape.windows[arc.number].design.r_win);
         let least = radius.map_or(0.0, |radius| LEAST * radius);
         if length <= least {
-            return Err(InvalidSheet::SmallPanel {
-                panel: self.panel,
-                edge: EDGES[corner],
-                short: least - length,
-            });
+            let (panel, edge, short) = (self.panel, EDGES[corner], least - length);
+            return Err(format!(
+                "panel {panel} is too small for its windows: its {edge} edge is {short} mm too short; use a smaller \
+                 r_win or larger panels"
+            ));
         }
         let across = |point: [f64; 2]| cross(direction, minus(point, from.1)).abs();
         let mut stops: Vec<f64> = Vec::new();
@@ -160,25 +158,25 @@ impl PanelOutline<'_> {
     }
 
     /// The arc about a corner ends on the two edges that meet there.
-    fn check_arc(&self, corner: usize, arc: &Arc) -> Result<(), InvalidSheet> {
+    fn check_arc(&self, corner: usize, arc: &Arc) -> Result<(), String> {
         let corners = &self.shape.panels[self.panel].corners;
         let edges = [(corner + 3) % 4, corner];
         for (edge, end) in std::iter::zip(edges, [arc.ends[1], arc.ends[0]]) {
             let direction = unit(corners[edge], corners[(edge + 1) % 4]);
             let off = cross(direction, minus(end, corners[edge])).abs();
             if off > ON_EDGE {
-                return Err(InvalidSheet::BesideEdge {
-                    window: arc.number,
-                    panel: self.panel,
-                    off,
-                });
+                let (window, panel) = (arc.number, self.panel);
+                return Err(format!(
+                    "the window of hinge {window} does not end on the edges of panel {panel}: it is {off} mm away \
+                     from them"
+                ));
             }
         }
         Ok(())
     }
 
-    /// A mark in the interior lies in the panel and outside of its windows.
-    fn check_mark(&self, mark: [f64; 2]) -> Result<(), InvalidSheet> {
+    /// A mark in the interior is in the panel and outside of its windows.
+    fn check_mark(&self, mark: [f64; 2]) -> Result<(), String> {
         let corners = &self.shape.panels[self.panel].corners;
         let inside = (0..4).all(|corner| {
             let direction = unit(corners[corner], corners[(corner + 1) % 4]);
@@ -192,12 +190,14 @@ impl PanelOutline<'_> {
         let what = if !inside {
             "is not inside the panel"
         } else if self.rims.iter().flatten().any(in_window) {
-            "lies in the window of a hinge"
+            "is in the window of a hinge"
         } else {
             return Ok(());
         };
         let [x, y] = mark;
         let panel = self.panel;
-        Err(InvalidSheet::Mark { panel, x, y, what })
+        Err(format!(
+            "the point ({x:.3}, {y:.3}) mm at which panel {panel} is held or pulled {what}: move it"
+        ))
     }
 }

@@ -7,8 +7,7 @@
 //! fold elements at small alpha.
 
 use super::Script;
-use crate::tier::Structured;
-use crate::window::{Side, Window, polar_angle};
+use crate::{Side, Structured, Window, minus, polar_angle};
 use std::f64::consts::PI;
 
 /// Radius of block 1 over w_lig. It is only slightly larger than the hole, so that the rings of
@@ -53,101 +52,91 @@ pub(super) struct Rim {
 
 /// Adds the patches of `window`.
 pub(super) fn add(geo: &mut Script, window: &Window, recipe: &Structured) -> WindowCurves {
-    let centre = geo.point([0.0, 0.0]);
-    let tip = geo.point(window.0.tip());
-
+    let design = window.0;
+    let [centre, tip] = [[0.0, 0.0], design.tip()].map(|point| geo.point(point));
     let outer = inner_half_disc(window, recipe);
     let columns = outer.len() - 1;
-    let outer_ids: Vec<_> = outer.iter().map(|p| geo.point(*p)).collect();
+    let outer_ids = geo.points(&outer);
     let mut circle = |radius| {
         let points = circle_points(window, &outer, radius);
-        let ids: Vec<_> = points.iter().map(|p| geo.point(*p)).collect();
-        let arcs: Vec<_> = (0..columns)
-            .map(|c| {
-                let arc = geo.arc(ids[c], tip, ids[c + 1]);
-                geo.divide(arc, 1, 1.0)
-            })
-            .collect();
-        Circle { points, ids, arcs }
+        let ids = geo.points(&points);
+        let arcs = geo.arcs(tip, &ids);
+        (points, ids, arcs)
     };
-    let circles: Vec<_> = collar_radii(window).into_iter().map(&mut circle).collect();
+    let mut circles: Vec<_> = collar_radii(window).into_iter().map(&mut circle).collect();
     for pair in circles.windows(2) {
-        let rays: Vec<_> = pair[0]
-            .ids
-            .iter()
-            .zip(&pair[1].ids)
-            .map(|(from, to)| {
-                let ray = geo.line(*from, *to);
-                geo.divide(ray, 1, 1.0)
-            })
-            .collect();
-        for c in 0..columns {
-            geo.patch([rays[c], pair[1].arcs[c], -rays[c + 1], -pair[0].arcs[c]]);
-        }
+        let [(_, from, inner), (_, to, outer)] = pair else { continue };
+        let rays = geo.rays(from, to, 1, |_| 1.0);
+        geo.patches(&rays, outer, inner);
     }
-    let inner = &circles[circles.len() - 1];
+    let (inner, inner_ids, inner_arcs) = &circles[circles.len() - 1];
     let top = recipe.arc_columns..columns - recipe.arc_columns;
-    let outer_edges: Vec<_> = (0..columns)
-        .map(|c| {
-            let edge = if top.contains(&c) {
-                geo.line(outer_ids[c], outer_ids[c + 1])
-            } else {
-                geo.arc(outer_ids[c], centre, outer_ids[c + 1])
-            };
-            geo.divide(edge, 1, 1.0)
-        })
-        .collect();
-    let first = (window.0.w_lig - inner_circle(window)) / recipe.inner_rings as f64;
-    let rays: Vec<_> = (0..=columns)
-        .map(|c| {
-            let [p, q] = [inner.points[c], outer[c]];
-            let length = (q[0] - p[0]).hypot(q[1] - p[1]);
-            let growth = growth_ratio(length / first, recipe.inner_rings);
-            let ray = geo.line(inner.ids[c], outer_ids[c]);
-            geo.divide(ray, recipe.inner_rings, growth)
-        })
-        .collect();
-    for c in 0..columns {
-        geo.patch([rays[c], outer_edges[c], -rays[c + 1], -inner.arcs[c]]);
-    }
-    let growth = (window.0.r_win / (inner_radius(window.0.fillet_ratio) * window.0.w_lig))
+    let edge = |c: usize| {
+        let [from, to] = [outer_ids[c], outer_ids[c + 1]];
+        let edge = if top.contains(&c) { geo.line(from, to) } else { geo.arc(from, centre, to) };
+        geo.divide(edge, 1, 1.0)
+    };
+    let outer_edges: Vec<_> = (0..columns).map(edge).collect();
+    let first = (design.w_lig - inner_circle(window)) / recipe.inner_rings as f64;
+    let rays = geo.rays(inner_ids, &outer_ids, recipe.inner_rings, |c| {
+        let [x, y] = minus(outer[c], inner[c]);
+        growth_ratio(x.hypot(y) / first, recipe.inner_rings)
+    });
+    geo.patches(&rays, &outer_edges, inner_arcs);
+    let growth = (design.r_win / (inner_radius(design.fillet_ratio) * design.w_lig))
         .powf(1.0 / recipe.outer_rings as f64);
     let mut rim = |side, start: usize| {
-        let positions = panel_arc(window, side, window.0.r_win, recipe.arc_columns);
-        let points: Vec<_> = positions.iter().map(|p| geo.point(*p)).collect();
-        let rays: Vec<_> = points
-            .iter()
-            .enumerate()
-            .map(|(j, p)| {
-                let ray = geo.line(outer_ids[start + j], *p);
-                geo.divide(ray, recipe.outer_rings, growth)
-            })
-            .collect();
-        let arcs: Vec<_> = points
-            .windows(2)
-            .map(|pair| {
-                let arc = geo.arc(pair[0], centre, pair[1]);
-                geo.divide(arc, 1, 1.0)
-            })
-            .collect();
-        for j in 0..recipe.arc_columns {
-            geo.patch([rays[j], arcs[j], -rays[j + 1], -outer_edges[start + j]]);
-        }
+        let positions = panel_arc(window, side, design.r_win, recipe.arc_columns);
+        let points = geo.points(&positions);
+        let rays = geo.rays(&outer_ids[start..], &points, recipe.outer_rings, |_| growth);
+        let arcs = geo.arcs(centre, &points);
+        geo.patches(&rays, &arcs, &outer_edges[start..]);
         let ends = [positions[0], positions[recipe.arc_columns]];
         Rim { points, arcs, ends }
     };
     WindowCurves {
         rim_b: rim(Side::B, 0),
         rim_a: rim(Side::A, top.end),
-        hole: circles.into_iter().next().expect("the hole").arcs,
+        hole: circles.swap_remove(0).2,
     }
 }
 
-/// A circle about the tip, cut by the columns.
-struct Circle {
-    points: Vec<[f64; 2]>,
-    ids: Vec<i32>,
-    arcs: Vec<i32>,
+impl Script {
+    fn points(&mut self, points: &[[f64; 2]]) -> Vec<i32> {
+        points.iter().map(|point| self.point(*point)).collect()
+    }
+
+    /// The arcs about `centre` between neighbours of `ends`, one element each.
+    fn arcs(&mut self, centre: i32, ends: &[i32]) -> Vec<i32> {
+        let arc = |pair: &[i32]| {
+            let arc = self.arc(pair[0], centre, pair[1]);
+            self.divide(arc, 1, 1.0)
+        };
+        ends.windows(2).map(arc).collect()
+    }
+
+    /// The lines from each point to its partner, divided with the growth of their number.
+    fn rays(
+        &mut self,
+        from: &[i32],
+        to: &[i32],
+        elements: usize,
+        growth: impl Fn(usize) -> f64,
+    ) -> Vec<i32> {
+        let ray = |(c, (from, to)): (usize, (&i32, &i32))| {
+            let growth = growth(c);
+            let ray = self.line(*from, *to);
+            self.divide(ray, elements, growth)
+        };
+        std::iter::zip(from, to).enumerate().map(ray).collect()
+    }
+
+    /// The patches between neighbouring rays.
+    fn patches(&mut self, rays: &[i32], outer: &[i32], inner: &[i32]) {
+        for (c, pair) in rays.windows(2).enumerate() {
+            self.patch([pair[0], outer[c], -pair[1], -inner[c]]);
+        }
+    }
 }
 
 /// Radius of block 1 over w_lig.
@@ -235,8 +224,8 @@ fn circle_points(window: &Window, outer: &[[f64; 2]], rho: f64) -> Vec<[f64; 2]>
         .map(|c| {
             let direction = (directions[c] - directions[0]) / range;
             let uniform = c as f64 / last as f64;
-            let share = blend * direction + (1.0 - blend) * uniform;
-            let angle = from + span * share;
+            let fraction = blend * direction + (1.0 - blend) * uniform;
+            let angle = from + span * fraction;
             [tip[0] + rho * angle.cos(), tip[1] + rho * angle.sin()]
         })
         .collect()

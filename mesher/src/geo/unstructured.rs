@@ -5,9 +5,8 @@
 //! only bend.
 
 use super::Script;
-use crate::msh::Boundary;
-use crate::tier::Unstructured;
-use crate::window::{Side, Window};
+use crate::{Boundary, Side, Unstructured, Window};
+use support::add_line;
 
 /// Adds the window as one surface, and the sizes of its triangles.
 pub(super) fn add(geo: &mut Script, window: &Window, recipe: &Unstructured) {
@@ -34,14 +33,15 @@ pub(super) fn add(geo: &mut Script, window: &Window, recipe: &Unstructured) {
     geo.boundary(Boundary::ArcB, &[arc_b]);
     let (tip_size, rim_size) = (recipe.tip_size * w, recipe.rim_size * r);
     let reach = (1.5 * w).powi(2);
-    geo.add(format_args!("Field[1] = MathEval;"));
-    geo.add(format_args!(
-        // The harmonic sum is smooth and smaller than each of its two terms.
+    add_line!(geo.text, "Field[1] = MathEval;");
+    // The harmonic sum is smooth and smaller than each of its two terms.
+    add_line!(
+        geo.text,
         "Field[1].F = \"1 / (1 / ({tip_size:?} * (1 + (x * x + (y + {w:?}) * (y + {w:?})) \
          / {reach:?})) + 1 / {rim_size:?})\";"
-    ));
-    geo.add(format_args!("Background Field = 1;"));
+    );
+    add_line!(geo.text, "Background Field = 1;");
     for source in ["FromPoints", "FromCurvature", "ExtendFromBoundary"] {
-        geo.add(format_args!("Mesh.CharacteristicLength{source} = 0;"));
+        add_line!(geo.text, "Mesh.CharacteristicLength{source} = 0;");
     }
 }

@@ -27,7 +27,7 @@ fn corners_and_middles(lower: &[[f64; 2]]) -> Vec<[f64; 3]> {
 fn hexahedron() -> VtkCell {
     let g = 0.5 / 3.0_f64.sqrt();
     let all = (0..27).map(|i| [i % 3, i / 3 % 3, i / 9]);
-    // At most one factor is quadratic.
+    // No more than one factor is quadratic.
     let monomials = all.filter(|powers| powers.iter().filter(|&&p| p == 2).count() <= 1);
     VtkCell {
         nodes: corners_and_middles(&[[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]),

@@ -22,10 +22,10 @@ use crate::cut_file::cut_drawing::{CutDrawing, Layer};
 use crate::cut_file::fabrication_error::FabricationError;
 use crate::cut_file::gaps::{self, Cut};
 use crate::display::Shape;
-use design::geometry::region::Contour;
 use design::geometry::polygon::{
     distance, distance_between_segments, distance_to_segment, edges, side,
 };
+use design::geometry::region::Contour;
 use design::objective::design_problem::Deployment;
 use design::pattern::cut_pattern::CutPattern;
 use design::sheet::cut_sheet::AttachmentPoint;
@@ -135,9 +135,16 @@ impl CutLines {
             let is_cut = |edge: [[f64; 2]; 2]| lines.iter().any(|line| carries(line, edge));
             // A trimmed panel has another edge where it has no neighbour.
             let [p, q] = sheet.topology.places[panel];
-            let beyond = [(Some(p), q.checked_sub(1)), (Some(p + 1), Some(q)), (Some(p), Some(q + 1)), (p.checked_sub(1), Some(q))];
+            let beyond = [
+                (Some(p), q.checked_sub(1)),
+                (Some(p + 1), Some(q)),
+                (Some(p), Some(q + 1)),
+                (p.checked_sub(1), Some(q)),
+            ];
             let joined = beyond.map(|(p, q)| sheet.topology.panel(p?, q?));
-            let mut cut = edges(&of.corners).zip(joined).filter(|(_, joined)| !of.is_trimmed() || joined.is_some());
+            let mut cut = edges(&of.corners)
+                .zip(joined)
+                .filter(|(_, joined)| !of.is_trimmed() || joined.is_some());
             if !cut.all(|((p, q), _)| is_cut([p, q])) {
                 return Err(FabricationError::EdgeNotCut { panel });
             }

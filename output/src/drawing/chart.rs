@@ -13,7 +13,7 @@ pub(super) struct Chart {
 impl Chart {
     /// Draws the frame, the ticks and the names of the axes of a chart between the corners `low`
     /// and `high` of the page (mm). `ticks` selects the axes that have ticks.
-    pub fn new(
+    pub(super) fn new(
         sketch: &mut Sketch,
         [low, high]: [[f64; 2]; 2],
         ranges: [[f64; 2]; 2],
@@ -45,7 +45,7 @@ impl Chart {
     }
 
     /// The position of a pair of values on the page.
-    pub fn at(&self, values: [f64; 2]) -> [f64; 2] {
+    pub(super) fn at(&self, values: [f64; 2]) -> [f64; 2] {
         [0, 1].map(|i| {
             let [from, to] = self.ranges[i];
             self.low[i] + (values[i] - from) / (to - from) * (self.high[i] - self.low[i])

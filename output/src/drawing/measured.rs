@@ -6,12 +6,12 @@ use crate::display::{Anchor, Style};
 use crate::drawing::chart::Chart;
 use crate::drawing::page::{ACCENT, INK, MUTED, PANELS, Page, Sketch, TEAL};
 use crate::measurement::MeasurementReport;
+use analysis::measured_openings::MeasuredOpening;
+use analysis::measured_points::FittedPoint;
+use analysis::path_fit::Fit;
 use design::geometry::polygon::bounds;
 use design::sheet::cut_sheet::Sheet;
 use design::sheet::kinematics::deployed_corners;
-use scene::analysis::measured_openings::MeasuredOpening;
-use scene::analysis::measured_points::FittedPoint;
-use scene::analysis::path_fit::Fit;
 
 /// Magnifications of the residuals.
 const MAGNIFICATIONS: [f64; 8] = [1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0];

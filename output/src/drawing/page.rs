@@ -57,23 +57,30 @@ pub(crate) struct Page {
 
 impl Sketch {
     /// A line with the given width in units.
-    pub fn stroke(&self, colour: Colour, width: f64) -> Style {
+    pub(crate) fn stroke(&self, colour: Colour, width: f64) -> Style {
         Style::stroke(colour, width * self.unit).round()
     }
 
     /// As [`stroke`](Self::stroke), dashed.
-    pub fn dashed(&self, colour: Colour, width: f64, dash: f64) -> Style {
+    pub(crate) fn dashed(&self, colour: Colour, width: f64, dash: f64) -> Style {
         let dash = dash * self.unit;
         self.stroke(colour, width).dashed(dash, 0.7 * dash)
     }
 
     /// Writes a text in a font of the given size (mm).
-    pub fn text(&mut self, at: [f64; 2], size: f64, anchor: Anchor, style: Style, text: &str) {
+    pub(crate) fn text(
+        &mut self,
+        at: [f64; 2],
+        size: f64,
+        anchor: Anchor,
+        style: Style,
+        text: &str,
+    ) {
         self.canvas.text(at, size, anchor, style, text);
     }
 
     /// A text that remains readable over lines.
-    pub fn haloed(&self, colour: Colour) -> Style {
+    pub(crate) fn haloed(&self, colour: Colour) -> Style {
         Style::fill(colour).haloed(4.0 * self.unit)
     }
 }
@@ -81,7 +88,7 @@ impl Sketch {
 impl Page {
     /// A page around `points`, with space for a title above, a scale bar below and, if requested, a
     /// colour scale at the right.
-    pub fn around(
+    pub(crate) fn around(
         points: impl IntoIterator<Item = [f64; 2]>,
         title: &str,
         subtitle: &str,
@@ -111,7 +118,7 @@ impl Page {
         page
     }
 
-    pub fn finish(self) -> String {
+    pub(crate) fn finish(self) -> String {
         self.sketch.canvas.svg(self.corners, WIDTH_PX, "px")
     }
 
@@ -131,7 +138,7 @@ impl Page {
     }
 
     /// Draws the colours of `scale` from bottom to top at the right edge, with its ticks.
-    pub fn colour_scale(&mut self, scale: &ColourScale, name: &str) {
+    pub(crate) fn colour_scale(&mut self, scale: &ColourScale, name: &str) {
         const BANDS: usize = 60;
         let u = self.sketch.unit;
         let right = self.corners[1][0];
@@ -172,7 +179,7 @@ pub(crate) struct ColourScale {
 
 impl ColourScale {
     /// From zero, or the minimum if that is negative, to the maximum, both rounded outwards.
-    pub fn covering(values: impl IntoIterator<Item = f64> + Clone) -> Self {
+    pub(crate) fn covering(values: impl IntoIterator<Item = f64> + Clone) -> Self {
         let min = values.clone().into_iter().fold(0.0, f64::min);
         let max = values.into_iter().fold(0.0, f64::max);
         let step = round_below(f64::max(max - min, 1e-3) / 4.0);
@@ -183,7 +190,7 @@ impl ColourScale {
         ((self.high - self.low) / self.step).round() as usize
     }
 
-    pub fn colour(&self, value: f64) -> Colour {
+    pub(crate) fn colour(&self, value: f64) -> Colour {
         viridis((value - self.low) / (self.high - self.low))
     }
 }

@@ -3,7 +3,7 @@
 use crate::listing::Listing;
 use design::objective::design_problem::{DesignError, DesignProblem};
 use design::pattern::design_vector::DesignVector;
-use design::sheet::ideal_deployment::ideal_deployment;
+use design::sheet::ideal_deployment::{check_opening, ideal_deployment};
 use design::sheet::kinematics::{deployed_corners, hinge_deformations};
 use design::sheet::opening_limits::{CONTACT, Span};
 use design::sheet::validity::overlap;
@@ -17,9 +17,7 @@ pub fn deployment(
     design: &DesignVector,
     theta: f64,
 ) -> Result<Listing, DesignError> {
-    if !theta.is_finite() {
-        return Err(DesignError::Opening(theta));
-    }
+    check_opening(theta)?;
     let (_, sheet) = problem.cut(design)?;
     let q = ideal_deployment(&sheet, theta);
     let panel_corners = deployed_corners(&sheet, &q);

@@ -30,7 +30,7 @@ const HEAD: [&str; 12] = [
 /// Follows the equilibrium path of a design and lists its load steps in their order; an error if
 /// the model has no equilibrium.
 pub fn equilibrium(problem: &DesignProblem, design: &DesignVector) -> Result<Listing, DesignError> {
-    let mechanics = problem.model.mechanics().ok_or(DesignError::NoMechanics)?;
+    let mechanics = problem.model.equilibrium()?;
     let Deployment { sheet, path, .. } = problem.deploy(design)?;
     let law = mechanics.law.prepare(&sheet.designs());
     let hinged = mechanics.hinged(&sheet, &*law, false);

@@ -1,8 +1,8 @@
 //! How far a measured sheet is from a state of its path.
 
+use analysis::measured_openings::{MeasuredOpening, MeasuredPanel, openings};
+use analysis::path_fit::Fit;
 use design::sheet::cut_sheet::Sheet;
-use scene::analysis::measured_openings::{MeasuredOpening, MeasuredPanel, openings};
-use scene::analysis::path_fit::Fit;
 use serde::Serialize;
 use support::statistics::root_mean_square;
 

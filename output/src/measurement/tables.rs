@@ -1,9 +1,9 @@
 //! The report of a measured sheet as parts for people, and its tables.
 
 use crate::measurement::{Agreement, Closed, MeasurementReport, OpeningSpread, Spread};
+use analysis::measured_openings::MeasuredOpening;
+use analysis::measured_points::FittedPoint;
 use design::objective::scores::shown;
-use scene::analysis::measured_openings::MeasuredOpening;
-use scene::analysis::measured_points::FittedPoint;
 use support::document::Document;
 use support::table::{Cell, Columns, Table};
 

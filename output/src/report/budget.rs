@@ -1,7 +1,6 @@
 //! The error budget of a run as a table, and what it leaves out.
 
-use crate::report::self_weight::SelfWeight;
-use scene::analysis::error_budget::{Effect, ErrorBudget};
+use analysis::error_budget::{Effect, ErrorBudget};
 use serde::Serialize;
 use support::table::{Cell, Table};
 
@@ -30,8 +29,12 @@ const NEVER_MODELLED: [&str; 4] = [
 pub(crate) const BUDGET_HEADING: &str = "error budget of the deployed sheet: standard deviations";
 
 impl Budget {
-    pub(super) fn new(errors: ErrorBudget, weight: &SelfWeight, dead_loads: bool) -> Self {
-        let not_modelled = weight.left_out().into_iter().chain(NEVER_MODELLED).collect();
+    pub(super) fn new(
+        errors: ErrorBudget,
+        left_out: Option<&'static str>,
+        dead_loads: bool,
+    ) -> Self {
+        let not_modelled = left_out.into_iter().chain(NEVER_MODELLED).collect();
         Self { errors, not_modelled, dead_loads }
     }
 

@@ -17,7 +17,7 @@ use surrogate::{Order, Surrogate, mean_and_variance};
 
 /// Standard deviations over an ensemble, relative to the root mean square over the path.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Estimate {
+pub(super) struct Estimate {
     /// Number of networks.
     pub networks: usize,
     /// Standard deviation of W.
@@ -30,7 +30,7 @@ pub struct Estimate {
 
 /// Sums over the states: of the variances, and of the squares of the means.
 #[derive(Default)]
-struct Spread {
+struct NetworkSpread {
     variances: f64,
     squares: f64,
 }
@@ -38,8 +38,8 @@ struct Spread {
 impl Estimate {
     /// The estimate for a path computed with the first of `networks`; `None` for a single network,
     /// or if no state is inside the training domain.
-    pub fn new(networks: &[Surrogate], deployment: &Deployment) -> Option<Self> {
-        let [mut energy, mut forces, mut peak] = [(); 3].map(|()| Spread::default());
+    pub(super) fn new(networks: &[Surrogate], deployment: &Deployment) -> Option<Self> {
+        let [mut energy, mut forces, mut peak] = [(); 3].map(|()| NetworkSpread::default());
         let mut peak_known = true;
         for (step, predictions) in
             std::iter::zip(&deployment.path, predictions(networks, deployment))
@@ -75,7 +75,7 @@ pub(crate) fn force_spreads(
     let mut deviations: Vec<Vec<f64>> = Vec::new();
     for (step, predictions) in std::iter::zip(&deployment.path, predictions(networks, deployment)) {
         let of_hinge = |(inside, [_, f_a, f_s, m, _]): (&bool, [Vec<f64>; 5])| {
-            let mut forces = Spread::default();
+            let mut forces = NetworkSpread::default();
             [f_a, f_s, m].iter().for_each(|force| forces.add(force));
             if !inside {
                 return f64::NAN;
@@ -92,7 +92,7 @@ pub(crate) fn force_spreads(
     Some(deviations)
 }
 
-/// At every load step and hinge: (W, w_lig F_a, w_lig F_s, M_theta, D_peak), each with one value
+/// Predictions at every load step and hinge: (W, w_lig F_a, w_lig F_s, M_theta, D_peak), each with one value
 /// for each network.
 fn predictions(
     networks: &[Surrogate],
@@ -118,7 +118,7 @@ fn predictions(
     })
 }
 
-impl Spread {
+impl NetworkSpread {
     /// Adds one quantity at one state, with its value for each network.
     fn add(&mut self, values: &[f64]) {
         let [mean, variance] = mean_and_variance(values.iter().copied());
@@ -137,11 +137,11 @@ mod tests {
 
     #[test]
     fn a_known_spread_is_found() {
-        let mut spread = Spread::default();
+        let mut spread = NetworkSpread::default();
         // Deviations of 0.1 about 1 and of 0.2 about -2.
         spread.add(&[0.9, 1.0, 1.1]);
         spread.add(&[-1.8, -2.0, -2.2]);
         assert!((spread.relative() - 0.1).abs() < 1e-12);
-        assert_eq!(Spread::default().relative(), 0.0);
+        assert_eq!(NetworkSpread::default().relative(), 0.0);
     }
 }

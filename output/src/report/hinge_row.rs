@@ -1,13 +1,13 @@
 //! One hinge in the report.
 
+use analysis::flanks::flank_gap;
+use analysis::localisation::gamma;
+use analysis::path_separation::path_separation;
 use design::geometry::polygon::{distance, edges};
 use design::hinge_law::DamageMeasure;
 use design::objective::design_problem::Deployment;
 use design::sheet::cut_sheet::{Hinge, Sheet};
 use hinge::HingeDesign;
-use scene::analysis::flanks::flank_gap;
-use scene::analysis::localisation::gamma;
-use scene::analysis::path_separation::path_separation;
 use scene::{Posture, Scene};
 use serde::Serialize;
 use surrogate::Surrogate;
@@ -29,7 +29,7 @@ pub struct HingeRow {
     pub eta_a: f64,
     /// s / w_lig in the last state of the path.
     pub eta_s: f64,
-    /// Maximum along the path of D, the mean damage of the ligament; `None` if it is not known: the
+    /// Maximum along the path of D, the mean damage of the ligament; `None` if it is unknown: the
     /// hinge law does not predict it, or a state of the path is outside its training domain.
     pub damage: Option<f64>,
     /// Maximum along the path of D_peak; at 1 the ligament tears.
@@ -40,7 +40,7 @@ pub struct HingeRow {
     /// [`path_separation()`].
     pub path_separation: f64,
     /// Minimum along the path of the distance of the flanks of the cut where they come nearest
-    /// (mm): see [`flank_gap`](scene::analysis::flanks::flank_gap).
+    /// (mm): see [`flank_gap`](analysis::flanks::flank_gap).
     pub flank_gap: f64,
     /// (21), with the shortest edge of the two panels; `None` for a sheet that does not lie on a
     /// surface.

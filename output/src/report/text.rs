@@ -3,14 +3,12 @@
 use crate::report::numbers::rounded;
 use crate::report::{BUDGET_HEADING, HingeRow, Report};
 use design::objective::scores::{Scores, shown};
-use scene::analysis::design_checks::WholeSheet;
-use scene::analysis::levels::Levels;
 use std::cmp::Ordering;
 use support::document::Document;
 use support::severity::Severity;
 use support::table::{Cell, Columns, Table};
 
-/// Maximum number of hinges of which all are listed.
+/// Maximum number of hinges that are all listed.
 const ALL_LISTED: usize = 24;
 /// Number of hinges that are listed of a larger sheet.
 const WORST_LISTED: usize = 20;
@@ -33,7 +31,7 @@ impl Report {
     /// The report as parts for people.
     pub fn document(&self) -> Document {
         let mut page = Document::default();
-        let mut head = format!("{}: level {}\n{}", self.title, self.facts.level, self.miss());
+        let mut head = format!("{}: level {}\n{}", self.title, self.level, self.miss());
         if let Some(text) = self.about_cut_files() {
             head += "\n";
             head += text;
@@ -48,8 +46,8 @@ impl Report {
             page.text(OUTLINE_ROSE);
         }
         let mut facts = Table::new(["", ""]).left(&[0, 1]);
-        for (name, value) in self.fact_rows() {
-            facts.row([name, &value]);
+        for fact in &self.facts {
+            facts.row([fact.label, &fact.text]);
         }
         page.table(facts);
         if let Some(budget) = &self.budget {
@@ -64,39 +62,6 @@ impl Report {
         page
     }
 
-    /// The facts of the run, the spread of the ensemble and the number of warnings, as names and
-    /// values with units.
-    pub fn fact_rows(&self) -> Vec<(&'static str, String)> {
-        let mut rows = self.facts.rows();
-        let hashes = rows.iter().position(|(name, _)| name.starts_with("hash"));
-        let mut further: Vec<_> =
-            (self.coarse_search_lines().into_iter()).map(|line| ("coarse search", line)).collect();
-        if let Some(estimate) = &self.estimate {
-            let percent = |x: f64| format!("{:.1} %", 100.0 * x);
-            let text = format!(
-                "{} networks; standard deviation inside the domain: energy {}, forces {}, D_peak {}",
-                estimate.networks,
-                percent(estimate.energy),
-                percent(estimate.forces),
-                estimate.damage_peak.map_or("-".into(), percent)
-            );
-            further.push(("ensemble", text));
-        }
-        further.extend(self.checks.levels.as_ref().map(level_row));
-        further.extend(self.checks.whole_sheet.as_ref().map(whole_sheet_row));
-        let count = |severity| {
-            let severities = self.warnings.iter().map(|warning| warning.severity);
-            severities.filter(|found| *found == severity).count()
-        };
-        let [errors, warnings, notes] =
-            [Severity::Error, Severity::Warning, Severity::Note].map(count);
-        let text = format!("errors {errors}, warnings {warnings}, notes {notes}");
-        further.push(("findings", text));
-        let at = hashes.unwrap_or(rows.len());
-        rows.splice(at..at, further);
-        rows
-    }
-
     /// The objective at the start and at the best design.
     fn objective(&self) -> Table {
         let rows = |scores: &Scores| {
@@ -106,7 +71,7 @@ impl Report {
             ];
             let values = scores.terms.values().copied();
             rows.extend(self.terms.iter().cloned().zip(values));
-            if self.facts.has_domain {
+            if self.has_domain {
                 rows.push(("inside domain (%)".to_owned(), 100.0 * scores.share_inside));
             }
             rows
@@ -138,7 +103,7 @@ impl Report {
             ));
         }
         let mut columns = hinge_columns();
-        let lies = self.facts.gamma_min.is_some();
+        let lies = self.hinges.iter().any(|row| row.gamma.is_some());
         if lies {
             columns = columns
                 .column("Gamma", |row| row.gamma.map_or("-".to_owned(), |gamma| rounded(gamma, 3)));
@@ -166,33 +131,6 @@ fn hinge_columns() -> Columns<'static, HingeRow> {
         .column("D", move |row| damage(row, row.damage))
         .column("D_peak", move |row| damage(row, row.damage_peak))
         .column("domain", |row| if row.inside { "inside" } else { "left" })
-}
-
-/// How far the levels of a run are from its finest one.
-fn level_row(levels: &Levels) -> (&'static str, String) {
-    let finest = levels.levels.last().map_or("", |level| level.level.name());
-    let others = levels.levels.iter().filter_map(|level| {
-        let corners = level.difference.as_ref()?.corners[1];
-        Some(format!("`{}` {}", level.level, rounded(corners, 2)))
-    });
-    let others: Vec<String> = others.collect();
-    let text = format!("largest difference of a corner to `{finest}`, mm: {}", others.join(", "));
-    ("levels", text)
-}
-
-/// The whole sheet by finite elements in one line.
-fn whole_sheet_row(sheet: &WholeSheet) -> (&'static str, String) {
-    let [rms, largest] = sheet.corners.map(|length| rounded(length, 2));
-    let load = sheet.load.map_or(String::new(), |[law, elements]| {
-        let [law, elements] = [law, elements].map(|load| rounded(load, 4));
-        format!("; load {elements} N, {law} N by the hinge law")
-    });
-    let text = format!(
-        "by finite elements, {}: panels tilt by up to {} deg; corners {rms} mm (rms), {largest} mm at most, from the hinge law{load}",
-        sheet.support.in_words(),
-        rounded(sheet.tilt_deg, 2)
-    );
-    ("whole sheet", text)
 }
 
 impl HingeRow {

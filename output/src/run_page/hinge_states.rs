@@ -3,12 +3,12 @@
 use crate::deployment_states::{kept, states_before};
 use crate::report::force_spreads;
 use crate::run_page::packed::Packed;
+use analysis::actuation_curve::ActuationCurve;
 use design::equilibrium::load_step::{LoadStep, Status};
 use design::hinge_law::{DamageMeasure, Order};
 use design::objective::design_problem::{Deployment, DesignProblem, Mechanics};
 use design::sheet::cut_sheet::Sheet;
 use scene::Scene;
-use scene::analysis::actuation_curve::ActuationCurve;
 use scene::placement::placed;
 use serde::Serialize;
 use surrogate::Surrogate;
@@ -62,7 +62,7 @@ pub(super) struct HingeStates {
 
 impl HingeStates {
     /// The states of a deployment; with the spread of several networks.
-    pub fn new(
+    pub(super) fn new(
         scene: &Scene,
         problem: &DesignProblem,
         deployment: &Deployment,

@@ -1,9 +1,11 @@
 //! The data of the page.
 
 use crate::deployment_states::kept;
-use crate::report::{BUDGET_HEADING, HingeRow, Report, Warning, extent, miss, worst_first};
+use crate::report::{BUDGET_HEADING, Fact, HingeRow, Report, Warning, extent, miss, worst_first};
 use crate::run_page::hinge_states::HingeStates;
 use crate::run_page::packed::Packed;
+use analysis::levels::Levels;
+use analysis::unit::Unit;
 use design::objective::design_problem::{Deployment, DesignProblem};
 use design::objective::loss::Objective;
 use design::objective::scores::outline_error;
@@ -11,7 +13,6 @@ use design::objective::term::in_words;
 use design::optimise::outer_loop::StepRecord;
 use design::sheet::cut_sheet::Sheet;
 use hinge::TrainingDomain;
-use scene::analysis::levels::Levels;
 use scene::design_run::Designed;
 use scene::{Actuation, Scene};
 use serde::Serialize;
@@ -29,13 +30,13 @@ pub struct PageData<'a> {
     title: &'a str,
     about_cut_files: Option<&'static str>,
     end_of_search: String,
-    facts: Vec<(&'static str, String)>,
+    facts: &'a [Fact],
     budget: Option<BudgetTable>,
     warnings: &'a [Warning],
     scene: String,
     history: History,
     /// What moves the sheet, and the units of displacement and load.
-    stroke: Option<(&'a str, [&'static str; 2])>,
+    stroke: Option<(&'a str, [Unit; 2])>,
     /// Displacement and load at the maximum of the load, if a displacement is prescribed.
     peak: Option<[f64; 2]>,
     /// The hinge nearest to failure.
@@ -110,13 +111,13 @@ impl<'a> PageData<'a> {
     /// The data of a run, or of the start of a search.
     pub fn new(scene: &'a Scene, designed: &'a Designed, report: &'a Report) -> Self {
         let deployment = &designed.best.deployment;
-        let reached = report.facts.reached.as_ref();
+        let reached = report.reached.as_ref();
         let worst = report.hinges.iter().min_by(|one, other| worst_first(one, other));
         Self {
             title: &report.title,
             about_cut_files: report.about_cut_files(),
             end_of_search: report.end_of_search(),
-            facts: report.fact_rows(),
+            facts: &report.facts,
             budget: report.budget.as_ref().map(|budget| BudgetTable {
                 heading: BUDGET_HEADING,
                 table: budget.table(),

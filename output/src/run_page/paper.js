@@ -12,7 +12,7 @@ function drawPaper() {
     write(tr, "td", value);
   };
   row("target", run.miss);
-  for (const [name, value] of run.facts) if (SUMMARY.includes(name)) row(name, value);
+  for (const { label, text } of run.facts) if (SUMMARY.includes(label)) row(label, text);
   // They need not be twice on paper.
   for (const tr of byId("facts").rows) tr.classList.toggle("screen-only", SUMMARY.includes(tr.firstChild.textContent));
   row("cut file", run.about_cut_files ? `${run.about_cut_files}: see the findings` : "no finding prevents it");

@@ -47,10 +47,10 @@ function writeTexts() {
   byId("alert").hidden = !run.about_cut_files;
   byId("alert").textContent = `${run.about_cut_files}: see the findings.`;
   byId("facts").textContent = "";
-  for (const [name, value] of run.facts) {
+  for (const { label, text, page } of run.facts) {
     const tr = write(byId("facts"), "tr");
-    write(tr, "td", name);
-    write(tr, "td", value);
+    write(tr, "td", label).title = page;
+    write(tr, "td", text);
   }
   writeBudget();
   document.body.classList.toggle("pin", !run.carries_load);
@@ -80,6 +80,7 @@ function writeWarnings() {
   if (run.warnings.length === 0) write(list, "li", "No warnings.");
   for (const warning of run.warnings) {
     const li = write(list, "li");
+    li.title = `Remedy: ${warning.remedy}`;
     write(li, "span", warning.severity, `tag ${warning.severity}`);
     write(li, "span", warning.message);
     warning.hinges.slice(0, MOST).forEach((h, i) => {

@@ -3,6 +3,10 @@
 mod accuracy;
 mod mistakes;
 
+use analysis::measured_openings::{MeasuredPanel, openings, scatter, slip};
+use analysis::measured_points::{Mark, MeasuredPoint};
+use analysis::measured_sheet::MeasuredSheet;
+use analysis::shape_path::ShapePath;
 use design::equilibrium::settings::SolverSettings;
 use design::equilibrium::supports::{Dof, Load, Support};
 use design::geometry::similarity::Scale;
@@ -14,10 +18,6 @@ use hinge::HingeConstants;
 use output::measurement::MeasurementReport;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use scene::analysis::measured_openings::{MeasuredPanel, openings, scatter, slip};
-use scene::analysis::measured_points::{Mark, MeasuredPoint};
-use scene::analysis::measured_sheet::{MeasuredSheet, MeasurementError};
-use scene::analysis::shape_path::ShapePath;
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
@@ -46,7 +46,11 @@ fn deployed() -> (DesignProblem, Deployment) {
             contact: None,
             solver,
         })),
-        objective: Objective::from_shape(Shape::new(vec![[0.0, 0.0]])),
+        objective: Objective {
+            shape: Shape::new(vec![[0.0, 0.0]]),
+            functionals: Vec::new(),
+            penalties: Vec::new(),
+        },
     };
     let mut design = DesignVector::uniform(GRID);
     for (i, z) in design.pattern.z.iter_mut().enumerate() {

@@ -1,9 +1,9 @@
 //! Load against displacement, and the forces that hold a sheet in its states.
 
 use super::*;
+use analysis::actuation_curve::{ActuationCurve, Mover};
 use design::equilibrium::load_step::{LoadStep, Status};
 use design::objective::design_problem::{Deployment, DesignProblem};
-use scene::analysis::actuation_curve::{ActuationCurve, Mover};
 
 /// The deployment of a scene with another actuation, in many load steps.
 fn deployed(actuation: &str) -> (DesignProblem, Deployment) {

@@ -44,7 +44,7 @@ fn a_search_keeps_a_design_whose_path_was_followed() {
             assert!(designed.search.history.last().unwrap().followed);
         }
         let report = write_results(&scene, &designed, false).unwrap();
-        let note = one(&report, Concern::OtherBranch);
+        let note = one(&report, "other-branch");
         assert_eq!(note.severity, Severity::Note);
     }
 }
@@ -87,7 +87,7 @@ fn a_stopped_search_that_is_refuted_resumes_to_the_same_trajectory() {
 fn a_search_without_a_contradiction_is_not_noted() {
     let run = Finished::new(SCENE);
     assert!(!run.designed.search.branch_mismatch());
-    assert!(found(&run.report, Concern::OtherBranch).is_empty());
+    assert!(found(&run.report, "other-branch").is_empty());
 }
 
 /// A search that is stopped between two followed paths returns the best design so far, not the last

@@ -3,11 +3,10 @@
 
 use super::learned::{brittle, learned, weights};
 use super::*;
-use design::DesignError;
+use analysis::actuation_curve::ActuationCurve;
+use analysis::design_checks::{DesignChecks, WholeSheet};
 use output::listing::equilibrium;
 use scene::Posture;
-use scene::analysis::actuation_curve::ActuationCurve;
-use scene::analysis::design_checks::{DesignChecks, WholeSheet};
 use scene::design_run::design_of_run;
 use scene::target::TargetShape;
 use support::severity::Severity;
@@ -39,7 +38,7 @@ const SHORT: (&str, &str) = ("steps = 6", "steps = 1");
 #[test]
 fn a_whole_sheet_by_finite_elements_is_in_the_report() {
     let run = finished(&[], &[FREE, SHORT]);
-    let expected = one(&run.report, Concern::LeavesPlane).clone();
+    let expected = one(&run.report, "leaves-plane").clone();
     let message = "the panels tilt by up to 7.0 deg".to_owned();
     let sheet = |support| WholeSheet {
         support,
@@ -55,19 +54,19 @@ fn a_whole_sheet_by_finite_elements_is_in_the_report() {
     };
     let best = &run.designed.search.best;
     let report = again(Posture::Free, best);
-    assert!(found(&report, Concern::LeavesPlane).is_empty());
-    let finding = one(&report, Concern::WholeSheet);
+    assert!(found(&report, "leaves-plane").is_empty());
+    let finding = one(&report, "whole-sheet");
     assert_eq!(finding.severity, Severity::Error);
     assert_says(&finding.message, &message);
     assert!(!report.cut_file);
     assert_says(&run.file("report.txt"), "tilt by up to 7 deg; corners 1.5 mm (rms), 4 mm at most");
     // Held in another way it may stay flat: the expectation is stated too.
     let held = again(Posture::HeldFlat, best);
-    assert_eq!(one(&held, Concern::LeavesPlane), &expected);
-    assert_eq!(found(&held, Concern::WholeSheet).len(), 1);
+    assert_eq!(one(&held, "leaves-plane"), &expected);
+    assert_eq!(found(&held, "whole-sheet").len(), 1);
     let mut other = best.clone();
     other.omega[0] += 0.1;
-    assert!(found(&again(Posture::Free, &other), Concern::WholeSheet).is_empty());
+    assert!(found(&again(Posture::Free, &other), "whole-sheet").is_empty());
 }
 
 #[test]
@@ -79,19 +78,17 @@ fn a_learned_law_states_what_is_not_modelled() {
         (FREE, "the weight of the sheet"),
     ] {
         let report = report(&[], &[posture, SHORT]);
-        let notes = found(&report, Concern::NotModelled);
+        let notes = found(&report, "not-modelled");
         // Its weight is in the model.
         assert_eq!(notes.is_empty(), posture == HANGING);
         for note in notes {
             assert_eq!(note.severity, Severity::Note);
             assert_says(&note.message, missing);
         }
-        let weight = &report.facts.self_weight;
-        assert_close(weight.weight, WEIGHT, 1e-9);
-        assert_close(weight.over_load.unwrap(), WEIGHT / 2.0, 1e-9);
-        assert_eq!(weight.is_modelled, posture == HANGING);
+        assert_close(value(&report, "weight").as_f64().unwrap(), WEIGHT, 1e-9);
         let text = report.document().to_string();
-        assert_says(&text, "9.82 N, 491 % of the load");
+        let modelled = if posture == HANGING { "modelled" } else { "not modelled" };
+        assert_says(&text, &format!("9.82 N, 491 % of the load; {modelled}"));
         // Gamma is of a sheet that lies.
         assert_eq!(text.contains("minimum Gamma"), posture == LYING, "{text}");
         // Ligaments of this film are 36 times as wide as it is thick; on a floor its weight keeps
@@ -101,7 +98,7 @@ fn a_learned_law_states_what_is_not_modelled() {
             LYING => Some(Severity::Warning),
             _ => None,
         };
-        let leaves = found(&report, Concern::LeavesPlane);
+        let leaves = found(&report, "leaves-plane");
         assert_eq!(leaves.first().map(|warning| warning.severity), expected);
     }
 }
@@ -116,7 +113,7 @@ fn a_weight_that_is_left_out_is_a_warning() {
         (HANGING, "[2.0, 0.0]", 0),
     ] {
         let report = report(&[], &[posture, ("[2.0, 0.0]", force), SHORT]);
-        let found = found(&report, Concern::Weight).len();
+        let found = found(&report, "weight").len();
         assert_eq!(found, expected, "{posture:?} {force}");
     }
 }
@@ -124,16 +121,15 @@ fn a_weight_that_is_left_out_is_a_warning() {
 #[test]
 fn friction_is_a_warning_beside_a_small_load() {
     let heavy = report(&[], &[LYING, SHORT]);
-    let lying = heavy.facts.self_weight.lying.as_ref().unwrap();
-    assert_close(lying.friction, 0.3 * WEIGHT, 1e-12);
-    let message = &one(&heavy, Concern::Friction).message;
+    assert_close(value(&heavy, "friction").as_f64().unwrap(), 0.3 * WEIGHT, 1e-12);
+    let message = &one(&heavy, "friction").message;
     let shares = ["147 % of the load", "150 % of the load"];
     let stated = shares.iter().any(|share| message.contains(share));
     assert!(stated, "{message}");
     assert_says(&heavy.document().to_string(), "clamp, panel P3 (column 1, row 2), at (");
     // At 4.9 % of the load it is none.
     let light = report(&[], &[LYING, ("[2.0, 0.0]", "[60.5, 0.0]"), SHORT]);
-    assert!(found(&light, Concern::Friction).is_empty());
+    assert!(found(&light, "friction").is_empty());
 }
 
 /// The sheet hangs from its left side: its weight turns it, in load steps of its own.
@@ -160,7 +156,7 @@ fn a_ligament_that_tears_under_the_weight_alone_is_named() {
         let folder = tempfile::tempdir().unwrap();
         brittle(folder.path(), 1e4);
         let report = Finished::within(folder, &learned(&[posture, SHORT])).report;
-        let message = &one(&report, Concern::Tearing).message;
+        let message = &one(&report, "tearing").message;
         let named = message.contains("under the weight of the sheet alone");
         assert_eq!(named, alone, "{message}");
     }
@@ -172,7 +168,7 @@ fn a_weight_in_another_unit_is_a_warning() {
     for (mass_g, expected) in [("49000.0", 0), ("51000.0", 1)] {
         let force = format!("force = [0.0, 0.0]\nmass_g = {mass_g}");
         let report = report(&[], &[HANGING, ("force = [2.0, 0.0]", &force), SHORT]);
-        assert_eq!(found(&report, Concern::HungWeight).len(), expected);
+        assert_eq!(found(&report, "hung-weight").len(), expected);
     }
 }
 
@@ -180,7 +176,7 @@ fn a_weight_in_another_unit_is_a_warning() {
 fn a_sheet_on_pins_has_no_equilibria_to_list() {
     let scene = shipped("pin-7x7", |_| ());
     let error = equilibrium(&scene.problem().unwrap(), &scene.start()).unwrap_err();
-    assert!(matches!(error, DesignError::NoMechanics));
+    assert!(error.to_string().starts_with("the level `pin` has no equilibrium"), "{error}");
 }
 
 /// A scene of these tests.
@@ -192,7 +188,7 @@ const STEEL_FILM: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/run/steel-f
 fn the_largest_load_of_a_driven_path_and_weak_weights_are_stated() {
     let steel = Finished::shipped(STEEL_FILM, |_| ());
     let report = &steel.report;
-    let reached = report.facts.reached.as_ref().unwrap();
+    let reached = report.reached.as_ref().unwrap();
     let peak = reached.peak.unwrap();
     let carried = peak.dead_load_reaches.unwrap();
     assert!(peak.load > 1.2 * reached.load && peak.displacement < 0.05 * reached.displacement);
@@ -212,7 +208,7 @@ fn the_largest_load_of_a_driven_path_and_weak_weights_are_stated() {
     let first = points.iter().find(|point| point[1] >= reached.load);
     assert_close(first.unwrap()[0], carried, step);
 
-    let warning = one(report, Concern::LoadPeak);
+    let warning = one(report, "load-peak");
     assert_eq!(warning.severity, Severity::Warning);
     assert_says(&warning.message, "such as a hung weight, does not open this sheet");
     assert_says(&report.document().to_string(), "largest load");
@@ -220,11 +216,11 @@ fn the_largest_load_of_a_driven_path_and_weak_weights_are_stated() {
     let peak = serde_json::to_string(&[peak.displacement, peak.load]).unwrap();
     assert_says(&steel.file("run.html"), &format!("\"peak\":{peak}"));
 
-    let warning = one(report, Concern::WeakWeights);
+    let warning = one(report, "weak-weights");
     assert_says(&warning.message, "F_s is off by 22.1 % at random states");
     let film = Finished::shipped("a4-polyester", |_| ()).report;
-    assert!(found(&film, Concern::WeakWeights).is_empty());
-    assert!(found(&film, Concern::LoadPeak).is_empty());
+    assert!(found(&film, "weak-weights").is_empty());
+    assert!(found(&film, "load-peak").is_empty());
 }
 
 /// Beyond the increments the load steps go on: the largest load is of the whole path.
@@ -233,7 +229,7 @@ fn the_largest_load_is_not_below_that_reached() {
     for increments in [1, 3, 8] {
         let change = |config: &mut SceneConfig| config.solver.max_increments = increments;
         let report = Finished::shipped("a4-polyester", change).report;
-        let reached = report.facts.reached.as_ref().unwrap();
+        let reached = report.reached.as_ref().unwrap();
         let peak = reached.peak.unwrap();
         let most = reached.displacement * (1.0 + 1e-12);
         let inside = peak.load >= reached.load && peak.displacement <= most;
@@ -262,7 +258,7 @@ fn a_missed_target_is_a_warning_and_a_shape_that_is_another_an_error() {
         let ratio = run.report.after.outline_error / 2800.0;
         assert_eq!(ratio > 0.2, expected == Severity::Error, "{ratio}");
         assert_eq!(run.report.cut_file, ratio <= 0.2, "{ratio}");
-        let found = one(&run.report, Concern::TargetMissed);
+        let found = one(&run.report, "target-missed");
         assert_eq!(found.severity, expected);
     }
 }
@@ -275,7 +271,7 @@ fn panels_that_lie_over_each_other_are_an_error() {
             let pin = config.pin.as_mut().unwrap();
             (pin.opening_deg, pin.held) = (opening_deg, true);
         });
-        let found = found(&run.report, Concern::PanelsOverlap);
+        let found = found(&run.report, "panels-overlap");
         assert_eq!(found.len(), expected, "{opening_deg}: {found:?}");
         for error in found {
             assert_eq!(error.severity, Severity::Error);
@@ -296,7 +292,7 @@ fn a_plate_stays_in_its_plane_if_it_is_pulled_and_leaves_it_if_it_is_pushed() {
             config.loads[0].force = force.map(|component| outwards * component);
             config.drive.as_mut().unwrap().stroke = 20.0;
         });
-        one(&run.report, Concern::LeavesPlane).clone()
+        one(&run.report, "leaves-plane").clone()
     };
     let pulled = plate(1.0);
     assert_eq!(pulled.severity, Severity::Note);
@@ -319,8 +315,7 @@ fn a_spot_check_outside_the_domain_is_a_warning() {
     for (inside, expected) in [(29, 1), (30, 0)] {
         let with = check(inside);
         let report = report(&[("\"test_errors\"", &with)], &[]);
-        let outside = found(&report, Concern::WeakWeights).into_iter();
-        let outside = outside.filter(|warning| warning.message.contains("of 60 states"));
-        assert_eq!(outside.count(), expected, "{:?}", report.warnings);
+        let outside = found(&report, "spot-check-outside").len();
+        assert_eq!(outside, expected, "{:?}", report.warnings);
     }
 }

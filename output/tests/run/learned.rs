@@ -114,16 +114,16 @@ fn every_term_counts_and_the_report_names_hinges_outside_the_domain() {
     for row in &report.hinges {
         assert_eq!(row.damage.is_some_and(|damage| damage > 0.0), row.inside);
     }
-    let ligaments = warned(report, Concern::LigamentsOutsideDomain);
+    let ligaments = warned(report, "ligaments-outside-domain");
     let rows = report.hinges.iter();
     let wide = rows.filter(|row| row.w_lig > 25.0).map(|row| row.hinge);
     let wide: Vec<usize> = wide.collect();
     assert!(!wide.is_empty() && wide.iter().all(|hinge| ligaments.contains(hinge)));
     let rows = report.hinges.iter();
     let left = rows.filter(|row| !row.inside).map(|row| row.hinge);
-    let outside = warned(report, Concern::StatesOutsideDomain);
+    let outside = warned(report, "states-outside-domain");
     assert_eq!(left.collect::<Vec<_>>(), outside);
-    assert!(warned(report, Concern::PathDependence).is_empty());
+    assert!(warned(report, "path-dependence").is_empty());
 }
 
 #[test]
@@ -138,7 +138,7 @@ fn a_path_that_departs_from_its_ray_is_named() {
         let cuts = CutLines::of(&scene, deployment);
         let warnings = warnings(&scene, deployment, &cuts);
         let mut warnings = warnings.iter();
-        let bent = warnings.find(|warning| warning.concern == Concern::PathDependence);
+        let bent = warnings.find(|warning| warning.concern == "path-dependence");
         bent.map(|warning| (warning.severity, warning.hinges.clone()))
     };
     assert_eq!(named(&deployment), None);
@@ -178,7 +178,7 @@ fn a_ligament_that_tears_is_reported_before_the_cut_file_is_written() {
         (write_results(&scene, &designed, false).unwrap(), text)
     };
     let (torn, text) = report(1e3);
-    let named = warned(&torn, Concern::Tearing);
+    let named = warned(&torn, "tearing");
     let rows = torn.hinges.iter();
     let over = rows.filter(|row| row.damage_peak.is_some_and(|peak| peak >= 1.0));
     assert_eq!(named, over.map(|row| row.hinge).collect::<Vec<_>>());
@@ -186,7 +186,7 @@ fn a_ligament_that_tears_is_reported_before_the_cut_file_is_written() {
     assert_says(&text, "the ligament tears");
     assert!(!torn.cut_file && text.contains("NO CUT FILE"), "{text}");
     let (whole, text) = report(1e-3);
-    assert!(warned(&whole, Concern::Tearing).is_empty() && !text.contains("tears (hinge"));
+    assert!(warned(&whole, "tearing").is_empty() && !text.contains("tears (hinge"));
 }
 
 #[test]
@@ -215,13 +215,14 @@ fn the_report_states_how_far_the_networks_of_an_ensemble_disagree() {
     save(1.1, &first.card().dataset_hash);
     let run = Finished::within(folder, &scene);
     let report = &run.report;
-    let estimate = report.estimate.as_ref().unwrap();
+    let estimate = value(report, "ensemble");
     // Energies and forces with the factors 1 and 1.21: a deviation of 0.21 / sqrt(2) about a mean
     // of 1.105.
     let expected = 0.21 / 2f64.sqrt() / 1.105;
-    assert_eq!((estimate.networks, estimate.damage_peak), (2, None));
-    assert_close(estimate.energy, expected, 1e-9);
-    assert_close(estimate.forces, expected, 1e-9);
+    assert_eq!(estimate["networks"], 2);
+    assert!(estimate["damage_peak"].is_null());
+    assert_close(estimate["energy"].as_f64().unwrap(), expected, 1e-9);
+    assert_close(estimate["forces"].as_f64().unwrap(), expected, 1e-9);
     assert_says(&report.document().to_string(), "2 networks; standard deviation");
     let table = report.budget.as_ref().unwrap().table();
     let budget: Vec<_> = table.rows().collect();
@@ -246,7 +247,7 @@ fn the_report_states_how_far_the_networks_of_an_ensemble_disagree() {
     assert_says(&text, "names no law of released hinges (surrogate.springback)");
 }
 
-fn warned(report: &Report, concern: Concern) -> Vec<usize> {
+fn warned(report: &Report, concern: &str) -> Vec<usize> {
     let found = found(report, concern).into_iter();
     found.flat_map(|warning| warning.hinges.clone()).collect()
 }

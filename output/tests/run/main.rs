@@ -12,7 +12,7 @@ mod run_page;
 mod sections;
 
 use design::optimise::outer_loop::SearchState;
-use output::report::{Concern, Report, Warning};
+use output::report::{Report, Warning};
 use output::run_results::write_results;
 use scene::design_run::{Designed, InverseDesignError, inverse_design};
 use scene::{Scene, SceneConfig};
@@ -159,17 +159,22 @@ fn shipped(name: &str, change: impl FnOnce(&mut SceneConfig)) -> Scene {
     Scene::new(config, &path).unwrap()
 }
 
+/// The value of a fact.
+fn value<'a>(report: &'a Report, label: &str) -> &'a serde_json::Value {
+    &report.facts.iter().find(|fact| fact.label == label).unwrap().value
+}
+
 /// The warnings of one kind.
-fn found(report: &Report, concern: Concern) -> Vec<&Warning> {
+fn found<'a>(report: &'a Report, concern: &str) -> Vec<&'a Warning> {
     let found = report.warnings.iter();
     found.filter(|warning| warning.concern == concern).collect()
 }
 
 /// The only warning of one kind.
 #[track_caller]
-fn one(report: &Report, concern: Concern) -> &Warning {
+fn one<'a>(report: &'a Report, concern: &str) -> &'a Warning {
     let [warning] = found(report, concern)[..] else {
-        panic!("{concern:?}: {:?}", report.warnings);
+        panic!("{concern}: {:?}", report.warnings);
     };
     warning
 }

@@ -71,11 +71,11 @@ fn the_page_needs_no_other_file_and_agrees_with_the_report() {
     let states = &data["states"];
     assert_eq!(states["index"], json!([0, 1, 2, 3, 4]));
     assert_eq!(states["load_factor"], json!([0.0, 0.25, 0.5, 0.75, 1.0]));
-    let reached = report.facts.reached.as_ref().unwrap();
+    let reached = report.reached.as_ref().unwrap();
     let end = json!([reached.displacement, reached.load]);
     assert_eq!(states["curve"][4], end);
     assert_close(reached.load, 2.0, 1e-12);
-    assert!(reached.stiffness.unwrap() > 0.0);
+    assert!(value(report, "stiffness").as_f64().unwrap() > 0.0);
     assert!(data["peak"].is_null() && page.contains("Panels stay in the plane"));
     // The clamp holds the panel against the force.
     let reactions = floats(&states["reactions"]);
@@ -92,8 +92,7 @@ fn the_page_needs_no_other_file_and_agrees_with_the_report() {
         assert_close(sum / loss.as_f64().unwrap(), 1.0, 1e-12);
     }
     assert!(data["budget"].is_null());
-    let facts = data["facts"].as_array().unwrap().iter();
-    assert_eq!(facts.count(), report.fact_rows().len());
+    assert_eq!(data["facts"], json!(report.facts));
     assert!(data["scene"].as_str().unwrap().contains("k_theta = 300.0"));
 }
 

@@ -95,18 +95,18 @@ pub(super) struct Contour {
 
 impl Contour {
     /// Width and height of its bounding box.
-    pub fn size(&self) -> [f64; 2] {
+    pub(super) fn size(&self) -> [f64; 2] {
         let [low, high] = polygon::bounds(self.points.iter().copied());
         [high[0] - low[0], high[1] - low[1]]
     }
 
     /// Whether it has an inside.
-    pub fn is_whole(&self) -> bool {
+    pub(super) fn is_whole(&self) -> bool {
         self.closed || self.filled
     }
 
     /// It with each point once; one that returns to its start is closed.
-    pub fn merged(mut self) -> Self {
+    pub(super) fn merged(mut self) -> Self {
         let near = |p: [f64; 2], q: [f64; 2]| polygon::distance(p, q) <= self.rounding;
         let mut last = [f64::NAN; 2];
         self.points.retain(|point| {
@@ -125,7 +125,7 @@ impl Contour {
     }
 
     /// Checks that it is an outline; returns the length of the line that closes it.
-    pub fn check(&self) -> Result<f64, DrawingError> {
+    pub(super) fn check(&self) -> Result<f64, DrawingError> {
         let found = self.points.len();
         let last = self.points[found - 1];
         let gap = match self.closed {

@@ -8,8 +8,10 @@ use std::collections::HashMap;
 use std::ops::Range;
 use std::str::FromStr;
 use svgtypes::{Angle, Length, LengthUnit};
-use usvg::roxmltree::{Document, Node};
+use usvg::roxmltree::{Attribute, Document, Node};
 
+/// The namespace of SVG.
+const SVG: &str = "http://www.w3.org/2000/svg";
 /// Properties of CSS that are lengths in attributes.
 const LENGTHS: [&str; 9] = ["x", "y", "cx", "cy", "r", "rx", "ry", "width", "height"];
 /// Properties that are applied before `transform`, in this order.
@@ -47,7 +49,8 @@ pub(super) fn edits(document: &Document) -> Result<Vec<Edit>, DrawingError> {
     let styles = document.descendants().filter(|node| node.has_tag_name("style"));
     styles.filter_map(|node| node.text()).for_each(|text| sheet.parse_more(text));
     let mut edits = Vec::new();
-    for node in document.descendants().filter(Node::is_element) {
+    let drawn = |node: &Node| node.tag_name().namespace() == Some(SVG);
+    for node in document.descendants().filter(drawn) {
         let styled = Styled::of(node, &sheet);
         let geometry = LENGTHS.iter().chain(&["d"]).filter(|_| node != document.root_element());
         for name in geometry {
@@ -87,6 +90,12 @@ impl<'a> Styled<'a> {
         DrawingError::Style { name: name.into(), value: value.into() }
     }
 
+    /// An attribute of SVG: drawing programs have others of the same name in their own namespaces,
+    /// such as `inkscape:zoom`.
+    fn own(&self, name: &str) -> Option<Attribute<'a, 'a>> {
+        self.node.attributes().find(|own| own.name() == name && own.namespace().is_none())
+    }
+
     /// The value of an attribute, if a style gives one.
     fn geometry(&self, name: &str) -> Result<Option<String>, DrawingError> {
         let Some((value, _)) = self.styles.get(name).filter(|(value, _)| *value != "auto") else {
@@ -106,7 +115,7 @@ impl<'a> Styled<'a> {
     fn transform(&self) -> Result<Option<String>, DrawingError> {
         for (name, read) in OTHERS {
             let style = self.styles.get(name).map(|(value, _)| *value);
-            if let Some(value) = style.or_else(|| self.node.attribute(name))
+            if let Some(value) = style.or_else(|| self.own(name).map(|own| own.value()))
                 && !read.iter().any(|start| value.starts_with(start))
             {
                 return Err(self.refused(name, value));
@@ -128,14 +137,14 @@ impl<'a> Styled<'a> {
             list += &matrices.ok_or_else(|| self.refused(name, value))?;
         }
         if !self.styles.contains_key("transform") {
-            list += self.node.attribute("transform").unwrap_or_default();
+            list += self.own("transform").map_or("", |own| own.value());
         }
         Ok(styled.then(|| format!("{list} scale(1)")))
     }
 
     /// Writes an attribute, or behind the one that is there.
     fn attribute(&self, name: &str, value: &str, behind: bool) -> Edit {
-        if let Some(present) = self.node.attribute_node(name) {
+        if let Some(present) = self.own(name) {
             let Range { start, end } = present.range_value();
             return match behind && !present.value().is_empty() {
                 true => (end..end, format!(";{value}")),

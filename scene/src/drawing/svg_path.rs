@@ -382,6 +382,11 @@ mod tests {
         ] {
             assert_near(bounds(drawn(&format!("{sheet}{content}"))), expected);
         }
+        // What Inkscape says of its window and of a star is not of the drawing.
+        let named = "xmlns:i='http://www.inkscape.org/namespaces/inkscape'";
+        let view = format!("<i:namedview {named} i:zoom='0.74' zoom='2' i:cx='83'/>");
+        let star = LARGE.replace("/>", &format!(" {named} i:zoom='2' i:transform='scale(9)'/>"));
+        assert_near(bounds(drawn(&format!("{view}{star}"))), [0.0, 10.0, -20.0, 0.0]);
         let rounded = drawn("<rect width='4' height='2' style='rx:1px'/>").unwrap();
         let area = polygon::area(&rounded).abs();
         assert!((area / (4.0 + std::f64::consts::PI) - 1.0).abs() < 2e-3, "{area}");

@@ -1,8 +1,6 @@
-//! Shipped scenes: what is refused, levels, loads, and the error budget.
+//! Shipped scenes: what is refused, and loads.
 
 mod actuations;
-mod error_budget;
-mod levels;
 mod refused;
 
 use scene::{Scene, SceneConfig};

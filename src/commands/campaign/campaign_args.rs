@@ -8,13 +8,13 @@ use std::path::{Path, PathBuf};
 use support::table::Table;
 
 /// File of the database in the folder of a campaign.
-pub const DATABASE: &str = "hinges.parquet";
+pub(crate) const DATABASE: &str = "hinges.parquet";
 /// File of the states on which weights are tested.
-pub const SPOT_CHECK: &str = "spot-check.parquet";
+pub(crate) const SPOT_CHECK: &str = "spot-check.parquet";
 
 /// A campaign and the folder of its jobs.
 #[derive(Args)]
-pub struct CampaignArgs {
+pub(super) struct CampaignArgs {
     /// Campaign (TOML), for example configs/campaigns/demo.toml
     #[arg(value_name = "CAMPAIGN")]
     pub campaign: PathBuf,
@@ -24,11 +24,11 @@ pub struct CampaignArgs {
 }
 
 impl CampaignArgs {
-    pub fn load(&self) -> Result<Campaign> {
+    pub(super) fn load(&self) -> Result<Campaign> {
         Ok(Campaign::load(&self.campaign)?)
     }
 
-    pub fn folder(&self) -> PathBuf {
+    pub(super) fn folder(&self) -> PathBuf {
         self.folder.clone().unwrap_or_else(|| {
             Path::new("runs").join(self.campaign.file_stem().unwrap_or_default())
         })
@@ -36,7 +36,7 @@ impl CampaignArgs {
 }
 
 /// Prints the job counts and the reasons of failures.
-pub fn print_tally(tally: &Tally) {
+pub(super) fn print_tally(tally: &Tally) {
     println!(
         "{} rays complete, {} partial, {} failed, {} to retry, {} open; {} samples; {} solver time",
         tally.complete,

@@ -1,6 +1,6 @@
 //! `kirigami campaign collect`
 
-use crate::commands::campaign::campaign_args::{CampaignArgs, DATABASE, SPOT_CHECK};
+use super::campaign_args::{CampaignArgs, DATABASE, SPOT_CHECK};
 use crate::ui::output_file;
 use anyhow::{Context, Result, bail};
 use clap::Args;
@@ -15,7 +15,7 @@ use verification::{SpotStates, rows};
 /// Rays on the finer mesh are in the database too; `train` corrects the others by them. Example:
 /// kirigami campaign collect configs/campaigns/demo.toml
 #[derive(Args)]
-pub struct CollectCommand {
+pub(super) struct CollectCommand {
     #[command(flatten)]
     campaign: CampaignArgs,
     /// Parquet file to write; the spot check is written next to it [default: hinges.parquet in the

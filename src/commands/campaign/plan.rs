@@ -1,6 +1,6 @@
 //! `kirigami campaign plan`
 
-use crate::commands::campaign::campaign_args::{CampaignArgs, print_tally};
+use super::campaign_args::{CampaignArgs, print_tally};
 use crate::commands::solve_args::FeSolver;
 use crate::ui::processors;
 use crate::ui::progress::duration;
@@ -10,7 +10,7 @@ use support::table::Table;
 
 /// Print what a run would solve, why, and the estimated time
 #[derive(Args)]
-pub struct PlanCommand {
+pub(super) struct PlanCommand {
     #[command(flatten)]
     campaign: CampaignArgs,
     /// Print JSON
@@ -19,7 +19,7 @@ pub struct PlanCommand {
 }
 
 impl PlanCommand {
-    pub fn run(&self) -> Result<()> {
+    pub(super) fn run(&self) -> Result<()> {
         let folder = self.campaign.folder();
         let versions = FeSolver::find()?.versions();
         let plan = fe_driver::plan(&self.campaign.load()?, &folder, &versions)?;
@@ -51,7 +51,7 @@ impl PlanCommand {
             duration(plan.seconds / workers),
             match plan.tally.timed {
                 0 => "the usual time of its meshes; rays of some materials take longer".into(),
-                timed => format!("by the time of the {timed} rays solved so far"),
+                timed => format!("from the time of the {timed} rays solved"),
             },
             plan.memory_mb,
             plan.disk_mb

@@ -1,6 +1,6 @@
 //! `kirigami campaign restore`
 
-use crate::commands::campaign::campaign_args::CampaignArgs;
+use super::campaign_args::CampaignArgs;
 use anyhow::Result;
 use clap::Args;
 use dataset::Database;
@@ -13,7 +13,7 @@ use verification::collected_windows;
 /// or other versions of gmsh and ccx do not belong to the campaign and are skipped. Rays of the
 /// spot check are solved again, since its file has four states of each.
 #[derive(Args)]
-pub struct RestoreCommand {
+pub(super) struct RestoreCommand {
     #[command(flatten)]
     campaign: CampaignArgs,
     /// Database (Parquet with its manifest)
@@ -22,10 +22,10 @@ pub struct RestoreCommand {
 }
 
 impl RestoreCommand {
-    pub fn run(&self) -> Result<()> {
+    pub(super) fn run(&self) -> Result<()> {
         let database = Database::read(&self.from)?;
         let campaign = self.campaign.load()?;
-        let windows = collected_windows(database.rows())?;
+        let windows = collected_windows(database.rows());
         let folder = self.campaign.folder();
         let restored = fe_driver::restore(&campaign, &folder, &windows)?;
         println!(

@@ -1,6 +1,6 @@
 //! `kirigami campaign run`
 
-use crate::commands::campaign::campaign_args::{CampaignArgs, print_tally};
+use super::campaign_args::{CampaignArgs, print_tally};
 use crate::commands::solve_args::{FeSolver, SolveArgs};
 use crate::ui::exit::Unfinished;
 use crate::ui::interrupt;
@@ -10,14 +10,14 @@ use clap::Args;
 use fe_driver::{RunOptions, Shard, Tally};
 use std::path::Path;
 use std::time::Duration;
-use verification::VerificationError;
+use verification::every_ray_failed;
 
 /// Solve all rays that are not solved yet
 ///
 /// Exit code 0 if nothing is left to solve, 75 if stopped before that by Ctrl-C or by --time-limit:
 /// run the same command again to continue.
 #[derive(Args)]
-pub struct RunCommand {
+pub(super) struct RunCommand {
     #[command(flatten)]
     campaign: CampaignArgs,
     #[command(flatten)]
@@ -78,10 +78,7 @@ fn refuse_unfinished(tally: &Tally, folder: &Path) -> Result<()> {
     if tally.to_run() > 0 {
         bail!(Unfinished { left: tally.to_run(), what: "rays" });
     }
-    ensure!(
-        tally.failed == 0 || tally.complete + tally.partial > 0,
-        VerificationError::EveryRayFailed(folder.join("jobs"))
-    );
+    ensure!(tally.failed == 0 || tally.complete + tally.partial > 0, every_ray_failed(folder));
     Ok(())
 }
 

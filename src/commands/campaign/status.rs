@@ -1,14 +1,14 @@
 //! `kirigami campaign status`
 
-use crate::commands::campaign::campaign_args::{CampaignArgs, print_tally};
+use super::campaign_args::{CampaignArgs, print_tally};
 use anyhow::Result;
 use clap::Args;
-use fe_driver::{ArrayStates, SlurmError, Status};
+use fe_driver::{ArrayStates, Status};
 use serde::Serialize;
 
 /// Print the state of the jobs, the reasons of failures, the throughput, and the tasks on a cluster
 #[derive(Args)]
-pub struct StatusCommand {
+pub(super) struct StatusCommand {
     #[command(flatten)]
     campaign: CampaignArgs,
     /// Print JSON
@@ -26,13 +26,13 @@ struct Report {
 }
 
 impl StatusCommand {
-    pub fn run(&self) -> Result<()> {
+    pub(super) fn run(&self) -> Result<()> {
         let folder = self.campaign.folder();
         fe_driver::known_parts(&self.campaign.load()?, &folder)?;
         let status = fe_driver::status(&folder)?;
         let (slurm, silent) = match fe_driver::array_states(&folder) {
-            Err(error @ SlurmError::Silent { .. }) => (None, Some(error)),
-            states => (states?, None),
+            Err(error) => (None, Some(error)),
+            Ok(states) => (states, None),
         };
         if self.json {
             let report = Report { status, slurm };

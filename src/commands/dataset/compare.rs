@@ -2,8 +2,9 @@
 
 use crate::ui::{output_file, run_folder};
 use anyhow::{Result, ensure};
+use app::train::correction;
 use clap::Args;
-use dataset::{ComparedRay, ComparedState, Database, LeftOut, compare, left_out};
+use dataset::{ComparedRay, ComparedState, Database, compare, left_out};
 use std::path::PathBuf;
 use support::document::Document;
 use verification::{SCALE, spread_table};
@@ -14,7 +15,7 @@ use verification::{SCALE, spread_table};
 /// mesh, and writes them to compare.md. Example: kirigami dataset
 /// compare data/polypropylene-3mm/hinges.parquet
 #[derive(Args)]
-pub struct CompareCommand {
+pub(super) struct CompareCommand {
     /// Database to evaluate (Parquet with its manifest)
     #[arg(value_name = "DATABASE")]
     database: PathBuf,
@@ -27,15 +28,17 @@ pub struct CompareCommand {
 }
 
 impl CompareCommand {
-    pub fn run(&self) -> Result<()> {
+    pub(super) fn run(&self) -> Result<()> {
         let database = Database::read(&self.database)?;
         let reference = (self.reference.as_ref()).map(|file| Database::read(file));
         let reference = reference.transpose()?;
         let (rays, finer) = match &reference {
-            Some(reference) => (compare(&database, reference), reference.manifest().tier.clone()),
+            Some(reference) => {
+                (compare(&database, reference), reference.manifest().tier.to_string())
+            }
             None => {
                 let finer = database.manifest().finer.as_ref();
-                let finer = finer.map_or(String::new(), |finer| finer.tier.clone());
+                let finer = finer.map_or(String::new(), |finer| finer.tier.to_string());
                 (database.on_both_meshes(), finer)
             }
         };
@@ -46,7 +49,7 @@ impl CompareCommand {
         );
         let states: Vec<_> = rays.iter().map(ComparedRay::states).collect();
         output_file::create_folder(&self.out)?;
-        let tiers = [database.manifest().tier.clone(), finer];
+        let tiers = [database.manifest().tier.to_string(), finer];
         let mut page = summary(&rays, &states, &tiers);
         match left_out(&rays) {
             Ok(checked) => page.append(correction(&checked)),
@@ -79,24 +82,6 @@ fn summary(
         cpu[1],
     ));
     page.table(spread_table(&groups(states), "ray"));
-    page
-}
-
-/// The remaining differences when every ray is corrected by the others.
-pub fn correction(checked: &LeftOut) -> Document {
-    let note = match &checked.uncorrected()[..] {
-        [] => String::new(),
-        left => format!(
-            " Not corrected, because that does not reduce the differences: {}.",
-            left.join(", ")
-        ),
-    };
-    let mut page = Document::default();
-    page.text(format!(
-        "Remaining differences when each of the {} rays is corrected by the others.{note}",
-        checked.states.len()
-    ));
-    page.table(spread_table(&groups(&checked.states), "ray"));
     page
 }
 

@@ -5,6 +5,7 @@ use crate::commands::solve_args::{SolveArgs, task_error};
 use crate::ui::interrupt;
 use crate::ui::progress::{announce, duration};
 use anyhow::{Context, Result, ensure};
+use app::design::write_refined;
 use output::report::Report;
 use scene::design_run::OnStep;
 use scene::run_inputs::{SCENE_FILE, holds_a_run};
@@ -31,7 +32,7 @@ impl DesignCommand {
         ));
         let (windows, stop) = (ElementWindows { tier, service }, interrupt::stop_flag()?);
         let found = final_design(scene, &windows, stop, progress);
-        self.write_refined(found.map_err(task_error)?)
+        write_refined(&found.map_err(task_error)?, self.force)
     }
 }
 

@@ -1,15 +1,11 @@
 //! The command line arguments that select a scene and a design.
 
-use anyhow::{Context, Result};
+use anyhow::Result;
+use app::chosen::Chosen;
 use clap::Args;
 use design::pattern::design_vector::DesignVector;
 use scene::Scene;
-use scene::design_run::{design_of_run, stored_design};
-use scene::run_inputs::{STATE_FILE, scene_file};
-use std::path::{Path, PathBuf};
-
-/// The value of `--design` that names no file.
-const START: &str = "start";
+use std::path::PathBuf;
 
 /// A scene and a design of its sheet.
 #[derive(Args)]
@@ -24,68 +20,18 @@ pub struct Inspected {
     design: Option<PathBuf>,
 }
 
-/// A design and its name for a person.
-type Named = (DesignVector, String);
-
 impl Inspected {
-    /// A scene, or the folder of a run, with its own design.
-    pub(crate) fn of(scene: &Path) -> Self {
-        Self { scene: scene.to_owned(), design: None }
+    pub(crate) fn chosen(&self) -> Chosen<'_> {
+        Chosen { scene: &self.scene, design: self.design.as_deref() }
     }
 
-    /// The scene, a design of its sheet and the name of the design: without `--design` the design
-    /// of the scene's run, or the start design if the scene has no run.
+    /// See [`Chosen::read`].
     pub(crate) fn read(&self) -> Result<(Scene, DesignVector, String)> {
-        let scene = self.scene()?;
-        let (design, name) = match self.stored(&scene)? {
-            Some(stored) => stored,
-            None => self.start(&scene),
-        };
-        Ok((scene, design, name))
+        self.chosen().read()
     }
 
-    /// The same with a designed sheet: without `--design` it is an error if the scene has no run.
+    /// See [`Chosen::read_run`].
     pub(crate) fn read_run(&self) -> Result<(Scene, DesignVector, String)> {
-        let scene = self.scene()?;
-        let (design, name) = self.stored(&scene)?.with_context(|| {
-            format!(
-                "the scene {} has no run, there is no state in {}: run `kirigami design` first, or name a design (--design)",
-                self.scene.display(),
-                scene.output().display()
-            )
-        })?;
-        Ok((scene, design, name))
+        self.chosen().read_run()
     }
-
-    /// The design that `--design` names, or the design of the scene's run; `None` if the scene has
-    /// no run.
-    fn stored(&self, scene: &Scene) -> Result<Option<Named>> {
-        Ok(match &self.design {
-            None => {
-                let path = scene.output().join(STATE_FILE);
-                design_of_run(scene)?.map(|design| (design, design_in(&path)))
-            }
-            Some(path) if path.as_os_str() == START => Some(self.start(scene)),
-            Some(path) => Some((stored_design(path, scene)?, design_in(path))),
-        })
-    }
-
-    /// The start design of the scene.
-    fn start(&self, scene: &Scene) -> Named {
-        let name = format!("start design of {}", self.scene.display());
-        (scene.start(), name)
-    }
-
-    /// Whether the design that [`read`](Self::read) finds is the design of the scene's run.
-    pub(crate) fn is_run(&self, scene: &Scene) -> bool {
-        self.design.is_none() && scene.output().join(STATE_FILE).exists()
-    }
-
-    fn scene(&self) -> Result<Scene> {
-        Ok(Scene::read(&scene_file(&self.scene)?)?)
-    }
-}
-
-fn design_in(path: &Path) -> String {
-    format!("design {}", path.display())
 }

@@ -1,9 +1,9 @@
 //! `kirigami material check`: what a material means for windows and sheets.
 
+use analysis::material_check::{Intended, MaterialCheck};
 use anyhow::{Result, bail, ensure};
 use clap::Args;
 use hinge::{Regime, SheetMaterial};
-use scene::analysis::material_check::{Intended, MaterialCheck};
 use scene::run_inputs::scene_file;
 use scene::{Posture, SceneConfig};
 use std::path::PathBuf;
@@ -17,7 +17,7 @@ use support::toml_file;
 /// tear. Exits with 1 if a verdict is an error. Example: kirigami material check
 /// configs/materials/pet-0.5mm.toml configs/scenes/pet-7x7.toml
 #[derive(Args)]
-pub struct CheckCommand {
+pub(super) struct CheckCommand {
     /// Material (TOML); see configs/materials
     #[arg(value_name = "MATERIAL")]
     material: PathBuf,

@@ -5,12 +5,12 @@ use crate::ui::shell_word::shell_word;
 use crate::ui::{output_file, picture, run_folder};
 use anyhow::{Result, ensure};
 use clap::Args;
-use hinge::{SheetFacts, SheetMaterial, material_file};
+use hinge::SheetMaterial;
 use std::path::{Path, PathBuf};
 use support::table::{Cell, Table};
 use tensile::{
     Cause, FitOptions, FractureSource, MaterialFit, Origin, Quantity, RecordOptions, Softening,
-    Specimen, SpecimenOptions, Statistic,
+    Specimen, SpecimenOptions, Statistic, material_file,
 };
 
 /// Fit a material to tensile tests: modulus, yield, hardening, fracture strain
@@ -24,7 +24,7 @@ use tensile::{
 /// material fit strip-*.csv --name film --thickness 0.5 --density-kg-m3 1390
 #[derive(Args)]
 #[command(allow_negative_numbers = true)]
-pub struct FitCommand {
+pub(super) struct FitCommand {
     /// Records of the specimens: tables as text, such as CSV
     #[arg(value_name = "TEST", required = true)]
     tests: Vec<PathBuf>,
@@ -109,16 +109,16 @@ impl FitCommand {
             output_file::refuse_existing(&file)?;
         }
         let fit = MaterialFit::new(&records, &self.options()?)?;
-        let facts = SheetFacts {
+        let material = fit.material(SheetMaterial {
             name: self.name.clone(),
             thickness: self.thickness,
             poisson: self.poisson.unwrap_or(ASSUMED_POISSON),
-            poisson_assumed: self.poisson.is_none(),
             density_kg_m3: self.density_kg_m3,
-        };
-        let material = SheetMaterial::fitted(&fit, &facts)?;
+            ..SheetMaterial::default()
+        })?;
         let _held = run_folder::hold(&self.out)?;
-        run_folder::write(&self.out, &name, &material_file(&fit, &facts))?;
+        let text = material_file(&fit, &material, self.poisson.is_none());
+        run_folder::write(&self.out, &name, &text)?;
         let chart = tensile_test(&fit, &self.name)?;
         let pictures = picture::save(&chart, &self.out.join(&self.name), PICTURE_WIDTH)?;
         if self.json {

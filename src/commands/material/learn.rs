@@ -13,7 +13,6 @@ use crate::commands::campaign::RayProgress;
 use crate::commands::material::learn::conclusion::{MATERIAL, WEIGHTS, conclusion};
 use crate::commands::material::learn::fine_tuning::FineTuning;
 use crate::commands::solve_args::{FeSolver, SolveArgs, task_error};
-use crate::new_project::{self, edited};
 use crate::ui::exit::Unfinished;
 use crate::ui::interrupt;
 use crate::ui::progress::duration;
@@ -21,9 +20,10 @@ use crate::ui::run_folder;
 use crate::ui::with_unit::{percent, time};
 use ::train::{ErrorInterval, TrainingConfig, check_pretrained};
 use anyhow::{Context, Result, bail, ensure};
+use app::new_project::{self, edited};
 use clap::Args;
 use dataset::{Database, SplitPlan};
-use fe_driver::{Campaign, Progress, random_paths};
+use fe_driver::{Campaign, random_paths};
 use hinge::{Regime, SheetMaterial, TrainingDomain};
 use mesher::Tier;
 use std::path::{Path, PathBuf};
@@ -31,8 +31,7 @@ use std::time::{Duration, Instant};
 use surrogate::Surrogate;
 use toml_edit::{ArrayOfTables, DocumentMut};
 use verification::{
-    Accuracy, LearningEnd, LearningRound, LearningSteps, LearningTask, VerificationError,
-    distillation_states, learn, spot_check,
+    Accuracy, Learning, LearningEnd, LearningRound, LearningTask, distillation_states, spot_check,
 };
 
 /// Solve hinge windows of a material and train its weights until they are accurate enough
@@ -46,7 +45,7 @@ use verification::{
 /// and training that can be edited. Example: kirigami material learn
 /// configs/materials/polypropylene-0.8mm.toml --accuracy 1% --time 1h --out runs/polypropylene
 #[derive(Args)]
-pub struct LearnCommand {
+pub(super) struct LearnCommand {
     /// Material (TOML), as written by `material fit`
     #[arg(value_name = "MATERIAL")]
     material: PathBuf,
@@ -127,12 +126,13 @@ impl LearnCommand {
             check_pretrained(parent, &config).with_context(|| format!("{}", file.display()))?;
         }
         let campaign = self.campaign(&material, tier)?;
-        let region = campaign.region().ok_or(VerificationError::NoRegion)?;
+        let region = campaign.region().context("the campaign has no region of rays")?;
         let fine_tuning = FineTuning {
             parents,
             config,
             distillation: distillation_states(campaign.drawn(&region)),
             fits: self.out.join("fits"),
+            stop: interrupt::stop_flag()?,
         };
         let spot = self.spot_check(&campaign, &region)?;
         let accuracy = Accuracy { energy: self.accuracy, forces: self.forces };
@@ -147,11 +147,10 @@ impl LearnCommand {
             deadline: began.checked_add(self.time),
             stop: interrupt::stop_flag()?,
         };
-        let mut steps =
-            Steps { out: &self.out, fine_tuning, rounds: Vec::new(), domain: None, progress: None };
-        let end = learn(task, &mut steps)?;
-        let domains = (steps.domain.as_ref(), &region);
-        println!("{}", conclusion(steps.rounds.last(), accuracy, &self.out, domains));
+        let learning = Learning::new(task)?;
+        let (end, rounds, domain) = self.rounds(learning, &fine_tuning)?;
+        let domains = (domain.as_ref(), &region);
+        println!("{}", conclusion(rounds.last(), accuracy, &self.out, domains));
         match end {
             LearningEnd::Accurate => {
                 let took = duration(began.elapsed().as_secs_f64());
@@ -165,6 +164,41 @@ impl LearnCommand {
                 campaign.rays(),
                 self.out.join("campaign.toml").display()
             ),
+        }
+    }
+
+    /// Solves, trains and tests round after round. Returns why they ended, the rounds, and the
+    /// training domain of the saved weights.
+    fn rounds(
+        &self,
+        mut learning: Learning,
+        fine_tuning: &FineTuning,
+    ) -> Result<(LearningEnd, Vec<LearningRound>, Option<TrainingDomain>)> {
+        let (mut rounds, mut domain) = (Vec::new(), None);
+        loop {
+            let mut bar: Option<RayProgress> = None;
+            let solved = learning.solve(&mut |now| {
+                let rays = now.tally.closed() + now.tally.to_run();
+                bar.get_or_insert_with(|| RayProgress::new(rays)).show(now);
+            })?;
+            let (rays, database) = match solved {
+                Ok(solved) => solved,
+                Err(end) => return Ok((end, rounds, domain)),
+            };
+            if let Some(bar) = bar {
+                bar.0.finish();
+            }
+            database.write(&self.out.join("hinges.parquet"), true)?;
+            let (weights, training_s) = fine_tuning.network(rays, &database)?;
+            let (round, weights) = learning.test(weights, training_s)?;
+            if round.is_latest {
+                weights.save(&self.out.join(WEIGHTS))?;
+                domain = Some(weights.domain().clone());
+            }
+            rounds.push(round);
+            let table = LearningRound::table(&rounds);
+            println!("{table}\n");
+            run_folder::write(&self.out, "learn.csv", &table.csv())?;
         }
     }
 
@@ -250,45 +284,4 @@ fn shipped_parents(regime: Regime) -> Vec<PathBuf> {
     });
     let file = |name: &str| folder.join(name).with_extension("safetensors");
     PARENTS.map(file).to_vec()
-}
-
-/// What the command does in every round.
-struct Steps<'a> {
-    out: &'a Path,
-    fine_tuning: FineTuning,
-    rounds: Vec<LearningRound>,
-    /// Training domain of the saved weights.
-    domain: Option<TrainingDomain>,
-    /// Progress of the rays of the round.
-    progress: Option<RayProgress>,
-}
-
-impl LearningSteps for Steps<'_> {
-    type Error = anyhow::Error;
-
-    fn solving(&mut self, now: &Progress) {
-        let rays = now.tally.closed() + now.tally.to_run();
-        let bar = self.progress.get_or_insert_with(|| RayProgress::new(rays));
-        bar.show(now);
-    }
-
-    fn train(&mut self, rays: usize, database: &Database) -> Result<(Surrogate, f64)> {
-        if let Some(bar) = self.progress.take() {
-            bar.0.finish();
-        }
-        database.write(&self.out.join("hinges.parquet"), true)?;
-        self.fine_tuning.network(rays, database)
-    }
-
-    fn round(&mut self, round: &LearningRound, weights: Surrogate, is_latest: bool) -> Result<()> {
-        self.rounds.push(round.clone());
-        let table = LearningRound::table(&self.rounds);
-        println!("{table}\n");
-        run_folder::write(self.out, "learn.csv", &table.csv())?;
-        if is_latest {
-            weights.save(&self.out.join(WEIGHTS))?;
-            self.domain = Some(weights.domain().clone());
-        }
-        Ok(())
-    }
 }

@@ -1,7 +1,7 @@
 //! `kirigami surrogate card`
 
-use crate::commands::train::{UNSEEN, bin_table, error_table};
 use anyhow::Result;
+use app::train::{UNSEEN, bin_table, error_table};
 use clap::Args;
 use std::path::PathBuf;
 use surrogate::{Surrogate, Teacher};
@@ -10,14 +10,14 @@ use surrogate::{Surrogate, Teacher};
 ///
 /// All numbers are in the JSON file next to the weights.
 #[derive(Args)]
-pub struct CardCommand {
+pub(super) struct CardCommand {
     /// Weights (safetensors with their card)
     #[arg(value_name = "WEIGHTS")]
     weights: PathBuf,
 }
 
 impl CardCommand {
-    pub fn run(&self) -> Result<()> {
+    pub(super) fn run(&self) -> Result<()> {
         let surrogate = Surrogate::load(&self.weights)?;
         let card = surrogate.card();
         println!("material {}, tier {}", card.material, card.tier);

@@ -1,12 +1,11 @@
 //! `kirigami surrogate test`
 
-use crate::commands::surrogate::errors::StateErrors;
 use anyhow::{Result, ensure};
+use app::state_errors::{print_errors, record};
 use clap::Args;
 use dataset::Database;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use surrogate::Surrogate;
-use train::{ErrorInterval, spot_check};
 
 /// Print the errors of weights on a database, such as a spot check or rays of a finer mesh
 ///
@@ -15,7 +14,7 @@ use train::{ErrorInterval, spot_check};
 /// any. Example: kirigami surrogate test data/pet-0.5mm/medium.safetensors
 /// data/pet-0.5mm/spot-check.parquet
 #[derive(Args)]
-pub struct TestCommand {
+pub(super) struct TestCommand {
     /// Weights (safetensors with their card)
     #[arg(value_name = "WEIGHTS")]
     weights: PathBuf,
@@ -29,7 +28,7 @@ pub struct TestCommand {
 }
 
 impl TestCommand {
-    pub fn run(&self) -> Result<()> {
+    pub(super) fn run(&self) -> Result<()> {
         let surrogate = Surrogate::load(&self.weights)?;
         let database = Database::read(&self.database)?;
         let (card, manifest) = (surrogate.card(), database.manifest());
@@ -49,28 +48,4 @@ impl TestCommand {
         }
         Ok(())
     }
-}
-
-/// Prints the errors of weights at the states of a database.
-pub(crate) fn print_errors(surrogate: &Surrogate, database: &Database) {
-    let manifest = database.manifest();
-    println!(
-        "weights of tier {}, tested on tier {}, {} rays",
-        surrogate.card().tier,
-        manifest.tier,
-        manifest.rays
-    );
-    print!("{}", StateErrors::new(surrogate, database.rows()).document());
-    match ErrorInterval::of(surrogate, database.rows()) {
-        Some([w, forces]) => println!("all states: W {w}; forces {forces}"),
-        None => println!("all states: too few for an interval"),
-    }
-}
-
-/// Writes the errors to the card of weights.
-pub(crate) fn record(surrogate: Surrogate, spot: &Database, weights: &Path) -> Result<()> {
-    let check = spot_check(&surrogate, spot.rows(), &spot.manifest().tier);
-    surrogate.with_spot_check(check).save(weights)?;
-    println!("recorded on the card of {}", weights.display());
-    Ok(())
 }

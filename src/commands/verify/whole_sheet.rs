@@ -1,11 +1,11 @@
 //! `kirigami verify --sheet`: the whole sheet by finite elements.
 
-use crate::commands::design_checks::record;
 use crate::commands::solve_args::{FeSolver, task_error};
 use crate::commands::verify::VerifyCommand;
 use crate::ui::progress::{announce, duration, watched};
 use crate::ui::{interrupt, output_file, picture, run_folder};
 use anyhow::{Result, anyhow, bail};
+use app::design_checks::record;
 use design::pattern::design_vector::DesignVector;
 use fe_driver::{SheetSolve, Solve, sheet_reached};
 use output::drawing::{Surface, View, surface};
@@ -63,7 +63,7 @@ impl VerifyCommand {
         run_folder::write(&self.out, "sheet.json", &json)?;
         self.draw(scene, &check)?;
         self.print(&check, &document)?;
-        if let Some(found) = check.summary().filter(|_| self.inspected.is_run(scene)) {
+        if let Some(found) = check.summary().filter(|_| self.inspected.chosen().is_run(scene)) {
             record(scene, design, |checks| checks.whole_sheet = Some(found))?;
         }
         if check.path.is_empty() {
@@ -80,7 +80,7 @@ impl VerifyCommand {
         let stop = interrupt::stop_flag()?;
         let problem = &solve.problem;
         let mesh = problem.shape.mesh(&folder, &calculix.gmsh, limit, stop)?;
-        let cost = SheetCost::of(&mesh, problem.keeping);
+        let cost = SheetCost::of(&mesh, problem.restraint);
         let needed = cost.memory_mib;
         announce(&format!(
             "{} unknowns; about {} of CPU time and {needed:.0} MiB of memory; kept in {}",

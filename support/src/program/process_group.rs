@@ -30,7 +30,7 @@ pub(super) struct Group {
 impl Group {
     /// Starts a program in `folder`, with its output in `log`, after killing what an earlier run
     /// left there.
-    pub fn spawn(
+    pub(super) fn spawn(
         program: &Path,
         arguments: &[&str],
         folder: &Path,
@@ -83,12 +83,12 @@ impl Group {
     }
 
     /// The process number of the leader.
-    pub fn id(&self) -> u32 {
+    pub(super) fn id(&self) -> u32 {
         self.child.id()
     }
 
     /// Waits for the leader and reaps it.
-    pub fn wait(&mut self) -> std::io::Result<ExitStatus> {
+    pub(super) fn wait(&mut self) -> std::io::Result<ExitStatus> {
         self.child.wait()
     }
 
@@ -97,7 +97,7 @@ impl Group {
     }
 
     /// Whether the leader has exited; it stays a zombie, so its CPU time can still be read.
-    pub fn has_ended(&self) -> bool {
+    pub(super) fn has_ended(&self) -> bool {
         !matches!(self.look(WaitPidFlag::WNOHANG), Ok(WaitStatus::StillAlive))
     }
 
@@ -108,13 +108,13 @@ impl Group {
     }
 
     /// User and system seconds of the leader, which has exited or is about to exit.
-    pub fn cpu_seconds(&self) -> Option<f64> {
+    pub(super) fn cpu_seconds(&self) -> Option<f64> {
         self.look(WaitPidFlag::empty()).ok()?;
         cpu_seconds(self.child.id())
     }
 
     /// Sends SIGTERM, waits up to the grace period, then sends SIGKILL.
-    pub fn end(&self) {
+    pub(super) fn end(&self) {
         let deadline = Instant::now() + GRACE;
         // An error means that the group no longer exists, which is the desired state.
         let _ = killpg(self.pid(), Signal::SIGTERM);

@@ -41,6 +41,7 @@ impl TaylorRemainders {
         pairs.map(|pair| (pair[0] / pair[1]).log2()).collect()
     }
 
+    /// Fails unless every observed order is in a range.
     #[track_caller]
     pub fn assert_orders(&self, expected: std::ops::Range<f64>) {
         let orders = self.orders();
@@ -54,6 +55,7 @@ pub fn central_slope(f: impl Fn(&[f64]) -> f64, x: &[f64], direction: &[f64], h:
     (f(&moved(x, direction, h)) - f(&moved(x, direction, -h))) / (2.0 * h)
 }
 
+/// a . b
 pub fn dot(a: &[f64], b: &[f64]) -> f64 {
     std::iter::zip(a, b).map(|(a, b)| a * b).sum()
 }
@@ -82,12 +84,14 @@ pub fn assert_gradient(
     }
 }
 
+/// Fails unless the error is below a tolerance.
 #[track_caller]
 pub fn assert_close(found: f64, expected: f64, tolerance: f64) {
     let close = (found - expected).abs() < tolerance;
     assert!(close, "{found} instead of {expected}");
 }
 
+/// Fails unless the relative error is below a tolerance.
 #[track_caller]
 pub fn assert_ratio(found: f64, expected: f64, tolerance: f64) {
     let close = (found / expected - 1.0).abs() < tolerance;

@@ -1,5 +1,13 @@
 //! What the tests of several crates share: derivatives, running processes, a CalculiX that is a
 //! script.
+//!
+//! ```
+//! use testkit::derivatives::TaylorRemainders;
+//!
+//! let square = |x: &[f64]| Ok::<_, ()>(x[0] * x[0]);
+//! let remainders = TaylorRemainders::new(square, &[3.0], &[6.0], &[1.0], 0.1, 5);
+//! remainders.unwrap().assert_orders(1.95..2.05);
+//! ```
 
 pub mod derivatives;
 mod fake_ccx;

@@ -55,8 +55,6 @@ pub fn rows(jobs: usize) -> Vec<Row> {
                 design,
                 sample: sample(&design, end.at(lambda), lambda),
                 material: "closed form".into(),
-                tier: "exact".into(),
-                solved_tier: "exact".into(),
                 ..Row::default()
             });
         }

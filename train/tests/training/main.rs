@@ -10,7 +10,7 @@ use dataset::{Part, Row};
 use hinge::{HingeDeformation, HingeDesign, HingeSample};
 use std::f64::consts::FRAC_PI_2;
 use surrogate::{Order, Surrogate};
-use train::{Epoch, Parity, Start, TrainError, Training, TrainingConfig, train};
+use train::{Epoch, Parity, Start, Training, TrainingConfig, train};
 
 #[test]
 fn an_energy_in_closed_form_is_learned() {
@@ -134,14 +134,14 @@ fn constant_features_and_zero_targets_are_errors() {
     let refusal = |change: fn(&mut Row)| {
         let mut rows = rows(12);
         rows.iter_mut().for_each(change);
-        train(&database(rows), &config(1), &mut |_| {}).unwrap_err()
+        train(&database(rows), &config(1), &mut |_| {}).unwrap_err().to_string()
     };
     let error = refusal(|row| row.design.alpha = FRAC_PI_2);
-    assert!(matches!(error, TrainError::ConstantFeature { feature: "alpha", .. }), "{error}");
+    assert!(error.starts_with("the feature `alpha` is "), "{error}");
     let error = refusal(|row| row.sample.theta = 0.7);
-    assert!(matches!(error, TrainError::ConstantFeature { feature: "theta", .. }), "{error}");
+    assert!(error.starts_with("the feature `theta` is "), "{error}");
     let error = refusal(|row| row.sample.d = 0.0);
-    assert!(matches!(error, TrainError::NoScale { target: "D", .. }), "{error}");
+    assert!(error.starts_with("the root mean square of D "), "{error}");
 }
 
 #[test]
@@ -150,8 +150,8 @@ fn a_loss_that_overflows_float32_is_an_error() {
     for row in &mut rows {
         row.sample.f_a *= 1e-60;
     }
-    let error = train(&database(rows), &config(2), &mut |_| {}).unwrap_err();
-    assert!(matches!(error, TrainError::Diverged { epoch: 1, .. }), "{error}");
+    let error = train(&database(rows), &config(2), &mut |_| {}).unwrap_err().to_string();
+    assert!(error.contains("not finite in epoch 1;"), "{error}");
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use crate::closed_form::{config, database, energies, finished, rows};
 use std::path::Path;
-use train::{Start, StateError, TrainError, Trained, Training, TrainingConfig};
+use train::{Start, TrainError, Trained, Training, TrainingConfig};
 
 /// A training of `epochs` epochs after `run` of them.
 fn begun(epochs: usize, run: usize) -> Training {
@@ -55,11 +55,11 @@ fn a_damaged_or_foreign_state_is_an_error() {
     let cases = [&bytes[..0], &bytes[..31], &bytes[..32], &bytes[..bytes.len() - 1], &flipped];
     for damaged in cases {
         std::fs::write(&state, damaged).unwrap();
-        let error = resumed(&state, &config(3)).err().unwrap();
-        let malformed = matches!(error, TrainError::State(StateError::Malformed { .. }));
+        let error = resumed(&state, &config(3)).err().unwrap().to_string();
+        let malformed = error.contains("is not a state of a training, or is damaged");
         assert!(malformed, "{} bytes: {error}", damaged.len());
     }
     std::fs::remove_file(&state).unwrap();
-    let error = resumed(&state, &config(3)).err().unwrap();
-    assert!(matches!(error, TrainError::State(StateError::Read(_))), "{error}");
+    let error = resumed(&state, &config(3)).err().unwrap().to_string();
+    assert!(error.starts_with("cannot read "), "{error}");
 }

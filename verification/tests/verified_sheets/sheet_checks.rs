@@ -3,61 +3,26 @@
 
 use fe_driver::{CalculiX, SolveService, SolveStore};
 use mesher::Tier;
-use scene::{Posture, Scene};
+use scene::{Posture, Scene, SceneConfig};
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 use support::severity::Severity;
 use verification::{SheetCheck, SheetCost, SheetTask, VerificationError};
 
-/// Four panels of film; `change` replaces a part of its text by another.
-fn scene([from, to]: [&str; 2]) -> Scene {
-    let text = r#"
-title = "four panels"
-material = "configs/materials/pet-0.5mm.toml"
-thickness = 0.1
-level = "standard"
-load_steps = 10
-output = "runs/four"
-[sheet]
-size = [140.0, 140.0]
-panels = [2, 2]
-[ligament]
-start = 3.6
-range = [2.0, 5.0]
-[process]
-fillet_ratio = 0.16
-slit_width = 0.1
-r_win = 20.0
-[surrogate]
-weights = "data/pet-0.5mm/medium.safetensors"
-[posture]
-kind = "held-flat"
-[[supports]]
-panel = [0, 1]
-kind = "clamp"
-[[loads]]
-panel = [1, 0]
-force = [0.0, -1.0]
-[drive]
-stroke = 8.0
-[target.rectangle]
-centre = [70.0, 70.0]
-size = [150.0, 150.0]
-rotation_deg = 0.0
-[objective]
-[optimiser]
-method = "lbfgs"
-steps = 1
-learning_rate = 0.1
-"#;
-    assert!(text.contains(from), "{from}");
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../four.toml");
-    let text = text.replacen(from, to, 1);
-    Scene::new(support::toml_file::parse(&text, &path).unwrap(), &path).unwrap()
+/// Four panels of film, after a change.
+fn scene(change: impl FnOnce(&mut SceneConfig)) -> Scene {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../configs/sheets/four-panels.toml");
+    let mut config: SceneConfig = support::toml_file::read(&path).unwrap();
+    config.load_steps = 10;
+    config.drive.as_mut().unwrap().stroke = 8.0;
+    change(&mut config);
+    Scene::new(config, &path).unwrap()
 }
 
-const AS_IT_IS: [&str; 2] = ["", ""];
+fn four_panels() -> Scene {
+    scene(|_| ())
+}
 
 fn task(scene: &Scene, support: Option<Posture>) -> Result<SheetTask, VerificationError> {
     SheetTask::new(scene, &scene.start(), support, Tier::Tiny, None)
@@ -80,7 +45,7 @@ fn checked(task: &SheetTask, limit: Duration) -> SheetCheck {
 
 #[test]
 fn panels_held_flat_go_where_the_law_has_them() {
-    let task = task(&scene(AS_IT_IS), None).unwrap();
+    let task = task(&four_panels(), None).unwrap();
     let check = checked(&task, Duration::from_secs(300));
     let branch = &check;
     let last = branch.last().unwrap();
@@ -111,11 +76,12 @@ fn panels_held_flat_go_where_the_law_has_them() {
 /// Four of six panels; the other two move as the law predicts.
 #[test]
 fn a_patch_of_a_sheet_is_where_the_law_has_it() {
-    let six = ["panels = [2, 2]", "panels = [2, 3]"];
     let task_of = |panel| {
-        let mut scene = scene(six);
-        scene.config.sheet.size = Some([140.0, 210.0]);
-        scene.config.supports[0].panel = [0, 2];
+        let scene = scene(|config| {
+            config.sheet.panels = [2, 3];
+            config.sheet.size = Some([140.0, 210.0]);
+            config.supports[0].panel = [0, 2];
+        });
         SheetTask::new(&scene, &scene.start(), None, Tier::Tiny, Some(panel))
     };
     let check = checked(&task_of([1, 2]).unwrap(), Duration::from_secs(300));
@@ -139,7 +105,7 @@ fn a_patch_of_a_sheet_is_where_the_law_has_it() {
 /// At the time limit, what was solved is reported, and the rest is said not to be known.
 #[test]
 fn a_path_that_ends_early_is_reported_as_far_as_it_goes() {
-    let task = task(&scene(AS_IT_IS), Some(Posture::Free)).unwrap();
+    let task = task(&four_panels(), Some(Posture::Free)).unwrap();
     let check = checked(&task, Duration::from_secs(8));
     let branch = &check;
     let reason = branch.stopped.as_deref().unwrap();
@@ -152,28 +118,24 @@ fn a_path_that_ends_early_is_reported_as_far_as_it_goes() {
 
 #[test]
 fn what_has_no_counterpart_is_refused() {
-    let refused = |change: [&str; 2], support: Option<Posture>| {
+    let refused = |change: fn(&mut SceneConfig), support: Option<Posture>| {
         let found = task(&scene(change), support).and_then(|task| {
             let versions = CalculiX::find().unwrap().versions();
             task.solve(&versions).map(|_| ())
         });
         found.err().map(|error| error.to_string()).unwrap_or_default()
     };
-    let force = "force = [0.0, -1.0]";
-    for (change, support, expected) in [
-        (AS_IT_IS, Some(Posture::Hanging), "in which direction"),
-        ([force, "force = [0.0, -1.0]\ncouple = 3.0"], None, "couples on panels"),
-        (
-            ["kind = \"clamp\"", "kind = \"clamp\"\nrotation_deg = 1.0"],
-            None,
-            "a support that turns",
-        ),
-    ] {
+    let cases: [(fn(&mut SceneConfig), _, _); 3] = [
+        (|_| (), Some(Posture::Hanging), "in which direction"),
+        (|config| config.loads[0].couple = 3.0, None, "couples on panels"),
+        (|config| config.supports[0].rotation_deg = 1.0, None, "a support that turns"),
+    ];
+    for (change, support, expected) in cases {
         let message = refused(change, support);
         assert!(message.contains(expected), "{expected}: {message}");
     }
     let unstructured =
-        SheetTask::new(&scene(AS_IT_IS), &scene(AS_IT_IS).start(), None, Tier::Paper, None);
+        SheetTask::new(&four_panels(), &four_panels().start(), None, Tier::Paper, None);
     let versions = CalculiX::find().unwrap().versions();
     let error = unstructured.unwrap().solve(&versions).unwrap_err();
     assert!(error.to_string().contains("no structured mesh"), "{error}");
@@ -181,14 +143,14 @@ fn what_has_no_counterpart_is_refused() {
 
 #[test]
 fn the_cost_is_that_of_measured_sheets() {
-    let task = task(&scene(AS_IT_IS), None).unwrap();
+    let task = task(&four_panels(), None).unwrap();
     let calculix = CalculiX::find().unwrap();
     let solve = task.solve(&calculix.versions()).unwrap();
     let folder = tempfile::tempdir().unwrap();
     let (limit, stop) = (Duration::from_secs(60), AtomicBool::new(false));
     let shape = &solve.problem.shape;
     let mesh = shape.mesh(folder.path(), &calculix.gmsh, limit, &stop).unwrap();
-    let cost = SheetCost::of(&mesh, solve.problem.keeping);
+    let cost = SheetCost::of(&mesh, solve.problem.restraint);
     assert_eq!(cost.unknowns, 3 * mesh.nodes.len());
     assert!((3.0..60.0).contains(&cost.cpu_seconds), "{cost:?}");
     assert!((10.0..100.0).contains(&cost.memory_mib), "{cost:?}");

@@ -1,8 +1,12 @@
 //! The compression functional (18): the mean over hinges of max(0, -min_i^tau eta_a,ih).
 
-use crate::geometry::smooth_extrema::smooth_min;
-use crate::objective::hinge_measures::HingeMeasure;
-use crate::objective::term::{Deployed, Term, TermGradient};
+use crate::{
+    geometry::smooth_extrema::smooth_min,
+    objective::{
+        hinge_measures::HingeMeasure,
+        term::{Deployed, Term, TermGradient},
+    },
+};
 
 /// The compression functional.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -2,10 +2,14 @@
 //! the peak damage. A ligament tears at a peak damage of 1: from 0.9 on it costs (100 (max_i^tau
 //! D_ih - 0.9))^2 more.
 
-use crate::geometry::smooth_extrema::smooth_max;
-use crate::hinge_law::DamageMeasure;
-use crate::objective::hinge_measures::HingeMeasure;
-use crate::objective::term::{Deployed, Term, TermGradient};
+use crate::{
+    geometry::smooth_extrema::smooth_max,
+    hinge_law::DamageMeasure,
+    objective::{
+        hinge_measures::HingeMeasure,
+        term::{Deployed, Term, TermGradient},
+    },
+};
 
 /// Peak damage from which a ligament costs more, and the factor on its excess.
 const NEARLY_TORN: f64 = 0.9;
@@ -13,7 +17,7 @@ const TEARING: f64 = 100.0;
 
 /// The damage functional.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Damage {
+pub struct DamageFunctional {
     /// D or D_peak.
     pub measure: DamageMeasure,
     /// D_s of the measure.
@@ -22,7 +26,7 @@ pub struct Damage {
     pub temperature: f64,
 }
 
-impl Term for Damage {
+impl Term for DamageFunctional {
     fn name(&self) -> &'static str {
         "damage"
     }

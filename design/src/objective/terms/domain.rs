@@ -9,8 +9,10 @@
 //! hinge from it. A state beyond the domain by a tenth of the range costs 1. The penalty begins at
 //! 98 % of the domain, because otherwise a minimum would lie just outside.
 
-use crate::hinge_law::HingeGradient;
-use crate::objective::term::{Deployed, Term, TermGradient};
+use crate::{
+    hinge_law::HingeGradient,
+    objective::term::{Deployed, Term, TermGradient},
+};
 use hinge::{HingeDeformation, HingeDesign, TrainingDomain};
 
 /// Gauge above which a state is penalised.
@@ -128,7 +130,7 @@ mod tests {
     fn a_tenth_of_the_range_beyond_its_margin_costs_one() {
         assert_eq!(value(&[-3.0, 1.0, 0.4, 15.0, 1.5]), 0.0);
         assert!((value(&[0.0, 0.0, 0.5, 15.0, 0.8 + (0.02 - 0.1) * 1.5]) - 1.0).abs() < 1e-12);
-        // In the middle of a face the other half-spaces do not matter.
+        // The other half-spaces do not matter in the middle of a face.
         let beyond = value(&[(-0.3 + 0.5 * 1.18) * 15.0, 0.0, 0.6, 15.0, 1.5]);
         assert!((beyond - 1.0).abs() < 1e-3, "{beyond}");
     }

@@ -7,8 +7,10 @@
 //! d is the distance of a hole or a clip from an edge of its panel or from a hinge, d_min the
 //! smallest that can be made. The penalty grows without bound as d vanishes.
 
-use crate::objective::term::{Deployed, Term, TermGradient};
-use crate::sheet::cut_sheet::AttachmentPoint;
+use crate::{
+    objective::term::{Deployed, Term, TermGradient},
+    sheet::cut_sheet::AttachmentPoint,
+};
 
 /// Distance from which on a clearance costs nothing, over the smallest one that can be made.
 const MARGIN: f64 = 1.1;

@@ -15,9 +15,10 @@
 //! collapses. Sheets that open far need stretched panels, so shapes that can be cut well cost
 //! nothing. Corners closer than l_min leave no room for the windows of their hinges.
 
-use crate::geometry::plane::{I, add, complex, cross};
-use crate::objective::term::{Deployed, Term, TermGradient};
-use crate::sheet::cut_sheet::Panel;
+use crate::{
+    geometry::plane::{I, add, complex, cross},
+    objective::term::{Deployed, Term, TermGradient, over_panels},
+};
 
 /// Largest rho that is not penalised.
 const WELL_SHAPED: f64 = 4.0;
@@ -37,28 +38,16 @@ impl Term for PanelShape {
     }
 
     fn evaluate(&self, at: &Deployed, weight: f64, gradient: &mut TermGradient) -> f64 {
-        let (value, by_corners) = panel_shape(&at.sheet.panels, self.min_distance);
-        gradient.add_by_corners(weight, &by_corners);
-        value
+        let scale = 1.0 / at.sheet.panels.len() as f64;
+        over_panels(at, weight, scale, gradient, |corners, value, gradient| {
+            *value += stretched(corners, gradient) + crowded(corners, self.min_distance, gradient);
+        })
     }
-}
-
-/// The penalty with the minimum corner distance `min_distance` (mm), and its gradient in the
-/// corners of every panel (1/mm); infinite if a panel is not convex.
-fn panel_shape(panels: &[Panel], min_distance: f64) -> (f64, Vec<[[f64; 2]; 4]>) {
-    let (mut value, mut gradient) = (0.0, vec![[[0.0; 2]; 4]; panels.len()]);
-    for (panel, gradient) in std::iter::zip(panels, &mut gradient) {
-        value += stretched(panel, gradient) + crowded(panel, min_distance, gradient);
-    }
-    let weight = 1.0 / panels.len() as f64;
-    let entries = gradient.as_flattened_mut().as_flattened_mut();
-    entries.iter_mut().for_each(|entry| *entry *= weight);
-    (weight * value, gradient)
 }
 
 /// The mean over the corners of one panel; its gradient is added to `gradient`.
-fn stretched(panel: &Panel, gradient: &mut [[f64; 2]; 4]) -> f64 {
-    let corner = |j: usize| complex(panel.corners[j % 4]);
+fn stretched(corners: &[[f64; 2]; 4], gradient: &mut [[f64; 2]; 4]) -> f64 {
+    let corner = |j: usize| complex(corners[j % 4]);
     let mut value = 0.0;
     for j in 0..4 {
         let (e, f) = (corner(j + 1) - corner(j), corner(j + 2) - corner(j + 1));
@@ -80,11 +69,11 @@ fn stretched(panel: &Panel, gradient: &mut [[f64; 2]; 4]) -> f64 {
 }
 
 /// The mean over the pairs of corners of one panel; its gradient is added to `gradient`.
-fn crowded(panel: &Panel, min_distance: f64, gradient: &mut [[f64; 2]; 4]) -> f64 {
+fn crowded(corners: &[[f64; 2]; 4], min_distance: f64, gradient: &mut [[f64; 2]; 4]) -> f64 {
     let weight = 1.0 / PAIRS.len() as f64;
     let mut value = 0.0;
     for [i, j] in PAIRS {
-        let apart = complex(panel.corners[j]) - complex(panel.corners[i]);
+        let apart = complex(corners[j]) - complex(corners[i]);
         let distance = apart.norm();
         let lacking = f64::max(min_distance / distance - 1.0, 0.0);
         value += weight * lacking * lacking;
@@ -99,49 +88,40 @@ fn crowded(panel: &Panel, min_distance: f64, gradient: &mut [[f64; 2]; 4]) -> f6
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::sheet::cut_sheet::PanelPoint;
+    use crate::objective::term::on_panels;
     use testkit::derivatives::assert_gradient;
 
-    fn panel(corners: [[f64; 2]; 4]) -> Panel {
-        Panel {
-            corners,
-            boundary: corners.to_vec(),
-            trim: None,
-            point: PanelPoint::Centroid,
-            reference: [0.0; 2],
-            centroid: [0.0; 2],
-            area: 0.0,
-        }
-    }
-
-    fn rectangle(length: f64, width: f64) -> Panel {
-        panel([[0.0, 0.0], [length, 0.0], [length, width], [0.0, width]])
+    fn rectangle(length: f64, width: f64) -> [[f64; 2]; 4] {
+        [[0.0, 0.0], [length, 0.0], [length, width], [0.0, width]]
     }
 
     #[test]
     fn stretched_panels_cost_above_a_ratio_and_concave_ones_are_infinite() {
-        let value = |panels: &[Panel]| panel_shape(panels, 0.0).0;
+        let value = |panels: &[_]| on_panels(&PanelShape { min_distance: 0.0 }, panels).0;
         assert_eq!(value(&[rectangle(1.0, 1.0), rectangle(7.0, 1.0)]), 0.0);
         let rho: f64 = 0.5 * (20.0 + 1.0 / 20.0);
         let stretched = value(&[rectangle(20.0, 1.0)]);
         assert!((stretched - (rho - 4.0).powi(2)).abs() < 1e-12);
-        let dented = panel([[0.0, 0.0], [2.0, 0.0], [0.5, 0.5], [0.0, 2.0]]);
+        let dented = [[0.0, 0.0], [2.0, 0.0], [0.5, 0.5], [0.0, 2.0]];
         assert_eq!(value(&[dented]), f64::INFINITY);
     }
 
     #[test]
     fn corners_at_half_the_minimum_distance_cost_one() {
-        let (value, _) = panel_shape(&[rectangle(200.0, 50.0)], 100.0);
+        let term = PanelShape { min_distance: 100.0 };
+        let (value, _) = on_panels(&term, &[rectangle(200.0, 50.0)]);
         assert!((value - 2.0 / 6.0).abs() < 1e-12, "{value}");
-        let (value, _) = panel_shape(&[rectangle(200.0, 100.0)], 100.0);
+        let (value, _) = on_panels(&term, &[rectangle(200.0, 100.0)]);
         assert_eq!(value, 0.0);
     }
 
     #[test]
     fn gradients_agree_with_differences() {
         let corners = [0.0, 0.1, 20.0, -0.2, 17.0, 1.1, 0.2, 0.9];
-        let at = |x: &[f64]| panel(std::array::from_fn(|j| [x[2 * j], x[2 * j + 1]]));
-        let all = |x: &[f64]| panel_shape(&[at(x), rectangle(1.0, 1.0)], 30.0);
+        let at = |x: &[f64]| std::array::from_fn(|j| [x[2 * j], x[2 * j + 1]]);
+        let all = |x: &[f64]| {
+            on_panels(&PanelShape { min_distance: 30.0 }, &[at(x), rectangle(1.0, 1.0)])
+        };
         let (value, gradient) = all(&corners);
         assert!(value > 1.0, "{value}");
         let found = gradient[0].as_flattened();

@@ -2,16 +2,18 @@
 //! corners and the two edges that do not end at the corner of
 //!
 //! ```text
-//! b(x) = (1 - x)^3 / x^2  for 0 < x < 1,    0 for x >= 1,    infinite for x <= 0,    x = (d - d_min)/d_min
+//! b(x) = (1 - x)^3 / x^2  for 0 < x < 1,    0 for x >= 1,    infinite for x <= 0,    x = (d -
+//! d_min)/d_min
 //! ```
 //!
 //! d is the distance of the corner from the line of the edge. The shortest edge of a panel is not
 //! shorter than its smallest d. b is C^2; a search that begins with wider panels never evaluates a
 //! design with a thinner one, because steps to an infinite loss are halved.
 
-use crate::geometry::plane::{I, add, complex, cross};
-use crate::objective::term::{Deployed, Term, TermGradient};
-use crate::sheet::cut_sheet::Panel;
+use crate::{
+    geometry::plane::{I, add, complex, cross},
+    objective::term::{Deployed, Term, TermGradient, over_panels},
+};
 use faer::c64;
 
 /// Weight of the barrier relative to d_min^2, and to the area of a square of this side.
@@ -34,31 +36,21 @@ impl Term for PanelWidth {
     }
 
     fn evaluate(&self, at: &Deployed, weight: f64, gradient: &mut TermGradient) -> f64 {
-        let (value, by_corners) = panel_width(&at.sheet.panels, self.minimum);
-        gradient.add_by_corners(weight, &by_corners);
-        value
+        let share = WEIGHT * self.minimum.powi(2) / at.sheet.panels.len() as f64;
+        over_panels(at, weight, 1.0, gradient, |corners, value, gradient| {
+            for (edge, corner) in PAIRS {
+                let (distance, along, arm) = distance(corners, (edge, corner));
+                let (barrier, slope) = barrier(distance / self.minimum - 1.0);
+                *value += share * barrier;
+                let pull = share * slope / (self.minimum * along.norm());
+                let by_arm = I * along * pull;
+                let by_along = -(I * arm + along * (distance / along.norm())) * pull;
+                add(&mut gradient[corner], by_arm);
+                add(&mut gradient[(edge + 1) % 4], by_along);
+                add(&mut gradient[edge], -by_arm - by_along);
+            }
+        })
     }
-}
-
-/// The barrier for the minimum width `min_width` (mm), in mm^2, and its gradient in the corners of
-/// every panel (mm).
-fn panel_width(panels: &[Panel], min_width: f64) -> (f64, Vec<[[f64; 2]; 4]>) {
-    let weight = WEIGHT * min_width.powi(2) / panels.len() as f64;
-    let (mut value, mut gradient) = (0.0, vec![[[0.0; 2]; 4]; panels.len()]);
-    for (panel, gradient) in std::iter::zip(panels, &mut gradient) {
-        for (edge, corner) in PAIRS {
-            let (distance, along, arm) = distance(&panel.corners, (edge, corner));
-            let (barrier, slope) = barrier(distance / min_width - 1.0);
-            value += weight * barrier;
-            let pull = weight * slope / (min_width * along.norm());
-            let by_arm = I * along * pull;
-            let by_along = -(I * arm + along * (distance / along.norm())) * pull;
-            add(&mut gradient[corner], by_arm);
-            add(&mut gradient[(edge + 1) % 4], by_along);
-            add(&mut gradient[edge], -by_arm - by_along);
-        }
-    }
-    (value, gradient)
 }
 
 /// The minimum distance of a corner from the line of an edge that does not end at it, over all
@@ -95,20 +87,8 @@ fn barrier(x: f64) -> (f64, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::sheet::cut_sheet::PanelPoint;
+    use crate::objective::term::on_panels;
     use testkit::derivatives::assert_gradient;
-
-    fn panel(corners: [[f64; 2]; 4]) -> Panel {
-        Panel {
-            corners,
-            boundary: corners.to_vec(),
-            trim: None,
-            point: PanelPoint::Centroid,
-            reference: [0.0; 2],
-            centroid: [0.0; 2],
-            area: 0.0,
-        }
-    }
 
     fn rectangle(length: f64, width: f64) -> [[f64; 2]; 4] {
         [[0.0, 0.0], [length, 0.0], [length, width], [0.0, width]]
@@ -116,7 +96,7 @@ mod tests {
 
     #[test]
     fn a_panel_of_twice_the_width_is_free_and_one_of_the_width_is_excluded() {
-        let value = |width| panel_width(&[panel(rectangle(50.0, width))], 10.0).0;
+        let value = |width| on_panels(&PanelWidth { minimum: 10.0 }, &[rectangle(50.0, width)]).0;
         assert_eq!(value(20.0), 0.0);
         assert_eq!(value(10.0), f64::INFINITY);
         // Two edges with two corners each, at x = 1/2.
@@ -135,8 +115,9 @@ mod tests {
     #[test]
     fn gradients_agree_with_differences() {
         let corners = [0.0, 0.1, 20.0, -0.2, 17.0, 8.1, 0.2, 6.9];
-        let at = |x: &[f64]| panel(std::array::from_fn(|j| [x[2 * j], x[2 * j + 1]]));
-        let all = |x: &[f64]| panel_width(&[at(x), panel(rectangle(8.0, 8.0))], 5.0);
+        let at = |x: &[f64]| std::array::from_fn(|j| [x[2 * j], x[2 * j + 1]]);
+        let all =
+            |x: &[f64]| on_panels(&PanelWidth { minimum: 5.0 }, &[at(x), rectangle(8.0, 8.0)]);
         let (value, gradient) = all(&corners);
         assert!(value > 0.1, "{value}");
         let found = gradient[0].as_flattened();

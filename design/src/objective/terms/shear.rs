@@ -1,8 +1,12 @@
 //! The shear functional (19): the mean over hinges of max_i^tau |eta_s,ih|.
 
-use crate::geometry::smooth_extrema::smooth_max;
-use crate::objective::hinge_measures::HingeMeasure;
-use crate::objective::term::{Deployed, Term, TermGradient};
+use crate::{
+    geometry::smooth_extrema::smooth_max,
+    objective::{
+        hinge_measures::HingeMeasure,
+        term::{Deployed, Term, TermGradient},
+    },
+};
 
 /// The shear functional.
 #[derive(Clone, Copy, Debug, PartialEq)]

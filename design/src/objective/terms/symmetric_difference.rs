@@ -2,10 +2,16 @@
 //! target. It is zero only where they coincide, wherever the corners are along the outline, whereas
 //! the Chamfer distance also depends on their spacing.
 
-use crate::geometry::polygon::{area, counter_clockwise};
-use crate::geometry::symmetric_difference::symmetric_difference;
-use crate::objective::shape::Shape;
-use crate::objective::term::{Deployed, Term, TermGradient};
+use crate::{
+    geometry::{
+        polygon::{area, counter_clockwise},
+        symmetric_difference::symmetric_difference,
+    },
+    objective::{
+        shape::Shape,
+        term::{Deployed, Term, TermGradient},
+    },
+};
 
 /// The symmetric difference of target and deployed outline.
 #[derive(Clone, Debug, PartialEq)]
@@ -16,7 +22,7 @@ pub struct SymmetricDifference {
 }
 
 impl SymmetricDifference {
-    /// For the outline and the target of `shape`.
+    /// The term for the outline and the target of `shape`.
     pub fn new(shape: Shape) -> Self {
         let target = counter_clockwise(&shape.target);
         Self { shape, target }

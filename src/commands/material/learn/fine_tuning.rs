@@ -1,12 +1,13 @@
 //! The network of one round: several weights are fine-tuned on its rays, and one network learns the
 //! rays and their median.
 
-use crate::commands::train::kept_fit;
 use ::train::{Distillation, TrainingConfig, TrainingData};
 use anyhow::{Context, Result};
+use app::train::kept_fit;
 use dataset::Database;
 use hinge::{HingeDeformation, HingeDesign};
 use std::path::PathBuf;
+use std::sync::atomic::AtomicBool;
 use surrogate::Surrogate;
 
 /// What the trainings of all rounds have in common.
@@ -18,6 +19,8 @@ pub(super) struct FineTuning {
     pub distillation: Vec<(HingeDesign, HingeDeformation)>,
     /// Folder of the trained networks.
     pub fits: PathBuf,
+    /// Stops a training.
+    pub stop: &'static AtomicBool,
 }
 
 impl FineTuning {
@@ -26,7 +29,7 @@ impl FineTuning {
     pub(super) fn network(&self, rays: usize, database: &Database) -> Result<(Surrogate, f64)> {
         let tuned = self.parents.iter().enumerate().map(|(place, parent)| {
             let name = format!("{rays}-rays-{place}");
-            kept_fit(&self.fits, &name, database, &self.config, Some(parent))
+            kept_fit(&self.fits, &name, database, &self.config, Some(parent), self.stop)
         });
         let mut networks: Vec<Surrogate> = tuned.collect::<Result<_>>()?;
         if networks.len() > 1 {
@@ -36,7 +39,7 @@ impl FineTuning {
             };
             // Any of the networks can be the start.
             let (name, first) = (format!("{rays}-rays"), Some(&networks[0]));
-            networks.push(kept_fit(&self.fits, &name, data, &self.config, first)?);
+            networks.push(kept_fit(&self.fits, &name, data, &self.config, first, self.stop)?);
         }
         let training_s = networks.iter().filter_map(|network| network.card().training_s).sum();
         let last = networks.pop().context("fine-tuning needs weights to start from")?;

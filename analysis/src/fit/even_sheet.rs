@@ -1,0 +1,276 @@
+//! The sheet of a drawing from an even pattern: where the drawing lies on the opened pattern, and
+//! the panels there.
+
+use super::even_pattern::{Cell, motion, moved, pitch, squares};
+use super::raster::Raster;
+use super::trimmed::{Limits, loops, opened, panels};
+use design::geometry::plane::{complex, point};
+use design::geometry::region::{Contour, Region, seen};
+use design::geometry::similarity::Similarity;
+use design::objective::centre;
+use design::pattern::grid::Grid;
+use design::sheet::topology::Topology;
+use faer::c64;
+use rayon::prelude::*;
+use std::cmp::Reverse;
+use std::collections::{BTreeMap, BTreeSet};
+use std::f64::consts::{FRAC_PI_2, PI};
+
+/// Places that are tried along a pitch, and turns that are tried in a quarter turn.
+const SHIFTS: u32 = 4;
+const TURNS: u32 = 6;
+/// Places along the axis of a symmetric drawing.
+const ALONG: u32 = 16;
+/// The places with most loops whose panels are made.
+const MADE: usize = 16;
+/// Distance of the points of a raster in sides of a square.
+const RASTER: f64 = 0.05;
+/// Tolerance of the drawing in sides of a square.
+const TOLERANCE: f64 = 4e-3;
+/// Part of the area of a drawing that its mirror image must cover: it is symmetric.
+const SYMMETRIC: f64 = 0.97;
+/// Points along the longer side of a drawing, and angles, for its axis.
+const SAMPLES: f64 = 256.0;
+const ANGLES: u32 = 360;
+/// Distance from an edge of a cell up to which a point is on it.
+const ON_EDGE: f64 = 1e-6;
+/// What a symmetric sheet may lose of the seen area.
+const FOR_SYMMETRY: f64 = 0.02;
+
+/// A sheet of an even pattern that opens onto a drawing. Lengths are in sides of a square.
+#[derive(Clone, Debug)]
+pub struct EvenSheet {
+    /// What bounds its panels.
+    pub limits: Limits,
+    /// From the drawing to the opened pattern.
+    pub place: Similarity,
+    /// The drawing there.
+    drawing: Region,
+    loops: BTreeSet<Cell>,
+    panels: BTreeMap<Cell, Region>,
+    /// Intersection over union of what one sees of the opened panels and the drawing.
+    pub seen: f64,
+}
+
+impl EvenSheet {
+    /// The best sheet of a drawing whose longer side is `size` squares long when flat; `None` if the
+    /// drawing is narrower than two squares everywhere.
+    pub fn new(drawing: &Region, size: f64, limits: Limits) -> Option<Self> {
+        let [low, high] = drawing.bounds();
+        let longer = f64::max(high[0] - low[0], high[1] - low[1]);
+        let scale = size * pitch(limits.opening) / longer;
+        let drawing = drawing.simplified(TOLERANCE / scale);
+        let middle = [0, 1].map(|c| 0.5 * (low[c] + high[c]));
+        let symmetric = mirror_axis(&drawing).and_then(|(angle, centroid)| {
+            let along = (0..ALONG).map(|v| [0.0, f64::from(v) / f64::from(ALONG)]);
+            let turn = FRAC_PI_2 - angle;
+            best(
+                &drawing,
+                limits,
+                along.map(|at| placed(centroid, scale, turn, at, &limits)).collect(),
+            )
+        });
+        let turns = (0..TURNS).map(|turn| FRAC_PI_2 * f64::from(turn) / f64::from(TURNS));
+        let shift = |k: u32| f64::from(k) / f64::from(SHIFTS);
+        let shifts = |turn| {
+            let all = (0..2 * SHIFTS).flat_map(|u| (0..2 * SHIFTS).map(move |v| [u, v]));
+            all.map(move |[u, v]| placed(middle, scale, turn, [shift(u), shift(v)], &limits))
+        };
+        let any = best(&drawing, limits, turns.flat_map(shifts).collect());
+        let value = |sheet: &Option<Self>| sheet.as_ref().map_or(0.0, |sheet| sheet.seen);
+        if value(&symmetric) + FOR_SYMMETRY >= value(&any) { symmetric } else { any }
+    }
+
+    fn at(drawing: &Region, limits: Limits, place: Similarity) -> Option<Self> {
+        let drawing = drawing.map(|at| moved(place, at));
+        let raster = Raster::new(&drawing, RASTER);
+        let loops = loops(drawing.bounds(), &limits, &|at| raster.contains(at));
+        let sheet = Self { limits, place, drawing, loops, panels: BTreeMap::new(), seen: 0.0 };
+        (!sheet.loops.is_empty()).then_some(sheet)
+    }
+
+    fn with_panels(mut self) -> Self {
+        self.panels = panels(&self.drawing, &self.loops, &self.limits);
+        self.seen = seen(&opened(&self.panels, self.limits.opening), &self.drawing);
+        self
+    }
+
+    /// The panels when all hinges are open by an angle (rad).
+    pub fn opened(&self, opening: f64) -> Region {
+        opened(&self.panels, opening)
+    }
+
+    /// Columns and rows of the pattern, and the first cell of it: the kept squares and what is
+    /// between them.
+    pub(super) fn cells(&self) -> (Grid, Cell) {
+        let squares = squares(&self.loops);
+        let least = |c: usize| squares.iter().map(|cell| cell[c]).min().unwrap_or_default();
+        let most = |c: usize| squares.iter().map(|cell| cell[c]).max().unwrap_or_default();
+        let mut first = [least(0), least(1)];
+        // Even squares stay even.
+        first[0] -= (first[0] + first[1]).rem_euclid(2);
+        let count = |c: usize| (most(c) - first[c] + 1) as usize;
+        (Grid { m: count(0), n: count(1) }, first)
+    }
+
+    /// The centroid of every panel in the flat and in the opened pattern, in the order of its
+    /// topology.
+    pub(super) fn centres(&self) -> Vec<[[f64; 2]; 2]> {
+        let first = self.cells().1;
+        let places = self.topology().places.into_iter();
+        let centres = places.map(|place| {
+            let cell = [0, 1].map(|c| place[c] as i32 + first[c]);
+            let centroid = centre::of(&self.panels[&cell].polygons[0][0]);
+            [centroid, moved(motion(cell, self.limits.opening), centroid)]
+        });
+        centres.collect()
+    }
+
+    /// Its panels and hinges.
+    pub fn topology(&self) -> Topology {
+        let (grid, first) = self.cells();
+        let kept = |[i, j]: [usize; 2]| {
+            self.loops.contains(&[i as i32 - 1 + first[0], j as i32 - 1 + first[1]])
+        };
+        let interior = (1..grid.n).flat_map(|j| (1..grid.m).map(move |i| [i, j]));
+        let voids: Vec<bool> = interior.map(kept).collect();
+        let mut topology = Topology::of_voids(grid, &voids);
+        for (panel, place) in topology.places.iter().enumerate() {
+            let cell = [0, 1].map(|c| place[c] as i32 + first[c]);
+            let corner = cell.map(f64::from);
+            let in_cell = |at: &[f64; 2]| [0, 1].map(|c| snapped(at[c] - corner[c]));
+            let boundary: Contour = self.panels[&cell].polygons[0][0].iter().map(in_cell).collect();
+            if boundary.len() != 4 || boundary.iter().flatten().any(|x| *x != 0.0 && *x != 1.0) {
+                topology.trims[panel] = Some(boundary.into());
+            }
+        }
+        topology
+    }
+}
+
+/// A coordinate in a cell; 0 and 1 are on its edges.
+fn snapped(x: f64) -> f64 {
+    if (x - x.round()).abs() < ON_EDGE { x.round() } else { x }
+}
+
+/// A drawing turned about a point, which lies at a place in pitches.
+fn placed(about: [f64; 2], scale: f64, turn: f64, at: [f64; 2], limits: &Limits) -> Similarity {
+    let turn = scale * c64::cis(turn);
+    Similarity { turn, shift: pitch(limits.opening) * complex(at) - turn * complex(about) }
+}
+
+/// The best sheet of the places with most loops.
+fn best(drawing: &Region, limits: Limits, places: Vec<Similarity>) -> Option<EvenSheet> {
+    let at = |place| EvenSheet::at(drawing, limits, place);
+    let mut found: Vec<EvenSheet> = places.into_par_iter().filter_map(at).collect();
+    found.sort_by_key(|sheet| Reverse(sheet.loops.len()));
+    found.truncate(MADE);
+    let made: Vec<EvenSheet> = found.into_par_iter().map(EvenSheet::with_panels).collect();
+    made.into_iter().reduce(|best, other| if other.seen > best.seen { other } else { best })
+}
+
+/// The mirror axis of a drawing: its angle from the x axis (rad) and the centroid, through which it
+/// goes. Of several the one that is nearest to upright.
+fn mirror_axis(drawing: &Region) -> Option<(f64, [f64; 2])> {
+    /// Parts of the drawing that axes of equal right may differ by.
+    const EQUAL: f64 = 0.004;
+    let [low, high] = drawing.bounds();
+    let raster = Raster::new(drawing, f64::max(high[0] - low[0], high[1] - low[1]) / SAMPLES);
+    let points: Vec<c64> = raster.points().map(complex).collect();
+    let centroid = points.iter().sum::<c64>() / points.len() as f64;
+    let covered = |angle: f64| {
+        let turn = c64::cis(2.0 * angle);
+        let mirrored = points.iter().map(|z| centroid + turn * (z - centroid).conj());
+        let inside = mirrored.filter(|z| raster.contains(point(*z)));
+        (inside.count() as f64 / points.len() as f64, angle)
+    };
+    let angles = (0..ANGLES).into_par_iter().map(|k| PI * f64::from(k) / f64::from(ANGLES));
+    let axes: Vec<(f64, f64)> = angles.map(covered).collect();
+    let most = axes.iter().map(|(part, _)| *part).fold(SYMMETRIC, f64::max);
+    let off_upright = |axis: &(f64, f64)| (axis.1 - FRAC_PI_2).abs();
+    let equal = axes.into_iter().filter(|(part, _)| *part >= most - EQUAL && *part >= SYMMETRIC);
+    let nearest = equal.min_by(|one, other| off_upright(one).total_cmp(&off_upright(other)))?;
+    Some((nearest.1, point(centroid)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fit::even_pattern::{hinge, pairs};
+    use rand::{RngExt, SeedableRng};
+    use rand_chacha::ChaCha8Rng;
+    use std::f64::consts::TAU;
+
+    const LIMITS: Limits = Limits { opening: 1.047, window: 0.42, width: 0.2, gap: 0.02 };
+
+    /// A closed curve about the origin with a radius that varies in waves.
+    fn blob(random: &mut ChaCha8Rng, radius: f64) -> Contour {
+        let waves: Vec<[f64; 2]> = (1..6)
+            .map(|k| [random.random_range(0.0..0.35) / f64::from(k), random.random_range(0.0..TAU)])
+            .collect();
+        let at = |i: usize| {
+            let angle = TAU * i as f64 / 90.0;
+            let wave = |(k, [size, phase]): (usize, &[f64; 2])| {
+                size * ((k + 1) as f64 * angle + phase).cos()
+            };
+            let r = radius * (1.0 + waves.iter().enumerate().map(wave).sum::<f64>()).max(0.25);
+            [r * angle.cos(), r * angle.sin()]
+        };
+        (0..90).map(at).collect()
+    }
+
+    fn drawn(seed: u64) -> Region {
+        let mut random = ChaCha8Rng::seed_from_u64(seed);
+        let mut drawing = Region::even_odd(vec![blob(&mut random, 10.0)]);
+        for _ in 0..random.random_range(0..3) {
+            let shift = [0, 1].map(|_| random.random_range(-5.0..5.0));
+            let radius = random.random_range(1.0..3.0);
+            let hole = blob(&mut random, radius)
+                .iter()
+                .map(|p| [p[0] + shift[0], p[1] + shift[1]])
+                .collect();
+            drawing = drawing.minus(&Region::even_odd(vec![hole]));
+        }
+        drawing.polygons.truncate(1);
+        drawing
+    }
+
+    #[test]
+    fn drawn_sheets_are_mechanisms_whose_panels_never_overlap() {
+        let mut made = 0;
+        for seed in 0..8 {
+            let Some(sheet) = EvenSheet::new(&drawn(seed), 12.0, LIMITS) else { continue };
+            made += 1;
+            let area: f64 = sheet.panels.values().map(Region::area).sum();
+            for step in 0..=20 {
+                let opened = sheet.opened(LIMITS.opening * f64::from(step) / 20.0);
+                assert!((opened.area() - area).abs() < 1e-4 * area, "{seed} at {step}");
+            }
+            let topology = sheet.topology();
+            let hinges: BTreeSet<_> = sheet.loops.iter().flat_map(|at| pairs(*at)).collect();
+            assert_eq!(topology.panel_count(), sheet.panels.len());
+            assert_eq!(topology.hinge_count(), hinges.len());
+            for pair in hinges {
+                // The panels have the window of their hinge.
+                let corner = hinge(pair).map(f64::from);
+                let disc = (0..32).map(|k| {
+                    let (sin, cos) = (TAU * f64::from(k) / 32.0).sin_cos();
+                    [corner[0] + 0.4 * cos, corner[1] + 0.4 * sin]
+                });
+                let disc = Region::union_of(vec![disc.collect()]);
+                for cell in pair {
+                    let square = Region::union_of(vec![crate::fit::even_pattern::corners(cell)]);
+                    let quarter = disc.common(&square);
+                    let kept = quarter.common(&sheet.panels[&cell]);
+                    assert!(kept.area() > 0.999 * quarter.area(), "{seed} {pair:?}");
+                }
+            }
+            assert!(sheet.seen > 0.8, "{seed}: {}", sheet.seen);
+            for panel in sheet.panels.values() {
+                assert_eq!(panel.polygons.len(), 1);
+                assert_eq!(panel.polygons[0].len(), 1, "{seed}: a hole");
+            }
+        }
+        assert!(made > 5, "{made}");
+    }
+}

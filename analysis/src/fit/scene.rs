@@ -1,0 +1,221 @@
+//! The scene of a sheet that opens onto the target of another: an even pattern laid over the target,
+//! fastened at the places of its opening.
+
+use crate::fit::even_sheet::EvenSheet;
+use crate::fit::opening::safe_opening;
+use crate::fit::trimmed::Limits;
+use design::geometry::plane::{complex, point};
+use design::geometry::polygon::{bounds, distance};
+use design::geometry::region::Region;
+use design::geometry::similarity::Similarity;
+use design::optimise::search::SearchMethod;
+use faer::c64;
+use scene::{
+    CellsConfig, Level, OptimiserConfig, Posture, PostureConfig, Scene, SceneConfig, SceneError,
+    StartConfig, SupportConfig, SupportKind, rounded,
+};
+use std::f64::consts::FRAC_PI_2;
+
+/// The largest opening that is planned (rad): 65 degrees.
+const MOST: f64 = 1.134;
+/// The opening that is planned for a law that predicts no damage (rad): 45 degrees.
+const UNKNOWN: f64 = 0.785;
+/// Side of a panel over the radius of a window: two windows and a margin.
+const SIDE: f64 = 2.25;
+/// Smallest width of a part of a panel, over the thickness.
+const WIDTH: f64 = 2.0;
+/// Smallest distance of panels that do not hang together, over the side of a panel.
+const GAP: f64 = 0.02;
+/// Sizes that are tried until a sheet fills its stock.
+const SIZES: usize = 4;
+/// Part of the stock that a sheet fills at least.
+const FILLED: f64 = 0.95;
+/// Panels a fastener, and the numbers of fasteners.
+const PANELS: usize = 25;
+const FASTENERS: [usize; 2] = [3, 8];
+/// Steps of the search for the widths, and the length of its first step.
+const STEPS: usize = 20;
+const FIRST_STEP: f64 = 0.03;
+/// Angles between which the turn in the stock is searched (rad): one degree.
+const TURN: f64 = 0.01745;
+
+/// A scene of an even sheet, and what is expected of it.
+pub struct FittedScene {
+    /// Its keys.
+    pub config: SceneConfig,
+    /// Number of panels.
+    pub panels: usize,
+    /// Side of a panel (mm).
+    pub side: f64,
+    /// The opening of every hinge (rad).
+    pub opening: f64,
+    /// Intersection over union of what one sees of the opened panels and the target.
+    pub seen: f64,
+}
+
+/// Why a sheet is not fitted to a target.
+#[derive(Debug, thiserror::Error)]
+#[allow(missing_docs, reason = "the message of a variant is its documentation")]
+pub enum FitError {
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+    #[error(
+        "the sheet has pins (level = \"pin\"): its search is on pins already; a fit is for a sheet with a hinge law"
+    )]
+    Pins,
+    #[error(
+        "the target is nowhere as wide as two panels of {side:.0} mm: use a larger sheet (--size, --stock) or a thinner one (--thickness)"
+    )]
+    Narrow { side: f64 },
+}
+
+/// The even sheet that opens onto the target of a scene, whose sheet stands for the space in its
+/// stock.
+pub fn fitted(scene: &Scene) -> Result<FittedScene, FitError> {
+    if scene.config.level == Level::Pin {
+        return Err(FitError::Pins);
+    }
+    let opening = opening(scene);
+    let process = scene.config.process;
+    let side = SIDE * process.r_win;
+    let limits = Limits {
+        opening,
+        window: (process.r_win + 0.5 * process.slit_width) / side,
+        width: WIDTH * scene.material.thickness / side,
+        gap: f64::max(GAP, process.slit_width / side),
+    };
+    let target = Region::even_odd(vec![scene.target.points.clone()]);
+    let stock = extent(&scene.config.sheet.outline().corners).map(|length| length / side);
+    let sheet = largest(&target, stock, limits).ok_or(FitError::Narrow { side })?;
+    let config = keys(scene, &sheet, side);
+    Ok(FittedScene {
+        config,
+        panels: sheet.topology().panel_count(),
+        side,
+        opening,
+        seen: sheet.seen,
+    })
+}
+
+/// The opening that the material bears (rad).
+fn opening(scene: &Scene) -> f64 {
+    scene.surrogate().map_or(UNKNOWN, |surrogate| {
+        let w_lig = scene.config.ligament.start / scene.scale();
+        let regime = scene.material.regime(scene.config.ligament.start);
+        safe_opening(surrogate, regime, w_lig, MOST)
+    })
+}
+
+/// The largest sheet that fits into a stock at some turn; lengths in sides of a panel.
+fn largest(target: &Region, stock: [f64; 2], limits: Limits) -> Option<EvenSheet> {
+    let mut size = fit_into(stock, &target.contours().flatten().copied().collect::<Vec<_>>())
+        * f64::max(extent_of(target)[0], extent_of(target)[1]);
+    let mut best: Option<EvenSheet> = None;
+    for _ in 0..SIZES {
+        let sheet = EvenSheet::new(target, size, limits)?;
+        let flat: Vec<[f64; 2]> = sheet.opened(0.0).contours().flatten().copied().collect();
+        let factor = fit_into(stock, &flat);
+        size *= factor;
+        if factor >= 1.0 {
+            let is_larger =
+                best.as_ref().is_none_or(|best| sheet.place.scale() > best.place.scale());
+            best = if is_larger { Some(sheet) } else { best };
+            if factor * FILLED < 1.0 {
+                break;
+            }
+        }
+        size *= 0.995;
+    }
+    best
+}
+
+fn extent_of(region: &Region) -> [f64; 2] {
+    let [low, high] = region.bounds();
+    [0, 1].map(|c| high[c] - low[c])
+}
+
+/// By what factor points may grow to fill a stock at some turn.
+fn fit_into(stock: [f64; 2], points: &[[f64; 2]]) -> f64 {
+    let turns = (0..).map(|k| TURN * f64::from(k)).take_while(|turn| *turn < 2.0 * FRAC_PI_2);
+    let factor = |turn: f64| {
+        let turned = points.iter().map(|p| point(c64::cis(turn) * complex(*p)));
+        let [low, high] = bounds(turned);
+        f64::min(stock[0] / (high[0] - low[0]), stock[1] / (high[1] - low[1]))
+    };
+    turns.map(factor).fold(0.0, f64::max)
+}
+
+/// The keys of the scene with the sheet, its fasteners and the place of its target. The drawing
+/// stands upright.
+fn keys(scene: &Scene, sheet: &EvenSheet, side: f64) -> SceneConfig {
+    let topology = sheet.topology();
+    let (grid, first) = sheet.cells();
+    // From the pattern to the sheet: turned back, in mm, its lower left corner at the origin.
+    let back = side * c64::cis(-sheet.place.rotation());
+    let first = complex(first.map(f64::from));
+    let turned = |at: c64| back * (at - first);
+    let flat = sheet.opened(0.0);
+    let low = bounds(flat.contours().flatten().map(|p| point(turned(complex(*p)))))[0];
+    let in_sheet = |at: c64| point(turned(at) - complex(low)).map(rounded);
+    let (m, n) = (grid.m as f64, grid.n as f64);
+    let corners = [[0.0, 0.0], [m, 0.0], [m, n], [0.0, n]];
+    let mut config = scene.config.clone();
+    config.sheet.size = None;
+    config.sheet.corners = Some(corners.map(|corner| in_sheet(first + complex(corner))));
+    config.sheet.panels = [grid.m, grid.n];
+    config.cells = Some(CellsConfig::from(&topology));
+    config.posture = Some(PostureConfig { kind: Posture::HeldFlat, down: None });
+    config.start = StartConfig::default();
+    config.clear_actuation();
+    // Where the panels go when the middle of the sheet stays.
+    let centres = sheet.centres();
+    let mean =
+        |k: usize| centres.iter().map(|at| complex(at[k])).sum::<c64>() / centres.len() as f64;
+    let (before, after) = (mean(0), mean(1));
+    let moved = |panel: usize| {
+        let [from, to] = centres[panel].map(complex);
+        point(back * ((to - after) - (from - before))).map(rounded)
+    };
+    let [fewest, most] = FASTENERS;
+    let count = (centres.len() / PANELS).clamp(fewest, most);
+    let support = |panel: usize| SupportConfig {
+        displacement: moved(panel),
+        ..SupportConfig::at_centroid(topology.places[panel], SupportKind::Pin)
+    };
+    let flat_centres: Vec<[f64; 2]> = centres.iter().map(|at| at[0]).collect();
+    config.supports = spread(&flat_centres, count).into_iter().map(support).collect();
+    config.objective = Default::default();
+    config.optimiser = OptimiserConfig {
+        steps: STEPS,
+        learning_rate: FIRST_STEP,
+        method: SearchMethod::Lbfgs,
+        ..config.optimiser
+    };
+    // From the target to the opened sheet whose middle stays.
+    let turn = back * sheet.place.turn;
+    let shift = back * (sheet.place.shift - after + before - first) - complex(low);
+    config.target = config.target.placed(&Similarity { turn, shift }, &scene.target.points);
+    config
+}
+
+/// Points far from each other, beginning with the one that is farthest from the middle.
+fn spread(points: &[[f64; 2]], count: usize) -> Vec<usize> {
+    let middle = design::geometry::polygon::mean(points);
+    let mut chosen: Vec<usize> = Vec::new();
+    while chosen.len() < count.min(points.len()) {
+        let room = |i: &usize| {
+            let near = chosen.iter().map(|k| distance(points[*i], points[*k]));
+            near.fold(f64::INFINITY, f64::min)
+                .min(distance(points[*i], middle) + 1e9 * f64::from(u8::from(!chosen.is_empty())))
+        };
+        let next = (0..points.len()).max_by(|i, j| room(i).total_cmp(&room(j)));
+        chosen.extend(next);
+    }
+    chosen
+}
+
+/// Width and height of points (mm).
+fn extent(points: &[[f64; 2]]) -> [f64; 2] {
+    let [low, high] = bounds(points.iter().copied());
+    [0, 1].map(|c| high[c] - low[c])
+}

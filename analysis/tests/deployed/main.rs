@@ -1,0 +1,20 @@
+//! Shipped scenes deployed: their error budget and their levels.
+
+mod error_budget;
+mod levels;
+
+use scene::{Scene, SceneConfig};
+use std::path::{Path, PathBuf};
+
+/// A scene file of the repository.
+fn shipped(name: &str) -> PathBuf {
+    let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("../configs/scenes");
+    scenes.join(name)
+}
+
+/// A scene of the repository, changed.
+fn changed(name: &str, change: impl FnOnce(&mut SceneConfig)) -> Scene {
+    let mut config: SceneConfig = support::toml_file::read(&shipped(name)).unwrap();
+    change(&mut config);
+    Scene::new(config, &shipped(name)).unwrap()
+}

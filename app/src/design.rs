@@ -1,0 +1,118 @@
+//! A design run: its search and the files of its results.
+
+use crate::animation;
+use crate::failure::Unfinished;
+use crate::{picture, run_folder};
+use anyhow::{Context, Result, bail, ensure};
+use design::optimise::outer_loop::Ended;
+use output::drawing::deployment_frames;
+use output::report::{Report, Warning};
+use output::run_files::{ANIMATION, RUN_FILES, Writer};
+use output::run_results::{remove_run, write_results};
+use scene::Scene;
+use scene::design_run::{BegunRun, Designed, Earlier, LEVELS, OnStep};
+use scene::run_inputs::{SCENE_FILE, holds_a_run};
+use std::fs::File;
+use std::path::Path;
+use std::sync::atomic::AtomicBool;
+
+/// Width of the pictures (px).
+const PICTURE_WIDTH: u32 = 1600;
+/// Width (px) and maximum number of the frames of the animation.
+const FRAME_WIDTH: u32 = 640;
+const MOST_FRAMES: usize = 40;
+
+/// Locks the run folder of a scene until the returned file is dropped; with `restart` without the
+/// run in it.
+pub fn hold(scene: &Scene, restart: bool) -> Result<File> {
+    let folder = scene.output();
+    refuse_files_of_others(&folder)?;
+    let held = run_folder::hold(&folder)?;
+    if restart {
+        remove_run(scene)?;
+        let levels = folder.join(LEVELS);
+        if levels.exists() {
+            std::fs::remove_dir_all(&levels)
+                .with_context(|| format!("cannot remove {}", levels.display()))?;
+        }
+    }
+    Ok(held)
+}
+
+/// Searches at the level of the scene and writes the results; `force` also writes cut files of a
+/// design with errors.
+pub fn search(scene: &Scene, force: bool, stop: &AtomicBool, progress: OnStep) -> Result<Report> {
+    let run = BegunRun::new(scene.clone(), None)?;
+    let designed = run.search(&Earlier::default(), None, stop, progress)?;
+    write_run(scene, &designed, force)
+}
+
+/// Writes the results of a design that was found on several levels.
+pub fn write_refined(designed: &Designed, force: bool) -> Result<Report> {
+    let scene = &designed.scene;
+    if designed.ended == Ended::Stopped {
+        let made = designed.search.last().step;
+        bail!(Unfinished { left: scene.config.optimiser.steps - made, what: "design steps" });
+    }
+    write_run(scene, designed, force)
+}
+
+/// An error if a run would replace files of its folder that no run has written.
+fn refuse_files_of_others(folder: &Path) -> Result<()> {
+    if holds_a_run(folder) {
+        return Ok(());
+    }
+    let names = RUN_FILES.iter().map(|file| file.name).chain([SCENE_FILE]);
+    let found: Vec<&str> =
+        names.filter(|name| folder.join(name).symlink_metadata().is_ok()).collect();
+    ensure!(
+        found.is_empty(),
+        "the run would replace {} in {}, which no run has written: choose another folder, with --out or the key `output`, or \
+         move the files",
+        found.join(", "),
+        folder.display()
+    );
+    Ok(())
+}
+
+/// Writes the results of a run to its folder, with pictures and animation.
+pub fn write_run(scene: &Scene, designed: &Designed, force: bool) -> Result<Report> {
+    let report = write_results(scene, designed, force)?;
+    rasterise(&scene.output())?;
+    let frames = deployment_frames(scene, designed, MOST_FRAMES);
+    animation::save(&frames, &scene.output().join(ANIMATION), FRAME_WIDTH)?;
+    Ok(report)
+}
+
+/// An error if a run is not at its end, or has no cut file.
+pub fn ended(scene: &Scene, report: &Report) -> Result<()> {
+    match &report.ended {
+        Ended::Completed | Ended::Settled => {}
+        Ended::Stopped => bail!(Unfinished {
+            left: scene.config.optimiser.steps - report.steps,
+            what: "design steps"
+        }),
+        Ended::Stuck { reason } => bail!("the search is stuck: {reason}"),
+    }
+    let errors: Vec<String> = report.errors().map(Warning::to_string).collect();
+    ensure!(
+        report.cut_file,
+        "no cut file: {}; --force writes one where the geometry allows it",
+        errors.join("; ")
+    );
+    Ok(())
+}
+
+/// Writes the PNG of every picture in the run folder that has an SVG.
+fn rasterise(folder: &Path) -> Result<()> {
+    let pictures = RUN_FILES.iter().filter(|file| matches!(file.writer, Writer::Pictures));
+    for file in pictures {
+        let vector = folder.join(file.name).with_extension("svg");
+        if vector.exists() {
+            let svg = std::fs::read_to_string(&vector)
+                .with_context(|| format!("cannot read {}", vector.display()))?;
+            picture::save(&svg, &vector.with_extension(""), PICTURE_WIDTH)?;
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,108 @@
+//! Several design runs in one command: every scene with every seed, each in a run folder of its
+//! own, and one table that compares them.
+
+use crate::run_folder;
+use anyhow::{Context, Result, ensure};
+use scene::Scene;
+use serde_json::Value;
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+use support::regular_file;
+use support::table::Table;
+
+/// One design run.
+pub struct Run {
+    /// The scene file.
+    pub file: PathBuf,
+    /// The scene, with the seed and the folder of the run.
+    pub scene: Scene,
+    /// Why this command did not design a sheet that can be cut; `None` if it did.
+    pub failure: Option<String>,
+}
+
+/// An error if two runs have the same folder.
+pub fn refuse_shared_folders(runs: &[Run]) -> Result<()> {
+    let mut folders = BTreeSet::new();
+    for run in runs {
+        let folder = std::path::absolute(run.scene.output())?;
+        ensure!(
+            folders.insert(folder.clone()),
+            "two runs would use the folder {}: give their scenes other names, or another `output`",
+            folder.display()
+        );
+    }
+    Ok(())
+}
+
+/// Writes `designs.csv` and `designs.md` to `folder`, and returns the table.
+pub fn compare(runs: &[Run], folder: &Path) -> Result<Table> {
+    let mut table = Table::new(COLUMNS);
+    for run in runs {
+        table.row(cells(run)?);
+    }
+    run_folder::write_table(folder, "designs", &table)?;
+    Ok(table)
+}
+
+const COLUMNS: [&str; 11] = [
+    "scene",
+    "seed",
+    "state",
+    "steps",
+    "outline error (mm)",
+    "loss (mm^2)",
+    "D_peak",
+    "errors",
+    "warnings",
+    "cut file",
+    "folder",
+];
+
+/// The cells of a run, from its report.
+fn cells(run: &Run) -> Result<[String; COLUMNS.len()]> {
+    let folder = run.scene.output();
+    let report = report(&folder.join("report.json"))?;
+    let state = match (&run.failure, &report["ended"]) {
+        (Some(_), _) => "failed".to_owned(),
+        (None, Value::String(ended)) => ended.clone(),
+        (None, Value::Null) => "not run".to_owned(),
+        (None, _) => "stuck".to_owned(),
+    };
+    let unknown = || "-".to_owned();
+    let number = |value: &Value| value.as_f64().map_or_else(unknown, |x| format!("{x:.4}"));
+    let found = |severity: &str| match report["warnings"].as_array() {
+        Some(all) => {
+            let of = all.iter().filter(|it| it["severity"] == severity);
+            of.count().to_string()
+        }
+        None => unknown(),
+    };
+    let hinges = report["hinges"].as_array().into_iter().flatten();
+    let peaks = hinges.filter_map(|hinge| hinge["damage_peak"].as_f64());
+    let peak = peaks.reduce(f64::max);
+    let steps = report["steps"].as_u64();
+    let cut_file = report["cut_file"].as_bool();
+    Ok([
+        run.file.display().to_string(),
+        run.scene.config.optimiser.seed.to_string(),
+        state,
+        steps.map_or_else(unknown, |steps| steps.to_string()),
+        number(&report["after"]["outline_error"]),
+        number(&report["after"]["loss"]),
+        peak.map_or_else(unknown, |peak| format!("{peak:.3}")),
+        found("error"),
+        found("warning"),
+        cut_file.map_or_else(unknown, |cut| if cut { "yes" } else { "no" }.to_owned()),
+        folder.display().to_string(),
+    ])
+}
+
+/// The report of a run; null if the run has none yet.
+fn report(path: &Path) -> Result<Value> {
+    if !path.exists() {
+        return Ok(Value::Null);
+    }
+    let text =
+        regular_file::read(path).with_context(|| format!("cannot read {}", path.display()))?;
+    serde_json::from_slice(&text).with_context(|| format!("{} is not a report", path.display()))
+}

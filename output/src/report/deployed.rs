@@ -1,0 +1,136 @@
+//! What facts and findings are about: a deployed design and, after a search, its run.
+
+use crate::cut_file::{CutLines, FabricationError};
+use crate::report::hinge_row::HingeRow;
+use crate::report::numbers::rounded;
+use crate::report::reached::Reached;
+use analysis::design_checks::{DesignChecks, WholeSheet};
+use design::geometry::polygon::{area, bounds};
+use design::objective::design_problem::Deployment;
+use design::objective::scores::Scores;
+use scene::design_run::Designed;
+use scene::{Posture, Scene};
+use support::severity::Severity;
+
+/// A deployed design.
+pub(super) struct DeployedDesign<'a> {
+    pub scene: &'a Scene,
+    pub deployment: &'a Deployment,
+    /// The cut lines of the sheet.
+    pub cuts: &'a Result<CutLines, FabricationError>,
+    /// All hinges.
+    pub hinges: Vec<HingeRow>,
+    /// The run whose best design it is; `None` for only a design.
+    pub run: Option<&'a FinishedRun<'a>>,
+    /// How grave its findings are, once they are known.
+    pub severities: Vec<Severity>,
+}
+
+/// A run, with what is computed of its best design once.
+pub(super) struct FinishedRun<'a> {
+    pub designed: &'a Designed,
+    /// The scores of the best design.
+    pub after: Scores,
+    /// What was measured of it after the search.
+    pub checks: DesignChecks,
+    pub reached: Option<Reached>,
+}
+
+impl DeployedDesign<'_> {
+    pub(super) fn whole_sheet(&self) -> Option<&WholeSheet> {
+        self.run?.checks.whole_sheet.as_ref()
+    }
+
+    /// Name of the file of the weights.
+    pub(super) fn weights_file(&self) -> String {
+        let files = self.scene.config.weights_files();
+        let name = files.first().and_then(|path| path.file_name());
+        name.map_or(String::new(), |name| name.to_string_lossy().into_owned())
+    }
+
+    /// Mass of the uncut sheet (kg).
+    pub(super) fn mass_kg(&self) -> f64 {
+        let outline = &self.deployment.sheet.outline.corners;
+        self.scene.material.mass_by_area() * area(outline).abs()
+    }
+
+    /// Weight of the uncut sheet (N).
+    pub(super) fn weight(&self) -> f64 {
+        hinge::STANDARD_GRAVITY * self.mass_kg()
+    }
+
+    /// Weight over the load at the end of the path; `None` if that is zero or no force, or without
+    /// equilibrium.
+    pub(super) fn weight_over_load(&self) -> Option<f64> {
+        let load = self.run?.reached.as_ref()?.force()?.abs();
+        (load > 0.0).then(|| self.weight() / load)
+    }
+
+    /// Extent of the flat sheet along x and y (mm).
+    pub(super) fn flat_size(&self) -> [f64; 2] {
+        extent(self.deployment.sheet.outline.corners)
+    }
+
+    /// The hinges whose rows `overstep`.
+    pub(super) fn hinges_where(&self, overstep: impl Fn(&HingeRow) -> bool) -> Vec<usize> {
+        self.hinges.iter().filter(|row| overstep(row)).map(|row| row.hinge).collect()
+    }
+}
+
+/// What keeps the panels in their plane; `None` if the scene does not say.
+pub(super) fn posture(scene: &Scene) -> Option<Posture> {
+    scene.config.posture.map(|posture| posture.kind)
+}
+
+/// Whether the weight of the sheet acts in the model.
+pub(super) fn is_heavy(scene: &Scene) -> bool {
+    scene.weight_by_area() != [0.0; 2]
+}
+
+/// Effects in the plane that are not modelled for the out-of-plane restraint; `None` if there are
+/// none, and if the scene states no restraint.
+pub(super) fn left_out(scene: &Scene) -> Option<&'static str> {
+    match posture(scene)? {
+        Posture::HeldFlat => Some(
+            "what holds the panels flat, and its friction; the weight of the sheet, if its plane is not horizontal",
+        ),
+        Posture::Lying => Some("in the design, friction"),
+        Posture::Hanging if is_heavy(scene) => None,
+        Posture::Hanging | Posture::Free => Some("the weight of the sheet"),
+    }
+}
+
+/// A ratio to the load in words.
+pub(super) fn of_the_load(ratio: f64) -> String {
+    if ratio < 10.0 {
+        format!("{} % of the load", rounded(100.0 * ratio, 2))
+    } else {
+        format!("{} times the load", rounded(ratio, 2))
+    }
+}
+
+/// The distance of the outline of a sheet of some flat size to its target (mm), in words.
+pub(crate) fn miss(outline_error: f64, [width, height]: [f64; 2]) -> String {
+    format!(
+        "the outline is {} mm (root mean square) from the target, {} % of the longer side of the flat sheet",
+        rounded(outline_error, 3),
+        rounded(100.0 * outline_error / width.max(height), 2)
+    )
+}
+
+pub(crate) fn extent(points: impl IntoIterator<Item = [f64; 2]>) -> [f64; 2] {
+    let [low, high] = bounds(points);
+    [high[0] - low[0], high[1] - low[1]]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::of_the_load;
+
+    #[test]
+    fn a_ratio_to_the_load_is_in_percent_or_times() {
+        for (ratio, said) in [(0.162, "16 %"), (0.0486, "4.9 %"), (56.4, "56 times")] {
+            assert!(of_the_load(ratio).starts_with(said), "{ratio}");
+        }
+    }
+}

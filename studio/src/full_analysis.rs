@@ -1,0 +1,205 @@
+//! The full analysis on a thread of its own: the path followed from the flat sheet, and the
+//! report. Drafts go on meanwhile.
+
+use crate::event::{Event, Kind};
+use analysis::design_checks::DesignChecks;
+use anyhow::{Context, Result};
+use app::failure::message;
+use design::equilibrium::warm_start::WarmStart;
+use output::cut_file::CutLines;
+use output::report::Report;
+use output::run_page::{PageData, SheetData};
+use scene::Scene;
+use scene::design_run::Designed;
+use serde::Serialize;
+use serde_json::json;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::time::Instant;
+use support::caught_panic;
+
+/// Who hears the events.
+pub(crate) type Listener = Arc<dyn Fn(Event) + Send + Sync>;
+
+/// A page as full analyses and runs show it.
+#[derive(Serialize)]
+pub(crate) struct Shown<'a> {
+    pub page: PageData<'a>,
+    /// The run whose best design it is, if the sheet has one.
+    pub run: Option<String>,
+    /// How long it took; `None` at the end of a search.
+    pub ms: Option<f64>,
+}
+
+/// A sheet at rest.
+pub(crate) enum Resting {
+    /// The start of a scene.
+    Start(Scene),
+    /// The best design of the run of a scene.
+    Run(Scene),
+}
+
+impl Resting {
+    fn scene(&self) -> &Scene {
+        let (Self::Start(scene) | Self::Run(scene)) = self;
+        scene
+    }
+
+    fn designed(&self, stop: Arc<AtomicBool>) -> Result<Designed> {
+        match self {
+            Self::Start(scene) => Ok(Designed::at_start(scene, stop)?),
+            Self::Run(scene) => Designed::of_run(scene, stop)?.with_context(|| {
+                let folder = scene.output();
+                format!(
+                    "the run in {} is gone: change the sheet, or design it again",
+                    folder.display()
+                )
+            }),
+        }
+    }
+
+    fn run(&self) -> Option<String> {
+        match self {
+            Self::Start(_) => None,
+            Self::Run(scene) => Some(run_name(scene)),
+        }
+    }
+}
+
+/// The name of the run folder of a scene.
+pub(crate) fn run_name(scene: &Scene) -> String {
+    let folder = scene.output();
+    let name = folder.file_name().unwrap_or_default();
+    name.to_string_lossy().into_owned()
+}
+
+/// The thread, and what it is to compute.
+pub(crate) struct FullAnalysis {
+    wanted: Mutex<Wanted>,
+    news: Condvar,
+    listener: Listener,
+}
+
+#[derive(Default)]
+struct Wanted {
+    sheet: Option<Resting>,
+    /// Ends the computation that is under way, of which nothing is shown then.
+    stop: Arc<AtomicBool>,
+    /// The path of the last one that was shown.
+    path: Option<WarmStart>,
+}
+
+impl FullAnalysis {
+    /// Starts the thread, which ends with the program. A page in a browser has none: there
+    /// [`Self::compute`] computes at once.
+    pub(crate) fn start(listener: Listener) -> std::io::Result<Arc<Self>> {
+        let analysis = Arc::new(Self { wanted: Mutex::default(), news: Condvar::new(), listener });
+        if cfg!(target_family = "wasm") {
+            return Ok(analysis);
+        }
+        let thread = std::thread::Builder::new().name("everyday".into());
+        thread.spawn({
+            let analysis = Arc::clone(&analysis);
+            move || {
+                loop {
+                    analysis.work();
+                }
+            }
+        })?;
+        Ok(analysis)
+    }
+
+    /// Computes a sheet next, and nothing else.
+    pub(crate) fn compute(&self, sheet: Resting) {
+        self.stop();
+        self.lock().sheet = Some(sheet);
+        self.news.notify_one();
+        if cfg!(target_family = "wasm") {
+            self.work();
+        }
+    }
+
+    /// The path of the last computation that was shown, once.
+    pub(crate) fn last_path(&self) -> Option<WarmStart> {
+        self.lock().path.take()
+    }
+
+    /// Shows nothing of what is under way. Returns the path of the last computation that was shown,
+    /// once.
+    pub(crate) fn stop(&self) -> Option<WarmStart> {
+        let mut wanted = self.lock();
+        wanted.sheet = None;
+        wanted.stop.store(true, Ordering::Relaxed);
+        wanted.path.take()
+    }
+
+    fn lock(&self) -> MutexGuard<'_, Wanted> {
+        self.wanted.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Shows the path of a sheet while its report is written.
+    fn show_path(&self, scene: &Scene, designed: &Designed, stop: &AtomicBool) {
+        let sheet = SheetData::new(scene, &designed.problem, &designed.best.deployment);
+        let event = Event::new(Kind::Path, &sheet);
+        // Under the lock: nothing is shown after a stop.
+        let _wanted = self.lock();
+        if !stop.load(Ordering::Relaxed) {
+            (self.listener)(event);
+        }
+    }
+
+    /// Computes the next sheet, as soon as there is one.
+    fn work(&self) {
+        let nothing = |wanted: &mut Wanted| wanted.sheet.is_none();
+        let mut wanted =
+            (self.news.wait_while(self.lock(), nothing)).unwrap_or_else(PoisonError::into_inner);
+        let Some(sheet) = wanted.sheet.take() else {
+            return;
+        };
+        let stop = Arc::new(AtomicBool::new(false));
+        wanted.stop = Arc::clone(&stop);
+        drop(wanted);
+        let begin = Instant::now();
+        let computed = caught_panic::catch(|| {
+            let designed = sheet.designed(Arc::clone(&stop))?;
+            self.show_path(sheet.scene(), &designed, &stop);
+            Ok::<_, anyhow::Error>(page_of(&sheet, &designed, begin))
+        });
+        // Under the lock: nothing is shown after a stop.
+        let mut wanted = self.lock();
+        if stop.load(Ordering::Relaxed) {
+            return;
+        }
+        let event = match computed {
+            Ok(Ok((page, path))) => {
+                wanted.path = Some(path);
+                page
+            }
+            Ok(Err(error)) => refusal(&message(&error)),
+            Err(panic) => refusal(&format!("the report failed: {panic}")),
+        };
+        (self.listener)(event);
+        (self.listener)(Event::new(Kind::Working, &()));
+    }
+}
+
+pub(crate) fn milliseconds(begin: Instant) -> f64 {
+    1e3 * begin.elapsed().as_secs_f64()
+}
+
+/// What is said of a request that is refused.
+pub(crate) fn refusal(why: &str) -> Event {
+    Event::new(Kind::Says, &json!({ "refused": true, "message": why }))
+}
+
+/// The page of a sheet, and its path.
+fn page_of(sheet: &Resting, designed: &Designed, begin: Instant) -> (Event, WarmStart) {
+    let scene = sheet.scene();
+    let best = &designed.best.deployment;
+    let cuts = CutLines::of(scene, best);
+    let report = Report::new(scene, designed, &cuts, DesignChecks::default(), false);
+    let page = PageData::new(scene, designed, &report);
+    let (run, ms) = (sheet.run(), Some(milliseconds(begin)));
+    let event = Event::new(Kind::Page, &Shown { page, run, ms });
+    (event, best.warm_start())
+}

@@ -1,0 +1,87 @@
+//! The sheet that is open: its scene, what was before it, and its runs.
+
+use crate::project::Project;
+use analysis::fit::scene::fitted;
+use anyhow::Result;
+use app::cut::Verdict;
+use app::fitting::expected;
+use design::equilibrium::warm_start::WarmStart;
+use design::optimise::outer_loop::Ended;
+use scene::target::TargetShape;
+use scene::{Scene, SceneConfig, place_drawing};
+use serde_json::{Value, json};
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+/// An opened sheet.
+pub(crate) struct Opened {
+    pub project: Project,
+    /// The scene that is shown; its start is the sheet.
+    pub scene: Scene,
+    /// The keys on disk, those before and after them.
+    pub on_disk: SceneConfig,
+    pub before: Vec<SceneConfig>,
+    pub after: Vec<SceneConfig>,
+    /// The page that made the last change, and the number of its changes; `None` if no page did, as
+    /// after an undo.
+    pub by: Option<(String, u64)>,
+    /// The last equilibrium, from which a draft starts.
+    pub known: Option<WarmStart>,
+    /// The runs, each in a folder of its own.
+    pub runs: Vec<Run>,
+}
+
+/// A run whose best design is shown while the scene has the keys `adopted`.
+pub(crate) struct Run {
+    pub scene: Scene,
+    pub adopted: SceneConfig,
+    pub ended: Ended,
+    /// What services say of the files of a machine, by its name.
+    pub verdicts: BTreeMap<String, Vec<Verdict>>,
+}
+
+impl Opened {
+    /// The last equilibrium, if a scene's may be near it: of the same sheet with the same
+    /// supports.
+    pub(crate) fn known_near(&self, scene: &Scene) -> Option<&WarmStart> {
+        let held = |scene: &Scene| (scene.config.sheet, scene.config.supports.clone());
+        self.known.as_ref().filter(|_| held(scene) == held(&self.scene))
+    }
+
+    /// The scene with a run folder of its own.
+    pub(crate) fn scene_of_run(&self) -> Result<Scene> {
+        let config = SceneConfig { output: self.project.next_run(), ..self.scene.config.clone() };
+        Ok(self.scene.changed(config)?)
+    }
+
+    /// The run whose best design is shown.
+    pub(crate) fn run(&self) -> Option<&Run> {
+        let mut runs = self.runs.iter();
+        runs.find(|run| run.adopted == self.scene.config)
+    }
+
+    pub(crate) fn run_mut(&mut self) -> Option<&mut Run> {
+        let mut runs = self.runs.iter_mut();
+        runs.find(|run| run.adopted == self.scene.config)
+    }
+}
+
+impl Run {
+    pub(crate) fn new(scene: Scene, adopted: SceneConfig, ended: Ended) -> Self {
+        Self { scene, adopted, ended, verdicts: BTreeMap::new() }
+    }
+}
+
+/// A sheet that is fitted to the drawing in a file of its folder, at a path.
+pub(crate) fn fitted_to(scene: &Scene, file: PathBuf, path: &Path) -> Result<(Scene, Value)> {
+    let target = &scene.target;
+    let (centre, height) = place_drawing(path, target.mean(), target.area())?;
+    let target = TargetShape::Svg { file, centre, height: Some(height), rotation_deg: 0.0 };
+    let config = SceneConfig { target, ..scene.config.clone() };
+    let drawn = scene.changed(config)?;
+    let fit = fitted(&drawn)?;
+    let says = expected(&fit);
+    let scene = drawn.changed(fit.config)?;
+    let says = json!({ "target": scene.config.target, "says": says });
+    Ok((scene, says))
+}

@@ -1,0 +1,449 @@
+//! The scene that is shown, and the answers to requests.
+
+use crate::catalogue::is_example;
+use crate::draft::{Draft, Steps, draft};
+use crate::event::{Event, Kind};
+use crate::full_analysis::{FullAnalysis, Listener, Resting, Shown, refusal, run_name};
+use crate::opened::{Opened, Run, fitted_to};
+use crate::panels::with_panels;
+use crate::project::Project;
+use crate::request::{Change, Drawing, Files, NewSheet, Request};
+use crate::run_listing::files_of_run;
+use analysis::levels::levels;
+use anyhow::{Context, Result, anyhow, ensure};
+use app::cut::{machine_file_of_run, tiles_of_run};
+use app::design::write_run;
+use app::failure::message;
+use app::run_folder;
+use app::shell_word::shell_word;
+use design::optimise::outer_loop::Ended;
+use output::run_page::PageData;
+use scene::design_run::inverse_design;
+use scene::{Scene, SceneConfig};
+use serde::Serialize;
+use serde_json::{Value, json};
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Instant;
+use support::caught_panic;
+
+/// The files that can be fetched, by the names that pages know.
+pub(crate) type Fetched = Arc<Mutex<BTreeMap<String, PathBuf>>>;
+
+/// What comes next.
+pub(crate) enum Next {
+    Request(Request),
+    /// No request came for a moment.
+    Rest,
+    Closed,
+}
+
+pub(crate) struct Session {
+    projects: PathBuf,
+    analysis: Arc<FullAnalysis>,
+    stop_search: Arc<AtomicBool>,
+    listener: Listener,
+    files: Fetched,
+    sheet: Option<Opened>,
+    at_rest: bool,
+}
+
+impl Session {
+    pub(crate) fn new(
+        projects: PathBuf,
+        analysis: Arc<FullAnalysis>,
+        stop_search: Arc<AtomicBool>,
+        files: Fetched,
+        listener: Listener,
+    ) -> Self {
+        Self { projects, analysis, stop_search, listener, files, sheet: None, at_rest: true }
+    }
+
+    pub(crate) fn is_at_rest(&self) -> bool {
+        self.at_rest
+    }
+
+    /// Shows another sheet.
+    pub(crate) fn open(&mut self, project: Project, scene: Scene) {
+        self.analysis.stop();
+        let run = project.run_of(&scene);
+        let run = run.map(|(of, ended)| Run::new(of, scene.config.clone(), ended));
+        let file = project.scene_file();
+        let command = format!("kirigami design {}", shell_word(&file));
+        self.tell(Kind::Sheet, &json!({ "file": file, "command": command }));
+        self.sheet = Some(Opened {
+            on_disk: scene.config.clone(),
+            before: Vec::new(),
+            after: Vec::new(),
+            by: None,
+            known: None,
+            runs: run.into_iter().collect(),
+            project,
+            scene,
+        });
+        self.at_rest = false;
+        self.tell_scene();
+    }
+
+    /// Does what comes next, and says why it cannot.
+    pub(crate) fn go(&mut self, next: Next) {
+        let done = caught_panic::catch(|| match next {
+            Next::Request(request) => self.answer(request),
+            Next::Rest => self.rest(),
+            Next::Closed => self.commit(),
+        });
+        match done {
+            Ok(Ok(())) => {}
+            Ok(Err(error)) => self.give_up(&message(&error)),
+            Err(panic) => self.give_up(&format!(
+                "the studio failed: {panic}; the scene of the last rest is on disk"
+            )),
+        }
+    }
+
+    fn answer(&mut self, request: Request) -> Result<()> {
+        match request {
+            Request::New(sheet) => self.begin(&sheet)?,
+            Request::Open { scene } => {
+                ensure!(is_example(&scene), "{} is no example", scene.display());
+                let (project, scene) = Project::open(&scene, &self.projects)?;
+                self.open(project, scene);
+            }
+            Request::Change(Change { scene, by }) => {
+                let changed = self.opened()?.scene.changed(*scene)?;
+                self.draft(changed, Some(by))?;
+            }
+            Request::Panels { panels } => {
+                self.tell(Kind::Working, &"panels");
+                let changed = with_panels(&self.opened()?.scene, panels)?;
+                self.draft(changed, None)?;
+            }
+            Request::Drawing(drawing) => self.drawing(&drawing)?,
+            Request::Level { level } => {
+                let other = self.opened()?.scene.at_level(level)?;
+                self.draft(other, None)?;
+            }
+            Request::Levels => self.levels()?,
+            Request::Design => self.design()?,
+            // The engine pauses a search at once.
+            Request::Pause => {}
+            Request::Undo => self.step_back(|sheet| (&mut sheet.before, &mut sheet.after))?,
+            Request::Redo => self.step_back(|sheet| (&mut sheet.after, &mut sheet.before))?,
+            Request::Write(files) => self.write(&files)?,
+        }
+        Ok(())
+    }
+
+    /// Begins a new sheet; the one that is shown stays if it is refused.
+    fn begin(&mut self, sheet: &NewSheet) -> Result<()> {
+        let project = Project::named(&sheet.name, &self.projects)?;
+        let begun = self.new_sheet(&project, sheet);
+        if begun.is_err() {
+            project.remove();
+        }
+        let (scene, fit) = begun?;
+        self.open(project, scene);
+        if let Some(fit) = fit {
+            self.tell(Kind::Fit, &fit);
+        }
+        Ok(())
+    }
+
+    /// A new sheet, and what is said of its fit if it is for a drawing.
+    fn new_sheet(&self, project: &Project, sheet: &NewSheet) -> Result<(Scene, Option<Value>)> {
+        let scene = project.begin(sheet)?;
+        let Some(drawing) = &sheet.drawing else {
+            return Ok((scene, None));
+        };
+        let (scene, says) = self.fitted(project, &scene, drawing)?;
+        Ok((scene, Some(says)))
+    }
+
+    /// Writes the scene, and lets the full analysis be computed.
+    fn rest(&mut self) -> Result<()> {
+        self.at_rest = true;
+        if self.sheet.is_none() {
+            return Ok(());
+        }
+        self.commit()?;
+        self.list_files()?;
+        self.tell(Kind::Working, &"everyday");
+        let sheet = self.opened()?;
+        self.analysis.compute(match sheet.run() {
+            Some(run) => Resting::Run(run.scene.clone()),
+            None => Resting::Start(sheet.scene.clone()),
+        });
+        Ok(())
+    }
+
+    /// Says why a request was not answered. The last result stays.
+    fn give_up(&mut self, why: &str) {
+        // The page shows one scene.
+        let file = self.sheet.as_ref().map(|sheet| sheet.project.scene_file());
+        let named = file.map(|file| format!("{}: ", file.display()));
+        let why = named.and_then(|named| why.strip_prefix(&named)).unwrap_or(why);
+        (self.listener)(refusal(why));
+        self.tell(Kind::Working, &());
+    }
+
+    fn drawing(&mut self, drawing: &Drawing) -> Result<()> {
+        let Opened { project, scene, .. } = self.opened()?;
+        let (scene, says) = self.fitted(project, scene, drawing)?;
+        self.draft(scene, None)?;
+        self.tell(Kind::Fit, &says);
+        Ok(())
+    }
+
+    /// A sheet that is fitted to a drawing, and what is said of it.
+    fn fitted(
+        &self,
+        project: &Project,
+        scene: &Scene,
+        drawing: &Drawing,
+    ) -> Result<(Scene, Value)> {
+        self.tell(Kind::Working, &"fit");
+        let file = project.keep_drawing(drawing)?;
+        let path = project.folder.join(&file);
+        let fitted = fitted_to(scene, file, &path);
+        // A person knows the drawing by the name that it had.
+        fitted.map_err(|error| {
+            anyhow!(message(&error).replace(&*path.to_string_lossy(), &drawing.name))
+        })
+    }
+
+    /// Measures the levels of the sheet that is shown.
+    fn levels(&mut self) -> Result<()> {
+        self.stop_analysis();
+        self.tell(Kind::Working, &"levels");
+        let scene = &self.opened()?.scene;
+        let stop = &*self.stop_search;
+        stop.store(false, Ordering::Relaxed);
+        let found = levels(scene, &scene.start(), stop, &mut |_| ())?;
+        self.tell(Kind::Levels, &found.levels);
+        Ok(())
+    }
+
+    /// Shows another scene at full load, and its keys unless a page has changed them. A scene
+    /// without an equilibrium is refused: the last one stays, here and on disk.
+    fn draft(&mut self, scene: Scene, by: Option<(String, u64)>) -> Result<()> {
+        self.say("");
+        let begin = Instant::now();
+        let path = self.analysis.last_path();
+        let sheet = self.opened_mut()?;
+        sheet.known = path.or(sheet.known.take());
+        let problem = scene.problem()?;
+        let deployment = draft(&problem, &scene.start(), sheet.known_near(&scene))?;
+        let sheet = self.show(scene)?;
+        sheet.known = Some(deployment.warm_start());
+        sheet.by = by;
+        if self.opened()?.by.is_none() {
+            self.tell_scene();
+        }
+        let draft = Draft::new(&self.opened()?.scene, &problem, &deployment, begin);
+        (self.listener)(Event::new(Kind::Draft, &draft));
+        Ok(())
+    }
+
+    /// Writes the scene that is shown, and keeps that before it for an undo.
+    fn commit(&mut self) -> Result<()> {
+        let Some(sheet) = &mut self.sheet else {
+            return Ok(());
+        };
+        if sheet.scene.config != sheet.on_disk {
+            let before = std::mem::replace(&mut sheet.on_disk, sheet.scene.config.clone());
+            sheet.before.push(before);
+            sheet.after.clear();
+        }
+        sheet.project.save(&sheet.scene)?;
+        self.tell_scene();
+        Ok(())
+    }
+
+    /// Shows the last scene of one list and puts that on disk into the other.
+    fn step_back(
+        &mut self,
+        lists: impl Fn(&mut Opened) -> (&mut Vec<SceneConfig>, &mut Vec<SceneConfig>),
+    ) -> Result<()> {
+        self.commit()?;
+        let sheet = self.opened_mut()?;
+        let Some(config) = lists(sheet).0.last().cloned() else {
+            return Ok(());
+        };
+        let scene = sheet.scene.changed(config.clone())?;
+        self.draft(scene, None)?;
+        let sheet = self.opened_mut()?;
+        lists(sheet).0.pop();
+        let left = std::mem::replace(&mut sheet.on_disk, config);
+        lists(sheet).1.push(left);
+        sheet.project.save(&sheet.scene)?;
+        self.tell_scene();
+        Ok(())
+    }
+
+    fn design(&mut self) -> Result<()> {
+        self.commit()?;
+        let sheet = self.opened()?;
+        let scene = match sheet.run() {
+            Some(run) if run.ended == Ended::Stopped => run.scene.clone(),
+            _ => sheet.scene_of_run()?,
+        };
+        self.stop_analysis();
+        self.tell(Kind::Working, &"design");
+        let (run, stop) = (run_name(&scene), self.stop_search.clone());
+        let end = self.search(scene, &stop)?;
+        self.say(&format!("{run}: {end}"));
+        Ok(())
+    }
+
+    /// Runs the search of a scene, and shows its best design; how it ended, in words.
+    fn search(&mut self, scene: Scene, stop: &AtomicBool) -> Result<String> {
+        let _held = run_folder::hold(&scene.output())?;
+        let problem = scene.problem()?;
+        let mut steps = Steps::default();
+        let listener = &self.listener;
+        let designed = inverse_design(&scene, stop, &mut |search| {
+            if let Some(step) = steps.step(&scene, &problem, search) {
+                listener(Event::new(Kind::Step, &step));
+            }
+        })?;
+        self.tell(Kind::Working, &"files");
+        let report = write_run(&scene, &designed, false)?;
+        let page = PageData::new(&scene, &designed, &report);
+        let run = Some(run_name(&scene));
+        self.tell(Kind::Page, &Shown { page, run, ms: None });
+        let adopted = SceneConfig {
+            output: self.opened()?.project.next_run(),
+            ..scene.starting_at(&designed.search.best)
+        };
+        let shown = self.opened()?.scene.changed(adopted.clone())?;
+        let sheet = self.show(shown)?;
+        sheet.known = Some(designed.best.deployment.warm_start());
+        // A run that went on is no longer what it was at its pause.
+        let folder = scene.output();
+        sheet.runs.retain(|run| run.scene.output() != folder);
+        sheet.runs.push(Run::new(scene, adopted, designed.ended));
+        self.commit()?;
+        self.at_rest = true;
+        self.list_files()?;
+        self.tell(Kind::Working, &());
+        Ok(report.end_of_search())
+    }
+
+    /// Writes cut files, from the run of the sheet that is shown: one without a step if there is
+    /// none. Says what was written.
+    fn write(&mut self, files: &Files) -> Result<()> {
+        self.commit()?;
+        self.tell(Kind::Working, &"files");
+        let mut said = Vec::new();
+        if self.opened()?.run().is_none() {
+            self.stop_analysis();
+            let scene = self.opened()?.scene_of_run()?;
+            said.push(format!("the run {}", run_name(&scene)));
+            self.search(scene, &AtomicBool::new(true))?;
+            self.tell(Kind::Working, &"files");
+        }
+        let sheet = self.opened_mut()?;
+        let run = sheet.run_mut().context("the sheet has no run")?;
+        let folder = run.scene.output();
+        let mut refused = Vec::new();
+        if let Some(paper) = &files.paper {
+            match tiles_of_run(&folder, paper) {
+                Ok(written) => said.push(written.to_string()),
+                Err(error) => refused.push(format!("tiles: {}", message(&error))),
+            }
+        }
+        if let Some(machine) = &files.machine {
+            match machine_file_of_run(&folder, machine) {
+                Ok((written, verdicts)) => {
+                    said.push(written.to_string());
+                    run.verdicts.insert(machine.clone(), verdicts);
+                }
+                Err(error) => refused.push(format!("{machine}: {}", message(&error))),
+            }
+        }
+        self.list_files()?;
+        self.tell(Kind::Working, &());
+        let written = match said.is_empty() {
+            true => "nothing was written".to_owned(),
+            false => format!("written: {}", said.join("; ")),
+        };
+        ensure!(refused.is_empty(), "not written: {}; {written}", refused.join("; "));
+        match said.is_empty() {
+            true => self.say(&format!(
+                "{written}: the files of {} are here; choose tiles or a machine for others",
+                folder.display()
+            )),
+            false => self.say(&written),
+        }
+        Ok(())
+    }
+
+    /// Lists the files of the run that is shown for the pages; while no run is shown, the files of
+    /// the last run stay.
+    fn list_files(&self) -> Result<()> {
+        let Some(run) = self.opened()?.run() else {
+            return Ok(());
+        };
+        let folder = run.scene.output();
+        let listed = files_of_run(&folder)?;
+        self.tell(Kind::Files, &json!({ "files": listed, "verdicts": run.verdicts }));
+        let names = listed.into_iter().map(|file| file.name);
+        let fetched = names.map(|name| (name.clone(), folder.join(name)));
+        *self.files.lock().unwrap_or_else(PoisonError::into_inner) = fetched.collect();
+        Ok(())
+    }
+
+    fn opened(&self) -> Result<&Opened> {
+        self.sheet.as_ref().context(NO_SHEET)
+    }
+
+    fn opened_mut(&mut self) -> Result<&mut Opened> {
+        self.sheet.as_mut().context(NO_SHEET)
+    }
+
+    /// Shows a scene.
+    fn show(&mut self, scene: Scene) -> Result<&mut Opened> {
+        self.stop_analysis();
+        let sheet = self.opened_mut()?;
+        sheet.scene = scene;
+        sheet.by = None;
+        Ok(sheet)
+    }
+
+    /// Ends the full analysis, which a rest computes again.
+    fn stop_analysis(&mut self) {
+        self.at_rest = false;
+        let path = self.analysis.stop();
+        if let (Some(sheet), Some(path)) = (&mut self.sheet, path) {
+            sheet.known = Some(path);
+        }
+    }
+
+    fn tell(&self, kind: Kind, data: &impl Serialize) {
+        (self.listener)(Event::new(kind, data));
+    }
+
+    fn say(&self, message: &str) {
+        let says = json!({ "refused": false, "message": message });
+        self.tell(Kind::Says, &says);
+    }
+
+    fn tell_scene(&self) {
+        if let Some(sheet) = &self.sheet {
+            self.tell(
+                Kind::Scene,
+                &json!({
+                    "scene": sheet.scene.config,
+                    "by": sheet.by,
+                    "run": sheet.run().is_some(),
+                    "undo": sheet.before.len(),
+                    "redo": sheet.after.len(),
+                }),
+            );
+        }
+    }
+}
+
+const NO_SHEET: &str = "there is no sheet yet: begin one";

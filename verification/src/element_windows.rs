@@ -1,0 +1,97 @@
+//! The hinges of a deployed sheet, solved by finite elements along their paths in it.
+
+use crate::verification_error::{VerificationError, refused};
+use dataset::Fidelity;
+use design::objective::design_problem::Deployment;
+use fe_driver::{DeformationPath, HingePath, SolveService, WindowProblem, WindowSolve};
+use hinge::{HingeDeformation, HingeSample, SheetMaterial};
+use mesher::Tier;
+use serde::Serialize;
+use std::fmt;
+use surrogate::Surrogate;
+
+/// A hinge of a sheet that finite elements did not follow along its path.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct UnsolvedHinge {
+    /// Number of the hinge.
+    pub hinge: usize,
+    /// Its window, why it was not solved, and the folder of its last attempt.
+    pub reason: String,
+}
+
+impl fmt::Display for UnsolvedHinge {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        write!(f, "hinge {}: {}", self.hinge, self.reason)
+    }
+}
+
+/// Finite elements for the hinges of sheets.
+#[derive(Clone, Copy)]
+pub struct ElementWindows<'a> {
+    /// Tier of the meshes.
+    pub tier: Tier,
+    /// Solves the windows.
+    pub service: &'a SolveService<'a>,
+}
+
+/// Hinges of a sheet, solved along their paths.
+#[derive(Default)]
+pub(crate) struct SolvedPaths {
+    /// The last state of every hinge by finite elements; `None` if it was not solved.
+    pub ends: Vec<Option<HingeSample>>,
+    /// The hinges that were not.
+    pub unsolved: Vec<UnsolvedHinge>,
+    /// CPU time of the windows (s).
+    pub cpu_seconds: f64,
+}
+
+impl ElementWindows<'_> {
+    /// Solves all hinges of a deployment along their paths; an error if none is solved.
+    pub(crate) fn solve(
+        &self,
+        deployment: &Deployment,
+        material: &SheetMaterial,
+    ) -> Result<SolvedPaths, VerificationError> {
+        let versions = self.service.versions();
+        let designs = deployment.sheet.designs().into_iter().enumerate();
+        let solves = designs.map(|(hinge, design)| {
+            let states = deployment.path.iter().map(|step| step.deformations[hinge]);
+            let path = DeformationPath::through(&states.collect::<Vec<HingeDeformation>>());
+            let path = path.ok_or_else(|| refused(format!("hinge {hinge} has no states")))?;
+            let problem = WindowProblem::new(HingePath { design, path }, material, self.tier);
+            Ok::<_, VerificationError>(WindowSolve::new(problem, &versions))
+        });
+        let solves: Vec<WindowSolve> = solves.collect::<Result<_, _>>()?;
+        let mut solved = SolvedPaths::default();
+        for (hinge, window) in self.service.solve(&solves)?.into_iter().enumerate() {
+            solved.cpu_seconds += window.record.cpu_seconds;
+            let complete = window.complete();
+            solved.ends.push(complete.as_ref().ok().and_then(|samples| samples.last().copied()));
+            if let Err(failed) = complete {
+                solved.unsolved.push(UnsolvedHinge { hinge, reason: failed.to_string() });
+            }
+        }
+        match &solved.unsolved[..] {
+            [first, ..] if solved.unsolved.len() == solves.len() => {
+                Err(VerificationError::NoHinge(first.to_string()))
+            }
+            _ => Ok(solved),
+        }
+    }
+}
+
+/// The mesh tier to test weights on: `requested`, or the tier of the database they were trained on,
+/// or the finer tier that the database was corrected to.
+pub fn verification_tier(
+    requested: Option<Tier>,
+    surrogate: &Surrogate,
+) -> Result<Tier, VerificationError> {
+    let trained_on = &surrogate.card().tier;
+    let own = || trained_on.parse().map(Fidelity::mesh).ok();
+    requested.or_else(own).ok_or_else(|| {
+        refused(format!(
+            "the weights were trained on the tier `{trained_on}`, which is no mesh tier: pass the \
+             tier to compare with as --tier"
+        ))
+    })
+}
