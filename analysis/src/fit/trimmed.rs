@@ -98,7 +98,7 @@ pub(super) fn panels(
     order.sort_by_key(size);
     let mut done: BTreeMap<Cell, Region> = BTreeMap::new();
     for cell in order {
-        let square = Region::union_of(vec![corners(cell)]).common(&edge.drawing[&cell]);
+        let square = edge.square(cell);
         let part = &parts[&cell];
         let panel = if part.polygons.is_empty() {
             square.clone()
@@ -164,6 +164,27 @@ impl<'a> Edge<'a> {
     fn hinges_of(&self, cell: Cell) -> impl Iterator<Item = &Pair> {
         let pairs = neighbours(cell).map(|other| [cell.min(other), cell.max(other)]);
         pairs.into_iter().filter_map(|pair| self.hinges.get(&pair))
+    }
+
+    /// A square in the drawing, apart from neighbours with which it does not hang together.
+    fn square(&self, cell: Cell) -> Region {
+        let is_apart = |other: &Cell| {
+            let pair = [cell.min(*other), cell.max(*other)];
+            self.squares.contains(other) && !self.hinges.contains(&pair)
+        };
+        let strip = |other: Cell| {
+            let half = 0.5 * self.limits.gap;
+            let [x, y] = corners(other)[0];
+            vec![
+                [x - half, y - half],
+                [x + 1.0 + half, y - half],
+                [x + 1.0 + half, y + 1.0 + half],
+                [x - half, y + 1.0 + half],
+            ]
+        };
+        let strips = neighbours(cell).into_iter().filter(is_apart).map(strip).collect();
+        let square = Region::union_of(vec![corners(cell)]).minus(&Region::union_of(strips));
+        square.common(&self.drawing[&cell])
     }
 
     /// The parts of every panel: missing squares, row by row, in the neighbour that has the most of

@@ -12,7 +12,7 @@ use crate::{
     objective::design_problem::{
         Deployment, DesignError, DesignProblem, Evaluation, Mechanics, Sensitivities,
     },
-    pattern::design_vector::DesignVector,
+    pattern::{coordinates::PatternCoordinates, design_vector::DesignVector},
     sheet::{
         cut_sheet::{Sheet, SheetGradient},
         ideal_deployment::ideal_deployment_pullback,
@@ -137,8 +137,10 @@ impl DesignProblem {
         let (by_points, by_width) = sheet.pullback(&by_sheet);
         let (by_pattern, by_outline) = deployment.pattern.pullback(&by_points);
         sensitivities.outline = by_outline;
+        // The shapes of trimmed panels are for their cuts, which stay: all coordinates are zero.
+        let stays = || PatternCoordinates::uniform(self.topology.grid);
         let design = DesignVector {
-            pattern: by_pattern,
+            pattern: if self.topology.is_full() { by_pattern } else { stays() },
             omega: std::iter::zip(&design.omega, by_width)
                 .map(|(&omega, by_width)| by_width * self.widths.slope(omega))
                 .collect(),
