@@ -1,6 +1,7 @@
 //! The scene of a sheet that opens onto the target of another: an even pattern laid over the target,
 //! fastened at the places of its opening.
 
+use crate::fit::even_pattern::pitch;
 use crate::fit::even_sheet::EvenSheet;
 use crate::fit::opening::safe_opening;
 use crate::fit::trimmed::Limits;
@@ -10,6 +11,7 @@ use design::geometry::region::Region;
 use design::geometry::similarity::Similarity;
 use design::optimise::search::SearchMethod;
 use faer::c64;
+use hinge::Regime;
 use scene::{
     CellsConfig, Level, OptimiserConfig, Posture, PostureConfig, Scene, SceneConfig, SceneError,
     StartConfig, SupportConfig, SupportKind, rounded,
@@ -34,7 +36,7 @@ const FILLED: f64 = 0.95;
 const PANELS: usize = 25;
 const FASTENERS: [usize; 2] = [3, 8];
 /// Steps of the search for the widths, and the length of its first step.
-const STEPS: usize = 20;
+const STEPS: usize = 0;
 const FIRST_STEP: f64 = 0.03;
 /// Angles between which the turn in the stock is searched (rad): one degree.
 const TURN: f64 = 0.01745;
@@ -152,6 +154,13 @@ fn keys(scene: &Scene, sheet: &EvenSheet, side: f64) -> SceneConfig {
     let (grid, first) = sheet.cells();
     // From the pattern to the sheet: turned back, in mm, its lower left corner at the origin.
     let back = side * c64::cis(-sheet.place.rotation());
+    // The ligament of a plate turns about its middle: the opened sheet is smaller than one on pins.
+    let set_back = match scene.material.regime(config_start(scene)) {
+        Regime::Plate => 0.5 * (config_start(scene) + scene.config.process.slit_width) / side,
+        Regime::Film => 0.0,
+    };
+    let smaller =
+        1.0 - 2.0 * set_back * (0.5 * sheet.limits.opening).sin() / pitch(sheet.limits.opening);
     let first = complex(first.map(f64::from));
     let turned = |at: c64| back * (at - first);
     let flat = sheet.opened(0.0);
@@ -174,7 +183,7 @@ fn keys(scene: &Scene, sheet: &EvenSheet, side: f64) -> SceneConfig {
     let (before, after) = (mean(0), mean(1));
     let moved = |panel: usize| {
         let [from, to] = centres[panel].map(complex);
-        point(back * ((to - after) - (from - before))).map(rounded)
+        point(back * (smaller * (to - after) - (from - before))).map(rounded)
     };
     let [fewest, most] = FASTENERS;
     let count = (centres.len() / PANELS).clamp(fewest, most);
@@ -192,10 +201,15 @@ fn keys(scene: &Scene, sheet: &EvenSheet, side: f64) -> SceneConfig {
         ..config.optimiser
     };
     // From the target to the opened sheet whose middle stays.
-    let turn = back * sheet.place.turn;
-    let shift = back * (sheet.place.shift - after + before - first) - complex(low);
+    let turn = smaller * back * sheet.place.turn;
+    let shift = back * (smaller * (sheet.place.shift - after) + before - first) - complex(low);
     config.target = config.target.placed(&Similarity { turn, shift }, &scene.target.points);
     config
+}
+
+/// Width of the ligaments at the start (mm).
+fn config_start(scene: &Scene) -> f64 {
+    scene.config.ligament.start
 }
 
 /// Points far from each other, beginning with the one that is farthest from the middle.

@@ -24,7 +24,7 @@ const RINGS: usize = 2;
 const LEAST_PART: f64 = 0.02;
 /// By how much the edges of a panel are simplified.
 const TOLERANCE: f64 = 3e-3;
-/// Overlap of a panel with what passes through it that is a rounding error, over its square.
+/// Area of a hole that is a rounding error.
 const FILLED: f64 = 1e-4;
 /// Points on the arc of a window in a square.
 const ARC: u32 = 4;
@@ -113,13 +113,10 @@ pub(super) fn panels(
             let taken = edge.passed(cell, part, of_other).offset(limits.gap, Corners::Round);
             let whole = square.union(&part.minus(&taken));
             let wide = square.union(&whole.opened(0.5 * limits.width).common(&whole));
-            let filled = with_most_of(wide, &square).filled();
+            let panel = with_most_of(wide, &square);
             // A hole that another panel passes through cannot be filled.
-            if filled.common(&taken).area() > FILLED * square.area() {
-                square.clone()
-            } else {
-                filled
-            }
+            let holes = panel.filled().minus(&panel);
+            if holes.common(&taken).area() > FILLED { square.clone() } else { panel }
         };
         let panel = with_most_of(panel, &square).filled();
         done.insert(cell, panel.simplified(TOLERANCE));
