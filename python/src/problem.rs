@@ -53,6 +53,7 @@ pub(crate) struct Problem {
 
 /// One of many equilibria, or why there is none.
 #[derive(IntoPyObject)]
+#[expect(clippy::large_enum_variant, reason = "each is moved to Python once")]
 enum BatchElement {
     Found(State),
     Missing(PyErr),
