@@ -217,7 +217,7 @@ impl ArrayTasks {
             format!("--cpus-per-task={cores}"),
             format!("--time={minutes}"),
             format!("--signal=B:TERM@{grace}"),
-            // In a path Slurm replaces what follows a percent sign.
+            // Slurm replaces what follows a percent sign, also in a path.
             format!("--output={}/%x-%A-%a.log", folder.replace('%', "%%")),
             "--chdir".to_owned(),
         ]);
