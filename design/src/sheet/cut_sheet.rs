@@ -159,7 +159,7 @@ impl Sheet {
         if w_lig.len() != grid.hinge_count() {
             let (found, expected) = (w_lig.len(), grid.hinge_count());
             let what = format!("{found} ligament widths for {expected} hinges");
-            return Err(fault("", what, ""));
+            return Err(Fault::from(what));
         }
         let panel_endpoints = panel_endpoints(grid);
         let panels = std::iter::zip(0.., &panel_endpoints)
@@ -302,7 +302,7 @@ impl Hinge {
     ) -> Result<Self, Fault> {
         if !(w_lig > 0.0 && w_lig.is_finite()) {
             let what = format!("w_lig[{hinge}] = {w_lig} mm is not a positive finite number");
-            return Err(fault("", what, ""));
+            return Err(Fault::from(what));
         }
         let unit = |from: usize, to: usize| {
             let segment = complex(points[to]) - complex(points[from]);
