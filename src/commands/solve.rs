@@ -2,11 +2,12 @@
 
 use crate::commands::solve_args::{FeSolver, LIMIT};
 use crate::commands::window_args::WindowArgs;
-use crate::ui::exit::Unfinished;
-use crate::ui::input_file;
-use crate::ui::progress::watched;
-use crate::ui::{interrupt, run_folder};
+use crate::ui::interrupt;
 use anyhow::{Error, Result, bail};
+use app::failure::Unfinished;
+use app::input_file;
+use app::progress::watched;
+use app::run_folder;
 use clap::Args;
 use fe_driver::{Cause, Ray, Solver, WindowProblem, WindowSolve, reached};
 use hinge::{HingeDeformation, HingeSample, SheetMaterial};
