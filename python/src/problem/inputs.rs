@@ -1,4 +1,4 @@
-//! Reads the arguments of a problem, and keeps the states that its next solves start from.
+//! Reads the arguments of a problem.
 
 use super::Problem;
 use crate::{
