@@ -5,8 +5,8 @@ use crate::commands::{
 };
 #[cfg(feature = "pipeline")]
 use crate::commands::{demo, pipeline};
-use crate::ui::progress;
 use anyhow::Result;
+use app::progress;
 use clap::{CommandFactory, Parser, Subcommand};
 use support::verbose;
 

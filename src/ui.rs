@@ -1,7 +1,5 @@
 //! The user interface of the commands: values of options, signals, exit codes.
 
-pub use app::{charts, input_file, output_file, picture, progress, run_folder, shell_word};
-
 pub mod count;
 pub mod exit;
 pub mod interrupt;

@@ -2,7 +2,7 @@
 //! changes its load.
 //!
 //! An error of the hinge forces moves the sheet to first order by [`ForceResponse`].
-//! A cause gives the standard deviations of these forces ([`Modes`]), from what was measured:
+//! A cause gives the standard deviations of these forces, from what was measured:
 //!
 //! | cause | force errors | of the hinges | measured |
 //! |---|---|---|---|

@@ -30,7 +30,7 @@ impl MeasuredSheet {
                 "{} measured points: at least {MIN_POINTS} are needed for pose, scale and load factor",
                 points.len()
             );
-            return Err(fault("", what, ""));
+            return Err(Fault::from(what));
         }
         if scale == Scale::Free && path.end() > 0.0 && alone {
             return Err(fault(
@@ -42,7 +42,7 @@ impl MeasuredSheet {
         let problem = PathFit { path, points, scale };
         let best = problem.fit(problem.best_position());
         let full = problem.fit(path.end());
-        let coincide = || fault("", "the measured points coincide", "");
+        let coincide = || Fault::from("the measured points coincide");
         let (best, full) = best.zip(full).ok_or_else(coincide)?;
         Ok(Self { load_factor_error: problem.load_factor_error(&best), best, full })
     }

@@ -3,7 +3,6 @@
 # number of tasks, and the command, to which a task adds its shard.
 #SBATCH --requeue
 #SBATCH --open-mode=append
-#SBATCH --output=%x-%A-%a.log
 
 shards=$1
 shift

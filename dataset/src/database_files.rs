@@ -142,7 +142,7 @@ fn read_manifest(path: &Path) -> Result<Manifest, DatasetError> {
 fn no_manifest<E: Display>(path: &Path) -> impl FnOnce(E) -> Fault {
     move |error| {
         let what = format!("{} is not a manifest of a database: {error}", path.display());
-        fault("", what, "")
+        Fault::from(what)
     }
 }
 

@@ -1,6 +1,6 @@
 //! The error of collecting, reading, writing and correcting a database.
 
-use support::fault::{Fault, fault};
+use support::fault::Fault;
 
 /// Why a database cannot be collected, read, written or corrected.
 #[derive(Debug, thiserror::Error)]
@@ -14,6 +14,6 @@ pub enum DatasetError {
 }
 
 /// The error with a message.
-pub(crate) fn refused(what: impl Into<String>) -> DatasetError {
-    fault("", what, "").into()
+pub(crate) fn refused(what: impl Into<Fault>) -> DatasetError {
+    what.into().into()
 }

@@ -38,12 +38,15 @@
 //! use std::sync::Arc;
 //! use std::sync::atomic::AtomicBool;
 //!
-//! // A square sheet of 3 x 3 panels: one held at the left, one pulled to the right by 2 N. let
-//! grid = Grid { m: 3, n: 3 }; let clamp = Dof::ALL.map(|dof| Support { panel: grid.panel(0, 1),
-//! dof, value: 0.0 }); let pull = Load { panel: grid.panel(2, 1), dof: Dof::UX, value: 2.0 }; let
-//! solver = EquilibriumSolver::new(grid, &clamp, &[pull], 4, SolverSettings::default())?; let
-//! circle = (0..100).map(|i| 0.0628 * f64::from(i)).map(|t| [700.0 + 750.0 * t.cos(), 550.0 + 750.0
-//! * t.sin()]); let problem = DesignProblem {
+//! // A square sheet of 3 x 3 panels: one held at the left, one pulled to the right by 2 N.
+//! let grid = Grid { m: 3, n: 3 };
+//! let clamp = Dof::ALL.map(|dof| Support { panel: grid.panel(0, 1), dof, value: 0.0 });
+//! let pull = Load { panel: grid.panel(2, 1), dof: Dof::UX, value: 2.0 };
+//! let solver = EquilibriumSolver::new(grid, &clamp, &[pull], 4, SolverSettings::default())?;
+//! let circle = (0..100)
+//!     .map(|i| 0.0628 * f64::from(i))
+//!     .map(|t| [700.0 + 750.0 * t.cos(), 550.0 + 750.0 * t.sin()]);
+//! let problem = DesignProblem {
 //!     grid,
 //!     outline: Outline::rectangle(1200.0, 1200.0),
 //!     widths: WidthChart { w_minus: 10.0, w_plus: 26.0 },

@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
-use support::fault::{Fault, fault};
+use support::fault::Fault;
 
 /// Geometry of the ligament left between the tip of a main cut and a secondary cut; (7).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -126,7 +126,7 @@ impl HingeDesign {
     /// Rejects a design that cannot be cut; the error names the violated inequality.
     pub fn validate(&self) -> Result<(), InvalidDesign> {
         let Self { w_lig, alpha, fillet_ratio, kerf, r_win } = *self;
-        let refuse = |what: String| Err(fault("", what, "").into());
+        let refuse = |what: String| Err(Fault::from(what).into());
         let named = ["w_lig", "alpha", "fillet_ratio", "kerf", "r_win"];
         let values = [w_lig, alpha, fillet_ratio, kerf, r_win];
         if let Some((name, value)) = named.iter().zip(values).find(|(_, it)| !it.is_finite()) {

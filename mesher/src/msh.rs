@@ -160,7 +160,7 @@ fn section<'t>(
     if count.trim().parse() != Ok(rows.len()) {
         return Err(at_line(*line, "the section does not have the announced number of lines"));
     }
-    Ok(rows.to_vec().into_iter())
+    Ok(rows.iter().copied())
 }
 
 const MALFORMED: &str = "a number is missing or malformed";

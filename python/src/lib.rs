@@ -21,7 +21,9 @@ mod errors;
 mod flat_sheet;
 mod hinges;
 mod problem;
+mod scene_keys;
 mod waiting;
+mod warm;
 
 use pyo3::prelude::*;
 

@@ -2,13 +2,14 @@
 
 mod inputs;
 
-use self::inputs::{Warm, read_level, read_method, scene_of};
 use crate::{
     arrays::{Argument, Array, Numbers, Plain, finite, list, plain, rows, shaped},
     deployment::{Deployment, State},
     errors,
     flat_sheet::Sheet,
+    scene_keys::{read_level, read_method, scene_of},
     waiting::{unlocked, while_polling},
+    warm::Warm,
 };
 use design::{
     DesignError, DesignProblem, DesignVector, SearchState,
@@ -53,6 +54,7 @@ pub(crate) struct Problem {
 
 /// One of many equilibria, or why there is none.
 #[derive(IntoPyObject)]
+#[expect(clippy::large_enum_variant, reason = "each is moved to Python once")]
 enum BatchElement {
     Found(State),
     Missing(PyErr),

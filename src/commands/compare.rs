@@ -3,11 +3,11 @@
 
 use crate::commands::inspect::scene_args::Inspected;
 use crate::commands::points_file::PointsFile;
-use crate::ui::{picture, run_folder};
 use analysis::measured_points::Mark;
 use analysis::measured_sheet::MeasuredSheet;
 use analysis::shape_path::ShapePath;
 use anyhow::{Context, Result, ensure};
+use app::{picture, run_folder};
 use clap::Args;
 use design::sheet::cut_sheet::Sheet;
 use output::drawing;

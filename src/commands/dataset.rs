@@ -2,8 +2,8 @@
 
 mod compare;
 
-use crate::ui::output_file;
 use anyhow::{Result, ensure};
+use app::output_file;
 use clap::Args;
 use dataset::Database;
 use std::path::PathBuf;

@@ -3,15 +3,15 @@
 #[cfg(feature = "pipeline")]
 mod by_elements;
 
-use crate::ui::exit::Unfinished;
-use crate::ui::progress::{Progress, announce};
 use crate::ui::with_unit::{self, Accuracy};
 use crate::ui::{interrupt, processors};
 use analysis::refinement::refine;
 use anyhow::{Context, Result, bail, ensure};
 use app::design::{ended, hold, search, write_refined};
 use app::design_runs::{Run, compare, refuse_shared_folders};
+use app::failure::Unfinished;
 use app::fitting::fit_to_target;
+use app::progress::{Progress, announce};
 use clap::Args;
 use design::objective::scores::shown;
 use design::objective::term::in_words;

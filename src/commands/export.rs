@@ -1,8 +1,8 @@
 //! `kirigami export`: the deployment of a designed sheet for other programs.
 
 use crate::commands::inspect::scene_args::Inspected;
-use crate::ui::run_folder;
 use anyhow::{Context, Result};
+use app::run_folder;
 use clap::Args;
 use output::vtk_sheet::vtk_states;
 use std::path::PathBuf;

@@ -1,11 +1,12 @@
 //! `kirigami levels`: what every level of a scene costs, and how far it is from the finest.
 
 use crate::commands::inspect::scene_args::Inspected;
-use crate::ui::progress::announce;
-use crate::ui::{charts, interrupt, output_file};
+use crate::ui::interrupt;
 use analysis::levels::{LevelCost, Levels, levels};
 use anyhow::Result;
 use app::design_checks::record;
+use app::progress::announce;
+use app::{charts, output_file};
 use clap::Args;
 use serde::Serialize;
 use std::path::PathBuf;

@@ -1,8 +1,9 @@
 //! `kirigami mesh`: the finite-element mesh of one hinge window.
 
 use crate::commands::window_args::WindowArgs;
-use crate::ui::{interrupt, picture, run_folder};
+use crate::ui::interrupt;
 use anyhow::Result;
+use app::{picture, run_folder};
 use clap::Args;
 use mesher::{Gmsh, Tier, WindowShape, plane_mesh_svg, vtk_grid};
 use std::path::PathBuf;

@@ -2,17 +2,19 @@
 
 use crate::commands::solve_args::{FeSolver, LIMIT};
 use crate::commands::window_args::WindowArgs;
-use crate::ui::exit::Unfinished;
-use crate::ui::input_file;
-use crate::ui::progress::watched;
-use crate::ui::{interrupt, run_folder};
+use crate::ui::interrupt;
 use anyhow::{Error, Result, bail};
+use app::failure::Unfinished;
+use app::input_file;
+use app::progress::watched;
+use app::run_folder;
 use clap::Args;
 use fe_driver::{Cause, Ray, Solver, WindowProblem, WindowSolve, reached};
 use hinge::{HingeDeformation, HingeSample, SheetMaterial};
 use mesher::Tier;
 use serde_json::json;
 use std::path::PathBuf;
+use std::time::Duration;
 use support::table::{Cell, Table};
 
 /// Solve one hinge window by finite elements and print its ray
@@ -42,6 +44,9 @@ pub struct SolveCommand {
     /// plate-reference
     #[arg(long, value_name = "TIER", default_value_t = Tier::Default)]
     tier: Tier,
+    /// Time limit of the solver (s); time in which the machine is suspended does not count
+    #[arg(long, value_name = "S", default_value_t = LIMIT.as_secs(), value_parser = clap::value_parser!(u64).range(1..=86_400))]
+    time_limit_s: u64,
     /// Folder for the mesh, the input deck, the log and the solver's output
     #[arg(long, value_name = "FOLDER", default_value = "runs/solve")]
     out: PathBuf,
@@ -63,8 +68,9 @@ impl SolveCommand {
         let solver = FeSolver { print_all: true, ..FeSolver::find()? };
         let problem = WindowProblem::new(hinge, &material, self.tier);
         let solve = WindowSolve::new(problem, &solver.versions());
+        let limit = Duration::from_secs(self.time_limit_s);
         let solution =
-            watched(1, || reached(&self.out), || solver.attempt(&solve, &self.out, LIMIT, stop))
+            watched(1, || reached(&self.out), || solver.attempt(&solve, &self.out, limit, stop))
                 .map_err(|error| match error.cause == Cause::Stop {
                     true => Unfinished { left: 1, what: "ray" }.into(),
                     false => Error::from(error),

@@ -1,11 +1,11 @@
 //! Options of window solves, and the service that they describe.
 
 use crate::ui::count::jobs;
-use crate::ui::exit::Unfinished;
 use crate::ui::interrupt;
 use crate::ui::processors;
-use crate::ui::progress::Progress;
 use anyhow::Result;
+use app::failure::Unfinished;
+use app::progress::Progress;
 use clap::Args;
 use fe_driver::{Solve, SolveListError, SolveService, SolveStore, Solver};
 use std::cell::RefCell;

@@ -1,6 +1,6 @@
 //! Exit codes and the error message of a command.
 
-pub use app::failure::{Unfinished, message};
+use app::failure::{Unfinished, message};
 use std::io::Write;
 use std::process::{ExitCode, Termination};
 use support::caught_panic;

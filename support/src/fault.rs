@@ -31,14 +31,20 @@ impl From<String> for Fault {
     }
 }
 
+impl From<&str> for Fault {
+    fn from(what: &str) -> Self {
+        what.to_owned().into()
+    }
+}
+
 /// Maps the error of reading `path`, for use in `map_err`.
 pub fn unread<E: fmt::Display>(path: &Path) -> impl FnOnce(E) -> Fault {
-    move |error| fault("", format!("cannot read {}: {error}", path.display()), "")
+    move |error| format!("cannot read {}: {error}", path.display()).into()
 }
 
 /// Maps the error of writing `path`, for use in `map_err`.
 pub fn unwritten<E: fmt::Display>(path: &Path) -> impl FnOnce(E) -> Fault {
-    move |error| fault("", format!("cannot write {}: {error}", path.display()), "")
+    move |error| format!("cannot write {}: {error}", path.display()).into()
 }
 
 impl fmt::Display for Fault {

@@ -4,7 +4,7 @@ use crate::features::{LOG_WIDTH, Standardisation, feature_names};
 use crate::network::{finite, other_shape};
 use hinge::{HingeConstants, TrainingDomain};
 use serde::{Deserialize, Deserializer, Serialize};
-use support::fault::{Fault, fault};
+use support::fault::Fault;
 
 /// Format version of the weight file and its card; no other version is read.
 pub const FORMAT_VERSION: u32 = 9;
@@ -265,7 +265,7 @@ impl Card {
         ] {
             if found != expected {
                 let what = format!("the {key} of the card are {found}, expected {expected}");
-                return Err(fault("", what, ""));
+                return Err(Fault::from(what));
             }
         }
         let damages = self.damage_scales().into_iter();
@@ -287,7 +287,7 @@ impl Card {
         for (name, value) in scales.chain(deviations) {
             if !(value > 0.0 && value.is_finite()) {
                 let what = format!("`{name}` = {value} violates 0 < {name} < infinity");
-                return Err(fault("", what, ""));
+                return Err(Fault::from(what));
             }
         }
         finite("feat_mean", mean)

@@ -2,7 +2,7 @@
 
 use crate::features::{FEATURES, Standardisation};
 use faer::Mat;
-use support::fault::{Fault, fault};
+use support::fault::Fault;
 
 /// An array of a weight file, in row-major order.
 #[derive(Clone, Debug, PartialEq)]
@@ -109,12 +109,12 @@ impl Affine {
 }
 
 pub(crate) fn missing(tensor: &str) -> Fault {
-    fault("", format!("tensor `{tensor}` is missing; train or export the weights again"), "")
+    Fault::from(format!("tensor `{tensor}` is missing; train or export the weights again"))
 }
 
 pub(crate) fn other_shape(tensor: &str, expected: &str, found: &[usize]) -> Fault {
     let what = format!("tensor `{tensor}` has the shape {found:?}, expected {expected}");
-    fault("", what, "")
+    Fault::from(what)
 }
 
 /// Rejects a value that is not finite.
@@ -124,7 +124,7 @@ pub(crate) fn finite(tensor: &str, values: &[f64]) -> Result<(), Fault> {
     };
     let value = values[index];
     let what = format!("tensor `{tensor}` contains {value} at index {index}");
-    Err(fault("", what + "; every weight must be finite", ""))
+    Err(Fault::from(what + "; every weight must be finite"))
 }
 
 impl Tensor {

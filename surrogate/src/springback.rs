@@ -18,7 +18,7 @@ use serde::{Deserialize, Serialize};
 use std::array::from_fn;
 use std::f64::consts::FRAC_PI_2;
 use std::path::Path;
-use support::fault::{Fault, fault, unread};
+use support::fault::{Fault, unread};
 use support::regular_file;
 use support::sealed_json;
 
@@ -132,7 +132,7 @@ impl Springback {
         let bytes = regular_file::read(path).map_err(unread(path))?;
         sealed_json::from_slice(&bytes).map_err(|error| {
             let what = format!("{} is not a law of released hinges: {error}", path.display());
-            fault("", what, "")
+            Fault::from(what)
         })
     }
 

@@ -22,7 +22,7 @@ use std::collections::BTreeMap;
 use std::fmt::Display;
 use std::io;
 use std::path::{Path, PathBuf};
-use support::fault::{Fault, fault, unread, unwritten};
+use support::fault::{Fault, unread, unwritten};
 use support::{regular_file, sealed_json, whole_file};
 
 /// Why a surrogate could not be read or written.
@@ -98,11 +98,11 @@ fn from_tensors(tensors: &mut BTreeMap<String, Tensor>, card: Card) -> Result<Su
                 "`{tensor}` differs from the value in the card; the two files are from different \
                  trainings, so copy both from the same place"
             );
-            return Err(fault("", what, ""));
+            return Err(Fault::from(what));
         }
     }
     if let Some((tensor, _)) = tensors.pop_first() {
-        return Err(fault("", format!("tensor `{tensor}` is not part of a known network"), ""));
+        return Err(Fault::from(format!("tensor `{tensor}` is not part of a known network")));
     }
     Surrogate::from_parts(Layers { chi, chi_d, chi_p }, card)
 }
@@ -151,7 +151,7 @@ fn refuse_database(weights: &Path) -> Result<(), Fault> {
 
 /// The fault of a file: its path is the subject of the sentence `what`.
 fn other_file(path: &Path, what: impl Display) -> Fault {
-    fault("", format!("{} {what}", path.display()), "")
+    Fault::from(format!("{} {what}", path.display()))
 }
 
 fn no_card(path: &Path, error: impl Display) -> Fault {
@@ -179,7 +179,7 @@ fn read_tensors(path: &Path, bytes: &[u8]) -> Result<BTreeMap<String, Tensor>, F
             None => {
                 let found = view.dtype();
                 let what = format!("tensor `{name}` is {found:?}, expected F64 or F32");
-                Err(at(path)(fault("", what, "")))
+                Err(at(path)(Fault::from(what)))
             }
         })
         .collect()

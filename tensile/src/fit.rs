@@ -9,7 +9,7 @@ use crate::specimen::{End, Specimen, SpecimenOptions};
 use crate::thinning::thinned;
 use serde::Serialize;
 use std::path::PathBuf;
-use support::fault::{Fault, fault};
+use support::fault::Fault;
 
 /// What is known about a material besides the records of its specimens.
 #[derive(Clone, Copy, Debug)]
@@ -273,7 +273,7 @@ fn drawn_curve(specimens: &[Specimen], start: [f64; 2]) -> Vec<[f64; 2]> {
 
 /// What is wrong with the specimens together.
 fn refused(what: String) -> Fault {
-    fault("", what, "")
+    Fault::from(what)
 }
 
 struct Fracture {

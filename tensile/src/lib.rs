@@ -60,9 +60,9 @@ pub use record::{ReadColumn, RecordOptions};
 pub use specimen::{End, Softening, Specimen, SpecimenOptions};
 
 use std::path::Path;
-use support::fault::{Fault, fault};
+use support::fault::Fault;
 
 /// Puts the file before what is wrong with it.
 fn in_file(path: &Path) -> impl Fn(String) -> Fault + Copy {
-    move |what| fault("", format!("{} {what}", path.display()), "")
+    move |what| Fault::from(format!("{} {what}", path.display()))
 }

@@ -9,8 +9,7 @@ use crate::name::Name;
 use crate::quantity::{are_units, bare};
 use std::collections::BTreeMap;
 use std::path::Path;
-use support::fault::{Fault, fault};
-use support::file_error::FileError;
+use support::fault::{Fault, unread};
 use support::text_table::{NumberStyle, TextRow, TextTable};
 use support::{regular_file, text_file};
 
@@ -31,10 +30,9 @@ pub(super) struct NumberTable {
 impl NumberTable {
     /// The tables of a file, and its BLAKE3 hash, 16 hexadecimal digits.
     pub(crate) fn read_all(path: &Path) -> Result<(Vec<Self>, String), Fault> {
-        let unread = |error| fault("", format!("cannot read {}", FileError::at(path)(error)), "");
-        let bytes = regular_file::read(path).map_err(unread)?;
+        let bytes = regular_file::read(path).map_err(unread(path))?;
         let hash = blake3::hash(&bytes).to_hex()[..16].to_owned();
-        let text = text_file::decoded(&bytes).map_err(unread)?;
+        let text = text_file::decoded(&bytes).map_err(unread(path))?;
         Ok((Self::parse(&text).map_err(in_file(path))?, hash))
     }
 

@@ -2,7 +2,7 @@
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use support::fault::{Fault, fault};
+use support::fault::Fault;
 use support::key_limits;
 use surrogate::Surrogate;
 
@@ -63,7 +63,7 @@ impl TrainingConfig {
 
     /// Rejects impossible values; the error names the key and the rule.
     pub fn validate(&self) -> Result<(), Fault> {
-        key_limits::check::<Self>(self).map_err(|error| fault("", error.to_string(), ""))?;
+        key_limits::check::<Self>(self).map_err(|error| Fault::from(error.to_string()))?;
         let checks = [
             (
                 "embedding",
@@ -82,7 +82,7 @@ impl TrainingConfig {
         ];
         match checks.into_iter().find(|(.., holds)| !holds) {
             Some((key, value, rule, _)) => {
-                Err(fault("", format!("{key} = {value} violates {rule}"), ""))
+                Err(Fault::from(format!("{key} = {value} violates {rule}")))
             }
             None => Ok(()),
         }

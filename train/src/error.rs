@@ -1,6 +1,6 @@
 //! The error of a training.
 
-use support::fault::{Fault, fault};
+use support::fault::Fault;
 
 /// Why a training failed.
 #[derive(Debug, thiserror::Error)]
@@ -15,5 +15,5 @@ impl From<burn::tensor::TensorReadError> for TrainError {
 
 /// The error with a message.
 pub(crate) fn failed(what: String) -> TrainError {
-    TrainError(fault("", what, ""))
+    TrainError(Fault::from(what))
 }

@@ -23,6 +23,7 @@ mod affine;
 mod bins;
 mod config;
 mod distillation;
+mod epoch;
 mod error;
 mod error_interval;
 mod export;
@@ -38,8 +39,9 @@ mod validation;
 
 pub use config::TrainingConfig;
 pub use distillation::{Distillation, TrainingData};
+pub use epoch::Epoch;
 pub use error::TrainError;
 pub use error_interval::ErrorInterval;
 pub use fine_tuning::check_pretrained;
-pub use training::{Epoch, Start, Trained, Training, train};
+pub use training::{Start, Trained, Training, train};
 pub use validation::{Parity, spot_check};

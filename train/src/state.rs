@@ -4,9 +4,9 @@
 //! of the best epoch and the state of the optimiser as Burn's own records (bytes), and all other
 //! data as JSON.
 
+use crate::epoch::Epoch;
 use crate::error::{TrainError, failed};
 use crate::networks::Networks;
-use crate::training::Epoch;
 use burn::module::Module;
 use burn::optim::ModuleOptimizer;
 use burn::store::{ModuleRecord, RecordError};

@@ -4,6 +4,7 @@
 use crate::bins::error_bins;
 use crate::config::{DAMAGE_SHARPNESS, TrainingConfig};
 use crate::distillation::TrainingData;
+use crate::epoch::Epoch;
 use crate::error::{TrainError, failed};
 use crate::export::layers;
 use crate::fine_tuning::{Initial, check_pretrained, inherit};
@@ -21,41 +22,11 @@ use hinge::TrainingDomain;
 use rand::SeedableRng;
 use rand::seq::SliceRandom;
 use rand_chacha::ChaCha8Rng;
-use serde::{Deserialize, Deserializer, Serialize};
 use std::collections::BTreeSet;
 use std::f64::consts::PI;
 use std::path::Path;
 use std::time::Instant;
 use surrogate::{Card, FORMAT_VERSION, Surrogate, TestErrors, UNITS, feature_names};
-
-/// The result of one pass over the training rows.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Epoch {
-    /// Number of the epoch: 1, 2, ..., `epochs`.
-    pub epoch: usize,
-    /// Maximum number of epochs.
-    pub epochs: usize,
-    /// The loss (15): mean over the batches, each with the weights before its step.
-    pub training_loss: f64,
-    /// The loss (15) on the validation part at the end of the epoch.
-    pub validation_loss: f64,
-    /// Relative errors of each network on the validation part: of W and the forces (their geometric
-    /// mean), of D, and of D_peak; NaN if no validation row has a known target that is not zero.
-    #[serde(deserialize_with = "numbers_or_null")]
-    pub validation_errors: [f64; 3],
-    /// Learning rate at the end of the epoch.
-    pub learning_rate: f64,
-    /// Whether one of the validation errors is smaller than in all earlier epochs.
-    pub best: bool,
-    /// Training time so far (s).
-    pub elapsed_s: f64,
-}
-
-/// JSON has no NaN.
-fn numbers_or_null<'de, D: Deserializer<'de>>(values: D) -> Result<[f64; 3], D::Error> {
-    let values = <[Option<f64>; 3]>::deserialize(values)?;
-    Ok(values.map(|value| value.unwrap_or(f64::NAN)))
-}
 
 /// A trained surrogate with its history and test errors.
 #[derive(Clone, Debug)]

@@ -74,7 +74,6 @@ pub(crate) struct AdjointSums {
 /// The gradient, with respect to the sheet, of a function of the path: the direct dependence
 /// through the hinge states, and the dependence through the equilibria. The result is added to
 /// `by_sheet`.
-#[expect(clippy::too_many_lines, reason = "one derivation, read from top to bottom")]
 pub(crate) fn adjoint(
     solver: &EquilibriumSolver,
     sheet: HingedSheet,

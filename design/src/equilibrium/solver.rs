@@ -82,7 +82,7 @@ impl EquilibriumSolver {
             check("a support", panel)?;
             finite("a support", panel, value)?;
             if std::mem::replace(&mut supported[panel][dof.index()], true) {
-                return Err(fault("", format!("{dof:?} of panel {panel} is supported twice"), ""));
+                return Err(Fault::from(format!("{dof:?} of panel {panel} is supported twice")));
             }
         }
         let mut total = vec![[0.0; 3]; panels];
@@ -203,11 +203,11 @@ impl EquilibriumSolver {
     /// magnitudes.
     pub fn driven(mut self, stroke: f64) -> Result<Self, Fault> {
         if !stroke.is_finite() {
-            return Err(fault("", format!("the stroke {stroke} mm is not a finite number"), ""));
+            return Err(Fault::from(format!("the stroke {stroke} mm is not a finite number")));
         }
         let direction = Stroke::new(&self.loads, &self.pattern.gather(&self.loads));
         let what = "displacement control needs a load, whose stroke is prescribed";
-        let direction = direction.ok_or_else(|| fault("", what, ""))?;
+        let direction = direction.ok_or_else(|| Fault::from(what))?;
         self.drive = Some((Box::new(direction), stroke));
         Ok(self)
     }
@@ -227,7 +227,7 @@ impl EquilibriumSolver {
     /// The same problem with a weight of `by_area` (N/mm^2) in the plane of the sheet.
     pub fn with_weight(mut self, by_area: [f64; 2]) -> Result<Self, Fault> {
         if !by_area.iter().all(|component| component.is_finite()) {
-            return Err(fault("", format!("the weight {by_area:?} N/mm^2 is not finite"), ""));
+            return Err(Fault::from(format!("the weight {by_area:?} N/mm^2 is not finite")));
         }
         self.weight = by_area;
         Ok(self)
@@ -275,5 +275,5 @@ impl EquilibriumSolver {
 
 fn finite(what: &str, panel: usize, value: f64) -> Result<(), Fault> {
     let what = || format!("{what} of {value} on panel {panel} is not a finite number");
-    value.is_finite().then_some(()).ok_or_else(|| fault("", what(), ""))
+    value.is_finite().then_some(()).ok_or_else(|| Fault::from(what()))
 }

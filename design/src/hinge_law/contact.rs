@@ -11,7 +11,7 @@
 use crate::hinge_law::law::HingeEnergy;
 use hinge::HingeDeformation;
 use std::f64::consts::PI;
-use support::fault::{Fault, fault};
+use support::fault::Fault;
 
 /// The constants of the barrier.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -38,7 +38,7 @@ impl Contact {
                 "contact with stiffness = {stiffness} N mm, phi_min = {phi_min} rad, phi_cut = {phi_cut} rad \
                  violates stiffness > 0 and -pi < phi_min < phi_cut <= 0 (the closed sheet has phi = 0)"
             );
-            return Err(fault("", what, ""));
+            return Err(Fault::from(what));
         }
         Ok(Self { stiffness, phi_min, phi_cut })
     }

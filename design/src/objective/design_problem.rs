@@ -318,7 +318,7 @@ impl DesignProblem {
         outline: &[PanelCorner],
     ) -> Result<ObjectiveValue, DesignError> {
         if self.objective.shape.target.is_empty() {
-            return Err(fault("", "the target has no points", "").into());
+            return Err(Fault::from("the target has no points").into());
         }
         deployment.at_full_load()?;
         Ok(self.objective.evaluate(&Deployed {

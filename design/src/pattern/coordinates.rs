@@ -6,7 +6,7 @@
 
 use crate::pattern::grid::Grid;
 use serde::{Deserialize, Serialize};
-use support::fault::{Fault, fault};
+use support::fault::Fault;
 
 /// Unconstrained coordinates of a pattern (5), or a gradient in them.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -85,12 +85,12 @@ impl PatternCoordinates {
                 let what = format!(
                     "{name} has {found} entries; a sheet of {m} x {n} panels needs {expected}"
                 );
-                return Err(fault("", what, ""));
+                return Err(Fault::from(what));
             }
             if let Some(index) = values.iter().position(|value| !value.is_finite()) {
                 let value = values[index];
                 let what = format!("{name}[{index}] = {value} is not a finite number");
-                return Err(fault("", what, ""));
+                return Err(Fault::from(what));
             }
         }
         Ok(())
@@ -99,7 +99,7 @@ impl PatternCoordinates {
 
 fn outside_interval(name: &str, index: usize, value: f64) -> Fault {
     let range = format!("0 < {name} < 1, increasing along each edge");
-    fault("", format!("{name}[{index}] = {value} violates {range}"), "")
+    Fault::from(format!("{name}[{index}] = {value} violates {range}"))
 }
 
 /// The logistic function sigma of (5).

@@ -69,7 +69,7 @@ impl Outline {
                 self.corners
             )
         };
-        convex.then_some(()).ok_or_else(|| fault("", what(), ""))
+        convex.then_some(()).ok_or_else(|| Fault::from(what()))
     }
 }
 
@@ -208,11 +208,11 @@ fn colliding(name: &str, index: usize) -> Fault {
     let what = format!(
         "{name}[{index}] is so far from 0 that its chart (5) rounds to a bound: two cuts collide"
     );
-    fault("", what, "")
+    Fault::from(what)
 }
 
 fn singular() -> Fault {
-    fault("", "the collinearity system of the pattern is singular", "")
+    Fault::from("the collinearity system of the pattern is singular")
 }
 
 /// The matrix of (3)-(4): one row per cut endpoint.

@@ -171,7 +171,7 @@ impl Sheet {
         if w_lig.len() != topology.hinge_count() {
             let (found, expected) = (w_lig.len(), topology.hinge_count());
             let what = format!("{found} ligament widths for {expected} hinges");
-            return Err(fault("", what, ""));
+            return Err(Fault::from(what));
         }
         let shapes = std::iter::zip(&topology.endpoints, &topology.trims);
         let panels = std::iter::zip(0.., shapes)
@@ -336,7 +336,7 @@ impl Hinge {
     ) -> Result<Self, Fault> {
         if !(w_lig > 0.0 && w_lig.is_finite()) {
             let what = format!("w_lig[{hinge}] = {w_lig} mm is not a positive finite number");
-            return Err(fault("", what, ""));
+            return Err(Fault::from(what));
         }
         let unit = |from: usize, to: usize| {
             let segment = complex(points[to]) - complex(points[from]);

@@ -18,12 +18,12 @@ use crate::{
     },
 };
 use faer::c64;
-use support::fault::{Fault, fault};
+use support::fault::Fault;
 
 /// An error unless the opening angle (rad) is finite.
 pub fn check_opening(theta: f64) -> Result<(), Fault> {
     let what = || format!("the opening angle {theta} rad is not a finite number");
-    theta.is_finite().then_some(()).ok_or_else(|| fault("", what(), ""))
+    theta.is_finite().then_some(()).ok_or_else(|| Fault::from(what()))
 }
 
 /// The configuration with every hinge open by `theta` (rad).

@@ -208,6 +208,7 @@ impl ArrayTasks {
         let [program, campaign, home] = paths;
         let Self { count, cores, minutes } = self;
         let [reserve, grace] = [600, 60].map(|most| (6 * minutes).min(most));
+        let folder = script.parent().unwrap_or(script).to_string_lossy();
         let letter = |c: char| if c.is_alphanumeric() { c } else { '-' };
         let stem = campaign.file_stem().unwrap_or_default();
         let name: String = stem.to_string_lossy().chars().map(letter).collect();
@@ -216,6 +217,8 @@ impl ArrayTasks {
             format!("--cpus-per-task={cores}"),
             format!("--time={minutes}"),
             format!("--signal=B:TERM@{grace}"),
+            // Slurm replaces what follows a percent sign, also in a path.
+            format!("--output={}/%x-%A-%a.log", folder.replace('%', "%%")),
             "--chdir".to_owned(),
         ]);
         command.args(script.parent()).arg(script).arg(count.to_string());

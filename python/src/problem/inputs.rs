@@ -1,48 +1,18 @@
-//! Reads the arguments of a problem, and keeps the states that its next solves start from.
+//! Reads the arguments of a problem.
 
 use super::Problem;
 use crate::{
     arrays::{Argument, Numbers, finite, shaped, tuple},
     errors,
-    waiting::{unlocked, while_polling},
+    waiting::while_polling,
+    warm::{KnownPath, Warm},
 };
 use design::{
-    DesignProblem, DesignVector, Evaluation, SearchMethod, equilibrium::warm_start::WarmStart,
+    DesignProblem, DesignVector, Evaluation, equilibrium::warm_start::WarmStart,
     objective::response::Conditions,
 };
-use pyo3::{exceptions::PyValueError, prelude::*, types::PyDict};
-use scene::{Level, Scene, SceneConfig};
-use std::{
-    path::Path,
-    sync::{Arc, MutexGuard, PoisonError, atomic::Ordering},
-};
-
-/// What the next solves start from.
-#[derive(Default)]
-pub(super) struct Warm {
-    pub path: KnownPath,
-    pub state: KnownPath,
-}
-
-/// Load steps that are known, and how many solves have been corrected from one another since the
-/// last followed path.
-#[derive(Default)]
-pub(super) struct KnownPath {
-    path: Option<Arc<WarmStart>>,
-    corrected: usize,
-}
-
-impl KnownPath {
-    /// The path to start from; none when the next one is to be followed from the flat sheet.
-    fn usable(&self, follow_every: usize) -> Option<Arc<WarmStart>> {
-        self.path.clone().filter(|_| self.corrected + 1 < follow_every)
-    }
-
-    pub(super) fn keep(&mut self, deployment: &design::Deployment) {
-        self.corrected = if deployment.followed { 0 } else { self.corrected + 1 };
-        self.path = Some(Arc::new(deployment.warm_start()));
-    }
-}
+use pyo3::prelude::*;
+use std::sync::{Arc, MutexGuard, PoisonError, atomic::Ordering};
 
 impl Problem {
     /// The result of `solve`, without the GIL; Ctrl-C ends the path that it follows, and is raised.
@@ -164,33 +134,5 @@ impl Problem {
             (design, conditions)
         });
         Ok(inputs.collect())
-    }
-}
-
-/// The scene with the keys of a dict.
-pub(super) fn scene_of(keys: &Bound<PyDict>, folder: &Path) -> PyResult<Scene> {
-    let py = keys.py();
-    let text: String = py.import("kirigami.files")?.call_method1("_json", (keys,))?.extract()?;
-    let path = folder.join("scene (dict)");
-    let keys: toml::Value = serde_json::from_str(&text).map_err(errors::scene)?;
-    let text = toml::to_string(&keys).map_err(errors::scene)?;
-    let config: SceneConfig = support::toml_file::parse(&text, &path).map_err(errors::scene)?;
-    unlocked(|| Scene::new(config, &path))?.map_err(errors::scene)
-}
-
-pub(super) fn read_level(name: &str) -> PyResult<Level> {
-    Level::named(name).ok_or_else(|| {
-        let names = Level::ALL.map(Level::name).join(", ");
-        PyValueError::new_err(format!("`level` is \"{name}\", expected one of {names}"))
-    })
-}
-
-pub(super) fn read_method(name: &str) -> PyResult<SearchMethod> {
-    match name {
-        "adam" => Ok(SearchMethod::Adam),
-        "lbfgs" => Ok(SearchMethod::Lbfgs),
-        _ => Err(PyValueError::new_err(format!(
-            "`method` is \"{name}\", expected \"adam\" or \"lbfgs\""
-        ))),
     }
 }

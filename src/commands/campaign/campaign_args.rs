@@ -1,7 +1,7 @@
 //! The command line arguments that select a campaign, and the printed job counts.
 
-use crate::ui::progress::duration;
 use anyhow::Result;
+use app::progress::duration;
 use clap::Args;
 use fe_driver::{Campaign, Tally};
 use std::path::{Path, PathBuf};

@@ -1,8 +1,8 @@
 //! `kirigami campaign collect`
 
 use super::campaign_args::{CampaignArgs, DATABASE, SPOT_CHECK};
-use crate::ui::output_file;
 use anyhow::{Context, Result, bail};
+use app::output_file;
 use clap::Args;
 use dataset::{Collected, Database, SplitPlan};
 use fe_driver::{JobPart, Solved, Tally, finished_windows};

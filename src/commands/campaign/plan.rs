@@ -3,8 +3,8 @@
 use super::campaign_args::{CampaignArgs, print_tally};
 use crate::commands::solve_args::FeSolver;
 use crate::ui::processors;
-use crate::ui::progress::duration;
 use anyhow::Result;
+use app::progress::duration;
 use clap::Args;
 use support::table::Table;
 

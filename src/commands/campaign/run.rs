@@ -2,10 +2,10 @@
 
 use super::campaign_args::{CampaignArgs, print_tally};
 use crate::commands::solve_args::{FeSolver, SolveArgs};
-use crate::ui::exit::Unfinished;
 use crate::ui::interrupt;
-use crate::ui::progress::Progress;
 use anyhow::{Result, bail, ensure};
+use app::failure::Unfinished;
+use app::progress::Progress;
 use clap::Args;
 use fe_driver::{RunOptions, Shard, Tally};
 use std::path::Path;

@@ -3,8 +3,8 @@
 use super::campaign_args::CampaignArgs;
 use crate::commands::solve_args::FeSolver;
 use crate::ui::count::{count, jobs};
-use crate::ui::progress::duration;
 use anyhow::Result;
+use app::progress::duration;
 use clap::Args;
 use fe_driver::{ArrayTasks, slurm_folder, submit_array};
 use std::num::NonZeroUsize;

@@ -3,9 +3,9 @@
 use crate::commands::design::DesignCommand;
 use crate::commands::solve_args::{SolveArgs, task_error};
 use crate::ui::interrupt;
-use crate::ui::progress::{announce, duration};
 use anyhow::{Context, Result, ensure};
 use app::design::write_refined;
+use app::progress::{announce, duration};
 use output::report::Report;
 use scene::design_run::OnStep;
 use scene::run_inputs::{SCENE_FILE, holds_a_run};

@@ -1,9 +1,9 @@
 //! `kirigami material fit`: from the files of a testing machine to a material file.
 
-use crate::ui::charts::tensile_test;
-use crate::ui::shell_word::shell_word;
-use crate::ui::{output_file, picture, run_folder};
 use anyhow::{Result, ensure};
+use app::charts::tensile_test;
+use app::shell_word::shell_word;
+use app::{output_file, picture, run_folder};
 use clap::Args;
 use hinge::SheetMaterial;
 use std::path::{Path, PathBuf};

@@ -2,10 +2,11 @@
 
 use crate::commands::solve_args::{FeSolver, task_error};
 use crate::commands::verify::VerifyCommand;
-use crate::ui::progress::{announce, duration, watched};
-use crate::ui::{interrupt, output_file, picture, run_folder};
+use crate::ui::interrupt;
 use anyhow::{Result, anyhow, bail};
 use app::design_checks::record;
+use app::progress::{announce, duration, watched};
+use app::{output_file, picture, run_folder};
 use design::pattern::design_vector::DesignVector;
 use fe_driver::{SheetSolve, Solve, sheet_reached};
 use output::drawing::{Surface, View, surface};

@@ -95,8 +95,9 @@ fn missed(of: &DeployedDesign) -> Option<Found> {
     let error = of.run?.after.outline_error;
     let [width, height] = of.flat_size();
     let ratio = error / width.max(height);
-    let grave = std::iter::zip(MISSED, [Note, Warning, Error]).filter(|(least, _)| ratio > *least);
-    let (_, severity) = grave.last()?;
+    let mut grave =
+        std::iter::zip(MISSED, [Note, Warning, Error]).filter(|(least, _)| ratio > *least);
+    let (_, severity) = grave.next_back()?;
     Some(found(miss(error, of.flat_size())).with(severity))
 }
 
