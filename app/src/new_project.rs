@@ -186,12 +186,12 @@ impl NewProject {
                 let surrogate = Surrogate::load(&file)?;
                 let regime = material.regime(card.domain.w_lig[1]);
                 let w_lig = 0.5 * surrogate.domain().w_lig.iter().sum::<f64>();
-                let opening = safe_opening(&surrogate, regime, w_lig, first_scene::OPENING);
+                let opening = safe_opening(&surrogate, w_lig, first_scene::OPENING);
                 fitting.push(Weights {
                     file,
                     regime,
                     opening,
-                    damage: damage_of_turn(&surrogate, regime, w_lig, opening),
+                    damage: damage_of_turn(&surrogate, w_lig, opening),
                     widths: surrogate.domain().w_lig,
                     holes: surrogate.holes(),
                 });

@@ -3,7 +3,7 @@
 
 use crate::fit::even_pattern::pitch;
 use crate::fit::even_sheet::EvenSheet;
-use crate::fit::opening::safe_opening;
+use crate::fit::opening::{free_axial_opening, safe_opening};
 use crate::fit::trimmed::Limits;
 use design::geometry::plane::{complex, point};
 use design::geometry::polygon::{bounds, distance};
@@ -11,7 +11,6 @@ use design::geometry::region::Region;
 use design::geometry::similarity::Similarity;
 use design::optimise::search::SearchMethod;
 use faer::c64;
-use hinge::Regime;
 use scene::{
     CellsConfig, Level, OptimiserConfig, Posture, PostureConfig, Scene, SceneConfig, SceneError,
     StartConfig, SupportConfig, SupportKind, rounded,
@@ -103,8 +102,18 @@ pub fn fitted(scene: &Scene) -> Result<FittedScene, FitError> {
 fn opening(scene: &Scene) -> f64 {
     scene.surrogate().map_or(UNKNOWN, |surrogate| {
         let w_lig = scene.config.ligament.start / scene.scale();
-        let regime = scene.material.regime(scene.config.ligament.start);
-        safe_opening(surrogate, regime, w_lig, MOST)
+        safe_opening(surrogate, w_lig, MOST)
+    })
+}
+
+/// By how much less neighbours move apart than on pins at their corners when the ligaments turn
+/// freely (mm): a ligament turns about a point within it, which is nearer to the panels.
+fn lost_pitch(scene: &Scene, opening: f64) -> f64 {
+    let width = scene.config.ligament.start;
+    let set_back = width + 0.5 * scene.config.process.slit_width;
+    scene.surrogate().map_or(0.0, |surrogate| {
+        let eta_a = free_axial_opening(surrogate, width / scene.scale(), opening);
+        2.0 * set_back * (0.5 * opening).sin() - eta_a * width
     })
 }
 
@@ -154,13 +163,8 @@ fn keys(scene: &Scene, sheet: &EvenSheet, side: f64) -> SceneConfig {
     let (grid, first) = sheet.cells();
     // From the pattern to the sheet: turned back, in mm, its lower left corner at the origin.
     let back = side * c64::cis(-sheet.place.rotation());
-    // The ligament of a plate turns about its middle: the opened sheet is smaller than one on pins.
-    let set_back = match scene.material.regime(config_start(scene)) {
-        Regime::Plate => 0.5 * (config_start(scene) + scene.config.process.slit_width) / side,
-        Regime::Film => 0.0,
-    };
     let smaller =
-        1.0 - 2.0 * set_back * (0.5 * sheet.limits.opening).sin() / pitch(sheet.limits.opening);
+        1.0 - lost_pitch(scene, sheet.limits.opening) / side / pitch(sheet.limits.opening);
     let first = complex(first.map(f64::from));
     let turned = |at: c64| back * (at - first);
     let flat = sheet.opened(0.0);
@@ -205,11 +209,6 @@ fn keys(scene: &Scene, sheet: &EvenSheet, side: f64) -> SceneConfig {
     let shift = back * (smaller * (sheet.place.shift - after) + before - first) - complex(low);
     config.target = config.target.placed(&Similarity { turn, shift }, &scene.target.points);
     config
-}
-
-/// Width of the ligaments at the start (mm).
-fn config_start(scene: &Scene) -> f64 {
-    scene.config.ligament.start
 }
 
 /// Points far from each other, beginning with the one that is farthest from the middle.

@@ -333,7 +333,7 @@ mod tests {
             let weights = root.join("../data").join(material).join("medium.safetensors");
             let weights = Surrogate::load(&weights).unwrap();
             let w_lig = 0.5 * weights.domain().w_lig.iter().sum::<f64>();
-            let opening = safe_opening(&weights, Regime::Plate, w_lig, OPENING);
+            let opening = safe_opening(&weights, w_lig, OPENING);
             assert!((opening.to_degrees() - degrees).abs() < 0.1, "{material}: {opening}");
         }
     }
