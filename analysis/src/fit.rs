@@ -3,6 +3,7 @@
 
 mod even_pattern;
 pub mod even_sheet;
+mod lost;
 pub mod opening;
 mod raster;
 pub mod scene;

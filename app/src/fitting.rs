@@ -2,25 +2,54 @@
 
 use crate::progress::announce;
 use analysis::fit::scene::{FittedScene, fitted};
-use anyhow::Result;
+use anyhow::{Result, ensure};
 use scene::Scene;
+use scene::placement::NOT_SEEN;
 
 /// Makes the sheet that opens onto the target of a scene; also returns what a person may expect of
-/// it.
-pub fn fit_to_target(scene: &Scene) -> Result<(FittedScene, String)> {
+/// it. A sheet that shows too little of its target is refused unless `anyway`.
+pub fn fit_to_target(scene: &Scene, anyway: bool) -> Result<(FittedScene, String)> {
     announce("laying an even pattern over the target, in some seconds");
     let fit = fitted(scene)?;
-    let expected = expected(&fit);
+    let expected = expected(&fit, scene.material.thickness);
+    ensure!(
+        anyway || fit.seen >= NOT_SEEN,
+        "{expected}\na viewer would not recognise it: change the drawing, the stock or the thickness; `init --anyway` and `design --fit --force` make the sheet"
+    );
     Ok((fit, expected))
 }
 
-/// What a person may expect of the sheet.
-pub fn expected(fit: &FittedScene) -> String {
-    let FittedScene { panels, side, opening, seen, .. } = fit;
-    format!(
-        "The sheet of {panels} panels of {side:.0} mm, opened by {:.0} deg, is seen as the target: {:.1} % of the area of both in \
-         common",
-        opening.to_degrees(),
-        100.0 * seen
-    )
+/// What a person may expect of the sheet of a material of some thickness (mm).
+pub fn expected(fit: &FittedScene, thickness: f64) -> String {
+    let FittedScene { panels, side, opening, seen, lost, kept_by, .. } = fit;
+    let [opening, seen] = [opening.to_degrees(), 100.0 * seen];
+    let mut lines = vec![format!(
+        "{panels} panels of {side:.0} mm, opened by {opening:.0} deg, show {seen:.1} % of the target (area in common over that of both, \
+         gaps between panels closed)"
+    )];
+    lines.extend(lost.iter().map(|part| {
+        format!(
+            "not shown: a part {:.0} mm wide {}; two panels are {:.0} mm wide",
+            part.width * side,
+            in_words(part.place),
+            2.0 * side
+        )
+    }));
+    lines.extend(kept_by.map(|factor| {
+        format!(
+            "a stock {factor} times as long and wide shows it, or a sheet of {:.1} mm",
+            thickness / factor
+        )
+    }));
+    if !lost.is_empty() && kept_by.is_none() {
+        lines.push("not even a stock twice as long and wide shows all of it".to_owned());
+    }
+    lines.join("\n")
+}
+
+/// Where a part is in the drawing.
+fn in_words([right, up]: [i32; 2]) -> String {
+    let vertical = ["at the bottom", "", "at the top"][(up + 1) as usize];
+    let horizontal = ["on the left", "in the middle", "on the right"][(right + 1) as usize];
+    [vertical, horizontal].join(" ").trim().to_owned()
 }

@@ -47,6 +47,8 @@ pub struct NewProject {
     /// Whether the ligaments of a plate may be wider than stays flat by itself: its sheet is fitted
     /// to a drawing afterwards, or a service wants wide ones.
     pub any_width: bool,
+    /// Whether a sheet is made that shows too little of its target to be recognised.
+    pub anyway: bool,
 }
 
 /// The material of a plate and of a film unless another one is given.
@@ -142,7 +144,9 @@ impl NewProject {
         if self.target.is_none() {
             return Ok(readme(None));
         }
-        let (text, expected) = fitted_text(&first, &scene)?;
+        // A refused drawing leaves the name of the folder free.
+        let discard = |_: &_| drop(std::fs::remove_dir_all(&self.folder));
+        let (text, expected) = fitted_text(&first, &scene, self.anyway).inspect_err(discard)?;
         output_file::write(&scene_file, &text)?;
         let readme = readme(Some(&Self::checked_scene(&scene_file)?));
         output_file::write(&self.folder.join(README), &readme)?;

@@ -32,6 +32,7 @@ use design::objective::design_problem::Deployment;
 use design::objective::scores::Scores;
 use design::optimise::outer_loop::Ended;
 use scene::design_run::Designed;
+use scene::placement::seen;
 use scene::{CoarseSearch, Level, Scene};
 use serde::Serialize;
 use support::severity::Severity;
@@ -54,6 +55,9 @@ pub struct Report {
     pub before: Scores,
     /// Scores of the best design.
     pub after: Scores,
+    /// Area in common of what one sees of the opened panels, gaps closed, and the target, over the
+    /// area of both.
+    pub seen: f64,
     /// How far each cause of errors moves the best design; `None` without a learned hinge law
     /// or without an equilibrium.
     pub budget: Option<Budget>,
@@ -67,9 +71,9 @@ pub struct Report {
     /// How much of the hinges is modelled.
     #[serde(skip)]
     level: Level,
-    /// Extent of the flat sheet along x and y (mm).
+    /// How much of its target the sheet shows, which is the first that a person asks.
     #[serde(skip)]
-    flat_size: [f64; 2],
+    pub miss: String,
     /// Whether the hinge law has a training domain.
     #[serde(skip)]
     has_domain: bool,
@@ -109,11 +113,6 @@ impl Report {
         }
     }
 
-    /// How far the outline is from the target, which is the first that a person asks.
-    pub fn miss(&self) -> String {
-        miss(self.after.outline_error, self.flat_size)
-    }
-
     /// How the search ended.
     pub fn end_of_search(&self) -> String {
         let steps = self.steps;
@@ -141,6 +140,7 @@ impl Report {
         let run = FinishedRun {
             designed,
             after: Scores::new(&problem.objective, &designed.best),
+            seen: seen(scene, deployment),
             checks,
             reached: Reached::new(scene, problem, deployment),
         };
@@ -155,7 +155,8 @@ impl Report {
         };
         let warnings = findings(&deployed);
         deployed.severities = warnings.iter().map(|found| found.severity).collect();
-        let (facts, flat_size) = (facts(&deployed, &run), deployed.flat_size());
+        let facts = facts(&deployed, &run);
+        let miss = miss(scene, run.seen, run.after.outline_error, deployed.flat_size());
         let hinges = deployed.hinges;
         let (search, coarse_searches) = (&designed.search, &designed.coarse_searches);
         let last = coarse_searches.last().filter(|search| search.finer == Level::Final);
@@ -178,7 +179,8 @@ impl Report {
             facts,
             reached: run.reached,
             level: scene.config.level,
-            flat_size,
+            seen: run.seen,
+            miss,
             has_domain: scene.surrogate().is_some(),
             warnings,
             checks: run.checks,

@@ -1,11 +1,18 @@
 //! The deployed sheet in the position in which the objective compares it with the target.
 
 use crate::checked_scene::Scene;
-use design::objective::centre;
+use design::geometry::plane::{complex, point};
+use design::geometry::region::{self, Region};
 use design::objective::design_problem::Deployment;
+use design::objective::{centre, shape};
 use design::sheet::cut_sheet::Sheet;
-use design::sheet::kinematics::{Configuration, deployed};
+use design::sheet::kinematics::{Configuration, deployed, deployed_boundaries};
 use design::sheet::topology::PanelCorner;
+
+/// How much of a target is seen at least if a viewer recognises it.
+pub const RECOGNISED: f64 = 0.9;
+/// How much of a target is seen at least if a viewer may recognise it.
+pub const NOT_SEEN: f64 = 0.75;
 
 /// The configuration in the position in which the objective compares it with the target: the centre
 /// of a sheet without supports lies at the centre of the target.
@@ -22,12 +29,18 @@ pub fn placed(scene: &Scene, sheet: &Sheet, configuration: &[[f64; 3]]) -> Confi
     placed
 }
 
-/// The deployed outline through all of its corners, in the position in which the objective compares
-/// it (mm).
-pub fn deployed_outline(scene: &Scene, deployment: &Deployment) -> Vec<[f64; 2]> {
+/// What one sees of the opened panels, gaps closed, in the position in which the objective compares
+/// it: the area in common with the target over the area of both.
+pub fn seen(scene: &Scene, deployment: &Deployment) -> f64 {
     let sheet = &deployment.sheet;
     let configuration = placed(scene, sheet, &deployment.final_step().configuration);
-    corners(sheet, sheet.outline_corners(), &configuration)
+    let panels = Region::union_of(deployed_boundaries(sheet, &configuration));
+    let target = scene.target.region();
+    // A target that is fitted to the sheet is as large as the sheet.
+    let turn = shape::turn(deployment.fit);
+    let centre = complex(centre::of(&scene.target.points));
+    let panels = panels.map(|at| point(centre + turn * (complex(at) - centre)));
+    region::seen(&panels, &target)
 }
 
 fn corners(sheet: &Sheet, corners: Vec<PanelCorner>, configuration: &[[f64; 3]]) -> Vec<[f64; 2]> {

@@ -5,6 +5,7 @@ use crate::drawing::drawn_outline;
 use crate::drawing::outline_points::{self, PointsError};
 use design::geometry::plane::{complex, point};
 use design::geometry::polygon;
+use design::geometry::region::Region;
 use faer::c64;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -195,6 +196,11 @@ impl Target {
     /// Distance of a point to the curve through the samples (mm).
     pub fn distance(&self, point: [f64; 2]) -> f64 {
         polygon::distance_to_outline(point, &self.points)
+    }
+
+    /// The points inside.
+    pub fn region(&self) -> Region {
+        Region::even_odd(vec![self.points.clone()])
     }
 
     /// Area inside the curve through the samples (mm^2).

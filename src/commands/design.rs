@@ -62,10 +62,9 @@ pub struct DesignCommand {
     /// Number of search steps, instead of the scene's
     #[arg(long, value_name = "N")]
     steps: Option<usize>,
-    /// First fit outline, cuts and pulls of the sheet, a rectangle that stands for its stock, and
-    /// the place of the target to each other, as `init --target` does. What the scene states of
-    /// these, of posture, weights of the objective and optimiser is replaced; the run's scene.toml
-    /// has what was chosen
+    /// First lay an even pattern over the target, in the space of the sheet, as `init --target`
+    /// does. What the scene states of cells, supports, loads, posture, weights of the objective and
+    /// optimiser is replaced; the run's scene.toml has what was chosen
     #[arg(long)]
     fit: bool,
     /// Begin at the start design even if the run folder contains a run of this scene
@@ -227,7 +226,7 @@ impl DesignCommand {
             scene = scene.at_level(level)?;
         }
         if self.fit {
-            let (fit, expected) = fit_to_target(&scene)?;
+            let (fit, expected) = fit_to_target(&scene, self.force)?;
             announce(&expected);
             config = fit.config;
             config.optimiser.steps = self.steps.unwrap_or(config.optimiser.steps);

@@ -43,11 +43,14 @@ pub struct InitCommand {
     /// Border of the stock that the machine cannot cut (mm) [default: 0]
     #[arg(long, value_name = "MM", value_parser = length, requires = "stock")]
     margin: Option<f64>,
-    /// Outline that the sheet opens onto (SVG or DXF; FILE#2 is the second largest of several), in
-    /// any position and of any size: outline, cuts and pulls of the sheet are fitted to it
-    /// [default: the opened sheet's rectangle]
+    /// Drawing that the sheet opens onto (SVG or DXF; FILE#2 is the second largest of several
+    /// outlines), in any position and of any size: an even pattern of square panels is laid over it
+    /// and trimmed to it [default: the opened sheet's rectangle]
     #[arg(long, value_name = "FILE")]
     target: Option<PathBuf>,
+    /// Make the sheet although less than 75 % of the target is seen
+    #[arg(long, requires = "target")]
+    anyway: bool,
     /// Weights for this material [default: those for it among the shipped ones]
     #[arg(long, value_name = "FILE")]
     weights: Option<PathBuf>,
@@ -65,6 +68,7 @@ impl InitCommand {
             target: self.target.clone(),
             weights: self.weights.clone(),
             any_width: false,
+            anyway: self.anyway,
         };
         println!("{}", project.create()?);
         Ok(())

@@ -80,7 +80,7 @@ pub(crate) fn fitted_to(scene: &Scene, file: PathBuf, path: &Path) -> Result<(Sc
     let config = SceneConfig { target, ..scene.config.clone() };
     let drawn = scene.changed(config)?;
     let fit = fitted(&drawn)?;
-    let says = expected(&fit);
+    let says = expected(&fit, drawn.material.thickness);
     let scene = drawn.changed(fit.config)?;
     let says = json!({ "target": scene.config.target, "says": says });
     Ok((scene, says))

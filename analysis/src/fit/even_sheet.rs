@@ -57,8 +57,7 @@ impl EvenSheet {
     /// drawing is narrower than two squares everywhere.
     pub fn new(drawing: &Region, size: f64, limits: Limits) -> Option<Self> {
         let [low, high] = drawing.bounds();
-        let longer = f64::max(high[0] - low[0], high[1] - low[1]);
-        let scale = size * pitch(limits.opening) / longer;
+        let scale = size * pitch(limits.opening) / longer_side(drawing);
         let drawing = drawing.simplified(TOLERANCE / scale);
         let middle = [0, 1].map(|c| 0.5 * (low[c] + high[c]));
         let symmetric = mirror_axis(&drawing).and_then(|(angle, centroid)| {
@@ -93,6 +92,16 @@ impl EvenSheet {
         self.panels = panels(&self.drawing, &self.loops, &self.limits);
         self.seen = seen(&opened(&self.panels, self.limits.opening), &self.drawing);
         self
+    }
+
+    /// How many squares the longer side of a drawing is long when flat.
+    pub(super) fn size(&self, drawing: &Region) -> f64 {
+        self.place.scale() * longer_side(drawing) / pitch(self.limits.opening)
+    }
+
+    /// The drawing on the opened pattern.
+    pub(super) fn drawing(&self) -> &Region {
+        &self.drawing
     }
 
     /// The panels when all hinges are open by an angle (rad).
@@ -148,6 +157,11 @@ impl EvenSheet {
     }
 }
 
+fn longer_side(drawing: &Region) -> f64 {
+    let [low, high] = drawing.bounds();
+    f64::max(high[0] - low[0], high[1] - low[1])
+}
+
 /// A coordinate in a cell; 0 and 1 are on its edges.
 fn snapped(x: f64) -> f64 {
     if (x - x.round()).abs() < ON_EDGE { x.round() } else { x }
@@ -201,7 +215,8 @@ mod tests {
     use rand_chacha::ChaCha8Rng;
     use std::f64::consts::TAU;
 
-    const LIMITS: Limits = Limits { opening: 1.047, window: 0.42, width: 0.2, gap: 0.02 };
+    const LIMITS: Limits =
+        Limits { opening: 1.047, window: 0.42, width: 0.2, gap: 0.02, apart: 0.0125 };
 
     /// A closed curve about the origin with a radius that varies in waves.
     fn blob(random: &mut ChaCha8Rng, radius: f64) -> Contour {
@@ -262,7 +277,8 @@ mod tests {
                     let square = Region::union_of(vec![crate::fit::even_pattern::corners(cell)]);
                     let quarter = disc.common(&square);
                     let kept = quarter.common(&sheet.panels[&cell]);
-                    assert!(kept.area() > 0.999 * quarter.area(), "{seed} {pair:?}");
+                    let slit = 0.4 * LIMITS.apart;
+                    assert!(kept.area() > 0.999 * quarter.area() - slit, "{seed} {pair:?}");
                 }
             }
             assert!(sheet.seen > 0.8, "{seed}: {}", sheet.seen);

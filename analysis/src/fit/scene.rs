@@ -3,6 +3,7 @@
 
 use crate::fit::even_pattern::pitch;
 use crate::fit::even_sheet::EvenSheet;
+use crate::fit::lost::{Lost, kept_by, lost};
 use crate::fit::opening::{free_axial_opening, safe_opening};
 use crate::fit::trimmed::Limits;
 use design::geometry::plane::{complex, point};
@@ -27,6 +28,8 @@ const SIDE: f64 = 2.25;
 const WIDTH: f64 = 2.0;
 /// Smallest distance of panels that do not hang together, over the side of a panel.
 const GAP: f64 = 0.02;
+/// Distance of squares side by side that do not hang together, over the width of a slit.
+const APART: f64 = 1.25;
 /// Sizes that are tried until a sheet fills its stock.
 const SIZES: usize = 4;
 /// Part of the stock that a sheet fills at least.
@@ -52,6 +55,11 @@ pub struct FittedScene {
     pub opening: f64,
     /// Intersection over union of what one sees of the opened panels and the target.
     pub seen: f64,
+    /// The parts of the target that are not seen.
+    pub lost: Vec<Lost>,
+    /// By what factor the stock has to be longer and wider, or the sheet thinner, to show them;
+    /// `None` if no factor up to two does, and if nothing is lost.
+    pub kept_by: Option<f64>,
 }
 
 /// Why a sheet is not fitted to a target.
@@ -84,13 +92,18 @@ pub fn fitted(scene: &Scene) -> Result<FittedScene, FitError> {
         window: (process.r_win + 0.5 * process.slit_width) / side,
         width: WIDTH * scene.material.thickness / side,
         gap: f64::max(GAP, process.slit_width / side),
+        apart: APART * process.slit_width / side,
     };
-    let target = Region::even_odd(vec![scene.target.points.clone()]);
+    let target = scene.target.region();
     let stock = extent(&scene.config.sheet.outline().corners).map(|length| length / side);
     let sheet = largest(&target, stock, limits).ok_or(FitError::Narrow { side })?;
-    let config = keys(scene, &sheet, side);
+    let lost = lost(&sheet);
+    let size = sheet.size(&target);
+    let kept_by = lost.first().and_then(|_| kept_by(&target, size, limits));
     Ok(FittedScene {
-        config,
+        config: keys(scene, &sheet, side),
+        lost,
+        kept_by,
         panels: sheet.topology().panel_count(),
         side,
         opening,

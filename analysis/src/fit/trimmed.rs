@@ -38,8 +38,11 @@ pub struct Limits {
     pub window: f64,
     /// Smallest width of a part of a panel.
     pub width: f64,
-    /// Smallest distance of two panels where they do not hang together.
+    /// Smallest distance of two panels that do not hang together, on the way.
     pub gap: f64,
+    /// Distance of two squares side by side that do not hang together: a slit, and a little more,
+    /// so that the tool goes around their edges. It takes half of that little from a ligament there.
+    pub apart: f64,
 }
 
 /// The largest set of loops, joined by pairs of squares, whose windows are in an opened drawing.
@@ -170,7 +173,7 @@ impl<'a> Edge<'a> {
             self.squares.contains(other) && !self.hinges.contains(&pair)
         };
         let strip = |other: Cell| {
-            let half = 0.5 * self.limits.gap;
+            let half = 0.5 * self.limits.apart;
             let [x, y] = corners(other)[0];
             vec![
                 [x - half, y - half],

@@ -8,8 +8,8 @@ use scene::{Scene, SceneConfig, TargetShape};
 use toml_edit::{Array, DocumentMut, value};
 
 /// The text of the scene of a first sheet, fitted to its target, and what is expected of it.
-pub(super) fn fitted_text(scene: &Scene, text: &str) -> Result<(String, String)> {
-    let (fit, expected) = fit_to_target(scene)?;
+pub(super) fn fitted_text(scene: &Scene, text: &str, anyway: bool) -> Result<(String, String)> {
+    let (fit, expected) = fit_to_target(scene, anyway)?;
     let mut document: DocumentMut = text.parse().context("the first scene is valid TOML")?;
     heading(
         &mut document,

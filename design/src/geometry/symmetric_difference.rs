@@ -17,19 +17,11 @@
 
 use crate::geometry::{
     plane::{complex, point, turn},
-    polygon::{area, counter_clockwise, edges, side},
+    polygon::{edges, side},
 };
 
 /// Rotation of the polygons before they are cut into slabs (rad).
 const OBLIQUE: f64 = 0.7;
-
-/// Area of the intersection of two polygons, in either order of their vertices, over the area of
-/// their union; 0 if both are empty.
-pub fn intersection_over_union(one: &[[f64; 2]], other: &[[f64; 2]]) -> f64 {
-    let [one, other] = [one, other].map(counter_clockwise);
-    let (both, apart) = (area(&one) + area(&other), symmetric_difference(&one, &other).0);
-    if both > 0.0 { (both - apart) / (both + apart) } else { 0.0 }
-}
 
 /// A and its gradient in the vertices of P, the `outline`.
 pub fn symmetric_difference(outline: &[[f64; 2]], target: &[[f64; 2]]) -> (f64, Vec<[f64; 2]>) {
@@ -208,18 +200,6 @@ mod tests {
             .map(|angle| moved(&square([-1.0, -1.0], 2.0), angle, [0.0; 2]));
         let octagon = 8.0 * std::f64::consts::FRAC_PI_8.tan();
         assert_close(difference(&one, &other), 2.0 * (4.0 - octagon), 1e-14);
-    }
-
-    #[test]
-    fn the_ratio_of_shifted_squares_and_a_notched_one() {
-        let square = |x: f64| square([x, 0.0], 1.0);
-        let ratio = |other: &[[f64; 2]]| intersection_over_union(&square(0.0), other);
-        assert!((ratio(&square(0.0)) - 1.0).abs() < 1e-15);
-        assert!(ratio(&square(2.0)).abs() < 1e-15);
-        assert!((ratio(&square(0.5)) - 1.0 / 3.0).abs() < 1e-14);
-        let notched = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.5, 0.5], [0.0, 1.0]];
-        assert!((ratio(&notched) - 0.75).abs() < 1e-14);
-        assert_eq!(intersection_over_union(&[], &[]), 0.0);
     }
 
     #[test]

@@ -94,6 +94,6 @@ impl Shape {
 
 /// Scale and rotation of the sheet to the target as in the scene: a target of twice the size has a
 /// sheet of half the size.
-fn turn(fit: Option<FitVariables>) -> c64 {
+pub fn turn(fit: Option<FitVariables>) -> c64 {
     fit.map_or(c64::ONE, |fit| c64::cis(-fit.rotation) * (-fit.ln_size).exp())
 }

@@ -1,13 +1,12 @@
 //! Objective and gradient in numbers.
 
 use crate::listing::Listing;
-use design::geometry::symmetric_difference::intersection_over_union;
 use design::objective::design_problem::{DesignError, DesignProblem};
 use design::objective::loss::TermValues;
 use design::objective::scores::outline_error;
 use design::pattern::design_vector::DesignVector;
 use scene::Scene;
-use scene::placement::deployed_outline;
+use scene::placement::seen;
 use serde_json::json;
 use support::table::Table;
 
@@ -20,8 +19,7 @@ pub fn gradient(
 ) -> Result<Listing, DesignError> {
     let found = problem.evaluate(design)?;
     let outline_error = outline_error(&problem.objective, &found.deployment);
-    let outline = deployed_outline(scene, &found.deployment);
-    let common = intersection_over_union(&outline, &scene.target.points);
+    let seen = seen(scene, &found.deployment);
     let weights = problem.objective.weights();
     let weights: TermValues = weights.map(|(name, _, weight)| (name.to_owned(), weight)).collect();
     let gradient = &found.gradient;
@@ -37,8 +35,8 @@ pub fn gradient(
         "adjoint_residual": found.adjoint_residual,
         // Root mean square distance of the outline from the target (mm).
         "outline_error": outline_error,
-        // Of the areas inside the deployed outline and inside the target.
-        "intersection_over_union": common,
+        // Area in common of what one sees of the panels and the target, over the area of both.
+        "seen": seen,
     });
     let number = |value: f64| format!("{value:.6e}");
     let mut table = Table::new(["", "value", "weight"]);
@@ -54,7 +52,7 @@ pub fn gradient(
         ("|dL/domega|", norm(&gradient.omega)),
         ("adjoint residual", found.adjoint_residual),
         ("outline error (mm)", outline_error),
-        ("intersection over union", common),
+        ("seen as the target", seen),
     ] {
         table.row([name.to_owned(), number(value), String::new()]);
     }

@@ -5,7 +5,7 @@ use crate::report::hinge_row::HingeRow;
 use crate::report::numbers::rounded;
 use crate::report::reached::Reached;
 use analysis::design_checks::{DesignChecks, WholeSheet};
-use design::geometry::polygon::{area, bounds};
+use design::geometry::polygon::bounds;
 use design::objective::design_problem::Deployment;
 use design::objective::scores::Scores;
 use scene::design_run::Designed;
@@ -31,6 +31,8 @@ pub(super) struct FinishedRun<'a> {
     pub designed: &'a Designed,
     /// The scores of the best design.
     pub after: Scores,
+    /// How much of the target one sees; [`seen`].
+    pub seen: f64,
     /// What was measured of it after the search.
     pub checks: DesignChecks,
     pub reached: Option<Reached>,
@@ -50,8 +52,8 @@ impl DeployedDesign<'_> {
 
     /// Mass of the uncut sheet (kg).
     pub(super) fn mass_kg(&self) -> f64 {
-        let outline = &self.deployment.sheet.outline.corners;
-        self.scene.material.mass_by_area() * area(outline).abs()
+        let area = self.deployment.sheet.panels.iter().map(|panel| panel.area).sum::<f64>();
+        self.scene.material.mass_by_area() * area
     }
 
     /// Weight of the uncut sheet (N).
@@ -68,7 +70,7 @@ impl DeployedDesign<'_> {
 
     /// Extent of the flat sheet along x and y (mm).
     pub(super) fn flat_size(&self) -> [f64; 2] {
-        extent(self.deployment.sheet.outline.corners)
+        extent(self.deployment.sheet.outlines().into_iter().flatten())
     }
 
     /// The hinges whose rows `overstep`.
@@ -109,12 +111,18 @@ pub(super) fn of_the_load(ratio: f64) -> String {
     }
 }
 
-/// The distance of the outline of a sheet of some flat size to its target (mm), in words.
-pub(crate) fn miss(outline_error: f64, [width, height]: [f64; 2]) -> String {
+/// How much of the target one sees, from 0 to 1, and the distance of the outline of a sheet of some
+/// flat size (mm), in words. The corners of an even pattern are on its gaps too: it has no such
+/// distance.
+pub(crate) fn miss(scene: &Scene, seen: f64, outline_error: f64, size: [f64; 2]) -> String {
+    let seen = format!("{} % of the target is seen", rounded(100.0 * seen, 3));
+    if scene.config.cells.is_some() {
+        return seen;
+    }
     format!(
-        "the outline is {} mm (root mean square) from the target, {} % of the longer side of the flat sheet",
+        "{seen}; the outline is {} mm (root mean square) from it, {} % of the longer side of the flat sheet",
         rounded(outline_error, 3),
-        rounded(100.0 * outline_error / width.max(height), 2)
+        rounded(100.0 * outline_error / size[0].max(size[1]), 2)
     )
 }
 

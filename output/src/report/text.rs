@@ -31,7 +31,7 @@ impl Report {
     /// The report as parts for people.
     pub fn document(&self) -> Document {
         let mut page = Document::default();
-        let mut head = format!("{}: level {}\n{}", self.title, self.level, self.miss());
+        let mut head = format!("{}: level {}\n{}", self.title, self.level, self.miss);
         if let Some(text) = self.about_cut_files() {
             head += "\n";
             head += text;

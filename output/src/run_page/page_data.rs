@@ -14,6 +14,7 @@ use design::optimise::outer_loop::StepRecord;
 use design::sheet::cut_sheet::Sheet;
 use hinge::TrainingDomain;
 use scene::design_run::Designed;
+use scene::placement::seen;
 use scene::{Actuation, Scene};
 use serde::Serialize;
 use support::table::Table;
@@ -162,6 +163,8 @@ impl<'a> SheetData<'a> {
         Self {
             carries_load: scene.hinge.carries_load(),
             miss: miss(
+                scene,
+                seen(scene, deployment),
                 outline_error(&problem.objective, deployment),
                 extent(sheet.outline.corners),
             ),

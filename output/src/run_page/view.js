@@ -43,7 +43,7 @@ function writeSummary() {
 function writeTexts() {
   byId("title").textContent = run.title;
   writeSummary();
-  writeMiss(run.warnings.find(({ concern }) => concern === "target-missed"));
+  writeMiss(run.warnings.find(({ concern }) => concern.startsWith("target-")));
   byId("alert").hidden = !run.about_cut_files;
   byId("alert").textContent = `${run.about_cut_files}: see the findings.`;
   byId("facts").textContent = "";

@@ -251,10 +251,10 @@ fn a_missed_target_is_a_warning_and_a_shape_that_is_another_an_error() {
     for (radius, expected) in [(2000.0, Severity::Warning), (4000.0, Severity::Error)] {
         let centre = [1400.0; 2];
         let run = on_pins(|config| config.target = TargetShape::Circle { centre, radius });
-        let miss = run.report.miss();
-        assert_says(&miss, "% of the longer side of the flat sheet");
-        assert_eq!(run.file("report.txt").lines().nth(1), Some(&*miss));
-        assert_says(&run.file("run.html"), &miss);
+        let miss = &run.report.miss;
+        assert_says(miss, "% of the longer side of the flat sheet");
+        assert_eq!(run.file("report.txt").lines().nth(1), Some(&**miss));
+        assert_says(&run.file("run.html"), miss);
         let ratio = run.report.after.outline_error / 2800.0;
         assert_eq!(ratio > 0.2, expected == Severity::Error, "{ratio}");
         assert_eq!(run.report.cut_file, ratio <= 0.2, "{ratio}");

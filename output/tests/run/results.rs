@@ -46,7 +46,7 @@ fn a_sound_design_writes_all_files_and_only_its_miss_is_a_warning() {
     assert_eq!(json["hinges"][3]["w_lig"], report.hinges[3].w_lig);
     let text = run.file("report.txt");
     assert_says(&text, "25 steps");
-    assert_says(&text, &format!("- warning: {}", report.miss()));
+    assert_says(&text, &format!("- warning: {}", report.miss));
 }
 
 #[test]
@@ -95,7 +95,7 @@ fn ligaments_wider_than_their_slits_cannot_be_cut_and_the_report_says_so() {
     let report = &run.report;
     assert_eq!(one(report, "cannot-be-cut").hinges, [0; 0]);
     assert!(!report.cut_file && !run.scene.output().join("cut.dxf").exists());
-    let first = format!("Test sheet: level linear\n{}\nNO CUT FILE\n\n- error: ", report.miss());
+    let first = format!("Test sheet: level linear\n{}\nNO CUT FILE\n\n- error: ", report.miss);
     let text = run.file("report.txt");
     assert!(text.starts_with(&first), "{text}");
     assert!(run.scene.output().join("deployed.svg").exists());

@@ -7,14 +7,15 @@ use crate::report::numbers::rounded;
 use analysis::design_checks::WholeSheet;
 use analysis::levels::Levels;
 use analysis::unit::Unit;
-use design::sheet::kinematics::deployed_corners;
+use design::pattern::grid::Grid;
+use design::sheet::kinematics::deployed_boundaries;
 use scene::{CoarseSearch, Level, LevelDifference};
 use support::severity::Severity;
 use surrogate::TestErrors;
 
-pub(super) fn material_and_size(of: &DeployedDesign, _: &FinishedRun) -> Vec<Fact> {
+pub(super) fn material_and_size(of: &DeployedDesign, run: &FinishedRun) -> Vec<Fact> {
     let (scene, sheet) = (of.scene, &of.deployment.sheet);
-    let corners = deployed_corners(sheet, &of.deployment.final_step().configuration);
+    let opened = deployed_boundaries(sheet, &of.deployment.final_step().configuration);
     let size = |label, size: [f64; 2], remark| {
         let [x, y] = size.map(|length| rounded(length, 5));
         let unit = Unit::Millimetre;
@@ -22,13 +23,16 @@ pub(super) fn material_and_size(of: &DeployedDesign, _: &FinishedRun) -> Vec<Fac
     };
     let material = &scene.material;
     let thickness = rounded(material.thickness, 4);
-    let panels @ [columns, rows] = scene.config.sheet.panels;
+    let (panels, Grid { m, n }) = (sheet.topology.panel_count(), sheet.topology.grid);
+    let arranged = if sheet.topology.is_full() { "" } else { ", some cells of" };
     let level = scene.config.level;
-    let deployed = extent(corners.into_iter().flatten());
+    let deployed = extent(opened.into_iter().flatten());
+    let remark = " of its area and that of the opened panels, gaps closed, in common";
     vec![
+        number("target seen", 100.0 * run.seen, 3, Unit::Percent, remark),
         fact("material", &material.name, format!("{}, {thickness} mm thick", material.name)),
         number("mass", of.mass_kg(), 4, Unit::Kilogram, ", uncut"),
-        fact("panels", panels, format!("{columns} x {rows}")),
+        fact("panels", panels, format!("{panels}{arranged} {m} x {n}")),
         size("flat size", of.flat_size(), ""),
         size("deployed size", deployed, ", panels in the plane"),
         fact("level", level, format!("{level}, {}", level.hinges())),

@@ -8,6 +8,7 @@ use crate::report::numbers::rounded;
 use design::equilibrium::load_step::LoadStep;
 use design::sheet::hinge_window::Window;
 use design::sheet::validity::{OVERLAP, overlap};
+use scene::placement::{NOT_SEEN, RECOGNISED};
 use support::severity::Severity::{Error, Note, Warning};
 
 /// Mean opening of the hinges (rad) that is rounding.
@@ -18,7 +19,17 @@ const MISSED: [f64; 3] = [0.01, 0.03, 0.2];
 /// Rounding of lengths (mm).
 const ROUNDING: f64 = 1e-6;
 
-pub(super) const RULES: [Rule; 7] = [
+pub(super) const RULES: [Rule; 8] = [
+    rule(
+        "target-not-recognised",
+        Warning,
+        [
+            "less than 90 % of the target is seen",
+            "a viewer would not recognise it; an error below 75 %",
+            "a larger stock or a thinner sheet, without parts narrower than two panels",
+        ],
+        not_recognised,
+    ),
     rule(
         "target-missed",
         Note,
@@ -91,14 +102,27 @@ pub(super) const RULES: [Rule; 7] = [
     ),
 ];
 
+/// Sheets of an even pattern are made to be recognised; others are compared by their outline.
+fn not_recognised(of: &DeployedDesign) -> Option<Found> {
+    let seen = of.run?.seen;
+    let is_even = of.scene.config.cells.is_some();
+    let grave = if seen < NOT_SEEN { Error } else { Warning };
+    (is_even && seen < RECOGNISED).then(|| {
+        let seen = rounded(100.0 * seen, 3);
+        found(format!("{seen} % of the target is seen: a viewer would not recognise it"))
+            .with(grave)
+    })
+}
+
 fn missed(of: &DeployedDesign) -> Option<Found> {
-    let error = of.run?.after.outline_error;
+    let error = of.run.filter(|_| of.scene.config.cells.is_none())?.after.outline_error;
     let [width, height] = of.flat_size();
     let ratio = error / width.max(height);
     let mut grave =
         std::iter::zip(MISSED, [Note, Warning, Error]).filter(|(least, _)| ratio > *least);
     let (_, severity) = grave.next_back()?;
-    Some(found(miss(error, of.flat_size())).with(severity))
+    let seen = of.run?.seen;
+    Some(found(miss(of.scene, seen, error, of.flat_size())).with(severity))
 }
 
 /// Panels cannot lie over each other, whatever the hinge law. On the way the edges of closed cuts,
