@@ -85,7 +85,7 @@ pub fn fitted(scene: &Scene) -> Result<FittedScene, FitError> {
         width: WIDTH * scene.material.thickness / side,
         gap: f64::max(GAP, process.slit_width / side),
     };
-    let target = Region::even_odd(vec![scene.target.points.clone()]);
+    let target = scene.target.region();
     let stock = extent(&scene.config.sheet.outline().corners).map(|length| length / side);
     let sheet = largest(&target, stock, limits).ok_or(FitError::Narrow { side })?;
     let config = keys(scene, &sheet, side);

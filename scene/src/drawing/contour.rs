@@ -41,8 +41,8 @@ pub enum DrawingError {
     )]
     NoPath { why: String },
     #[error(
-        "the drawing has {found} contours, by size {listed}; delete the others, or write the number of the outline behind the \
-         name of the file, as in `drawing.svg#1`"
+        "the drawing has {found} pieces, by size {listed}; a sheet is one of them: delete the others, or write the number of one \
+         behind the name of the file, as in `drawing.svg#1`, which takes it with its holes"
     )]
     Several { found: usize, listed: String },
     #[error("there is no contour {number}: the drawing has {found}, by size {listed}")]
@@ -75,6 +75,10 @@ pub enum DrawingError {
          the outline is one simple loop"
     )]
     SelfCrossing { x: f64, y: f64 },
+    #[error(
+        "contours cross or touch each other near ({x}, {y}); move them apart, or delete one of them"
+    )]
+    Crossing { x: f64, y: f64 },
     #[error("the drawing states no unit: give `height` (mm)")]
     NoUnit,
 }
