@@ -195,12 +195,12 @@ mod tests {
         for (further, part) in [
             (
                 "<path d='M10 8L20 21'/>",
-                "2 contours, by size #1 10 x 13 at (10, 8) (branches), #2 10 x 8 at (0, 0)",
+                "2 pieces, by size #1 10 x 13 at (10, 8) (branches), #2 10 x 8 at (0, 0)",
             ),
             ("<path d='M10 8L0 0'/>", "branch at (10, 8)"),
             (
                 "<path d='M30 0H40'/>",
-                "2 contours, by size #1 10 x 8 at (0, 0), #2 10 x 0 at (30, 0) (open)",
+                "2 pieces, by size #1 10 x 8 at (0, 0), #2 10 x 0 at (30, 0) (open)",
             ),
         ] {
             let error = of_text(&svg(&format!("{pieces}{further}")), None).unwrap_err();
@@ -255,7 +255,7 @@ mod tests {
         let chosen = of_text(&text, Some(1)).unwrap();
         assert_eq!(polygon::area(&chosen.vertices).abs(), 24.0);
         for (number, part) in [
-            (None, "3 contours"),
+            (None, "3 pieces"),
             (Some(4), "no contour 4"),
             (Some(0), "no contour 0"),
             (Some(3), "2 different"),
@@ -363,7 +363,7 @@ mod tests {
         }
         let row = dxf("4", "0 INSERT 2 SLOT 10 3 20 4 50 90 70 2 44 100");
         let error = of_text(&row, None).unwrap_err().to_string();
-        assert!(error.contains("2 contours"), "{error}");
+        assert!(error.contains("2 pieces"), "{error}");
     }
 
     /// The spline through points of a circle with chords of different lengths, closed, and open
@@ -394,7 +394,7 @@ mod tests {
             (dxf("4", &format!("{circle} 0 INSERT 2 PART 10 0 20 0")), "INSERT"),
             (
                 dxf("4", &format!("{circle} {}", circle.replace("9", "3"))),
-                "2 contours, by size #1 4 x 4 at (7, 7)",
+                "2 pieces, by size #1 4 x 4 at (7, 7)",
             ),
             (dxf("4", "0 LINE 10 0 20 0 11 9 21 0"), "2 different points"),
             (dxf("4", "0 ARC 10 0 20 0 40 5 50 0 51 180"), "ends open at (-5, 0), 10 from"),

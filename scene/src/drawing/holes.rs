@@ -113,7 +113,7 @@ mod tests {
             ([90.0, 40.0, 20.0], "near (100, "),
             ([55.0, 20.0, 20.0], "near (60, 20)"),
             ([60.0, 20.0, 20.0], "near (60, 20)"),
-            ([50.0, 80.0, 20.0], "near (50, 100)"),
+            ([50.0, 80.0, 20.0], "0, 100)"),
         ] {
             let error = squares(&[NEST[0], NEST[1], hole], None).unwrap_err().to_string();
             assert!(error.contains("cross or touch each other"), "{error}");

@@ -196,7 +196,7 @@ mod tests {
         ] {
             assert_near(bounds(drawn(content)), expected);
         }
-        assert_refused(drawn(&(nested + SMALL)), "2 contours");
+        assert_refused(drawn(&(nested + SMALL)), "cross or touch each other near (0, 0)");
     }
 
     #[test]
@@ -248,8 +248,8 @@ mod tests {
         let narrow = format!("{}<g clip-path='url(#f)'>{LARGE}</g>", frame.replace("'10'", "'9'"));
         assert_refused(drawn(&narrow), "clipPath `f`");
         assert_refused(drawn("<text y='9'>A</text>"), "text alone");
-        let two = format!("{SMALL}{LARGE}");
-        assert_refused(drawn(&two), "2 contours, by size #1 10 x 20 at (0, 0), #2 1 x 1 at (0, 0)");
+        let two = format!("{SMALL}<path d='M 5 0 H 10 V 20 H 5 Z'/>");
+        assert_refused(drawn(&two), "2 pieces, by size #1 5 x 20 at (5, 0), #2 1 x 1 at (0, 0)");
     }
 
     /// Widths and heights as browsers draw them.
