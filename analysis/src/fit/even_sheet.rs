@@ -34,6 +34,8 @@ const SAMPLES: f64 = 256.0;
 const ANGLES: u32 = 360;
 /// Distance from an edge of a cell up to which a point is on it.
 const ON_EDGE: f64 = 1e-6;
+/// Sine of an angle, times two lengths, at which lines lie on each other.
+const NO_TURN: f64 = 1e-12;
 /// What a symmetric sheet may lose of the seen area.
 const FOR_SYMMETRY: f64 = 0.02;
 
@@ -139,7 +141,8 @@ impl EvenSheet {
             let cell = [0, 1].map(|c| place[c] as i32 + first[c]);
             let corner = cell.map(f64::from);
             let in_cell = |at: &[f64; 2]| [0, 1].map(|c| snapped(at[c] - corner[c]));
-            let boundary: Contour = self.panels[&cell].polygons[0][0].iter().map(in_cell).collect();
+            let boundary = self.panels[&cell].polygons[0][0].iter().map(in_cell).collect();
+            let boundary = without_cracks(boundary);
             if boundary.len() != 4 || boundary.iter().flatten().any(|x| *x != 0.0 && *x != 1.0) {
                 topology.trims[panel] = Some(boundary.into());
             }
@@ -151,6 +154,20 @@ impl EvenSheet {
 /// A coordinate in a cell; 0 and 1 are on its edges.
 fn snapped(x: f64) -> f64 {
     if (x - x.round()).abs() < ON_EDGE { x.round() } else { x }
+}
+
+/// A contour without the corners at which it turns back on itself: cracks of no width.
+fn without_cracks(mut contour: Contour) -> Contour {
+    let turns_back = |contour: &Contour, i: usize| {
+        let n = contour.len();
+        let [before, at, after] = [i + n - 1, i, i + 1].map(|k| complex(contour[k % n]));
+        let turn = (before - at).conj() * (after - at);
+        turn.re >= 0.0 && turn.im.abs() < NO_TURN
+    };
+    while let Some(i) = (0..contour.len()).find(|i| turns_back(&contour, *i)) {
+        contour.remove(i);
+    }
+    contour
 }
 
 /// A drawing turned about a point, which lies at a place in pitches.
