@@ -43,9 +43,9 @@ pub struct InitCommand {
     /// Border of the stock that the machine cannot cut (mm) [default: 0]
     #[arg(long, value_name = "MM", value_parser = length, requires = "stock")]
     margin: Option<f64>,
-    /// Outline that the sheet opens onto (SVG or DXF, with holes; FILE#2 is the second largest), in
-    /// any position and of any size: outline, cuts and pulls of the sheet are fitted to it
-    /// [default: the opened sheet's rectangle]
+    /// Outline that the sheet opens onto (SVG or DXF, with holes; FILE#2 is its second largest
+    /// contour), in any position and of any size: outline, cuts and pulls of the sheet are fitted to
+    /// it [default: the opened sheet's rectangle]
     #[arg(long, value_name = "FILE")]
     target: Option<PathBuf>,
     /// Weights for this material [default: those for it among the shipped ones]

@@ -37,7 +37,7 @@ pub fn gradient(
         "adjoint_residual": found.adjoint_residual,
         // Root mean square distance of the outline from the target (mm).
         "outline_error": outline_error,
-        // Of the areas inside the deployed outline and inside that of the target, with their holes.
+        // Of the areas inside the deployed outline and inside the target.
         "intersection_over_union": common,
     });
     let number = |value: f64| format!("{value:.6e}");

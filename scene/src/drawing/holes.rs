@@ -7,7 +7,7 @@ use design::geometry::region::Region;
 /// Area over that of the outline below which a contour in it is a speck of a tracing.
 const SPECK: f64 = 1e-4;
 
-/// Which of the contours, the largest first, each of them lies in, at least in part.
+/// For each contour those before it, the larger ones, that it lies in, at least in part.
 pub(super) fn around(contours: &[Contour]) -> Vec<Vec<usize>> {
     let boxes: Vec<_> =
         contours.iter().map(|contour| polygon::bounds(contour.points.iter().copied())).collect();
@@ -76,11 +76,19 @@ mod tests {
     fn squares(squares: &[[f64; 3]], number: Option<usize>) -> Result<Outline, DrawingError> {
         let paths = squares.iter().map(|[x, y, side]| format!("M{x} {y}h{side}v{side}h-{side}z"));
         let data = paths.collect::<String>();
-        of_text(&format!("<svg xmlns='http://www.w3.org/2000/svg'><path d='{data}'/></svg>"), number)
+        of_text(
+            &format!("<svg xmlns='http://www.w3.org/2000/svg'><path d='{data}'/></svg>"),
+            number,
+        )
     }
 
-    const NEST: [[f64; 3]; 5] =
-        [[0.0, 0.0, 100.0], [10.0, 10.0, 50.0], [20.0, 20.0, 30.0], [80.0, 80.0, 9.0], [70.0, 9.0, 0.5]];
+    const NEST: [[f64; 3]; 5] = [
+        [0.0, 0.0, 100.0],
+        [10.0, 10.0, 50.0],
+        [20.0, 20.0, 30.0],
+        [80.0, 80.0, 9.0],
+        [70.0, 9.0, 0.5],
+    ];
 
     #[test]
     fn contours_in_an_outline_are_its_holes() {

@@ -14,7 +14,10 @@ pub(super) fn is_filled(path: &Path) -> bool {
 }
 
 /// Adds the visible paths of a group, in document order; an error if only a part of them is drawn.
-pub(super) fn add_visible<'a>(group: &'a Group, paths: &mut Vec<&'a Path>) -> Result<(), DrawingError> {
+pub(super) fn add_visible<'a>(
+    group: &'a Group,
+    paths: &mut Vec<&'a Path>,
+) -> Result<(), DrawingError> {
     if group.opacity().get() == 0.0 {
         return Ok(());
     }
