@@ -4,7 +4,7 @@ use crate::drawing::contour::{Contour, DrawingError, rounded};
 use design::geometry::polygon;
 use design::geometry::region::Region;
 
-/// Area over that of the outline below which a contour in it is a speck of a tracing.
+/// Smallest area of a hole over the area of the outline: specks of a tracing are smaller.
 const SPECK: f64 = 1e-4;
 
 /// For each contour those before it, the larger ones, that it lies in, at least in part.
