@@ -9,6 +9,8 @@ const TOO_FAR: f64 = 1000.0;
 /// Maximum number of points of an outline, 3000 curves: the worst one of them is checked for
 /// crossings in seconds.
 pub(super) const MOST_POINTS: usize = 100_000;
+/// Number of contours that a message lists.
+pub(super) const LISTED: usize = 5;
 
 /// Why a file has no outline; lengths and coordinates are in the page of an SVG file (px), or in a
 /// DXF file (mm if it states its unit).

@@ -4,15 +4,13 @@
 //! If the drawing has several pieces the outline is named by its number among the contours, the
 //! largest first.
 
-use crate::drawing::contour::{Contour, DrawingError, rounded};
+use crate::drawing::contour::{Contour, DrawingError, LISTED, rounded};
 use crate::drawing::joined_lines::joined;
 use crate::drawing::{dxf_contours, holes, svg_path};
 use design::geometry::polygon;
 use std::path::{Path, PathBuf};
 use support::text_file;
 
-/// Number of contours that a message lists.
-const LISTED: usize = 5;
 /// First bytes of a file that is compressed by gzip.
 const GZIP: &[u8] = b"\x1F\x8B";
 /// How texts begin that are other drawings, and what they are.

@@ -1,6 +1,6 @@
 //! The contours that lie in others: the holes of an outline.
 
-use crate::drawing::contour::{Contour, DrawingError, rounded};
+use crate::drawing::contour::{Contour, DrawingError, LISTED, rounded};
 use design::geometry::polygon;
 use design::geometry::region::Region;
 
@@ -31,8 +31,8 @@ pub(super) fn around(contours: &[Contour]) -> Vec<Vec<usize>> {
     around
 }
 
-/// The numbers of the holes of a contour, and what in it is left out. A contour that lies in another
-/// one has none.
+/// The numbers of the holes of a contour, and what in it is left out. A contour in another one has
+/// none.
 pub(super) fn of(
     outline: usize,
     contours: &[Contour],
@@ -61,8 +61,9 @@ pub(super) fn of(
         (islands, "in its holes, each a piece of its own"),
     ];
     let notes = left_out.into_iter().filter(|(which, _)| !which.is_empty()).map(|(which, why)| {
-        let numbers: Vec<_> = which.iter().map(|i| format!("#{}", i + 1)).collect();
-        format!("left out: {}, {why}", numbers.join(", "))
+        let numbers = which.iter().take(LISTED).map(|i| format!("#{}, ", i + 1));
+        let more = if which.len() > LISTED { "and more, " } else { "" };
+        format!("left out: {}{more}{why}", numbers.collect::<String>())
     });
     Ok((holes, notes.collect()))
 }
