@@ -16,6 +16,7 @@ const whenTaken = [];
 function take(data) {
   [run, states] = [data, data.states];
   unpack(run, ["target"]);
+  unpack(run.holes, Object.keys(run.holes));
   unpack(run.panels, ["corners", "references"]);
   unpack(run.hinges, ["w_lig", "alpha_deg", "fillet_ratio", "gamma", "damage", "damage_peak"]);
   unpack(states, ["motions", "deformations", "inside", "energy", "forces", "damage", "damage_peak", "spread", "reactions"]);

@@ -59,9 +59,10 @@ pub struct SheetData<'a> {
     hinges: Hinges,
     states: HingeStates,
     actuation: Actuation,
-    /// Closed outlines: of the flat sheet and of the target (mm).
+    /// Closed outlines: of the flat sheet, of the target and of its holes (mm).
     outline: [[f64; 2]; 4],
     target: Packed,
+    holes: Vec<Packed>,
     /// The training domain of the hinge law.
     domain: Option<&'a TrainingDomain>,
 }
@@ -159,7 +160,9 @@ impl<'a> SheetData<'a> {
         rows: &[HingeRow],
     ) -> Self {
         let sheet = &deployment.sheet;
-        let target = &scene.target.points;
+        let drawn = |points: &Vec<[f64; 2]>| -> Packed {
+            (kept(points.len(), MOST_POINTS).into_iter()).flat_map(|i| points[i]).collect()
+        };
         Self {
             carries_load: scene.hinge.carries_load(),
             miss: miss(
@@ -173,7 +176,8 @@ impl<'a> SheetData<'a> {
             states: HingeStates::new(scene, problem, deployment, networks),
             actuation: scene.actuation(),
             outline: sheet.outline.corners,
-            target: (kept(target.len(), MOST_POINTS).into_iter()).flat_map(|i| target[i]).collect(),
+            target: drawn(&scene.target.points),
+            holes: scene.target.holes.iter().map(drawn).collect(),
             domain: scene.surrogate().map(|surrogate| surrogate.domain()),
         }
     }
