@@ -24,8 +24,8 @@ pub fn expected(fit: &FittedScene, thickness: f64) -> String {
     let FittedScene { panels, side, opening, seen, lost, kept_by, .. } = fit;
     let [opening, seen] = [opening.to_degrees(), 100.0 * seen];
     let mut lines = vec![format!(
-        "{panels} panels of {side:.0} mm, opened by {opening:.0} deg, show {seen:.1} % of the target (area in common over that of both, \
-         gaps between panels closed)"
+        "{panels} panels of {side:.0} mm, opened by {opening:.0} deg, show {seen:.1} % of the target (common area over the area of both, gaps \
+         between panels closed)"
     )];
     lines.extend(lost.iter().map(|part| {
         format!(

@@ -1,13 +1,11 @@
 //! The cells of a sheet: which voids of its pattern are kept, and the shapes of the panels that are
 //! trimmed.
 
-use crate::keys::SceneConfig;
 use design::geometry::polygon::{area, self_crossing};
 use design::pattern::grid::Grid;
 use design::sheet::topology::Topology;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use std::sync::Arc;
 use support::fault::{Fault, fault};
 
 /// A kept void in a row of the voids.
@@ -56,7 +54,7 @@ impl From<&Topology> for CellsConfig {
 
 impl CellsConfig {
     /// The panels and hinges that it describes.
-    fn topology(&self, grid: Grid) -> Result<Topology, Fault> {
+    pub(crate) fn topology(&self, grid: Grid) -> Result<Topology, Fault> {
         let wrong =
             |what: String| fault("cells", what, "write them again by `kirigami init --target`");
         let fits = |row: &String| {
@@ -97,10 +95,4 @@ impl CellsConfig {
         }
         Ok(topology)
     }
-}
-
-/// The panels and hinges of a scene.
-pub(crate) fn topology(config: &SceneConfig) -> Result<Arc<Topology>, Fault> {
-    let grid = config.sheet.grid();
-    config.cells.as_ref().map_or(Ok(grid.into()), |cells| Ok(Arc::new(cells.topology(grid)?)))
 }

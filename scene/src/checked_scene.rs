@@ -1,6 +1,5 @@
 //! A scene that was read and checked, together with the files that it names.
 
-use crate::cells;
 use crate::checks;
 use crate::keys::{SceneConfig, folder, resolved};
 use crate::level::Level;
@@ -83,7 +82,7 @@ impl Scene {
         known: Option<&[Surrogate]>,
     ) -> Result<Self, SceneError> {
         checks::keys(&config).map_err(SceneError::at(path))?;
-        let topology = cells::topology(&config).map_err(SceneError::at(path))?;
+        let topology = config.topology().map_err(SceneError::at(path))?;
         checks::config(&config, &topology).map_err(SceneError::at(path))?;
         let material_path = resolved(path, &config.material);
         let measured = SheetMaterial::load(&material_path)?;

@@ -15,10 +15,13 @@ use design::equilibrium::settings::SolverSettings;
 use design::objective::terms::ObjectiveConfig;
 use design::optimise::search::SearchMethod;
 use design::sheet::cutting_process::CuttingProcess;
+use design::sheet::topology::Topology;
 use hinge::SheetMaterial;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::path::{Component, Path, PathBuf};
+use std::sync::Arc;
+use support::fault::Fault;
 
 /// The keys of a scene file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -143,6 +146,12 @@ fn default_load_steps() -> usize {
 }
 
 impl SceneConfig {
+    /// The panels and hinges of the sheet.
+    pub(super) fn topology(&self) -> Result<Arc<Topology>, Fault> {
+        let grid = self.sheet.grid();
+        self.cells.as_ref().map_or(Ok(grid.into()), |cells| Ok(Arc::new(cells.topology(grid)?)))
+    }
+
     /// The points at which supports and loads of single panels act, in that order.
     pub(super) fn attached(&self) -> impl Iterator<Item = Attached> {
         let supports = self.supports.iter().enumerate().map(|(i, of)| Attached {

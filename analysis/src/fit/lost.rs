@@ -12,7 +12,7 @@ const SLIVER: f64 = 0.25;
 const MISSED: f64 = 0.01;
 /// Halvings of the width of a part.
 const HALVINGS: usize = 12;
-/// Numbers of panels along a side that are tried, over that of the sheet.
+/// By what factors the sheets are larger that are tried.
 const LARGER: [f64; 3] = [1.25, 1.5, 2.0];
 
 /// A part of a drawing that is not seen.

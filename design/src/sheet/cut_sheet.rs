@@ -199,8 +199,8 @@ impl Sheet {
         })
     }
 
-    /// The edge of the flat sheet: its outer contours, counter-clockwise, and those of its holes,
-    /// clockwise (mm).
+    /// The edge of the flat sheet: its outer contours, counter-clockwise, and its holes, clockwise
+    /// (mm).
     pub fn outlines(&self) -> Vec<Contour> {
         /// Gaps between panels that are rounding errors (mm).
         const ROUNDING: f64 = 1e-3;

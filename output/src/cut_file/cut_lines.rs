@@ -28,8 +28,7 @@ use design::geometry::polygon::{
 use design::geometry::region::Contour;
 use design::objective::design_problem::Deployment;
 use design::pattern::cut_pattern::CutPattern;
-use design::sheet::cut_sheet::AttachmentPoint;
-use design::sheet::cut_sheet::Sheet;
+use design::sheet::cut_sheet::{AttachmentPoint, Hinge, Sheet};
 use scene::{CuttingConfig, Scene};
 use std::collections::BTreeMap;
 
@@ -63,7 +62,7 @@ pub struct CutLines {
     pub slits: Vec<Slit>,
     /// One per hinge.
     pub holes: Vec<Hole>,
-    /// Contours of the sheet: outer ones counter-clockwise, those of holes clockwise (mm).
+    /// Contours of the sheet: outer ones counter-clockwise, holes clockwise (mm).
     pub outlines: Vec<Contour>,
     /// Width of the slits (mm).
     pub slit_width: f64,
@@ -133,7 +132,7 @@ impl CutLines {
         let lines: Vec<_> = slits.chain(self.outline_edges()).collect();
         for (panel, of) in sheet.panels.iter().enumerate() {
             let is_cut = |edge: [[f64; 2]; 2]| lines.iter().any(|line| carries(line, edge));
-            // A trimmed panel has another edge where it has no neighbour.
+            // A trimmed panel has another edge where it hangs together with no neighbour.
             let [p, q] = sheet.topology.places[panel];
             let beyond = [
                 (Some(p), q.checked_sub(1)),
@@ -141,10 +140,15 @@ impl CutLines {
                 (Some(p), Some(q + 1)),
                 (p.checked_sub(1), Some(q)),
             ];
-            let joined = beyond.map(|(p, q)| sheet.topology.panel(p?, q?));
-            let mut cut = edges(&of.corners)
-                .zip(joined)
-                .filter(|(_, joined)| !of.is_trimmed() || joined.is_some());
+            let hangs = |(p, q): (Option<usize>, Option<usize>)| {
+                let other = sheet.topology.panel(p?, q?)?;
+                let both = |hinge: &Hinge| {
+                    hinge.panels().contains(&panel) && hinge.panels().contains(&other)
+                };
+                sheet.hinges.iter().any(both).then_some(())
+            };
+            let cut = edges(&of.corners).zip(beyond);
+            let mut cut = cut.filter(|(_, beyond)| !of.is_trimmed() || hangs(*beyond).is_some());
             if !cut.all(|((p, q), _)| is_cut([p, q])) {
                 return Err(FabricationError::EdgeNotCut { panel });
             }

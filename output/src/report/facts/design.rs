@@ -27,7 +27,7 @@ pub(super) fn material_and_size(of: &DeployedDesign, run: &FinishedRun) -> Vec<F
     let arranged = if sheet.topology.is_full() { "" } else { ", some cells of" };
     let level = scene.config.level;
     let deployed = extent(opened.into_iter().flatten());
-    let remark = " of its area and that of the opened panels, gaps closed, in common";
+    let remark = ": common area over the area of both, gaps between opened panels closed";
     vec![
         number("target seen", 100.0 * run.seen, 3, Unit::Percent, remark),
         fact("material", &material.name, format!("{}, {thickness} mm thick", material.name)),
