@@ -134,18 +134,9 @@ impl CutLines {
         for (panel, of) in sheet.panels.iter().enumerate() {
             let is_cut = |edge: [[f64; 2]; 2]| lines.iter().any(|line| carries(line, edge));
             // A trimmed panel has another edge where it has no neighbour.
-            let [p, q] = sheet.topology.places[panel];
-            let beyond = [
-                (Some(p), q.checked_sub(1)),
-                (Some(p + 1), Some(q)),
-                (Some(p), Some(q + 1)),
-                (p.checked_sub(1), Some(q)),
-            ];
-            let joined = beyond.map(|(p, q)| sheet.topology.panel(p?, q?));
-            let mut cut = edges(&of.corners)
-                .zip(joined)
-                .filter(|(_, joined)| !of.is_trimmed() || joined.is_some());
-            if !cut.all(|((p, q), _)| is_cut([p, q])) {
+            let is_edge = |side| !of.is_trimmed() || sheet.topology.beyond(panel, side).is_some();
+            let mut sides = edges(&of.corners).enumerate().filter(|(side, _)| is_edge(*side));
+            if !sides.all(|(_, (p, q))| is_cut([p, q])) {
                 return Err(FabricationError::EdgeNotCut { panel });
             }
         }
