@@ -9,7 +9,7 @@ const AT_CUT: f64 = 0.75;
 /// Distance over the width of a slit up to which corners move with their edges.
 const FARTHEST: f64 = 4.0;
 /// Rounding of lengths (mm).
-const ROUNDING: f64 = 1e-6;
+const ROUNDING: f64 = 1e-3;
 
 /// The finished edges of a panel, counter-clockwise.
 pub(crate) struct FinishedPanel {

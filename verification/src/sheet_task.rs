@@ -210,11 +210,12 @@ impl SheetTask {
             let sum: f64 = hinges.iter().map(|&h| opening(h)).sum();
             (sum / hinges.len() as f64).to_degrees()
         };
-        let whole = !self.is_patch();
+        // The work of supports that move is no load of the solved sheet.
+        let (whole, pulled) = (!self.is_patch(), !self.is_patch() && full_load > 0.0);
         StateCheck {
             fraction: state.fraction,
-            stroke: whole.then_some([displacement, state.stroke]),
-            load: whole.then_some([load, state.load_factor * full_load]),
+            stroke: pulled.then_some([displacement, state.stroke]),
+            load: pulled.then_some([load, state.load_factor * full_load]),
             corners: rms_and_maximum(errors),
             opening_deg: [
                 mean(&|h| openings[h].theta),

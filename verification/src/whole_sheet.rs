@@ -225,12 +225,12 @@ fn sheet_shape(sheet: &Sheet, thickness: f64, tier: Tier) -> Result<SheetShape, 
     let placed = (sheet.hinges.iter().zip(sheet.designs())).zip(windows).map(
         |((hinge, design), (window, radius))| {
             let joined = |(panel, corner): PanelCorner| {
-                let number = finished[panel].number_of(corner).ok_or_else(|| {
-                    refused(format!(
-                        "panel {panel} is trimmed at its corner {corner}, where it has a hinge"
-                    ))
-                });
-                Ok::<_, VerificationError>(Some((panel, number?)))
+                let cut_off = || {
+                    let what = format!("its corner {corner}, where it has a hinge, is trimmed");
+                    fault(&format!("panel {panel}"), what, "choose another shape in [cells]")
+                };
+                let number = finished[panel].number_of(corner).ok_or_else(cut_off)?;
+                Ok::<_, VerificationError>(Some((panel, number)))
             };
             let regime = if SheetShape::bends_in_plane(design.w_lig, thickness) {
                 Regime::Plate
