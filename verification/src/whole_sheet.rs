@@ -227,7 +227,7 @@ fn sheet_shape(sheet: &Sheet, thickness: f64, tier: Tier) -> Result<SheetShape, 
             let joined = |(panel, corner): PanelCorner| {
                 let cut_off = || {
                     let what = format!("its corner {corner}, where it has a hinge, is trimmed");
-                    fault(&format!("panel {panel}"), what, "choose another shape in [cells]")
+                    fault(format!("panel {panel}"), what, "choose another shape in [cells]")
                 };
                 let number = finished[panel].number_of(corner).ok_or_else(cut_off)?;
                 Ok::<_, VerificationError>(Some((panel, number)))

@@ -48,7 +48,7 @@ fn a_part_of_a_panel_lies_over_a_panel_that_is_no_neighbour() {
     let boundary = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.2]].into_iter().chain(hook);
     topology.trims[4] = Some(boundary.collect());
     let sheet = Sheet::of_cells(&pattern, topology.into(), &[0.02; 10], AT_CORNER).unwrap();
-    assert_close(overlap(&sheet, &vec![[0.0; 3]; 8]), 0.2 / 1.15, 1e-6);
+    assert_close(overlap(&sheet, &[[0.0; 3]; 8]), 0.2 / 1.15, 1e-6);
 }
 
 #[test]
