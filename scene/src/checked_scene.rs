@@ -93,7 +93,13 @@ impl Scene {
         };
         (material.validate()).map_err(SceneError::at(path))?;
         let target = Target::sample(&config.target, folder(path), TARGET_POINTS);
-        let target = target.map_err(SceneError::at(path))?;
+        let mut target = target.map_err(SceneError::at(path))?;
+        if !target.holes.is_empty() && config.cells.is_none() {
+            target.notes.push(
+                "a sheet without `cells` fills its holes: `kirigami init --target` writes one with them"
+                    .to_owned(),
+            );
+        }
         checks::target(&target, &config).map_err(SceneError::at(path))?;
         let hinge = LoadedHinge::load(&config, &topology, &measured, path, known)?;
         let springback = springback_file::load(&config, &measured, path);

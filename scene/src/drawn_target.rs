@@ -2,14 +2,15 @@
 
 use crate::target::{Target, TargetError, TargetShape};
 use design::geometry::plane::{complex, point};
+use design::geometry::polygon;
 use design::geometry::similarity::Similarity;
 use std::path::Path;
 
 /// Points along a drawn outline from which its area is computed.
 const DRAWING_POINTS: usize = 2000;
 
-/// Centre of the bounding box and height (mm) at which the outline of a drawing (SVG or DXF) has
-/// the given area (mm^2) and the mean of its points at `centre` (mm).
+/// Centre of the bounding box and height (mm) at which the outline of a drawing (SVG or DXF), with
+/// its holes, has the given area (mm^2) and the mean of its points at `centre` (mm).
 pub fn place_drawing(
     file: &Path,
     centre: [f64; 2],
@@ -22,7 +23,7 @@ pub fn place_drawing(
         rotation_deg: 0.0,
     };
     let outline = Target::sample(&of_height_1, Path::new(""), DRAWING_POINTS)?;
-    let height = rounded((area / outline.area()).sqrt());
+    let height = rounded((area / polygon::area(&outline.points).abs()).sqrt());
     let offset = outline.mean();
     let placed = [0, 1].map(|i| rounded(centre[i] - height * offset[i]));
     Ok((placed, height))

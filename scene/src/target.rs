@@ -6,6 +6,7 @@ use crate::drawing::outline_points::{self, PointsError};
 use design::geometry::plane::{complex, point};
 use design::geometry::polygon;
 use design::geometry::region::Region;
+use design::geometry::similarity::Similarity;
 use faer::c64;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -56,10 +57,11 @@ pub enum TargetShape {
         /// Path of the file, relative to the folder of the scene.
         file: PathBuf,
     },
-    /// The outline in a drawing (SVG, SVGZ or DXF): one closed contour that does not cross itself.
+    /// The outline in a drawing (SVG, SVGZ or DXF): one closed contour and the holes in it, none of
+    /// which cross.
     Svg {
-        /// Path of the file, relative to the folder of the scene; of several contours behind `#`
-        /// the number, the largest first: `parts.dxf#2`.
+        /// Path of the file, relative to the folder of the scene; of several pieces behind `#` the
+        /// number, the largest first: `parts.dxf#2`.
         file: PathBuf,
         /// Centre of the bounding box of the outline (mm).
         centre: [f64; 2],
@@ -113,10 +115,12 @@ pub enum TargetError {
 }
 
 /// The sampled target.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Target {
     /// The samples, evenly spaced along the outline (mm).
     pub points: Vec<[f64; 2]>,
+    /// The corners of its holes (mm).
+    pub holes: Vec<Vec<[f64; 2]>>,
     /// Length of the outline itself (mm).
     pub length: f64,
     /// A point at which the outline crosses or touches itself, so that its inside is not defined
@@ -138,7 +142,7 @@ impl Target {
                         [centre[0] + radius * cos, centre[1] + radius * sin]
                     })
                     .collect();
-                Ok(Self { points, length: TAU * radius, crossing: None, notes: Vec::new() })
+                Ok(Self { points, length: TAU * radius, ..Self::default() })
             }
             TargetShape::Rectangle { centre, size, rotation_deg } => {
                 let (sin, cos) = rotation_deg.to_radians().sin_cos();
@@ -162,7 +166,11 @@ impl Target {
                 let own = high[1] - low[1];
                 let height = height.or(drawn.has_unit.then_some(own));
                 let height = height.ok_or_else(|| refused(DrawingError::NoUnit))?;
-                let placed = placed(&drawn.vertices, *centre, height, *rotation_deg)?;
+                let place = place(&drawn.vertices, *centre, height, *rotation_deg)?;
+                let placed = |vertices: &Vec<[f64; 2]>| -> Vec<[f64; 2]> {
+                    vertices.iter().map(|vertex| point(place.of(complex(*vertex)))).collect()
+                };
+                let holes = drawn.holes.iter().map(placed).collect();
                 let gap = drawn.gap * height / own;
                 let closed = (gap > 0.0).then(|| {
                     format!(
@@ -170,15 +178,15 @@ impl Target {
                     )
                 });
                 let notes = closed.into_iter().chain(drawn.warnings).collect();
-                Ok(Self { notes, ..along_polygon(&placed, count)? })
+                Ok(Self { notes, holes, ..along_polygon(&placed(&drawn.vertices), count)? })
             }
         }
     }
 
-    /// BLAKE3 hash of the samples.
+    /// BLAKE3 hash of the samples and the holes.
     pub fn hash(&self) -> String {
-        let points = self.points.as_flattened();
-        let bytes: Vec<u8> = points.iter().flat_map(|x| x.to_le_bytes()).collect();
+        let points = self.holes.iter().chain([&self.points]).flatten().flatten();
+        let bytes: Vec<u8> = points.flat_map(|x| x.to_le_bytes()).collect();
         blake3::hash(&bytes).to_hex().to_string()
     }
 
@@ -198,14 +206,15 @@ impl Target {
         polygon::distance_to_outline(point, &self.points)
     }
 
-    /// The points inside.
+    /// What the curve through the samples encloses, without the holes.
     pub fn region(&self) -> Region {
-        Region::even_odd(vec![self.points.clone()])
+        Region::even_odd(self.holes.iter().chain([&self.points]).cloned().collect())
     }
 
-    /// Area inside the curve through the samples (mm^2).
+    /// Area inside the curve through the samples, without the holes (mm^2).
     pub fn area(&self) -> f64 {
-        polygon::area(&self.points).abs()
+        let area = |points: &Vec<[f64; 2]>| polygon::area(points).abs();
+        area(&self.points) - self.holes.iter().map(area).sum::<f64>()
     }
 }
 
@@ -233,7 +242,8 @@ fn along_polygon(vertices: &[[f64; 2]], count: usize) -> Result<Target, TargetEr
     // A file may repeat a vertex, such as the first at its end: an edge without length crosses
     // nothing.
     let distinct: Vec<[f64; 2]> = (edges().filter(|(p, q)| p != q).map(|(p, _)| p)).collect();
-    Ok(Target { points, length, crossing: polygon::self_crossing(&distinct), notes: Vec::new() })
+    let crossing = polygon::self_crossing(&distinct);
+    Ok(Target { points, length, crossing, ..Target::default() })
 }
 
 /// Number of chords of a curve between two of its points.
@@ -259,22 +269,21 @@ fn curve(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
     chords.map(|(i, t)| at(i, t)).collect()
 }
 
-/// The vertices, scaled and translated so that their bounding box has the given height and centre
-/// (mm), and turned about it.
-fn placed(
+/// The motion of vertices that gives their bounding box a height and a centre (mm), and turns them
+/// about it.
+fn place(
     vertices: &[[f64; 2]],
     centre: [f64; 2],
     height: f64,
     rotation_deg: f64,
-) -> Result<Vec<[f64; 2]>, TargetError> {
+) -> Result<Similarity, TargetError> {
     let [[left, low], [right, high]] = polygon::bounds(vertices.iter().copied());
     if high <= low || vertices.is_empty() {
         return Err(TargetError::NoArea);
     }
     let turn = c64::cis(rotation_deg.to_radians()) * (height / (high - low));
     let middle = complex([0.5 * (left + right), 0.5 * (low + high)]);
-    let place = |vertex: &[f64; 2]| point(complex(centre) + turn * (complex(*vertex) - middle));
-    Ok(vertices.iter().map(place).collect())
+    Ok(Similarity { turn, shift: complex(centre) - turn * middle })
 }
 
 #[cfg(test)]

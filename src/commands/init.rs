@@ -43,8 +43,8 @@ pub struct InitCommand {
     /// Border of the stock that the machine cannot cut (mm) [default: 0]
     #[arg(long, value_name = "MM", value_parser = length, requires = "stock")]
     margin: Option<f64>,
-    /// Drawing that the sheet opens onto (SVG or DXF; FILE#2 is the second largest of several
-    /// outlines), in any position and of any size: an even pattern of square panels is laid over it
+    /// Drawing that the sheet opens onto (SVG or DXF, with holes; FILE#2 is its second largest
+    /// contour), in any position and of any size: an even pattern of square panels is laid over it
     /// and trimmed to it [default: the opened sheet's rectangle]
     #[arg(long, value_name = "FILE")]
     target: Option<PathBuf>,

@@ -32,6 +32,21 @@ fn a_drawing_becomes_a_sheet_with_a_cut_file() {
     }
 }
 
+/// The sheet of a ring is a ring: its middle rows of voids have a gap.
+#[test]
+fn a_ring_becomes_a_sheet_with_a_hole() {
+    let work = Workplace::new();
+    let circle = |radius: u32| format!("<circle r='{radius}' cx='90' cy='90'/>");
+    let ring = circle(90) + &circle(40);
+    let ring = format!("<svg xmlns='http://www.w3.org/2000/svg'>{ring}</svg>");
+    std::fs::write(work.path("ring.svg"), ring).unwrap();
+    work.output("init ring --target ring.svg --thickness 2 --size 360x360");
+    let scene = work.read("ring/scene.toml").parse::<toml_edit::DocumentMut>().unwrap();
+    let voids = scene["cells"]["voids"].as_array().unwrap();
+    let middle = voids.get(voids.len() / 2).and_then(|row| row.as_str()).unwrap();
+    assert!(middle.trim_matches('.').contains('.'), "{voids}");
+}
+
 /// A scene of any target is fitted before its search; its run has what was chosen, and is designed
 /// again without a fit.
 #[test]

@@ -4,8 +4,11 @@
 //! even and by theta/2 if it is odd, about its centre, which moves from c to p c with the pitch
 //!
 //! ```text
-//! p = cos(theta/2) + sin(theta/2)
+//! p = cos(theta/2) + (1 - 2 s) sin(theta/2)
 //! ```
+//!
+//! where s is the distance from the corner to the point about which neighbours turn: a ligament
+//! turns about a point within it, a pin at the corner has s = 0.
 
 use design::geometry::plane::{complex, point};
 use design::geometry::similarity::Similarity;
@@ -18,27 +21,43 @@ pub(super) type Cell = [i32; 2];
 /// Two squares that hang together; the second is to the right of or above the first.
 pub(super) type Pair = [Cell; 2];
 
-/// By how much the pattern grows when it opens by an angle (rad).
-pub(super) fn pitch(opening: f64) -> f64 {
-    let (sin, cos) = (0.5 * opening).sin_cos();
-    sin + cos
+/// How far the pattern is open.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Opening {
+    /// theta (rad).
+    pub angle: f64,
+    /// s.
+    pub set_back: f64,
+}
+
+impl Opening {
+    /// By how much the pattern has grown.
+    pub(super) fn pitch(self) -> f64 {
+        let (sin, cos) = (0.5 * self.angle).sin_cos();
+        cos + (1.0 - 2.0 * self.set_back) * sin
+    }
+
+    /// A part of the opening.
+    pub(super) fn part(self, part: f64) -> Self {
+        Self { angle: part * self.angle, ..self }
+    }
+
+    /// The motion of a square when the pattern opens.
+    pub(super) fn motion(self, cell: Cell) -> Similarity {
+        let half = if is_even(cell) { -0.5 * self.angle } else { 0.5 * self.angle };
+        let (turn, centre) = (c64::cis(half), complex(centre(cell)));
+        Similarity { turn, shift: self.pitch() * centre - turn * centre }
+    }
+
+    /// The motion of one square as another sees it.
+    pub(super) fn relative_motion(self, of: Cell, seen_by: Cell) -> Similarity {
+        let (one, other) = (self.motion(of), self.motion(seen_by));
+        Similarity { turn: one.turn / other.turn, shift: (one.shift - other.shift) / other.turn }
+    }
 }
 
 fn is_even([i, j]: Cell) -> bool {
     (i + j).rem_euclid(2) == 0
-}
-
-/// The motion of a square when the pattern opens.
-pub(super) fn motion(cell: Cell, opening: f64) -> Similarity {
-    let half = if is_even(cell) { -0.5 * opening } else { 0.5 * opening };
-    let (turn, centre) = (c64::cis(half), complex(centre(cell)));
-    Similarity { turn, shift: pitch(opening) * centre - turn * centre }
-}
-
-/// The motion of one square as another sees it.
-pub(super) fn relative_motion(of: Cell, seen_by: Cell, opening: f64) -> Similarity {
-    let (one, other) = (motion(of, opening), motion(seen_by, opening));
-    Similarity { turn: one.turn / other.turn, shift: (one.shift - other.shift) / other.turn }
 }
 
 /// The image of a point under a motion.
@@ -95,11 +114,12 @@ mod tests {
 
     #[test]
     fn squares_hang_together_at_their_hinges() {
-        for opening in [0.0, 0.3, 1.0, 1.5] {
+        for angle in [0.0, 0.3, 1.0, 1.5] {
+            let opening = Opening { angle, set_back: 0.0 };
             for first in [[0, 0], [3, 2], [-4, 1]] {
                 for second in [[first[0] + 1, first[1]], [first[0], first[1] + 1]] {
                     let hinge = hinge([first, second]).map(f64::from);
-                    let [p, q] = [first, second].map(|cell| moved(motion(cell, opening), hinge));
+                    let [p, q] = [first, second].map(|cell| moved(opening.motion(cell), hinge));
                     assert!((p[0] - q[0]).hypot(p[1] - q[1]) < 1e-12, "{first:?} {second:?}");
                 }
             }

@@ -1,13 +1,13 @@
 //! The sheet of a drawing from an even pattern: where the drawing lies on the opened pattern, and
 //! the panels there.
 
-use super::even_pattern::{Cell, motion, moved, pitch, squares};
+use super::even_pattern::{Cell, moved, squares};
 use super::raster::Raster;
-use super::trimmed::{Limits, loops, opened, panels};
+use super::trimmed::{Limits, ON_EDGE, loops, opened, panels};
 use design::geometry::plane::{complex, point};
+use design::geometry::polygon::distance;
 use design::geometry::region::{Contour, Region, seen};
 use design::geometry::similarity::Similarity;
-use design::objective::centre;
 use design::pattern::grid::Grid;
 use design::sheet::topology::Topology;
 use faer::c64;
@@ -32,8 +32,6 @@ const SYMMETRIC: f64 = 0.97;
 /// Points along the longer side of a drawing, and angles, for its axis.
 const SAMPLES: f64 = 256.0;
 const ANGLES: u32 = 360;
-/// Distance from an edge of a cell up to which a point is on it.
-const ON_EDGE: f64 = 1e-6;
 /// What a symmetric sheet may lose of the seen area.
 const FOR_SYMMETRY: f64 = 0.02;
 
@@ -57,8 +55,8 @@ impl EvenSheet {
     /// drawing is narrower than two squares everywhere.
     pub fn new(drawing: &Region, size: f64, limits: Limits) -> Option<Self> {
         let [low, high] = drawing.bounds();
-        let scale = size * pitch(limits.opening) / longer_side(drawing);
-        let drawing = drawing.simplified(TOLERANCE / scale);
+        let scale = size * limits.opening.pitch() / longer_side(drawing);
+        let drawing = drawing.simplified(TOLERANCE / scale, |_| false);
         let middle = [0, 1].map(|c| 0.5 * (low[c] + high[c]));
         let symmetric = mirror_axis(&drawing).and_then(|(angle, centroid)| {
             let along = (0..ALONG).map(|v| [0.0, f64::from(v) / f64::from(ALONG)]);
@@ -96,7 +94,7 @@ impl EvenSheet {
 
     /// How many squares the longer side of a drawing is long when flat.
     pub(super) fn size(&self, drawing: &Region) -> f64 {
-        self.place.scale() * longer_side(drawing) / pitch(self.limits.opening)
+        self.place.scale() * longer_side(drawing) / self.limits.opening.pitch()
     }
 
     /// The drawing on the opened pattern.
@@ -104,9 +102,9 @@ impl EvenSheet {
         &self.drawing
     }
 
-    /// The panels when all hinges are open by an angle (rad).
-    pub fn opened(&self, opening: f64) -> Region {
-        opened(&self.panels, opening)
+    /// The panels at a part of the opening.
+    pub fn opened(&self, part: f64) -> Region {
+        opened(&self.panels, self.limits.opening.part(part))
     }
 
     /// Columns and rows of the pattern, and the first cell of it: the kept squares and what is
@@ -122,19 +120,6 @@ impl EvenSheet {
         (Grid { m: count(0), n: count(1) }, first)
     }
 
-    /// The centroid of every panel in the flat and in the opened pattern, in the order of its
-    /// topology.
-    pub(super) fn centres(&self) -> Vec<[[f64; 2]; 2]> {
-        let first = self.cells().1;
-        let places = self.topology().places.into_iter();
-        let centres = places.map(|place| {
-            let cell = [0, 1].map(|c| place[c] as i32 + first[c]);
-            let centroid = centre::of(&self.panels[&cell].polygons[0][0]);
-            [centroid, moved(motion(cell, self.limits.opening), centroid)]
-        });
-        centres.collect()
-    }
-
     /// Its panels and hinges.
     pub fn topology(&self) -> Topology {
         let (grid, first) = self.cells();
@@ -148,7 +133,11 @@ impl EvenSheet {
             let cell = [0, 1].map(|c| place[c] as i32 + first[c]);
             let corner = cell.map(f64::from);
             let in_cell = |at: &[f64; 2]| [0, 1].map(|c| snapped(at[c] - corner[c]));
-            let boundary: Contour = self.panels[&cell].polygons[0][0].iter().map(in_cell).collect();
+            let mut boundary: Contour =
+                self.panels[&cell].polygons[0][0].iter().map(in_cell).collect();
+            boundary.dedup_by(|one, other| distance(*one, *other) < ON_EDGE);
+            let first = boundary[0];
+            boundary.pop_if(|last| distance(*last, first) < ON_EDGE);
             if boundary.len() != 4 || boundary.iter().flatten().any(|x| *x != 0.0 && *x != 1.0) {
                 topology.trims[panel] = Some(boundary.into());
             }
@@ -162,15 +151,15 @@ fn longer_side(drawing: &Region) -> f64 {
     f64::max(high[0] - low[0], high[1] - low[1])
 }
 
-/// A coordinate in a cell; 0 and 1 are on its edges.
+/// A coordinate in a cell; 0, without a sign, and 1 are on its edges.
 fn snapped(x: f64) -> f64 {
-    if (x - x.round()).abs() < ON_EDGE { x.round() } else { x }
+    if (x - x.round()).abs() < ON_EDGE { x.round() + 0.0 } else { x }
 }
 
 /// A drawing turned about a point, which lies at a place in pitches.
 fn placed(about: [f64; 2], scale: f64, turn: f64, at: [f64; 2], limits: &Limits) -> Similarity {
     let turn = scale * c64::cis(turn);
-    Similarity { turn, shift: pitch(limits.opening) * complex(at) - turn * complex(about) }
+    Similarity { turn, shift: limits.opening.pitch() * complex(at) - turn * complex(about) }
 }
 
 /// The best sheet of the places with most loops.
@@ -210,13 +199,15 @@ fn mirror_axis(drawing: &Region) -> Option<(f64, [f64; 2])> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::fit::even_pattern::Opening;
     use crate::fit::even_pattern::{hinge, pairs};
     use rand::{RngExt, SeedableRng};
     use rand_chacha::ChaCha8Rng;
     use std::f64::consts::TAU;
 
+    const OPENING: Opening = Opening { angle: 1.047, set_back: 0.0 };
     const LIMITS: Limits =
-        Limits { opening: 1.047, window: 0.42, width: 0.2, gap: 0.02, apart: 0.0125 };
+        Limits { opening: OPENING, window: 0.42, width: 0.2, gap: 0.02, slit: 0.0125 };
 
     /// A closed curve about the origin with a radius that varies in waves.
     fn blob(random: &mut ChaCha8Rng, radius: f64) -> Contour {
@@ -258,7 +249,7 @@ mod tests {
             made += 1;
             let area: f64 = sheet.panels.values().map(Region::area).sum();
             for step in 0..=20 {
-                let opened = sheet.opened(LIMITS.opening * f64::from(step) / 20.0);
+                let opened = sheet.opened(f64::from(step) / 20.0);
                 assert!((opened.area() - area).abs() < 1e-4 * area, "{seed} at {step}");
             }
             let topology = sheet.topology();
@@ -277,7 +268,7 @@ mod tests {
                     let square = Region::union_of(vec![crate::fit::even_pattern::corners(cell)]);
                     let quarter = disc.common(&square);
                     let kept = quarter.common(&sheet.panels[&cell]);
-                    let slit = 0.4 * LIMITS.apart;
+                    let slit = 0.4 * LIMITS.slit;
                     assert!(kept.area() > 0.999 * quarter.area() - slit, "{seed} {pair:?}");
                 }
             }

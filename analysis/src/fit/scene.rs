@@ -1,42 +1,40 @@
 //! The scene of a sheet that opens onto the target of another: an even pattern laid over the target,
 //! fastened at the places of its opening.
 
-use crate::fit::even_pattern::pitch;
+use crate::fit::even_pattern::Opening;
 use crate::fit::even_sheet::EvenSheet;
+use crate::fit::fasteners::fastened;
 use crate::fit::lost::{Lost, kept_by, lost};
 use crate::fit::opening::{free_axial_opening, safe_opening};
 use crate::fit::trimmed::Limits;
 use design::geometry::plane::{complex, point};
-use design::geometry::polygon::{bounds, distance};
+use design::geometry::polygon::bounds;
 use design::geometry::region::Region;
 use design::geometry::similarity::Similarity;
 use design::optimise::search::SearchMethod;
 use faer::c64;
 use scene::{
-    CellsConfig, Level, OptimiserConfig, Posture, PostureConfig, Scene, SceneConfig, SceneError,
-    StartConfig, SupportConfig, SupportKind, rounded,
+    At, CellsConfig, Level, OptimiserConfig, Posture, PostureConfig, Scene, SceneConfig,
+    SceneError, StartConfig, SupportConfig, SupportKind, rounded,
 };
 use std::f64::consts::FRAC_PI_2;
 
-/// The largest opening that is planned (rad): 65 degrees.
-const MOST: f64 = 1.134;
+/// The largest opening that is planned (rad): 60 degrees.
+const MOST: f64 = 1.047;
 /// The opening that is planned for a law that predicts no damage (rad): 45 degrees.
 const UNKNOWN: f64 = 0.785;
 /// Side of a panel over the radius of a window: two windows and a margin.
 const SIDE: f64 = 2.25;
+/// How far the width of the ligaments is from the narrowest to the widest of the scene.
+const NARROW: f64 = 0.125;
 /// Smallest width of a part of a panel, over the thickness.
 const WIDTH: f64 = 2.0;
 /// Smallest distance of panels that do not hang together, over the side of a panel.
 const GAP: f64 = 0.02;
-/// Distance of squares side by side that do not hang together, over the width of a slit.
-const APART: f64 = 1.25;
 /// Sizes that are tried until a sheet fills its stock.
 const SIZES: usize = 4;
 /// Part of the stock that a sheet fills at least.
 const FILLED: f64 = 0.95;
-/// Panels a fastener, and the numbers of fasteners.
-const PANELS: usize = 25;
-const FASTENERS: [usize; 2] = [3, 8];
 /// Steps of the search for the widths, and the length of its first step.
 const STEPS: usize = 0;
 const FIRST_STEP: f64 = 0.03;
@@ -84,15 +82,15 @@ pub fn fitted(scene: &Scene) -> Result<FittedScene, FitError> {
     if scene.config.level == Level::Pin {
         return Err(FitError::Pins);
     }
-    let opening = opening(scene);
+    let angle = opening(scene);
     let process = scene.config.process;
     let side = SIDE * process.r_win;
     let limits = Limits {
-        opening,
+        opening: Opening { angle, set_back: set_back(scene, angle) / side },
         window: (process.r_win + 0.5 * process.slit_width) / side,
         width: WIDTH * scene.material.thickness / side,
         gap: f64::max(GAP, process.slit_width / side),
-        apart: APART * process.slit_width / side,
+        slit: process.slit_width / side,
     };
     let target = scene.target.region();
     let stock = extent(&scene.config.sheet.outline().corners).map(|length| length / side);
@@ -106,27 +104,34 @@ pub fn fitted(scene: &Scene) -> Result<FittedScene, FitError> {
         kept_by,
         panels: sheet.topology().panel_count(),
         side,
-        opening,
+        opening: angle,
         seen: sheet.seen,
     })
+}
+
+/// Width of the ligaments (mm). Narrow ones open more evenly between fasteners: the moment of a
+/// ligament falls faster with its width than its axial stiffness.
+fn width(scene: &Scene) -> f64 {
+    let [narrowest, widest] = scene.config.ligament.range;
+    rounded(narrowest + NARROW * (widest - narrowest))
 }
 
 /// The opening that the material bears (rad).
 fn opening(scene: &Scene) -> f64 {
     scene.surrogate().map_or(UNKNOWN, |surrogate| {
-        let w_lig = scene.config.ligament.start / scene.scale();
+        let w_lig = width(scene) / scene.scale();
         safe_opening(surrogate, w_lig, MOST)
     })
 }
 
-/// By how much less neighbours move apart than on pins at their corners when the ligaments turn
-/// freely (mm): a ligament turns about a point within it, which is nearer to the panels.
-fn lost_pitch(scene: &Scene, opening: f64) -> f64 {
-    let width = scene.config.ligament.start;
-    let set_back = width + 0.5 * scene.config.process.slit_width;
+/// Distance from the corner of a panel to the point about which its neighbour has turned when the
+/// ligament is free (mm).
+fn set_back(scene: &Scene, angle: f64) -> f64 {
+    let width = width(scene);
+    let tip = width + 0.5 * scene.config.process.slit_width;
     scene.surrogate().map_or(0.0, |surrogate| {
-        let eta_a = free_axial_opening(surrogate, width / scene.scale(), opening);
-        2.0 * set_back * (0.5 * opening).sin() - eta_a * width
+        let eta_a = free_axial_opening(surrogate, width / scene.scale(), angle);
+        tip - 0.5 * eta_a * width / (0.5 * angle).sin()
     })
 }
 
@@ -176,8 +181,6 @@ fn keys(scene: &Scene, sheet: &EvenSheet, side: f64) -> SceneConfig {
     let (grid, first) = sheet.cells();
     // From the pattern to the sheet: turned back, in mm, its lower left corner at the origin.
     let back = side * c64::cis(-sheet.place.rotation());
-    let smaller =
-        1.0 - lost_pitch(scene, sheet.limits.opening) / side / pitch(sheet.limits.opening);
     let first = complex(first.map(f64::from));
     let turned = |at: c64| back * (at - first);
     let flat = sheet.opened(0.0);
@@ -191,25 +194,23 @@ fn keys(scene: &Scene, sheet: &EvenSheet, side: f64) -> SceneConfig {
     config.sheet.panels = [grid.m, grid.n];
     config.cells = Some(CellsConfig::from(&topology));
     config.posture = Some(PostureConfig { kind: Posture::HeldFlat, down: None });
+    config.ligament.start = width(scene);
     config.start = StartConfig::default();
     config.clear_actuation();
-    // Where the panels go when the middle of the sheet stays.
-    let centres = sheet.centres();
-    let mean =
-        |k: usize| centres.iter().map(|at| complex(at[k])).sum::<c64>() / centres.len() as f64;
-    let (before, after) = (mean(0), mean(1));
-    let moved = |panel: usize| {
-        let [from, to] = centres[panel].map(complex);
-        point(back * (smaller * (to - after) - (from - before))).map(rounded)
+    // The squares move away from their middle, which stays.
+    let centre = |panel: &usize| first + complex(topology.places[*panel].map(|i| i as f64 + 0.5));
+    let all = topology.panel_count();
+    let middle = (0..all).map(|panel| centre(&panel)).sum::<c64>() / all as f64;
+    let growth = sheet.limits.opening.pitch() - 1.0;
+    let fastener = |panel: usize| {
+        let centre = centre(&panel);
+        SupportConfig {
+            at: At::Point(in_sheet(centre)),
+            displacement: point(back * growth * (centre - middle)).map(rounded),
+            ..SupportConfig::at_centroid(topology.places[panel], SupportKind::Pin)
+        }
     };
-    let [fewest, most] = FASTENERS;
-    let count = (centres.len() / PANELS).clamp(fewest, most);
-    let support = |panel: usize| SupportConfig {
-        displacement: moved(panel),
-        ..SupportConfig::at_centroid(topology.places[panel], SupportKind::Pin)
-    };
-    let flat_centres: Vec<[f64; 2]> = centres.iter().map(|at| at[0]).collect();
-    config.supports = spread(&flat_centres, count).into_iter().map(support).collect();
+    config.supports = fastened(&topology).into_iter().map(fastener).collect();
     config.objective = Default::default();
     config.optimiser = OptimiserConfig {
         steps: STEPS,
@@ -218,26 +219,10 @@ fn keys(scene: &Scene, sheet: &EvenSheet, side: f64) -> SceneConfig {
         ..config.optimiser
     };
     // From the target to the opened sheet whose middle stays.
-    let turn = smaller * back * sheet.place.turn;
-    let shift = back * (smaller * (sheet.place.shift - after) + before - first) - complex(low);
+    let turn = back * sheet.place.turn;
+    let shift = back * (sheet.place.shift - growth * middle - first) - complex(low);
     config.target = config.target.placed(&Similarity { turn, shift }, &scene.target.points);
     config
-}
-
-/// Points far from each other, beginning with the one that is farthest from the middle.
-fn spread(points: &[[f64; 2]], count: usize) -> Vec<usize> {
-    let middle = design::geometry::polygon::mean(points);
-    let mut chosen: Vec<usize> = Vec::new();
-    while chosen.len() < count.min(points.len()) {
-        let room = |i: &usize| {
-            let near = chosen.iter().map(|k| distance(points[*i], points[*k]));
-            near.fold(f64::INFINITY, f64::min)
-                .min(distance(points[*i], middle) + 1e9 * f64::from(u8::from(!chosen.is_empty())))
-        };
-        let next = (0..points.len()).max_by(|i, j| room(i).total_cmp(&room(j)));
-        chosen.extend(next);
-    }
-    chosen
 }
 
 /// Width and height of points (mm).

@@ -6,8 +6,7 @@
 //! Lengths are in sides of a square.
 
 use super::even_pattern::{
-    Cell, Pair, centre, corners, hinge, motion, moved, neighbours, pairs, pitch, relative_motion,
-    squares,
+    Cell, Opening, Pair, centre, corners, hinge, moved, neighbours, pairs, squares,
 };
 use design::geometry::plane::{complex, point};
 use design::geometry::region::{Contour, Corners, Region};
@@ -24,25 +23,28 @@ const RINGS: usize = 2;
 const LEAST_PART: f64 = 0.02;
 /// By how much the edges of a panel are simplified.
 const TOLERANCE: f64 = 3e-3;
+/// Half the width of a gap between parts of a panel that is a rounding error.
+const HAIR: f64 = 1e-3;
 /// Area of a hole that is a rounding error.
 const FILLED: f64 = 1e-4;
+/// Distance from an edge of a square up to which a point is on it.
+pub(super) const ON_EDGE: f64 = 1e-6;
 /// Points on the arc of a window in a square.
 const ARC: u32 = 4;
 
 /// What bounds the panels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limits {
-    /// The opening of every hinge (rad).
-    pub opening: f64,
+    /// The opening of every hinge.
+    pub opening: Opening,
     /// Radius of a window.
     pub window: f64,
     /// Smallest width of a part of a panel.
     pub width: f64,
     /// Smallest distance of two panels that do not hang together, on the way.
     pub gap: f64,
-    /// Distance of two squares side by side that do not hang together: a slit, and a little more,
-    /// so that the tool goes around their edges. It takes half of that little from a ligament there.
-    pub apart: f64,
+    /// Width of a slit, which is between squares side by side that do not hang together.
+    pub slit: f64,
 }
 
 /// The largest set of loops, joined by pairs of squares, whose windows are in an opened drawing.
@@ -51,7 +53,7 @@ pub(super) fn loops(
     limits: &Limits,
     inside: &impl Fn([f64; 2]) -> bool,
 ) -> BTreeSet<Cell> {
-    let cells = |x: f64| (x / pitch(limits.opening)).floor() as i32;
+    let cells = |x: f64| (x / limits.opening.pitch()).floor() as i32;
     let [from, to] = bounds.map(|corner| corner.map(cells));
     let all = (from[1] - 1..=to[1]).flat_map(|j| (from[0] - 1..=to[0]).map(move |i| [i, j]));
     let counts = |pair: &Pair| {
@@ -82,7 +84,7 @@ fn window(cell: Cell, corner: Cell, limits: &Limits) -> Vec<[f64; 2]> {
         let (sin, cos) = (FRAC_PI_2 * f64::from(k) / f64::from(ARC)).sin_cos();
         [corner[0] + side[0] * cos, corner[1] + side[1] * sin]
     });
-    let motion = motion(cell, limits.opening);
+    let motion = limits.opening.motion(cell);
     arc.chain([corner]).map(|at| moved(motion, at)).collect()
 }
 
@@ -121,10 +123,20 @@ pub(super) fn panels(
             let holes = panel.filled().minus(&panel);
             if holes.common(&taken).area() > FILLED { square.clone() } else { panel }
         };
-        let panel = with_most_of(panel, &square).filled();
-        done.insert(cell, panel.simplified(TOLERANCE));
+        let panel = with_most_of(panel, &square).joined(HAIR).filled();
+        // Cuts run along the edges of the squares.
+        let panel = panel.simplified(TOLERANCE, |at| is_on_edge(cell, at));
+        done.insert(cell, with_most_of(panel, &square));
     }
     done
+}
+
+/// Whether a point is on an edge of a square.
+fn is_on_edge(cell: Cell, at: [f64; 2]) -> bool {
+    (0..2).any(|c| {
+        let along = at[c] - f64::from(cell[c]);
+        (along - along.round()).abs() < ON_EDGE && (0.0..=1.0).contains(&along.round())
+    })
 }
 
 /// The polygon of a region that has the most of another.
@@ -149,7 +161,7 @@ impl<'a> Edge<'a> {
     fn new(drawing: &Region, loops: &BTreeSet<Cell>, limits: &'a Limits) -> Self {
         let squares = squares(loops);
         let seen = |cell: &Cell| {
-            let motion = motion(*cell, limits.opening);
+            let motion = limits.opening.motion(*cell);
             (*cell, drawing.map(|at| point(motion.back(complex(at)))))
         };
         Self {
@@ -173,7 +185,7 @@ impl<'a> Edge<'a> {
             self.squares.contains(other) && !self.hinges.contains(&pair)
         };
         let strip = |other: Cell| {
-            let half = 0.5 * self.limits.apart;
+            let half = 0.5 * self.limits.slit;
             let [x, y] = corners(other)[0];
             vec![
                 [x - half, y - half],
@@ -239,8 +251,8 @@ impl<'a> Edge<'a> {
         for other in self.squares.iter().filter(is_near) {
             let panel = of_other(*other);
             for step in 0..=OPENINGS {
-                let opening = self.limits.opening * f64::from(step) / f64::from(OPENINGS);
-                let motion = relative_motion(*other, cell, opening);
+                let opening = self.limits.opening.part(f64::from(step) / f64::from(OPENINGS));
+                let motion = opening.relative_motion(*other, cell);
                 let there = panel.map(|at| moved(motion, at));
                 let [from, to] = there.bounds();
                 if (0..2).all(|c| from[c] < high[c] && to[c] > low[c]) {
@@ -267,9 +279,9 @@ impl<'a> Edge<'a> {
 }
 
 /// What opened panels cover.
-pub(super) fn opened(panels: &BTreeMap<Cell, Region>, opening: f64) -> Region {
+pub(super) fn opened(panels: &BTreeMap<Cell, Region>, opening: Opening) -> Region {
     let contours = panels.iter().flat_map(|(cell, panel)| {
-        let motion = motion(*cell, opening);
+        let motion = opening.motion(*cell);
         panel.map(|at| moved(motion, at)).polygons.into_iter().flatten()
     });
     Region::union_of(contours.collect())

@@ -26,6 +26,7 @@ pub(super) fn fitted_text(scene: &Scene, text: &str, anyway: bool) -> Result<(St
             None => _ = document.remove(key),
         }
     }
+    document["ligament"]["start"] = written["ligament"]["start"].clone();
     for key in ["steps", "learning_rate", "method"] {
         document["optimiser"][key] = written["optimiser"][key].clone();
     }

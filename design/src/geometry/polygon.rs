@@ -127,15 +127,24 @@ pub fn edges(polygon: &[[f64; 2]]) -> impl Iterator<Item = ([f64; 2], [f64; 2])>
 }
 
 /// A common point of two edges of a closed polygon, other than the vertices between neighbours.
-///
-/// Neighbouring edges are near each other: parts of the outline whose boxes do not overlap are not
-/// compared.
 pub fn self_crossing(points: &[[f64; 2]]) -> Option<[f64; 2]> {
-    let edges: Vec<Edge> = edges(points).collect();
-    let boxes = PartBoxes::of(&edges);
-    let neighbours = |i: usize, j: usize| j - i == 1 || j - i == edges.len() - 1;
-    let shared =
-        |i: usize, j: usize| (!neighbours(i, j)).then(|| shared_point(edges[i], edges[j]))?;
+    crossing([points])
+}
+
+/// A common point of two edges of closed polygons, other than the vertices between neighbours.
+///
+/// Neighbouring edges are near each other: parts of the outlines whose boxes do not overlap are not
+/// compared.
+pub fn crossing(polygons: impl IntoIterator<Item: AsRef<[[f64; 2]]>>) -> Option<[f64; 2]> {
+    let (mut all, mut after): (Vec<Edge>, Vec<usize>) = Default::default();
+    for polygon in polygons {
+        let (first, count) = (all.len(), polygon.as_ref().len());
+        all.extend(edges(polygon.as_ref()));
+        after.extend((1..=count).map(|i| first + i % count));
+    }
+    let boxes = PartBoxes::of(&all);
+    let neighbours = |i: usize, j: usize| after[i] == j || after[j] == i;
+    let shared = |i: usize, j: usize| (!neighbours(i, j)).then(|| shared_point(all[i], all[j]))?;
     boxes.first(&shared)
 }
 

@@ -78,6 +78,11 @@ impl Region {
         self.offset(distance, Corners::Round).offset(-distance, Corners::Round)
     }
 
+    /// The same with its corners kept.
+    pub fn joined(&self, distance: f64) -> Self {
+        self.offset(distance, Corners::Sharp).offset(-distance, Corners::Sharp)
+    }
+
     /// Without the parts narrower than twice a distance.
     pub fn opened(&self, distance: f64) -> Self {
         self.offset(-distance, Corners::Sharp).offset(distance, Corners::Sharp)
@@ -121,13 +126,12 @@ impl Region {
     }
 
     /// Without the corners that are nearer than `tolerance` to the line between their neighbours
-    /// (Douglas and Peucker, Cartographica 10, 1973, 112).
-    pub fn simplified(&self, tolerance: f64) -> Self {
-        let polygons = self.polygons.iter();
-        let simplified = |contour: &Contour| simplified(contour, tolerance);
-        Self {
-            polygons: polygons.map(|contours| contours.iter().map(simplified).collect()).collect(),
-        }
+    /// (Douglas and Peucker, Cartographica 10, 1973, 112), unless they are `fixed`.
+    pub fn simplified(&self, tolerance: f64, fixed: impl Fn([f64; 2]) -> bool) -> Self {
+        let simple: Vec<Contour> =
+            self.contours().map(|contour| simplified(contour, tolerance, &fixed)).collect();
+        // A gap narrower than the tolerance has become a line.
+        Self { polygons: simple.simplify_shape(FillRule::NonZero) }
     }
 }
 
@@ -145,16 +149,23 @@ pub fn as_seen(panels: &Region, drawing: &Region) -> Region {
     panels.closed(GAP * f64::max(high[0] - low[0], high[1] - low[1]))
 }
 
-fn simplified(contour: &[[f64; 2]], tolerance: f64) -> Contour {
-    let from_first = |i: &usize| polygon::distance(contour[*i], contour[0]);
+fn simplified(contour: &[[f64; 2]], tolerance: f64, fixed: impl Fn([f64; 2]) -> bool) -> Contour {
     let all = 0..contour.len();
+    let mut ends: Vec<usize> = all.clone().filter(|i| fixed(contour[*i])).collect();
+    let first = *ends.first().unwrap_or(&0);
+    let from_first = |i: &usize| polygon::distance(contour[*i], contour[first]);
     let Some(far) = all.max_by(|i, j| from_first(i).total_cmp(&from_first(j))) else {
         return Contour::new();
     };
-    let ring: Contour = contour.iter().chain(contour.first()).copied().collect();
+    ends.extend([first, far]);
+    ends.sort_unstable();
+    ends.dedup();
+    let ring: Contour = contour.iter().chain(contour).copied().collect();
+    let next = ends.iter().skip(1).copied().chain([contour.len() + ends[0]]);
     let mut kept = Contour::new();
-    keep(&ring[..=far], tolerance, &mut kept);
-    keep(&ring[far..], tolerance, &mut kept);
+    for (from, to) in std::iter::zip(&ends, next) {
+        keep(&ring[*from..=to], tolerance, &mut kept);
+    }
     kept
 }
 
@@ -202,7 +213,7 @@ mod tests {
     fn points_on_a_straight_edge_are_left_out() {
         let edge = (0..100).map(|i| [0.1 * f64::from(i), 1e-3 * f64::from(i % 2)]);
         let contour: Contour = edge.chain([[10.0, 0.0], [10.0, 10.0], [0.0, 10.0]]).collect();
-        let simple = Region { polygons: vec![vec![contour]] }.simplified(0.01);
+        let simple = Region { polygons: vec![vec![contour]] }.simplified(0.01, |_| false);
         assert_eq!(simple.polygons[0][0].len(), 4);
         close(simple.area(), 100.0);
     }

@@ -14,7 +14,7 @@ pub use crate::sheet::panel::{Panel, PanelPoint};
 use crate::{
     geometry::{
         plane::{I, add, complex, cross, dot, point},
-        region::{Contour, Corners, Region},
+        region::{Contour, Region},
     },
     pattern::{
         cut_pattern::{CutPattern, Outline},
@@ -208,8 +208,7 @@ impl Sheet {
             return vec![self.outline.corners.to_vec()];
         }
         let panels = self.panels.iter().map(|panel| panel.boundary.clone()).collect();
-        let joined = Region::union_of(panels).offset(ROUNDING, Corners::Sharp);
-        let joined = joined.offset(-ROUNDING, Corners::Sharp).simplified(ROUNDING);
+        let joined = Region::union_of(panels).joined(ROUNDING).simplified(ROUNDING, |_| false);
         joined.polygons.into_iter().flatten().collect()
     }
 

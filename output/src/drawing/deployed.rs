@@ -112,7 +112,10 @@ impl<'a> State<'a> {
 
     fn target(&self, sketch: &mut Sketch) {
         let style = sketch.dashed(ACCENT, 2.2, 9.0);
-        sketch.canvas.polygon(&self.scene.target.points, style);
+        let target = &self.scene.target;
+        for contour in target.holes.iter().chain([&target.points]) {
+            sketch.canvas.polygon(contour, style);
+        }
     }
 
     /// Draws each window in two parts, which move with their panels.

@@ -19,6 +19,7 @@ const whenTaken = [];
 function take(data) {
   [run, states] = [data, data.states];
   unpack(run, ["target"]);
+  unpack(run.holes, Object.keys(run.holes));
   unpack(run.panels, ["corners", "references"]);
   panelCount = run.panels.places.length;
   boundaries = run.panels.places.map((_, k) => run.panels.corners.subarray(8 * k, 8 * k + 8));

@@ -61,9 +61,10 @@ pub struct SheetData<'a> {
     hinges: Hinges,
     states: HingeStates,
     actuation: Actuation,
-    /// The edge of the flat sheet and the target, closed (mm).
+    /// Closed outlines: of the flat sheet, of the target and of its holes (mm).
     outlines: Vec<Contour>,
     target: Packed,
+    holes: Vec<Packed>,
     /// The training domain of the hinge law.
     domain: Option<&'a TrainingDomain>,
 }
@@ -165,7 +166,9 @@ impl<'a> SheetData<'a> {
         rows: &[HingeRow],
     ) -> Self {
         let sheet = &deployment.sheet;
-        let target = &scene.target.points;
+        let drawn = |points: &Vec<[f64; 2]>| -> Packed {
+            (kept(points.len(), MOST_POINTS).into_iter()).flat_map(|i| points[i]).collect()
+        };
         Self {
             carries_load: scene.hinge.carries_load(),
             miss: miss(
@@ -179,7 +182,8 @@ impl<'a> SheetData<'a> {
             states: HingeStates::new(scene, problem, deployment, networks),
             actuation: scene.actuation(),
             outlines: sheet.outlines(),
-            target: (kept(target.len(), MOST_POINTS).into_iter()).flat_map(|i| target[i]).collect(),
+            target: drawn(&scene.target.points),
+            holes: scene.target.holes.iter().map(drawn).collect(),
             domain: scene.surrogate().map(|surrogate| surrogate.domain()),
         }
     }

@@ -156,8 +156,10 @@ function drawMarks(state, selected) {
   marks.textContent = "";
   if (run.carries_load)
     draw(marks, "path", { d: run.outlines.map(outlinePath).join(""), fill: "none", stroke: TICK, "stroke-dasharray": "3 3" });
-  const target = Array.from({ length: run.target.length / 2 }, (_, i) => [run.target[2 * i], run.target[2 * i + 1]]);
-  draw(marks, "path", { d: outlinePath(target), fill: "none", stroke: ACCENT, "stroke-width": 1.8, "stroke-dasharray": "9 6" });
+  const pairs = (list) => Array.from({ length: list.length / 2 }, (_, i) => [list[2 * i], list[2 * i + 1]]);
+  const target = pairs(run.target);
+  const targets = [target, ...run.holes.map(pairs)];
+  draw(marks, "path", { d: targets.map(outlinePath).join(""), fill: "none", stroke: ACCENT, "stroke-width": 1.8, "stroke-dasharray": "9 6" });
   const labels = [];
   const obstacles = [];
   if (state === stateCount - 1) drawMissed(target, labels);

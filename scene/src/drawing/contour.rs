@@ -9,6 +9,8 @@ const TOO_FAR: f64 = 1000.0;
 /// Maximum number of points of an outline, 3000 curves: the worst one of them is checked for
 /// crossings in seconds.
 pub(super) const MOST_POINTS: usize = 100_000;
+/// Number of contours that a message lists.
+pub(super) const LISTED: usize = 5;
 
 /// Why a file has no outline; lengths and coordinates are in the page of an SVG file (px), or in a
 /// DXF file (mm if it states its unit).
@@ -41,8 +43,8 @@ pub enum DrawingError {
     )]
     NoPath { why: String },
     #[error(
-        "the drawing has {found} contours, by size {listed}; delete the others, or write the number of the outline behind the \
-         name of the file, as in `drawing.svg#1`"
+        "the drawing has {found} pieces, by size {listed}; a sheet is one of them: delete the others, or write the number of one \
+         behind the name of the file, as in `drawing.svg#1`, which takes it with its holes"
     )]
     Several { found: usize, listed: String },
     #[error("there is no contour {number}: the drawing has {found}, by size {listed}")]
@@ -75,6 +77,10 @@ pub enum DrawingError {
          the outline is one simple loop"
     )]
     SelfCrossing { x: f64, y: f64 },
+    #[error(
+        "contours cross or touch each other near ({x}, {y}); move them apart, or delete one of them"
+    )]
+    Crossing { x: f64, y: f64 },
     #[error("the drawing states no unit: give `height` (mm)")]
     NoUnit,
 }

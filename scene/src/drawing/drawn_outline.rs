@@ -1,21 +1,16 @@
 //! The outline in a drawing, an SVG file (also compressed, SVGZ) or a DXF file: one of its
-//! contours, closed and free of crossings.
+//! contours with the holes in it, closed and free of crossings.
 //!
-//! What is drawn twice, as for the fill and for the stroke, counts once, and open lines whose ends
-//! meet are joined. If several contours remain the outline is named by its number, the largest
-//! first.
+//! If the drawing has several pieces the outline is named by its number among the contours, the
+//! largest first.
 
-use crate::drawing::contour::{Contour, DrawingError, rounded};
-use crate::drawing::{dxf_contours, svg_path};
+use crate::drawing::contour::{Contour, DrawingError, LISTED, rounded};
+use crate::drawing::joined_lines::joined;
+use crate::drawing::{dxf_contours, holes, svg_path};
 use design::geometry::polygon;
-use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 use support::text_file;
 
-/// Distance of two ends that meet, over the size of the drawing.
-const JOINED: f64 = 1e-5;
-/// Number of contours that a message lists.
-const LISTED: usize = 5;
 /// First bytes of a file that is compressed by gzip.
 const GZIP: &[u8] = b"\x1F\x8B";
 /// How texts begin that are other drawings, and what they are.
@@ -33,11 +28,13 @@ const OTHERS: [(&str, &str); 6] = [
 pub(crate) struct Outline {
     /// Its vertices, y upwards.
     pub vertices: Vec<[f64; 2]>,
+    /// The vertices of its holes.
+    pub holes: Vec<Vec<[f64; 2]>>,
     /// Length of the line that closes an open path that is filled; 0 for a closed one.
     pub gap: f64,
     /// Whether the vertices are in mm.
     pub has_unit: bool,
-    /// What of the drawing could not be read.
+    /// What of the drawing could not be read or is left out.
     pub warnings: Vec<String>,
 }
 
@@ -82,8 +79,10 @@ pub(super) fn of_text(text: &str, number: Option<usize>) -> Result<Outline, Draw
     }
     let (contours, warnings) = svg_path::contours(text)?;
     let mut outline = outline(contours, number, false)?;
-    (outline.vertices.iter_mut()).for_each(|vertex| vertex[1] = -vertex[1]);
-    Ok(Outline { warnings, ..outline })
+    let all = outline.holes.iter_mut().chain([&mut outline.vertices]).flatten();
+    all.for_each(|vertex| vertex[1] = -vertex[1]);
+    outline.warnings.splice(..0, warnings);
+    Ok(outline)
 }
 
 fn outline(
@@ -97,32 +96,46 @@ fn outline(
         width * height
     };
     contours.sort_by(|a, b| area(b).total_cmp(&area(a)));
+    let around = holes::around(&contours);
+    let chosen = chosen(&contours, &around, number)?;
+    let gap = contours[chosen].check()?;
+    let (holes, warnings) = holes::of(chosen, &contours, &around)?;
+    let mut points = |contour: usize| std::mem::take(&mut contours[contour].points);
+    let vertices = points(chosen);
+    let holes = holes.into_iter().map(points).collect();
+    Ok(Outline { vertices, holes, gap, has_unit, warnings })
+}
+
+/// The contour with a number; without one the only piece of the drawing.
+fn chosen(
+    contours: &[Contour],
+    around: &[Vec<usize>],
+    number: Option<usize>,
+) -> Result<usize, DrawingError> {
     let found = contours.len();
-    let chosen = match (number, found) {
-        (_, 0) => return Err(DrawingError::NoPath { why: String::new() }),
-        (None, 1) => 0,
+    let pieces: Vec<usize> = (0..found).filter(|i| around[*i].is_empty()).collect();
+    match (number, &pieces[..]) {
+        (_, []) => Err(DrawingError::NoPath { why: String::new() }),
+        (None, [piece]) => Ok(*piece),
         (None, _) => {
             let branch = contours.iter().find(|contour| contour.branches);
             if let Some(branch) = branch.filter(|_| !contours.iter().any(Contour::is_whole)) {
                 branch.check()?;
             }
-            let listed = listed(&contours);
-            return Err(DrawingError::Several { found, listed });
+            let listed = listed(pieces.iter().map(|piece| (*piece, &contours[*piece])));
+            Err(DrawingError::Several { found: pieces.len(), listed })
         }
         (Some(number), _) if number == 0 || number > found => {
-            let listed = listed(&contours);
-            return Err(DrawingError::NoSuch { number, found, listed });
+            let listed = listed(contours.iter().enumerate());
+            Err(DrawingError::NoSuch { number, found, listed })
         }
-        (Some(number), _) => number - 1,
-    };
-    let gap = contours[chosen].check()?;
-    let vertices = contours.swap_remove(chosen).points;
-    Ok(Outline { vertices, gap, has_unit, warnings: Vec::new() })
+        (Some(number), _) => Ok(number - 1),
+    }
 }
 
-/// Sizes and places of the largest contours.
-pub(super) fn listed(contours: &[Contour]) -> String {
-    let words = contours.iter().take(LISTED).enumerate().map(|(i, contour)| {
+/// Numbers, sizes and places of the first contours.
+pub(super) fn listed<'a>(contours: impl Iterator<Item = (usize, &'a Contour)>) -> String {
+    let words = contours.take(LISTED).map(|(i, contour)| {
         let [width, height] = contour.size().map(rounded);
         let [x, y] = polygon::bounds(contour.points.iter().copied())[0].map(rounded);
         let open = match (contour.closed, contour.branches) {
@@ -133,117 +146,6 @@ pub(super) fn listed(contours: &[Contour]) -> String {
         format!("#{} {width} x {height} at ({x}, {y}){open}", i + 1)
     });
     words.collect::<Vec<_>>().join(", ")
-}
-
-/// The contours, each once, and those that end where others begin as one. Lines that are open are
-/// followed from point to point, each line once; they end where more than two meet.
-pub(super) fn joined(contours: Vec<Contour>) -> Vec<Contour> {
-    let contours = contours.into_iter().map(Contour::merged);
-    let contours: Vec<_> = contours.filter(|contour| contour.points.len() > 1).collect();
-    let points = contours.iter().flat_map(|contour| &contour.points);
-    let [low, high] = polygon::bounds(points.copied());
-    let within = JOINED * f64::max(high[0] - low[0], high[1] - low[1]);
-    let mut nodes = Nodes { low, within, points: Vec::new(), cells: HashMap::new() };
-    let (whole, open): (Vec<_>, Vec<_>) = contours.into_iter().partition(Contour::is_whole);
-    let mut lines = HashSet::new();
-    let mut twins = HashMap::new();
-    let mut kept: Vec<Contour> = Vec::new();
-    for contour in whole {
-        if !open.is_empty() {
-            lines.extend(nodes.lines(polygon::edges(&contour.points)));
-        }
-        // Only contours of one bounding box are compared.
-        let corners = polygon::bounds(contour.points.iter().copied()).map(|p| nodes.node(p));
-        let rivals: &mut Vec<usize> = twins.entry(corners).or_default();
-        let mut edges = |contour: &Contour| {
-            let mut edges = nodes.lines(polygon::edges(&contour.points));
-            edges.sort_unstable();
-            edges
-        };
-        let own = if rivals.is_empty() { Vec::new() } else { edges(&contour) };
-        match rivals.iter().find(|twin| own.len() > 2 && edges(&kept[**twin]) == own) {
-            Some(&twin) => {
-                kept[twin].filled |= contour.filled;
-                kept[twin].closed |= contour.closed;
-            }
-            None => {
-                rivals.push(kept.len());
-                kept.push(contour);
-            }
-        }
-    }
-    let rounding = open.iter().map(|contour| contour.rounding).fold(0.0, f64::max);
-    let mut links: Vec<Vec<usize>> = Vec::new();
-    for contour in &open {
-        let pairs = contour.points.windows(2).map(|pair| (pair[0], pair[1]));
-        for (a, b) in nodes.lines(pairs) {
-            if lines.insert((a, b)) {
-                links.resize_with(nodes.points.len(), Vec::new);
-                links[a].push(b);
-                links[b].push(a);
-            }
-        }
-    }
-    let meeting: Vec<usize> = links.iter().map(Vec::len).collect();
-    let ends = (0..links.len()).filter(|node| meeting[*node] != 2);
-    for first in ends.chain(0..links.len()) {
-        while let Some(mut next) = links[first].first().copied() {
-            let mut chain = vec![first];
-            loop {
-                let last = chain[chain.len() - 1];
-                links[last].retain(|node| *node != next);
-                links[next].retain(|node| *node != last);
-                chain.push(next);
-                match links[next][..] {
-                    [after] if meeting[next] == 2 => next = after,
-                    _ => break,
-                }
-            }
-            let closed = chain.len() > 3 && next == first;
-            chain.truncate(chain.len() - usize::from(closed));
-            if meeting[first] > meeting[next] {
-                chain.reverse();
-            }
-            let branches = meeting[first].max(meeting[next]) > 2;
-            let points = chain.into_iter().map(|node| nodes.points[node]).collect();
-            kept.push(Contour { points, closed, filled: false, branches, rounding });
-        }
-    }
-    kept
-}
-
-/// Points, those as one that are nearer to each other than a distance.
-struct Nodes {
-    low: [f64; 2],
-    within: f64,
-    points: Vec<[f64; 2]>,
-    /// The point in a square of a grid.
-    cells: HashMap<[i64; 2], usize>,
-}
-
-impl Nodes {
-    fn node(&mut self, point: [f64; 2]) -> usize {
-        let [x, y] = [0, 1].map(|c| ((point[c] - self.low[c]) / self.within).floor() as i64);
-        let around = [0, -1, 1].into_iter().flat_map(|i| [0, -1, 1].map(|j| [x + i, y + j]));
-        let near = |node: &usize| {
-            let [dx, dy] = [0, 1].map(|c| (self.points[*node][c] - point[c]).abs());
-            dx.max(dy) <= self.within
-        };
-        let known = around.filter_map(|cell| self.cells.get(&cell).copied()).find(near);
-        known.unwrap_or_else(|| {
-            self.points.push(point);
-            self.cells.insert([x, y], self.points.len() - 1);
-            self.points.len() - 1
-        })
-    }
-
-    /// The lines between pairs of points, from the lower to the higher node; a line of no length is
-    /// left out.
-    fn lines(&mut self, pairs: impl Iterator<Item = ([f64; 2], [f64; 2])>) -> Vec<(usize, usize)> {
-        let ends = pairs.map(|(p, q)| (self.node(p), self.node(q)));
-        let ends = ends.filter(|(a, b)| a != b).map(|(a, b)| (a.min(b), a.max(b)));
-        ends.collect()
-    }
 }
 
 #[cfg(test)]
@@ -291,12 +193,12 @@ mod tests {
         for (further, part) in [
             (
                 "<path d='M10 8L20 21'/>",
-                "2 contours, by size #1 10 x 13 at (10, 8) (branches), #2 10 x 8 at (0, 0)",
+                "2 pieces, by size #1 10 x 13 at (10, 8) (branches), #2 10 x 8 at (0, 0)",
             ),
             ("<path d='M10 8L0 0'/>", "branch at (10, 8)"),
             (
                 "<path d='M30 0H40'/>",
-                "2 contours, by size #1 10 x 8 at (0, 0), #2 10 x 0 at (30, 0) (open)",
+                "2 pieces, by size #1 10 x 8 at (0, 0), #2 10 x 0 at (30, 0) (open)",
             ),
         ] {
             let error = of_text(&svg(&format!("{pieces}{further}")), None).unwrap_err();
@@ -328,25 +230,6 @@ mod tests {
     }
 
     #[test]
-    fn an_outline_of_many_pieces_is_joined_in_no_time() {
-        use std::f64::consts::{PI, TAU};
-        let count = 60_000;
-        let at = |i: usize| {
-            let (sin, cos) = (TAU * i as f64 / f64::from(count)).sin_cos();
-            [150.0 + 100.0 * cos, 150.0 + 100.0 * sin]
-        };
-        let mut lines: Vec<_> = (0..count as usize)
-            .map(|i| Contour { points: vec![at(i), at(i + 1)], ..Contour::default() })
-            .collect();
-        lines.sort_by(|a, b| a.points[0][0].total_cmp(&b.points[0][0]));
-        let start = std::time::Instant::now();
-        let found = joined(lines);
-        assert!(start.elapsed().as_secs() < 5);
-        assert!(found.len() == 1 && found[0].closed);
-        assert!((polygon::area(&found[0].points).abs() / 1e4 - PI).abs() < 1e-3);
-    }
-
-    #[test]
     fn files_that_are_no_drawings_are_named_with_the_way_out() {
         let light_burn = "<?xml version='1.0'?><LightBurnProject AppVersion='1.4'/>";
         for (bytes, part) in [
@@ -370,7 +253,7 @@ mod tests {
         let chosen = of_text(&text, Some(1)).unwrap();
         assert_eq!(polygon::area(&chosen.vertices).abs(), 24.0);
         for (number, part) in [
-            (None, "3 contours"),
+            (None, "3 pieces"),
             (Some(4), "no contour 4"),
             (Some(0), "no contour 0"),
             (Some(3), "2 different"),
@@ -478,7 +361,7 @@ mod tests {
         }
         let row = dxf("4", "0 INSERT 2 SLOT 10 3 20 4 50 90 70 2 44 100");
         let error = of_text(&row, None).unwrap_err().to_string();
-        assert!(error.contains("2 contours"), "{error}");
+        assert!(error.contains("2 pieces"), "{error}");
     }
 
     /// The spline through points of a circle with chords of different lengths, closed, and open
@@ -509,7 +392,7 @@ mod tests {
             (dxf("4", &format!("{circle} 0 INSERT 2 PART 10 0 20 0")), "INSERT"),
             (
                 dxf("4", &format!("{circle} {}", circle.replace("9", "3"))),
-                "2 contours, by size #1 4 x 4 at (7, 7)",
+                "2 pieces, by size #1 4 x 4 at (7, 7)",
             ),
             (dxf("4", "0 LINE 10 0 20 0 11 9 21 0"), "2 different points"),
             (dxf("4", "0 ARC 10 0 20 0 40 5 50 0 51 180"), "ends open at (-5, 0), 10 from"),

@@ -6,7 +6,8 @@
 //! that are shown. Reference: Autodesk, DXF Reference (AutoCAD 2000).
 
 use crate::drawing::bulged::{Vertex, arc, flattened};
-use crate::drawing::contour::{Contour, DrawingError, WELD, flatten};
+use crate::drawing::contour::{Contour, DrawingError, WELD};
+use crate::drawing::spline;
 use design::geometry::plane::{I, complex, point};
 use design::geometry::polygon;
 use faer::c64;
@@ -14,10 +15,6 @@ use std::collections::HashMap;
 use std::f64::consts::TAU;
 use std::ops::Range;
 
-/// Number of segments of a spline between two knots.
-const SPLINE_SEGMENTS: usize = 32;
-/// Iterations for the tangents of a spline through points, whose error each one halves or better.
-const SWEEPS: usize = 60;
 /// Difference of an angle from a full circle at which it is one, written with few digits (rad).
 const FULL: f64 = 1e-3;
 /// Maximum number of blocks in each other.
@@ -357,7 +354,7 @@ fn contour(entity: &Record, further: &[Record]) -> Result<Option<Points>, Drawin
             let closed = entity.flag(70, 1);
             (flattened(&vertices, closed), closed)
         }
-        "SPLINE" => (spline(entity)?, entity.flag(70, 1)),
+        "SPLINE" => (spline_points(entity)?, entity.flag(70, 1)),
         kind if NOTES.contains(&kind) => return Ok(None),
         kind => return Err(entity.unread(kind)),
     };
@@ -373,42 +370,8 @@ fn turned(from: f64, to: f64) -> f64 {
     if angle == 0.0 || (angle.abs() - TAU).abs() < FULL { TAU } else { angle.rem_euclid(TAU) }
 }
 
-/// Points on a cubic spline through points (not repeated): its curvature is continuous, and zero at
-/// open ends, if the parameter is the length of the chords. Its tangents are found by Gauss-Seidel
-/// iterations.
-fn through(points: &[c64], closed: bool) -> Vec<[f64; 2]> {
-    let n = points.len();
-    let sides = |i: usize| {
-        let before = (closed || i > 0).then_some((i + n - 1) % n);
-        let after = (closed || i + 1 < n).then_some((i + 1) % n);
-        [(before, -1.0), (after, 1.0)].into_iter().filter_map(|(j, sign)| Some((j?, sign)))
-    };
-    let mut tangents = vec![c64::new(0.0, 0.0); n];
-    for _ in 0..SWEEPS {
-        for i in 0..n {
-            let (mut sum, mut weights) = (c64::new(0.0, 0.0), 0.0);
-            for (j, sign) in sides(i) {
-                let chord = sign * (points[j] - points[i]);
-                let weight = 1.0 / chord.norm();
-                sum += weight * (3.0 * weight * chord - tangents[j]);
-                weights += 2.0 * weight;
-            }
-            tangents[i] = sum / weights;
-        }
-    }
-    let mut found = vec![point(points[0])];
-    for i in 0..n - usize::from(!closed) {
-        let j = (i + 1) % n;
-        let third = (points[j] - points[i]).norm() / 3.0;
-        let [b, c] = [points[i] + third * tangents[i], points[j] - third * tangents[j]];
-        flatten(&mut found, &[b, c, points[j]].map(point));
-    }
-    found
-}
-
-/// Points on a B-spline (de Boor), rational if its control points have weights, or on the spline
-/// through points.
-fn spline(entity: &Record) -> Result<Vec<[f64; 2]>, DrawingError> {
+/// Points on a B-spline or on a spline through points.
+fn spline_points(entity: &Record) -> Result<Vec<[f64; 2]>, DrawingError> {
     let degree = entity.number(71) as usize;
     let knots: Vec<f64> = entity.numbers(40).collect();
     let points = entity.points(10);
@@ -420,36 +383,12 @@ fn spline(entity: &Record) -> Result<Vec<[f64; 2]>, DrawingError> {
         if closed && fit.len() > 2 && fit[0] == fit[fit.len() - 1] {
             fit.pop();
         }
-        return Ok(through(&fit, closed && fit.len() > 2));
+        return Ok(spline::through(&fit, closed && fit.len() > 2));
     }
     let sorted = knots.is_sorted() && weights.iter().all(|weight| *weight > 0.0);
     if degree == 0 || points.len() <= degree || knots.len() != points.len() + degree + 1 || !sorted
     {
         return Err(entity.unread("SPLINE without fitting control points and knots"));
     }
-    let controls = points.iter().enumerate().map(|(i, [x, y])| {
-        let weight = weights.get(i).copied().unwrap_or(1.0);
-        [x * weight, y * weight, weight]
-    });
-    let controls: Vec<[f64; 3]> = controls.collect();
-    let at = |span: usize, t: f64| {
-        let mut level = controls[span - degree..=span].to_vec();
-        for round in 1..=degree {
-            for j in (round..=degree).rev() {
-                let i = span - degree + j;
-                let part = (t - knots[i]) / (knots[i + 1 + degree - round] - knots[i]);
-                let before = level[j - 1];
-                (0..3).for_each(|c| level[j][c] = (1.0 - part) * before[c] + part * level[j][c]);
-            }
-        }
-        let [x, y, weight] = level[degree];
-        [x / weight, y / weight]
-    };
-    let mut found = Vec::new();
-    for span in (degree..points.len()).filter(|span| knots[span + 1] > knots[*span]) {
-        let [from, to] = [knots[span], knots[span + 1]];
-        let t = |i: usize| from + (to - from) * i as f64 / SPLINE_SEGMENTS as f64;
-        found.extend((0..=SPLINE_SEGMENTS).map(|i| at(span, t(i))));
-    }
-    Ok(found)
+    Ok(spline::b_spline(degree, &knots, &points, &weights))
 }

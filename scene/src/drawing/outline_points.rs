@@ -4,7 +4,8 @@
 //! a line above them may count their points, as in airfoils in the form of Lednicer.
 
 use crate::drawing::contour::Contour;
-use crate::drawing::drawn_outline::{joined, listed};
+use crate::drawing::drawn_outline::listed;
+use crate::drawing::joined_lines::joined;
 use std::path::{Path, PathBuf};
 use support::file_error::FileError;
 use support::text_file;
@@ -124,7 +125,7 @@ fn points(text: &str) -> Result<Vec<[f64; 2]>, (u64, String)> {
     let what = format!(
         "a blank line begins another outline: there are {}, {}; keep one, or delete blank lines within it",
         outlines.len(),
-        listed(&outlines)
+        listed(outlines.iter().enumerate())
     );
     Err((below[starts[1]].line, what))
 }

@@ -1,20 +1,15 @@
 //! The visible paths of an SVG file as contours; Bezier curves are approximated by segments.
 //!
 //! usvg reads the document: it converts rect, circle, ellipse and polygon to paths and arcs to
-//! cubic curves, and it resolves styles, `<use>` and transforms. A clip may surround a path, and
-//! hides nothing of it.
+//! cubic curves, and it resolves styles, `<use>` and transforms.
 
-use crate::drawing::contour::{Contour, DrawingError, WELD, flatten};
+use crate::drawing::contour::{Contour, DrawingError, WELD};
 use crate::drawing::css_geometry::edited;
+use crate::drawing::visible_paths::{Subpath, add_visible, is_filled, subpaths, transformed};
 use crate::drawing::{css_geometry, near_origin, svg_warnings};
-use design::geometry::polygon;
 use usvg::roxmltree::{Document, ParsingOptions};
-use usvg::tiny_skia_path::{PathSegment, Point};
-use usvg::{ClipPath, Group, ImageHrefResolver, Node, Options, Path, Transform, Tree};
+use usvg::{ImageHrefResolver, Options, Path, Transform, Tree};
 
-/// How far a path may reach out of a clip around it, over the length of an edge of the clip:
-/// rounding.
-const FRAME: f64 = 1e-5;
 /// Removes the background colour of the root element and markers, which usvg would draw as paths,
 /// and draws lines of no width, which are hairlines of a laser.
 const OUTLINES_ALONE: &str = "svg { background-color: none !important } \
@@ -74,95 +69,6 @@ fn parsed(svg: &str) -> Result<Document<'_>, DrawingError> {
     document.map_err(|error| DrawingError::NotSvg(usvg::Error::ParsingFailed(error)))
 }
 
-fn is_filled(path: &Path) -> bool {
-    path.fill().is_some_and(|fill| fill.opacity().get() > 0.0)
-}
-
-/// Adds the visible paths of a group, in document order; an error if only a part of them is drawn.
-fn add_visible<'a>(group: &'a Group, paths: &mut Vec<&'a Path>) -> Result<(), DrawingError> {
-    if group.opacity().get() == 0.0 {
-        return Ok(());
-    }
-    let before = paths.len();
-    for node in group.children() {
-        match node {
-            Node::Group(group) => add_visible(group, paths)?,
-            Node::Path(path) => {
-                let stroked = (path.stroke()).is_some_and(|stroke| stroke.opacity().get() > 0.0);
-                if path.is_visible() && (is_filled(path) || stroked) {
-                    paths.push(path);
-                }
-            }
-            Node::Image(_) | Node::Text(_) => {}
-        }
-    }
-    let clip = group.clip_path();
-    let clip = clip.filter(|clip| !surrounds(clip, group.abs_transform(), &paths[before..]));
-    let clip = clip.map(|clip| ("clipPath", clip.id()));
-    let cut = clip.or_else(|| group.mask().map(|mask| ("mask", mask.id())));
-    match cut {
-        Some((element, id)) if paths.len() > before => {
-            let id = id.to_owned();
-            Err(DrawingError::Cut { element, id })
-        }
-        _ => Ok(()),
-    }
-}
-
-/// Whether a clip is one convex path around paths, so that it hides nothing of them, as the frame
-/// of an artboard.
-fn surrounds(clip: &ClipPath, transform: Transform, paths: &[&Path]) -> bool {
-    let [Node::Path(frame)] = clip.root().children() else {
-        return false;
-    };
-    let placed = |path: &Path, transform: Transform| -> Vec<[f64; 2]> {
-        let points = subpaths(path).into_iter().flat_map(|part| part.points);
-        points.map(|point| transformed(transform, point)).collect()
-    };
-    let to_page = transform.pre_concat(clip.transform());
-    let frame = placed(frame, to_page.pre_concat(frame.abs_transform()));
-    let sign = polygon::area(&frame).signum();
-    let inside = |p: &[f64; 2]| {
-        polygon::edges(&frame).all(|(a, b)| {
-            let along = [b[0] - a[0], b[1] - a[1]];
-            let off = sign * (along[0] * (p[1] - a[1]) - along[1] * (p[0] - a[0]));
-            off >= -FRAME * (along[0] * along[0] + along[1] * along[1])
-        })
-    };
-    let is_convex = clip.clip_path().is_none() && frame.iter().all(inside);
-    is_convex && paths.iter().all(|path| placed(path, path.abs_transform()).iter().all(inside))
-}
-
-/// A part of a path between two moves.
-struct Subpath {
-    points: Vec<[f64; 2]>,
-    closed: bool,
-}
-
-/// The parts of a path, before its transform, from the origin of the moved drawing. A move that
-/// draws nothing is none.
-fn subpaths(path: &Path) -> Vec<Subpath> {
-    let mut parts: Vec<Subpath> = Vec::new();
-    for segment in path.data().segments() {
-        if let PathSegment::MoveTo(to) = segment {
-            let points = vec![pair(to)];
-            parts.push(Subpath { points, closed: false });
-        }
-        let Some(Subpath { points, closed }) = parts.last_mut() else {
-            continue;
-        };
-        match segment {
-            PathSegment::MoveTo(_) => {}
-            PathSegment::LineTo(to) => points.push(pair(to)),
-            PathSegment::QuadTo(b, to) => flatten(points, &[pair(b), pair(to)]),
-            PathSegment::CubicTo(b, c, to) => flatten(points, &[pair(b), pair(c), pair(to)]),
-            PathSegment::Close => *closed = true,
-        }
-    }
-    parts.retain(|part| part.points.iter().any(|point| *point != part.points[0]));
-    parts
-}
-
 impl Subpath {
     /// It on the page. Coordinates are rounded to 24 bits before the transform, from the origin of
     /// the moved drawing.
@@ -185,21 +91,12 @@ impl Subpath {
     }
 }
 
-fn pair(point: Point) -> [f64; 2] {
-    [f64::from(point.x), f64::from(point.y)]
-}
-
-fn transformed(transform: Transform, [x, y]: [f64; 2]) -> [f64; 2] {
-    let t = transform;
-    let [sx, kx, ky, sy, tx, ty] = [t.sx, t.kx, t.ky, t.sy, t.tx, t.ty].map(f64::from);
-    [sx * x + kx * y + tx, ky * x + sy * y + ty]
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::drawing::contour::MOST_POINTS;
     use crate::drawing::drawn_outline::of_text;
+    use design::geometry::polygon;
 
     fn vertices(svg: &str) -> Result<Vec<[f64; 2]>, DrawingError> {
         of_text(svg, None).map(|outline| outline.vertices)
@@ -299,7 +196,7 @@ mod tests {
         ] {
             assert_near(bounds(drawn(content)), expected);
         }
-        assert_refused(drawn(&(nested + SMALL)), "2 contours");
+        assert_refused(drawn(&(nested + SMALL)), "cross or touch each other near (0, 0)");
     }
 
     #[test]
@@ -351,8 +248,8 @@ mod tests {
         let narrow = format!("{}<g clip-path='url(#f)'>{LARGE}</g>", frame.replace("'10'", "'9'"));
         assert_refused(drawn(&narrow), "clipPath `f`");
         assert_refused(drawn("<text y='9'>A</text>"), "text alone");
-        let two = format!("{SMALL}{LARGE}");
-        assert_refused(drawn(&two), "2 contours, by size #1 10 x 20 at (0, 0), #2 1 x 1 at (0, 0)");
+        let two = format!("{SMALL}<path d='M 5 0 H 10 V 20 H 5 Z'/>");
+        assert_refused(drawn(&two), "2 pieces, by size #1 5 x 20 at (5, 0), #2 1 x 1 at (0, 0)");
     }
 
     /// Widths and heights as browsers draw them.

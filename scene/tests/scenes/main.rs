@@ -1,6 +1,7 @@
 //! Shipped scenes: what is refused, and loads.
 
 mod actuations;
+mod drawings;
 mod refused;
 
 use scene::{Scene, SceneConfig};

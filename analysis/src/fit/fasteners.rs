@@ -1,0 +1,44 @@
+//! The panels at which a sheet is held in its opened state.
+
+use design::sheet::topology::Topology;
+use std::collections::VecDeque;
+
+/// Panels a fastener, and the numbers of fasteners.
+const PANELS: usize = 20;
+const FASTENERS: [usize; 2] = [3, 12];
+
+/// Panels far from each other along the sheet, beginning with the two ends of its longest way.
+pub(super) fn fastened(topology: &Topology) -> Vec<usize> {
+    let [fewest, most] = FASTENERS;
+    let count = (topology.panel_count() / PANELS).clamp(fewest, most);
+    let mut neighbours = vec![Vec::new(); topology.panel_count()];
+    for site in &topology.sites {
+        let [a, b] = [site.a.0, site.b.0];
+        neighbours[a].push(b);
+        neighbours[b].push(a);
+    }
+    // The numbers of hinges on the shortest way from a panel to the nearest of some.
+    let steps_from = |some: &[usize]| {
+        let mut steps = vec![usize::MAX; neighbours.len()];
+        some.iter().for_each(|panel| steps[*panel] = 0);
+        let mut queue = VecDeque::from(some.to_vec());
+        while let Some(panel) = queue.pop_front() {
+            for &next in &neighbours[panel] {
+                if steps[next] == usize::MAX {
+                    steps[next] = steps[panel] + 1;
+                    queue.push_back(next);
+                }
+            }
+        }
+        steps
+    };
+    let farthest = |some: &[usize]| {
+        let steps = steps_from(some);
+        (0..steps.len()).max_by_key(|panel| steps[*panel]).unwrap_or_default()
+    };
+    let mut chosen = vec![farthest(&[0])];
+    while chosen.len() < count.min(neighbours.len()) {
+        chosen.push(farthest(&chosen));
+    }
+    chosen
+}
