@@ -37,9 +37,11 @@ pub struct FittedPoint {
 
 impl Mark {
     /// All marks of a sheet: the corners of every panel, then its centre.
-    pub fn all(sheet: &Sheet) -> impl Iterator<Item = Self> + use<> {
-        let corners = [Some(0), Some(1), Some(2), Some(3), None];
-        (0..sheet.panels.len()).flat_map(move |panel| corners.map(|corner| Self { panel, corner }))
+    pub fn all(sheet: &Sheet) -> impl Iterator<Item = Self> {
+        sheet.panels.iter().enumerate().flat_map(|(panel, of)| {
+            let corners = (0..4).filter(|corner| of.has_corner(*corner)).map(Some);
+            corners.chain([None]).map(move |corner| Self { panel, corner })
+        })
     }
 
     /// Its position in the flat sheet (mm).

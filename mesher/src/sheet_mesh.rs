@@ -180,11 +180,10 @@ impl SheetShape {
         // Edges are counted by the corner at which they begin, counter-clockwise: the flank ends at
         // the corner of A.
         let (panel, edge) = match side {
-            Side::A => a.map(|(panel, corner)| (panel, (corner + 3) % 4)),
+            Side::A => a.map(|(panel, corner)| (panel, self.panels[panel].edge_before(corner))),
             Side::B => b,
         }?;
-        let corners = self.panels[panel].corners;
-        Some([corners[edge], corners[(edge + 1) % 4]])
+        Some(self.panels[panel].edge(edge))
     }
 
     /// Area of the sheet (mm^2): windows, and panels without the sectors of their windows.
@@ -207,9 +206,8 @@ impl SheetShape {
             window.area() - sectors.sum::<f64>()
         });
         let panels = self.panels.iter().map(|panel| {
-            let corners = panel.corners;
-            let twice = (0..4).map(|k| cross(corners[k], corners[(k + 1) % 4]));
-            0.5 * twice.sum::<f64>()
+            let edges = (0..panel.corners.len()).map(|corner| panel.edge(corner));
+            0.5 * edges.map(|[from, to]| cross(from, to)).sum::<f64>()
         });
         windows.sum::<f64>() + panels.sum::<f64>()
     }

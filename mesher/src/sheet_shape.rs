@@ -31,8 +31,8 @@ pub struct SheetShape {
 /// A panel in the flat sheet.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PanelShape {
-    /// Where its finished edges meet: SW, SE, NE, NW (mm).
-    pub corners: [[f64; 2]; 4],
+    /// Where its finished edges meet, counter-clockwise (mm).
+    pub corners: Vec<[f64; 2]>,
     /// Points at which the mesh has nodes (mm), inside of the panel or on its finished edges.
     pub marks: Vec<[f64; 2]>,
 }
@@ -63,6 +63,16 @@ impl SheetShape {
 }
 
 impl PanelShape {
+    /// The ends of the edge that begins at a corner.
+    pub(crate) fn edge(&self, corner: usize) -> [[f64; 2]; 2] {
+        [self.corners[corner], self.corners[(corner + 1) % self.corners.len()]]
+    }
+
+    /// The edge that ends at a corner.
+    pub(crate) fn edge_before(&self, corner: usize) -> usize {
+        (corner + self.corners.len() - 1) % self.corners.len()
+    }
+
     /// Adds a point at which the mesh has a node, once (mm).
     pub fn mark(&mut self, point: [f64; 2]) {
         if !self.marks.contains(&point) {

@@ -14,8 +14,11 @@ from kirigami._kirigami import Deployment, Sheet, State, Surrogate
 def sheet(drawn: Sheet | State | Deployment, values: Any = None, label: str = "", axes: Any = None, **style: Any) -> Any:
     """The panels of a flat sheet, of a state, or of the last step of a deployment; `values`, one a panel, are shown as colours."""
     axes = axes or pyplot.subplots(layout="constrained")[1]
-    corners = drawn.corners[-1] if isinstance(drawn, Deployment) else drawn.corners
-    panels = PolyCollection(corners, array=values, **{"facecolor": "0.9", "edgecolor": "0.2", "linewidth": 0.6, **style})
+    if isinstance(drawn, Sheet):
+        boundaries = drawn.boundaries()
+    else:
+        boundaries = drawn.sheet.boundaries(drawn.configuration[-1] if isinstance(drawn, Deployment) else drawn.configuration)
+    panels = PolyCollection(boundaries, array=values, **{"facecolor": "0.9", "edgecolor": "0.2", "linewidth": 0.6, **style})
     axes.add_collection(panels)
     axes.autoscale_view()
     axes.set(aspect="equal", xlabel="x (mm)", ylabel="y (mm)")

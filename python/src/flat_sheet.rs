@@ -10,7 +10,7 @@ use design::{
     sheet::{
         cut_sheet::{Hinge, HingePoint, SheetOptions},
         ideal_deployment::{check_opening, ideal_deployment},
-        kinematics::deployed_corners,
+        kinematics::{deployed_boundaries, deployed_corners},
     },
 };
 use hinge::HingeConstants;
@@ -113,6 +113,17 @@ impl Sheet {
     fn corners(&self) -> Array {
         let corners: Vec<_> = self.0.panels.iter().map(|panel| panel.corners).collect();
         quadrilaterals(&corners)
+    }
+
+    /// The polygons that the panels are (mm), one array of shape (points, 2) a panel: the corners of
+    /// its cell, unless it is trimmed. With a configuration, the motions of the panels, deployed.
+    #[pyo3(signature = (configuration=None))]
+    fn boundaries(&self, configuration: Option<&Argument>) -> PyResult<Vec<Array>> {
+        let shape = [self.0.panels.len(), 3];
+        let read = |motions| shaped(motions, "configuration", &shape);
+        let motions = configuration.map_or(Ok(vec![0.0; 3 * shape[0]]), read)?;
+        let boundaries = deployed_boundaries(&self.0, motions.as_chunks().0);
+        Ok(boundaries.into_iter().map(rows).collect())
     }
 
     /// The points of the panels whose motions are (u_x, u_y): centroids, or where a panel is held

@@ -46,6 +46,7 @@ def test_shapes(problem):
     assert path.energy.shape == path.damage.shape == path.inside.shape == (steps, hinges)
     assert len(path.status) == path.load_factor.size == steps
     np.testing.assert_allclose(path.corners[-1], state.corners, atol=1e-6)
+    np.testing.assert_allclose(state.sheet.boundaries(state.configuration), state.corners, atol=1e-12)
     np.testing.assert_allclose(path.reactions, state.reactions, atol=1e-6 * np.abs(state.reactions).max())
 
 

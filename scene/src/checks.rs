@@ -11,13 +11,18 @@ use crate::posture::Posture;
 use crate::sheet_config::SheetConfig;
 use crate::solved_hinges::SolvedHingesError;
 use crate::target::Target;
-use design::geometry::polygon::{contains, distance, edges, mean};
+use design::geometry::polygon::{distance, distance_to_outline, edges, mean};
+use design::geometry::region::Region;
 use design::pattern::cut_pattern::CutPattern;
+use design::sheet::panel::boundary;
 use design::sheet::topology::Topology;
 use hinge::InvalidDesign;
 use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::FRAC_PI_2;
 use support::key_limits::{self, within};
+
+/// Distance of a point on the edge of a panel from it (mm).
+const ON_EDGE: f64 = 1e-6;
 
 /// Checks the keys that say which files are read.
 pub(super) fn keys(scene: &SceneConfig) -> Result<(), InvalidScene> {
@@ -246,10 +251,14 @@ fn inside(
     let pattern = pattern.map_err(InvalidScene::Start)?;
     let endpoints = topology.endpoints[topology.number(panel)];
     let corners = endpoints.map(|endpoint| pattern.points[endpoint]);
-    if contains(&corners, at) {
+    let boundary = boundary(&corners, topology.trims[topology.number(panel)].as_ref());
+    if distance_to_outline(at, &boundary) < ON_EDGE
+        || Region::union_of(vec![boundary.clone()]).contains(at)
+    {
         return Ok(());
     }
-    let corners = corners.map(|[x, y]| format!("({x:.1}, {y:.1})")).join(" ");
+    let corners: Vec<_> = boundary.iter().map(|[x, y]| format!("({x:.1}, {y:.1})")).collect();
+    let corners = corners.join(" ");
     Err(InvalidScene::PointOutside { key, at, panel, corners })
 }
 

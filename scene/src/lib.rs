@@ -53,7 +53,7 @@ pub use actuation::{
     SupportConfig, SupportKind,
 };
 pub use boundary_values::{Actuation, AppliedLoad, SupportedPanel, panel_name};
-pub use cells::CellsConfig;
+pub use cells::{CellsConfig, TrimmedPanel};
 pub use checked_scene::Scene;
 pub use coarse_search::{CoarseSearch, LevelDifference};
 pub use cutting::CuttingConfig;

@@ -48,7 +48,7 @@ fn corners(sheet: &Sheet, corners: Vec<PanelCorner>, configuration: &[[f64; 3]])
         .into_iter()
         .map(|(k, corner)| {
             let panel = &sheet.panels[k];
-            deployed(panel, configuration[k], panel.corners[corner])
+            deployed(panel, configuration[k], panel.boundary[corner])
         })
         .collect()
 }

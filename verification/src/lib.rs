@@ -50,6 +50,7 @@ mod compared_states;
 mod distillation_states;
 mod element_windows;
 mod final_design;
+mod finished_panel;
 mod learning;
 mod patch;
 mod rows;

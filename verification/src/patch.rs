@@ -29,15 +29,17 @@ impl SheetPart {
         sheet: &Sheet,
         [column, row]: [usize; 2],
     ) -> Result<Self, VerificationError> {
-        let Grid { m, n } = sheet.topology.grid;
-        if column >= m || row >= n {
+        if sheet.topology.panel(column, row).is_none() {
+            let Grid { m, n } = sheet.topology.grid;
             return Err(refused(format!(
                 "there is no panel [{column}, {row}]: the sheet has {m} columns and {n} rows, \
                  counted from 0"
             )));
         }
-        let near =
-            |panel: &usize| (panel % m).abs_diff(column) <= 1 && (panel / m).abs_diff(row) <= 1;
+        let near = |panel: &usize| {
+            let [p, q] = sheet.topology.places[*panel];
+            p.abs_diff(column) <= 1 && q.abs_diff(row) <= 1
+        };
         let panels: Vec<usize> = (0..sheet.panels.len()).filter(near).collect();
         let hinges = (0..sheet.hinges.len()).filter(|h| {
             let hinge = &sheet.hinges[*h];

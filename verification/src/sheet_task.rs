@@ -12,7 +12,7 @@ use design::hinge_law::{DamageMeasure, Order};
 use design::objective::design_problem::{Deployment, DesignProblem};
 use design::pattern::design_vector::DesignVector;
 use design::sheet::cut_sheet::Panel;
-use design::sheet::kinematics::{Configuration, deployed_corners, hinge_deformations};
+use design::sheet::kinematics::{Configuration, deployed_boundaries, hinge_deformations};
 use fe_driver::{PanelState, SheetSolve, SheetState, Solved, ToolVersions};
 use hinge::HingeDesign;
 use mesher::Tier;
@@ -183,19 +183,19 @@ impl SheetTask {
 
     /// Distances in space of the corners of the panels between a configuration and finite elements
     /// (mm).
-    fn corner_errors(&self, configuration: &[[f64; 3]], state: &SheetState) -> Vec<[f64; 4]> {
+    fn corner_errors(&self, configuration: &[[f64; 3]], state: &SheetState) -> Vec<Vec<f64>> {
         let sheet = &self.deployment.sheet;
-        let deployed = deployed_corners(sheet, configuration);
+        let deployed = deployed_boundaries(sheet, configuration);
         let panels = std::iter::zip(&self.part.panels, &state.panels);
-        panels
-            .map(|(&panel, moved)| {
-                from_fn(|corner| {
-                    let [x, y, z] = moved.moved(sheet.panels[panel].corners[corner]);
-                    let [u, v] = deployed[panel][corner];
-                    (x - u).hypot(y - v).hypot(z)
-                })
-            })
-            .collect()
+        let errors = panels.map(|(&panel, moved)| {
+            let corners = std::iter::zip(&sheet.panels[panel].boundary, &deployed[panel]);
+            let error = |(flat, [u, v]): (&[f64; 2], &[f64; 2])| {
+                let [x, y, z] = moved.moved(*flat);
+                (x - u).hypot(y - v).hypot(z)
+            };
+            corners.map(error).collect()
+        });
+        errors.collect()
     }
 
     /// `full_load` is the sum of the magnitudes of the full loads (N).
@@ -210,11 +210,12 @@ impl SheetTask {
             let sum: f64 = hinges.iter().map(|&h| opening(h)).sum();
             (sum / hinges.len() as f64).to_degrees()
         };
-        let whole = !self.is_patch();
+        // The work of supports that move is no load of the solved sheet.
+        let (whole, pulled) = (!self.is_patch(), !self.is_patch() && full_load > 0.0);
         StateCheck {
             fraction: state.fraction,
-            stroke: whole.then_some([displacement, state.stroke]),
-            load: whole.then_some([load, state.load_factor * full_load]),
+            stroke: pulled.then_some([displacement, state.stroke]),
+            load: pulled.then_some([load, state.load_factor * full_load]),
             corners: rms_and_maximum(errors),
             opening_deg: [
                 mean(&|h| openings[h].theta),

@@ -1,9 +1,10 @@
 //! A designed sheet as a finite-element problem: every window and every panel.
 
+use crate::finished_panel::FinishedPanel;
 use crate::verification_error::{VerificationError, refused};
-use design::pattern::grid::Grid;
 use design::sheet::cut_sheet::{AttachmentPoint, PanelPoint, Sheet};
 use design::sheet::hinge_window::Window;
+use design::sheet::topology::PanelCorner;
 use fe_driver::{Held, OutOfPlaneRestraint, Place, Pulled, SheetProblem};
 use hinge::{HingeDesign, Regime};
 use mesher::{
@@ -129,7 +130,7 @@ fn pulled(scene: &Scene, sheet: &Sheet) -> Result<Vec<Pulled>, VerificationError
     let forces = forces.filter(|(_, [x, y, _])| x.hypot(*y) > 0.0);
     let pulled = forces.map(|(panel, [x, y, _])| Pulled {
         panel,
-        at: on_finished_edge(sheet, panel, sheet.panels[panel].reference),
+        at: FinishedPanel::new(sheet, panel).nearest(sheet.panels[panel].reference),
         force: [x, y],
     });
     Ok(pulled.collect())
@@ -159,6 +160,7 @@ fn held(scene: &Scene, sheet: &Sheet) -> Result<Vec<Held>, VerificationError> {
 /// point.
 fn place(sheet: &Sheet, attachment: &AttachmentPoint, kind: SupportKind) -> Place {
     let panel = &sheet.panels[attachment.panel];
+    let finished = FinishedPanel::new(sheet, attachment.panel);
     match (attachment.clip, attachment.point, kind) {
         (Some(width), PanelPoint::Middle([from, to]), _) => {
             let [p, q] = [from, to].map(|corner| panel.corners[corner]);
@@ -167,58 +169,13 @@ fn place(sheet: &Sheet, attachment: &AttachmentPoint, kind: SupportKind) -> Plac
             let end = |sign: f64| {
                 let half = 0.5 * sign * width / length;
                 let at = [0, 1].map(|i| middle[i] + half * (q[i] - p[i]));
-                on_finished_edge(sheet, attachment.panel, at)
+                finished.nearest(at)
             };
             Place::Line([end(-1.0), end(1.0)])
         }
         (_, _, SupportKind::Clamp) => Place::Panel,
-        (_, point, _) => {
-            Place::Point(on_finished_edge(sheet, attachment.panel, panel.position(point)))
-        }
+        (_, point, _) => Place::Point(finished.nearest(panel.position(point))),
     }
-}
-
-/// A point of a panel; if it lies on the line of a cut, the nearest point of the finished edge,
-/// half a slit inside.
-fn on_finished_edge(sheet: &Sheet, panel: usize, point: [f64; 2]) -> [f64; 2] {
-    let slit = sheet.options.process.slit_width;
-    let corners = finished_corners(sheet, panel);
-    let mut moved = point;
-    for edge in 0..4 {
-        let (p, q) = (corners[edge], corners[(edge + 1) % 4]);
-        let along = [q[0] - p[0], q[1] - p[1]];
-        let length = along[0].hypot(along[1]);
-        let inward = [-along[1] / length, along[0] / length];
-        let depth = (moved[0] - p[0]) * inward[0] + (moved[1] - p[1]) * inward[1];
-        if depth.abs() <= slit {
-            moved = [0, 1].map(|i| moved[i] - depth * inward[i]);
-        }
-    }
-    moved
-}
-
-/// The corners of a panel between its finished edges: the edges of cuts are half a slit inside of
-/// their lines.
-fn finished_corners(sheet: &Sheet, panel: usize) -> [[f64; 2]; 4] {
-    let Grid { m, n } = sheet.topology.grid;
-    let (column, row) = (panel % m, panel / m);
-    let on_outline = [row == 0, column == m - 1, row == n - 1, column == 0];
-    let corners = sheet.panels[panel].corners;
-    let lines: [([f64; 2], [f64; 2]); 4] = std::array::from_fn(|edge| {
-        let (p, q) = (corners[edge], corners[(edge + 1) % 4]);
-        let along = [q[0] - p[0], q[1] - p[1]];
-        let length = along[0].hypot(along[1]);
-        let direction = along.map(|x| x / length);
-        let inside = if on_outline[edge] { 0.0 } else { 0.5 * sheet.options.process.slit_width };
-        let start = [p[0] - inside * direction[1], p[1] + inside * direction[0]];
-        (start, direction)
-    });
-    std::array::from_fn(|corner| {
-        let ((p, d), (q, e)) = (lines[(corner + 3) % 4], lines[corner]);
-        let cross = |a: [f64; 2], b: [f64; 2]| a[0] * b[1] - a[1] * b[0];
-        let along = cross([q[0] - p[0], q[1] - p[1]], e) / cross(d, e);
-        [p[0] + along * d[0], p[1] + along * d[1]]
-    })
 }
 
 /// The radius of each window in the mesh (mm): r_win, or as much less as the windows need to be
@@ -263,27 +220,37 @@ fn sheet_shape(sheet: &Sheet, thickness: f64, tier: Tier) -> Result<SheetShape, 
     let radii = meshed_radii(sheet)?;
     let smallest = radii.iter().copied().fold(f64::INFINITY, f64::min);
     let windows = std::iter::zip(Window::of_sheet(sheet), &radii);
+    let finished: Vec<_> =
+        (0..sheet.panels.len()).map(|panel| FinishedPanel::new(sheet, panel)).collect();
     let placed = (sheet.hinges.iter().zip(sheet.designs())).zip(windows).map(
         |((hinge, design), (window, radius))| {
+            let joined = |(panel, corner): PanelCorner| {
+                let cut_off = || {
+                    let what = format!("its corner {corner}, where it has a hinge, is trimmed");
+                    fault(format!("panel {panel}"), what, "choose another shape in [cells]")
+                };
+                let number = finished[panel].number_of(corner).ok_or_else(cut_off)?;
+                Ok::<_, VerificationError>(Some((panel, number)))
+            };
             let regime = if SheetShape::bends_in_plane(design.w_lig, thickness) {
                 Regime::Plate
             } else {
                 Regime::Film
             };
-            PlacedWindow {
+            Ok(PlacedWindow {
                 design: HingeDesign { r_win: *radius, ..design },
                 frame: Frame { origin: window.foot, e_x: window.e_sec },
-                panels: [Some(hinge.site.a), Some(hinge.site.b)],
+                panels: [joined(hinge.site.a)?, joined(hinge.site.b)?],
                 bump: Imperfection::of(regime).amplitude,
-            }
+            })
         },
     );
     Ok(SheetShape {
         thickness,
-        panels: (0..sheet.panels.len())
-            .map(|panel| PanelShape { corners: finished_corners(sheet, panel), marks: Vec::new() })
+        windows: placed.collect::<Result<_, VerificationError>>()?,
+        panels: (finished.into_iter())
+            .map(|panel| PanelShape { corners: panel.corners(), marks: Vec::new() })
             .collect(),
-        windows: placed.collect(),
         plane,
         layers: LAYERS,
         element_size: ELEMENT_SIZE * smallest,

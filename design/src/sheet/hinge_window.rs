@@ -5,7 +5,8 @@
 //! and lie within the two panels that their hinges join.
 
 use crate::{
-    geometry::polygon::{clip, common, contains, distance, distance_to_polygon},
+    geometry::polygon::{clip, distance, distance_to_polygon},
+    geometry::region::Region,
     sheet::cut_sheet::{Hinge, Panel, Sheet},
 };
 use std::f64::consts::PI;
@@ -27,6 +28,8 @@ const ARC: usize = 64;
 /// Overlap, relative to the radius, up to which windows are disjoint: those on the two flanks of
 /// one cut touch.
 const TOUCH: f64 = 1e-6;
+/// Area outside of the panels that is rounding, over the square of the radius.
+const OUTSIDE: f64 = 1e-5;
 
 impl Window {
     pub(crate) fn new(hinge: &Hinge, r_win: f64) -> Self {
@@ -57,9 +60,10 @@ impl Window {
             .collect()
     }
 
-    /// The part of the half-disc inside a panel, as a convex polygon (mm).
-    pub fn inside(&self, panel: &Panel) -> Vec<[f64; 2]> {
-        common(&self.polygon(), &panel.corners)
+    /// The part of the half-disc inside a panel (mm).
+    pub fn inside(&self, panel: &Panel) -> Region {
+        let panel = Region::union_of(vec![panel.boundary.clone()]);
+        Region::union_of(vec![self.polygon()]).common(&panel)
     }
 
     /// Signed distance of a point above the flat side, on the side without material (mm).
@@ -79,17 +83,17 @@ impl Window {
         distance_to_polygon(other.foot, &shared) < other.radius - touch
     }
 
-    /// Whether the arc is in the two panels, except for its ends on the secondary cut.
+    /// Whether the half-disc is in the two panels, except for a strip along the secondary cut.
     pub fn within(&self, a: &Panel, b: &Panel) -> bool {
-        let arc = self.polygon();
-        arc[1..ARC].iter().all(|&point| contains(&a.corners, point) || contains(&b.corners, point))
+        let panels = Region::union_of([a, b].map(|panel| panel.boundary.clone()).to_vec());
+        let outside = Region::union_of(vec![self.polygon()[1..ARC].to_vec()]).minus(&panels);
+        outside.area() < OUTSIDE * self.radius * self.radius
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::sheet::cut_sheet::PanelPoint;
 
     fn window(foot: [f64; 2], angle_deg: f64) -> Window {
         let (sin, cos) = f64::to_radians(angle_deg).sin_cos();
@@ -137,17 +141,17 @@ mod tests {
 
     #[test]
     fn a_window_that_extends_beyond_its_panels_is_detected() {
-        let panel = |x: f64, width: f64| Panel {
-            corners: [[x, -300.0], [x + width, -300.0], [x + width, 0.0], [x, 0.0]],
-            boundary: Vec::new(),
-            trim: None,
-            point: PanelPoint::Centroid,
-            reference: [x + width / 2.0, -150.0],
-            centroid: [x + width / 2.0, -150.0],
-            area: 300.0 * width,
+        let panel = |x: f64, width: f64| {
+            let corners = [[x, -300.0], [x + width, -300.0], [x + width, 0.0], [x, 0.0]];
+            Panel::new(0, corners, None).unwrap()
         };
-        let below = window([0.0, 0.0], 0.0);
-        assert!(below.within(&panel(-300.0, 300.0), &panel(0.0, 300.0)));
-        assert!(!below.within(&panel(-300.0, 300.0), &panel(0.0, 90.0)));
+        let (below, left) = (window([0.0, 0.0], 0.0), panel(-300.0, 300.0));
+        assert!(below.within(&left, &panel(0.0, 300.0)));
+        assert!(!below.within(&left, &panel(0.0, 90.0)));
+        let mut dented = panel(0.0, 300.0);
+        dented.boundary.splice(1..1, [[140.0, -300.0], [50.0, -80.0], [160.0, -300.0]]);
+        assert!(!below.within(&left, &dented));
+        dented.boundary[2] = [75.0, -75.0];
+        assert!(below.within(&left, &dented));
     }
 }

@@ -1,6 +1,7 @@
 //! A rigid panel of the flat sheet: its centroid, its area and their derivatives.
 
 use crate::geometry::plane::{I, complex, cross, dot, point};
+use crate::geometry::region::Contour;
 use crate::pattern::grid::{NW, SE, SW};
 use crate::sheet::topology::Trim;
 use faer::c64;
@@ -42,10 +43,7 @@ impl Panel {
         corners: [[f64; 2]; 4],
         trim: Option<Trim>,
     ) -> Result<Self, Fault> {
-        let boundary = match &trim {
-            None => corners.to_vec(),
-            Some(trim) => trim.iter().map(|at| in_cell(&corners, *at)).collect(),
-        };
+        let boundary = boundary(&corners, trim.as_ref());
         let mean = boundary.iter().copied().map(complex).sum::<c64>() / boundary.len() as f64;
         let arms: Vec<c64> = boundary.iter().map(|corner| complex(*corner) - mean).collect();
         let sectors = sectors(&arms);
@@ -71,6 +69,12 @@ impl Panel {
     /// Whether the panel is not its cell.
     pub fn is_trimmed(&self) -> bool {
         self.trim.is_some()
+    }
+
+    /// Whether a corner of its cell is a corner of the panel.
+    pub fn has_corner(&self, corner: usize) -> bool {
+        const CORNERS: [[f64; 2]; 4] = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
+        self.trim.as_ref().is_none_or(|trim| trim.contains(&CORNERS[corner]))
     }
 
     /// The position of a point of the panel in the flat sheet (mm).
@@ -152,10 +156,12 @@ impl Panel {
     }
 }
 
-/// The point SW + x (SE - SW) + y (NW - SW) of a cell.
-fn in_cell(corners: &[[f64; 2]; 4], [x, y]: [f64; 2]) -> [f64; 2] {
+/// The polygon that a panel is, counter-clockwise (mm).
+pub fn boundary(corners: &[[f64; 2]; 4], trim: Option<&Trim>) -> Contour {
     let along = |c: usize, to: usize| corners[to][c] - corners[SW][c];
-    [0, 1].map(|c| corners[SW][c] + x * along(c, SE) + y * along(c, NW))
+    let in_cell =
+        |[x, y]: &[f64; 2]| [0, 1].map(|c| corners[SW][c] + x * along(c, SE) + y * along(c, NW));
+    trim.map_or_else(|| corners.to_vec(), |trim| trim.iter().map(in_cell).collect())
 }
 
 /// Twice the signed areas of the triangles between the origin and the panel's edges.

@@ -148,6 +148,18 @@ impl Topology {
         self.panel(p, q).expect("the place has a panel")
     }
 
+    /// The panel beyond a side of a panel, counted from the bottom counter-clockwise.
+    pub fn beyond(&self, panel: usize, side: usize) -> Option<usize> {
+        let [p, q] = self.places[panel];
+        let (p, q) = [
+            (Some(p), q.checked_sub(1)),
+            (Some(p + 1), Some(q)),
+            (Some(p), Some(q + 1)),
+            (p.checked_sub(1), Some(q)),
+        ][side];
+        self.panel(p?, q?)
+    }
+
     /// Whether a panel has even column + row, so that it turns by -theta/2 in the ideal deployment.
     pub fn is_even(&self, panel: usize) -> bool {
         let [p, q] = self.places[panel];

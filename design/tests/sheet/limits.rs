@@ -4,6 +4,7 @@
 use crate::cases;
 use crate::prelude::*;
 use design::sheet::opening_limits::{CONTACT, Span};
+use design::sheet::topology::Topology;
 use design::sheet::validity::{Validity, overlap};
 use hinge::TrainingDomain;
 use std::f64::consts::{FRAC_PI_2, PI, SQRT_2};
@@ -34,6 +35,20 @@ fn patterns_are_valid_and_open_without_overlap_up_to_the_second_contact() {
             }
         }
     }
+}
+
+/// A panel with a hook around two others.
+#[test]
+fn a_part_of_a_panel_lies_over_a_panel_that_is_no_neighbour() {
+    let grid = Grid { m: 4, n: 2 };
+    let coordinates = PatternCoordinates::uniform(grid);
+    let pattern = CutPattern::new(grid, Outline::rectangle(4.0, 2.0), &coordinates).unwrap();
+    let mut topology = Topology::of_voids(grid, &[true; 3]);
+    let hook = [[3.2, 1.2], [3.2, 0.5], [3.6, 0.5], [3.6, 1.4], [0.0, 1.4]];
+    let boundary = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.2]].into_iter().chain(hook);
+    topology.trims[4] = Some(boundary.collect());
+    let sheet = Sheet::of_cells(&pattern, topology.into(), &[0.02; 10], AT_CORNER).unwrap();
+    assert_close(overlap(&sheet, &[[0.0; 3]; 8]), 0.2 / 1.15, 1e-6);
 }
 
 #[test]

@@ -164,8 +164,10 @@ impl SheetProblem {
 
     /// An error if the problem has no solution.
     pub fn validate(&self) -> Result<(), Fault> {
-        if self.total_load() == 0.0 && self.rims.is_empty() {
-            return Err(fault("", "nothing pulls the sheet", "it needs a load"));
+        let moves = |held: &Held| held.motion.into_iter().flatten().any(|shift| shift != 0.0);
+        if self.total_load() == 0.0 && self.rims.is_empty() && !self.held.iter().any(moves) {
+            let remedy = "it needs a load, or a support that moves";
+            return Err(fault("", "nothing pulls the sheet", remedy));
         }
         if self.held.is_empty() && self.rims.is_empty() {
             return Err(fault("", "no panel is held", "the sheet is free to move"));

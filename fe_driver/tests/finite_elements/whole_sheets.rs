@@ -41,7 +41,7 @@ fn problem(keeping: OutOfPlaneRestraint, stroke: f64) -> SheetProblem {
     };
     let (left, right) = (WIDTH - 0.5 * KERF, WIDTH + 0.5 * KERF);
     let panel = |low: f64, high: f64| PanelShape {
-        corners: [[low, 0.0], [high, 0.0], [high, HEIGHT], [low, HEIGHT]],
+        corners: vec![[low, 0.0], [high, 0.0], [high, HEIGHT], [low, HEIGHT]],
         marks: Vec::new(),
     };
     let at = [1.5 * WIDTH, 0.3 * HEIGHT];

@@ -6,8 +6,6 @@ use super::structured::{self, Rim};
 use crate::{Frame, PlacedWindow, SheetShape, Window, cross, dot, minus, unit};
 use support::add_line;
 
-/// Names of the edges of a panel, each from its corner to the next.
-const EDGES: [&str; 4] = ["lower", "right", "upper", "left"];
 /// Largest distance of a point on the edge of a panel from it (mm).
 const ON_EDGE: f64 = 1e-6;
 /// Shortest part of an edge over r_win: a shorter one would give slivers.
@@ -24,7 +22,8 @@ pub(crate) fn sheet_script(shape: &SheetShape) -> Result<String, String> {
     // The frontal-Delaunay algorithm, whose triangles recombine to good quadrilaterals.
     add_line!(geo.text, "Mesh.Algorithm = 6;");
     add_line!(geo.text, "Mesh.RecombinationAlgorithm = 1;");
-    let mut rims = vec![[const { None }; 4]; shape.panels.len()];
+    let mut rims: Vec<Vec<Option<Arc>>> =
+        shape.panels.iter().map(|panel| vec![None; panel.corners.len()]).collect();
     let mut faces = Vec::new();
     for (number, window) in shape.windows.iter().enumerate() {
         let first = geo.patches + 1;
@@ -66,7 +65,7 @@ struct PanelOutline<'a> {
     shape: &'a SheetShape,
     panel: usize,
     /// The arcs about its corners.
-    rims: [Option<Arc>; 4],
+    rims: Vec<Option<Arc>>,
 }
 
 impl PanelOutline<'_> {
@@ -75,7 +74,7 @@ impl PanelOutline<'_> {
         let panel = &self.shape.panels[self.panel];
         // Where the outline reaches and leaves each corner, counter-clockwise: one point, or the
         // ends of an arc, which is passed clockwise.
-        let mut ends = Vec::with_capacity(4);
+        let mut ends = Vec::with_capacity(self.rims.len());
         for (corner, arc) in self.rims.iter().enumerate() {
             ends.push(match arc {
                 Some(arc) => {
@@ -88,11 +87,11 @@ impl PanelOutline<'_> {
         }
         let mut marks = panel.marks.clone();
         let mut outline = Vec::new();
-        for corner in 0..4 {
+        for corner in 0..self.rims.len() {
             if let Some(arc) = &self.rims[corner] {
                 outline.extend(arc.rim.arcs.iter().rev().map(|curve| -curve));
             }
-            let (from, to) = (ends[corner][1], ends[(corner + 1) % 4][0]);
+            let (from, to) = (ends[corner][1], ends[(corner + 1) % ends.len()][0]);
             outline.extend(self.edge(geo, corner, [from, to], &mut marks)?);
         }
         let surface = geo.surface(&outline);
@@ -117,17 +116,18 @@ impl PanelOutline<'_> {
         marks: &mut Vec<[f64; 2]>,
     ) -> Result<Vec<i32>, String> {
         let panel = &self.shape.panels[self.panel];
-        let direction = unit(panel.corners[corner], panel.corners[(corner + 1) % 4]);
+        let [first, last] = panel.edge(corner);
+        let direction = unit(first, last);
         let along = |point: [f64; 2]| dot(minus(point, from.1), direction);
         let length = along(to.1);
         let radius = (self.rims.iter().flatten().next())
             .map(|arc| self.shape.windows[arc.number].design.r_win);
         let least = radius.map_or(0.0, |radius| LEAST * radius);
         if length <= least {
-            let (panel, edge, short) = (self.panel, EDGES[corner], least - length);
+            let (panel, short, [x, y]) = (self.panel, least - length, first);
             return Err(format!(
-                "panel {panel} is too small for its windows: its {edge} edge is {short} mm too short; use a smaller \
-                 r_win or larger panels"
+                "panel {panel} is too small for its windows: its edge from ({x:.1}, {y:.1}) mm is {short} mm too \
+                 short; use a smaller r_win or larger panels"
             ));
         }
         let across = |point: [f64; 2]| cross(direction, minus(point, from.1)).abs();
@@ -159,11 +159,11 @@ impl PanelOutline<'_> {
 
     /// The arc about a corner ends on the two edges that meet there.
     fn check_arc(&self, corner: usize, arc: &Arc) -> Result<(), String> {
-        let corners = &self.shape.panels[self.panel].corners;
-        let edges = [(corner + 3) % 4, corner];
+        let panel = &self.shape.panels[self.panel];
+        let edges = [panel.edge_before(corner), corner];
         for (edge, end) in std::iter::zip(edges, [arc.ends[1], arc.ends[0]]) {
-            let direction = unit(corners[edge], corners[(edge + 1) % 4]);
-            let off = cross(direction, minus(end, corners[edge])).abs();
+            let [from, to] = panel.edge(edge);
+            let off = cross(unit(from, to), minus(end, from)).abs();
             if off > ON_EDGE {
                 let (window, panel) = (arc.number, self.panel);
                 return Err(format!(
@@ -177,11 +177,13 @@ impl PanelOutline<'_> {
 
     /// A mark in the interior is in the panel and outside of its windows.
     fn check_mark(&self, mark: [f64; 2]) -> Result<(), String> {
-        let corners = &self.shape.panels[self.panel].corners;
-        let inside = (0..4).all(|corner| {
-            let direction = unit(corners[corner], corners[(corner + 1) % 4]);
-            cross(direction, minus(mark, corners[corner])) > 0.0
-        });
+        let panel = &self.shape.panels[self.panel];
+        let [x, y] = mark;
+        let to_the_right = |corner: &usize| {
+            let [p, q] = panel.edge(*corner);
+            (p[1] > y) != (q[1] > y) && x < p[0] + (y - p[1]) / (q[1] - p[1]) * (q[0] - p[0])
+        };
+        let inside = (0..panel.corners.len()).filter(to_the_right).count() % 2 == 1;
         let in_window = |arc: &Arc| {
             let PlacedWindow { design, frame, .. } = &self.shape.windows[arc.number];
             let [x, y] = frame.local(mark);
@@ -194,7 +196,6 @@ impl PanelOutline<'_> {
         } else {
             return Ok(());
         };
-        let [x, y] = mark;
         let panel = self.panel;
         Err(format!(
             "the point ({x:.3}, {y:.3}) mm at which panel {panel} is held or pulled {what}: move it"

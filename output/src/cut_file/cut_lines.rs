@@ -133,23 +133,17 @@ impl CutLines {
         for (panel, of) in sheet.panels.iter().enumerate() {
             let is_cut = |edge: [[f64; 2]; 2]| lines.iter().any(|line| carries(line, edge));
             // A trimmed panel has another edge where it hangs together with no neighbour.
-            let [p, q] = sheet.topology.places[panel];
-            let beyond = [
-                (Some(p), q.checked_sub(1)),
-                (Some(p + 1), Some(q)),
-                (Some(p), Some(q + 1)),
-                (p.checked_sub(1), Some(q)),
-            ];
-            let hangs = |(p, q): (Option<usize>, Option<usize>)| {
-                let other = sheet.topology.panel(p?, q?)?;
+            let hangs = |side| {
+                let other = sheet.topology.beyond(panel, side);
                 let both = |hinge: &Hinge| {
-                    hinge.panels().contains(&panel) && hinge.panels().contains(&other)
+                    let panels = hinge.panels();
+                    panels.contains(&panel) && other.is_some_and(|other| panels.contains(&other))
                 };
-                sheet.hinges.iter().any(both).then_some(())
+                sheet.hinges.iter().any(both)
             };
-            let cut = edges(&of.corners).zip(beyond);
-            let mut cut = cut.filter(|(_, beyond)| !of.is_trimmed() || hangs(*beyond).is_some());
-            if !cut.all(|((p, q), _)| is_cut([p, q])) {
+            let is_edge = |side| !of.is_trimmed() || hangs(side);
+            let mut sides = edges(&of.corners).enumerate().filter(|(side, _)| is_edge(*side));
+            if !sides.all(|(_, (p, q))| is_cut([p, q])) {
                 return Err(FabricationError::EdgeNotCut { panel });
             }
         }

@@ -124,9 +124,8 @@ impl<'a> State<'a> {
         for ((hinge, window), &value) in hinges.zip(&self.openings_deg) {
             let style = Style::fill(scale.colour(value)).opacity(0.85, 1.0);
             for k in [hinge.panel_a(), hinge.panel_b()] {
-                let part = window.inside(&self.sheet.panels[k]);
-                let part: Vec<_> = part.into_iter().map(|point| self.moved(k, point)).collect();
-                sketch.canvas.polygon(&part, style);
+                let part = window.inside(&self.sheet.panels[k]).map(|point| self.moved(k, point));
+                part.contours().for_each(|contour| sketch.canvas.polygon(contour, style));
             }
         }
     }

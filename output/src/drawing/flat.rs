@@ -41,7 +41,8 @@ fn windows(sketch: &mut Sketch, sheet: &Sheet) {
     let style = Style::stroke(TEAL, 0.8 * sketch.unit).filled(TEAL).opacity(0.12, 0.45);
     for (hinge, window) in sheet.hinges.iter().zip(Window::of_sheet(sheet)) {
         for panel in [hinge.panel_a(), hinge.panel_b()] {
-            sketch.canvas.polygon(&window.inside(&sheet.panels[panel]), style);
+            let part = window.inside(&sheet.panels[panel]);
+            part.contours().for_each(|contour| sketch.canvas.polygon(contour, style));
         }
     }
 }

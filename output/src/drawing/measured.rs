@@ -11,7 +11,7 @@ use analysis::measured_points::FittedPoint;
 use analysis::path_fit::Fit;
 use design::geometry::polygon::bounds;
 use design::sheet::cut_sheet::Sheet;
-use design::sheet::kinematics::deployed_corners;
+use design::sheet::kinematics::deployed_boundaries;
 
 /// Magnifications of the residuals.
 const MAGNIFICATIONS: [f64; 8] = [1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0];
@@ -22,12 +22,12 @@ const NUMBERED: usize = 16;
 
 /// The picture of a report; `fit` is its best state.
 pub fn measured(sheet: &Sheet, fit: &Fit, report: &MeasurementReport) -> String {
-    let corners = deployed_corners(sheet, &fit.shape.configuration);
+    let panels = deployed_boundaries(sheet, &fit.shape.configuration);
     let area: f64 = sheet.panels.iter().map(|panel| panel.area).sum();
     let panel_size = (area / sheet.panels.len() as f64).sqrt();
     let factor = magnification(fit, panel_size);
     let residuals_drawn = fit.points.iter().map(|point| residual(point, factor)[1]);
-    let [low, high] = bounds(corners.iter().flatten().copied().chain(residuals_drawn));
+    let [low, high] = bounds(panels.iter().flatten().copied().chain(residuals_drawn));
     let (width, height) = (high[0] - low[0], high[1] - low[1]);
     // Both charts stand at the right of the sheet, one above the other.
     let side = f64::max(0.36 * width, 0.34 * height);
@@ -49,10 +49,10 @@ pub fn measured(sheet: &Sheet, fit: &Fit, report: &MeasurementReport) -> String 
     );
     let mut page = Page::around(whole, &report.title, &subtitle, false);
     let sketch = &mut page.sketch;
-    for (k, corners) in corners.iter().enumerate() {
+    for (k, panel) in panels.iter().enumerate() {
         let fill = PANELS[usize::from(!sheet.topology.is_even(k))];
         let style = sketch.stroke(MUTED, 1.2).filled(fill);
-        sketch.canvas.polygon(corners, style);
+        sketch.canvas.polygon(panel, style);
     }
     outlines(sketch, sheet, fit);
     residuals(sketch, fit, factor, panel_size);

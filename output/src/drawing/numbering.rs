@@ -28,7 +28,8 @@ pub fn numbering(title: &str, sheet: &Sheet) -> String {
         let above = [x, y + 0.5 * height];
         sketch.text(above, height, Anchor::Middle, bold, &format!("P{k}"));
         let small = 0.75 * height;
-        for (number, [cx, cy]) in panel.corners.into_iter().enumerate() {
+        let corners = panel.corners.into_iter().enumerate();
+        for (number, [cx, cy]) in corners.filter(|(number, _)| panel.has_corner(*number)) {
             let at = [cx + INSET * (x - cx), cy + INSET * (y - cy) - 0.35 * small];
             let colour = if number == 0 { ACCENT } else { MUTED };
             let style = Style::fill(colour);

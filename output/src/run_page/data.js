@@ -9,6 +9,9 @@ const byId = (id) => document.getElementById(id);
 /** The data that are shown, their states, and the numbers of states, panels and hinges. */
 let run, states, stateCount, panelCount, hingeCount;
 
+/** The points of every panel's boundary in the flat sheet, x and y one after the other (mm). */
+let boundaries;
+
 /** What other scripts compute from new data, in the order in which it is needed. */
 const whenTaken = [];
 
@@ -18,10 +21,12 @@ function take(data) {
   unpack(run, ["target"]);
   unpack(run.holes, Object.keys(run.holes));
   unpack(run.panels, ["corners", "references"]);
+  panelCount = run.panels.places.length;
+  boundaries = run.panels.places.map((_, k) => run.panels.corners.subarray(8 * k, 8 * k + 8));
+  for (const [k, points] of run.panels.trimmed) boundaries[k] = floats(points);
   unpack(run.hinges, ["w_lig", "alpha_deg", "fillet_ratio", "gamma", "damage", "damage_peak"]);
   unpack(states, ["motions", "deformations", "inside", "energy", "forces", "damage", "damage_peak", "spread", "reactions"]);
   stateCount = states.index.length;
-  panelCount = run.panels.grid[0] * run.panels.grid[1];
   hingeCount = run.hinges.sites.length;
   whenTaken.forEach((compute) => compute());
 }

@@ -6,12 +6,14 @@ use crate::run_page::hinge_states::HingeStates;
 use crate::run_page::packed::Packed;
 use analysis::levels::Levels;
 use analysis::unit::Unit;
+use design::geometry::region::Contour;
 use design::objective::design_problem::{Deployment, DesignProblem};
 use design::objective::loss::Objective;
 use design::objective::scores::outline_error;
 use design::objective::term::in_words;
 use design::optimise::outer_loop::StepRecord;
 use design::sheet::cut_sheet::Sheet;
+use design::sheet::topology::PanelCorner;
 use hinge::TrainingDomain;
 use scene::design_run::Designed;
 use scene::placement::seen;
@@ -60,7 +62,7 @@ pub struct SheetData<'a> {
     states: HingeStates,
     actuation: Actuation,
     /// Closed outlines: of the flat sheet, of the target and of its holes (mm).
-    outline: [[f64; 2]; 4],
+    outlines: Vec<Contour>,
     target: Packed,
     holes: Vec<Packed>,
     /// The training domain of the hinge law.
@@ -86,10 +88,14 @@ pub struct History {
 
 #[derive(Serialize)]
 struct Panels {
-    /// [columns, rows]
-    grid: [usize; 2],
-    /// Corners SW, SE, NE, NW of every panel (mm).
+    /// [column, row] of every panel.
+    places: Vec<[usize; 2]>,
+    /// Corners SW, SE, NE, NW of the cell of every panel (mm).
     corners: Packed,
+    /// The panels that are not their cells, and their boundaries (mm).
+    trimmed: Vec<(usize, Packed)>,
+    /// The corners whose distances from the target are known, around a sheet of all cells.
+    outline: Vec<PanelCorner>,
     /// The reference point of every panel's rotation (mm).
     references: Packed,
 }
@@ -169,13 +175,13 @@ impl<'a> SheetData<'a> {
                 scene,
                 seen(scene, deployment),
                 outline_error(&problem.objective, deployment),
-                extent(sheet.outline.corners),
+                extent(sheet.outlines().into_iter().flatten()),
             ),
             panels: Panels::new(sheet),
             hinges: Hinges::new(sheet, rows),
             states: HingeStates::new(scene, problem, deployment, networks),
             actuation: scene.actuation(),
-            outline: sheet.outline.corners,
+            outlines: sheet.outlines(),
             target: drawn(&scene.target.points),
             holes: scene.target.holes.iter().map(drawn).collect(),
             domain: scene.surrogate().map(|surrogate| surrogate.domain()),
@@ -218,8 +224,17 @@ impl Panels {
     fn new(sheet: &Sheet) -> Self {
         let panels = || sheet.panels.iter();
         Self {
-            grid: [sheet.topology.grid.m, sheet.topology.grid.n],
+            places: sheet.topology.places.clone(),
             corners: panels().flat_map(|panel| panel.corners).flatten().collect(),
+            trimmed: (panels().enumerate())
+                .filter(|(_, panel)| panel.is_trimmed())
+                .map(|(k, panel)| (k, panel.boundary.iter().flatten().copied().collect()))
+                .collect(),
+            outline: if sheet.topology.is_full() {
+                sheet.free_outline_corners()
+            } else {
+                Vec::new()
+            },
             references: panels().flat_map(|panel| panel.reference).collect(),
         }
     }

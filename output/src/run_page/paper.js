@@ -29,13 +29,11 @@ function drawHang(svg, width, height) {
   const size = Math.hypot(px, py);
   const [cos, sin] = [-py / size, -px / size];
   const turned = ([x, y]) => [cos * x - sin * y, -sin * x - cos * y];
-  const corners = run.outline.map(turned);
-  const [low, high] = [Math.min, Math.max].map((most) => [0, 1].map((c) => most(...corners.map((p) => p[c]))));
+  const [low, high] = bounds(run.outlines.flat().map(turned));
   const scale = Math.min((width - 130) / (high[0] - low[0]), (height - 40) / (high[1] - low[1]));
   const place = (point) => turned(point).map((x, c) => [width, height][c] / 2 + scale * (x - (low[c] + high[c]) / 2));
   for (let k = 0; k < panelCount; k++) {
-    const outline = [0, 1, 2, 3].map((c) => place(corner(0, k, c)));
-    draw(svg, "path", { d: path(outline, (x) => x, (y) => y) + "Z", fill: "none", stroke: TICK, "stroke-width": 0.7 });
+    draw(svg, "path", { d: path(boundary(0, k).map(place), (x) => x, (y) => y) + "Z", fill: "none", stroke: TICK, "stroke-width": 0.7 });
   }
   const labels = [];
   const mark = (panel, text, colour, symbol) => {

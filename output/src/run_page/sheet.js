@@ -18,9 +18,19 @@ function corner(state, k, c) {
   return moved(state, k, run.panels.corners[at], run.panels.corners[at + 1]);
 }
 
+/** The boundary of a panel in a state (mm). */
+function boundary(state, k) {
+  return Array.from({ length: boundaries[k].length / 2 }, (_, i) => moved(state, k, boundaries[k][2 * i], boundaries[k][2 * i + 1]));
+}
+
 function reference(state, k) {
   const at = 3 * (state * panelCount + k);
   return [run.panels.references[2 * k] + states.motions[at], run.panels.references[2 * k + 1] + states.motions[at + 1]];
+}
+
+/** The lower left and the upper right corner of the box around points. */
+function bounds(points) {
+  return [Math.min, Math.max].map((most) => [0, 1].map((c) => most(...points.map((p) => p[c]))));
 }
 
 /** The rectangle that holds the sheet in every state, its outline and the target (mm). */
@@ -35,9 +45,9 @@ function measureExtent() {
     box.y1 = Math.max(box.y1, y);
   };
   for (let i = 0; i < stateCount; i++)
-    for (let k = 0; k < panelCount; k++) for (let c = 0; c < 4; c++) add(corner(i, k, c));
+    for (let k = 0; k < panelCount; k++) boundary(i, k).forEach(add);
   for (let i = 0; i < run.target.length; i += 2) add([run.target[i], run.target[i + 1]]);
-  if (run.carries_load) run.outline.forEach(add);
+  if (run.carries_load) run.outlines.flat().forEach(add);
   extent = box;
 }
 
@@ -75,8 +85,9 @@ function updateScale() {
   view.scale = view.zoom * Math.min(w / (extent.x1 - extent.x0), h / (extent.y1 - extent.y0));
 }
 
-/** Pixel positions of the corners of every panel in the state drawn last. */
+/** Pixel positions of the corners of every panel's cell and of its boundary in the state drawn last. */
 let cornersDrawn = [];
+let boundariesDrawn = [];
 
 function hingePixel(h) {
   const [a, atA, b, atB] = run.hinges.sites[h];
@@ -102,14 +113,15 @@ function drawSheet(state, quantity, selected) {
   pen.fillStyle = rgb(ground);
   pen.fillRect(0, 0, view.width, view.height);
   cornersDrawn = Array.from({ length: panelCount }, (_, k) => [0, 1, 2, 3].map((c) => toPixels(corner(state, k, c))));
+  boundariesDrawn = boundaries.map((_, k) => boundary(state, k).map(toPixels));
   const colour = colours(quantity, state);
   const edge = Math.sqrt(((extent.x1 - extent.x0) * (extent.y1 - extent.y0)) / panelCount) * view.scale;
   pen.lineJoin = "round";
   pen.strokeStyle = ink;
   pen.lineWidth = Math.min(1.2, edge / 25);
-  cornersDrawn.forEach((corners, k) => {
+  boundariesDrawn.forEach((points, k) => {
     pen.beginPath();
-    corners.forEach(([x, y], c) => (c === 0 ? pen.moveTo(x, y) : pen.lineTo(x, y)));
+    points.forEach(([x, y], c) => (c === 0 ? pen.moveTo(x, y) : pen.lineTo(x, y)));
     pen.closePath();
     pen.fillStyle = colour.panels[k];
     pen.fill();
@@ -143,11 +155,11 @@ function outlinePath(points) {
 function drawMarks(state, selected) {
   marks.textContent = "";
   if (run.carries_load)
-    draw(marks, "path", { d: outlinePath(run.outline), fill: "none", stroke: TICK, "stroke-dasharray": "3 3" });
+    draw(marks, "path", { d: run.outlines.map(outlinePath).join(""), fill: "none", stroke: TICK, "stroke-dasharray": "3 3" });
   const pairs = (list) => Array.from({ length: list.length / 2 }, (_, i) => [list[2 * i], list[2 * i + 1]]);
   const target = pairs(run.target);
-  const outlines = [target, ...run.holes.map(pairs)];
-  draw(marks, "path", { d: outlines.map(outlinePath).join(""), fill: "none", stroke: ACCENT, "stroke-width": 1.8, "stroke-dasharray": "9 6" });
+  const targets = [target, ...run.holes.map(pairs)];
+  draw(marks, "path", { d: targets.map(outlinePath).join(""), fill: "none", stroke: ACCENT, "stroke-width": 1.8, "stroke-dasharray": "9 6" });
   const labels = [];
   const obstacles = [];
   if (state === stateCount - 1) drawMissed(target, labels);
@@ -170,13 +182,10 @@ const MISSED = 0.02;
 /** Most places of the target whose distances are written. */
 const MOST_PLACES = 4;
 
-/** The corners of the outline that belong to no hinge, as they are drawn, around the sheet (px): those whose distances the figure has. */
-function outlineDrawn() {
-  const [m, n] = run.panels.grid;
-  const edges = (count, panel, c) => Array.from({ length: count }, (_, i) => panel(i)).flatMap((k) => [[k, c], [k, (c + 1) % 4]]);
-  const all = [...edges(m, (i) => i, 0), ...edges(n, (i) => (i + 1) * m - 1, 1), ...edges(m, (i) => m * n - 1 - i, 2), ...edges(n, (i) => (n - 1 - i) * m, 3)];
-  const hinged = new Set(run.hinges.sites.flatMap(([a, atA, b, atB]) => [`${a} ${atA}`, `${b} ${atB}`]));
-  return all.filter((corner) => !hinged.has(corner.join(" "))).map(([k, c]) => cornersDrawn[k][c]);
+/** The lines as they are drawn (px) from which the target is so far: through the corners whose distances the figure has, or around all panels. */
+function outlinesDrawn() {
+  const corners = run.panels.outline.map(([k, c]) => cornersDrawn[k][c]);
+  return corners.length ? [corners] : boundariesDrawn;
 }
 
 /** Distance of a point from a closed line. */
@@ -191,15 +200,15 @@ function distanceTo(line, [x, y]) {
 
 /** Marks the stretches of the target that the sheet does not reach, with the largest distances. */
 function drawMissed(target, labels) {
-  const outline = outlineDrawn();
+  const outlines = outlinesDrawn();
   const stride = Math.ceil(target.length / 300);
-  const [low, high] = [Math.min, Math.max].map((most) => [0, 1].map((c) => most(...run.outline.map((p) => p[c]))));
+  const [low, high] = bounds(run.outlines.flat());
   const least = MISSED * Math.max(high[0] - low[0], high[1] - low[1]) * view.scale;
   const stretches = [];
   let stretch = null;
   for (let i = 0; i < target.length; i += stride) {
     const at = toPixels(target[i]);
-    const distance = distanceTo(outline, at);
+    const distance = Math.min(...outlines.map((outline) => distanceTo(outline, at)));
     if (distance < least) { stretch = null; continue; }
     if (!stretch) stretches.push((stretch = { points: [], distance: 0 }));
     stretch.points.push(at);
@@ -258,7 +267,8 @@ whenTaken.push(() => {
   for (let i = 0; i < stateCount; i++)
     for (const { panels } of forcesOnSheet(i))
       for (const [, [x, y, m]] of panels) [force, couple] = [Math.max(force, Math.hypot(x, y)), Math.max(couple, Math.abs(m))];
-  const size = Math.hypot(run.outline[2][0] - run.outline[0][0], run.outline[2][1] - run.outline[0][1]);
+  const [low, high] = bounds(run.outlines.flat());
+  const size = Math.hypot(high[0] - low[0], high[1] - low[1]);
   largest = { force, couple };
   noticeable = { force: NEGLIGIBLE * Math.max(force, couple / size), couple: NEGLIGIBLE * Math.max(couple, force * size) };
 });

@@ -36,8 +36,7 @@ function writeMiss(missed) {
 }
 
 function writeSummary() {
-  const [columns, rows] = run.panels.grid;
-  byId("summary").textContent = `${columns} \u00d7 ${rows} panels, ${hingeCount} hinges. Search: ${run.end_of_search}.`;
+  byId("summary").textContent = `${panelCount} panels, ${hingeCount} hinges. Search: ${run.end_of_search}.`;
 }
 
 function writeTexts() {

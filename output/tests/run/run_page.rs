@@ -96,6 +96,19 @@ fn the_page_needs_no_other_file_and_agrees_with_the_report() {
     assert!(data["scene"].as_str().unwrap().contains("k_theta = 300.0"));
 }
 
+#[test]
+fn a_trimmed_panel_is_drawn_as_its_boundary() {
+    let corners = "[[0, 0], [1, 0], [1, 0.5], [0.5, 1.5], [0, 1]]";
+    let trimmed = format!("trimmed = [{{ panel = [2, 2], corners = {corners} }}]");
+    let cells = format!("\n[cells]\nvoids = [\"oo\", \"oo\"]\n{trimmed}\n");
+    let run = Finished::new(&(SCENE.to_owned() + &cells));
+    let panels = &page(&run).1["panels"];
+    assert_eq!((&panels["trimmed"][0][0], &panels["places"][8]), (&json!(8), &json!([2, 2])));
+    let (cell, boundary) = (floats(&panels["corners"]), floats(&panels["trimmed"][0][1]));
+    assert_eq!((boundary.len(), &boundary[..4]), (10, &cell[64..68]));
+    assert_eq!((panels["trimmed"].as_array().unwrap().len(), &panels["outline"]), (1, &json!([])));
+}
+
 fn assert_without(states: &Value, names: &[&str]) {
     for name in names {
         assert!(states.get(name).is_none(), "{name}");

@@ -94,20 +94,21 @@ function addGrip(list, grip) {
 
 /** The panel at a pixel, and which of its points is nearest: its centroid or the middle of an edge. */
 function panelAt([px, py]) {
-  const inside = (corners) =>
-    corners.every(([x, y], c) => {
-      const [u, v] = corners[(c + 1) % 4];
-      return (u - x) * (py - y) - (v - y) * (px - x) <= 0;
-    });
-  const k = cornersDrawn.findIndex(inside);
+  const inside = (points) =>
+    points.filter(([x, y], i) => {
+      const [u, v] = points[(i + 1) % points.length];
+      return y > py !== v > py && px < x + ((py - y) / (v - y)) * (u - x);
+    }).length % 2 === 1;
+  const k = boundariesDrawn.findIndex(inside);
   if (k < 0) return null;
   const corners = cornersDrawn[k];
-  const points = { centroid: meanOf(corners) };
-  EDGES.forEach((edge, c) => { points[edge] = meanOf([corners[c], corners[(c + 1) % 4]]); });
+  const points = { centroid: meanOf(boundariesDrawn[k]) };
+  // A trimmed panel has no edges that a scene names.
+  if (!run.panels.trimmed.some(([trimmed]) => trimmed === k))
+    EDGES.forEach((edge, c) => { points[edge] = meanOf([corners[c], corners[(c + 1) % 4]]); });
   const distance = (name) => Math.hypot(points[name][0] - px, points[name][1] - py);
   const at = Object.keys(points).reduce((best, name) => (distance(name) < distance(best) ? name : best));
-  const columns = run.panels.grid[0];
-  return { panel: [k % columns, Math.floor(k / columns)], at };
+  return { panel: run.panels.places[k], at };
 }
 
 /** The menu of a panel, in the place of the mode's fields. */

@@ -22,7 +22,7 @@ let busy = false;
 
 let times = { draft: null, everyday: null, recent: [] };
 
-/** The designs of this visit: run, loss, outline error, and the corners of the deployed panels (mm). */
+/** The designs of this visit: run, loss, outline error, and the boundaries of the deployed panels (mm). */
 let designs = [];
 
 /** The scene file of the sheet that is open. */
@@ -237,10 +237,10 @@ function grown() {
   return ["x0", "x1", "y0", "y1"].some((side) => Math.abs(now[side] - before[side]) > 0.08 * size);
 }
 
-/** The corners of the deployed panels (mm). */
+/** The boundaries of the deployed panels (mm). */
 function finalOutline() {
   const last = stateCount - 1;
-  return Array.from({ length: panelCount }, (_, k) => [0, 1, 2, 3].map((c) => corner(last, k, c)));
+  return boundaries.map((_, k) => boundary(last, k));
 }
 
 /** Adds the best design of a run to the list, unless it is there. */
@@ -253,7 +253,7 @@ function addDesign(name) {
 
 overlays.push(() => {
   const before = byId("ghost").checked && designs[designs.length - 2];
-  if (before) for (const corners of before.outline) draw(marks, "path", { d: outlinePath(corners), fill: "none", stroke: TEAL, "stroke-width": 1.2 });
+  if (before) for (const panel of before.outline) draw(marks, "path", { d: outlinePath(panel), fill: "none", stroke: TEAL, "stroke-width": 1.2 });
 });
 
 function writeDesigns() {

@@ -3,7 +3,7 @@
 
 use fe_driver::{CalculiX, SolveService, SolveStore};
 use mesher::Tier;
-use scene::{Posture, Scene, SceneConfig};
+use scene::{CellsConfig, Posture, Scene, SceneConfig, TrimmedPanel};
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
@@ -71,6 +71,24 @@ fn panels_held_flat_go_where_the_law_has_them() {
     // The path agrees with the path of the law from its beginning.
     let half = branch.path.iter().find(|state| state.fraction > 0.5).unwrap();
     assert!(half.corners[1] < 0.005 * check.size, "{half:?}");
+}
+
+/// The panel at the upper right has a dent and two parts outside of its cell.
+#[test]
+fn a_trimmed_panel_is_meshed_as_its_boundary() {
+    let corners = [[0.0, 0.0], [1.0, 0.0], [1.0, 0.45], [1.3, 0.6], [0.7, 0.7], [0.6, 1.3]];
+    let corners = corners.into_iter().chain([[0.45, 1.0], [0.0, 1.0]]).collect();
+    let trimmed = vec![TrimmedPanel { panel: [1, 1], corners }];
+    let cells = CellsConfig { voids: vec!["o".to_owned()], trimmed };
+    let scene = scene(|config| config.cells = Some(cells));
+    let task = task(&scene, None).unwrap();
+    let versions = CalculiX::find().unwrap().versions();
+    let shape = task.solve(&versions).unwrap().problem.shape;
+    let found = shape.panels[3].corners[3..6].iter().flatten().map(|x| x.round());
+    assert_eq!(found.collect::<Vec<_>>(), [161.0, 112.0, 119.0, 119.0, 112.0, 161.0]);
+    let last = checked(&task, Duration::from_secs(300));
+    let last = last.last().unwrap();
+    assert!(last.fraction == 1.0 && last.corners[0] < 0.5, "{last:?}");
 }
 
 /// Four of six panels; the other two move as the law predicts.
