@@ -27,13 +27,11 @@ pub fn expected(fit: &FittedScene, thickness: f64) -> String {
         "{panels} panels of {side:.0} mm, opened by {opening:.0} deg, show {seen:.1} % of the target (common area over the area of both, gaps \
          between panels closed)"
     )];
+    let two = 2.0 * side;
     lines.extend(lost.iter().map(|part| {
-        format!(
-            "not shown: a part {:.0} mm wide {}; two panels are {:.0} mm wide",
-            part.width * side,
-            in_words(part.place),
-            2.0 * side
-        )
+        let (width, place) = (part.width * side, in_words(part.place));
+        let why = if width < two { "it" } else { "what joins it to the rest" };
+        format!("not shown: a part {width:.0} mm wide {place}; {why} is narrower than two panels of {side:.0} mm")
     }));
     lines.extend(kept_by.map(|factor| {
         format!(

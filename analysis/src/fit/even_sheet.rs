@@ -21,8 +21,9 @@ const SHIFTS: u32 = 4;
 const TURNS: u32 = 6;
 /// Places along the axis of a symmetric drawing.
 const ALONG: u32 = 16;
-/// The places with most loops whose panels are made.
-const MADE: usize = 16;
+/// Numbers of the places with most loops whose panels are made, for a sheet and for a comparison.
+pub(super) const THOROUGH: usize = 16;
+pub(super) const QUICK: usize = 2;
 /// Distance of the points of a raster in sides of a square.
 const RASTER: f64 = 0.05;
 /// Tolerance of the drawing in sides of a square.
@@ -51,9 +52,9 @@ pub struct EvenSheet {
 }
 
 impl EvenSheet {
-    /// The best sheet of a drawing whose longer side is `size` squares long when flat; `None` if the
-    /// drawing is narrower than two squares everywhere.
-    pub fn new(drawing: &Region, size: f64, limits: Limits) -> Option<Self> {
+    /// The best sheet of a drawing whose longer side is `size` squares long when flat, of `made` that
+    /// are compared; `None` if the drawing is narrower than two squares everywhere.
+    pub fn new(drawing: &Region, size: f64, limits: Limits, made: usize) -> Option<Self> {
         let [low, high] = drawing.bounds();
         let scale = size * limits.opening.pitch() / longer_side(drawing);
         let drawing = drawing.simplified(TOLERANCE / scale, |_| false);
@@ -61,11 +62,8 @@ impl EvenSheet {
         let symmetric = mirror_axis(&drawing).and_then(|(angle, centroid)| {
             let along = (0..ALONG).map(|v| [0.0, f64::from(v) / f64::from(ALONG)]);
             let turn = FRAC_PI_2 - angle;
-            best(
-                &drawing,
-                limits,
-                along.map(|at| placed(centroid, scale, turn, at, &limits)).collect(),
-            )
+            let places = along.map(|at| placed(centroid, scale, turn, at, &limits)).collect();
+            best(&drawing, limits, places, made)
         });
         let turns = (0..TURNS).map(|turn| FRAC_PI_2 * f64::from(turn) / f64::from(TURNS));
         let shift = |k: u32| f64::from(k) / f64::from(SHIFTS);
@@ -73,7 +71,7 @@ impl EvenSheet {
             let all = (0..2 * SHIFTS).flat_map(|u| (0..2 * SHIFTS).map(move |v| [u, v]));
             all.map(move |[u, v]| placed(middle, scale, turn, [shift(u), shift(v)], &limits))
         };
-        let any = best(&drawing, limits, turns.flat_map(shifts).collect());
+        let any = best(&drawing, limits, turns.flat_map(shifts).collect(), made);
         let value = |sheet: &Option<Self>| sheet.as_ref().map_or(0.0, |sheet| sheet.seen);
         if value(&symmetric) + FOR_SYMMETRY >= value(&any) { symmetric } else { any }
     }
@@ -163,11 +161,16 @@ fn placed(about: [f64; 2], scale: f64, turn: f64, at: [f64; 2], limits: &Limits)
 }
 
 /// The best sheet of the places with most loops.
-fn best(drawing: &Region, limits: Limits, places: Vec<Similarity>) -> Option<EvenSheet> {
+fn best(
+    drawing: &Region,
+    limits: Limits,
+    places: Vec<Similarity>,
+    made: usize,
+) -> Option<EvenSheet> {
     let at = |place| EvenSheet::at(drawing, limits, place);
     let mut found: Vec<EvenSheet> = places.into_par_iter().filter_map(at).collect();
     found.sort_by_key(|sheet| Reverse(sheet.loops.len()));
-    found.truncate(MADE);
+    found.truncate(made);
     let made: Vec<EvenSheet> = found.into_par_iter().map(EvenSheet::with_panels).collect();
     made.into_iter().reduce(|best, other| if other.seen > best.seen { other } else { best })
 }
@@ -245,7 +248,9 @@ mod tests {
     fn drawn_sheets_are_mechanisms_whose_panels_never_overlap() {
         let mut made = 0;
         for seed in 0..8 {
-            let Some(sheet) = EvenSheet::new(&drawn(seed), 12.0, LIMITS) else { continue };
+            let Some(sheet) = EvenSheet::new(&drawn(seed), 12.0, LIMITS, THOROUGH) else {
+                continue;
+            };
             made += 1;
             let area: f64 = sheet.panels.values().map(Region::area).sum();
             for step in 0..=20 {

@@ -6,11 +6,8 @@ use std::collections::VecDeque;
 /// Panels a fastener, and the numbers of fasteners.
 const PANELS: usize = 15;
 const FASTENERS: [usize; 2] = [4, 12];
-/// Hinges of a panel among which the force of a fastener is shared without harm.
-const HINGES: usize = 3;
 
-/// Panels of several hinges far from each other along the sheet, beginning with the ends of its
-/// longest way.
+/// Panels far from each other along the sheet, beginning with the ends of its longest way.
 pub(super) fn fastened(topology: &Topology) -> Vec<usize> {
     let [fewest, most] = FASTENERS;
     let count = (topology.panel_count() / PANELS).clamp(fewest, most);
@@ -37,8 +34,8 @@ pub(super) fn fastened(topology: &Topology) -> Vec<usize> {
     };
     let farthest = |some: &[usize]| {
         let steps = steps_from(some);
-        let shares = |panel: &usize| neighbours[*panel].len().min(HINGES);
-        let far = |panel: &usize| (steps[*panel] > 0, shares(panel), steps[*panel]);
+        // Several hinges share the force of a fastener.
+        let far = |panel: &usize| (steps[*panel], neighbours[*panel].len());
         (0..steps.len()).max_by_key(far).unwrap_or_default()
     };
     let mut chosen = vec![farthest(&[0])];

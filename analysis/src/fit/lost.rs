@@ -1,6 +1,6 @@
 //! The parts of a drawing that its sheet does not show.
 
-use crate::fit::even_sheet::EvenSheet;
+use crate::fit::even_sheet::{EvenSheet, QUICK};
 use crate::fit::trimmed::Limits;
 use design::geometry::plane::{complex, point};
 use design::geometry::region::{Corners, Region, as_seen};
@@ -61,7 +61,7 @@ fn width(region: &Region) -> f64 {
 /// those that are tried does.
 pub(super) fn kept_by(target: &Region, size: f64, limits: Limits) -> Option<f64> {
     LARGER.into_iter().find(|factor| {
-        let larger = EvenSheet::new(target, factor * size, limits);
+        let larger = EvenSheet::new(target, factor * size, limits, QUICK);
         larger.is_some_and(|sheet| lost(&sheet).is_empty())
     })
 }

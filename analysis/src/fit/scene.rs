@@ -2,11 +2,11 @@
 //! fastened at the places of its opening.
 
 use crate::fit::even_pattern::Opening;
-use crate::fit::even_sheet::EvenSheet;
+use crate::fit::even_sheet::{EvenSheet, THOROUGH};
 use crate::fit::fasteners::fastened;
 use crate::fit::lost::{Lost, kept_by, lost};
 use crate::fit::opening::{free_axial_opening, safe_opening};
-use crate::fit::trimmed::Limits;
+use crate::fit::trimmed::{Limits, TOLERANCE};
 use design::geometry::plane::{complex, point};
 use design::geometry::polygon::bounds;
 use design::geometry::region::Region;
@@ -87,7 +87,7 @@ pub fn fitted(scene: &Scene) -> Result<FittedScene, FitError> {
     let side = SIDE * process.r_win;
     let limits = Limits {
         opening: Opening { angle, set_back: set_back(scene, angle) / side },
-        window: (process.r_win + 0.5 * process.slit_width) / side,
+        window: (process.r_win + 0.5 * process.slit_width) / side + TOLERANCE,
         width: WIDTH * scene.material.thickness / side,
         gap: f64::max(GAP, process.slit_width / side),
         slit: process.slit_width / side,
@@ -141,7 +141,7 @@ fn largest(target: &Region, stock: [f64; 2], limits: Limits) -> Option<EvenSheet
         * f64::max(extent_of(target)[0], extent_of(target)[1]);
     let mut best: Option<EvenSheet> = None;
     for _ in 0..SIZES {
-        let sheet = EvenSheet::new(target, size, limits)?;
+        let sheet = EvenSheet::new(target, size, limits, THOROUGH)?;
         let flat: Vec<[f64; 2]> = sheet.opened(0.0).contours().flatten().copied().collect();
         let factor = fit_into(stock, &flat);
         size *= factor;

@@ -22,7 +22,7 @@ const RINGS: usize = 2;
 /// The smallest area of the drawing for which a missing square becomes a part.
 const LEAST_PART: f64 = 0.02;
 /// By how much the edges of a panel are simplified.
-const TOLERANCE: f64 = 6e-3;
+pub(super) const TOLERANCE: f64 = 6e-3;
 /// Half the width of a gap between parts of a panel that is a rounding error.
 const HAIR: f64 = 1e-3;
 /// Area of a hole that is a rounding error.

@@ -77,8 +77,8 @@ impl<'a> State<'a> {
         let mut page = Page::around(extent, &self.scene.config.title, subtitle, true);
         let sketch = &mut page.sketch;
         let ghost = sketch.dashed(MUTED, 0.8, 3.0);
-        for outline in self.sheet.outlines() {
-            sketch.canvas.polygon(&outline, ghost);
+        if self.sheet.topology.is_full() {
+            sketch.canvas.polygon(&self.sheet.outline.corners, ghost);
         }
         self.panels(sketch);
         self.windows(sketch, scale);
