@@ -156,7 +156,7 @@ impl Report {
         let warnings = findings(&deployed);
         deployed.severities = warnings.iter().map(|found| found.severity).collect();
         let facts = facts(&deployed, &run);
-        let miss = miss(scene, run.seen, run.after.outline_error, deployed.flat_size());
+        let miss = miss(run.seen, run.after.outline_error, deployed.flat_size());
         let hinges = deployed.hinges;
         let (search, coarse_searches) = (&designed.search, &designed.coarse_searches);
         let last = coarse_searches.last().filter(|search| search.finer == Level::Final);

@@ -31,6 +31,10 @@ pub struct TrimmedPanel {
     pub panel: [usize; 2],
     /// Its corners in sides of its cell from the lower left corner of the cell, counter-clockwise.
     pub corners: Vec<[f64; 2]>,
+    /// Numbers of the corners, counted from 0, that are on the target when the sheet is open: their
+    /// distance from it is measured.
+    #[serde(default)]
+    pub outer: Vec<usize>,
 }
 
 impl From<&Topology> for CellsConfig {
@@ -40,12 +44,17 @@ impl From<&Topology> for CellsConfig {
             let symbol = |i| if topology.has_void(i, j) { KEPT } else { LEFT_OUT };
             (1..m).map(symbol).collect()
         };
-        let shapes = std::iter::zip(&topology.places, &topology.trims);
+        let shapes = std::iter::zip(&topology.places, &topology.trims).enumerate();
+        let outer = |number: usize| {
+            let of_panel = topology.outer.iter().filter(move |(panel, _)| *panel == number);
+            of_panel.map(|(_, corner)| *corner).collect()
+        };
         Self {
             voids: (1..n).rev().map(row).collect(),
             trimmed: shapes
-                .filter_map(|(panel, trim)| {
-                    Some(TrimmedPanel { panel: *panel, corners: trim.as_ref()?.to_vec() })
+                .filter_map(|(number, (panel, trim))| {
+                    let corners = trim.as_ref()?.to_vec();
+                    Some(TrimmedPanel { panel: *panel, corners, outer: outer(number) })
                 })
                 .collect(),
         }
@@ -79,7 +88,7 @@ impl CellsConfig {
                     .to_owned(),
             ));
         }
-        for TrimmedPanel { panel: [p, q], corners } in &self.trimmed {
+        for TrimmedPanel { panel: [p, q], corners, outer } in &self.trimmed {
             let Some(number) = topology.panel(*p, *q) else {
                 return Err(wrong(format!(
                     "`trimmed` names the cell [{p}, {q}], which is no panel"
@@ -91,6 +100,12 @@ impl CellsConfig {
                     "the corners of panel [{p}, {q}] are no polygon, counter-clockwise, that does not cross itself"
                 )));
             }
+            if let Some(corner) = outer.iter().find(|corner| **corner >= corners.len()) {
+                return Err(wrong(format!(
+                    "panel [{p}, {q}] has no corner {corner}, which is `outer`"
+                )));
+            }
+            topology.outer.extend(outer.iter().map(|corner| (number, *corner)));
             topology.trims[number] = Some(corners.as_slice().into());
         }
         Ok(topology)

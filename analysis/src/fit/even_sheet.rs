@@ -5,7 +5,7 @@ use super::even_pattern::{Cell, moved, squares};
 use super::raster::Raster;
 use super::trimmed::{Limits, ON_EDGE, loops, opened, panels};
 use design::geometry::plane::{complex, point};
-use design::geometry::polygon::distance;
+use design::geometry::polygon::{distance, distance_to_outline};
 use design::geometry::region::{Contour, Region, seen};
 use design::geometry::similarity::Similarity;
 use design::pattern::grid::Grid;
@@ -33,6 +33,8 @@ const SYMMETRIC: f64 = 0.97;
 /// Points along the longer side of a drawing, and angles, for its axis.
 const SAMPLES: f64 = 256.0;
 const ANGLES: u32 = 360;
+/// Distance of a corner on the opened pattern from the drawing up to which it is on it.
+const NEAR: f64 = 0.01;
 /// What a symmetric sheet may lose of the seen area.
 const FOR_SYMMETRY: f64 = 0.02;
 
@@ -136,7 +138,15 @@ impl EvenSheet {
             boundary.dedup_by(|one, other| distance(*one, *other) < ON_EDGE);
             let first = boundary[0];
             boundary.pop_if(|last| distance(*last, first) < ON_EDGE);
+            let on_drawing = |at: &[f64; 2]| {
+                let at = [0, 1].map(|c| at[c] + corner[c]);
+                let there = moved(self.limits.opening.motion(cell), at);
+                let mut contours = self.drawing.contours();
+                contours.any(|contour| distance_to_outline(there, contour) < NEAR)
+            };
             if boundary.len() != 4 || boundary.iter().flatten().any(|x| *x != 0.0 && *x != 1.0) {
+                let outer = (0..boundary.len()).filter(|i| on_drawing(&boundary[*i]));
+                topology.outer.extend(outer.map(|corner| (panel, corner)));
                 topology.trims[panel] = Some(boundary.into());
             }
         }

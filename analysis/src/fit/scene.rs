@@ -29,8 +29,9 @@ const SIDE: f64 = 2.25;
 const NARROW: f64 = 0.125;
 /// Smallest width of a part of a panel, over the thickness.
 const WIDTH: f64 = 2.0;
-/// Smallest distance of panels that do not hang together, over the side of a panel.
-const GAP: f64 = 0.02;
+/// Smallest distance of panels that do not hang together, over the side of a panel: more than what
+/// an uneven opening moves them.
+const GAP: f64 = 0.05;
 /// Sizes that are tried until a sheet fills its stock.
 const SIZES: usize = 4;
 /// Part of the stock that a sheet fills at least.

@@ -256,17 +256,11 @@ impl Sheet {
         ring
     }
 
-    /// The corners of the boundaries of panels that belong to no hinge and are on the outline.
+    /// The corners of the boundaries of panels that belong to no hinge and are on the outline of the
+    /// opened sheet.
     pub fn free_outline_corners(&self) -> Vec<PanelCorner> {
-        let in_cell = |[x, y]: [f64; 2]| [x, y].iter().all(|x| *x == 0.0 || *x == 1.0);
-        let trimmed = self.topology.trims.iter().enumerate().flat_map(|(panel, trim)| {
-            let points = trim.iter().flat_map(|trim| trim.iter().enumerate());
-            let points = points.filter(move |(_, at)| !in_cell(**at));
-            points.map(move |(point, _)| (panel, point))
-        });
-        let trimmed: Vec<_> = trimmed.collect();
-        if !trimmed.is_empty() {
-            return trimmed;
+        if !self.topology.outer.is_empty() {
+            return self.topology.outer.clone();
         }
         let mut corners = self.outline_corners();
         corners.retain(|corner| {

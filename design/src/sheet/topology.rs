@@ -46,6 +46,8 @@ pub struct Topology {
     pub endpoints: Vec<[usize; 4]>,
     /// The shape of each panel that is not its cell.
     pub trims: Vec<Option<Trim>>,
+    /// The points of trims that are on the outline of the opened sheet.
+    pub outer: Vec<PanelCorner>,
     /// The panel of each cell.
     numbers: Vec<Option<usize>>,
     /// Whether the void at each interior vertex is kept, row by row.
@@ -84,6 +86,7 @@ impl Topology {
         let mut topology = Self {
             endpoints: places.iter().map(|place| endpoints(grid, *place)).collect(),
             trims: vec![None; places.len()],
+            outer: Vec::new(),
             grid,
             places,
             sites: Vec::new(),

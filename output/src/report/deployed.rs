@@ -112,15 +112,11 @@ pub(super) fn of_the_load(ratio: f64) -> String {
 }
 
 /// How much of the target one sees, from 0 to 1, and the distance of the outline of a sheet of some
-/// flat size (mm), in words. The corners of an even pattern are on its gaps too: it has no such
-/// distance.
-pub(crate) fn miss(scene: &Scene, seen: f64, outline_error: f64, size: [f64; 2]) -> String {
-    let seen = format!("{} % of the target is seen", rounded(100.0 * seen, 3));
-    if scene.config.cells.is_some() {
-        return seen;
-    }
+/// flat size (mm), in words.
+pub(crate) fn miss(seen: f64, outline_error: f64, size: [f64; 2]) -> String {
     format!(
-        "{seen}; the outline is {} mm (root mean square) from it, {} % of the longer side of the flat sheet",
+        "{} % of the target is seen; the outline is {} mm (root mean square) from it, {} % of the longer side of the flat sheet",
+        rounded(100.0 * seen, 3),
         rounded(outline_error, 3),
         rounded(100.0 * outline_error / size[0].max(size[1]), 2)
     )

@@ -172,7 +172,6 @@ impl<'a> SheetData<'a> {
         Self {
             carries_load: scene.hinge.carries_load(),
             miss: miss(
-                scene,
                 seen(scene, deployment),
                 outline_error(&problem.objective, deployment),
                 extent(sheet.outlines().into_iter().flatten()),

@@ -78,7 +78,7 @@ fn panels_held_flat_go_where_the_law_has_them() {
 fn a_trimmed_panel_is_meshed_as_its_boundary() {
     let corners = [[0.0, 0.0], [1.0, 0.0], [1.0, 0.45], [1.3, 0.6], [0.7, 0.7], [0.6, 1.3]];
     let corners = corners.into_iter().chain([[0.45, 1.0], [0.0, 1.0]]).collect();
-    let trimmed = vec![TrimmedPanel { panel: [1, 1], corners }];
+    let trimmed = vec![TrimmedPanel { panel: [1, 1], corners, outer: Vec::new() }];
     let cells = CellsConfig { voids: vec!["o".to_owned()], trimmed };
     let scene = scene(|config| config.cells = Some(cells));
     let task = task(&scene, None).unwrap();

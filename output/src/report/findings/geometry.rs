@@ -115,14 +115,14 @@ fn not_recognised(of: &DeployedDesign) -> Option<Found> {
 }
 
 fn missed(of: &DeployedDesign) -> Option<Found> {
-    let error = of.run.filter(|_| of.scene.config.cells.is_none())?.after.outline_error;
+    let error = of.run?.after.outline_error;
     let [width, height] = of.flat_size();
     let ratio = error / width.max(height);
     let mut grave =
         std::iter::zip(MISSED, [Note, Warning, Error]).filter(|(least, _)| ratio > *least);
     let (_, severity) = grave.next_back()?;
     let seen = of.run?.seen;
-    Some(found(miss(of.scene, seen, error, of.flat_size())).with(severity))
+    Some(found(miss(seen, error, of.flat_size())).with(severity))
 }
 
 /// Panels cannot lie over each other, whatever the hinge law. On the way the edges of closed cuts,
