@@ -175,7 +175,7 @@ mod tests {
         let whole = |name| read(&text, name).into_iter().map(i64::from_le_bytes);
         assert!(whole("connectivity").eq([0, 1, 2, 3, 1, 4, 2, 3]));
         assert!(whole("offsets").eq([4, 8]));
-        assert_eq!(read::<1>(&text, "types"), [[9], [9]]);
+        assert_eq!(read::<1>(&text, "types"), [[7], [7]]);
     }
 
     #[test]

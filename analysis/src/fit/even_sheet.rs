@@ -141,8 +141,8 @@ impl EvenSheet {
             let on_drawing = |at: &[f64; 2]| {
                 let at = [0, 1].map(|c| at[c] + corner[c]);
                 let there = moved(self.limits.opening.motion(cell), at);
-                let mut contours = self.drawing.contours();
-                contours.any(|contour| distance_to_outline(there, contour) < NEAR)
+                let mut pieces = self.drawing.polygons.iter();
+                pieces.any(|contours| distance_to_outline(there, &contours[0]) < NEAR)
             };
             if boundary.len() != 4 || boundary.iter().flatten().any(|x| *x != 0.0 && *x != 1.0) {
                 let outer = (0..boundary.len()).filter(|i| on_drawing(&boundary[*i]));

@@ -17,7 +17,6 @@ use scene::{
     At, CellsConfig, Level, OptimiserConfig, Posture, PostureConfig, Scene, SceneConfig,
     SceneError, StartConfig, SupportConfig, SupportKind, rounded,
 };
-use std::f64::consts::FRAC_PI_2;
 
 /// The largest opening that is planned (rad): 60 degrees.
 const MOST: f64 = 1.047;
@@ -33,14 +32,12 @@ const WIDTH: f64 = 2.0;
 /// an uneven opening moves them.
 const GAP: f64 = 0.05;
 /// Sizes that are tried until a sheet fills its stock.
-const SIZES: usize = 4;
+const SIZES: usize = 6;
 /// Part of the stock that a sheet fills at least.
 const FILLED: f64 = 0.95;
 /// Steps of the search for the widths, and the length of its first step.
 const STEPS: usize = 0;
 const FIRST_STEP: f64 = 0.03;
-/// Angles between which the turn in the stock is searched (rad): one degree.
-const TURN: f64 = 0.01745;
 
 /// A scene of an even sheet, and what is expected of it.
 pub struct FittedScene {
@@ -94,7 +91,8 @@ pub fn fitted(scene: &Scene) -> Result<FittedScene, FitError> {
         slit: process.slit_width / side,
     };
     let target = scene.target.region();
-    let stock = extent(&scene.config.sheet.outline().corners).map(|length| length / side);
+    let space = Region::union_of(vec![scene.config.sheet.outline().corners.to_vec()]);
+    let stock = extent_of(&space).map(|length| length / side);
     let sheet = largest(&target, stock, limits).ok_or(FitError::Narrow { side })?;
     let lost = lost(&sheet);
     let size = sheet.size(&target);
@@ -136,43 +134,41 @@ fn set_back(scene: &Scene, angle: f64) -> f64 {
     })
 }
 
-/// The largest sheet that fits into a stock at some turn; lengths in sides of a panel.
+/// The largest sheet that fits into a stock that lies or stands; lengths in sides of a panel. The
+/// drawing stands upright.
 fn largest(target: &Region, stock: [f64; 2], limits: Limits) -> Option<EvenSheet> {
-    let mut size = fit_into(stock, &target.contours().flatten().copied().collect::<Vec<_>>())
-        * f64::max(extent_of(target)[0], extent_of(target)[1]);
+    let [width, height] = extent_of(target);
+    let mut size = growth([width, height], stock) * f64::max(width, height);
     let mut best: Option<EvenSheet> = None;
     for _ in 0..SIZES {
         let sheet = EvenSheet::new(target, size, limits, THOROUGH)?;
-        let flat: Vec<[f64; 2]> = sheet.opened(0.0).contours().flatten().copied().collect();
-        let factor = fit_into(stock, &flat);
-        size *= factor;
-        if factor >= 1.0 {
-            let is_larger =
-                best.as_ref().is_none_or(|best| sheet.place.scale() > best.place.scale());
-            best = if is_larger { Some(sheet) } else { best };
-            if factor * FILLED < 1.0 {
-                break;
-            }
+        let upright = c64::cis(-sheet.place.rotation());
+        let flat = sheet.opened(0.0).map(|at| point(upright * complex(at)));
+        let factor = growth(extent_of(&flat), stock);
+        size *= 0.995 * factor;
+        if factor < 1.0 {
+            continue;
         }
-        size *= 0.995;
+        let is_larger = |best: &EvenSheet| sheet.place.scale() > best.place.scale();
+        if best.as_ref().is_none_or(is_larger) {
+            best = Some(sheet);
+        }
+        if factor * FILLED < 1.0 {
+            break;
+        }
     }
     best
+}
+
+/// By what factor a sheet of some width and height may grow in a stock that lies or stands.
+fn growth([width, height]: [f64; 2], [one, other]: [f64; 2]) -> f64 {
+    let in_stock = |x: f64, y: f64| f64::min(x / width, y / height);
+    f64::max(in_stock(one, other), in_stock(other, one))
 }
 
 fn extent_of(region: &Region) -> [f64; 2] {
     let [low, high] = region.bounds();
     [0, 1].map(|c| high[c] - low[c])
-}
-
-/// By what factor points may grow to fill a stock at some turn.
-fn fit_into(stock: [f64; 2], points: &[[f64; 2]]) -> f64 {
-    let turns = (0..).map(|k| TURN * f64::from(k)).take_while(|turn| *turn < 2.0 * FRAC_PI_2);
-    let factor = |turn: f64| {
-        let turned = points.iter().map(|p| point(c64::cis(turn) * complex(*p)));
-        let [low, high] = bounds(turned);
-        f64::min(stock[0] / (high[0] - low[0]), stock[1] / (high[1] - low[1]))
-    };
-    turns.map(factor).fold(0.0, f64::max)
 }
 
 /// The keys of the scene with the sheet, its fasteners and the place of its target. The drawing
@@ -202,12 +198,12 @@ fn keys(scene: &Scene, sheet: &EvenSheet, side: f64) -> SceneConfig {
     let centre = |panel: &usize| first + complex(topology.places[*panel].map(|i| i as f64 + 0.5));
     let all = topology.panel_count();
     let middle = (0..all).map(|panel| centre(&panel)).sum::<c64>() / all as f64;
-    let growth = sheet.limits.opening.pitch() - 1.0;
+    let opened = sheet.limits.opening.pitch() - 1.0;
     let fastener = |panel: usize| {
         let centre = centre(&panel);
         SupportConfig {
             at: At::Point(in_sheet(centre)),
-            displacement: point(back * growth * (centre - middle)).map(rounded),
+            displacement: point(back * opened * (centre - middle)).map(rounded),
             ..SupportConfig::at_centroid(topology.places[panel], SupportKind::Pin)
         }
     };
@@ -221,13 +217,7 @@ fn keys(scene: &Scene, sheet: &EvenSheet, side: f64) -> SceneConfig {
     };
     // From the target to the opened sheet whose middle stays.
     let turn = back * sheet.place.turn;
-    let shift = back * (sheet.place.shift - growth * middle - first) - complex(low);
+    let shift = back * (sheet.place.shift - opened * middle - first) - complex(low);
     config.target = config.target.placed(&Similarity { turn, shift }, &scene.target.points);
     config
-}
-
-/// Width and height of points (mm).
-fn extent(points: &[[f64; 2]]) -> [f64; 2] {
-    let [low, high] = bounds(points.iter().copied());
-    [0, 1].map(|c| high[c] - low[c])
 }
