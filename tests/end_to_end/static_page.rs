@@ -60,7 +60,7 @@ fn a_silhouette_becomes_a_cut_file_and_nothing_is_sent() {
     tab.wait("document.getElementById('refusal').textContent.includes('nothing.svg')");
     let leaf = Path::new(env!("CARGO_MANIFEST_DIR")).join("configs/targets/leaf.svg");
     tab.drop_file(leaf.to_str().unwrap(), "#studio");
-    tab.wait("document.getElementById('fit').textContent.includes('on pins: within')");
+    tab.wait("document.getElementById('fit').textContent.includes('of the target (common area')");
     tab.wait("document.documentElement.dataset.working === ''");
     // What a person waits for: page, program and the weights of one material.
     let loaded: usize = asked.lock().unwrap().iter().map(|(_, size)| size).sum();

@@ -131,7 +131,8 @@ fn draw(tab: &mut Tab, studio: &Studio, project: &Path) {
 /// Searches, also after pauses and undone steps; returns the text of the cut file that the page
 /// links.
 fn search(tab: &mut Tab, studio: &Studio) -> Value {
-    // The search is paused and goes on; its steps are seen.
+    // An even pattern needs no search. This one is paused and goes on; its steps are seen.
+    after(tab, |tab| type_into(tab, "optimiser.steps", "20"));
     after(tab, |tab| {
         tab.click("#design");
         tab.wait("/^Step [1-9]/.test(document.getElementById('progress').textContent)");
@@ -278,7 +279,7 @@ fn a_silhouette_becomes_a_cut_file_without_another_control() {
     let studio = Studio::start(&work, "");
     let mut tab = Tab::open(&studio.address);
     tab.wait(&says("new-says", "W within"));
-    let fit = "document.getElementById('fit').textContent.includes('on pins: within')";
+    let fit = "document.getElementById('fit').textContent.includes('of the target (common area')";
     let figure = "document.getElementById('miss').textContent";
     // A drawing that is refused leaves no sheet; why is said where it was dropped, by its name.
     let drawing = two_leaves(&work);

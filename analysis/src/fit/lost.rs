@@ -10,6 +10,8 @@ use design::objective::centre;
 /// panel, and the part of the area of the drawing that is missed.
 const SLIVER: f64 = 0.25;
 const MISSED: f64 = 0.01;
+/// Area of a gap between opened panels at most, in squares.
+const VOID: f64 = 1.5;
 /// Halvings of the width of a part.
 const HALVINGS: usize = 12;
 /// By what factors the sheets are larger that are tried.
@@ -29,7 +31,7 @@ pub(super) fn lost(sheet: &EvenSheet) -> Vec<Lost> {
     let drawing = sheet.drawing();
     let seen = as_seen(&sheet.opened(1.0), drawing);
     let missing = drawing.minus(&seen).opened(0.5 * SLIVER);
-    let missed = MISSED * drawing.area();
+    let missed = f64::max(MISSED * drawing.area(), VOID);
     let parts = missing.polygons.into_iter().map(|part| Region { polygons: vec![part] });
     let upright = |at: [f64; 2]| point(sheet.place.back(complex(at)));
     let [low, high] = drawing.map(upright).bounds();

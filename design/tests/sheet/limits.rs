@@ -37,6 +37,12 @@ fn patterns_are_valid_and_open_without_overlap_up_to_the_second_contact() {
     }
 }
 
+#[test]
+fn a_grid_is_the_topology_of_all_its_voids() {
+    let grid = Grid { m: 4, n: 3 };
+    assert_eq!(Topology::of_voids(grid, &[true; 6]), *Arc::<Topology>::from(grid));
+}
+
 /// A panel with a hook around two others.
 #[test]
 fn a_part_of_a_panel_lies_over_a_panel_that_is_no_neighbour() {

@@ -59,7 +59,7 @@ function writeTarget(box) {
   Object.assign(file, { type: "file", accept: ".svg,.dxf,image/svg+xml", id: "drawing" });
   file.addEventListener("change", () => takeDrawing(file.files[0]));
   label.appendChild(file);
-  write(box, "p", "Or drop one anywhere: one closed path, to which the sheet is fitted.", "note");
+  write(box, "p", "Or drop one anywhere: an outline with its holes, which becomes a sheet of an even pattern.", "note");
 }
 
 function morePoints(factor) {
