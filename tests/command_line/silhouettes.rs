@@ -43,9 +43,9 @@ fn lost_parts_are_named_and_a_hidden_drawing_is_refused() {
         "cross.svg",
         "M0 0 L30 0 L30 30 L94 30 L94 0 L100 0 L100 100 L94 100 L94 36 L24 36 L24 100 L0 100 Z",
     );
-    let refused = work.error("init cross --target cross.svg --thickness 2 --size 150x150");
+    let refused = work.error("init frame --target frame.svg --thickness 2 --size 150x150");
     assert!(refused.contains("would not recognise it"), "{refused}");
-    assert!(!work.path("cross").exists());
+    assert!(!work.path("frame").exists());
 }
 
 /// The sheet of a ring is a ring: its middle rows of voids have a gap.

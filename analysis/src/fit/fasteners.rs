@@ -1,11 +1,17 @@
 //! The panels at which a sheet is held in its opened state.
 
+use design::geometry::polygon::distance_to_outline;
+use design::geometry::region::Region;
 use design::sheet::topology::Topology;
 use std::collections::VecDeque;
 
 /// Panels a fastener, and the numbers of fasteners.
 const PANELS: usize = 15;
 const FASTENERS: [usize; 2] = [4, 12];
+/// The middle of a cell, where a panel is fastened, and its least distance from an edge of the panel,
+/// in sides.
+const MIDDLE: [f64; 2] = [0.5; 2];
+const ROOM: f64 = 0.15;
 
 /// Panels far from each other along the sheet, beginning with the ends of its longest way.
 pub(super) fn fastened(topology: &Topology) -> Vec<usize> {
@@ -32,14 +38,21 @@ pub(super) fn fastened(topology: &Topology) -> Vec<usize> {
         }
         steps
     };
+    let has_room = |panel: &usize| {
+        topology.trims[*panel].as_ref().is_none_or(|trim| {
+            let room = distance_to_outline(MIDDLE, trim);
+            room > ROOM && Region::union_of(vec![trim.to_vec()]).contains(MIDDLE)
+        })
+    };
+    let panels: Vec<usize> = (0..topology.panel_count()).filter(has_room).collect();
     let farthest = |some: &[usize]| {
         let steps = steps_from(some);
         // Several hinges share the force of a fastener.
         let far = |panel: &usize| (steps[*panel], neighbours[*panel].len());
-        (0..steps.len()).max_by_key(far).unwrap_or_default()
+        panels.iter().copied().max_by_key(far).unwrap_or_default()
     };
     let mut chosen = vec![farthest(&[0])];
-    while chosen.len() < count.min(neighbours.len()) {
+    while chosen.len() < count.min(panels.len()) {
         chosen.push(farthest(&chosen));
     }
     chosen

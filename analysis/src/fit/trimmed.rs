@@ -29,6 +29,8 @@ const HAIR: f64 = 1e-3;
 const FILLED: f64 = 1e-4;
 /// Distance from an edge of a square up to which a point is on it.
 pub(super) const ON_EDGE: f64 = 1e-6;
+/// How far a window is outside the drawing at most: the border of a drawing may be an edge of squares.
+const ON_BORDER: f64 = 0.03;
 /// Points on the arc of a window in a square.
 const ARC: u32 = 4;
 
@@ -76,16 +78,23 @@ pub(super) fn loops(
     largest
 }
 
-/// Points around the part of a window in one of its squares when the pattern is open.
+/// Points around the part of a window in one of its squares when the pattern is open, a little
+/// inside.
 fn window(cell: Cell, corner: Cell, limits: &Limits) -> Vec<[f64; 2]> {
+    let (motion, centre) = (limits.opening.motion(cell), centre(cell));
+    let inner = |at: [f64; 2]| [0, 1].map(|c| at[c] + ON_BORDER * (centre[c] - at[c]).signum());
+    sector(cell, corner, limits).into_iter().map(|at| moved(motion, inner(at))).collect()
+}
+
+/// The part of a window in one of its squares.
+fn sector(cell: Cell, corner: Cell, limits: &Limits) -> Contour {
     let (corner, centre) = (corner.map(f64::from), centre(cell));
     let side = [0, 1].map(|c| limits.window * (centre[c] - corner[c]).signum());
     let arc = (0..=ARC).map(|k| {
         let (sin, cos) = (FRAC_PI_2 * f64::from(k) / f64::from(ARC)).sin_cos();
         [corner[0] + side[0] * cos, corner[1] + side[1] * sin]
     });
-    let motion = limits.opening.motion(cell);
-    arc.chain([corner]).map(|at| moved(motion, at)).collect()
+    arc.chain([corner]).collect()
 }
 
 /// The flat panels of the squares of `loops`, trimmed to an opened drawing.
@@ -178,7 +187,7 @@ impl<'a> Edge<'a> {
         pairs.into_iter().filter_map(|pair| self.hinges.get(&pair))
     }
 
-    /// A square in the drawing, apart from neighbours with which it does not hang together.
+    /// A square in the drawing, with the windows of its hinges, apart from neighbours with which it does not hang together.
     fn square(&self, cell: Cell) -> Region {
         let is_apart = |other: &Cell| {
             let pair = [cell.min(*other), cell.max(*other)];
@@ -196,7 +205,10 @@ impl<'a> Edge<'a> {
         };
         let strips = neighbours(cell).into_iter().filter(is_apart).map(strip).collect();
         let square = Region::union_of(vec![corners(cell)]).minus(&Region::union_of(strips));
-        square.common(&self.drawing[&cell])
+        let hinges = self.hinges_of(cell);
+        let sectors = hinges.map(|pair| sector(cell, hinge(*pair), self.limits)).collect();
+        let windows = Region::even_odd(sectors).common(&square);
+        square.common(&self.drawing[&cell]).union(&windows)
     }
 
     /// The parts of every panel: missing squares, row by row, in the neighbour that has the most of

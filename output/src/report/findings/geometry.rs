@@ -16,7 +16,7 @@ const SHUT: f64 = -1e-6;
 /// Distance of the outline from the target over the longer side of the flat sheet from which it is
 /// a note, a warning and an error.
 const MISSED: [f64; 3] = [0.01, 0.03, 0.2];
-/// Rounding of lengths (mm), as that of cut lines.
+/// Rounding of lengths (mm), as in cut lines.
 const ROUNDING: f64 = 1e-5;
 
 pub(super) const RULES: [Rule; 8] = [
