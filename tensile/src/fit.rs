@@ -1,11 +1,12 @@
 //! The law of a material from its specimens: mean modulus, mean hardening curve, fracture strain,
 //! and the table of the finite elements.
 
+use crate::cleaning::Cause;
 use crate::cold_drawing::{ColdDrawing, beyond_maximum_force};
-use crate::landmarks::Draw;
+use crate::landmarks::{Draw, End};
 use crate::mean_curve::mean_curve;
 use crate::record::{Record, RecordOptions};
-use crate::specimen::{End, Specimen, SpecimenOptions};
+use crate::specimen::{Specimen, SpecimenOptions};
 use crate::thinning::thinned;
 use serde::Serialize;
 use std::path::PathBuf;
@@ -158,7 +159,7 @@ impl MaterialFit {
         let mut specimens = Vec::new();
         for (path, record) in records {
             for record in Record::read_all(path, record)? {
-                specimens.push(Specimen::new(&record, &options.specimen)?);
+                specimens.push(Specimen::new(record, &options.specimen)?);
             }
         }
         same_kind(&specimens)?;
@@ -302,7 +303,9 @@ fn fracture(
     let source = match (worst(End::Drawing), worst(End::Neck)) {
         (true, _) => FractureSource::DrawRatio,
         (_, true) => FractureSource::MaximumForce,
-        _ if specimens.iter().all(Specimen::broke) => FractureSource::Break,
+        _ if specimens.iter().all(|specimen| specimen.dropped_for(Cause::Broken) > 0) => {
+            FractureSource::Break
+        }
         _ => FractureSource::RecordEnd,
     };
     let reached = |specimen: &Specimen| {

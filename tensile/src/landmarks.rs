@@ -35,6 +35,18 @@ pub struct Draw {
     pub(super) top: usize,
 }
 
+/// How a specimen ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum End {
+    /// It broke, or the record ends, while its deformation was uniform.
+    Uniform,
+    /// It necked at the maximum force.
+    Neck,
+    /// The record ends before the neck had covered the specimen.
+    Drawing,
+}
+
 /// The nominal stress (MPa) at which the curve crosses the line of slope `young` through the strain
 /// 0.2 %, after the row `from`; `None` if it does not.
 pub(super) fn offset_yield(curve: &[[f64; 2]], young: f64, from: usize) -> Option<f64> {
@@ -117,15 +129,16 @@ pub(super) fn draw(
     Ok(None)
 }
 
-/// The last row after `from` at which the strain is uniform, and whether the specimen necks after
-/// it.
-pub(super) fn uniform_end(curve: &[[f64; 2]], from: usize, noise: f64) -> (usize, bool) {
+/// The last row after `from` at which the strain is uniform, and how the specimen ends.
+pub(super) fn uniform_end(curve: &[[f64; 2]], from: usize, noise: f64) -> (usize, End) {
     let last = curve.len() - 1;
     let top = highest(curve, from, curve.len());
-    if curve[last][1] < curve[top][1] - change(curve[top][1], noise) {
-        (top, true)
+    if from > last {
+        (last, End::Drawing)
+    } else if curve[last][1] < curve[top][1] - change(curve[top][1], noise) {
+        (top, End::Neck)
     } else {
-        (last, false)
+        (last, End::Uniform)
     }
 }
 
@@ -151,7 +164,7 @@ fn lowest(curve: &[[f64; 2]], from: usize, to: usize) -> usize {
     rows.min_by(|a, b| curve[*a][1].total_cmp(&curve[*b][1])).unwrap_or(from)
 }
 
-fn highest(curve: &[[f64; 2]], from: usize, to: usize) -> usize {
+pub(super) fn highest(curve: &[[f64; 2]], from: usize, to: usize) -> usize {
     let rows = from..to;
     rows.max_by(|a, b| curve[*a][1].total_cmp(&curve[*b][1])).unwrap_or(from)
 }

@@ -49,15 +49,15 @@ mod regression;
 mod specimen;
 mod thinning;
 
-pub use cleaning::{Cause, DroppedRow};
+pub use cleaning::Cause;
 pub use fit::{FitOptions, FractureSource, HardeningRow, MaterialFit, Origin, Statistic};
-pub use landmarks::Draw;
+pub use landmarks::{Draw, End};
 pub use linear_part::LinearPart;
 pub use material_file::material_file;
 pub use preamble::StatedDimension;
 pub use quantity::Quantity;
-pub use record::{ReadColumn, RecordOptions};
-pub use specimen::{End, Softening, Specimen, SpecimenOptions};
+pub use record::{ReadColumn, RecordOptions, RecordRow};
+pub use specimen::{Softening, Specimen, SpecimenOptions};
 
 use std::path::Path;
 use support::fault::Fault;

@@ -50,19 +50,21 @@ impl Quantity {
     }
 
     /// The question whether a column of this quantity was read rightly, with the options that
-    /// decide it. `how` are the words for the `unit` that would explain its values.
-    pub(super) fn doubt(self, how: &str, unit: &str) -> String {
-        match self {
-            Force => {
-                "are --thickness, --width and the unit of the force (--units force=UNIT) right"
-                    .into()
+    /// decide it; its values would be usual in `unit`.
+    pub(super) fn doubt(self, unit: &str) -> String {
+        let how = match unit {
+            _ if self == Force => {
+                return "are --thickness, --width and --units force=UNIT right".into();
             }
-            Extension => {
-                "are --gauge-length and the unit of the extension (--units extension=UNIT) right"
-                    .into()
+            _ if self == Extension => {
+                return "are --gauge-length and --units extension=UNIT right".into();
             }
-            _ => format!("is the {self} {how} (--units {self}={unit})"),
-        }
+            "%" => "in per cent",
+            "1" => "not in per cent",
+            "UNIT" => "in another unit",
+            unit => &format!("in {unit}"),
+        };
+        format!("is the {self} {how} (--units {self}={unit})")
     }
 
     /// The number of N, MPa, mm or 1 in each unit, and its spellings.

@@ -1,5 +1,6 @@
 //! The record of one tensile test: load and deformation of every row, in MPa and as a ratio.
 
+use crate::cleaning::Cause;
 use crate::in_file;
 use crate::name::Name;
 use crate::number_table::NumberTable;
@@ -30,14 +31,16 @@ pub struct RecordOptions {
 }
 
 /// One row of a record.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct RecordRow {
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct RecordRow {
     /// Number of the line in the file, from 1.
     pub line: u64,
-    /// Deformation, dimensionless.
+    /// Nominal strain.
     pub strain: f64,
-    /// Load per area (MPa).
+    /// Nominal stress (MPa).
     pub stress: f64,
+    /// Why the row is not used, if it is not.
+    pub cause: Option<Cause>,
 }
 
 /// The curve of one specimen in the units of the project.
@@ -47,10 +50,6 @@ pub(super) struct Record {
     pub path: PathBuf,
     /// The rows as measured.
     pub rows: Vec<RecordRow>,
-    /// Quantity of the column from which the stresses are.
-    pub load: Quantity,
-    /// Quantity of the column from which the strains are.
-    pub deformation: Quantity,
     /// The columns that were read: load and deformation.
     pub read_as: [ReadColumn; 2],
     /// The dimensions that were read from the file.
@@ -62,19 +61,14 @@ pub(super) struct Record {
 }
 
 /// Limits of the values (dimensionless, MPa); wrong units exceed them.
-const MIN_STRAIN: f64 = -0.1;
-const MAX_STRAIN: f64 = 10.0;
-const MAX_STRESS: f64 = 1e6;
+const STRAIN: [f64; 2] = [-0.1, 10.0];
+const STRESS: [f64; 2] = [-1e6, 1e6];
 /// A strain without unit must be smaller: it could be in per cent.
 const MAX_STRAIN_WITHOUT_UNIT: f64 = 1.0;
 /// Largest relative difference between an option and the dimension in a file, and the difference
 /// from which on a note names it.
 const CONTRADICTION: f64 = 0.1;
 const SAME: f64 = 1e-3;
-/// What is wrong with `1,234`, and what to do.
-const THOUSANDS: &str = "has separators of thousands, or another decimal sign: save the file with one decimal sign and without \
-                         separators of thousands";
-
 /// How a column was read. It is printed as one phrase.
 #[derive(Clone, Debug, Serialize)]
 pub struct ReadColumn {
@@ -115,64 +109,42 @@ impl Record {
         hash: &str,
     ) -> Result<Self, Fault> {
         let refuse = in_file(path);
-        let columns = columns(&table.labels, options).map_err(refuse)?;
-        let [load, deformation] = pair(&columns, &table.labels).map_err(refuse)?;
-        let load = &ReadColumn::new(load, &table.labels, options).map_err(refuse)?;
-        let deformation = &ReadColumn::new(deformation, &table.labels, options).map_err(refuse)?;
-        let Sizes { area, length, stated, mut unused } =
-            Sizes::new([load.quantity, deformation.quantity], table, options).map_err(refuse)?;
-        let used = [load.quantity, deformation.quantity];
-        for (quantity, unit) in options.units.iter().filter(|(of, _)| !used.contains(of)) {
-            unused.push(format!("--units {quantity}={unit}"));
-        }
-        for (index, label) in table.labels.iter().enumerate() {
-            let read = [load.number, deformation.number].contains(&(index + 1));
+        let (labels, path) = (&table.labels, path.to_owned());
+        let columns = columns(labels, options).map_err(refuse)?;
+        let pair = pair(&columns, labels).map_err(refuse)?;
+        let column = |index: usize| ReadColumn::new(pair[index], labels, options).map_err(refuse);
+        let read_as = [column(0)?, column(1)?];
+        let used = pair.map(|(quantity, _)| quantity);
+        let (stated, mut unused) = preamble::dimensions(&table.preamble, table.style);
+        let (sizes, stated) = sizes(used, stated, &mut unused, options).map_err(refuse)?;
+        let units = options.units.iter().filter(|(of, _)| !used.contains(of));
+        unused.extend(units.map(|(quantity, unit)| format!("--units {quantity}={unit}")));
+        for (index, label) in labels.iter().enumerate() {
             let chosen = columns.iter().any(|(_, at)| *at == index);
+            let read = pair.iter().any(|(_, at)| *at == index);
             if !read && (chosen || Name::of(label).is_near_quantity()) {
                 unused.push(format!("column {}", title(index, label)));
             }
         }
-        let at = |row: &TextRow, what: String| {
-            fault(format!("{}:{}", path.display(), row.line), what, "")
+        let at = |row: &TextRow| {
+            let place = format!("{}:{}", path.display(), row.line);
+            move |what: String| fault(place, what, "")
         };
-        for column in [load, deformation] {
+        for column in &read_as {
             if let Some(row) = table.thousands(column.number - 1) {
-                let what = format!("column {} {THOUSANDS}", column.title());
-                return Err(at(row, what));
-            }
-        }
-        let mut rows = Vec::with_capacity(table.rows.len());
-        for row in &table.rows {
-            let refuse = |what| at(row, what);
-            if let Some(text) = table.beyond(row) {
-                return Err(refuse(format!(
-                    "`{text}` is beyond the last of {} columns: save the file with semicolons or tabs between the columns, \
-                     or give every column a name",
-                    table.labels.len()
+                return Err(at(row)(format!(
+                    "column {} has separators of thousands, or another decimal sign: save the file with one decimal sign and \
+                     without separators of thousands",
+                    column.title()
                 )));
             }
-            let number = |column: &ReadColumn| {
-                table.number(row, column.number - 1).map_err(|text| {
-                    let text = text.escape_debug();
-                    let what = format!("`{text}` in column {} is not a number", column.title());
-                    refuse(if is_grouped(&text.to_string()) {
-                        format!("{what}: it {THOUSANDS}")
-                    } else {
-                        format!("{what}: correct the cell or delete the line; a unit belongs in the column's name")
-                    })
-                })
-            };
-            let read = RecordRow {
-                line: row.line,
-                strain: number(deformation)? * deformation.factor / length,
-                stress: number(load)? * load.factor / area,
-            };
-            read.check(load.quantity, deformation.quantity).map_err(refuse)?;
-            rows.push(read);
         }
+        let rows =
+            table.rows.iter().map(|row| read_row(table, row, &read_as, sizes).map_err(at(row)));
+        let rows = rows.collect::<Result<Vec<_>, _>>()?;
         let most = rows.iter().map(|row| row.strain).fold(0.0, f64::max);
-        if deformation.quantity == Strain
-            && deformation.unit.is_none()
+        let deformation = &read_as[1];
+        if (deformation.quantity, &deformation.unit) == (Strain, &None)
             && most > MAX_STRAIN_WITHOUT_UNIT
         {
             return Err(refuse(format!(
@@ -181,36 +153,79 @@ impl Record {
                 deformation.title()
             )));
         }
-        Ok(Self {
-            path: path.to_owned(),
-            rows,
-            load: load.quantity,
-            deformation: deformation.quantity,
-            read_as: [load.clone(), deformation.clone()],
-            stated,
-            unused,
-            hash: hash.to_owned(),
-        })
+        if deformation.quantity == PlasticStrain {
+            return Err(refuse(
+                "contains plastic strains: it is a hardening table already; write its rows into `plastic` of the material file"
+                    .into(),
+            ));
+        }
+        Ok(Self { path, rows, read_as, stated, unused, hash: hash.to_owned() })
+    }
+
+    /// Whether the file has true values, which are not searched for a neck.
+    pub(super) fn is_local(&self) -> bool {
+        self.read_as.iter().any(|column| matches!(column.quantity, TrueStress | TrueStrain))
     }
 }
 
-impl RecordRow {
-    fn check(&self, load: Quantity, deformation: Quantity) -> Result<(), String> {
-        let Self { strain, stress, .. } = self;
-        if !(MIN_STRAIN..=MAX_STRAIN).contains(strain) {
-            return Err(format!(
-                "strain = {strain} violates {MIN_STRAIN} <= strain <= {MAX_STRAIN}: {}, or are the columns swapped?",
-                deformation.doubt("in per cent", "%")
-            ));
-        }
-        if stress.abs() > MAX_STRESS {
-            return Err(format!(
-                "stress = {stress:e} MPa violates |stress| <= {MAX_STRESS:e} MPa: {}?",
-                load.doubt("in Pa", "Pa")
-            ));
-        }
-        Ok(())
+/// The nominal values of a row, whose load and deformation are divided by `sizes`.
+fn read_row(
+    table: &NumberTable,
+    row: &TextRow,
+    read_as: &[ReadColumn; 2],
+    sizes: [f64; 2],
+) -> Result<RecordRow, String> {
+    if let Some(text) = table.beyond(row) {
+        return Err(format!(
+            "`{text}` is beyond the last of {} columns: save the file with semicolons or tabs between the columns, \
+             or give every column a name",
+            table.labels.len()
+        ));
     }
+    let number = |of: usize| {
+        let column = &read_as[of];
+        let number = table.number(row, column.number - 1).map_err(|text| {
+            format!(
+                "`{}` in column {} is not a number: correct the cell (one decimal sign, no separators of thousands; a unit \
+                 belongs in the column's name) or delete the line",
+                text.escape_debug(),
+                column.title()
+            )
+        })?;
+        Ok::<_, String>(number * column.factor / sizes[of])
+    };
+    let [mut stress, mut strain] = [number(0)?, number(1)?];
+    within(read_as, "strain", strain, STRAIN, [["", "%"]; 2])?;
+    within(read_as, "stress (MPa)", stress, STRESS, [["Pa", ""]; 2])?;
+    if read_as[1].quantity == TrueStrain {
+        strain = strain.exp_m1();
+    }
+    if read_as[0].quantity == TrueStress {
+        stress /= 1.0 + strain;
+    }
+    Ok(RecordRow { line: row.line, strain, stress, cause: None })
+}
+
+/// Refuses a value outside of its limits; `units` are those of load and deformation that would
+/// explain one below and one above, empty if none would.
+pub(super) fn within(
+    read_as: &[ReadColumn; 2],
+    name: &str,
+    value: f64,
+    [least, most]: [f64; 2],
+    units: [[&str; 2]; 2],
+) -> Result<(), String> {
+    let (than, limit, units) = match value {
+        value if value < least => ("less", least, units[0]),
+        value if value > most => ("more", most, units[1]),
+        _ => return Ok(()),
+    };
+    let suspects = read_as.iter().zip(units).filter(|(_, unit)| !unit.is_empty());
+    let doubts: String =
+        suspects.map(|(column, unit)| column.quantity.doubt(unit) + ", or ").collect();
+    Err(format!(
+        "violates the limits of the {name}, as {value:.3e} is {than} than {limit}: {doubts}are the columns swapped?"
+    ))
 }
 
 impl ReadColumn {
@@ -259,88 +274,62 @@ impl fmt::Display for ReadColumn {
 
 /// Number and name of a column.
 fn title(index: usize, label: &str) -> String {
-    match label {
-        "" => format!("{}", index + 1),
-        label => format!("{} `{label}`", index + 1),
-    }
-}
-
-/// Whether a text is a number with signs between groups of digits, as in `1,234.5` or `1'234`.
-fn is_grouped(text: &str) -> bool {
-    let sign = |c: char| c.is_whitespace() || ".,'’".contains(c);
-    text.contains(sign) && text.replace(sign, "").parse::<f64>().is_ok()
+    let number = index + 1;
+    if label.is_empty() { number.to_string() } else { format!("{number} `{label}`") }
 }
 
 /// Section (mm^2) and gauge length (mm) by which load and deformation are divided, 1 for a stress
-/// and a strain.
-struct Sizes {
-    area: f64,
-    length: f64,
-    /// Those that are from the file.
+/// and a strain, and those of the dimensions that the file states from which they are. The options
+/// decide; a file that contradicts them is refused.
+fn sizes(
+    [load, deformation]: [Quantity; 2],
     stated: Vec<StatedDimension>,
-    /// What is not used, in words.
-    unused: Vec<String>,
-}
-
-impl Sizes {
-    /// The options decide; a file that contradicts them is refused.
-    fn new(
-        [load, deformation]: [Quantity; 2],
-        table: &NumberTable,
-        options: &RecordOptions,
-    ) -> Result<Self, String> {
-        let (in_file, mut unused) = preamble::dimensions(&table.preamble, table.style);
-        let near = match &unused[..] {
-            [] => String::new(),
-            lines => format!("; not taken for one: {}", lines.join(", ")),
-        };
-        let (mut missing, mut stated) = (Vec::new(), Vec::new());
-        let mut size = |needed: bool, name: &str, given: Option<f64>| {
-            let found = in_file.iter().find(|it| it.name == name).copied();
-            match given.or(found.map(|it| it.value)) {
-                _ if !needed => {
-                    unused.extend(found.iter().map(StatedDimension::to_string));
-                    // The thickness is the sheet's too.
-                    let option = given.filter(|_| name != "thickness");
-                    unused.extend(option.map(|_| format!("--{name}")));
-                    Ok(1.0)
-                }
-                Some(value) if !(value > 0.0 && value.is_finite()) => {
-                    Err(format!("needs a positive --{name} (mm), not {value}"))
-                }
-                Some(value) => {
-                    let apart = found.map_or(0.0, |it| (it.value / value - 1.0).abs());
-                    if let Some(found) = found.filter(|_| apart > CONTRADICTION) {
-                        let what = format!("states {found}, against --{name} {value}");
-                        return Err(format!("{what}: correct one of them"));
-                    }
-                    match found.filter(|_| apart > SAME) {
-                        Some(found) => unused.push(found.to_string()),
-                        None => stated.extend(found),
-                    }
-                    Ok(value)
-                }
-                None => {
-                    missing.push(format!("--{name}"));
-                    Ok(1.0)
-                }
+    unused: &mut Vec<String>,
+    options: &RecordOptions,
+) -> Result<([f64; 2], Vec<StatedDimension>), String> {
+    let near = unused.join(", ");
+    let (force, extension) = (load == Force, deformation == Extension);
+    let (mut missing, mut used) = (Vec::new(), Vec::new());
+    let mut size = |needed: bool, name: &str, given: Option<f64>| {
+        let found = stated.iter().find(|it| it.name == name);
+        let Some(value) = given.or(found.map(|it| it.value)).filter(|_| needed) else {
+            let option = format!("--{name}");
+            if needed {
+                missing.push(option);
+            } else {
+                unused.extend(found.map(ToString::to_string));
+                // The thickness is the sheet's too.
+                unused.extend(given.filter(|_| name != "thickness").map(|_| option));
             }
+            return Ok(1.0);
         };
-        let (force, extension) = (load == Force, deformation == Extension);
-        let area =
-            size(force, "width", options.width)? * size(force, "thickness", options.thickness)?;
-        let length = size(extension, "gauge-length", options.gauge_length)?;
-        if missing.is_empty() {
-            return Ok(Self { area, length, stated, unused });
+        if !(value > 0.0 && value.is_finite()) {
+            return Err(format!("needs a positive --{name} (mm), not {value}"));
         }
-        let contains = match (force, extension) {
-            (true, true) => "a force and a length change",
-            (true, false) => "a force",
-            _ => "a length change",
-        };
-        let options = missing.join(", ");
-        Err(format!("contains {contains}: give {options} of the specimen (mm){near}"))
+        match found.map(|found| (found, (found.value / value - 1.0).abs())) {
+            Some((found, apart)) if apart > CONTRADICTION => {
+                return Err(format!(
+                    "states {found}, against --{name} {value}: correct one of them"
+                ));
+            }
+            Some((found, apart)) if apart > SAME => unused.push(found.to_string()),
+            found => used.extend(found.map(|(found, _)| *found)),
+        }
+        Ok(value)
+    };
+    let area = size(force, "width", options.width)? * size(force, "thickness", options.thickness)?;
+    let length = size(extension, "gauge-length", options.gauge_length)?;
+    if missing.is_empty() {
+        return Ok(([area, length], used));
     }
+    let read = [(force, "a force"), (extension, "a length change")];
+    let read: Vec<&str> = read.iter().filter(|(is, _)| *is).map(|(_, name)| *name).collect();
+    let near = if near.is_empty() { near } else { format!("; not taken for one: {near}") };
+    Err(format!(
+        "contains {}: give {} of the specimen (mm){near}",
+        read.join(" and "),
+        missing.join(", ")
+    ))
 }
 
 /// The columns that the options name, or else all that are recognised; those with words that are not
@@ -390,29 +379,20 @@ fn pair(
     };
     let nominal = one(&[Stress, Force])?.zip(one(&[Strain, Extension])?);
     let local = one(&[TrueStress])?.zip(one(&[PlasticStrain, TrueStrain])?);
-    match (nominal, local) {
-        (Some((load, deformation)), None) | (None, Some((load, deformation))) => {
-            Ok([load, deformation])
-        }
-        (Some(_), Some(_)) => Err(format!(
-            "has both engineering and true values in the columns {}: choose two with --columns, such as \
-             --columns strain=1,stress=2",
-            listed(labels)
-        )),
-        (None, None) => Err(format!(
-            "has the columns {}: no pair of stress (or force) and strain (or extension) is recognised; choose two \
-             with --columns, such as --columns strain=1,stress=2 or --columns extension=1,force=2",
-            listed(labels)
-        )),
-    }
+    let what = match (nominal, local) {
+        (Some(pair), None) | (None, Some(pair)) => return Ok(pair.into()),
+        (Some(_), Some(_)) => "both engineering and true values",
+        (None, None) => "no pair of stress (or force) and strain (or extension)",
+    };
+    Err(format!(
+        "has the columns {}, {what}: choose two with --columns, such as --columns strain=1,stress=2",
+        listed(labels)
+    ))
 }
 
 /// Number and name of each column.
 fn listed(labels: &[String]) -> String {
-    let named = |(index, label): (usize, &String)| match label.as_str() {
-        "" => format!("{} (without name)", index + 1),
-        label => format!("{} `{label}`", index + 1),
-    };
-    let columns: Vec<String> = labels.iter().enumerate().map(named).collect();
+    let columns: Vec<String> =
+        labels.iter().enumerate().map(|(index, label)| title(index, label)).collect();
     columns.join(", ")
 }
