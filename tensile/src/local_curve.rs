@@ -3,6 +3,7 @@
 
 use crate::isotonic::{non_decreasing, pools};
 use crate::landmarks::Draw;
+use crate::regression::mean;
 
 /// Plastic strain above which no yield can be read from a curve: its noise is too large.
 const MAX_ONSET: f64 = 5e-3;
@@ -18,6 +19,20 @@ fn local(row: &[f64; 2], young: f64) -> [f64; 2] {
     [stress, strain - stress / young]
 }
 
+/// The stress at the plastic strain `at` of a curve [stress, plastic strain] that exceeds it from
+/// the row `after` on. Between the rows before and after a sharp yield it is where the curve after
+/// it, continued to the plastic strain `back`, begins.
+pub(super) fn yield_stress(curve: &[[f64; 2]], after: usize, at: f64, back: Option<f64>) -> f64 {
+    let on = |row: usize, strain: f64| {
+        let [from, to] = [curve[row], curve[row + 1]];
+        from[0] + (to[0] - from[0]) * (strain - from[1]) / (to[1] - from[1])
+    };
+    let between = on(after - 1, at.max(curve[after - 1][1]));
+    let rises = curve.get(after + 1).is_some_and(|next| next[1] > curve[after][1]);
+    let begins = back.filter(|_| rises).map_or(between, |back| on(after, back));
+    begins.min(curve[after][0]).max(between)
+}
+
 /// The local curve from the end of the elastic part on: its stress at the plastic strain `onset`
 /// becomes the stress at zero plastic strain. A film may reach its upper yield before: its curve is
 /// then one row.
@@ -28,23 +43,14 @@ pub(super) fn first_part(
     draws: bool,
 ) -> Option<Vec<[f64; 2]>> {
     let rows: Vec<[f64; 2]> = curve.iter().map(|row| local(row, young)).collect();
-    let elastic = rows.iter().rposition(|row| row[1] <= onset)?;
-    let yields = match rows[elastic..] {
-        [before, after, ..] => {
-            let on = |[a, b]: [[f64; 2]; 2], strain: f64| {
-                a[0] + (b[0] - a[0]) * (strain - a[1]) / (b[1] - a[1])
-            };
-            let between = on([before, after], onset);
-            // Rows before and after a sharp yield: it is where the curve after it begins.
-            let next = rows.get(elastic + 2).filter(|next| next[1] > after[1]);
-            let begins = next.map_or(between, |next| on([after, *next], 0.0));
-            begins.min(after[0]).max(between)
-        }
-        [[stress, _]] if draws => stress,
-        _ => return None,
+    let after = rows.iter().rposition(|row| row[1] <= onset)? + 1;
+    let yields = if after < rows.len() {
+        yield_stress(&rows, after, onset, Some(0.0))
+    } else {
+        draws.then(|| rows[after - 1][0])?
     };
     let mut part = vec![[yields, 0.0]];
-    part.extend(&rows[elastic + 1..]);
+    part.extend(&rows[after..]);
     (onset < MAX_ONSET && yields > 0.0).then(|| monotone(&part))
 }
 
@@ -60,17 +66,10 @@ pub(super) fn second_part(curve: &[[f64; 2]], draw: &Draw, young: f64) -> Vec<[f
 /// row is unchanged.
 fn monotone(curve: &[[f64; 2]]) -> Vec<[f64; 2]> {
     let [first, start] = curve[0];
-    let pools = pools(curve[1..].iter().map(|row| row[1].max(start)), true);
-    let mut strains = vec![start];
-    let mut stresses = vec![first];
-    for pool in pools {
-        let rows = &curve[1..][pool];
-        let mean = |of: usize| rows.iter().map(|row| row[of]).sum::<f64>() / rows.len() as f64;
-        if mean(1) > start {
-            strains.push(mean(1));
-            stresses.push(mean(0).max(first));
-        }
-    }
-    let stresses = non_decreasing(&stresses);
-    stresses.into_iter().zip(strains).map(|(stress, strain)| [stress, strain]).collect()
+    let pools = pools(curve[1..].iter().map(|row| row[1].max(start)), true).into_iter();
+    let mut rows = vec![curve[0]];
+    rows.extend(pools.map(|pool| mean(&curve[1..][pool])).filter(|row| row[1] > start));
+    let stresses: Vec<f64> = rows.iter().map(|row| row[0].max(first)).collect();
+    let stresses = non_decreasing(&stresses).into_iter();
+    stresses.zip(rows).map(|(stress, row)| [stress, row[1]]).collect()
 }
