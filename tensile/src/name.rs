@@ -119,40 +119,36 @@ impl Name {
         self.has("width thickness length gauge-length")
     }
 
-    /// The quantity that the name of a column describes.
+    /// The quantity that the name of a column describes. `Tension` is a stress in Spanish and may be
+    /// a force in English: the unit decides.
     pub(crate) fn quantity(&self) -> Option<Quantity> {
+        let kinds = [
+            ("stress", Stress, TrueStress, "force", Force),
+            ("strain", Strain, TrueStrain, "extension", Extension),
+        ];
+        let mut kinds = kinds.into_iter().filter(|_| !self.has("other width thickness"));
+        let (name, ratio, local, _, total) =
+            kinds.find(|(name, _, _, other, _)| self.has(name) || self.has(other))?;
         let measured_in =
             |quantity: Quantity| self.units.iter().any(|unit| quantity.factor(unit).is_some());
-        let local = self.has("true");
-        Some(match ["stress", "force", "strain", "extension"].map(|of| self.has(of)) {
-            _ if self.has("other width thickness") => return None,
-            [true, ..] if local => TrueStress,
-            // `Tension` is a stress in Spanish and may be a force in English.
-            [true, ..] if !measured_in(Force) => Stress,
-            [true, ..] | [_, true, ..] if measured_in(Stress) => Stress,
-            [true, ..] | [_, true, ..] => Force,
-            [.., true, _] if self.has("plastic") => PlasticStrain,
-            [.., true, _] if local => TrueStrain,
-            [.., true, _] if !measured_in(Extension) => Strain,
-            [.., true] if measured_in(Strain) => Strain,
-            [.., true, _] | [.., true] => Extension,
-            _ => return None,
+        Some(match self.has(name) {
+            true if ratio == Strain && self.has("plastic") => PlasticStrain,
+            true if self.has("true") => local,
+            named if !measured_in(ratio) && (!named || measured_in(total)) => total,
+            _ => ratio,
         })
     }
 
     /// The dimension of a specimen that the name describes in known words alone: the option of the
     /// command line without its dashes.
     pub(crate) fn dimension(&self) -> Option<&'static str> {
-        let [long, gauge] = [self.has("gauge-length"), self.has("length") && self.has("gauge")];
-        let stated = [
-            ("width", self.has("width")),
-            ("thickness", self.has("thickness")),
-            ("gauge-length", long || gauge),
-        ];
+        let long = self.has("gauge-length");
         // `L0 - course standard`.
         let column = self.is_near_quantity() && !long;
         let fits = self.is_known() && !column && !self.has("other true plastic");
-        stated.into_iter().find(|(_, stated)| fits && *stated).map(|(name, _)| name)
+        let gauge = long || self.has("length") && self.has("gauge");
+        let mut names = ["width", "thickness", "gauge-length"].into_iter();
+        names.find(|name| fits && (self.has(name) || gauge && *name == "gauge-length"))
     }
 
     /// The unit of a quantity; the error is a text that may be another unit.

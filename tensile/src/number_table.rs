@@ -161,12 +161,10 @@ fn has_units(row: &TextRow) -> bool {
 
 /// Name and unit of each column from the lines above the first row of numbers.
 fn labels(above: &[TextRow], width: usize, style: NumberStyle) -> Result<Vec<String>, String> {
-    let mut lines = above.iter().rev().peekable();
-    let mut units = lines.next_if(|row| has_units(row)).map_or(Vec::new(), words);
-    let mut names = lines.next().map_or(Vec::new(), words);
-    if units.is_empty() {
-        units = lines.next_if(|row| has_units(row)).map_or(Vec::new(), words);
-    }
+    let mut lines = above.iter().rev().map(words).peekable();
+    let units = lines.next_if(|cells| are_units(cells));
+    let mut names = lines.next().unwrap_or_default();
+    let units = units.or_else(|| lines.next_if(|cells| are_units(cells))).unwrap_or_default();
     if width == 2 * names.len() && names.iter().all(|name| Name::of(name).quantity().is_some()) {
         return Err(format!(
             "names {} columns, but the rows have {width} cells: if the comma is the decimal sign, save the \
@@ -179,9 +177,9 @@ fn labels(above: &[TextRow], width: usize, style: NumberStyle) -> Result<Vec<Str
         names = vec![String::new(); width];
     }
     if named || units.len() == width {
-        let units = units.iter().map(|unit| bare(unit));
-        for (name, unit) in names.iter_mut().zip(units).filter(|(_, unit)| !unit.is_empty()) {
-            *name = format!("{name} ({unit})").trim().to_owned();
+        for (name, unit) in names.iter_mut().zip(&units).filter(|(_, unit)| !bare(unit).is_empty())
+        {
+            *name = format!("{name} ({})", bare(unit)).trim().to_owned();
         }
     }
     Ok(names)
@@ -189,26 +187,21 @@ fn labels(above: &[TextRow], width: usize, style: NumberStyle) -> Result<Vec<Str
 
 /// Why a text contains no table.
 fn no_table(text: &str) -> String {
-    let [[point, comma], _] = NumberStyle::ALL;
-    let number = |line: &str| point.number(line).or(comma.number(line));
-    if text.lines().any(|line| number(line).is_some()) {
-        "has one column of numbers: a tensile curve needs two, force or stress and extension or strain, separated by \
-         commas, semicolons or tabs"
-            .into()
-    } else {
-        let last = text
-            .lines()
-            .zip(1..)
-            .filter(|(line, _)| line.contains(|c: char| c.is_ascii_digit()))
-            .last();
-        let quoted = last.map_or(String::new(), |(line, number)| {
-            format!(" (line {number} is `{}`)", line.escape_debug())
-        });
-        format!(
-            "has no rows of numbers{quoted}: save the curve as text, in columns of plain numbers separated by commas, \
-             semicolons or tabs, with the units in the names of the columns"
-        )
+    let [styles, _] = NumberStyle::ALL;
+    if text.lines().any(|line| styles.iter().any(|style| style.number(line).is_some())) {
+        return "has one column of numbers: a tensile curve needs two, force or stress and extension or strain, separated \
+                by commas, semicolons or tabs"
+            .into();
     }
+    let digits = |(line, _): &(&str, i32)| line.contains(|c: char| c.is_ascii_digit());
+    let last = text.lines().zip(1..).filter(digits).last();
+    let quoted =
+        last.map(|(line, number)| format!(" (line {number} is `{}`)", line.escape_debug()));
+    format!(
+        "has no rows of numbers{}: save the curve as text, in columns of plain numbers separated by commas, \
+         semicolons or tabs, with the units in the names of the columns",
+        quoted.unwrap_or_default()
+    )
 }
 
 #[cfg(test)]

@@ -61,7 +61,8 @@ pub(super) struct Record {
 }
 
 /// Limits of the values (dimensionless, MPa); wrong units exceed them.
-const STRAIN: [f64; 2] = [-0.1, 10.0];
+const MIN_STRAIN: f64 = -0.1;
+const MAX_STRAIN: f64 = 10.0;
 const STRESS: [f64; 2] = [-1e6, 1e6];
 /// A strain without unit must be smaller: it could be in per cent.
 const MAX_STRAIN_WITHOUT_UNIT: f64 = 1.0;
@@ -142,18 +143,7 @@ impl Record {
         let rows =
             table.rows.iter().map(|row| read_row(table, row, &read_as, sizes).map_err(at(row)));
         let rows = rows.collect::<Result<Vec<_>, _>>()?;
-        let most = rows.iter().map(|row| row.strain).fold(0.0, f64::max);
-        let deformation = &read_as[1];
-        if (deformation.quantity, &deformation.unit) == (Strain, &None)
-            && most > MAX_STRAIN_WITHOUT_UNIT
-        {
-            return Err(refuse(format!(
-                "has strains up to {most} in column {} without a unit: state it in the column's name, as in `strain (%)` or \
-                 `strain (1)`, or with --units strain=% or --units strain=1",
-                deformation.title()
-            )));
-        }
-        if deformation.quantity == PlasticStrain {
+        if read_as[1].quantity == PlasticStrain {
             return Err(refuse(
                 "contains plastic strains: it is a hardening table already; write its rows into `plastic` of the material file"
                     .into(),
@@ -195,7 +185,14 @@ fn read_row(
         Ok::<_, String>(number * column.factor / sizes[of])
     };
     let [mut stress, mut strain] = [number(0)?, number(1)?];
-    within(read_as, "strain", strain, STRAIN, [["", "%"]; 2])?;
+    let (name, most) = match (read_as[1].quantity, &read_as[1].unit) {
+        (Strain, None) => (
+            "strain without a unit (state one in the column's name or with --units strain=1)",
+            MAX_STRAIN_WITHOUT_UNIT,
+        ),
+        _ => ("strain", MAX_STRAIN),
+    };
+    within(read_as, name, strain, [MIN_STRAIN, most], [["", "%"]; 2])?;
     within(read_as, "stress (MPa)", stress, STRESS, [["Pa", ""]; 2])?;
     if read_as[1].quantity == TrueStrain {
         strain = strain.exp_m1();
