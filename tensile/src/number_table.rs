@@ -86,16 +86,13 @@ impl NumberTable {
         let of = |first: usize| {
             let columns = first..first + width;
             let mut table = self.clone();
-            for (column, label) in table.labels.iter_mut().enumerate() {
-                if !columns.contains(&column) {
-                    label.clear();
-                }
-            }
+            let others = (0..names.len()).filter(|column| !columns.contains(column));
+            others.for_each(|column| table.labels[column].clear());
             // A shorter record ends in empty cells.
-            let filled = |cell: usize, row: &TextRow| {
-                row.cells.get(cell).is_some_and(|cell| !cell.is_empty())
-            };
-            table.rows.retain(|row| columns.clone().any(|cell| filled(cell, row)));
+            table.rows.retain(|row| {
+                let mut own = row.cells.iter().skip(first).take(width);
+                own.any(|cell| !cell.is_empty())
+            });
             table
         };
         Some((0..names.len()).step_by(width).map(of).collect())

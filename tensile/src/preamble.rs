@@ -18,16 +18,9 @@ pub struct StatedDimension {
     pub line: u64,
 }
 
-impl StatedDimension {
-    /// The name in words.
-    pub fn words(&self) -> String {
-        self.name.replace('-', " ")
-    }
-}
-
 impl fmt::Display for StatedDimension {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        write!(f, "{} {} mm (line {})", self.words(), self.value, self.line)
+        write!(f, "{} {} mm (line {})", self.name.replace('-', " "), self.value, self.line)
     }
 }
 

@@ -236,22 +236,23 @@ impl ReadColumn {
         let given = options.units.iter().find(|(of, _)| *of == quantity);
         let name = Name::of(label);
         let unit = given.map_or_else(|| name.unit(quantity), |(_, unit)| Ok(Some(unit)));
-        let refuse = |unit: &str, why: &str| {
-            let (title, units) = (title(index, label), quantity.units());
-            format!(
-                "has the {quantity} in column {title}{unit}{why}; state one of {units} with --units {quantity}=UNIT"
-            )
-        };
-        let unknown =
-            |unit: &str| refuse(&format!(": `{unit}`"), " is no unit of it that is known");
-        let unit = unit.map_err(unknown)?;
         let factor = match unit {
-            Some(unit) => quantity.factor(unit).ok_or_else(|| unknown(unit))?,
-            None if quantity == Force => return Err(refuse("", " without a unit")),
-            None => 1.0,
+            Ok(Some(unit)) => quantity.factor(unit).ok_or(Some(unit)),
+            Ok(None) if quantity == Force => Err(None),
+            Ok(None) => Ok(1.0),
+            Err(unit) => Err(Some(unit)),
         };
+        let factor = factor.map_err(|unit| {
+            let (title, units) = (title(index, label), quantity.units());
+            let unknown = |unit| format!(": `{unit}` is no unit of it that is known");
+            let why = unit.map_or(" without a unit".into(), unknown);
+            format!(
+                "has the {quantity} in column {title}{why}; state one of {units} with --units {quantity}=UNIT"
+            )
+        })?;
+        let unit = unit.unwrap_or_default().map(str::to_owned);
         let name = label.clone();
-        Ok(Self { quantity, number: index + 1, unit: unit.map(str::to_owned), name, factor })
+        Ok(Self { quantity, number: index + 1, unit, name, factor })
     }
 
     fn title(&self) -> String {
@@ -333,20 +334,21 @@ fn sizes(
 /// known only if there are no others.
 fn columns(labels: &[String], options: &RecordOptions) -> Result<Vec<(Quantity, usize)>, String> {
     if options.columns.is_empty() {
-        let names = || labels.iter().map(|label| Name::of(label)).enumerate();
+        let names = labels.iter().enumerate().map(|(index, label)| (Name::of(label), index));
         let all =
-            || names().filter_map(|(index, name)| Some((name.quantity()?, index, name.is_known())));
-        let better = |load: bool| all().any(|(of, _, known)| known && of.is_load() == load);
-        let best = all().filter(|(of, _, known)| *known || !better(of.is_load()));
-        return Ok(best.map(|(quantity, index, _)| (quantity, index)).collect());
+            names.filter_map(|(name, index)| Some((name.quantity()?, index, name.is_known())));
+        let all: Vec<(Quantity, usize, bool)> = all.collect();
+        let known = |load| all.iter().any(|(of, _, known)| *known && of.is_load() == load);
+        let best = all.iter().filter(|(of, _, is_known)| *is_known || !known(of.is_load()));
+        return Ok(best.map(|(quantity, index, _)| (*quantity, *index)).collect());
     }
     let named = |(quantity, text): &(Quantity, String)| {
-        let by_name = (labels.iter()).position(|label| label.eq_ignore_ascii_case(text));
-        let number = (text.parse().ok()).filter(|n| (1..=labels.len()).contains(n));
-        let index = by_name.or(number.map(|n| n - 1)).ok_or_else(|| {
-            let columns = listed(labels);
-            format!("has no column `{text}`: its columns are {columns}")
-        })?;
+        let same = |(index, label): &(usize, &String)| {
+            label.eq_ignore_ascii_case(text) || (index + 1).to_string() == *text
+        };
+        let found = labels.iter().enumerate().find(same);
+        let (index, _) = found
+            .ok_or_else(|| format!("has no column `{text}`: its columns are {}", listed(labels)))?;
         Ok((*quantity, index))
     };
     options.columns.iter().map(named).collect()
