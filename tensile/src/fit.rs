@@ -264,14 +264,13 @@ fn fracture(
     end: f64,
 ) -> Result<(f64, Option<f64>, FractureSource), Fault> {
     if let Some(strain) = given {
-        return if strain >= end {
-            Ok((strain, None, FractureSource::Given))
-        } else {
-            Err(Fault::from(format!(
+        if strain < end {
+            return Err(Fault::from(format!(
                 "--fracture-strain {strain} is less than the plastic strain {end:.4} that the specimens reach on \
                  average: it is ln(A0 / A), from the section A of the broken specimen"
-            )))
-        };
+            )));
+        }
+        return Ok((strain, None, FractureSource::Given));
     }
     let any = |of| specimens.iter().any(|specimen| specimen.end == of);
     let source = if any(End::Drawing) {

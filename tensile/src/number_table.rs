@@ -7,7 +7,6 @@
 use crate::in_file;
 use crate::name::Name;
 use crate::quantity::{are_units, bare};
-use std::collections::BTreeMap;
 use std::path::Path;
 use support::fault::{Fault, unread};
 use support::text_table::{NumberStyle, TextRow, TextTable};
@@ -137,11 +136,9 @@ fn first_row(rows: &[TextRow], style: NumberStyle) -> Option<(usize, usize)> {
     let shape = |row: &TextRow| {
         if row.is_comment() { (0, 0) } else { (row.cells.len(), row.numbers(style)) }
     };
-    let mut counts: BTreeMap<(usize, usize), usize> = BTreeMap::new();
-    for shape in rows.iter().map(shape).filter(|(_, numbers)| *numbers > 0) {
-        *counts.entry(shape).or_default() += 1;
-    }
-    let (usual, _) = counts.into_iter().max_by_key(|(_, count)| *count)?;
+    let mut shapes: Vec<_> = rows.iter().map(shape).filter(|(_, numbers)| *numbers > 0).collect();
+    shapes.sort_unstable();
+    let usual = shapes.chunk_by(PartialEq::eq).max_by_key(|same| same.len())?[0];
     let start = rows.iter().position(|row| shape(row) == usual)?;
     Some((start, usual.0))
 }

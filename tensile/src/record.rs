@@ -286,46 +286,47 @@ fn sizes(
     options: &RecordOptions,
 ) -> Result<([f64; 2], Vec<StatedDimension>), String> {
     let near = unused.join(", ");
-    let (force, extension) = (load == Force, deformation == Extension);
-    let (mut missing, mut used) = (Vec::new(), Vec::new());
-    let mut size = |needed: bool, name: &str, given: Option<f64>| {
+    let needed = [(load == Force, "a force"), (deformation == Extension, "a length change")];
+    let (mut sizes, mut missing, mut used) = ([1.0; 2], Vec::new(), Vec::new());
+    for (of, name, given) in [
+        (0, "width", options.width),
+        (0, "thickness", options.thickness),
+        (1, "gauge-length", options.gauge_length),
+    ] {
+        let option = format!("--{name}");
         let found = stated.iter().find(|it| it.name == name);
-        let Some(value) = given.or(found.map(|it| it.value)).filter(|_| needed) else {
-            let option = format!("--{name}");
-            if needed {
-                missing.push(option);
-            } else {
+        match given.or(found.map(|it| it.value)) {
+            _ if !needed[of].0 => {
                 unused.extend(found.map(ToString::to_string));
                 // The thickness is the sheet's too.
                 unused.extend(given.filter(|_| name != "thickness").map(|_| option));
             }
-            return Ok(1.0);
-        };
-        if !(value > 0.0 && value.is_finite()) {
-            return Err(format!("needs a positive --{name} (mm), not {value}"));
-        }
-        match found.map(|found| (found, (found.value / value - 1.0).abs())) {
-            Some((found, apart)) if apart > CONTRADICTION => {
-                return Err(format!(
-                    "states {found}, against --{name} {value}: correct one of them"
-                ));
+            None => missing.push(option),
+            Some(value) if !(value > 0.0 && value.is_finite()) => {
+                return Err(format!("needs a positive {option} (mm), not {value}"));
             }
-            Some((found, apart)) if apart > SAME => unused.push(found.to_string()),
-            found => used.extend(found.map(|(found, _)| *found)),
+            Some(value) => {
+                sizes[of] *= value;
+                let apart = found.map_or(0.0, |it| (it.value / value - 1.0).abs());
+                match found {
+                    Some(found) if apart > CONTRADICTION => {
+                        let what = format!("states {found}, against {option} {value}");
+                        return Err(what + ": correct one of them");
+                    }
+                    Some(found) if apart > SAME => unused.push(found.to_string()),
+                    found => used.extend(found.copied()),
+                }
+            }
         }
-        Ok(value)
-    };
-    let area = size(force, "width", options.width)? * size(force, "thickness", options.thickness)?;
-    let length = size(extension, "gauge-length", options.gauge_length)?;
-    if missing.is_empty() {
-        return Ok(([area, length], used));
     }
-    let read = [(force, "a force"), (extension, "a length change")];
-    let read: Vec<&str> = read.iter().filter(|(is, _)| *is).map(|(_, name)| *name).collect();
+    if missing.is_empty() {
+        return Ok((sizes, used));
+    }
+    let read = needed.iter().filter(|(is, _)| *is).map(|(_, name)| *name);
     let near = if near.is_empty() { near } else { format!("; not taken for one: {near}") };
     Err(format!(
         "contains {}: give {} of the specimen (mm){near}",
-        read.join(" and "),
+        read.collect::<Vec<_>>().join(" and "),
         missing.join(", ")
     ))
 }
