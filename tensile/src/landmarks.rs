@@ -8,6 +8,7 @@
 use crate::local_curve::yield_stress;
 use crate::regression::{interpolated, mean};
 use serde::Serialize;
+use support::vectors::{add, dot};
 
 /// Plastic strain at the yield stress Rp0.2 (ISO 6892-1).
 const OFFSET: f64 = 0.002;
@@ -154,25 +155,25 @@ fn plateau_end(curve: &[[f64; 2]]) -> [f64; 2] {
         (0..=POINTS).map(|point| interpolated(curve, 1, strain(point))).collect();
     let mut best = [f64::INFINITY, stresses[0], from];
     for end in 0..POINTS {
-        let (flat, rising) = stresses.split_at(end + 1);
-        let level = flat.iter().sum::<f64>() / flat.len() as f64;
-        let sum = |of: &dyn Fn(f64, f64) -> f64| -> f64 {
-            let rows = rising.iter().zip(1..);
-            rows.map(|(stress, row)| of(f64::from(row), stress - level)).sum()
-        };
-        // Least squares of y = b x + c (x^2 - q x), whose terms are orthogonal.
-        let squares = sum(&|x, _| x * x);
-        let q = sum(&|x, _| x.powi(3)) / squares;
-        let bend = |x: f64| x * (x - q);
-        let b = sum(&|x, y| x * y) / squares;
-        let c = sum(&|x, y| bend(x) * y) / sum(&|x, _| bend(x).powi(2)).max(f64::MIN_POSITIVE);
-        let error = flat.iter().map(|stress| (stress - level).powi(2)).sum::<f64>()
-            + sum(&|x, y| (y - b * x - c * bend(x)).powi(2));
+        let level = stresses[..=end].iter().sum::<f64>() / (end + 1) as f64;
+        let rising: Vec<f64> = (0..=POINTS).map(|point| point.saturating_sub(end) as f64).collect();
+        let mut bend: Vec<f64> = rising.iter().map(|x| x * x).collect();
+        let mut left: Vec<f64> = stresses.iter().map(|stress| stress - level).collect();
+        without(&mut bend, &rising);
+        without(&mut left, &rising);
+        without(&mut left, &bend);
+        let error = dot(&left, &left);
         if error < best[0] {
             best = [error, level, strain(end)];
         }
     }
     [best[1], best[2]]
+}
+
+/// Removes the part of `vector` along another.
+fn without(vector: &mut [f64], other: &[f64]) {
+    let along = dot(vector, other) / dot(other, other).max(f64::MIN_POSITIVE);
+    add(vector, other, -along);
 }
 
 #[cfg(test)]

@@ -82,10 +82,8 @@ impl Name {
     /// Whether a word, or a compound, is known in all its parts.
     fn word(&mut self, word: &str) -> bool {
         let meaning = |word: &str| {
-            let mut lines = WORDS.lines().map(|line| line.split_once(' ').unwrap_or_default());
-            lines
-                .find(|(_, words)| words.split(' ').any(|it| it == word))
-                .map(|(meaning, _)| meaning)
+            let mut lines = WORDS.lines().filter_map(|line| line.split_once(' '));
+            lines.find_map(|(first, words)| words.split(' ').any(|it| it == word).then_some(first))
         };
         let numbered = word.trim_matches(|c: char| c.is_ascii_digit());
         if let Some(meaning) = meaning(word).or_else(|| meaning(numbered)) {

@@ -171,8 +171,8 @@ impl Specimen {
             after: draw.map_or(Vec::new(), |draw| second_part(&smooth[..=last], &draw, young)),
             strength: nominal.iter().map(|row| row[1]).fold(0.0, f64::max),
             nominal: used.map(|&[e, s]| [curve.corrected(e, s), s]).collect(),
+            toe: curve.linear.toe,
             linear: curve.linear,
-            toe: curve.toe,
             compliance: curve.compliance,
             end: ended,
             path,
@@ -199,7 +199,6 @@ struct Compensated {
     /// Standard deviations of the noise of strain and stress that is left.
     noise: [f64; 2],
     linear: LinearPart,
-    toe: f64,
     young: f64,
     /// Compliance of the machine that is removed (1/MPa).
     compliance: f64,
@@ -217,7 +216,7 @@ impl Compensated {
         let half = half_window(curve, noise[1]);
         let noise = [noise[0], noise[1] / (2.0 * half as f64 + 1.0).sqrt()];
         let mut rows = smoothed(curve, half);
-        let (mut linear, mut toe) = linear_part(&mut rows, record, noise).ok_or(
+        let mut linear = linear_part(&mut rows, record, noise).ok_or(
             "has no linear part: the stress does not rise with the strain; are the columns swapped?",
         )?;
         let read_as = &record.read_as;
@@ -245,32 +244,28 @@ impl Compensated {
             let zero = first[0] - first[1] / young;
             linear.strain = [first[0] - zero; 2];
             rows.iter_mut().for_each(|row| row[0] -= zero);
-            toe += zero;
+            linear.toe += zero;
         }
         let end = linear.strain[1] * (1.0 - linear.young * compliance);
         let elastic = rows.iter().position(|row| row[0] >= end).unwrap_or(0);
-        Ok(Self { rows, noise, linear, toe, young, compliance, elastic })
+        Ok(Self { rows, noise, linear, young, compliance, elastic })
     }
 
     /// A measured strain without toe and compliance.
     fn corrected(&self, strain: f64, stress: f64) -> f64 {
-        strain - self.toe - stress * self.compliance
+        strain - self.linear.toe - stress * self.compliance
     }
 
     /// Whether a measured strain is below the linear part.
     fn is_toe(&self, strain: f64) -> bool {
-        strain - self.toe < self.linear.strain[0]
+        strain - self.linear.toe < self.linear.strain[0]
     }
 }
 
-/// The linear part and the toe, which is subtracted from the curve. Its rows are found on the
+/// The linear part, whose toe is subtracted from the curve. Its rows are found on the
 /// nominal curve, whose slope is largest at the start; its modulus is the slope of the true stress
 /// over the logarithmic strain, as the solver reads it.
-fn linear_part(
-    curve: &mut [[f64; 2]],
-    record: &Record,
-    noise: [f64; 2],
-) -> Option<(LinearPart, f64)> {
+fn linear_part(curve: &mut [[f64; 2]], record: &Record, noise: [f64; 2]) -> Option<LinearPart> {
     let nominal = LinearPart::find(curve, noise)?;
     curve.iter_mut().for_each(|row| row[0] -= nominal.toe);
     let end = nominal.first + nominal.rows;
@@ -282,8 +277,7 @@ fn linear_part(
         LinearPart::through(&rows, nominal.first..end)
     })?;
     curve.iter_mut().for_each(|row| row[0] -= part.toe);
-    let toe = nominal.toe + part.toe;
-    Some((part, toe))
+    Some(LinearPart { toe: nominal.toe + part.toe, ..part })
 }
 
 /// Half the number of rows over which the stress is smoothed, from its noise; few enough to leave
