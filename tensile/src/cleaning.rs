@@ -2,22 +2,9 @@
 //! repeated and shaking strains.
 
 use crate::isotonic::pools;
-use crate::record::RecordRow;
+use crate::record::{Cause, RecordRow};
 use crate::regression::mean;
-use serde::Serialize;
 use support::statistics::median;
-
-/// Why a row is not used.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Cause {
-    /// Unloading and reloading up to the strain before it.
-    Unloading,
-    /// After the break of the specimen.
-    Broken,
-    /// Slack and toe, below the linear part.
-    Toe,
-}
 
 /// The monotone part of a record.
 #[derive(Clone, Debug)]

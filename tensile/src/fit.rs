@@ -1,11 +1,10 @@
 //! The law of a material from its specimens: mean modulus, mean hardening curve, fracture strain,
 //! and the table of the finite elements.
 
-use crate::cleaning::Cause;
 use crate::cold_drawing::{ColdDrawing, beyond_maximum_force};
 use crate::landmarks::{Draw, End};
-use crate::mean_curve::mean_curve;
-use crate::record::{Record, RecordOptions};
+use crate::record::{Cause, Record, RecordOptions};
+use crate::regression::interpolated;
 use crate::specimen::{Specimen, SpecimenOptions};
 use crate::thinning::thinned;
 use serde::Serialize;
@@ -127,6 +126,9 @@ pub struct MaterialFit {
 
 /// Number of points of the curve in the neck.
 const NECK_POINTS: usize = 100;
+/// Number of intervals of the mean curve; they grow linearly, because a curve bends most after
+/// yield.
+const INTERVALS: usize = 400;
 /// Digits after the point of stresses (MPa) and strains in the table.
 const DIGITS: [i32; 2] = [3, 5];
 
@@ -255,6 +257,30 @@ fn hardening(
     let continued = drawn[1..].iter().map(|row| [row[0] - drawn[0][0] + stress, row[1] + strain]);
     curve.extend(marked(&continued.collect::<Vec<_>>(), Origin::Measured));
     Ok((curve, (yields < top[0]).then_some(yields)))
+}
+
+/// The mean of curves [stress, strain] with increasing strain, over the strain from their starts up
+/// to their mean end.
+///
+/// The stress at zero is the mean. From there the mean increment of the curves that reach an
+/// interval is added, so that a specimen that breaks early leaves no jump.
+fn mean_curve(curves: &[&[[f64; 2]]]) -> Vec<[f64; 2]> {
+    let length = |curve: &[[f64; 2]]| curve[curve.len() - 1][1] - curve[0][1];
+    let end = Statistic::new(curves.iter().map(|curve| length(curve))).mean;
+    let mut stress = Statistic::new(curves.iter().map(|curve| curve[0][0])).mean;
+    let mut rows = vec![[stress, 0.0]];
+    for interval in 1..=INTERVALS {
+        let [before, strain] =
+            [interval - 1, interval].map(|index| end * (index as f64 / INTERVALS as f64).powi(2));
+        if strain > before {
+            let at = |curve: &[[f64; 2]], strain| interpolated(curve, 0, curve[0][1] + strain);
+            let reached = curves.iter().filter(|curve| length(curve) >= before);
+            let increments = reached.map(|curve| at(curve, strain) - at(curve, before));
+            stress += Statistic::new(increments).mean;
+            rows.push([stress, strain]);
+        }
+    }
+    rows
 }
 
 /// The plastic strain at fracture, its scatter and its source, for a curve that ends at `end`.

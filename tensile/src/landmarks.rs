@@ -5,7 +5,6 @@
 //! is at two stretches, and the nominal strain is their average. The curve is local again where the
 //! neck has covered the specimen and the stress rises from the plateau.
 
-use crate::local_curve::yield_stress;
 use crate::regression::{interpolated, mean};
 use serde::Serialize;
 use support::vectors::{add, dot};
@@ -55,6 +54,20 @@ pub(super) fn offset_yield(curve: &[[f64; 2]], young: f64, from: usize) -> Optio
     let after = 1 + rows.iter().skip(1).position(|row| row[1] >= OFFSET)?;
     let sharp = (rows[after - 1][1] < 0.5 * OFFSET).then_some(OFFSET);
     Some(yield_stress(&rows, after, OFFSET, sharp))
+}
+
+/// The stress at the plastic strain `at` of a curve [stress, plastic strain] that exceeds it from
+/// the row `after` on. Between the rows before and after a sharp yield it is where the curve after
+/// it, continued to the plastic strain `back`, begins.
+pub(super) fn yield_stress(curve: &[[f64; 2]], after: usize, at: f64, back: Option<f64>) -> f64 {
+    let on = |row: usize, strain: f64| {
+        let [from, to] = [curve[row], curve[row + 1]];
+        from[0] + (to[0] - from[0]) * (strain - from[1]) / (to[1] - from[1])
+    };
+    let between = on(after - 1, at.max(curve[after - 1][1]));
+    let rises = curve.get(after + 1).is_some_and(|next| next[1] > curve[after][1]);
+    let begins = back.filter(|_| rises).map_or(between, |back| on(after, back));
+    begins.min(curve[after][0]).max(between)
 }
 
 /// The draw of a curve after the row `from`; `None` if it does not neck or breaks in the neck.

@@ -2,7 +2,7 @@
 //! sigma = s (1 + e), eps_p = ln(1 + e) - sigma / E.
 
 use crate::isotonic::{non_decreasing, pools};
-use crate::landmarks::Draw;
+use crate::landmarks::{Draw, yield_stress};
 use crate::regression::mean;
 
 /// Plastic strain above which no yield can be read from a curve: its noise is too large.
@@ -17,20 +17,6 @@ pub(super) fn true_row(&[strain, stress]: &[f64; 2]) -> [f64; 2] {
 fn local(row: &[f64; 2], young: f64) -> [f64; 2] {
     let [strain, stress] = true_row(row);
     [stress, strain - stress / young]
-}
-
-/// The stress at the plastic strain `at` of a curve [stress, plastic strain] that exceeds it from
-/// the row `after` on. Between the rows before and after a sharp yield it is where the curve after
-/// it, continued to the plastic strain `back`, begins.
-pub(super) fn yield_stress(curve: &[[f64; 2]], after: usize, at: f64, back: Option<f64>) -> f64 {
-    let on = |row: usize, strain: f64| {
-        let [from, to] = [curve[row], curve[row + 1]];
-        from[0] + (to[0] - from[0]) * (strain - from[1]) / (to[1] - from[1])
-    };
-    let between = on(after - 1, at.max(curve[after - 1][1]));
-    let rises = curve.get(after + 1).is_some_and(|next| next[1] > curve[after][1]);
-    let begins = back.filter(|_| rises).map_or(between, |back| on(after, back));
-    begins.min(curve[after][0]).max(between)
 }
 
 /// The local curve from the end of the elastic part on: its stress at the plastic strain `onset`

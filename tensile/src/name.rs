@@ -121,9 +121,11 @@ impl Name {
             ("stress", Stress, TrueStress, "force", Force),
             ("strain", Strain, TrueStrain, "extension", Extension),
         ];
-        let mut kinds = kinds.into_iter().filter(|_| !self.has("other width thickness"));
+        if self.has("other width thickness") {
+            return None;
+        }
         let (name, ratio, local, _, total) =
-            kinds.find(|(name, _, _, other, _)| self.has(name) || self.has(other))?;
+            (kinds.into_iter()).find(|(name, _, _, other, _)| self.has(name) || self.has(other))?;
         let measured_in =
             |quantity: Quantity| self.units.iter().any(|unit| quantity.factor(unit).is_some());
         Some(match self.has(name) {

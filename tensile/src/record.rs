@@ -1,6 +1,5 @@
 //! The record of one tensile test: load and deformation of every row, in MPa and as a ratio.
 
-use crate::cleaning::Cause;
 use crate::in_file;
 use crate::name::Name;
 use crate::number_table::NumberTable;
@@ -28,6 +27,18 @@ pub struct RecordOptions {
     pub width: Option<f64>,
     /// Thickness of the specimen (mm); needed for a force.
     pub thickness: Option<f64>,
+}
+
+/// Why a row is not used.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Cause {
+    /// Unloading and reloading up to the strain before it.
+    Unloading,
+    /// After the break of the specimen.
+    Broken,
+    /// Slack and toe, below the linear part.
+    Toe,
 }
 
 /// One row of a record.

@@ -9,14 +9,14 @@
 //! 4. Landmarks are read from the nominal curve (`landmarks`).
 //! 5. Where the strain is uniform, nominal rows become local ones (`local_curve`).
 
-use crate::cleaning::{Cause, Cleaned, cleaned};
+use crate::cleaning::{Cleaned, cleaned};
 use crate::in_file;
 use crate::landmarks::{self, Draw, End, offset_yield, uniform_end};
 use crate::linear_part::LinearPart;
 use crate::local_curve::{first_part, second_part, true_row};
 use crate::preamble::StatedDimension;
 use crate::quantity::Quantity::Extension;
-use crate::record::{ReadColumn, Record, RecordRow, within};
+use crate::record::{Cause, ReadColumn, Record, RecordRow, within};
 use crate::regression::Regression;
 use serde::Serialize;
 use std::path::PathBuf;
