@@ -214,8 +214,8 @@ fn read_row(
     Ok(RecordRow { line: row.line, strain, stress, cause: None })
 }
 
-/// Refuses a value outside of its limits; `units` are those of load and deformation that would
-/// explain one below and one above, empty if none would.
+/// Refuses a value outside of its limits; `units` of load and deformation would explain one below
+/// and one above, empty if none would.
 pub(super) fn within(
     read_as: &[ReadColumn; 2],
     name: &str,
@@ -288,8 +288,8 @@ fn title(index: usize, label: &str) -> String {
 }
 
 /// Section (mm^2) and gauge length (mm) by which load and deformation are divided, 1 for a stress
-/// and a strain, and those of the dimensions that the file states from which they are. The options
-/// decide; a file that contradicts them is refused.
+/// and a strain, and the dimensions in the file that are used for them. The options decide; a file
+/// that contradicts them is refused.
 fn sizes(
     [load, deformation]: [Quantity; 2],
     stated: Vec<StatedDimension>,
