@@ -2,41 +2,15 @@
 //! repeated and shaking strains.
 
 use crate::isotonic::pools;
-use crate::record::RecordRow;
-use serde::Serialize;
-
-/// Why a row is not used.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Cause {
-    /// Unloading and reloading up to the strain before it.
-    Unloading,
-    /// After the break of the specimen.
-    Broken,
-    /// Slack and toe, below the linear part.
-    Toe,
-}
-
-/// A row that is not used.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct DroppedRow {
-    /// Number of the line in the file, from 1.
-    pub line: u64,
-    /// Nominal strain.
-    pub strain: f64,
-    /// Nominal stress (MPa).
-    pub stress: f64,
-    /// Why.
-    pub cause: Cause,
-}
+use crate::record::{Cause, RecordRow};
+use crate::regression::mean;
+use support::statistics::median;
 
 /// The monotone part of a record.
 #[derive(Clone, Debug)]
 pub(super) struct Cleaned {
     /// [strain, stress (MPa)] with increasing strain.
     pub curve: Vec<[f64; 2]>,
-    /// The rows that were dropped.
-    pub dropped: Vec<DroppedRow>,
     /// Number of rows that were averaged with their neighbours, because their strain does not
     /// increase.
     pub averaged: usize,
@@ -55,78 +29,55 @@ const MIN_NOISE_ROWS: usize = 20;
 /// Number of rows whose median is the stress before the break.
 const BEFORE: usize = 5;
 
-/// The monotone part of the rows; the error is the line from which the strain falls for most of the
-/// file.
-pub(super) fn cleaned(rows: &[RecordRow]) -> Result<Cleaned, u64> {
-    let noise =
-        [noise(rows.iter().map(|row| row.strain)), noise(rows.iter().map(|row| row.stress))];
-    let mut dropped = Vec::new();
-    let mut drop = |row: &RecordRow, cause| {
-        dropped.push(DroppedRow { line: row.line, strain: row.strain, stress: row.stress, cause });
-    };
-    let is_loading = loading(rows, LOOP * noise[0]);
-    let unloading = is_loading.iter().filter(|loading| !**loading).count();
-    if 2 * unloading > rows.len() {
-        let first = is_loading.iter().position(|loading| !loading);
-        return Err(first.map_or(0, |index| rows[index].line));
+/// The monotone part of the rows, which marks the others; the error is the line from which the
+/// strain falls for most of the file.
+pub(super) fn cleaned(rows: &mut [RecordRow]) -> Result<Cleaned, u64> {
+    let noise = [|row: &RecordRow| row.strain, |row: &RecordRow| row.stress]
+        .map(|value| noise(&rows.iter().map(value).collect::<Vec<_>>()));
+    mark_unloading(rows, LOOP * noise[0]);
+    let mut unloading = rows.iter().filter(|row| row.cause.is_some());
+    if let Some(first) = unloading.next().filter(|_| 2 * (unloading.count() + 1) > rows.len()) {
+        return Err(first.line);
     }
-    let mut kept = Vec::with_capacity(rows.len());
-    for (row, loading) in rows.iter().zip(&is_loading) {
-        if *loading { kept.push(*row) } else { drop(row, Cause::Unloading) }
-    }
-    let end = break_of(&kept);
-    kept.drain(end..).for_each(|row| drop(&row, Cause::Broken));
-    let pools = pools(kept.iter().map(|row| row.strain), true);
-    let mean = |rows: &[RecordRow], value: fn(&RecordRow) -> f64| {
-        rows.iter().map(value).sum::<f64>() / rows.len() as f64
-    };
-    let curve: Vec<[f64; 2]> = pools
-        .into_iter()
-        .map(|pool| {
-            let rows = &kept[pool];
-            [mean(rows, |row| row.strain), mean(rows, |row| row.stress)]
-        })
-        .collect();
-    Ok(Cleaned { averaged: kept.len() - curve.len(), curve, dropped, noise })
+    let mut kept: Vec<&mut RecordRow> = rows.iter_mut().filter(|row| row.cause.is_none()).collect();
+    let end = break_of(&kept.iter().map(|row| row.stress).collect::<Vec<_>>());
+    kept.drain(end..).for_each(|row| row.cause = Some(Cause::Broken));
+    let kept: Vec<[f64; 2]> = kept.iter().map(|row| [row.strain, row.stress]).collect();
+    let pools = pools(kept.iter().map(|row| row[0]), true).into_iter();
+    let curve: Vec<[f64; 2]> = pools.map(|pool| mean(&kept[pool])).collect();
+    Ok(Cleaned { averaged: kept.len() - curve.len(), curve, noise })
 }
 
-/// Whether each row belongs to the loading. If the strain falls by more than `fall` below its
-/// maximum, the rows after the maximum are unloading until the strain exceeds it again.
-fn loading(rows: &[RecordRow], fall: f64) -> Vec<bool> {
-    let mut loading = vec![true; rows.len()];
+/// If the strain falls by more than `fall` below its maximum, the rows after the maximum are
+/// unloading until the strain exceeds it again.
+fn mark_unloading(rows: &mut [RecordRow], fall: f64) {
     let mut top = 0;
     for index in 1..rows.len() {
         if rows[index].strain > rows[top].strain {
             top = index;
         } else if rows[index].strain < rows[top].strain - fall {
-            loading[top + 1..=index].fill(false);
-        } else if !loading[index - 1] {
-            loading[index] = false;
+            rows[top + 1..=index].iter_mut().for_each(|row| row.cause = Some(Cause::Unloading));
+        } else {
+            rows[index].cause = rows[index - 1].cause;
         }
     }
-    loading
 }
 
 /// Number of rows up to the break: from there on the stress stays below a fraction of the stress
 /// before.
-fn break_of(rows: &[RecordRow]) -> usize {
-    let stress = |index: usize| rows[index].stress;
-    let median_before = |index: usize| {
-        let mut before: Vec<f64> = (index.saturating_sub(BEFORE)..index).map(stress).collect();
-        before.sort_by(f64::total_cmp);
-        before.get(before.len() / 2).copied().unwrap_or(0.0)
-    };
-    let top = (0..rows.len()).max_by(|a, b| stress(*a).total_cmp(&stress(*b)));
+fn break_of(stresses: &[f64]) -> usize {
+    let before = |index: usize| median(stresses[index.saturating_sub(BEFORE)..index].to_vec());
+    let top = (0..stresses.len()).max_by(|a, b| stresses[*a].total_cmp(&stresses[*b]));
     let mut later = 0.0;
-    let mut end = rows.len();
-    for index in (top.unwrap_or(0) + 1..rows.len()).rev() {
-        later = stress(index).max(later);
-        if later < BROKEN * median_before(index) {
+    let mut end = stresses.len();
+    for index in (top.unwrap_or(0) + 1..stresses.len()).rev() {
+        later = stresses[index].max(later);
+        if later < BROKEN * before(index) {
             end = index;
         }
     }
     // The first rows of the fall are above the limit.
-    while end < rows.len() && end > 1 && stress(end - 1) < 0.9 * median_before(end - 1) {
+    while end < stresses.len() && end > 1 && stresses[end - 1] < 0.9 * before(end - 1) {
         end -= 1;
     }
     end
@@ -134,37 +85,29 @@ fn break_of(rows: &[RecordRow]) -> usize {
 
 /// Standard deviation of the noise of a smooth sequence: the median absolute third difference over
 /// its expectation for independent normal noise, 0.6745 sqrt(20).
-fn noise(values: impl Iterator<Item = f64>) -> f64 {
-    let values: Vec<f64> = values.collect();
+fn noise(values: &[f64]) -> f64 {
     if values.len() < MIN_NOISE_ROWS {
         return 0.0;
     }
-    let mut differences: Vec<f64> =
-        (values.windows(4)).map(|w| (w[3] - 3.0 * w[2] + 3.0 * w[1] - w[0]).abs()).collect();
-    differences.sort_by(f64::total_cmp);
-    let median = differences.get(differences.len() / 2).copied();
-    median.unwrap_or(0.0) / (0.6745 * 20f64.sqrt())
+    let differences = values.windows(4).map(|w| (w[3] - 3.0 * w[2] + 3.0 * w[1] - w[0]).abs());
+    median(differences.collect()) / (0.6745 * 20f64.sqrt())
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn rows(values: &[[f64; 2]]) -> Vec<RecordRow> {
-        let numbered = values.iter().enumerate();
-        numbered
-            .map(|(index, &[strain, stress])| RecordRow { line: index as u64 + 2, strain, stress })
-            .collect()
-    }
-
     #[test]
     fn shaking_strains_are_averaged() {
         // A deterministic noise of about the standard deviation 0.29.
         let shake = |i: i32| 1e-3 * ((f64::from(i) * 0.618_034).fract() - 0.5);
-        let values: Vec<[f64; 2]> =
-            (0..400).map(|i| [2e-4 * f64::from(i) + shake(i), f64::from(i)]).collect();
-        let cleaned = cleaned(&rows(&values)).unwrap();
-        assert!(cleaned.dropped.is_empty() && cleaned.averaged > 50);
+        let row = |i| {
+            let (strain, stress) = (2e-4 * f64::from(i) + shake(i), f64::from(i));
+            RecordRow { line: 1, strain, stress, cause: None }
+        };
+        let mut rows: Vec<RecordRow> = (0..400).map(row).collect();
+        let cleaned = cleaned(&mut rows).unwrap();
+        assert!(rows.iter().all(|row| row.cause.is_none()) && cleaned.averaged > 50);
         for [strain, stress] in &cleaned.curve[5..] {
             assert!((strain - 2e-4 * stress).abs() < 5e-4);
         }

@@ -2,10 +2,10 @@
 //! and the table of the finite elements.
 
 use crate::cold_drawing::{ColdDrawing, beyond_maximum_force};
-use crate::landmarks::Draw;
-use crate::mean_curve::mean_curve;
-use crate::record::{Record, RecordOptions};
-use crate::specimen::{End, Specimen, SpecimenOptions};
+use crate::landmarks::{Draw, End};
+use crate::record::{Cause, Record, RecordOptions};
+use crate::regression::interpolated;
+use crate::specimen::{Specimen, SpecimenOptions};
 use crate::thinning::thinned;
 use serde::Serialize;
 use std::path::PathBuf;
@@ -126,6 +126,9 @@ pub struct MaterialFit {
 
 /// Number of points of the curve in the neck.
 const NECK_POINTS: usize = 100;
+/// Number of intervals of the mean curve; they grow linearly, because a curve bends most after
+/// yield.
+const INTERVALS: usize = 400;
 /// Digits after the point of stresses (MPa) and strains in the table.
 const DIGITS: [i32; 2] = [3, 5];
 
@@ -158,31 +161,34 @@ impl MaterialFit {
         let mut specimens = Vec::new();
         for (path, record) in records {
             for record in Record::read_all(path, record)? {
-                specimens.push(Specimen::new(&record, &options.specimen)?);
+                specimens.push(Specimen::new(record, &options.specimen)?);
             }
         }
-        same_kind(&specimens)?;
+        let draws = draws(&specimens)?;
         let over = |value: fn(&Specimen) -> f64| Statistic::new(specimens.iter().map(value));
         let drawn = |value: fn(&Draw) -> f64| {
-            let draws: Option<Vec<f64>> =
-                (specimens.iter()).map(|specimen| specimen.draw.as_ref().map(value)).collect();
-            draws.map(|values| Statistic::new(values.into_iter()))
+            (!draws.is_empty()).then(|| Statistic::new(draws.iter().map(value)))
         };
         let young = over(|specimen| specimen.young);
         let (plateau, draw_ratio) = (drawn(|draw| draw.plateau), drawn(|draw| draw.draw_ratio));
         let (mut curve, cut_yield) = hardening(&specimens, young.mean, plateau.zip(draw_ratio))?;
-        let fracture = fracture(&specimens, options, &curve)?;
-        let necks = specimens.iter().all(|specimen| specimen.end == End::Neck);
         let end = curve[curve.len() - 1];
-        if necks && fracture.strain > end.strain {
-            curve.push(HardeningRow {
-                stress: beyond_maximum_force([end.stress, end.strain], fracture.strain, young.mean),
-                strain: fracture.strain,
-                origin: Origin::Extrapolated,
-            });
+        let (fracture_strain, fracture_scatter, fracture_source) =
+            fracture(&specimens, options.fracture_strain, end.strain)?;
+        let necks = specimens.iter().all(|specimen| specimen.end == End::Neck);
+        if necks && fracture_strain > end.strain {
+            let stress =
+                beyond_maximum_force([end.stress, end.strain], fracture_strain, young.mean);
+            curve.extend(marked(&[[stress, fracture_strain]], Origin::Extrapolated));
         }
         let rows: Vec<[f64; 2]> = curve.iter().map(|row| [row.stress, row.strain]).collect();
         let (kept, table_deviation) = thinned(&rows, options.rows);
+        let mut table: Vec<HardeningRow> = kept.into_iter().map(|row| curve[row]).collect();
+        for row in &mut table {
+            row.stress = rounded(row.stress, DIGITS[0]);
+            row.strain = rounded(row.strain, DIGITS[1]);
+        }
+        table.dedup_by(|row, before| row.strain <= before.strain);
         Ok(Self {
             young: Statistic { mean: rounded(young.mean, 1), ..young },
             young_given: options.specimen.young.is_some(),
@@ -191,15 +197,33 @@ impl MaterialFit {
             plateau,
             draw_ratio,
             cut_yield,
-            table: table(kept.into_iter().map(|row| curve[row])),
+            table,
             curve,
             table_deviation,
-            fracture_strain: rounded(fracture.strain, 4),
-            fracture_scatter: fracture.scatter,
-            fracture_source: fracture.source,
+            fracture_strain: rounded(fracture_strain, 4),
+            fracture_scatter,
+            fracture_source,
             specimens,
         })
     }
+}
+
+/// The draws of the specimens, none or one each: specimens that draw and specimens that do not have
+/// no common curve.
+fn draws(specimens: &[Specimen]) -> Result<Vec<Draw>, Fault> {
+    let draws: Vec<Draw> = specimens.iter().filter_map(|specimen| specimen.draw).collect();
+    if draws.is_empty() || draws.len() == specimens.len() {
+        return Ok(draws);
+    }
+    let names = |draw: bool| {
+        let these = specimens.iter().filter(|specimen| specimen.draw.is_some() == draw);
+        these.map(|specimen| specimen.path.display().to_string()).collect::<Vec<_>>().join(", ")
+    };
+    Err(Fault::from(format!(
+        "{} have a draw plateau, {} have none: fit them apart, or leave out specimens that broke early",
+        names(true),
+        names(false)
+    )))
 }
 
 /// The mean hardening curve, and the true stress to which the upper yield is cut, if it is. `draw`
@@ -209,15 +233,16 @@ fn hardening(
     young: f64,
     draw: Option<(Statistic, Statistic)>,
 ) -> Result<(Vec<HardeningRow>, Option<f64>), Fault> {
-    let before: Vec<&[[f64; 2]]> = specimens.iter().map(|specimen| &*specimen.before).collect();
-    let end = Statistic::new(before.iter().map(|curve| last(curve)[1])).mean;
-    let mut uniform = mean_curve(&before, end);
+    let mean = |part: fn(&Specimen) -> &[[f64; 2]]| {
+        mean_curve(&specimens.iter().map(part).collect::<Vec<_>>())
+    };
+    let mut uniform = mean(|specimen| &specimen.before);
     let Some((plateau, ratio)) = draw else {
         return Ok((marked(&uniform, Origin::Measured), None));
     };
-    let top = last(&uniform);
+    let top = uniform[uniform.len() - 1];
     let drawing = ColdDrawing::new(top, plateau.mean, ratio.mean, young).ok_or_else(|| {
-        refused(format!(
+        Fault::from(format!(
             "the natural draw ratio {:.3} is not beyond the upper yield at the plastic strain {:.3}: check --draw-ratio, \
              the initial section over the section of the drawn neck",
             ratio.mean, top[1]
@@ -227,112 +252,71 @@ fn hardening(
     uniform.iter_mut().for_each(|row| row[0] = row[0].min(yields));
     let mut curve = marked(&uniform, Origin::Measured);
     curve.extend(marked(&drawing.points(NECK_POINTS), Origin::Drawn));
-    curve.extend(marked(&drawn_curve(specimens, drawing.to), Origin::Measured));
+    let drawn = mean(|specimen| &specimen.after);
+    let [stress, strain] = drawing.to;
+    let continued = drawn[1..].iter().map(|row| [row[0] - drawn[0][0] + stress, row[1] + strain]);
+    curve.extend(marked(&continued.collect::<Vec<_>>(), Origin::Measured));
     Ok((curve, (yields < top[0]).then_some(yields)))
 }
 
-/// Specimens that draw and specimens that do not have no common curve.
-fn same_kind(specimens: &[Specimen]) -> Result<(), Fault> {
-    let draws = |specimen: &&Specimen| specimen.draw.is_some();
-    let names = |these: Vec<&Specimen>| {
-        let names: Vec<String> =
-            these.iter().map(|specimen| specimen.path.display().to_string()).collect();
-        names.join(", ")
-    };
-    let (drawn, others): (Vec<_>, Vec<_>) = specimens.iter().partition(draws);
-    if drawn.is_empty() || others.is_empty() {
-        Ok(())
-    } else {
-        Err(refused(format!(
-            "{} have a draw plateau, {} have none: fit them apart, or leave out specimens that broke early",
-            names(drawn),
-            names(others)
-        )))
+/// The mean of curves [stress, strain] with increasing strain, over the strain from their starts up
+/// to their mean end.
+///
+/// The stress at zero is the mean. From there the mean increment of the curves that reach an
+/// interval is added, so that a specimen that breaks early leaves no jump.
+fn mean_curve(curves: &[&[[f64; 2]]]) -> Vec<[f64; 2]> {
+    let length = |curve: &[[f64; 2]]| curve[curve.len() - 1][1] - curve[0][1];
+    let end = Statistic::new(curves.iter().map(|curve| length(curve))).mean;
+    let mut stress = Statistic::new(curves.iter().map(|curve| curve[0][0])).mean;
+    let mut rows = vec![[stress, 0.0]];
+    for interval in 1..=INTERVALS {
+        let [before, strain] =
+            [interval - 1, interval].map(|index| end * (index as f64 / INTERVALS as f64).powi(2));
+        if strain > before {
+            let at = |curve: &[[f64; 2]], strain| interpolated(curve, 0, curve[0][1] + strain);
+            let reached = curves.iter().filter(|curve| length(curve) >= before);
+            let increments = reached.map(|curve| at(curve, strain) - at(curve, before));
+            stress += Statistic::new(increments).mean;
+            rows.push([stress, strain]);
+        }
     }
+    rows
 }
 
-/// The mean curve from the natural draw ratio at `start` to the mean end.
-fn drawn_curve(specimens: &[Specimen], start: [f64; 2]) -> Vec<[f64; 2]> {
-    let shifted: Vec<Vec<[f64; 2]>> = (specimens.iter())
-        .map(|specimen| {
-            let after = &specimen.after;
-            let rows = after.iter().map(|row| [row[0], row[1] - after[0][1]]);
-            rows.collect()
-        })
-        .collect();
-    let curves: Vec<&[[f64; 2]]> = shifted.iter().map(Vec::as_slice).collect();
-    let end = Statistic::new(curves.iter().map(|curve| last(curve)[1])).mean;
-    if end <= 0.0 {
-        return Vec::new();
-    }
-    let mean = mean_curve(&curves, end);
-    let offset = start[0] - mean[0][0];
-    let rows = mean[1..].iter();
-    rows.map(|row| [row[0] + offset, row[1] + start[1]]).collect()
-}
-
-/// What is wrong with the specimens together.
-fn refused(what: String) -> Fault {
-    Fault::from(what)
-}
-
-struct Fracture {
-    strain: f64,
-    scatter: Option<f64>,
-    source: FractureSource,
-}
-
+/// The plastic strain at fracture, its scatter and its source, for a curve that ends at `end`.
 fn fracture(
     specimens: &[Specimen],
-    options: &FitOptions,
-    curve: &[HardeningRow],
-) -> Result<Fracture, Fault> {
-    let end = curve[curve.len() - 1].strain;
-    if let Some(strain) = options.fracture_strain {
-        return if strain >= end {
-            Ok(Fracture { strain, scatter: None, source: FractureSource::Given })
-        } else {
-            Err(refused(format!(
+    given: Option<f64>,
+    end: f64,
+) -> Result<(f64, Option<f64>, FractureSource), Fault> {
+    if let Some(strain) = given {
+        if strain < end {
+            return Err(Fault::from(format!(
                 "--fracture-strain {strain} is less than the plastic strain {end:.4} that the specimens reach on \
                  average: it is ln(A0 / A), from the section A of the broken specimen"
-            )))
-        };
+            )));
+        }
+        return Ok((strain, None, FractureSource::Given));
     }
-    let worst = |of| specimens.iter().any(|specimen| specimen.end == of);
-    let source = match (worst(End::Drawing), worst(End::Neck)) {
-        (true, _) => FractureSource::DrawRatio,
-        (_, true) => FractureSource::MaximumForce,
-        _ if specimens.iter().all(Specimen::broke) => FractureSource::Break,
-        _ => FractureSource::RecordEnd,
+    let any = |of| specimens.iter().any(|specimen| specimen.end == of);
+    let source = if any(End::Drawing) {
+        FractureSource::DrawRatio
+    } else if any(End::Neck) {
+        FractureSource::MaximumForce
+    } else if specimens.iter().all(|specimen| specimen.dropped_for(Cause::Broken) > 0) {
+        FractureSource::Break
+    } else {
+        FractureSource::RecordEnd
     };
-    let reached = |specimen: &Specimen| {
-        let drawn = !specimen.after.is_empty();
-        last(if drawn { &specimen.after } else { &specimen.before })[1]
-    };
-    let scatter = Statistic::new(specimens.iter().map(reached)).deviation;
+    let reached = |it: &Specimen| it.after.last().or(it.before.last()).map(|row| row[1]);
+    let scatter = Statistic::new(specimens.iter().filter_map(reached)).deviation;
     if let Some(scatter) = scatter.filter(|scatter| *scatter > end) {
-        return Err(refused(format!(
+        return Err(Fault::from(format!(
             "the specimens have a fracture strain of {end:.4} ± {scatter:.4}, which is none: give --fracture-strain, or \
              leave out specimens that broke early"
         )));
     }
-    Ok(Fracture { strain: end, scatter, source })
-}
-
-/// The rows of the table, rounded. A row that rounding moves onto the one before is left out.
-fn table(rows: impl Iterator<Item = HardeningRow>) -> Vec<HardeningRow> {
-    let mut table: Vec<HardeningRow> = Vec::new();
-    for row in rows {
-        let row = HardeningRow {
-            stress: rounded(row.stress, DIGITS[0]),
-            strain: rounded(row.strain, DIGITS[1]),
-            ..row
-        };
-        if table.last().is_none_or(|before| row.strain > before.strain) {
-            table.push(row);
-        }
-    }
-    table
+    Ok((end, scatter, source))
 }
 
 fn rounded(value: f64, digits: i32) -> f64 {
@@ -343,9 +327,4 @@ fn rounded(value: f64, digits: i32) -> f64 {
 fn marked(rows: &[[f64; 2]], origin: Origin) -> Vec<HardeningRow> {
     let row = |&[stress, strain]: &[f64; 2]| HardeningRow { stress, strain, origin };
     rows.iter().map(row).collect()
-}
-
-/// The last row of a curve, which has at least one.
-fn last(curve: &[[f64; 2]]) -> [f64; 2] {
-    curve[curve.len() - 1]
 }

@@ -5,8 +5,9 @@
 //! is at two stretches, and the nominal strain is their average. The curve is local again where the
 //! neck has covered the specimen and the stress rises from the plateau.
 
-use crate::regression::interpolated;
+use crate::regression::{interpolated, mean};
 use serde::Serialize;
+use support::vectors::{add, dot};
 
 /// Plastic strain at the yield stress Rp0.2 (ISO 6892-1).
 const OFFSET: f64 = 0.002;
@@ -28,104 +29,110 @@ pub struct Draw {
     pub plateau: f64,
     /// Stretch of the drawn material.
     pub draw_ratio: f64,
-    /// Whether the ratio was given, and not found on the curve.
-    pub ratio_given: bool,
     /// Row of the upper yield.
     #[serde(skip)]
     pub(super) top: usize,
 }
 
+/// How a specimen ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum End {
+    /// It broke, or the record ends, while its deformation was uniform.
+    Uniform,
+    /// It necked at the maximum force.
+    Neck,
+    /// The record ends before the neck had covered the specimen.
+    Drawing,
+}
+
 /// The nominal stress (MPa) at which the curve crosses the line of slope `young` through the strain
 /// 0.2 %, after the row `from`; `None` if it does not.
 pub(super) fn offset_yield(curve: &[[f64; 2]], young: f64, from: usize) -> Option<f64> {
-    let above = |row: &[f64; 2]| row[1] - young * (row[0] - OFFSET);
-    let after = &curve[from.min(curve.len())..];
-    let at = after.windows(2).position(|pair| above(&pair[1]) <= 0.0)?;
-    let crossed = |[a, b]: [[f64; 2]; 2]| {
-        let [before, after] = [above(&a), above(&b)];
-        a[1] + before / (before - after) * (b[1] - a[1])
+    let rows = curve.iter().skip(from).map(|row| [row[1], row[0] - row[1] / young]);
+    let rows: Vec<[f64; 2]> = rows.collect();
+    let after = 1 + rows.iter().skip(1).position(|row| row[1] >= OFFSET)?;
+    let sharp = (rows[after - 1][1] < 0.5 * OFFSET).then_some(OFFSET);
+    Some(yield_stress(&rows, after, OFFSET, sharp))
+}
+
+/// The stress at the plastic strain `at` of a curve [stress, plastic strain] that exceeds it from
+/// the row `after` on. Between the rows before and after a sharp yield it is where the curve after
+/// it, continued to the plastic strain `back`, begins.
+pub(super) fn yield_stress(curve: &[[f64; 2]], after: usize, at: f64, back: Option<f64>) -> f64 {
+    let on = |row: usize, strain: f64| {
+        let [from, to] = [curve[row], curve[row + 1]];
+        from[0] + (to[0] - from[0]) * (strain - from[1]) / (to[1] - from[1])
     };
-    let [a, b] = [after[at], after[at + 1]];
-    let between = if above(&a) > 0.0 { crossed([a, b]) } else { a[1] };
-    // Rows before and after a sharp yield: it is where the curve after it begins.
-    let sharp = above(&a) > 0.5 * young * OFFSET;
-    let next = after.get(at + 2).filter(|next| sharp && above(next) < above(&b));
-    let begins = next.map_or(between, |next| crossed([b, *next]));
-    Some(begins.min(b[1]).max(between))
+    let between = on(after - 1, at.max(curve[after - 1][1]));
+    let rises = curve.get(after + 1).is_some_and(|next| next[1] > curve[after][1]);
+    let begins = back.filter(|_| rises).map_or(between, |back| on(after, back));
+    begins.min(curve[after][0]).max(between)
 }
 
 /// The draw of a curve after the row `from`; `None` if it does not neck or breaks in the neck.
 /// `given` is the natural draw ratio if it was measured.
 pub(super) fn draw(
     curve: &[[f64; 2]],
-    mut from: usize,
+    from: usize,
     noise: f64,
     given: Option<f64>,
 ) -> Result<Option<Draw>, String> {
-    let stress = |row: usize| curve[row][1];
-    let end = curve.len();
-    while let Some(top) = peak(curve, from, noise) {
-        let change = change(stress(top), noise);
-        let region = (top..end).find(|&row| stress(row) > stress(top) + change);
-        let region = region.unwrap_or(end);
-        let low = lowest(curve, top, region);
-        let high = highest(curve, low, region);
-        let fallen = stress(low) + 0.25 * (stress(top) - stress(low));
-        let start = (top..region).find(|&row| stress(row) <= fallen).unwrap_or(low);
-        let strain = |row: usize| curve[row][0];
-        let found = |plateau, draw_ratio, ratio_given| Draw {
-            upper_yield: stress(top),
-            upper_yield_strain: strain(top),
-            plateau,
-            draw_ratio,
-            ratio_given,
-            top,
-        };
-        if stress(high) - stress(low) >= change {
-            let [plateau, natural] = plateau_end(&curve[start..=high]);
-            // A short drop is a serration of the flow curve and no neck.
-            if natural - strain(top) >= 0.5 * strain(top) {
-                let stretch = 1.0 + strain(end - 1);
-                if let Some(given) = given.filter(|given| *given > stretch) {
-                    return Err(format!(
-                        "ends at a stretch of {stretch:.2}, after its stress has risen from the draw plateau: the draw ratio {given} is \
-                         beyond it; give the initial section over the section of the drawn neck, or leave --draw-ratio out"
-                    ));
-                }
-                let draw_ratio = given.unwrap_or(1.0 + natural);
-                return Ok(Some(found(plateau, draw_ratio, given.is_some())));
-            }
-            from = high;
-            continue;
-        }
-        // A diffuse neck falls faster and faster until the break; a plateau covers most of what
-        // follows the peak.
-        let [tail, after] = [start, top].map(|row| strain(end - 1) - strain(row));
-        if tail < 0.5 * after || after < 3.0 * strain(top) {
-            return Ok(None);
-        }
-        let plateau = curve[start..].iter().map(|row| row[1]).sum::<f64>() / (end - start) as f64;
+    let Some(top) = peak(curve, from, noise) else { return Ok(None) };
+    let [upper_yield_strain, upper_yield] = curve[top];
+    let change = change(upper_yield, noise);
+    let higher = curve[top..].iter().position(|row| row[1] > upper_yield + change);
+    let region = higher.map_or(curve.len(), |rows| top + rows);
+    let low = (top..region).min_by(|a, b| curve[*a][1].total_cmp(&curve[*b][1])).unwrap_or(top);
+    let high = highest(curve, low, region);
+    let lowest = curve[low][1];
+    let fallen = lowest + 0.25 * (upper_yield - lowest);
+    let start = (top..low).find(|&row| curve[row][1] <= fallen).unwrap_or(low);
+    let found = |plateau, draw_ratio| {
+        Ok(Some(Draw { upper_yield, upper_yield_strain, plateau, draw_ratio, top }))
+    };
+    let end = curve[curve.len() - 1][0];
+    if curve[high][1] - lowest >= change {
+        let [plateau, natural] = plateau_end(&curve[start..=high]);
+        let stretch = 1.0 + end;
         return match given {
-            Some(ratio) => Ok(Some(found(plateau, ratio, true))),
-            None => Err(format!(
-                "draws at {plateau:.2} MPa and ends at a strain of {:.2}, before its stress rises again: measure the section \
-                 of the drawn neck and give --draw-ratio, the initial section over it",
-                strain(end - 1)
+            // A short drop is a serration of the flow curve and no neck.
+            _ if natural < 1.5 * upper_yield_strain => draw(curve, high, noise, given),
+            Some(given) if given > stretch => Err(format!(
+                "ends at a stretch of {stretch:.2}, after its stress has risen from the draw plateau: the draw ratio {given} is \
+                 beyond it; give the initial section over the section of the drawn neck, or leave --draw-ratio out"
             )),
+            given => found(plateau, given.unwrap_or(1.0 + natural)),
         };
     }
-    Ok(None)
+    // A diffuse neck falls faster and faster until the break; a plateau covers most of what follows
+    // the peak.
+    let after = end - upper_yield_strain;
+    if end - curve[start][0] < 0.5 * after || after < 3.0 * upper_yield_strain {
+        return Ok(None);
+    }
+    let plateau = mean(&curve[start..])[1];
+    given.map_or_else(
+        || {
+            Err(format!(
+                "draws at {plateau:.2} MPa and ends at a strain of {end:.2}, before its stress rises again: measure the section \
+                 of the drawn neck and give --draw-ratio, the initial section over it"
+            ))
+        },
+        |ratio| found(plateau, ratio),
+    )
 }
 
-/// The last row after `from` at which the strain is uniform, and whether the specimen necks after
-/// it.
-pub(super) fn uniform_end(curve: &[[f64; 2]], from: usize, noise: f64) -> (usize, bool) {
+/// The last row after `from` at which the strain is uniform, and how the specimen ends.
+pub(super) fn uniform_end(curve: &[[f64; 2]], from: usize, noise: f64) -> (usize, End) {
     let last = curve.len() - 1;
     let top = highest(curve, from, curve.len());
-    if curve[last][1] < curve[top][1] - change(curve[top][1], noise) {
-        (top, true)
+    if from > last {
+        (last, End::Drawing)
+    } else if curve[last][1] < curve[top][1] - change(curve[top][1], noise) {
+        (top, End::Neck)
     } else {
-        (last, false)
+        (last, End::Uniform)
     }
 }
 
@@ -146,12 +153,8 @@ fn change(stress: f64, noise: f64) -> f64 {
     (CHANGE * stress).max(NOISE * noise)
 }
 
-fn lowest(curve: &[[f64; 2]], from: usize, to: usize) -> usize {
-    let rows = from..to;
-    rows.min_by(|a, b| curve[*a][1].total_cmp(&curve[*b][1])).unwrap_or(from)
-}
-
-fn highest(curve: &[[f64; 2]], from: usize, to: usize) -> usize {
+/// The last of the highest rows.
+pub(super) fn highest(curve: &[[f64; 2]], from: usize, to: usize) -> usize {
     let rows = from..to;
     rows.max_by(|a, b| curve[*a][1].total_cmp(&curve[*b][1])).unwrap_or(from)
 }
@@ -164,34 +167,26 @@ fn plateau_end(curve: &[[f64; 2]]) -> [f64; 2] {
     let stresses: Vec<f64> =
         (0..=POINTS).map(|point| interpolated(curve, 1, strain(point))).collect();
     let mut best = [f64::INFINITY, stresses[0], from];
-    let mut sum = 0.0;
     for end in 0..POINTS {
-        sum += stresses[end];
-        let level = sum / (end + 1) as f64;
-        let rise = |point: usize| ((point - end) as f64, stresses[point] - level);
-        // Normal equations of y = b x + c x^2.
-        let [mut xx, mut xxx, mut xxxx, mut xy, mut xxy] = [0.0; 5];
-        for (x, y) in (end + 1..=POINTS).map(rise) {
-            xx += x * x;
-            xxx += x * x * x;
-            xxxx += x * x * x * x;
-            xy += x * y;
-            xxy += x * x * y;
-        }
-        let determinant = xx * xxxx - xxx * xxx;
-        let (b, c) = if determinant > 1e-9 * xx * xxxx {
-            ((xy * xxxx - xxy * xxx) / determinant, (xx * xxy - xxx * xy) / determinant)
-        } else {
-            (xy / xx, 0.0)
-        };
-        let flat: f64 = stresses[..=end].iter().map(|s| (s - level).powi(2)).sum();
-        let rising = (end + 1..=POINTS).map(rise);
-        let error = flat + rising.map(|(x, y)| (y - b * x - c * x * x).powi(2)).sum::<f64>();
+        let level = stresses[..=end].iter().sum::<f64>() / (end + 1) as f64;
+        let rising: Vec<f64> = (0..=POINTS).map(|point| point.saturating_sub(end) as f64).collect();
+        let mut bend: Vec<f64> = rising.iter().map(|x| x * x).collect();
+        let mut left: Vec<f64> = stresses.iter().map(|stress| stress - level).collect();
+        without(&mut bend, &rising);
+        without(&mut left, &rising);
+        without(&mut left, &bend);
+        let error = dot(&left, &left);
         if error < best[0] {
             best = [error, level, strain(end)];
         }
     }
     [best[1], best[2]]
+}
+
+/// Removes the part of `vector` along another.
+fn without(vector: &mut [f64], other: &[f64]) {
+    let along = dot(vector, other) / dot(other, other).max(f64::MIN_POSITIVE);
+    add(vector, other, -along);
 }
 
 #[cfg(test)]
@@ -222,7 +217,7 @@ mod tests {
         let plateau: f64 = plateau.split(' ').next().unwrap().parse().unwrap();
         assert!((plateau - 34.0).abs() < 0.2 && missing.contains("--draw-ratio"), "{missing}");
         let given = draw(&short, 10, 0.0, Some(3.28)).unwrap().unwrap();
-        assert_eq!((given.draw_ratio, given.ratio_given), (3.28, true));
+        assert_eq!(given.draw_ratio, 3.28);
     }
 
     /// 33 for 3.3, on a strip that ends at a stretch of 4.5.

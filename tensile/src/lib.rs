@@ -9,7 +9,7 @@
 //! | yield, plateau, natural draw ratio, necking | `landmarks` |
 //! | one specimen, its local curve | `specimen`, `local_curve` |
 //! | local curve in the neck | `cold_drawing` |
-//! | mean over the specimens, table, fracture strain | `mean_curve`, `thinning`, `fit` |
+//! | mean over the specimens, table, fracture strain | `fit`, `thinning` |
 //! | the material and its file | `material_file` |
 //!
 //! ```
@@ -39,7 +39,6 @@ mod landmarks;
 mod linear_part;
 mod local_curve;
 mod material_file;
-mod mean_curve;
 mod name;
 mod number_table;
 mod preamble;
@@ -49,15 +48,14 @@ mod regression;
 mod specimen;
 mod thinning;
 
-pub use cleaning::{Cause, DroppedRow};
 pub use fit::{FitOptions, FractureSource, HardeningRow, MaterialFit, Origin, Statistic};
-pub use landmarks::Draw;
+pub use landmarks::{Draw, End};
 pub use linear_part::LinearPart;
 pub use material_file::material_file;
 pub use preamble::StatedDimension;
 pub use quantity::Quantity;
-pub use record::{ReadColumn, RecordOptions};
-pub use specimen::{End, Softening, Specimen, SpecimenOptions};
+pub use record::{Cause, ReadColumn, RecordOptions, RecordRow};
+pub use specimen::{Softening, Specimen, SpecimenOptions};
 
 use std::path::Path;
 use support::fault::Fault;

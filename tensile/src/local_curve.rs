@@ -2,7 +2,8 @@
 //! sigma = s (1 + e), eps_p = ln(1 + e) - sigma / E.
 
 use crate::isotonic::{non_decreasing, pools};
-use crate::landmarks::Draw;
+use crate::landmarks::{Draw, yield_stress};
+use crate::regression::mean;
 
 /// Plastic strain above which no yield can be read from a curve: its noise is too large.
 const MAX_ONSET: f64 = 5e-3;
@@ -28,23 +29,14 @@ pub(super) fn first_part(
     draws: bool,
 ) -> Option<Vec<[f64; 2]>> {
     let rows: Vec<[f64; 2]> = curve.iter().map(|row| local(row, young)).collect();
-    let elastic = rows.iter().rposition(|row| row[1] <= onset)?;
-    let yields = match rows[elastic..] {
-        [before, after, ..] => {
-            let on = |[a, b]: [[f64; 2]; 2], strain: f64| {
-                a[0] + (b[0] - a[0]) * (strain - a[1]) / (b[1] - a[1])
-            };
-            let between = on([before, after], onset);
-            // Rows before and after a sharp yield: it is where the curve after it begins.
-            let next = rows.get(elastic + 2).filter(|next| next[1] > after[1]);
-            let begins = next.map_or(between, |next| on([after, *next], 0.0));
-            begins.min(after[0]).max(between)
-        }
-        [[stress, _]] if draws => stress,
-        _ => return None,
+    let after = rows.iter().rposition(|row| row[1] <= onset)? + 1;
+    let yields = if after < rows.len() {
+        yield_stress(&rows, after, onset, Some(0.0))
+    } else {
+        draws.then(|| rows[after - 1][0])?
     };
     let mut part = vec![[yields, 0.0]];
-    part.extend(&rows[elastic + 1..]);
+    part.extend(&rows[after..]);
     (onset < MAX_ONSET && yields > 0.0).then(|| monotone(&part))
 }
 
@@ -60,17 +52,10 @@ pub(super) fn second_part(curve: &[[f64; 2]], draw: &Draw, young: f64) -> Vec<[f
 /// row is unchanged.
 fn monotone(curve: &[[f64; 2]]) -> Vec<[f64; 2]> {
     let [first, start] = curve[0];
-    let pools = pools(curve[1..].iter().map(|row| row[1].max(start)), true);
-    let mut strains = vec![start];
-    let mut stresses = vec![first];
-    for pool in pools {
-        let rows = &curve[1..][pool];
-        let mean = |of: usize| rows.iter().map(|row| row[of]).sum::<f64>() / rows.len() as f64;
-        if mean(1) > start {
-            strains.push(mean(1));
-            stresses.push(mean(0).max(first));
-        }
-    }
-    let stresses = non_decreasing(&stresses);
-    stresses.into_iter().zip(strains).map(|(stress, strain)| [stress, strain]).collect()
+    let pools = pools(curve[1..].iter().map(|row| row[1].max(start)), true).into_iter();
+    let mut rows = vec![curve[0]];
+    rows.extend(pools.map(|pool| mean(&curve[1..][pool])).filter(|row| row[1] > start));
+    let stresses: Vec<f64> = rows.iter().map(|row| row[0].max(first)).collect();
+    let stresses = non_decreasing(&stresses).into_iter();
+    stresses.zip(rows).map(|(stress, row)| [stress, row[1]]).collect()
 }

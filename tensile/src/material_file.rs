@@ -2,7 +2,6 @@
 
 use crate::{Cause, MaterialFit, Origin, ReadColumn, Specimen, Statistic};
 use hinge::{InvalidMaterial, SheetMaterial};
-use std::fmt::Write;
 
 impl MaterialFit {
     /// The material of the fit, with name, thickness, Poisson's ratio and density of `known`, which
@@ -22,71 +21,51 @@ impl MaterialFit {
 
 /// TOML text of the fitted material, with its provenance as comments.
 pub fn material_file(fit: &MaterialFit, material: &SheetMaterial, poisson_assumed: bool) -> String {
-    let mut text = String::new();
-    write(&mut text, fit, material, poisson_assumed).expect("writing to a string cannot fail");
-    text
-}
-
-fn write(
-    t: &mut String,
-    fit: &MaterialFit,
-    material: &SheetMaterial,
-    poisson_assumed: bool,
-) -> std::fmt::Result {
+    let SheetMaterial { thickness, young, poisson, density_kg_m3, fracture_strain, .. } = material;
     let name = printable(&material.name);
-    writeln!(t, "# {name}: the law of tensile tests, by `kirigami material fit`.")?;
-    for specimen in &fit.specimens {
-        provenance(t, specimen)?;
-    }
-    landmarks(t, fit)?;
-    let quoted = name.replace('\\', "\\\\").replace('"', "\\\"");
-    writeln!(t, "name = \"{quoted}\"\n")?;
-    let source = if fit.young_given { "given" } else { "measured" };
-    let assumed = if poisson_assumed { "  # assumed" } else { "" };
-    writeln!(t, "thickness = {:?}  # mm", material.thickness)?;
-    writeln!(t, "young = {:?}  # MPa; {source}{}", material.young, scatter(&fit.young, 0))?;
-    writeln!(t, "poisson = {:?}{assumed}", material.poisson)?;
-    writeln!(t, "density_kg_m3 = {:?}  # kg/m^3", material.density_kg_m3)?;
-    let source = fit.fracture_source.words();
-    writeln!(
-        t,
-        "fracture_strain = {:?}  # true plastic strain; {source}",
-        material.fracture_strain
-    )?;
-    writeln!(
-        t,
-        "\n# Rows [true stress (MPa), true plastic strain]; constant stress after the last row. They deviate by at most\n\
-         # {:.2} % from the mean curve.\nplastic = [",
-        100.0 * fit.table_deviation
-    )?;
-    for row in &fit.table {
+    let rows = fit.table.iter().map(|row| {
         let origin = match row.origin {
             Origin::Measured => "",
             Origin::Drawn => "  # in the neck: equal work",
             Origin::Extrapolated => "  # beyond the maximum force: Considere",
         };
-        writeln!(t, "    [{:?}, {:?}],{origin}", row.stress, row.strain)?;
-    }
-    writeln!(t, "]")?;
-    match material.stress_deviation {
-        Some(deviation) => writeln!(
-            t,
-            "\nstress_deviation = {deviation:?}  # relative standard deviation of the stress over the specimens"
-        ),
-        None => Ok(()),
-    }
+        format!("    [{:?}, {:?}],{origin}\n", row.stress, row.strain)
+    });
+    let deviation = material.stress_deviation.map(|deviation| {
+        format!("\nstress_deviation = {deviation:?}  # relative standard deviation of the stress over the specimens\n")
+    });
+    format!(
+        "# {name}: the law of tensile tests, by `kirigami material fit`.\n{}{}\
+         name = \"{}\"\n\n\
+         thickness = {thickness:?}  # mm\n\
+         young = {young:?}  # MPa; {}{}\n\
+         poisson = {poisson:?}{}\n\
+         density_kg_m3 = {density_kg_m3:?}  # kg/m^3\n\
+         fracture_strain = {fracture_strain:?}  # true plastic strain; {}\n\n\
+         # Rows [true stress (MPa), true plastic strain]; constant stress after the last row. They deviate by at most\n\
+         # {:.2} % from the mean curve.\nplastic = [\n{}]\n{}",
+        fit.specimens.iter().map(provenance).collect::<String>(),
+        landmarks(fit),
+        name.replace('\\', "\\\\").replace('"', "\\\""),
+        if fit.young_given { "given" } else { "measured" },
+        scatter(&fit.young, 0),
+        if poisson_assumed { "  # assumed" } else { "" },
+        fit.fracture_source.words(),
+        100.0 * fit.table_deviation,
+        rows.collect::<String>(),
+        deviation.unwrap_or_default()
+    )
 }
 
 /// The file of a specimen, what was read from it and what was dropped.
-fn provenance(t: &mut String, specimen: &Specimen) -> std::fmt::Result {
+fn provenance(specimen: &Specimen) -> String {
     let name = specimen.path.file_name().unwrap_or_default().to_string_lossy();
     let [toe, unloading, broken] =
         [Cause::Toe, Cause::Unloading, Cause::Broken].map(|cause| specimen.dropped_for(cause));
     let [from, to] = specimen.linear.strain.map(|strain| 100.0 * strain);
-    writeln!(
-        t,
+    format!(
         "# {} (blake3 {}): {}.\n#   {} rows, not used: {toe} in the toe, {unloading} of unloading, {broken} after the break.\n\
-         #   Toe {:.3} %, linear from {from:.3} to {to:.3} % with {:.0} MPa.",
+         #   Toe {:.3} %, linear from {from:.3} to {to:.3} % with {:.0} MPa.\n",
         printable(&name),
         specimen.hash,
         printable(&specimen.read_as.each_ref().map(ReadColumn::to_string).join(", ")),
@@ -97,18 +76,18 @@ fn provenance(t: &mut String, specimen: &Specimen) -> std::fmt::Result {
 }
 
 /// Yield and draw with their scatter.
-fn landmarks(t: &mut String, fit: &MaterialFit) -> std::fmt::Result {
-    write!(t, "# Rp0.2 {:.2} MPa{}", fit.offset_yield.mean, scatter(&fit.offset_yield, 2))?;
-    for (name, value, unit, digits) in [
-        ("upper yield", &fit.upper_yield, " MPa", 2),
-        ("draw plateau", &fit.plateau, " MPa", 2),
-        ("natural draw ratio", &fit.draw_ratio, "", 3),
-    ] {
-        if let Some(value) = value {
-            write!(t, ", {name} {:.digits$}{unit}{}", value.mean, scatter(value, digits))?;
-        }
-    }
-    writeln!(t, "; +- is the standard deviation.")
+fn landmarks(fit: &MaterialFit) -> String {
+    let all = [
+        ("# Rp0.2", Some(&fit.offset_yield), " MPa", 2),
+        (", upper yield", fit.upper_yield.as_ref(), " MPa", 2),
+        (", draw plateau", fit.plateau.as_ref(), " MPa", 2),
+        (", natural draw ratio", fit.draw_ratio.as_ref(), "", 3),
+    ];
+    let known = all.into_iter().filter_map(|(name, value, unit, digits)| {
+        let value = value?;
+        Some(format!("{name} {:.digits$}{unit}{}", value.mean, scatter(value, digits)))
+    });
+    known.collect::<String>() + "; +- is the standard deviation.\n"
 }
 
 /// " +- 1.2", or nothing for one specimen.

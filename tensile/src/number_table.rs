@@ -7,7 +7,6 @@
 use crate::in_file;
 use crate::name::Name;
 use crate::quantity::{are_units, bare};
-use std::collections::BTreeMap;
 use std::path::Path;
 use support::fault::{Fault, unread};
 use support::text_table::{NumberStyle, TextRow, TextTable};
@@ -86,16 +85,13 @@ impl NumberTable {
         let of = |first: usize| {
             let columns = first..first + width;
             let mut table = self.clone();
-            for (column, label) in table.labels.iter_mut().enumerate() {
-                if !columns.contains(&column) {
-                    label.clear();
-                }
-            }
+            let others = (0..names.len()).filter(|column| !columns.contains(column));
+            others.for_each(|column| table.labels[column].clear());
             // A shorter record ends in empty cells.
-            let filled = |cell: usize, row: &TextRow| {
-                row.cells.get(cell).is_some_and(|cell| !cell.is_empty())
-            };
-            table.rows.retain(|row| columns.clone().any(|cell| filled(cell, row)));
+            table.rows.retain(|row| {
+                let mut own = row.cells.iter().skip(first).take(width);
+                own.any(|cell| !cell.is_empty())
+            });
             table
         };
         Some((0..names.len()).step_by(width).map(of).collect())
@@ -140,11 +136,9 @@ fn first_row(rows: &[TextRow], style: NumberStyle) -> Option<(usize, usize)> {
     let shape = |row: &TextRow| {
         if row.is_comment() { (0, 0) } else { (row.cells.len(), row.numbers(style)) }
     };
-    let mut counts: BTreeMap<(usize, usize), usize> = BTreeMap::new();
-    for shape in rows.iter().map(shape).filter(|(_, numbers)| *numbers > 0) {
-        *counts.entry(shape).or_default() += 1;
-    }
-    let (usual, _) = counts.into_iter().max_by_key(|(_, count)| *count)?;
+    let mut shapes: Vec<_> = rows.iter().map(shape).filter(|(_, numbers)| *numbers > 0).collect();
+    shapes.sort_unstable();
+    let usual = shapes.chunk_by(PartialEq::eq).max_by_key(|same| same.len())?[0];
     let start = rows.iter().position(|row| shape(row) == usual)?;
     Some((start, usual.0))
 }
@@ -161,12 +155,10 @@ fn has_units(row: &TextRow) -> bool {
 
 /// Name and unit of each column from the lines above the first row of numbers.
 fn labels(above: &[TextRow], width: usize, style: NumberStyle) -> Result<Vec<String>, String> {
-    let mut lines = above.iter().rev().peekable();
-    let mut units = lines.next_if(|row| has_units(row)).map_or(Vec::new(), words);
-    let mut names = lines.next().map_or(Vec::new(), words);
-    if units.is_empty() {
-        units = lines.next_if(|row| has_units(row)).map_or(Vec::new(), words);
-    }
+    let mut lines = above.iter().rev().map(words).peekable();
+    let units = lines.next_if(|cells| are_units(cells));
+    let mut names = lines.next().unwrap_or_default();
+    let units = units.or_else(|| lines.next_if(|cells| are_units(cells))).unwrap_or_default();
     if width == 2 * names.len() && names.iter().all(|name| Name::of(name).quantity().is_some()) {
         return Err(format!(
             "names {} columns, but the rows have {width} cells: if the comma is the decimal sign, save the \
@@ -179,9 +171,9 @@ fn labels(above: &[TextRow], width: usize, style: NumberStyle) -> Result<Vec<Str
         names = vec![String::new(); width];
     }
     if named || units.len() == width {
-        let units = units.iter().map(|unit| bare(unit));
-        for (name, unit) in names.iter_mut().zip(units).filter(|(_, unit)| !unit.is_empty()) {
-            *name = format!("{name} ({unit})").trim().to_owned();
+        for (name, unit) in names.iter_mut().zip(&units).filter(|(_, unit)| !bare(unit).is_empty())
+        {
+            *name = format!("{name} ({})", bare(unit)).trim().to_owned();
         }
     }
     Ok(names)
@@ -189,26 +181,21 @@ fn labels(above: &[TextRow], width: usize, style: NumberStyle) -> Result<Vec<Str
 
 /// Why a text contains no table.
 fn no_table(text: &str) -> String {
-    let [[point, comma], _] = NumberStyle::ALL;
-    let number = |line: &str| point.number(line).or(comma.number(line));
-    if text.lines().any(|line| number(line).is_some()) {
-        "has one column of numbers: a tensile curve needs two, force or stress and extension or strain, separated by \
-         commas, semicolons or tabs"
-            .into()
-    } else {
-        let last = text
-            .lines()
-            .zip(1..)
-            .filter(|(line, _)| line.contains(|c: char| c.is_ascii_digit()))
-            .last();
-        let quoted = last.map_or(String::new(), |(line, number)| {
-            format!(" (line {number} is `{}`)", line.escape_debug())
-        });
-        format!(
-            "has no rows of numbers{quoted}: save the curve as text, in columns of plain numbers separated by commas, \
-             semicolons or tabs, with the units in the names of the columns"
-        )
+    let [styles, _] = NumberStyle::ALL;
+    if text.lines().any(|line| styles.iter().any(|style| style.number(line).is_some())) {
+        return "has one column of numbers: a tensile curve needs two, force or stress and extension or strain, separated \
+                by commas, semicolons or tabs"
+            .into();
     }
+    let digits = |(line, _): &(&str, i32)| line.contains(|c: char| c.is_ascii_digit());
+    let last = text.lines().zip(1..).filter(digits).last();
+    let quoted =
+        last.map(|(line, number)| format!(" (line {number} is `{}`)", line.escape_debug()));
+    format!(
+        "has no rows of numbers{}: save the curve as text, in columns of plain numbers separated by commas, \
+         semicolons or tabs, with the units in the names of the columns",
+        quoted.unwrap_or_default()
+    )
 }
 
 #[cfg(test)]

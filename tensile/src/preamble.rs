@@ -18,16 +18,9 @@ pub struct StatedDimension {
     pub line: u64,
 }
 
-impl StatedDimension {
-    /// The name in words.
-    pub fn words(&self) -> String {
-        self.name.replace('-', " ")
-    }
-}
-
 impl fmt::Display for StatedDimension {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        write!(f, "{} {} mm (line {})", self.words(), self.value, self.line)
+        write!(f, "{} {} mm (line {})", self.name.replace('-', " "), self.value, self.line)
     }
 }
 
@@ -41,7 +34,7 @@ pub(super) fn dimensions(
     let (mut stated, mut others) = (Vec::<StatedDimension>::new(), Vec::new());
     for row in lines {
         let Some((text, values)) = named_values(row) else { continue };
-        let name = Name::of(&text);
+        let name = Name::of(text);
         match dimension(&name, &values, style) {
             Some((name, value)) => stated.push(StatedDimension { name, value, line: row.line }),
             None if name.is_near_dimension() => others.push(format!("line {} `{text}`", row.line)),
@@ -57,7 +50,7 @@ pub(super) fn dimensions(
 }
 
 /// The dimension of a specimen that a line states (mm).
-fn dimension(name: &Name, values: &[String], style: NumberStyle) -> Option<(&'static str, f64)> {
+fn dimension(name: &Name, values: &[&str], style: NumberStyle) -> Option<(&'static str, f64)> {
     let numbers = values.iter().enumerate();
     let mut numbers = numbers.filter_map(|(at, value)| Some((at, style.number(value)?)));
     let (at, number) = numbers.next().filter(|(_, number)| *number > 0.0)?;
@@ -69,16 +62,14 @@ fn dimension(name: &Name, values: &[String], style: NumberStyle) -> Option<(&'st
     numbers.next().is_none().then_some((name.dimension()?, value))
 }
 
-/// The name in a line, and what stands behind it: in other cells, or behind a colon or an equals
-/// sign.
-fn named_values(row: &TextRow) -> Option<(String, Vec<String>)> {
+/// The name in a line, and what stands behind it: behind a colon or an equals sign, and in other
+/// cells.
+fn named_values(row: &TextRow) -> Option<(&str, Vec<&str>)> {
     let name = row.cells[0].trim_start_matches('#').trim();
-    if let Some((name, value)) = name.split_once([':', '=']).filter(|(_, value)| !value.is_empty())
-    {
-        let words = value.split_whitespace().map(str::to_owned);
-        return Some((name.to_owned(), words.collect()));
-    }
-    (row.cells.len() > 1).then(|| (name.to_owned(), row.cells[1..].to_vec()))
+    let (name, value) = name.split_once([':', '=']).unwrap_or((name, ""));
+    let words = value.split_whitespace().chain(row.cells[1..].iter().map(String::as_str));
+    let values: Vec<&str> = words.collect();
+    (!values.is_empty()).then_some((name, values))
 }
 
 #[cfg(test)]

@@ -1,11 +1,12 @@
 //! The quantities that a testing machine records, and their units.
 
-use serde::Serialize;
+use serde::de::{IntoDeserializer, value::Error};
+use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::str::FromStr;
 
 /// What a column contains.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Quantity {
     /// Force (N).
@@ -26,17 +27,6 @@ pub enum Quantity {
 
 use Quantity::{Extension, Force, PlasticStrain, Strain, Stress, TrueStrain, TrueStress};
 
-/// Every quantity with its name on the command line.
-const NAMES: [(Quantity, &str); 7] = [
-    (Force, "force"),
-    (Stress, "stress"),
-    (TrueStress, "true-stress"),
-    (Extension, "extension"),
-    (Strain, "strain"),
-    (TrueStrain, "true-strain"),
-    (PlasticStrain, "plastic-strain"),
-];
-
 /// A quantity, the number of N, MPa, mm or 1 in a unit, and the spellings of the unit as [`plain`]
 /// leaves them; the first of a quantity is the unit of the project.
 const UNITS: &str = include_str!("units.txt");
@@ -50,19 +40,21 @@ impl Quantity {
     }
 
     /// The question whether a column of this quantity was read rightly, with the options that
-    /// decide it. `how` are the words for the `unit` that would explain its values.
-    pub(super) fn doubt(self, how: &str, unit: &str) -> String {
-        match self {
-            Force => {
-                "are --thickness, --width and the unit of the force (--units force=UNIT) right"
-                    .into()
+    /// decide it; its values would be usual in `unit`.
+    pub(super) fn doubt(self, unit: &str) -> String {
+        let how = match unit {
+            _ if self == Force => {
+                return "are --thickness, --width and --units force=UNIT right".into();
             }
-            Extension => {
-                "are --gauge-length and the unit of the extension (--units extension=UNIT) right"
-                    .into()
+            _ if self == Extension => {
+                return "are --gauge-length and --units extension=UNIT right".into();
             }
-            _ => format!("is the {self} {how} (--units {self}={unit})"),
-        }
+            "%" => "in per cent",
+            "1" => "not in per cent",
+            "UNIT" => "in another unit",
+            unit => &format!("in {unit}"),
+        };
+        format!("is the {self} {how} (--units {self}={unit})")
     }
 
     /// The number of N, MPa, mm or 1 in each unit, and its spellings.
@@ -101,7 +93,7 @@ impl Quantity {
 
     /// The unit of the project for this quantity: N, MPa, mm or 1.
     pub fn own_unit(self) -> String {
-        self.units().split(", ").next().unwrap_or_default().to_owned()
+        self.units().split(',').take(1).collect()
     }
 }
 
@@ -137,8 +129,7 @@ pub(super) fn bare(unit: &str) -> &str {
 
 impl fmt::Display for Quantity {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        let found = NAMES.iter().find(|(quantity, _)| quantity == self);
-        f.write_str(found.map_or("", |(_, name)| name))
+        self.serialize(f)
     }
 }
 
@@ -146,11 +137,7 @@ impl FromStr for Quantity {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let found = NAMES.iter().find(|(_, name)| *name == text);
-        found.map(|(quantity, _)| *quantity).ok_or_else(|| {
-            let known: Vec<&str> = NAMES.iter().map(|(_, name)| *name).collect();
-            format!("`{text}` is not a quantity: use {}", known.join(", "))
-        })
+        Self::deserialize(text.into_deserializer()).map_err(|error: Error| error.to_string())
     }
 }
 

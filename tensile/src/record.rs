@@ -29,15 +29,29 @@ pub struct RecordOptions {
     pub thickness: Option<f64>,
 }
 
+/// Why a row is not used.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Cause {
+    /// Unloading and reloading up to the strain before it.
+    Unloading,
+    /// After the break of the specimen.
+    Broken,
+    /// Slack and toe, below the linear part.
+    Toe,
+}
+
 /// One row of a record.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct RecordRow {
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct RecordRow {
     /// Number of the line in the file, from 1.
     pub line: u64,
-    /// Deformation, dimensionless.
+    /// Nominal strain.
     pub strain: f64,
-    /// Load per area (MPa).
+    /// Nominal stress (MPa).
     pub stress: f64,
+    /// Why the row is not used, if it is not.
+    pub cause: Option<Cause>,
 }
 
 /// The curve of one specimen in the units of the project.
@@ -47,10 +61,6 @@ pub(super) struct Record {
     pub path: PathBuf,
     /// The rows as measured.
     pub rows: Vec<RecordRow>,
-    /// Quantity of the column from which the stresses are.
-    pub load: Quantity,
-    /// Quantity of the column from which the strains are.
-    pub deformation: Quantity,
     /// The columns that were read: load and deformation.
     pub read_as: [ReadColumn; 2],
     /// The dimensions that were read from the file.
@@ -64,17 +74,13 @@ pub(super) struct Record {
 /// Limits of the values (dimensionless, MPa); wrong units exceed them.
 const MIN_STRAIN: f64 = -0.1;
 const MAX_STRAIN: f64 = 10.0;
-const MAX_STRESS: f64 = 1e6;
+const STRESS: [f64; 2] = [-1e6, 1e6];
 /// A strain without unit must be smaller: it could be in per cent.
 const MAX_STRAIN_WITHOUT_UNIT: f64 = 1.0;
 /// Largest relative difference between an option and the dimension in a file, and the difference
 /// from which on a note names it.
 const CONTRADICTION: f64 = 0.1;
 const SAME: f64 = 1e-3;
-/// What is wrong with `1,234`, and what to do.
-const THOUSANDS: &str = "has separators of thousands, or another decimal sign: save the file with one decimal sign and without \
-                         separators of thousands";
-
 /// How a column was read. It is printed as one phrase.
 #[derive(Clone, Debug, Serialize)]
 pub struct ReadColumn {
@@ -115,102 +121,119 @@ impl Record {
         hash: &str,
     ) -> Result<Self, Fault> {
         let refuse = in_file(path);
-        let columns = columns(&table.labels, options).map_err(refuse)?;
-        let [load, deformation] = pair(&columns, &table.labels).map_err(refuse)?;
-        let load = &ReadColumn::new(load, &table.labels, options).map_err(refuse)?;
-        let deformation = &ReadColumn::new(deformation, &table.labels, options).map_err(refuse)?;
-        let Sizes { area, length, stated, mut unused } =
-            Sizes::new([load.quantity, deformation.quantity], table, options).map_err(refuse)?;
-        let used = [load.quantity, deformation.quantity];
-        for (quantity, unit) in options.units.iter().filter(|(of, _)| !used.contains(of)) {
-            unused.push(format!("--units {quantity}={unit}"));
-        }
-        for (index, label) in table.labels.iter().enumerate() {
-            let read = [load.number, deformation.number].contains(&(index + 1));
+        let (labels, path) = (&table.labels, path.to_owned());
+        let columns = columns(labels, options).map_err(refuse)?;
+        let pair = pair(&columns, labels).map_err(refuse)?;
+        let column = |index: usize| ReadColumn::new(pair[index], labels, options).map_err(refuse);
+        let read_as = [column(0)?, column(1)?];
+        let used = pair.map(|(quantity, _)| quantity);
+        let (stated, mut unused) = preamble::dimensions(&table.preamble, table.style);
+        let (sizes, stated) = sizes(used, stated, &mut unused, options).map_err(refuse)?;
+        let units = options.units.iter().filter(|(of, _)| !used.contains(of));
+        unused.extend(units.map(|(quantity, unit)| format!("--units {quantity}={unit}")));
+        for (index, label) in labels.iter().enumerate() {
             let chosen = columns.iter().any(|(_, at)| *at == index);
+            let read = pair.iter().any(|(_, at)| *at == index);
             if !read && (chosen || Name::of(label).is_near_quantity()) {
                 unused.push(format!("column {}", title(index, label)));
             }
         }
-        let at = |row: &TextRow, what: String| {
-            fault(format!("{}:{}", path.display(), row.line), what, "")
+        let at = |row: &TextRow| {
+            let place = format!("{}:{}", path.display(), row.line);
+            move |what: String| fault(place, what, "")
         };
-        for column in [load, deformation] {
+        for column in &read_as {
             if let Some(row) = table.thousands(column.number - 1) {
-                let what = format!("column {} {THOUSANDS}", column.title());
-                return Err(at(row, what));
-            }
-        }
-        let mut rows = Vec::with_capacity(table.rows.len());
-        for row in &table.rows {
-            let refuse = |what| at(row, what);
-            if let Some(text) = table.beyond(row) {
-                return Err(refuse(format!(
-                    "`{text}` is beyond the last of {} columns: save the file with semicolons or tabs between the columns, \
-                     or give every column a name",
-                    table.labels.len()
+                return Err(at(row)(format!(
+                    "column {} has separators of thousands, or another decimal sign: save the file with one decimal sign and \
+                     without separators of thousands",
+                    column.title()
                 )));
             }
-            let number = |column: &ReadColumn| {
-                table.number(row, column.number - 1).map_err(|text| {
-                    let text = text.escape_debug();
-                    let what = format!("`{text}` in column {} is not a number", column.title());
-                    refuse(if is_grouped(&text.to_string()) {
-                        format!("{what}: it {THOUSANDS}")
-                    } else {
-                        format!("{what}: correct the cell or delete the line; a unit belongs in the column's name")
-                    })
-                })
-            };
-            let read = RecordRow {
-                line: row.line,
-                strain: number(deformation)? * deformation.factor / length,
-                stress: number(load)? * load.factor / area,
-            };
-            read.check(load.quantity, deformation.quantity).map_err(refuse)?;
-            rows.push(read);
         }
-        let most = rows.iter().map(|row| row.strain).fold(0.0, f64::max);
-        if deformation.quantity == Strain
-            && deformation.unit.is_none()
-            && most > MAX_STRAIN_WITHOUT_UNIT
-        {
-            return Err(refuse(format!(
-                "has strains up to {most} in column {} without a unit: state it in the column's name, as in `strain (%)` or \
-                 `strain (1)`, or with --units strain=% or --units strain=1",
-                deformation.title()
-            )));
+        let rows =
+            table.rows.iter().map(|row| read_row(table, row, &read_as, sizes).map_err(at(row)));
+        let rows = rows.collect::<Result<Vec<_>, _>>()?;
+        if read_as[1].quantity == PlasticStrain {
+            return Err(refuse(
+                "contains plastic strains: it is a hardening table already; write its rows into `plastic` of the material file"
+                    .into(),
+            ));
         }
-        Ok(Self {
-            path: path.to_owned(),
-            rows,
-            load: load.quantity,
-            deformation: deformation.quantity,
-            read_as: [load.clone(), deformation.clone()],
-            stated,
-            unused,
-            hash: hash.to_owned(),
-        })
+        Ok(Self { path, rows, read_as, stated, unused, hash: hash.to_owned() })
+    }
+
+    /// Whether the file has true values, which are not searched for a neck.
+    pub(super) fn is_local(&self) -> bool {
+        self.read_as.iter().any(|column| matches!(column.quantity, TrueStress | TrueStrain))
     }
 }
 
-impl RecordRow {
-    fn check(&self, load: Quantity, deformation: Quantity) -> Result<(), String> {
-        let Self { strain, stress, .. } = self;
-        if !(MIN_STRAIN..=MAX_STRAIN).contains(strain) {
-            return Err(format!(
-                "strain = {strain} violates {MIN_STRAIN} <= strain <= {MAX_STRAIN}: {}, or are the columns swapped?",
-                deformation.doubt("in per cent", "%")
-            ));
-        }
-        if stress.abs() > MAX_STRESS {
-            return Err(format!(
-                "stress = {stress:e} MPa violates |stress| <= {MAX_STRESS:e} MPa: {}?",
-                load.doubt("in Pa", "Pa")
-            ));
-        }
-        Ok(())
+/// The nominal values of a row, whose load and deformation are divided by `sizes`.
+fn read_row(
+    table: &NumberTable,
+    row: &TextRow,
+    read_as: &[ReadColumn; 2],
+    sizes: [f64; 2],
+) -> Result<RecordRow, String> {
+    if let Some(text) = table.beyond(row) {
+        return Err(format!(
+            "`{text}` is beyond the last of {} columns: save the file with semicolons or tabs between the columns, \
+             or give every column a name",
+            table.labels.len()
+        ));
     }
+    let number = |of: usize| {
+        let column = &read_as[of];
+        let number = table.number(row, column.number - 1).map_err(|text| {
+            format!(
+                "`{}` in column {} is not a number: correct the cell (one decimal sign, no separators of thousands; a unit \
+                 belongs in the column's name) or delete the line",
+                text.escape_debug(),
+                column.title()
+            )
+        })?;
+        Ok::<_, String>(number * column.factor / sizes[of])
+    };
+    let [mut stress, mut strain] = [number(0)?, number(1)?];
+    let (name, most) = match (read_as[1].quantity, &read_as[1].unit) {
+        (Strain, None) => (
+            "strain without a unit (state one in the column's name or with --units strain=1)",
+            MAX_STRAIN_WITHOUT_UNIT,
+        ),
+        _ => ("strain", MAX_STRAIN),
+    };
+    within(read_as, name, strain, [MIN_STRAIN, most], [["", "%"]; 2])?;
+    within(read_as, "stress (MPa)", stress, STRESS, [["Pa", ""]; 2])?;
+    if read_as[1].quantity == TrueStrain {
+        strain = strain.exp_m1();
+    }
+    if read_as[0].quantity == TrueStress {
+        stress /= 1.0 + strain;
+    }
+    Ok(RecordRow { line: row.line, strain, stress, cause: None })
+}
+
+/// Refuses a value outside of its limits; `units` of load and deformation would explain one below
+/// and one above, empty if none would.
+pub(super) fn within(
+    read_as: &[ReadColumn; 2],
+    name: &str,
+    value: f64,
+    [least, most]: [f64; 2],
+    units: [[&str; 2]; 2],
+) -> Result<(), String> {
+    let (than, limit, units) = match value {
+        value if value < least => ("less", least, units[0]),
+        value if value > most => ("more", most, units[1]),
+        _ => return Ok(()),
+    };
+    let suspects = read_as.iter().zip(units).filter(|(_, unit)| !unit.is_empty());
+    let doubts: String =
+        suspects.map(|(column, unit)| column.quantity.doubt(unit) + ", or ").collect();
+    Err(format!(
+        "violates the limits of the {name}, as {value:.3e} is {than} than {limit}: {doubts}are the columns swapped?"
+    ))
 }
 
 impl ReadColumn {
@@ -224,22 +247,23 @@ impl ReadColumn {
         let given = options.units.iter().find(|(of, _)| *of == quantity);
         let name = Name::of(label);
         let unit = given.map_or_else(|| name.unit(quantity), |(_, unit)| Ok(Some(unit)));
-        let refuse = |unit: &str, why: &str| {
-            let (title, units) = (title(index, label), quantity.units());
-            format!(
-                "has the {quantity} in column {title}{unit}{why}; state one of {units} with --units {quantity}=UNIT"
-            )
-        };
-        let unknown =
-            |unit: &str| refuse(&format!(": `{unit}`"), " is no unit of it that is known");
-        let unit = unit.map_err(unknown)?;
         let factor = match unit {
-            Some(unit) => quantity.factor(unit).ok_or_else(|| unknown(unit))?,
-            None if quantity == Force => return Err(refuse("", " without a unit")),
-            None => 1.0,
+            Ok(Some(unit)) => quantity.factor(unit).ok_or(Some(unit)),
+            Ok(None) if quantity == Force => Err(None),
+            Ok(None) => Ok(1.0),
+            Err(unit) => Err(Some(unit)),
         };
+        let factor = factor.map_err(|unit| {
+            let (title, units) = (title(index, label), quantity.units());
+            let unknown = |unit| format!(": `{unit}` is no unit of it that is known");
+            let why = unit.map_or(" without a unit".into(), unknown);
+            format!(
+                "has the {quantity} in column {title}{why}; state one of {units} with --units {quantity}=UNIT"
+            )
+        })?;
+        let unit = unit.unwrap_or_default().map(str::to_owned);
         let name = label.clone();
-        Ok(Self { quantity, number: index + 1, unit: unit.map(str::to_owned), name, factor })
+        Ok(Self { quantity, number: index + 1, unit, name, factor })
     }
 
     fn title(&self) -> String {
@@ -259,108 +283,84 @@ impl fmt::Display for ReadColumn {
 
 /// Number and name of a column.
 fn title(index: usize, label: &str) -> String {
-    match label {
-        "" => format!("{}", index + 1),
-        label => format!("{} `{label}`", index + 1),
-    }
-}
-
-/// Whether a text is a number with signs between groups of digits, as in `1,234.5` or `1'234`.
-fn is_grouped(text: &str) -> bool {
-    let sign = |c: char| c.is_whitespace() || ".,'’".contains(c);
-    text.contains(sign) && text.replace(sign, "").parse::<f64>().is_ok()
+    let number = index + 1;
+    if label.is_empty() { number.to_string() } else { format!("{number} `{label}`") }
 }
 
 /// Section (mm^2) and gauge length (mm) by which load and deformation are divided, 1 for a stress
-/// and a strain.
-struct Sizes {
-    area: f64,
-    length: f64,
-    /// Those that are from the file.
+/// and a strain, and the dimensions in the file that are used for them. The options decide; a file
+/// that contradicts them is refused.
+fn sizes(
+    [load, deformation]: [Quantity; 2],
     stated: Vec<StatedDimension>,
-    /// What is not used, in words.
-    unused: Vec<String>,
-}
-
-impl Sizes {
-    /// The options decide; a file that contradicts them is refused.
-    fn new(
-        [load, deformation]: [Quantity; 2],
-        table: &NumberTable,
-        options: &RecordOptions,
-    ) -> Result<Self, String> {
-        let (in_file, mut unused) = preamble::dimensions(&table.preamble, table.style);
-        let near = match &unused[..] {
-            [] => String::new(),
-            lines => format!("; not taken for one: {}", lines.join(", ")),
-        };
-        let (mut missing, mut stated) = (Vec::new(), Vec::new());
-        let mut size = |needed: bool, name: &str, given: Option<f64>| {
-            let found = in_file.iter().find(|it| it.name == name).copied();
-            match given.or(found.map(|it| it.value)) {
-                _ if !needed => {
-                    unused.extend(found.iter().map(StatedDimension::to_string));
-                    // The thickness is the sheet's too.
-                    let option = given.filter(|_| name != "thickness");
-                    unused.extend(option.map(|_| format!("--{name}")));
-                    Ok(1.0)
-                }
-                Some(value) if !(value > 0.0 && value.is_finite()) => {
-                    Err(format!("needs a positive --{name} (mm), not {value}"))
-                }
-                Some(value) => {
-                    let apart = found.map_or(0.0, |it| (it.value / value - 1.0).abs());
-                    if let Some(found) = found.filter(|_| apart > CONTRADICTION) {
-                        let what = format!("states {found}, against --{name} {value}");
-                        return Err(format!("{what}: correct one of them"));
+    unused: &mut Vec<String>,
+    options: &RecordOptions,
+) -> Result<([f64; 2], Vec<StatedDimension>), String> {
+    let near = unused.join(", ");
+    let needed = [(load == Force, "a force"), (deformation == Extension, "a length change")];
+    let (mut sizes, mut missing, mut used) = ([1.0; 2], Vec::new(), Vec::new());
+    for (of, name, given) in [
+        (0, "width", options.width),
+        (0, "thickness", options.thickness),
+        (1, "gauge-length", options.gauge_length),
+    ] {
+        let option = format!("--{name}");
+        let found = stated.iter().find(|it| it.name == name);
+        match given.or(found.map(|it| it.value)) {
+            _ if !needed[of].0 => {
+                unused.extend(found.map(ToString::to_string));
+                // The thickness is the sheet's too.
+                unused.extend(given.filter(|_| name != "thickness").map(|_| option));
+            }
+            None => missing.push(option),
+            Some(value) if !(value > 0.0 && value.is_finite()) => {
+                return Err(format!("needs a positive {option} (mm), not {value}"));
+            }
+            Some(value) => {
+                sizes[of] *= value;
+                let apart = found.map_or(0.0, |it| (it.value / value - 1.0).abs());
+                match found {
+                    Some(found) if apart > CONTRADICTION => {
+                        let what = format!("states {found}, against {option} {value}");
+                        return Err(what + ": correct one of them");
                     }
-                    match found.filter(|_| apart > SAME) {
-                        Some(found) => unused.push(found.to_string()),
-                        None => stated.extend(found),
-                    }
-                    Ok(value)
-                }
-                None => {
-                    missing.push(format!("--{name}"));
-                    Ok(1.0)
+                    Some(found) if apart > SAME => unused.push(found.to_string()),
+                    found => used.extend(found.copied()),
                 }
             }
-        };
-        let (force, extension) = (load == Force, deformation == Extension);
-        let area =
-            size(force, "width", options.width)? * size(force, "thickness", options.thickness)?;
-        let length = size(extension, "gauge-length", options.gauge_length)?;
-        if missing.is_empty() {
-            return Ok(Self { area, length, stated, unused });
         }
-        let contains = match (force, extension) {
-            (true, true) => "a force and a length change",
-            (true, false) => "a force",
-            _ => "a length change",
-        };
-        let options = missing.join(", ");
-        Err(format!("contains {contains}: give {options} of the specimen (mm){near}"))
     }
+    if missing.is_empty() {
+        return Ok((sizes, used));
+    }
+    let read = needed.iter().filter(|(is, _)| *is).map(|(_, name)| *name);
+    let near = if near.is_empty() { near } else { format!("; not taken for one: {near}") };
+    Err(format!(
+        "contains {}: give {} of the specimen (mm){near}",
+        read.collect::<Vec<_>>().join(" and "),
+        missing.join(", ")
+    ))
 }
 
 /// The columns that the options name, or else all that are recognised; those with words that are not
 /// known only if there are no others.
 fn columns(labels: &[String], options: &RecordOptions) -> Result<Vec<(Quantity, usize)>, String> {
     if options.columns.is_empty() {
-        let names = || labels.iter().map(|label| Name::of(label)).enumerate();
+        let names = labels.iter().enumerate().map(|(index, label)| (Name::of(label), index));
         let all =
-            || names().filter_map(|(index, name)| Some((name.quantity()?, index, name.is_known())));
-        let better = |load: bool| all().any(|(of, _, known)| known && of.is_load() == load);
-        let best = all().filter(|(of, _, known)| *known || !better(of.is_load()));
-        return Ok(best.map(|(quantity, index, _)| (quantity, index)).collect());
+            names.filter_map(|(name, index)| Some((name.quantity()?, index, name.is_known())));
+        let all: Vec<(Quantity, usize, bool)> = all.collect();
+        let known = |load| all.iter().any(|(of, _, known)| *known && of.is_load() == load);
+        let best = all.iter().filter(|(of, _, is_known)| *is_known || !known(of.is_load()));
+        return Ok(best.map(|(quantity, index, _)| (*quantity, *index)).collect());
     }
     let named = |(quantity, text): &(Quantity, String)| {
-        let by_name = (labels.iter()).position(|label| label.eq_ignore_ascii_case(text));
-        let number = (text.parse().ok()).filter(|n| (1..=labels.len()).contains(n));
-        let index = by_name.or(number.map(|n| n - 1)).ok_or_else(|| {
-            let columns = listed(labels);
-            format!("has no column `{text}`: its columns are {columns}")
-        })?;
+        let same = |(index, label): &(usize, &String)| {
+            label.eq_ignore_ascii_case(text) || (index + 1).to_string() == *text
+        };
+        let found = labels.iter().enumerate().find(same);
+        let (index, _) = found
+            .ok_or_else(|| format!("has no column `{text}`: its columns are {}", listed(labels)))?;
         Ok((*quantity, index))
     };
     options.columns.iter().map(named).collect()
@@ -390,29 +390,20 @@ fn pair(
     };
     let nominal = one(&[Stress, Force])?.zip(one(&[Strain, Extension])?);
     let local = one(&[TrueStress])?.zip(one(&[PlasticStrain, TrueStrain])?);
-    match (nominal, local) {
-        (Some((load, deformation)), None) | (None, Some((load, deformation))) => {
-            Ok([load, deformation])
-        }
-        (Some(_), Some(_)) => Err(format!(
-            "has both engineering and true values in the columns {}: choose two with --columns, such as \
-             --columns strain=1,stress=2",
-            listed(labels)
-        )),
-        (None, None) => Err(format!(
-            "has the columns {}: no pair of stress (or force) and strain (or extension) is recognised; choose two \
-             with --columns, such as --columns strain=1,stress=2 or --columns extension=1,force=2",
-            listed(labels)
-        )),
-    }
+    let what = match (nominal, local) {
+        (Some(pair), None) | (None, Some(pair)) => return Ok(pair.into()),
+        (Some(_), Some(_)) => "both engineering and true values",
+        (None, None) => "no pair of stress (or force) and strain (or extension)",
+    };
+    Err(format!(
+        "has the columns {}, {what}: choose two with --columns, such as --columns strain=1,stress=2",
+        listed(labels)
+    ))
 }
 
 /// Number and name of each column.
 fn listed(labels: &[String]) -> String {
-    let named = |(index, label): (usize, &String)| match label.as_str() {
-        "" => format!("{} (without name)", index + 1),
-        label => format!("{} `{label}`", index + 1),
-    };
-    let columns: Vec<String> = labels.iter().enumerate().map(named).collect();
+    let columns: Vec<String> =
+        labels.iter().enumerate().map(|(index, label)| title(index, label)).collect();
     columns.join(", ")
 }

@@ -1,5 +1,7 @@
 //! The straight line through rows [x, y], by least squares, and linear interpolation between them.
 
+use support::interpolation::piece;
+
 /// The line through a set of rows.
 pub(super) struct Regression {
     /// Means of x and y.
@@ -15,8 +17,7 @@ pub(super) struct Regression {
 
 impl Regression {
     pub(crate) fn new(rows: &[[f64; 2]]) -> Self {
-        let count = rows.len() as f64;
-        let mean = [0, 1].map(|of| rows.iter().map(|row| row[of]).sum::<f64>() / count);
+        let mean = mean(rows);
         let (mut squares, mut products, mut total) = (0.0, 0.0, 0.0);
         for row in rows {
             let [x, y] = [0, 1].map(|of| row[of] - mean[of]);
@@ -26,21 +27,18 @@ impl Regression {
         }
         let slope = products / squares;
         let left = (total - slope * products).max(0.0);
-        Self { mean, squares, slope, error: (left / (count - 2.0) / squares).sqrt() }
+        Self { mean, squares, slope, error: (left / (rows.len() as f64 - 2.0) / squares).sqrt() }
     }
+}
+
+/// The mean of rows.
+pub(super) fn mean(rows: &[[f64; 2]]) -> [f64; 2] {
+    [0, 1].map(|of| rows.iter().map(|row| row[of]).sum::<f64>() / rows.len() as f64)
 }
 
 /// The value in the column `of` of a curve at the value `x` in its other column, which increases:
 /// linear between rows, constant beyond the ends.
 pub(super) fn interpolated(curve: &[[f64; 2]], of: usize, x: f64) -> f64 {
-    let by = 1 - of;
-    let after = curve.partition_point(|row| row[by] < x);
-    match after {
-        0 => curve[0][of],
-        after if after == curve.len() => curve[after - 1][of],
-        after => {
-            let [low, high] = [curve[after - 1], curve[after]];
-            low[of] + (high[of] - low[of]) * (x - low[by]) / (high[by] - low[by])
-        }
-    }
+    let (low, high, fraction) = piece(curve, |row| row[1 - of], x);
+    low[of] + (high[of] - low[of]) * fraction
 }

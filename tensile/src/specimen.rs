@@ -9,17 +9,16 @@
 //! 4. Landmarks are read from the nominal curve (`landmarks`).
 //! 5. Where the strain is uniform, nominal rows become local ones (`local_curve`).
 
-use crate::cleaning::{Cause, Cleaned, DroppedRow, cleaned};
+use crate::cleaning::{Cleaned, cleaned};
 use crate::in_file;
-use crate::landmarks::{Draw, draw, offset_yield, uniform_end};
+use crate::landmarks::{self, Draw, End, offset_yield, uniform_end};
 use crate::linear_part::LinearPart;
 use crate::local_curve::{first_part, second_part, true_row};
 use crate::preamble::StatedDimension;
-use crate::quantity::Quantity::{Extension, PlasticStrain, TrueStrain, TrueStress};
-use crate::record::{ReadColumn, Record};
+use crate::quantity::Quantity::Extension;
+use crate::record::{Cause, ReadColumn, Record, RecordRow, within};
 use crate::regression::Regression;
 use serde::Serialize;
-use std::collections::BTreeSet;
 use std::path::PathBuf;
 use support::fault::{Fault, fault};
 
@@ -30,18 +29,6 @@ pub struct SpecimenOptions {
     pub young: Option<f64>,
     /// Natural draw ratio, measured on the neck: initial over drawn section.
     pub draw_ratio: Option<f64>,
-}
-
-/// How a specimen ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum End {
-    /// It broke, or the record ends, while its deformation was uniform.
-    Uniform,
-    /// It necked at the maximum force.
-    Neck,
-    /// The record ends before the neck had covered the specimen.
-    Drawing,
 }
 
 /// Rows after the maximum of the stress, which the law does not have.
@@ -71,7 +58,7 @@ pub struct Specimen {
     /// Number of rows of the specimen.
     pub rows: usize,
     /// Rows that are not used.
-    pub dropped: Vec<DroppedRow>,
+    pub dropped: Vec<RecordRow>,
     /// Number of rows that were averaged with their neighbours, because their strain does not
     /// increase.
     pub averaged: usize,
@@ -110,54 +97,52 @@ const YIELD_STRAIN: [f64; 2] = [2e-4, 0.1];
 const ONSET: f64 = 2e-4;
 /// Fraction of the maximum stress to which smoothing reduces the noise.
 const SMOOTH: f64 = 0.003;
-/// Maximum and minimum of the measured over the given modulus.
-const STIFFER: f64 = 1.25;
-const SOFTER: f64 = 0.1;
+/// Limits of the measured over the given modulus: a machine's compliance lowers it by less.
+const SLOPE: [f64; 2] = [0.1, 1.25];
 /// Minimum of the measured over the given modulus of an extensometer: a machine's compliance lowers
 /// the slope by more.
 const EXTENSOMETER: f64 = 0.75;
 
 impl Specimen {
     /// Evaluates a record.
-    pub(super) fn new(record: &Record, options: &SpecimenOptions) -> Result<Self, Fault> {
-        let file = in_file(&record.path);
-        if record.deformation == PlasticStrain {
-            return Err(file(
-                "contains plastic strains: it is a hardening table already; write its rows into `plastic` of the material file"
-                    .into(),
-            ));
-        }
-        let cleaned = nominal_curve(record)?;
-        let is_local = is_local(record);
-        let curve =
-            Compensated::new(record, &cleaned.curve, cleaned.noise, options).map_err(file)?;
-        let (young, elastic, noise) = (curve.young, curve.elastic, curve.noise);
-        let smooth = &curve.rows;
-        let offset_yield = offset_yield(smooth, young, elastic).ok_or_else(|| {
+    pub(super) fn new(mut record: Record, options: &SpecimenOptions) -> Result<Self, Fault> {
+        let path = record.path.clone();
+        let file = in_file(&path);
+        let Cleaned { curve: nominal, averaged, noise } =
+            cleaned(&mut record.rows).map_err(|line| {
+                fault(
+                    format!("{}:{line}", path.display()),
+                    "from here on the strain falls for most of the file",
+                    "sort the rows by time, and give each specimen its own file",
+                )
+            })?;
+        let curve = Compensated::new(&record, &nominal, noise, options).map_err(file)?;
+        let Compensated { young, elastic, noise, rows: smooth, .. } = &curve;
+        let (young, noise, end) = (*young, *noise, smooth.len() - 1);
+        let offset_yield = offset_yield(smooth, young, *elastic).ok_or_else(|| {
             file(format!(
                 "ends at {:.3} MPa before a plastic strain of 0.2 %: it contains no yield and no hardening; is it the \
                  curve up to the break?",
-                smooth[smooth.len() - 1][1]
+                smooth[end][1]
             ))
         })?;
-        check_yield_strain(record, offset_yield / young).map_err(file)?;
-        let draw = if is_local {
-            None
-        } else {
-            draw(smooth, elastic, noise[1], options.draw_ratio).map_err(file)?
-        };
-        let (last, end) = match (&draw, is_local) {
-            (_, true) => (smooth.len() - 1, End::Uniform),
-            (Some(draw), _) => draw_end(smooth, draw, noise[1]),
-            (None, _) => uniform(uniform_end(smooth, elastic, noise[1])),
-        };
-        let softening = (end == End::Neck).then(|| Softening {
-            rows: smooth.len() - 1 - last,
-            ends: [last, smooth.len() - 1].map(|row| smooth[row]),
-        });
-        let mut unused = record.unused.clone();
+        within(
+            &record.read_as,
+            "elastic strain at yield",
+            offset_yield / young,
+            YIELD_STRAIN,
+            [["", "1"], ["", "%"]],
+        )
+        .map_err(file)?;
+        let (mut draw, mut last, mut ended) = (None, end, End::Uniform);
+        if !record.is_local() {
+            draw = landmarks::draw(smooth, *elastic, noise[1], options.draw_ratio).map_err(file)?;
+            let drawn = |draw: &Draw| smooth.partition_point(|row| 1.0 + row[0] < draw.draw_ratio);
+            let from = draw.as_ref().map_or(*elastic, drawn);
+            (last, ended) = uniform_end(smooth, from, noise[1]);
+        }
         if let (Some(ratio), None) = (options.draw_ratio, draw) {
-            unused.push(format!("--draw-ratio {ratio}, as the record shows no draw"));
+            record.unused.push(format!("--draw-ratio {ratio}, as the record shows no draw"));
         }
         let onset = ONSET.max(3.0 * f64::hypot(noise[0], noise[1] / young));
         let until = draw.map_or(last, |draw| draw.top);
@@ -168,73 +153,43 @@ impl Specimen {
                 noise[0], noise[1]
             ))
         })?;
-        let after = draw.map_or(Vec::new(), |draw| second_part(&smooth[..=last], &draw, young));
-
-        let mut dropped = cleaned.dropped;
-        let used = cleaned.curve.iter().position(|row| !curve.is_toe(row[0]));
-        if !is_local {
-            dropped.extend(toe_rows(record, &curve, &dropped));
-        }
-        for row in &mut dropped {
-            [row.strain, row.stress] = curve.corrected([row.strain, row.stress]);
-        }
-        let nominal = cleaned.curve[used.unwrap_or(0)..].iter();
-        let nominal = nominal.map(|row| curve.corrected(*row)).collect();
+        let rows = record.rows.len();
+        let unmarked = record.rows.iter_mut().filter(|row| row.cause.is_none());
+        let toe = unmarked.take_while(|row| curve.is_toe(row.strain));
+        toe.for_each(|row| row.cause = Some(Cause::Toe));
+        let mut dropped = record.rows;
+        dropped.retain(|row| row.cause.is_some());
+        dropped.iter_mut().for_each(|row| row.strain = curve.corrected(row.strain, row.stress));
+        let used = nominal.iter().skip_while(|row| curve.is_toe(row[0]));
         Ok(Self {
-            path: record.path.clone(),
-            read_as: record.read_as.clone(),
-            stated: record.stated.clone(),
-            unused,
-            softening,
-            hash: record.hash.clone(),
-            rows: record.rows.len(),
-            dropped,
-            averaged: cleaned.averaged,
+            read_as: record.read_as,
+            stated: record.stated,
+            unused: record.unused,
+            hash: record.hash,
+            softening: (ended == End::Neck)
+                .then(|| Softening { rows: end - last, ends: [last, end].map(|row| smooth[row]) }),
+            after: draw.map_or(Vec::new(), |draw| second_part(&smooth[..=last], &draw, young)),
+            strength: nominal.iter().map(|row| row[1]).fold(0.0, f64::max),
+            nominal: used.map(|&[e, s]| [curve.corrected(e, s), s]).collect(),
+            toe: curve.linear.toe,
             linear: curve.linear,
-            toe: curve.toe,
-            young,
             compliance: curve.compliance,
+            end: ended,
+            path,
+            rows,
+            dropped,
+            averaged,
+            young,
             offset_yield,
-            strength: cleaned.curve.iter().map(|row| row[1]).fold(0.0, f64::max),
             draw,
-            end,
-            nominal,
             before,
-            after,
         })
-    }
-
-    /// Whether the record shows the break of the specimen.
-    pub(super) fn broke(&self) -> bool {
-        self.dropped_for(Cause::Broken) > 0
     }
 
     /// Number of rows dropped for a cause.
     pub fn dropped_for(&self, cause: Cause) -> usize {
-        self.dropped.iter().filter(|row| row.cause == cause).count()
+        self.dropped.iter().filter(|row| row.cause == Some(cause)).count()
     }
-}
-
-/// Whether a record has true values.
-fn is_local(record: &Record) -> bool {
-    record.load == TrueStress || record.deformation == TrueStrain
-}
-
-/// The monotone part of a record as a nominal curve.
-fn nominal_curve(record: &Record) -> Result<Cleaned, Fault> {
-    let mut cleaned = cleaned(&record.rows).map_err(|line| {
-        fault(
-            format!("{}:{line}", record.path.display()),
-            "from here on the strain falls for most of the file",
-            "sort the rows by time, and give each specimen its own file",
-        )
-    })?;
-    if is_local(record) {
-        for row in &mut cleaned.curve {
-            *row = nominal(record, *row);
-        }
-    }
-    Ok(cleaned)
 }
 
 /// A nominal curve without noise, toe and compliance of the machine.
@@ -244,7 +199,6 @@ struct Compensated {
     /// Standard deviations of the noise of strain and stress that is left.
     noise: [f64; 2],
     linear: LinearPart,
-    toe: f64,
     young: f64,
     /// Compliance of the machine that is removed (1/MPa).
     compliance: f64,
@@ -262,14 +216,26 @@ impl Compensated {
         let half = half_window(curve, noise[1]);
         let noise = [noise[0], noise[1] / (2.0 * half as f64 + 1.0).sqrt()];
         let mut rows = smoothed(curve, half);
-        let (mut linear, mut toe) = linear_part(&mut rows, record, noise).ok_or(
+        let mut linear = linear_part(&mut rows, record, noise).ok_or(
             "has no linear part: the stress does not rise with the strain; are the columns swapped?",
         )?;
-        let young = check_modulus(record, &linear, options)?;
-        let compliance = match linear.young / young {
-            _ if !linear.is_known() => 0.0,
-            ratio if ratio >= EXTENSOMETER && record.deformation != Extension => 0.0,
-            _ => 1.0 / linear.young - 1.0 / young,
+        let read_as = &record.read_as;
+        within(read_as, "modulus (MPa)", linear.young, YOUNG, [["GPa", "%"], ["Pa", "1"]])?;
+        let young = options.young.or(linear.is_known().then_some(linear.young)).ok_or_else(|| {
+            format!(
+                "has a modulus of {:.0} ± {:.0} MPa (standard error) from {} rows, whose 95 % interval reaches zero: state it with \
+                 --young, or export the record without thinning",
+                linear.young, linear.error, linear.rows
+            )
+        })?;
+        let ratio = linear.young / young;
+        if linear.is_known() {
+            within(read_as, "initial slope over --young", ratio, SLOPE, [["UNIT"; 2]; 2])?;
+        }
+        let extensometer = ratio >= EXTENSOMETER && read_as[1].quantity != Extension;
+        let compliance = match extensometer || !linear.is_known() {
+            true => 0.0,
+            false => 1.0 / linear.young - 1.0 / young,
         };
         rows.iter_mut().for_each(|row| row[0] -= row[1] * compliance);
         if !linear.is_known() {
@@ -278,137 +244,40 @@ impl Compensated {
             let zero = first[0] - first[1] / young;
             linear.strain = [first[0] - zero; 2];
             rows.iter_mut().for_each(|row| row[0] -= zero);
-            toe += zero;
+            linear.toe += zero;
         }
         let end = linear.strain[1] * (1.0 - linear.young * compliance);
         let elastic = rows.iter().position(|row| row[0] >= end).unwrap_or(0);
-        Ok(Self { rows, noise, linear, toe, young, compliance, elastic })
+        Ok(Self { rows, noise, linear, young, compliance, elastic })
     }
 
-    /// A measured row without toe and compliance.
-    fn corrected(&self, [strain, stress]: [f64; 2]) -> [f64; 2] {
-        [strain - self.toe - stress * self.compliance, stress]
+    /// A measured strain without toe and compliance.
+    fn corrected(&self, strain: f64, stress: f64) -> f64 {
+        strain - self.linear.toe - stress * self.compliance
     }
 
     /// Whether a measured strain is below the linear part.
     fn is_toe(&self, strain: f64) -> bool {
-        strain - self.toe < self.linear.strain[0]
+        strain - self.linear.toe < self.linear.strain[0]
     }
 }
 
-/// The rows below the linear part that are not dropped already.
-fn toe_rows(record: &Record, curve: &Compensated, dropped: &[DroppedRow]) -> Vec<DroppedRow> {
-    let known: BTreeSet<u64> = dropped.iter().map(|row| row.line).collect();
-    let others = record.rows.iter().filter(|row| !known.contains(&row.line));
-    let below = others.take_while(|row| curve.is_toe(row.strain));
-    below
-        .map(|row| DroppedRow {
-            line: row.line,
-            strain: row.strain,
-            stress: row.stress,
-            cause: Cause::Toe,
-        })
-        .collect()
-}
-
-/// A row [strain, stress] of a record with true values as nominal values.
-fn nominal(record: &Record, [strain, stress]: [f64; 2]) -> [f64; 2] {
-    let stretch = match record.deformation {
-        TrueStrain => strain.exp(),
-        _ => 1.0 + strain,
-    };
-    match record.load {
-        TrueStress => [stretch - 1.0, stress / stretch],
-        _ => [stretch - 1.0, stress],
-    }
-}
-
-/// The linear part and the toe, which is subtracted from the curve. Its rows are found on the
+/// The linear part, whose toe is subtracted from the curve. Its rows are found on the
 /// nominal curve, whose slope is largest at the start; its modulus is the slope of the true stress
 /// over the logarithmic strain, as the solver reads it.
-fn linear_part(
-    curve: &mut [[f64; 2]],
-    record: &Record,
-    noise: [f64; 2],
-) -> Option<(LinearPart, f64)> {
+fn linear_part(curve: &mut [[f64; 2]], record: &Record, noise: [f64; 2]) -> Option<LinearPart> {
     let nominal = LinearPart::find(curve, noise)?;
     curve.iter_mut().for_each(|row| row[0] -= nominal.toe);
     let end = nominal.first + nominal.rows;
-    let yields = offset_yield(curve, nominal.young, end).filter(|_| !is_local(record));
     let rows = record.rows.iter().map(|row| true_row(&[row.strain - nominal.toe, row.stress]));
-    let rows: Vec<[f64; 2]> = rows.collect();
-    if let Some(metal) = yields.and_then(|yields| nominal.of_metal(&rows, yields)) {
-        curve.iter_mut().for_each(|row| row[0] -= metal.toe);
-        let toe = nominal.toe + metal.toe;
-        return Some((metal, toe));
-    }
-    let last = nominal.first + nominal.rows - 1;
-    let true_curve: Vec<[f64; 2]> = curve[..=last].iter().map(true_row).collect();
-    let part = LinearPart::through(&true_curve, nominal.first, last)?;
+    let metal = offset_yield(curve, nominal.young, end)
+        .and_then(|yields| nominal.of_metal(&rows.collect::<Vec<_>>(), yields));
+    let part = metal.or_else(|| {
+        let rows: Vec<[f64; 2]> = curve[..end].iter().map(true_row).collect();
+        LinearPart::through(&rows, nominal.first..end)
+    })?;
     curve.iter_mut().for_each(|row| row[0] -= part.toe);
-    let toe = nominal.toe + part.toe;
-    Some((part, toe))
-}
-
-/// Young's modulus of the evaluation, if it is not in other units.
-fn check_modulus(
-    record: &Record,
-    linear: &LinearPart,
-    options: &SpecimenOptions,
-) -> Result<f64, String> {
-    let (load, deformation) = (record.load, record.deformation);
-    let measured = linear.young;
-    let [least, most] = YOUNG;
-    if measured < least {
-        return Err(format!(
-            "has a modulus of {measured:.3} MPa, less than {least} MPa: {}, or {}?",
-            deformation.doubt("in per cent", "%"),
-            load.doubt("in GPa", "GPa")
-        ));
-    }
-    if measured > most {
-        return Err(format!(
-            "has a modulus of {measured:.3e} MPa, more than {most:e} MPa: {}, or {}?",
-            load.doubt("in Pa", "Pa"),
-            deformation.doubt("not in per cent", "1")
-        ));
-    }
-    let young = match options.young {
-        None if !linear.is_known() => {
-            return Err(format!(
-                "has a modulus of {measured:.0} ± {:.0} MPa (standard error) from {} rows, whose 95 % interval reaches zero: state it with \
-                 --young, or export the record without thinning",
-                linear.error, linear.rows
-            ));
-        }
-        given => given.unwrap_or(measured),
-    };
-    if linear.is_known() && !(SOFTER * young..=STIFFER * young).contains(&measured) {
-        return Err(format!(
-            "has the initial slope {measured:.0} MPa, but Young's modulus is {young:.0} MPa: a machine's compliance lowers \
-             the slope by less; {}, or {}?",
-            load.doubt("in another unit", "UNIT"),
-            deformation.doubt("in another unit", "UNIT")
-        ));
-    }
-    Ok(young)
-}
-
-fn check_yield_strain(record: &Record, strain: f64) -> Result<(), String> {
-    let [least, most] = YIELD_STRAIN;
-    if strain < least {
-        return Err(format!(
-            "yields at an elastic strain of {strain:.1e}, less than {least:e}: {}?",
-            record.deformation.doubt("not in per cent", "1")
-        ));
-    }
-    if strain > most {
-        return Err(format!(
-            "yields at an elastic strain of {strain:.2}, more than {most}: {}?",
-            record.deformation.doubt("in per cent", "%")
-        ));
-    }
-    Ok(())
+    Some(LinearPart { toe: nominal.toe + part.toe, ..part })
 }
 
 /// Half the number of rows over which the stress is smoothed, from its noise; few enough to leave
@@ -432,18 +301,4 @@ fn smoothed(curve: &[[f64; 2]], half: usize) -> Vec<[f64; 2]> {
         [curve[row][0], stress + slope * (curve[row][0] - strain)]
     };
     (0..curve.len()).map(value).collect()
-}
-
-/// The last row of a drawn specimen at which its deformation is uniform.
-fn draw_end(curve: &[[f64; 2]], draw: &Draw, noise: f64) -> (usize, End) {
-    let drawn = curve.partition_point(|row| 1.0 + row[0] < draw.draw_ratio);
-    if drawn == curve.len() {
-        return (drawn - 1, End::Drawing);
-    }
-    uniform(uniform_end(curve, drawn, noise))
-}
-
-/// The last row of a uniform deformation, and how it ended.
-fn uniform((row, necks): (usize, bool)) -> (usize, End) {
-    (row, if necks { End::Neck } else { End::Uniform })
 }

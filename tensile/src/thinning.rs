@@ -1,5 +1,7 @@
 //! A curve reduced to the rows from which linear interpolation reproduces it.
 
+use crate::regression::interpolated;
+
 /// Relative deviation that no row improves.
 pub(super) const TOLERANCE: f64 = 1e-3;
 
@@ -7,32 +9,24 @@ pub(super) const TOLERANCE: f64 = 1e-3;
 /// deviation of the interpolated stress over the stress. The row with the largest deviation is
 /// added until none exceeds [`TOLERANCE`].
 pub(super) fn thinned(curve: &[[f64; 2]], most: usize) -> (Vec<usize>, f64) {
-    let mut kept = vec![0];
-    kept.extend((curve.len() > 1).then(|| curve.len() - 1));
+    let mut kept = vec![0, curve.len() - 1];
+    kept.dedup();
     loop {
-        let worst = (kept.windows(2))
-            .filter_map(|pair| farthest(curve, pair[0], pair[1]))
-            .max_by(|a, b| a.0.total_cmp(&b.0));
-        match worst {
+        let between = kept.windows(2).flat_map(|pair| {
+            let ends = [pair[0], pair[1]].map(|row| curve[row]);
+            (pair[0] + 1..pair[1]).map(move |row| {
+                let [stress, strain] = curve[row];
+                ((interpolated(&ends, 0, strain) / stress - 1.0).abs(), row)
+            })
+        });
+        match between.max_by(|a, b| a.0.total_cmp(&b.0)) {
             Some((deviation, row)) if deviation > TOLERANCE && kept.len() < most => {
-                let place = kept.partition_point(|other| *other < row);
-                kept.insert(place, row);
+                kept.push(row);
+                kept.sort_unstable();
             }
             worst => return (kept, worst.map_or(0.0, |(deviation, _)| deviation)),
         }
     }
-}
-
-/// The row between two others that deviates most from the line through them, with its relative
-/// deviation.
-fn farthest(curve: &[[f64; 2]], first: usize, last: usize) -> Option<(f64, usize)> {
-    let ([s0, e0], [s1, e1]) = (curve[first], curve[last]);
-    let deviation = |row: usize| {
-        let [stress, strain] = curve[row];
-        let line = s0 + (s1 - s0) * (strain - e0) / (e1 - e0);
-        (((line - stress) / stress).abs(), row)
-    };
-    (first + 1..last).map(deviation).max_by(|a, b| a.0.total_cmp(&b.0))
 }
 
 #[cfg(test)]
@@ -48,10 +42,10 @@ mod tests {
         for most in [5, 10, 100] {
             let (kept, deviation) = thinned(&curve, most);
             assert!(kept.len() <= most && kept[0] == 0 && kept[kept.len() - 1] == 1000);
-            for pair in kept.windows(2) {
-                let found =
-                    farthest(&curve, pair[0], pair[1]).map_or(0.0, |(deviation, _)| deviation);
-                assert!(found <= deviation);
+            let rows: Vec<[f64; 2]> = kept.iter().map(|row| curve[*row]).collect();
+            for [stress, strain] in &curve {
+                let found = (interpolated(&rows, 0, *strain) / stress - 1.0).abs();
+                assert!(found <= deviation + 1e-12);
             }
             deviations.push(deviation);
         }
