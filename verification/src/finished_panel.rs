@@ -54,7 +54,17 @@ impl FinishedPanel {
         if finished[finished.len() - 1].continues_in(&finished[0]) {
             finished.remove(0);
         }
-        Self { edges: finished, slit }
+        let mut panel = Self { edges: finished, slit };
+        while let Some(edge) = panel.vanished() {
+            panel.edges.remove(edge);
+        }
+        panel
+    }
+
+    /// An edge of which the finished edges next to it leave nothing.
+    fn vanished(&self) -> Option<usize> {
+        let corners = self.corners();
+        edges(&corners).position(|(from, to)| distance(from, to) < ROUNDING)
     }
 
     /// Each edge with the one before it.

@@ -5,7 +5,7 @@ use super::even_pattern::{Cell, moved, squares};
 use super::raster::Raster;
 use super::trimmed::{Limits, ON_EDGE, loops, opened, panels};
 use design::geometry::plane::{complex, point};
-use design::geometry::polygon::{distance, distance_to_outline};
+use design::geometry::polygon::{distance, distance_to_outline, distance_to_segment};
 use design::geometry::region::{Contour, Region, seen};
 use design::geometry::similarity::Similarity;
 use design::pattern::grid::Grid;
@@ -35,6 +35,8 @@ const SAMPLES: f64 = 256.0;
 const ANGLES: u32 = 360;
 /// Distance of a corner on the opened pattern from the drawing up to which it is on it.
 const NEAR: f64 = 0.01;
+/// Distance of two corners of a panel at least.
+const APART: f64 = 1e-4;
 /// What a symmetric sheet may lose of the seen area.
 const FOR_SYMMETRY: f64 = 0.02;
 
@@ -133,11 +135,8 @@ impl EvenSheet {
             let cell = [0, 1].map(|c| place[c] as i32 + first[c]);
             let corner = cell.map(f64::from);
             let in_cell = |at: &[f64; 2]| [0, 1].map(|c| snapped(at[c] - corner[c]));
-            let mut boundary: Contour =
-                self.panels[&cell].polygons[0][0].iter().map(in_cell).collect();
-            boundary.dedup_by(|one, other| distance(*one, *other) < ON_EDGE);
-            let first = boundary[0];
-            boundary.pop_if(|last| distance(*last, first) < ON_EDGE);
+            let boundary =
+                distinct(self.panels[&cell].polygons[0][0].iter().map(in_cell).collect());
             let on_drawing = |at: &[f64; 2]| {
                 let at = [0, 1].map(|c| at[c] + corner[c]);
                 let there = moved(self.limits.opening.motion(cell), at);
@@ -152,6 +151,29 @@ impl EvenSheet {
         }
         topology
     }
+}
+
+/// Without corners next to each other or on a straight edge; those of the cell are kept.
+fn distinct(mut boundary: Contour) -> Contour {
+    let is_of_cell = |at: [f64; 2]| at.iter().all(|x| *x == 0.0 || *x == 1.0);
+    if let Some(i) = boundary.iter().position(|at| is_of_cell(*at)) {
+        boundary.rotate_left(i);
+    }
+    boundary.dedup_by(|next, kept| {
+        let is_one = distance(*next, *kept) < APART;
+        if is_one && is_of_cell(*next) {
+            *kept = *next;
+        }
+        is_one
+    });
+    let first = boundary[0];
+    boundary.pop_if(|last| distance(*last, first) < APART);
+    let turns = |i: &usize| {
+        let n = boundary.len();
+        let [before, at, after] = [i + n - 1, *i, i + 1].map(|k| boundary[k % n]);
+        is_of_cell(at) || distance_to_segment(at, before, after) > ON_EDGE
+    };
+    (0..boundary.len()).filter(turns).map(|i| boundary[i]).collect()
 }
 
 fn longer_side(drawing: &Region) -> f64 {

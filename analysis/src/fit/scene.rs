@@ -85,7 +85,8 @@ pub fn fitted(scene: &Scene) -> Result<FittedScene, FitError> {
     let side = SIDE * process.r_win;
     let limits = Limits {
         opening: Opening { angle, set_back: set_back(scene, angle) / side },
-        window: (process.r_win + 0.5 * process.slit_width) / side + TOLERANCE,
+        // The window is about the tip of the cut.
+        window: (process.r_win + width(scene) + 0.5 * process.slit_width) / side + TOLERANCE,
         width: WIDTH * scene.material.thickness / side,
         gap: f64::max(GAP, process.slit_width / side),
         slit: process.slit_width / side,

@@ -39,7 +39,7 @@ const ARC: u32 = 4;
 pub struct Limits {
     /// The opening of every hinge.
     pub opening: Opening,
-    /// Radius of a window.
+    /// How far a window reaches from its corner.
     pub window: f64,
     /// Smallest width of a part of a panel.
     pub width: f64,
