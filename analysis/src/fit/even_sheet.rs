@@ -153,7 +153,7 @@ impl EvenSheet {
     }
 }
 
-/// Without corners next to each other or on a straight edge; those of the cell are kept.
+/// Without corners next to each other or on a straight edge, but with all of the cell.
 fn distinct(mut boundary: Contour) -> Contour {
     let is_of_cell = |at: [f64; 2]| at.iter().all(|x| *x == 0.0 || *x == 1.0);
     if let Some(i) = boundary.iter().position(|at| is_of_cell(*at)) {
