@@ -47,7 +47,7 @@
 //!     .map(|i| 0.0628 * f64::from(i))
 //!     .map(|t| [700.0 + 750.0 * t.cos(), 550.0 + 750.0 * t.sin()]);
 //! let problem = DesignProblem {
-//!     grid,
+//!     topology: grid.into(),
 //!     outline: Outline::rectangle(1200.0, 1200.0),
 //!     widths: WidthChart { w_minus: 10.0, w_plus: 26.0 },
 //!     options: SheetOptions {
