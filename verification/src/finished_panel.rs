@@ -90,8 +90,8 @@ impl FinishedPanel {
         edges(&corners).fold(point, |at, ends| {
             let edge = Edge::new(ends, 0.0);
             let [along, depth] = edge.local(at, edge.begin);
-            let beside = (-self.slit..distance(ends.0, ends.1) + self.slit).contains(&along);
-            if beside && depth.abs() <= self.slit { edge.inwards(at, -depth) } else { at }
+            let along_it = (-self.slit..distance(ends.0, ends.1) + self.slit).contains(&along);
+            if along_it && depth.abs() <= self.slit { edge.inwards(at, -depth) } else { at }
         })
     }
 }

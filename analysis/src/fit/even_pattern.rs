@@ -31,7 +31,7 @@ pub struct Opening {
 }
 
 impl Opening {
-    /// By how much the pattern has grown.
+    /// The growth of the pattern in both directions.
     pub(super) fn pitch(self) -> f64 {
         let (sin, cos) = (0.5 * self.angle).sin_cos();
         cos + (1.0 - 2.0 * self.set_back) * sin

@@ -45,7 +45,7 @@ const FOR_SYMMETRY: f64 = 0.02;
 pub struct EvenSheet {
     /// What bounds its panels.
     pub limits: Limits,
-    /// From the drawing to the opened pattern.
+    /// The map from the drawing to the opened pattern.
     pub place: Similarity,
     /// The drawing there.
     drawing: Region,
@@ -60,7 +60,7 @@ impl EvenSheet {
     /// are compared; `None` if the drawing is narrower than two squares everywhere.
     pub fn new(drawing: &Region, size: f64, limits: Limits, made: usize) -> Option<Self> {
         let [low, high] = drawing.bounds();
-        let scale = size * limits.opening.pitch() / longer_side(drawing);
+        let scale = size * limits.opening.pitch() / drawing.longer_side();
         let drawing = drawing.simplified(TOLERANCE / scale, |_| false);
         let middle = [0, 1].map(|c| 0.5 * (low[c] + high[c]));
         let symmetric = mirror_axis(&drawing).and_then(|(angle, centroid)| {
@@ -96,7 +96,7 @@ impl EvenSheet {
 
     /// How many squares the longer side of a drawing is long when flat.
     pub(super) fn size(&self, drawing: &Region) -> f64 {
-        self.place.scale() * longer_side(drawing) / self.limits.opening.pitch()
+        self.place.scale() * drawing.longer_side() / self.limits.opening.pitch()
     }
 
     /// The drawing on the opened pattern.
@@ -176,11 +176,6 @@ fn distinct(mut boundary: Contour) -> Contour {
     (0..boundary.len()).filter(turns).map(|i| boundary[i]).collect()
 }
 
-fn longer_side(drawing: &Region) -> f64 {
-    let [low, high] = drawing.bounds();
-    f64::max(high[0] - low[0], high[1] - low[1])
-}
-
 /// A coordinate in a cell; 0, without a sign, and 1 are on its edges.
 fn snapped(x: f64) -> f64 {
     if (x - x.round()).abs() < ON_EDGE { x.round() + 0.0 } else { x }
@@ -212,8 +207,7 @@ fn best(
 fn mirror_axis(drawing: &Region) -> Option<(f64, [f64; 2])> {
     /// Parts of the drawing that axes of equal right may differ by.
     const EQUAL: f64 = 0.004;
-    let [low, high] = drawing.bounds();
-    let raster = Raster::new(drawing, f64::max(high[0] - low[0], high[1] - low[1]) / SAMPLES);
+    let raster = Raster::new(drawing, drawing.longer_side() / SAMPLES);
     let points: Vec<c64> = raster.points().map(complex).collect();
     let centroid = points.iter().sum::<c64>() / points.len() as f64;
     let covered = |angle: f64| {

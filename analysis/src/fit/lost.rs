@@ -14,7 +14,7 @@ const MISSED: f64 = 0.01;
 const VOID: f64 = 1.5;
 /// Halvings of the width of a part.
 const HALVINGS: usize = 12;
-/// By what factors the sheets are larger that are tried.
+/// Factors by which the tried sheets are larger.
 const LARGER: [f64; 3] = [1.25, 1.5, 2.0];
 
 /// A part of a drawing that is not seen.
@@ -22,7 +22,7 @@ const LARGER: [f64; 3] = [1.25, 1.5, 2.0];
 pub struct Lost {
     /// Where it is in the drawing as it stands: -1, 0 or 1 to the right and upwards.
     pub place: [i32; 2],
-    /// Its greatest width in sides of a panel.
+    /// Its largest width in sides of a panel.
     pub width: f64,
 }
 
@@ -49,8 +49,8 @@ pub(super) fn lost(sheet: &EvenSheet) -> Vec<Lost> {
 
 /// The diameter of the largest circle in a region.
 fn width(region: &Region) -> f64 {
-    let [low, high] = region.bounds();
-    let [mut least, mut most] = [0.0, f64::min(high[0] - low[0], high[1] - low[1])];
+    let [width, height] = region.extent();
+    let [mut least, mut most] = [0.0, f64::min(width, height)];
     for _ in 0..HALVINGS {
         let middle = 0.5 * (least + most);
         let fits = !region.offset(-0.5 * middle, Corners::Sharp).polygons.is_empty();
@@ -59,7 +59,7 @@ fn width(region: &Region) -> f64 {
     least
 }
 
-/// By what factor a sheet has more panels along each side that loses nothing; `None` if none of
+/// The factor by which a sheet has more panels along each side that loses nothing; `None` if none of
 /// those that are tried does.
 pub(super) fn kept_by(target: &Region, size: f64, limits: Limits) -> Option<f64> {
     LARGER.into_iter().find(|factor| {

@@ -12,6 +12,7 @@ use design::geometry::polygon::bounds;
 use design::geometry::region::Region;
 use design::geometry::similarity::Similarity;
 use design::optimise::search::SearchMethod;
+use design::sheet::topology::Topology;
 use faer::c64;
 use scene::{
     At, CellsConfig, Level, OptimiserConfig, Posture, PostureConfig, Scene, SceneConfig,
@@ -53,7 +54,7 @@ pub struct FittedScene {
     pub seen: f64,
     /// The parts of the target that are not seen.
     pub lost: Vec<Lost>,
-    /// By what factor the stock has to be longer and wider, or the sheet thinner, to show them;
+    /// The factor by which the stock has to be longer and wider, or the sheet thinner, to show them;
     /// `None` if no factor up to two does, and if nothing is lost.
     pub kept_by: Option<f64>,
 }
@@ -93,16 +94,17 @@ pub fn fitted(scene: &Scene) -> Result<FittedScene, FitError> {
     };
     let target = scene.target.region();
     let space = Region::union_of(vec![scene.config.sheet.outline().corners.to_vec()]);
-    let stock = extent_of(&space).map(|length| length / side);
+    let stock = space.extent().map(|length| length / side);
     let sheet = largest(&target, stock, limits).ok_or(FitError::Narrow { side })?;
+    let topology = sheet.topology();
     let lost = lost(&sheet);
     let size = sheet.size(&target);
     let kept_by = lost.first().and_then(|_| kept_by(&target, size, limits));
     Ok(FittedScene {
-        config: keys(scene, &sheet, side),
+        config: keys(scene, &sheet, &topology, side),
         lost,
         kept_by,
-        panels: sheet.topology().panel_count(),
+        panels: topology.panel_count(),
         side,
         opening: angle,
         seen: sheet.seen,
@@ -138,14 +140,13 @@ fn set_back(scene: &Scene, angle: f64) -> f64 {
 /// The largest sheet that fits into a stock that lies or stands; lengths in sides of a panel. The
 /// drawing stands upright.
 fn largest(target: &Region, stock: [f64; 2], limits: Limits) -> Option<EvenSheet> {
-    let [width, height] = extent_of(target);
-    let mut size = growth([width, height], stock) * f64::max(width, height);
+    let mut size = growth(target.extent(), stock) * target.longer_side();
     let mut best: Option<EvenSheet> = None;
     for _ in 0..SIZES {
         let sheet = EvenSheet::new(target, size, limits, THOROUGH)?;
         let upright = c64::cis(-sheet.place.rotation());
         let flat = sheet.opened(0.0).map(|at| point(upright * complex(at)));
-        let factor = growth(extent_of(&flat), stock);
+        let factor = growth(flat.extent(), stock);
         size *= 0.995 * factor;
         if factor < 1.0 {
             continue;
@@ -161,21 +162,15 @@ fn largest(target: &Region, stock: [f64; 2], limits: Limits) -> Option<EvenSheet
     best
 }
 
-/// By what factor a sheet of some width and height may grow in a stock that lies or stands.
+/// The factor by which a sheet of some width and height may grow in a stock that lies or stands.
 fn growth([width, height]: [f64; 2], [one, other]: [f64; 2]) -> f64 {
     let in_stock = |x: f64, y: f64| f64::min(x / width, y / height);
     f64::max(in_stock(one, other), in_stock(other, one))
 }
 
-fn extent_of(region: &Region) -> [f64; 2] {
-    let [low, high] = region.bounds();
-    [0, 1].map(|c| high[c] - low[c])
-}
-
 /// The keys of the scene with the sheet, its fasteners and the place of its target. The drawing
 /// stands upright.
-fn keys(scene: &Scene, sheet: &EvenSheet, side: f64) -> SceneConfig {
-    let topology = sheet.topology();
+fn keys(scene: &Scene, sheet: &EvenSheet, topology: &Topology, side: f64) -> SceneConfig {
     let (grid, first) = sheet.cells();
     // From the pattern to the sheet: turned back, in mm, its lower left corner at the origin.
     let back = side * c64::cis(-sheet.place.rotation());
@@ -190,7 +185,7 @@ fn keys(scene: &Scene, sheet: &EvenSheet, side: f64) -> SceneConfig {
     config.sheet.size = None;
     config.sheet.corners = Some(corners.map(|corner| in_sheet(first + complex(corner))));
     config.sheet.panels = [grid.m, grid.n];
-    config.cells = Some(CellsConfig::from(&topology));
+    config.cells = Some(CellsConfig::from(topology));
     config.posture = Some(PostureConfig { kind: Posture::HeldFlat, down: None });
     config.ligament.start = width(scene);
     config.start = StartConfig::default();
@@ -208,7 +203,7 @@ fn keys(scene: &Scene, sheet: &EvenSheet, side: f64) -> SceneConfig {
             ..SupportConfig::at_centroid(topology.places[panel], SupportKind::Pin)
         }
     };
-    config.supports = fastened(&topology).into_iter().map(fastener).collect();
+    config.supports = fastened(topology).into_iter().map(fastener).collect();
     config.objective = Default::default();
     config.optimiser = OptimiserConfig {
         steps: STEPS,

@@ -14,8 +14,8 @@ pub(super) fn fitted_text(scene: &Scene, text: &str, anyway: bool) -> Result<(St
     heading(
         &mut document,
         "# A sheet that opens onto a drawing, written by `kirigami init --target`: an even pattern laid over the drawing while\n\
-         # open, trimmed to it. Some panels are moved to their places in the opened sheet, free to turn; `kirigami design` finds\n\
-         # the widths of the ligaments. Lengths in mm, forces in N, couples in N mm; paths are relative to this file.\n\n",
+         # open, trimmed to it. Some panels are moved to their places in the opened sheet, free to turn; `kirigami design`\n\
+         # computes the forces. Lengths in mm, forces in N, couples in N mm; paths are relative to this file.\n\n",
     );
     // Everything that the fit decides, as the keys of the scene are written.
     let SceneConfig { target, .. } = &fit.config;

@@ -109,6 +109,18 @@ impl Region {
         polygon::bounds(self.contours().flatten().copied())
     }
 
+    /// Width and height of the bounding box.
+    pub fn extent(&self) -> [f64; 2] {
+        let [low, high] = self.bounds();
+        [0, 1].map(|c| high[c] - low[c])
+    }
+
+    /// The longer side of the bounding box.
+    pub fn longer_side(&self) -> f64 {
+        let [width, height] = self.extent();
+        f64::max(width, height)
+    }
+
     /// Whether the region contains a point; the border belongs to one of its sides.
     pub fn contains(&self, [x, y]: [f64; 2]) -> bool {
         let edges = self.contours().flat_map(|contour| polygon::edges(contour));
@@ -145,8 +157,7 @@ pub fn seen(panels: &Region, drawing: &Region) -> f64 {
 /// What one sees of opened panels: without the gaps between them.
 pub fn as_seen(panels: &Region, drawing: &Region) -> Region {
     const GAP: f64 = 0.04;
-    let [low, high] = drawing.bounds();
-    panels.closed(GAP * f64::max(high[0] - low[0], high[1] - low[1]))
+    panels.closed(GAP * drawing.longer_side())
 }
 
 fn simplified(contour: &[[f64; 2]], tolerance: f64, fixed: impl Fn([f64; 2]) -> bool) -> Contour {

@@ -35,7 +35,7 @@ use std::collections::BTreeMap;
 /// The least 1 + cos of the turn of an outline at a corner that moves in full with its edges.
 const SHARPEST: f64 = 0.1;
 /// Rounding of lengths (mm): corners of the union of panels are on a raster of a billionth of its size.
-const ROUNDING: f64 = 1e-5;
+pub(crate) const ROUNDING: f64 = 1e-5;
 
 /// One straight cut through the sheet.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,7 +1,7 @@
 //! Findings about the target, the panels and their windows, and the cuts.
 
 use super::{Found, Rule, at, found, rule};
-use crate::cut_file::fits;
+use crate::cut_file::{ROUNDING, fits};
 use crate::display::Shape;
 use crate::report::deployed::{DeployedDesign, miss};
 use crate::report::numbers::rounded;
@@ -16,8 +16,6 @@ const SHUT: f64 = -1e-6;
 /// Distance of the outline from the target over the longer side of the flat sheet from which it is
 /// a note, a warning and an error.
 const MISSED: [f64; 3] = [0.01, 0.03, 0.2];
-/// Rounding of lengths (mm), as in cut lines.
-const ROUNDING: f64 = 1e-5;
 
 pub(super) const RULES: [Rule; 8] = [
     rule(
