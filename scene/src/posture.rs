@@ -25,6 +25,9 @@ pub struct PostureConfig {
 pub enum Posture {
     /// Plates, a frame or a fabric keep every panel flat.
     HeldFlat,
+    /// On a board: the supports are fasteners, which hold their panels on it; nothing keeps the
+    /// panels between them in the plane. Its weight is left out.
+    Mounted,
     /// It lies on a horizontal surface: its weight presses the panels down, and friction resists
     /// the motion.
     Lying,
@@ -40,6 +43,7 @@ impl Posture {
     pub fn in_words(self) -> &'static str {
         match self {
             Self::HeldFlat => "panels held flat",
+            Self::Mounted => "mounted on a board, nothing in the way out of the plane between fasteners",
             Self::Lying => "lying on a table without friction, under its own weight",
             Self::Hanging => "hanging under its own weight, nothing in the way out of the plane",
             Self::Free => "free, nothing in the way out of the plane, without weight",

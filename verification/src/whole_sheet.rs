@@ -75,7 +75,7 @@ pub(crate) fn sheet_problem(
     let (pulled, held) = (pulled(scene, sheet)?, held(scene, sheet)?);
     let down = match support {
         Posture::Lying => Some([0.0, 0.0, -1.0]),
-        Posture::HeldFlat | Posture::Hanging | Posture::Free => {
+        Posture::HeldFlat | Posture::Mounted | Posture::Hanging | Posture::Free => {
             let [x, y] = scene.weight_by_area();
             let length = x.hypot(y);
             (length > 0.0).then(|| [x / length, y / length, 0.0])
@@ -84,7 +84,7 @@ pub(crate) fn sheet_problem(
     let restraint = match support {
         Posture::HeldFlat => OutOfPlaneRestraint::HeldFlat,
         Posture::Lying => OutOfPlaneRestraint::Table,
-        Posture::Hanging | Posture::Free => OutOfPlaneRestraint::Nothing,
+        Posture::Mounted | Posture::Hanging | Posture::Free => OutOfPlaneRestraint::Nothing,
     };
     let mut shape = sheet_shape(sheet, scene.material.thickness, tier)?;
     for pulled in &pulled {

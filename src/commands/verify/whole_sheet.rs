@@ -23,7 +23,7 @@ const LIMIT: Duration = Duration::from_secs(86_400);
 /// Reads the value of `--support`.
 pub(super) fn support(text: &str) -> Result<Posture, String> {
     serde_json::from_value(text.into())
-        .map_err(|_| "choose held-flat, lying, hanging or free".to_owned())
+        .map_err(|_| "choose held-flat, mounted, lying, hanging or free".to_owned())
 }
 
 /// Reads the value of `--patch`.

@@ -274,6 +274,7 @@ fn leaves_plane(of: &DeployedDesign) -> Option<Found> {
     }
     let kept = match posture {
         Posture::Lying => "only its weight keeps the panels down on the surface",
+        Posture::Mounted => "between the fasteners nothing keeps the panels in the plane",
         _ => "nothing keeps the panels in the plane",
     };
     let widest = of.hinges.iter().fold(0.0, |most, row| row.w_lig.max(most));
