@@ -3,7 +3,7 @@
 
 mod even_pattern;
 pub mod even_sheet;
-mod fasteners;
+pub mod fasteners;
 mod lost;
 pub mod opening;
 mod raster;

@@ -91,7 +91,7 @@ impl CheckedCut {
         let mut written = Written::to(&out)?;
         written.drawing(&annotated)?;
         written.file("cut-list.csv", &cut_list(sheet, cuts))?;
-        written.file("attachments.csv", &attachment_list(cuts))?;
+        written.file("attachments.csv", &attachment_list(cuts, None))?;
         written.file("cut-summary.csv", &cut_summary(cuts, &whole.totals))?;
         if let Some((paper, tiling)) = &tiles {
             let title = &scene.config.title;

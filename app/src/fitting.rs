@@ -1,6 +1,7 @@
 //! A sheet of an even pattern for a drawing, and what is said of it.
 
 use crate::progress::announce;
+use analysis::fit::fasteners::Held;
 use analysis::fit::scene::{FittedScene, fitted};
 use anyhow::{Result, ensure};
 use scene::Scene;
@@ -21,12 +22,13 @@ pub fn fit_to_target(scene: &Scene, anyway: bool) -> Result<(FittedScene, String
 
 /// What a person may expect of the sheet of a material of some thickness (mm).
 pub fn expected(fit: &FittedScene, thickness: f64) -> String {
-    let FittedScene { panels, side, opening, seen, lost, kept_by, .. } = fit;
+    let FittedScene { panels, side, opening, seen, lost, kept_by, held, .. } = fit;
     let [opening, seen] = [opening.to_degrees(), 100.0 * seen];
     let mut lines = vec![format!(
         "{panels} panels of {side:.0} mm, opened by {opening:.0} deg, show {seen:.1} % of the target (common area over the area of both, gaps \
          between panels closed)"
     )];
+    lines.push(held.as_ref().map_or("no equilibrium is found with fasteners".to_owned(), fastened));
     let two = 2.0 * side;
     lines.extend(lost.iter().map(|part| {
         let (width, place) = (part.width * side, in_words(part.place));
@@ -43,6 +45,20 @@ pub fn expected(fit: &FittedScene, thickness: f64) -> String {
         lines.push("not even a stock twice as long and wide shows all of it".to_owned());
     }
     lines.join("\n")
+}
+
+/// How many fasteners hold the sheet, and why so many.
+fn fastened(held: &Held) -> String {
+    let Held { count, off, force, of_borne, margin, .. } = held;
+    let [off, borne] = [off, of_borne].map(|part| 100.0 * part);
+    let margin = margin.map_or(String::new(), |margin| {
+        format!("; between them panels stay in the plane up to {margin:.1} times the forces")
+    });
+    let enough = if held.suffices() { "" } else { "; no number up to 16 suffices" };
+    format!(
+        "{count} fasteners hold it, the fewest that suffice: panels {off:.2} % of the longer side from the even opening (root mean square), \
+         {force:.0} N a fastener, {borne:.0} % of what its hole bears{margin}{enough}"
+    )
 }
 
 /// Where a part is in the drawing.

@@ -9,6 +9,7 @@ pub mod force_response;
 pub mod hinged_sheet;
 pub mod load_step;
 pub mod load_steps;
+pub mod mounting;
 pub mod newton;
 pub mod panel_force;
 pub mod potential;

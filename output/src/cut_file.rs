@@ -31,6 +31,7 @@ pub use fabrication_error::FabricationError;
 pub(crate) use machine::fits;
 pub use machine::{Features, Machine, Machines, Service};
 pub use pdf_tiles::tiles_pdf;
+pub(crate) use pdf_tiles::{form, tile_pages};
 pub use sheet_drawing::{FORCED, SheetDrawing, mark_errors};
 pub use svg::svg;
 pub use tiling::{OVERLAP, Tiling};

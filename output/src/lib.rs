@@ -29,6 +29,7 @@ pub mod display;
 pub mod drawing;
 pub mod listing;
 pub mod measurement;
+mod mounting_kit;
 pub mod report;
 pub mod run_files;
 pub mod run_page;

@@ -13,6 +13,7 @@ mod text;
 pub(crate) use budget::BUDGET_HEADING;
 pub(crate) use deployed::{extent, miss};
 pub(crate) use estimate::force_spreads;
+pub(crate) use facts::mounting_step;
 pub(crate) use numbers::rounded;
 pub(crate) use text::worst_first;
 
@@ -28,6 +29,8 @@ use crate::report::facts::facts;
 use crate::report::findings::findings;
 use analysis::design_checks::DesignChecks;
 use analysis::error_budget::ErrorBudget;
+use analysis::mounting::Mounting;
+use analysis::what_if::what_if;
 use design::objective::design_problem::Deployment;
 use design::objective::scores::Scores;
 use design::optimise::outer_loop::Ended;
@@ -64,6 +67,8 @@ pub struct Report {
     /// What the sheet is made of, how far it opens under which load, and what the hinge law rests
     /// on.
     pub facts: Vec<Fact>,
+    /// How the sheet is mounted on a board; `None` if it is not.
+    pub mounting: Option<Mounting>,
     /// Load and stroke at the end of the path; `None` without equilibrium, or if nothing moves the
     /// sheet.
     #[serde(skip)]
@@ -142,6 +147,8 @@ impl Report {
             after: Scores::new(&problem.objective, &designed.best),
             seen: seen(scene, deployment),
             checks,
+            mounting: Mounting::new(scene, problem, deployment),
+            changes: what_if(scene, problem, &designed.search.best, deployment),
             reached: Reached::new(scene, problem, deployment),
         };
         let hinges = HingeRow::all(scene, deployment);
@@ -184,6 +191,7 @@ impl Report {
             has_domain: scene.surrogate().is_some(),
             warnings,
             checks: run.checks,
+            mounting: run.mounting,
             hinges,
         };
         report.cut_file = cuts.is_ok() && (force || report.errors().next().is_none());

@@ -6,15 +6,18 @@ use crate::cut_file::{
     deployed_panels, dxf, mark_errors, svg,
 };
 use crate::drawing;
+use crate::mounting_kit::{board, kit_pdf, steps_svg};
 use crate::report::{Report, Warning};
 use crate::run_page::run_page;
 use analysis::design_checks::CHECKS_FILE;
+use analysis::mounting::Mounting;
 use design::objective::design_problem::Deployment;
+use design::sheet::cut_sheet::Sheet;
 use design::sheet::kinematics::deployed_boundaries;
-use scene::Scene;
 use scene::design_run::Designed;
 use scene::placement::placed;
 use scene::run_inputs::STATE_FILE;
+use scene::{Paper, Scene};
 use std::io;
 
 /// A file of a run folder.
@@ -53,7 +56,7 @@ pub struct Results<'a> {
 /// The files in the order in which they are written: the report first, so that there is never a cut
 /// file without its report. The copies of the inputs, `scene.toml` and `inputs/`, are not among
 /// them: a run may be started from them.
-pub const RUN_FILES: [RunFile; 18] = [
+pub const RUN_FILES: [RunFile; 21] = [
     RunFile {
         name: STATE_FILE,
         contents: "state of the search, from which a stopped run continues, and the hashes of the copies of its inputs",
@@ -84,8 +87,12 @@ pub const RUN_FILES: [RunFile; 18] = [
     ),
     result(
         "attachments.csv",
-        "where panels are held and pulled in the flat sheet, with holes and clips",
-        |run| Ok(run.cut().map(|(cuts, _)| attachment_list(cuts).into())),
+        "where panels are held and pulled in the flat sheet, with holes and clips; of a mounted sheet also on the board, with forces",
+        |run| {
+            Ok(run
+                .cut()
+                .map(|(cuts, _)| attachment_list(cuts, run.report.mounting.as_ref()).into()))
+        },
     ),
     result(
         "cut-summary.csv",
@@ -98,6 +105,23 @@ pub const RUN_FILES: [RunFile; 18] = [
             let configuration = placed(run.scene, sheet, &run.best().final_step().configuration);
             dxf(&deployed_panels(&deployed_boundaries(sheet, &configuration))).into()
         }))
+    }),
+    result(
+        "mount.pdf",
+        "what to buy, the steps in which a mounted sheet is opened, and the board at 1:1, on A4 and on one page",
+        |run| {
+            let pdf = run.mounted().map(|(sheet, mounting)| {
+                let title = &run.scene.config.title;
+                kit_pdf(title, sheet, mounting, Paper::A4).map_err(io::Error::other)
+            });
+            pdf.transpose()
+        },
+    ),
+    result("mount.dxf", "the board: crosses with their numbers, and the opened panels", |run| {
+        Ok(run.mounted().map(|(sheet, mounting)| dxf(&board(sheet, mounting)).into()))
+    }),
+    result("mount.svg", "the steps in which a mounted sheet is opened", |run| {
+        Ok(run.mounted().map(|(sheet, mounting)| steps_svg(sheet, mounting).into()))
     }),
     result("flat.svg", FLAT, |run| {
         let title = &run.scene.config.title;
@@ -150,6 +174,12 @@ impl Results<'_> {
         let errors: Vec<String> = self.report.errors().map(Warning::to_string).collect();
         mark_errors(&mut drawing, &errors);
         Some(drawing)
+    }
+
+    /// The sheet, if it is cut, and how it is mounted.
+    fn mounted(&self) -> Option<(&Sheet, &Mounting)> {
+        self.cut()?;
+        Some((&self.best().sheet, self.report.mounting.as_ref()?))
     }
 
     fn picture(&self, deployment: &Deployment) -> Vec<u8> {

@@ -1,22 +1,82 @@
-//! The panels at which a sheet is held in its opened state.
+//! The panels at which a sheet is fastened in its opened state, and how well they hold it.
 
-use design::geometry::polygon::distance_to_outline;
+use crate::mounting::borne_by_hole;
+use crate::out_of_plane::Stability;
+use design::geometry::polygon::{bounds, distance, distance_to_outline};
 use design::geometry::region::Region;
+use design::sheet::kinematics::deployed;
 use design::sheet::topology::Topology;
+use scene::Scene;
 use std::collections::VecDeque;
+use support::statistics::rms_and_maximum;
 
-/// Panels a fastener, and the numbers of fasteners.
-const PANELS: usize = 15;
-const FASTENERS: [usize; 2] = [4, 12];
+/// Numbers of fasteners that are tried.
+pub(super) const COUNTS: [usize; 8] = [3, 4, 5, 6, 8, 10, 12, 16];
+/// Distance of the panels from the even opening over the longer side of the sheet, root mean square,
+/// up to which fasteners suffice.
+const EVEN: f64 = 0.002;
+/// Margin of the panels against leaving the plane up to which fasteners suffice.
+const MARGIN: f64 = 1.5;
 /// The middle of a cell, where a panel is fastened, and its least distance from an edge of the panel,
 /// in sides.
 const MIDDLE: [f64; 2] = [0.5; 2];
 const ROOM: f64 = 0.15;
+/// Diameter of the hole for a fastener (mm), such as a screw of 4 mm.
+pub(super) const HOLE: f64 = 4.2;
+
+/// How fasteners hold a sheet.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Held {
+    /// Number of fasteners.
+    pub count: usize,
+    /// Distance of the middles of the panels from the even opening over the longer side of the
+    /// sheet, root mean square.
+    pub off: f64,
+    /// Greatest force of a fastener (N).
+    pub force: f64,
+    /// Part of the force that the edge of its hole bears.
+    pub of_borne: f64,
+    /// Margin of the panels against leaving the plane; `None` if it is not known.
+    pub margin: Option<f64>,
+    /// Whether a hinge leaves the training domain.
+    pub leaves_domain: bool,
+}
+
+impl Held {
+    /// How the fasteners of a scene hold its sheet, whose panels have their middles at `flat` and,
+    /// opened evenly, at `even` (mm); `None` without an equilibrium.
+    pub(super) fn of(scene: &Scene, flat: &[[f64; 2]], even: &[[f64; 2]]) -> Option<Self> {
+        let problem = scene.problem().ok()?;
+        let deployment = problem.deploy(&scene.start()).ok()?;
+        let mechanics = problem.model.mechanics()?;
+        let sheet = &deployment.sheet;
+        let end = &deployment.at_full_load().ok()?.configuration;
+        let law = mechanics.law.prepare(&sheet.designs());
+        let reactions = mechanics.solver.reactions(mechanics.hinged(sheet, &*law, false), end);
+        let off = (sheet.panels.iter().enumerate())
+            .map(|(k, panel)| distance(deployed(panel, end[k], flat[k]), even[k]));
+        let [low, high] = bounds(even.iter().copied());
+        let side = f64::max(high[0] - low[0], high[1] - low[1]);
+        let force = reactions.iter().map(|[x, y, _]| x.hypot(*y)).fold(0.0, f64::max);
+        Some(Self {
+            count: scene.config.supports.len(),
+            off: rms_and_maximum(off)[0] / side,
+            force,
+            of_borne: force / borne_by_hole(&scene.material, HOLE),
+            margin: Stability::new(scene, &problem, &deployment).map(|found| found.margin),
+            leaves_domain: deployment.share_inside() < 1.0,
+        })
+    }
+
+    /// Whether more fasteners are not needed.
+    pub fn suffices(&self) -> bool {
+        let stays = self.margin.is_none_or(|margin| margin >= MARGIN);
+        self.off < EVEN && self.of_borne < 1.0 && stays && !self.leaves_domain
+    }
+}
 
 /// Panels far from each other along the sheet, beginning with the ends of its longest way.
-pub(super) fn fastened(topology: &Topology) -> Vec<usize> {
-    let [fewest, most] = FASTENERS;
-    let count = (topology.panel_count() / PANELS).clamp(fewest, most);
+pub(super) fn fastened(topology: &Topology, count: usize) -> Vec<usize> {
     let mut neighbours = vec![Vec::new(); topology.panel_count()];
     for site in &topology.sites {
         let [a, b] = [site.a.0, site.b.0];

@@ -3,7 +3,7 @@
 
 use crate::fit::even_pattern::Opening;
 use crate::fit::even_sheet::{EvenSheet, THOROUGH};
-use crate::fit::fasteners::fastened;
+use crate::fit::fasteners::{COUNTS, HOLE, Held, fastened};
 use crate::fit::lost::{Lost, kept_by, lost};
 use crate::fit::opening::{free_axial_opening, safe_opening};
 use crate::fit::trimmed::{Limits, TOLERANCE};
@@ -11,12 +11,14 @@ use design::geometry::plane::{complex, point};
 use design::geometry::polygon::bounds;
 use design::geometry::region::Region;
 use design::geometry::similarity::Similarity;
-use design::optimise::search::SearchMethod;
+use design::pattern::grid::Grid;
 use design::sheet::topology::Topology;
+
 use faer::c64;
+use hinge::Regime;
 use scene::{
-    At, CellsConfig, Level, OptimiserConfig, Posture, PostureConfig, Scene, SceneConfig,
-    SceneError, StartConfig, SupportConfig, SupportKind, rounded,
+    At, CellsConfig, Level, Posture, PostureConfig, Scene, SceneConfig, SceneError, StartConfig,
+    SupportConfig, SupportKind, rounded,
 };
 
 /// The largest opening that is planned (rad): 60 degrees.
@@ -36,9 +38,8 @@ const GAP: f64 = 0.05;
 const SIZES: usize = 6;
 /// Part of the stock that a sheet fills at least.
 const FILLED: f64 = 0.95;
-/// Steps of the search for the widths, and the length of its first step.
+/// Steps of a search: an even pattern needs none (docs/TRIED.md).
 const STEPS: usize = 0;
-const FIRST_STEP: f64 = 0.03;
 
 /// A scene of an even sheet, and what is expected of it.
 pub struct FittedScene {
@@ -52,6 +53,8 @@ pub struct FittedScene {
     pub opening: f64,
     /// Intersection over union of what one sees of the opened panels and the target.
     pub seen: f64,
+    /// How its fasteners hold it; `None` if no equilibrium is found.
+    pub held: Option<Held>,
     /// The parts of the target that are not seen.
     pub lost: Vec<Lost>,
     /// The factor by which the stock has to be longer and wider, or the sheet thinner, to show them;
@@ -100,8 +103,10 @@ pub fn fitted(scene: &Scene) -> Result<FittedScene, FitError> {
     let lost = lost(&sheet);
     let size = sheet.size(&target);
     let kept_by = lost.first().and_then(|_| kept_by(&target, size, limits));
+    let (config, held) = fasten(scene, &sheet, &topology, side)?;
     Ok(FittedScene {
-        config: keys(scene, &sheet, &topology, side),
+        config,
+        held,
         lost,
         kept_by,
         panels: topology.panel_count(),
@@ -168,52 +173,122 @@ fn growth([width, height]: [f64; 2], [one, other]: [f64; 2]) -> f64 {
     f64::max(in_stock(one, other), in_stock(other, one))
 }
 
-/// The keys of the scene with the sheet, its fasteners and the place of its target. The drawing
-/// stands upright.
-fn keys(scene: &Scene, sheet: &EvenSheet, topology: &Topology, side: f64) -> SceneConfig {
-    let (grid, first) = sheet.cells();
-    // From the pattern to the sheet: turned back, in mm, its lower left corner at the origin.
-    let back = side * c64::cis(-sheet.place.rotation());
-    let first = complex(first.map(f64::from));
-    let turned = |at: c64| back * (at - first);
-    let flat = sheet.opened(0.0);
-    let low = bounds(flat.contours().flatten().map(|p| point(turned(complex(*p)))))[0];
-    let in_sheet = |at: c64| point(turned(at) - complex(low)).map(rounded);
-    let (m, n) = (grid.m as f64, grid.n as f64);
-    let corners = [[0.0, 0.0], [m, 0.0], [m, n], [0.0, n]];
-    let mut config = scene.config.clone();
-    config.sheet.size = None;
-    config.sheet.corners = Some(corners.map(|corner| in_sheet(first + complex(corner))));
-    config.sheet.panels = [grid.m, grid.n];
-    config.cells = Some(CellsConfig::from(topology));
-    config.posture = Some(PostureConfig { kind: Posture::HeldFlat, down: None });
-    config.ligament.start = width(scene);
-    config.start = StartConfig::default();
-    config.clear_actuation();
-    // The squares move away from their middle, which stays.
-    let centre = |panel: &usize| first + complex(topology.places[*panel].map(|i| i as f64 + 0.5));
-    let all = topology.panel_count();
-    let middle = (0..all).map(|panel| centre(&panel)).sum::<c64>() / all as f64;
-    let opened = sheet.limits.opening.pitch() - 1.0;
-    let fastener = |panel: usize| {
-        let centre = centre(&panel);
-        SupportConfig {
-            at: At::Point(in_sheet(centre)),
-            displacement: point(back * opened * (centre - middle)).map(rounded),
-            ..SupportConfig::at_centroid(topology.places[panel], SupportKind::Pin)
+/// The keys of the scene with as few fasteners as suffice, and how they hold the sheet; if none
+/// suffice, with those that hold its panels best.
+fn fasten(
+    scene: &Scene,
+    sheet: &EvenSheet,
+    topology: &Topology,
+    side: f64,
+) -> Result<(SceneConfig, Option<Held>), SceneError> {
+    let laid = LaidSheet::new(sheet, topology, side);
+    let mut best: Option<(SceneConfig, Held)> = None;
+    for count in COUNTS {
+        let config = laid.keys(scene, sheet, &fastened(topology, count));
+        let [flat, even] = [0.0, laid.opened].map(|opened| laid.middles(opened));
+        let Some(held) = Held::of(&scene.changed(config.clone())?, &flat, &even) else { continue };
+        let suffices = held.suffices();
+        if suffices || best.as_ref().is_none_or(|(_, best)| held.off < best.off) {
+            best = Some((config, held));
         }
-    };
-    config.supports = fastened(topology).into_iter().map(fastener).collect();
-    config.objective = Default::default();
-    config.optimiser = OptimiserConfig {
-        steps: STEPS,
-        learning_rate: FIRST_STEP,
-        method: SearchMethod::Lbfgs,
-        ..config.optimiser
-    };
-    // From the target to the opened sheet whose middle stays.
-    let turn = back * sheet.place.turn;
-    let shift = back * (sheet.place.shift - opened * middle - first) - complex(low);
-    config.target = config.target.placed(&Similarity { turn, shift }, &scene.target.points);
-    config
+        if suffices {
+            break;
+        }
+    }
+    let most = fastened(topology, COUNTS[COUNTS.len() - 1]);
+    Ok(match best {
+        Some((config, held)) => (config, Some(held)),
+        None => (laid.keys(scene, sheet, &most), None),
+    })
+}
+
+/// An even sheet in the coordinates of its scene: turned back, so that the drawing stands upright,
+/// in mm, its lower left corner at the origin.
+struct LaidSheet<'a> {
+    topology: &'a Topology,
+    grid: Grid,
+    /// The first cell of the grid.
+    first: c64,
+    /// From sides of a panel to mm, turned back.
+    back: c64,
+    /// Lower left corner before it is at the origin (mm).
+    low: c64,
+    /// The middle of all panels, which stays (sides of a panel).
+    middle: c64,
+    /// By how much the distances of panels grow, relative to them.
+    opened: f64,
+}
+
+impl<'a> LaidSheet<'a> {
+    fn new(sheet: &EvenSheet, topology: &'a Topology, side: f64) -> Self {
+        let (grid, first) = sheet.cells();
+        let back = side * c64::cis(-sheet.place.rotation());
+        let flat = sheet.opened(0.0);
+        let first = complex(first.map(f64::from));
+        let turned = |at: &[f64; 2]| point(back * (complex(*at) - first));
+        let low = complex(bounds(flat.contours().flatten().map(turned))[0]);
+        let opened = sheet.limits.opening.pitch() - 1.0;
+        let mut laid = Self { topology, grid, first, back, low, middle: c64::ZERO, opened };
+        let count = topology.panel_count();
+        laid.middle = (0..count).map(|panel| laid.centre(panel)).sum::<c64>() / count as f64;
+        laid
+    }
+
+    /// The middle of the cell of a panel (sides of a panel).
+    fn centre(&self, panel: usize) -> c64 {
+        self.first + complex(self.topology.places[panel].map(|i| i as f64 + 0.5))
+    }
+
+    /// From the pattern to the sheet (mm).
+    fn in_sheet(&self, at: c64) -> [f64; 2] {
+        point(self.back * (at - self.first) - self.low)
+    }
+
+    /// The middles of all panels when their distances have grown by `opened` (mm).
+    fn middles(&self, opened: f64) -> Vec<[f64; 2]> {
+        let moved = |panel| {
+            let centre = self.centre(panel);
+            self.in_sheet(centre + opened * (centre - self.middle))
+        };
+        (0..self.topology.panel_count()).map(moved).collect()
+    }
+
+    /// The keys of the scene with the sheet, fasteners at panels, and the place of its target.
+    fn keys(&self, scene: &Scene, sheet: &EvenSheet, fastened: &[usize]) -> SceneConfig {
+        let (m, n) = (self.grid.m as f64, self.grid.n as f64);
+        let corners = [[0.0, 0.0], [m, 0.0], [m, n], [0.0, n]];
+        let mut config = scene.config.clone();
+        config.sheet.size = None;
+        config.sheet.corners =
+            Some(corners.map(|at| self.in_sheet(self.first + complex(at)).map(rounded)));
+        config.sheet.panels = [self.grid.m, self.grid.n];
+        config.cells = Some(CellsConfig::from(self.topology));
+        let kind = match scene.material.regime(width(scene)) {
+            Regime::Film => Posture::HeldFlat,
+            Regime::Plate => Posture::Mounted,
+        };
+        config.posture = Some(PostureConfig { kind, down: None });
+        config.ligament.start = width(scene);
+        config.start = StartConfig::default();
+        config.clear_actuation();
+        let [flat, even] = [0.0, self.opened].map(|opened| self.middles(opened));
+        let fastener = |panel: &usize| {
+            let at = flat[*panel].map(rounded);
+            SupportConfig {
+                at: At::Point(at),
+                hole: Some(HOLE),
+                displacement: [0, 1].map(|axis| rounded(even[*panel][axis] - at[axis])),
+                ..SupportConfig::at_centroid(self.topology.places[*panel], SupportKind::Pin)
+            }
+        };
+        config.supports = fastened.iter().map(fastener).collect();
+        config.objective = Default::default();
+        config.optimiser.steps = STEPS;
+        // From the target to the opened sheet whose middle stays.
+        let turn = self.back * sheet.place.turn;
+        let shift = self.back * (sheet.place.shift - self.opened * self.middle - self.first);
+        let place = Similarity { turn, shift: shift - self.low };
+        config.target = config.target.placed(&place, &scene.target.points);
+        config
+    }
 }

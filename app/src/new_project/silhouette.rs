@@ -14,7 +14,7 @@ pub(super) fn fitted_text(scene: &Scene, text: &str, anyway: bool) -> Result<(St
     heading(
         &mut document,
         "# A sheet that opens onto a drawing, written by `kirigami init --target`: an even pattern laid over the drawing while\n\
-         # open, trimmed to it. Some panels are moved to their places in the opened sheet, free to turn; `kirigami design`\n\
+         # open, trimmed to it. Fasteners hold some panels at their places in the opened sheet, free to turn; `kirigami design`\n\
          # computes the forces. Lengths in mm, forces in N, couples in N mm; paths are relative to this file.\n\n",
     );
     // Everything that the fit decides, as the keys of the scene are written.
@@ -27,9 +27,7 @@ pub(super) fn fitted_text(scene: &Scene, text: &str, anyway: bool) -> Result<(St
         }
     }
     document["ligament"]["start"] = written["ligament"]["start"].clone();
-    for key in ["steps", "learning_rate", "method"] {
-        document["optimiser"][key] = written["optimiser"][key].clone();
-    }
+    document["optimiser"]["steps"] = written["optimiser"]["steps"].clone();
     if let TargetShape::Svg { file, centre, height, rotation_deg } = target {
         let name = file.file_stem().unwrap_or_default().to_string_lossy();
         set(&mut document["title"], &*name);

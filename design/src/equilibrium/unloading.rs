@@ -3,12 +3,17 @@
 //! The forces that would hold the panels in the configuration are taken off in proportion. The path
 //! begins in balance also where the forces of the hinge law differ from the forces under load.
 //! Supports that rest and the weight of the sheet stay; supports that moved the sheet are removed,
-//! too.
+//! too. A sheet without weight that no support holds then is free: the panel of its first support
+//! stays where it is.
 
 use crate::{
     equilibrium::{
-        corrector::Branch, hinged_sheet::HingedSheet, load_step::LoadStep, potential::PathStage,
-        solver::EquilibriumSolver, supports::Support,
+        corrector::Branch,
+        hinged_sheet::HingedSheet,
+        load_step::LoadStep,
+        potential::PathStage,
+        solver::EquilibriumSolver,
+        supports::{Dof, Support, hold_rigid_body},
     },
     hinge_law::Order,
     sheet::{cut_sheet::Sheet, kinematics::Configuration},
@@ -34,7 +39,12 @@ impl EquilibriumSolver {
     /// The same problem without loads, and without the supports that moved the sheet.
     fn unloaded(&self, sheet: &Sheet) -> Result<Self, Fault> {
         let resting = self.supports.iter().filter(|support| support.value == 0.0);
-        let resting: Vec<Support> = resting.copied().collect();
+        let mut resting: Vec<Support> = resting.copied().collect();
+        if self.weight == [0.0; 2] && !hold_rigid_body(&resting, sheet) {
+            let panel = self.supports[0].panel;
+            resting.retain(|support| support.panel != panel);
+            resting.extend(Dof::ALL.map(|dof| Support { panel, dof, value: 0.0 }));
+        }
         let free = Self {
             weight: self.weight,
             attachment_points: self.attachment_points.clone(),

@@ -87,7 +87,7 @@ impl CutDrawing {
     }
 
     /// Adds a cross with arms of the given length (mm).
-    pub(super) fn add_cross(&mut self, layer: Layer, [x, y]: [f64; 2], arm: f64) {
+    pub(crate) fn add_cross(&mut self, layer: Layer, [x, y]: [f64; 2], arm: f64) {
         for ends in [[[x - arm, y], [x + arm, y]], [[x, y - arm], [x, y + arm]]] {
             self.add(layer, Shape::Line(ends));
         }

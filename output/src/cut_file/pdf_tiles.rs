@@ -28,20 +28,28 @@ const BLACK: Colour = [0; 3];
 
 /// An overview and the tiles of a drawing; `notes` are printed on the overview.
 pub fn tiles_pdf(drawing: &CutDrawing, tiling: &Tiling, title: &str, notes: &[String]) -> Vec<u8> {
-    let [rows, columns] = tiling.counts;
     let mut pages = vec![overview(drawing, tiling, title, notes)];
-    for row in 0..rows {
-        pages.extend((0..columns).map(|column| tile(tiling, row, column, title)));
-    }
+    pages.extend(tile_pages(tiling, title));
+    pdf::file(&form(drawing), pages.into_iter().map(|page| (tiling.page, page)).collect())
+}
+
+/// The pages of the tiles of a drawing, row by row from the top.
+pub(crate) fn tile_pages(tiling: &Tiling, title: &str) -> Vec<Content> {
+    let [rows, columns] = tiling.counts;
+    let tiles = (0..rows).flat_map(|row| (0..columns).map(move |column| (row, column)));
+    tiles.map(|(row, column)| tile(tiling, row, column, title)).collect()
+}
+
+/// A drawing that tiles show.
+pub(crate) fn form(drawing: &CutDrawing) -> Form {
     let [low, high] = drawing.bounds();
     let mut shapes = Content::new();
     draw(&mut shapes, drawing.coloured(LINE));
-    let form = Form {
+    Form {
         name: DRAWING,
         content: shapes.finish().to_vec(),
         bounds: [low.map(|x| x - 1.0), high.map(|x| x + 1.0)],
-    };
-    pdf::file(tiling.page, &form, pages)
+    }
 }
 
 /// The page of a tile: its part of the drawing, trim lines with crosses, its name and a ruler.

@@ -27,8 +27,8 @@ pub(crate) struct Form {
     pub bounds: [[f64; 2]; 2],
 }
 
-/// A file of pages of the given size (mm), with a form that they use.
-pub(crate) fn file(size: [f64; 2], form: &Form, pages: Vec<Content>) -> Vec<u8> {
+/// A file of pages, each with its size (mm), with a form that they use.
+pub(crate) fn file(form: &Form, pages: Vec<([f64; 2], Content)>) -> Vec<u8> {
     let mut ids = (1..).map(Ref::new);
     let mut next = || ids.next().expect("fewer objects than integers");
     let [catalog, tree, font, shared] = std::array::from_fn(|_| next());
@@ -42,12 +42,11 @@ pub(crate) fn file(size: [f64; 2], form: &Form, pages: Vec<Content>) -> Vec<u8> 
     object.bbox(Rect::new(low[0], low[1], high[0], high[1]));
     object.resources().fonts().pair(FONT, font);
     object.finish();
-    let pages: Vec<(Ref, Ref, Content)> =
-        (pages.into_iter()).map(|page| (next(), next(), page)).collect();
+    let pages: Vec<_> = pages.into_iter().map(|page| (next(), next(), page)).collect();
     let kids = pages.iter().map(|(id, ..)| *id);
     file.pages(tree).count(pages.len() as i32).kids(kids);
-    let [width, height] = size.map(|x| (x * POINTS) as f32);
-    for (id, stream, content) in pages {
+    for (id, stream, (size, content)) in pages {
+        let [width, height] = size.map(|x| (x * POINTS) as f32);
         let mut page = file.page(id);
         page.media_box(Rect::new(0.0, 0.0, width, height));
         page.parent(tree).contents(stream);

@@ -5,6 +5,8 @@ use crate::report::hinge_row::HingeRow;
 use crate::report::numbers::rounded;
 use crate::report::reached::Reached;
 use analysis::design_checks::{DesignChecks, WholeSheet};
+use analysis::mounting::Mounting;
+use analysis::what_if::WhatIf;
 use design::geometry::polygon::bounds;
 use design::objective::design_problem::Deployment;
 use design::objective::scores::Scores;
@@ -35,6 +37,10 @@ pub(super) struct FinishedRun<'a> {
     pub seen: f64,
     /// What was measured of it after the search.
     pub checks: DesignChecks,
+    /// How it is mounted; `None` if it is not.
+    pub mounting: Option<Mounting>,
+    /// What becomes of it if one thing is not as designed.
+    pub changes: Vec<WhatIf>,
     pub reached: Option<Reached>,
 }
 
@@ -96,7 +102,9 @@ pub(super) fn left_out(scene: &Scene) -> Option<&'static str> {
         Posture::HeldFlat => Some(
             "what holds the panels flat, and its friction; the weight of the sheet, if its plane is not horizontal",
         ),
-        Posture::Mounted => Some("friction on the board, and the weight of the sheet if the board is upright"),
+        Posture::Mounted => {
+            Some("friction on the board, and the weight of the sheet if the board is upright")
+        }
         Posture::Lying => Some("in the design, friction"),
         Posture::Hanging if is_heavy(scene) => None,
         Posture::Hanging | Posture::Free => Some("the weight of the sheet"),

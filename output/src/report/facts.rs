@@ -3,6 +3,9 @@
 
 mod design;
 mod load;
+mod mounting;
+
+pub(crate) use mounting::step as mounting_step;
 
 use crate::report::deployed::{DeployedDesign, FinishedRun};
 use crate::report::numbers::rounded;
@@ -28,10 +31,12 @@ pub struct Fact {
 type Facts = fn(&DeployedDesign, &FinishedRun) -> Vec<Fact>;
 
 /// The pages that explain facts, and the facts.
-const FACTS: [(&str, Facts); 7] = [
+const FACTS: [(&str, Facts); 9] = [
     ("docs/RUN-PAGE.md", design::material_and_size),
     ("docs/NUMERICS.md", load::load_and_stroke),
     ("docs/HOLDING.md", load::holding_and_weight),
+    ("docs/HOLDING.md", mounting::mounting),
+    ("docs/HOLDING.md", mounting::what_if),
     ("docs/LIMITS.md", load::springback_and_creep),
     ("docs/MATERIALS.md", design::domain_and_weights),
     ("docs/CHOOSE.md", design::levels_and_findings),

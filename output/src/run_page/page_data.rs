@@ -1,6 +1,7 @@
 //! The data of the page.
 
 use crate::deployment_states::kept;
+use crate::mounting_kit::steps_svg;
 use crate::report::{BUDGET_HEADING, Fact, HingeRow, Report, Warning, extent, miss, worst_first};
 use crate::run_page::hinge_states::HingeStates;
 use crate::run_page::packed::Packed;
@@ -36,6 +37,8 @@ pub struct PageData<'a> {
     facts: &'a [Fact],
     budget: Option<BudgetTable>,
     warnings: &'a [Warning],
+    /// The steps in which a mounted sheet is opened, as SVG.
+    mounting: Option<String>,
     scene: String,
     history: History,
     /// What moves the sheet, and the units of displacement and load.
@@ -132,6 +135,8 @@ impl<'a> PageData<'a> {
                 left_out: budget.left_out(),
             }),
             warnings: &report.warnings,
+            mounting: (report.mounting.as_ref())
+                .map(|mounting| steps_svg(&deployment.sheet, mounting)),
             scene: scene_text(scene),
             history: History::new(&designed.problem.objective, &designed.search.history),
             stroke: reached.map(|reached| (reached.stroke_of.as_str(), reached.units)),

@@ -45,6 +45,8 @@ function writeTexts() {
   writeMiss(run.warnings.find(({ concern }) => concern.startsWith("target-")));
   byId("alert").hidden = !run.about_cut_files;
   byId("alert").textContent = `${run.about_cut_files}: see the findings.`;
+  byId("mounting-card").hidden = !run.mounting;
+  if (run.mounting) byId("mounting").src = `data:image/svg+xml,${encodeURIComponent(run.mounting)}`;
   byId("facts").textContent = "";
   for (const { label, text, page } of run.facts) {
     const tr = write(byId("facts"), "tr");

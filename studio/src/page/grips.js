@@ -1,6 +1,6 @@
 // What holds and pulls the sheet: lists of fields, and a menu on the panel that is clicked.
 
-const POSTURES = [["held-flat", "between plates"], ["lying", "lies on a table"], ["hanging", "hangs"], ["free", "nothing"]];
+const POSTURES = [["held-flat", "between plates"], ["mounted", "fastened to a board"], ["lying", "lies on a table"], ["hanging", "hangs"], ["free", "nothing"]];
 const KINDS = [["clamp", "clamp"], ["pin", "pin"], ["roller-x", "roller along x"], ["roller-y", "roller along y"]];
 const EDGES = ["bottom", "right", "top", "left"];
 

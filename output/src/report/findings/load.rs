@@ -5,6 +5,7 @@ use crate::report::deployed::{DeployedDesign, is_heavy, left_out, of_the_load, p
 use crate::report::numbers::rounded;
 use analysis::calibration::CALIBRATION;
 use analysis::flatness::{Flatness, error_on_table};
+use analysis::mounting::{Fastener, borne_by_hole};
 use analysis::out_of_plane::{MOST, Stability};
 use analysis::unit::Unit;
 use design::equilibrium::load_step::{LoadStep, Status};
@@ -14,7 +15,7 @@ use hinge::Regime;
 use scene::{FRICTION, Posture};
 use support::severity::Severity::{Error, Note, Warning};
 
-pub(super) const RULES: [Rule; 11] = [
+pub(super) const RULES: [Rule; 14] = [
     rule(
         "path",
         Warning,
@@ -107,6 +108,36 @@ pub(super) const RULES: [Rule; 11] = [
             "a stroke (`[drive]`)",
         ],
         load_peak,
+    ),
+    rule(
+        "load-plateau",
+        Warning,
+        [
+            "a dead load that is 10 % off",
+            "it changes the mean opening by more than five degrees",
+            "fasteners (`posture.kind = \"mounted\"`), or a stroke (`[drive]`)",
+        ],
+        load_plateau,
+    ),
+    rule(
+        "mounting",
+        Warning,
+        [
+            "a fastener cannot be put in after the others",
+            "on the way of its hole a ligament tears, or no equilibrium is found, or the sheet ends in another state",
+            "another order of the supports, more fasteners",
+        ],
+        mounting,
+    ),
+    rule(
+        "fastener-force",
+        Warning,
+        [
+            "the force of a fastener",
+            "it is more than half of what the edge of its hole bears: yield stress times thickness times diameter",
+            "more fasteners, larger holes",
+        ],
+        fastener_force,
     ),
 ];
 
@@ -342,4 +373,65 @@ fn film_leaves_plane(of: &DeployedDesign, posture: Posture, kept: &str, widest: 
         rounded(widest / thickness, 2)
     );
     found(message).with(if falls { Error } else { Warning })
+}
+
+/// Change of the mean opening under loads that are 10 % off from which a dead load is no recipe
+/// (rad): five degrees.
+const PLATEAU: f64 = 0.0873;
+
+fn load_plateau(of: &DeployedDesign) -> Option<Found> {
+    let config = &of.scene.config;
+    let changes = &of.run.filter(|_| config.has_loads() && config.drive.is_none())?.changes;
+    let by_loads = changes.iter().filter(|row| row.change.starts_with("the loads"));
+    let openings: Vec<[f64; 2]> = by_loads.filter_map(|row| Some(row.end?.openings)).collect();
+    let far = openings.iter().any(|[before, after]| (after - before).abs() > PLATEAU);
+    let after: Vec<String> =
+        openings.iter().map(|[_, after]| rounded(after.to_degrees(), 3)).collect();
+    far.then(|| {
+        found(format!(
+            "with loads 10 % lower and higher hinges open by {} in place of {} deg on the mean: a load does not determine the shape; fasten panels at \
+             their places, or prescribe the stroke",
+            after.join(" and "),
+            rounded(openings[0][0].to_degrees(), 3)
+        ))
+    })
+}
+
+/// Distance of corners from which a mounted sheet has ended in another state (mm).
+const ELSEWHERE: f64 = 0.5;
+
+fn mounting(of: &DeployedDesign) -> Option<Found> {
+    let mounting = of.run?.mounting.as_ref()?;
+    let tears = |damage: Option<f64>| damage.is_some_and(|damage| damage >= 1.0);
+    let put_in = mounting.fasteners.len();
+    let torn = mounting.fasteners.iter().position(|fastener| tears(fastener.damage));
+    let message = match torn {
+        Some(i) => format!(
+            "a ligament tears while panel P{} is pulled to its place",
+            mounting.fasteners[i].panel
+        ),
+        None if !mounting.is_complete() => {
+            format!("no equilibrium is found on the way of fastener {put_in} of {}", mounting.count)
+        }
+        None if mounting.apart > ELSEWHERE => format!(
+            "fastened one after the other the sheet ends in another state than the report has, corners up to {} mm away",
+            rounded(mounting.apart, 2)
+        ),
+        None => return None,
+    };
+    Some(found(message))
+}
+
+fn fastener_force(of: &DeployedDesign) -> Option<Found> {
+    let mounting = of.run?.mounting.as_ref()?;
+    let over = |fastener: &Fastener| {
+        let bears = borne_by_hole(&of.scene.material, fastener.hole?);
+        let force = f64::max(fastener.pull, fastener.holds);
+        (force > bears).then_some((force, bears))
+    };
+    let [force, bears] =
+        mounting.fasteners.iter().find_map(over).map(|(a, b)| [a, b].map(|x| rounded(x, 2)))?;
+    Some(found(format!(
+        "a fastener pulls with {force} N; the edge of its hole bears {bears} N, with a factor of two"
+    )))
 }

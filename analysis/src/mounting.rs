@@ -1,0 +1,146 @@
+//! How a sheet is mounted on a board: its fasteners in the order of the supports of its scene.
+
+use design::equilibrium::load_step::{LoadStep, Status};
+use design::geometry::polygon::bounds;
+use design::hinge_law::DamageMeasure;
+use design::objective::design_problem::{Deployment, DesignProblem};
+use design::sheet::cut_sheet::Sheet;
+use design::sheet::kinematics::{Configuration, corner_distances, deployed, deployed_boundaries};
+use hinge::SheetMaterial;
+use scene::placement::placed;
+use scene::{Posture, Scene};
+use serde::Serialize;
+
+/// Border of a board around the opened sheet, and the length to which its size is rounded (mm).
+const BORDER: f64 = 20.0;
+const ROUND: f64 = 10.0;
+/// Factor by which the pressure on the edge of a hole stays below the stress at which the material
+/// yields.
+const SAFETY: f64 = 2.0;
+
+/// The fasteners of a mounted sheet in the order in which they are put in.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Mounting {
+    /// Up to the first whose hole does not reach its place.
+    pub fasteners: Vec<Fastener>,
+    /// Number of fasteners.
+    pub count: usize,
+    /// Largest distance of a panel corner from where the sheet ends if all holes move at once (mm).
+    pub apart: f64,
+    /// The motions of the panels of the opened sheet on the board.
+    #[serde(skip)]
+    pub opened: Configuration,
+}
+
+/// A fastener of a mounted sheet.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Fastener {
+    /// Index of its panel.
+    pub panel: usize,
+    /// Diameter of its hole (mm).
+    pub hole: Option<f64>,
+    /// Its place on the board, where the opened sheet is (mm).
+    pub place: [f64; 2],
+    /// The way of its hole to that place when it is put in (mm).
+    pub way: [f64; 2],
+    /// Greatest force of the hand on that way (N).
+    pub pull: f64,
+    /// Force that it holds in the end (N).
+    pub holds: f64,
+    /// Largest peak damage of a hinge on that way; `None` if a state is outside the training domain,
+    /// or if the law predicts no damage.
+    pub damage: Option<f64>,
+    /// Number of hinges that leave the training domain on that way.
+    pub outside: usize,
+    /// The motions of the panels when it is put in.
+    #[serde(skip)]
+    pub sheet: Configuration,
+}
+
+/// The force on the edge of a hole of some diameter (mm) that a sheet bears (N).
+pub fn borne_by_hole(material: &SheetMaterial, diameter: f64) -> f64 {
+    material.plastic[0][0] * material.thickness * diameter / SAFETY
+}
+
+impl Fastener {
+    /// Length of the way of its hole (mm).
+    pub fn way_length(&self) -> f64 {
+        self.way[0].hypot(self.way[1])
+    }
+}
+
+impl Mounting {
+    /// The mounting of a deployed sheet of a scene; `None` unless the scene says that it is mounted
+    /// and only fasteners open it.
+    pub fn new(scene: &Scene, problem: &DesignProblem, deployment: &Deployment) -> Option<Self> {
+        let mechanics = problem.model.mechanics()?;
+        let is_mounted = scene.config.posture?.kind == Posture::Mounted;
+        if !is_mounted || mechanics.solver.fastened().is_empty() {
+            return None;
+        }
+        let sheet = &deployment.sheet;
+        let law = mechanics.law.prepare(&sheet.designs());
+        let hinged = mechanics.hinged(sheet, &*law, false);
+        let end = &deployment.at_full_load().ok()?.configuration;
+        let reactions = mechanics.solver.reactions(hinged, end);
+        let attachments = mechanics.solver.attachment_points();
+        let on_board = placed(scene, sheet, end);
+        let steps = mechanics.solver.mounted(hinged).ok()?;
+        let count = mechanics.solver.fastened().len();
+        let apart = steps.last().filter(|last| steps.len() == count && reaches(&last.path));
+        let apart = apart.map_or(f64::INFINITY, |last| {
+            corner_distances(sheet, &last.end, end).into_iter().fold(0.0, f64::max)
+        });
+        let fasteners = steps.into_iter().map(|step| {
+            let panel = step.panel;
+            let [x, y, _] = reactions[panel];
+            let place =
+                deployed(&sheet.panels[panel], on_board[panel], sheet.panels[panel].reference);
+            Fastener {
+                panel,
+                hole: attachments.iter().find(|at| at.panel == panel).and_then(|at| at.hole),
+                place,
+                way: step.way,
+                pull: step.force,
+                holds: x.hypot(y),
+                damage: damage(&step.path),
+                outside: outside(&step.path),
+                sheet: step.end,
+            }
+        });
+        Some(Self { fasteners: fasteners.collect(), count, apart, opened: on_board })
+    }
+
+    /// Width and height of the smallest board behind the opened sheet (mm).
+    pub fn board(&self, sheet: &Sheet) -> [f64; 2] {
+        let [low, high] = bounds(deployed_boundaries(sheet, &self.opened).concat());
+        [0, 1].map(|axis| ROUND * ((high[axis] - low[axis] + 2.0 * BORDER) / ROUND).ceil())
+    }
+
+    /// Whether every hole reaches its place.
+    pub fn is_complete(&self) -> bool {
+        self.apart.is_finite()
+    }
+}
+
+fn reaches(path: &[LoadStep]) -> bool {
+    path.last().is_none_or(|last| last.status != Status::Diverged)
+}
+
+/// Largest peak damage on a way.
+fn damage(path: &[LoadStep]) -> Option<f64> {
+    let of_step = |step: &LoadStep| {
+        let states = std::iter::zip(&step.damage, &step.inside);
+        let known = states.map(|(damage, inside)| {
+            DamageMeasure::Peak.known(damage).or(Some(damage.d)).filter(|_| *inside)
+        });
+        (!step.damage.is_empty()).then_some(())?;
+        known.into_iter().try_fold(0.0, |most: f64, damage| Some(most.max(damage?)))
+    };
+    path.iter().try_fold(0.0, |most: f64, step| Some(most.max(of_step(step)?)))
+}
+
+fn outside(path: &[LoadStep]) -> usize {
+    let hinges = path.first().map_or(0, |step| step.inside.len());
+    (0..hinges).filter(|hinge| path.iter().any(|step| !step.inside[*hinge])).count()
+}

@@ -1,0 +1,147 @@
+//! What becomes of a deployed sheet if one thing is not as designed: it is balanced again.
+
+use design::objective::design_problem::{Deployment, DesignProblem};
+use design::objective::response::{Conditions, Response};
+use design::pattern::design_vector::{DesignVector, WidthChart};
+use design::sheet::kinematics::corner_distances;
+use scene::placement::seen;
+use scene::{Scene, SceneConfig};
+use serde::Serialize;
+use support::statistics::rms_and_maximum;
+
+/// Relative changes of all stresses, of the thickness and of the loads.
+const STRESS: f64 = 0.2;
+const THICKNESS: f64 = 0.05;
+const LOADS: f64 = 0.1;
+/// Change of the width of the ligaments, and distance of a hole from its place (mm).
+const WIDTH: f64 = 0.1;
+const HOLE: f64 = 0.5;
+
+/// A sheet with one thing changed.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct WhatIf {
+    /// What is changed.
+    pub change: String,
+    /// How the sheet ends; `None` if no equilibrium is found.
+    pub end: Option<ChangedSheet>,
+}
+
+/// The end of a sheet with one thing changed.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct ChangedSheet {
+    /// How much of the target is seen, from 0 to 1.
+    pub seen: f64,
+    /// Distances of the panel corners from the design (mm): root mean square and maximum.
+    pub corners: [f64; 2],
+    /// Mean opening without and with the change (rad).
+    pub openings: [f64; 2],
+}
+
+/// A deployed sheet that is changed.
+struct Unchanged<'a> {
+    scene: &'a Scene,
+    problem: &'a DesignProblem,
+    design: &'a DesignVector,
+    deployment: &'a Deployment,
+}
+
+/// The changes of a design whose fasteners or dead loads open it; none for other sheets.
+pub fn what_if(
+    scene: &Scene,
+    problem: &DesignProblem,
+    design: &DesignVector,
+    deployment: &Deployment,
+) -> Vec<WhatIf> {
+    let Some(mechanics) = problem.model.mechanics() else { return Vec::new() };
+    let of = Unchanged { scene, problem, design, deployment };
+    let percent = |part: f64| format!("{:.0} %", 100.0 * part);
+    let [less, more] = [-1.0, 1.0];
+    let stresses = [less, more].map(|sign| {
+        let change = format!("all stresses {} {}", percent(STRESS), more_or_less(sign));
+        of.under(change, Conditions { stress: 1.0 + sign * STRESS, ..Conditions::default() })
+    });
+    let thicknesses = [less, more].map(|sign| {
+        let change = format!("the sheet {} {}", percent(THICKNESS), thicker(sign));
+        of.under(change, Conditions { thickness: 1.0 + sign * THICKNESS, ..Conditions::default() })
+    });
+    let cut = [stresses, thicknesses].concat().into_iter().chain([of.narrower()]);
+    if !mechanics.solver.fastened().is_empty() {
+        return cut.chain(of.fasteners()).collect();
+    }
+    if !scene.config.has_loads() || scene.config.drive.is_some() {
+        return Vec::new();
+    }
+    let loads = [less, more].map(|sign| {
+        let change = format!("the loads {} {}", percent(LOADS), more_or_less(sign));
+        let scaled = |load: &[f64; 3]| load.map(|component| (1.0 + sign * LOADS) * component);
+        let loads = mechanics.solver.loads().iter().map(scaled).collect();
+        of.under(change, Conditions { loads: Some(loads), ..Conditions::default() })
+    });
+    loads.into_iter().chain(cut).collect()
+}
+
+fn more_or_less(sign: f64) -> &'static str {
+    if sign < 0.0 { "lower" } else { "higher" }
+}
+
+fn thicker(sign: f64) -> &'static str {
+    if sign < 0.0 { "thinner" } else { "thicker" }
+}
+
+impl Unchanged<'_> {
+    fn under(&self, change: String, conditions: Conditions) -> WhatIf {
+        self.row(change, self.problem.under(&conditions).ok(), self.design)
+    }
+
+    /// Ligaments that are narrower, as by a wider kerf.
+    fn narrower(&self) -> WhatIf {
+        let WidthChart { w_minus, w_plus } = self.problem.widths;
+        let mut problem = self.problem.under(&Conditions::default()).ok();
+        let mut design = self.design.clone();
+        if let Some(problem) = &mut problem {
+            problem.widths = WidthChart { w_minus: 0.5 * w_minus, w_plus };
+            for (omega, hinge) in design.omega.iter_mut().zip(&self.deployment.sheet.hinges) {
+                *omega = problem.widths.omega(hinge.w_lig - WIDTH);
+            }
+        }
+        self.row(format!("all ligaments {WIDTH} mm narrower"), problem, &design)
+    }
+
+    /// The first fastener to the side of its place, and without the last one.
+    fn fasteners(&self) -> [WhatIf; 2] {
+        let changed = |change: String, edit: fn(&mut SceneConfig)| {
+            let mut config = self.scene.config.clone();
+            edit(&mut config);
+            let problem = self.scene.changed(config).ok().and_then(|scene| scene.problem().ok());
+            self.row(change, problem, self.design)
+        };
+        [
+            changed(format!("hole 1 off by {HOLE} mm"), |config| {
+                config.supports[0].displacement[0] += HOLE;
+            }),
+            changed("without the last fastener".to_owned(), |config| {
+                config.supports.pop();
+            }),
+        ]
+    }
+
+    fn row(&self, change: String, problem: Option<DesignProblem>, design: &DesignVector) -> WhatIf {
+        let known = self.deployment.warm_start();
+        let response = problem.and_then(|problem| problem.response(design, Some(&known)).ok());
+        WhatIf { change, end: response.map(|response| self.end(&response)) }
+    }
+
+    fn end(&self, response: &Response) -> ChangedSheet {
+        let (designed, changed) = (self.deployment.final_step(), response.state());
+        let off = corner_distances(
+            &response.deployment.sheet,
+            &changed.configuration,
+            &designed.configuration,
+        );
+        ChangedSheet {
+            seen: seen(self.scene, &response.deployment),
+            corners: rms_and_maximum(off.into_iter()),
+            openings: [designed, changed].map(|step| step.mean_opening()),
+        }
+    }
+}
