@@ -3,6 +3,7 @@
 mod cut_from;
 pub mod edited;
 pub mod first_scene;
+mod for_service;
 mod silhouette;
 mod template;
 
@@ -11,6 +12,7 @@ use crate::input_file;
 use crate::new_project::cut_from::CutFrom;
 use crate::new_project::edited::{heading, map, scale, set};
 use crate::new_project::first_scene::FirstScene;
+use crate::new_project::for_service::for_service;
 use crate::new_project::silhouette::fitted_text;
 use crate::new_project::template::Template;
 use crate::output_file;
@@ -44,8 +46,10 @@ pub struct NewProject {
     pub target: Option<PathBuf>,
     /// Weights for the material.
     pub weights: Option<PathBuf>,
+    /// Name of the service that cuts the sheet.
+    pub service: Option<String>,
     /// Whether the ligaments of a plate may be wider than stays flat by itself: its sheet is fitted
-    /// to a drawing afterwards, or a service wants wide ones.
+    /// to a drawing afterwards.
     pub any_width: bool,
     /// Whether a sheet is made that shows too little of its target to be recognised.
     pub anyway: bool,
@@ -97,7 +101,7 @@ impl NewProject {
         );
         let weights = fitting.iter().find(|weights| weights.regime == regime);
         let trained = weights.is_some();
-        first.any_width = self.any_width;
+        first.any_width = self.any_width || self.service.is_some();
         if let Some(weights) = weights {
             first.opening = weights.opening;
             first.damage = Some(weights.damage);
@@ -140,12 +144,22 @@ impl NewProject {
             return Ok(readme(None));
         }
         let scene_file = self.folder.join("scene.toml");
-        let first = Self::checked_scene(&scene_file)?;
+        let mut first = Self::checked_scene(&scene_file)?;
+        // A refused service or drawing leaves the name of the folder free.
+        let discard = |_: &_| drop(std::fs::remove_dir_all(&self.folder));
+        if let Some(service) = &self.service {
+            let mut config = first.config.clone();
+            for_service(&mut config, service, sheet.thickness).inspect_err(discard)?;
+            scene = format!(
+                "# A sheet for {service}, written by `kirigami init --for`.\n\n{}",
+                config.to_toml()?
+            );
+            output_file::write(&scene_file, &scene)?;
+            first = Self::checked_scene(&scene_file)?;
+        }
         if self.target.is_none() {
             return Ok(readme(None));
         }
-        // A refused drawing leaves the name of the folder free.
-        let discard = |_: &_| drop(std::fs::remove_dir_all(&self.folder));
         let (text, expected) = fitted_text(&first, &scene, self.anyway).inspect_err(discard)?;
         output_file::write(&scene_file, &text)?;
         let readme = readme(Some(&Self::checked_scene(&scene_file)?));

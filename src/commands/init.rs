@@ -51,6 +51,10 @@ pub struct InitCommand {
     /// Make the sheet although less than 75 % of the target is seen
     #[arg(long, requires = "target")]
     anyway: bool,
+    /// Service that cuts the sheet, such as SendCutSend: holes, slits and material next to them are as
+    /// wide as it wants. configs/machines.toml lists services and their limits
+    #[arg(long = "for", value_name = "SERVICE")]
+    service: Option<String>,
     /// Weights for this material [default: those for it among the shipped ones]
     #[arg(long, value_name = "FILE")]
     weights: Option<PathBuf>,
@@ -67,6 +71,7 @@ impl InitCommand {
             margin: self.margin,
             target: self.target.clone(),
             weights: self.weights.clone(),
+            service: self.service.clone(),
             any_width: false,
             anyway: self.anyway,
         };

@@ -14,7 +14,6 @@ mod draft;
 #[cfg(unix)]
 pub mod engine;
 pub mod event;
-mod for_service;
 mod full_analysis;
 #[cfg(unix)]
 mod http;

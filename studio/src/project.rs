@@ -6,7 +6,6 @@
 //! | `target-NAME-HASH.svg` | drawings that were dropped onto the page, with the names of their files |
 //! | `design-N/` | the run folders of the searches, from 1; the first one of an opened run is its copy |
 
-use crate::for_service::for_service;
 use crate::request::{Drawing, NewSheet};
 use anyhow::{Context, Result, ensure};
 use app::new_project::NewProject;
@@ -81,7 +80,8 @@ impl Project {
             size: sheet.size.filter(|_| sheet.stock.is_none()),
             stock: sheet.stock,
             margin: sheet.margin,
-            any_width: sheet.drawing.is_some() || sheet.service.is_some(),
+            service: sheet.service.clone(),
+            any_width: sheet.drawing.is_some(),
             ..NewProject::default()
         }
         .create()?;
@@ -89,11 +89,10 @@ impl Project {
         let mut config = first.config;
         config.title.clone_from(&sheet.name);
         if let Some(kerf) = sheet.kerf {
-            config.process.slit_width = kerf;
-            config.cutting.kerf = Some(kerf);
-        }
-        if let Some(service) = &sheet.service {
-            for_service(&mut config, service, first.material.thickness)?;
+            let slit = &mut config.process.slit_width;
+            *slit = if sheet.service.is_some() { slit.max(kerf) } else { kerf };
+            // A service that wants wider slits allows for the kerf itself.
+            config.cutting.kerf = Some(kerf).filter(|_| *slit <= kerf);
         }
         self.write(config)
     }

@@ -19,11 +19,10 @@ pub fn cut_list(sheet: &Sheet, cuts: &CutLines) -> String {
 }
 
 /// One row an attachment: what holds or pulls which panel, where in the flat sheet, its hole and
-/// its clip, and if the sheet is mounted its place on the board and the force that it holds.
+/// its clip; of a mounted sheet also its place on the board and the force that it holds.
 pub fn attachment_list(cuts: &CutLines, mounting: Option<&Mounting>) -> String {
-    let mut text =
-        "attachment,panel,x_mm,y_mm,hole_diameter_mm,clip_width_mm,board_x_mm,board_y_mm,force_n\n"
-            .to_owned();
+    let mut text = "attachment,panel,x_mm,y_mm,hole_diameter_mm,clip_width_mm".to_owned();
+    text += if mounting.is_some() { ",board_x_mm,board_y_mm,force_n\n" } else { "\n" };
     let fasteners = || mounting.into_iter().flat_map(|mounting| &mounting.fasteners);
     let or_nothing = |size: Option<f64>| size.map_or(String::new(), |size| format!("{size:.3}"));
     for attachment in &cuts.attachments {
@@ -31,12 +30,12 @@ pub fn attachment_list(cuts: &CutLines, mounting: Option<&Mounting>) -> String {
         let hole = or_nothing(attachment.hole);
         let clip = or_nothing(attachment.clip.map(|[p, q]| distance(p, q)));
         let panel = attachment.panel;
+        text += &format!("\"{name}\",{panel},{x:.3},{y:.3},{hole},{clip}");
         let fastener = fasteners().find(|fastener| fastener.panel == panel);
-        let on_board = fastener
-            .map_or(",,".to_owned(), |Fastener { place: [x, y], holds, .. }| {
-                format!("{x:.3},{y:.3},{holds:.2}")
-            });
-        text += &format!("\"{name}\",{panel},{x:.3},{y:.3},{hole},{clip},{on_board}\n");
+        text += &fastener.map_or(String::new(), |Fastener { place: [x, y], holds, .. }| {
+            format!(",{x:.3},{y:.3},{holds:.2}")
+        });
+        text.push('\n');
     }
     text
 }

@@ -31,12 +31,13 @@ pub struct Fact {
 type Facts = fn(&DeployedDesign, &FinishedRun) -> Vec<Fact>;
 
 /// The pages that explain facts, and the facts.
-const FACTS: [(&str, Facts); 9] = [
+const FACTS: [(&str, Facts); 10] = [
     ("docs/RUN-PAGE.md", design::material_and_size),
     ("docs/NUMERICS.md", load::load_and_stroke),
     ("docs/HOLDING.md", load::holding_and_weight),
     ("docs/HOLDING.md", mounting::mounting),
     ("docs/HOLDING.md", mounting::what_if),
+    ("docs/FIRST-SHEET.md", design::services),
     ("docs/LIMITS.md", load::springback_and_creep),
     ("docs/MATERIALS.md", design::domain_and_weights),
     ("docs/CHOOSE.md", design::levels_and_findings),

@@ -43,7 +43,7 @@ fn a_hole_is_cut_and_listed() {
     assert_eq!(drawing.on(Layer::Holes).count(), 12);
     assert!(dxf(&drawing).contains("ATTACHMENT_HOLES"));
     let row = format!("\"load, panel [1,1]\",4,{:.3},{:.3},6.000,\n", at[0], at[1]);
-    assert!(attachment_list(&cuts).ends_with(&row));
+    assert!(attachment_list(&cuts, None).ends_with(&row));
 }
 
 #[test]
@@ -94,5 +94,5 @@ fn a_hole_near_an_edge_or_a_hinge_is_refused() {
 fn a_point_without_hole_and_clip_is_marked() {
     let cuts = cuts(attachment(PanelPoint::Centroid)).unwrap();
     assert_eq!(cuts.drawing().on(Layer::Attachments).count(), 2);
-    assert!(attachment_list(&cuts).ends_with(",,\n"));
+    assert!(attachment_list(&cuts, None).ends_with(",,\n"));
 }

@@ -1,6 +1,7 @@
 //! What the sheet is made of, what its hinge law rests on, and the searches and checks of the run.
 
 use super::{Fact, fact, number, text};
+use crate::cut_file::Machines;
 use crate::report::deployed::{DeployedDesign, FinishedRun, extent};
 use crate::report::estimate::Estimate;
 use crate::report::numbers::rounded;
@@ -37,6 +38,26 @@ pub(super) fn material_and_size(of: &DeployedDesign, run: &FinishedRun) -> Vec<F
         size("deployed size", deployed, ", panels in the plane"),
         fact("level", level, format!("{level}, {}", level.hinges())),
     ]
+}
+
+/// The services whose published limits the cuts keep.
+pub(super) fn services(of: &DeployedDesign, _: &FinishedRun) -> Vec<Fact> {
+    let Ok(cuts) = of.cuts else { return Vec::new() };
+    let (features, thickness) = (cuts.features(), of.scene.material.thickness);
+    let services = Machines::shipped().service.into_iter();
+    let [accepting, refusing]: [Vec<String>; 2] = {
+        let (accept, refuse): (Vec<_>, Vec<_>) =
+            services.partition(|service| service.refusals(&features, thickness).is_empty());
+        [accept, refuse].map(|services| services.into_iter().map(|service| service.name).collect())
+    };
+    let said = match (&accepting[..], &refusing[..]) {
+        ([], _) => {
+            "none accepts it; `kirigami init --for SERVICE` makes a sheet for one".to_owned()
+        }
+        (_, []) => format!("accepted by {}", accepting.join(", ")),
+        _ => format!("accepted by {}; refused by {}", accepting.join(", "), refusing.join(", ")),
+    };
+    vec![fact("services", accepting, format!("{said}, by the limits that they publish"))]
 }
 
 /// BLAKE3 hashes: the keys of the scene without title and run folder, the law of the material, the

@@ -134,8 +134,8 @@ pub(super) const RULES: [Rule; 14] = [
         Warning,
         [
             "the force of a fastener",
-            "it is more than half of what the edge of its hole bears: yield stress times thickness times diameter",
-            "more fasteners, larger holes",
+            "it is more than half of what the edge of its hole bears (yield stress times thickness times diameter), or more than a hand holds on the way (150 N)",
+            "more fasteners, larger holes; pull panels along",
         ],
         fastener_force,
     ),
@@ -422,16 +422,24 @@ fn mounting(of: &DeployedDesign) -> Option<Found> {
     Some(found(message))
 }
 
+/// Force that a hand holds while a fastener is put in (N).
+const HAND: f64 = 150.0;
+
 fn fastener_force(of: &DeployedDesign) -> Option<Found> {
-    let mounting = of.run?.mounting.as_ref()?;
-    let over = |fastener: &Fastener| {
-        let bears = borne_by_hole(&of.scene.material, fastener.hole?);
-        let force = f64::max(fastener.pull, fastener.holds);
-        (force > bears).then_some((force, bears))
+    let fasteners = &of.run?.mounting.as_ref()?.fasteners;
+    let over = |fastener: &&Fastener| {
+        let bears = fastener.hole.map(|hole| borne_by_hole(&of.scene.material, hole));
+        bears.is_some_and(|bears| fastener.holds > bears)
     };
-    let [force, bears] =
-        mounting.fasteners.iter().find_map(over).map(|(a, b)| [a, b].map(|x| rounded(x, 2)))?;
+    if let Some(Fastener { panel, holds, .. }) = fasteners.iter().find(over) {
+        return Some(found(format!(
+            "the fastener of panel P{panel} holds {} N, more than half of what the edge of its hole bears",
+            rounded(*holds, 2)
+        )));
+    }
+    let Fastener { panel, pull, .. } = fasteners.iter().find(|fastener| fastener.pull > HAND)?;
     Some(found(format!(
-        "a fastener pulls with {force} N; the edge of its hole bears {bears} N, with a factor of two"
+        "panel P{panel} is pulled to its place with up to {} N, more than one hand holds: pull the panels next to it along, or with two persons",
+        rounded(*pull, 2)
     )))
 }

@@ -6,6 +6,7 @@ use design::sheet::cutting_process::Hole;
 use output::cut_file::{Features, Machines};
 use scene::SceneConfig;
 use std::f64::consts::FRAC_PI_2;
+use support::nearest::nearest;
 
 /// What is added to the limits of a service (mm).
 const ROOM: f64 = 0.05;
@@ -13,10 +14,15 @@ const ROOM: f64 = 0.05;
 const NARROWEST: f64 = 0.95;
 
 /// Gives a scene of a sheet of the given thickness (mm) the tool and the ligaments for a service.
-pub(crate) fn for_service(config: &mut SceneConfig, name: &str, thickness: f64) -> Result<()> {
+pub(super) fn for_service(config: &mut SceneConfig, name: &str, thickness: f64) -> Result<()> {
     let services = Machines::shipped().service;
     let service = services.iter().find(|service| service.name == name);
-    let service = service.with_context(|| format!("unknown service {name}"))?;
+    let service = service.with_context(|| {
+        let known: Vec<&str> = services.iter().map(|service| &*service.name).collect();
+        let near = nearest(name, known.iter().copied());
+        let near = near.map_or(String::new(), |near| format!("; did you mean {near}?"));
+        format!("unknown service {name}: use {}{near}", known.join(", "))
+    })?;
     let least = service.limits(thickness);
     let [narrowest, widest] = config.ligament.range;
     let process = &mut config.process;
