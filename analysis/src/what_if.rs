@@ -64,9 +64,9 @@ pub fn what_if(
         let change = format!("the sheet {} {}", percent(THICKNESS), thicker(sign));
         of.under(change, Conditions { thickness: 1.0 + sign * THICKNESS, ..Conditions::default() })
     });
-    let cut = [stresses, thicknesses].concat().into_iter().chain([of.narrower()]);
+    let cut = stresses.into_iter().chain(thicknesses).chain([of.narrower()]);
     if !mechanics.solver.fastened().is_empty() {
-        return cut.chain(of.fasteners()).collect();
+        return cut.chain(of.fasteners()).flatten().collect();
     }
     if !scene.config.has_loads() || scene.config.drive.is_some() {
         return Vec::new();
@@ -77,7 +77,7 @@ pub fn what_if(
         let loads = mechanics.solver.loads().iter().map(scaled).collect();
         of.under(change, Conditions { loads: Some(loads), ..Conditions::default() })
     });
-    loads.into_iter().chain(cut).collect()
+    loads.into_iter().chain(cut).flatten().collect()
 }
 
 fn more_or_less(sign: f64) -> &'static str {
@@ -89,26 +89,24 @@ fn thicker(sign: f64) -> &'static str {
 }
 
 impl Unchanged<'_> {
-    fn under(&self, change: String, conditions: Conditions) -> WhatIf {
+    fn under(&self, change: String, conditions: Conditions) -> Option<WhatIf> {
         self.row(change, self.problem.under(&conditions).ok(), self.design)
     }
 
     /// Ligaments that are narrower, as by a wider kerf.
-    fn narrower(&self) -> WhatIf {
+    fn narrower(&self) -> Option<WhatIf> {
         let WidthChart { w_minus, w_plus } = self.problem.widths;
-        let mut problem = self.problem.under(&Conditions::default()).ok();
+        let mut problem = self.problem.under(&Conditions::default()).ok()?;
         let mut design = self.design.clone();
-        if let Some(problem) = &mut problem {
-            problem.widths = WidthChart { w_minus: 0.5 * w_minus, w_plus };
-            for (omega, hinge) in design.omega.iter_mut().zip(&self.deployment.sheet.hinges) {
-                *omega = problem.widths.omega(hinge.w_lig - WIDTH);
-            }
+        problem.widths = WidthChart { w_minus: 0.5 * w_minus, w_plus };
+        for (omega, hinge) in design.omega.iter_mut().zip(&self.deployment.sheet.hinges) {
+            *omega = problem.widths.omega(hinge.w_lig - WIDTH);
         }
-        self.row(format!("all ligaments {WIDTH} mm narrower"), problem, &design)
+        self.row(format!("all ligaments {WIDTH} mm narrower"), Some(problem), &design)
     }
 
     /// The first fastener to the side of its place, and without the last one.
-    fn fasteners(&self) -> [WhatIf; 2] {
+    fn fasteners(&self) -> [Option<WhatIf>; 2] {
         let changed = |change: String, edit: fn(&mut SceneConfig)| {
             let mut config = self.scene.config.clone();
             edit(&mut config);
@@ -125,10 +123,16 @@ impl Unchanged<'_> {
         ]
     }
 
-    fn row(&self, change: String, problem: Option<DesignProblem>, design: &DesignVector) -> WhatIf {
+    /// A changed problem; `None` if the law does not know it.
+    fn row(
+        &self,
+        change: String,
+        problem: Option<DesignProblem>,
+        design: &DesignVector,
+    ) -> Option<WhatIf> {
         let known = self.deployment.warm_start();
-        let response = problem.and_then(|problem| problem.response(design, Some(&known)).ok());
-        WhatIf { change, end: response.map(|response| self.end(&response)) }
+        let response = problem?.response(design, Some(&known)).ok();
+        Some(WhatIf { change, end: response.map(|response| self.end(&response)) })
     }
 
     fn end(&self, response: &Response) -> ChangedSheet {

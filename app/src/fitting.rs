@@ -54,10 +54,14 @@ fn fastened(held: &Held) -> String {
     let margin = margin.map_or(String::new(), |margin| {
         format!("; between them panels stay in the plane up to {margin:.1} times the forces")
     });
-    let enough = if held.suffices() { "" } else { "; no number up to 16 suffices" };
+    let enough = if held.suffices() {
+        ", the fewest of 3, 4, 6, 8, 12 and 16 that suffice"
+    } else {
+        ", and none of 3 to 16 suffices"
+    };
     format!(
-        "{count} fasteners hold it, the fewest that suffice: panels {off:.2} % of the longer side from the even opening (root mean square), \
-         {force:.0} N a fastener, {borne:.0} % of what its hole bears{margin}{enough}"
+        "{count} fasteners hold it{enough}: panels {off:.2} % of the longer side from the even opening (root mean square), \
+         {force:.0} N a fastener, {borne:.0} % of what its hole bears{margin}"
     )
 }
 

@@ -11,7 +11,7 @@ use std::collections::VecDeque;
 use support::statistics::rms_and_maximum;
 
 /// Numbers of fasteners that are tried.
-pub(super) const COUNTS: [usize; 8] = [3, 4, 5, 6, 8, 10, 12, 16];
+pub(super) const COUNTS: [usize; 6] = [3, 4, 6, 8, 12, 16];
 /// Distance of the panels from the even opening over the longer side of the sheet, root mean square,
 /// up to which fasteners suffice.
 const EVEN: f64 = 0.002;
@@ -36,7 +36,8 @@ pub struct Held {
     pub force: f64,
     /// Part of the force that the edge of its hole bears.
     pub of_borne: f64,
-    /// Margin of the panels against leaving the plane; `None` if it is not known.
+    /// Margin of the panels against leaving the plane; `None` if it is not known, and where too few
+    /// fasteners hold the sheet in the plane.
     pub margin: Option<f64>,
     /// Whether a hinge leaves the training domain.
     pub leaves_domain: bool,
@@ -47,25 +48,29 @@ impl Held {
     /// opened evenly, at `even` (mm); `None` without an equilibrium.
     pub(super) fn of(scene: &Scene, flat: &[[f64; 2]], even: &[[f64; 2]]) -> Option<Self> {
         let problem = scene.problem().ok()?;
-        let deployment = problem.deploy(&scene.start()).ok()?;
-        let mechanics = problem.model.mechanics()?;
-        let sheet = &deployment.sheet;
-        let end = &deployment.at_full_load().ok()?.configuration;
-        let law = mechanics.law.prepare(&sheet.designs());
-        let reactions = mechanics.solver.reactions(mechanics.hinged(sheet, &*law, false), end);
-        let off = (sheet.panels.iter().enumerate())
+        let response = problem.response(&scene.start(), None).ok()?;
+        let panels = &response.deployment.sheet.panels;
+        let end = &response.state().configuration;
+        let off = (panels.iter().enumerate())
             .map(|(k, panel)| distance(deployed(panel, end[k], flat[k]), even[k]));
         let [low, high] = bounds(even.iter().copied());
         let side = f64::max(high[0] - low[0], high[1] - low[1]);
-        let force = reactions.iter().map(|[x, y, _]| x.hypot(*y)).fold(0.0, f64::max);
-        Some(Self {
+        let force = response.reactions.iter().map(|[x, y, _]| x.hypot(*y)).fold(0.0, f64::max);
+        let mut held = Self {
             count: scene.config.supports.len(),
             off: rms_and_maximum(off)[0] / side,
             force,
             of_borne: force / borne_by_hole(&scene.material, HOLE),
-            margin: Stability::new(scene, &problem, &deployment).map(|found| found.margin),
-            leaves_domain: deployment.share_inside() < 1.0,
-        })
+            margin: None,
+            leaves_domain: false,
+        };
+        // The path costs more than its end.
+        if held.suffices() {
+            let deployment = problem.deploy(&scene.start()).ok()?;
+            held.margin = Stability::new(scene, &problem, &deployment).map(|found| found.margin);
+            held.leaves_domain = deployment.share_inside() < 1.0;
+        }
+        Some(held)
     }
 
     /// Whether more fasteners are not needed.

@@ -6,6 +6,7 @@ mod branches;
 mod drawn_loads;
 mod findings;
 mod learned;
+mod mounted;
 mod outer_loop;
 mod results;
 mod run_page;
