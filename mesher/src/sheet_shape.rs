@@ -1,21 +1,38 @@
-//! A cut sheet of panels and the windows that join them, or a part of one.
+//! A cut sheet of panels and the windows that join them.
 //!
 //! A panel is bounded by finished edges, half a kerf inside of the lines of its cuts, and ends at
 //! the arcs of its windows.
 
-use crate::Structured;
+use crate::{Side, Structured, Window, polar_angle};
 use hinge::HingeDesign;
 use serde::{Deserialize, Serialize};
+use std::f64::consts::PI;
 
 /// Ligament width over thickness up to which a ligament of a sheet bends in the plane first, and
 /// tips over later.
 const IN_PLANE: f64 = 2.0;
+
+/// Pieces of the arc of a window in the outline of a panel.
+const ARC_PIECES: usize = 12;
+
+/// How panels are modelled outside of the windows.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Panels {
+    /// Rigid bodies that hold the arcs of their windows: only windows are meshed.
+    #[default]
+    Rigid,
+    /// Meshed, as the windows are.
+    Meshed,
+}
 
 /// All that determines the mesh of a sheet.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SheetShape {
     /// Sheet thickness (mm).
     pub thickness: f64,
+    /// How panels are modelled.
+    pub model: Panels,
     /// The panels.
     pub panels: Vec<PanelShape>,
     /// The windows of the hinges.
@@ -45,9 +62,8 @@ pub struct PlacedWindow {
     /// The hinge frame: its origin is the foot of the ligament on the finished edge of the
     /// secondary cut.
     pub frame: Frame,
-    /// Panels A and B, each with the number of its corner; `None` for a panel that is not a part of
-    /// the sheet.
-    pub panels: [Option<(usize, usize)>; 2],
+    /// Panels A and B, each with the number of its corner.
+    pub panels: [(usize, usize); 2],
     /// Height of the bump that initiates buckling, over the thickness; its sign is the side to
     /// which it points.
     pub bump: f64,
@@ -59,6 +75,18 @@ impl SheetShape {
     /// thick would make them softer than they are (docs/results/plates).
     pub fn bends_in_plane(w_lig: f64, thickness: f64) -> bool {
         w_lig <= IN_PLANE * thickness
+    }
+
+    /// The outline of a panel outside of its windows, counter-clockwise (mm).
+    pub fn outline(&self, panel: usize) -> Vec<[f64; 2]> {
+        let at_corner = |(corner, point): (usize, &[f64; 2])| {
+            let places = self.windows.iter().flat_map(|window| {
+                std::iter::zip(Side::BOTH, window.panels).map(move |place| (window, place))
+            });
+            let mut windows = places.filter(|(_, (_, place))| *place == (panel, corner));
+            windows.next().map_or(vec![*point], |(window, (side, _))| window.arc(side))
+        };
+        self.panels[panel].corners.iter().enumerate().flat_map(at_corner).collect()
     }
 }
 
@@ -78,6 +106,23 @@ impl PanelShape {
         if !self.marks.contains(&point) {
             self.marks.push(point);
         }
+    }
+}
+
+impl PlacedWindow {
+    /// Points of its arc on a panel, clockwise about its origin (mm).
+    fn arc(&self, side: Side) -> Vec<[f64; 2]> {
+        let radius = self.design.r_win;
+        let kerf = polar_angle(Window(&self.design).kerf_at_radius(side, radius));
+        let [from, to] = match side {
+            Side::A => [kerf, -PI],
+            Side::B => [0.0, kerf],
+        };
+        let point = |piece: usize| {
+            let angle = from + (to - from) * piece as f64 / ARC_PIECES as f64;
+            self.frame.point([radius * angle.cos(), radius * angle.sin()])
+        };
+        (0..=ARC_PIECES).map(point).collect()
     }
 }
 

@@ -43,7 +43,9 @@ impl Posture {
     pub fn in_words(self) -> &'static str {
         match self {
             Self::HeldFlat => "panels held flat",
-            Self::Mounted => "mounted on a board, nothing in the way out of the plane between fasteners",
+            Self::Mounted => {
+                "mounted on a board, nothing in the way out of the plane between fasteners"
+            }
             Self::Lying => "lying on a table without friction, under its own weight",
             Self::Hanging => "hanging under its own weight, nothing in the way out of the plane",
             Self::Free => "free, nothing in the way out of the plane, without weight",

@@ -1,5 +1,4 @@
-//! An arc of nodes that moves with a rigid panel: of a window, or where a part of a sheet is joined
-//! to the rest.
+//! An arc of a window that moves with a rigid panel.
 //!
 //! Two control nodes without elements carry the four amplitudes of the motion ([`PanelMotion`]);
 //! linear constraint equations couple the arc to them.

@@ -1,7 +1,7 @@
 //! The nodes of a meshed sheet at which it is held, pulled and supported by a table.
 
-use crate::{Held, OutOfPlaneRestraint, Place, SheetProblem};
-use mesher::{Part, SheetMesh};
+use crate::{Held, OutOfPlaneRestraint, POINTS, Place, RigidBody, SheetProblem};
+use mesher::{Panels, Part, SheetMesh};
 use std::collections::BTreeSet;
 use support::fault::Fault;
 
@@ -14,12 +14,14 @@ const SUPPORTED: f64 = 1.45;
 /// Nodes of a sheet problem; they count from 0.
 #[derive(Clone, Debug)]
 pub(crate) struct SheetNodes {
+    /// The rigid panels; none if panels are meshed.
+    pub bodies: Vec<RigidBody>,
     /// The nodes of each support, in the order of the problem.
     pub held: Vec<Vec<usize>>,
     /// The node of each load, in the middle of the thickness.
     pub pulled: Vec<usize>,
-    /// The nodes of each driven rim, in the order of the problem.
-    pub rims: Vec<Vec<usize>>,
+    /// The nodes whose forces add up to the force of each support, then of each load.
+    pub measured: Vec<Vec<usize>>,
     /// Nodes that cannot leave the plane, other than the nodes of supports.
     pub flat: Vec<usize>,
     /// Nodes of the lower face that a table supports.
@@ -28,6 +30,42 @@ pub(crate) struct SheetNodes {
 
 impl SheetNodes {
     pub(crate) fn new(problem: &SheetProblem, mesh: &SheetMesh) -> Result<Self, Fault> {
+        match problem.shape.model {
+            Panels::Rigid => Ok(Self::of_rigid_panels(problem, mesh)),
+            Panels::Meshed => Self::of_meshed_panels(problem, mesh),
+        }
+    }
+
+    fn of_rigid_panels(problem: &SheetProblem, mesh: &SheetMesh) -> Self {
+        // After the control node.
+        let bodies = RigidBody::of_panels(problem, mesh, mesh.nodes.len() + 1);
+        let held = problem.held.iter().map(|held| {
+            let first = bodies[held.panel].first;
+            match held.place {
+                Place::Point(_) => vec![first],
+                Place::Panel | Place::Line(_) => (first..first + POINTS).collect(),
+            }
+        });
+        let held: Vec<Vec<usize>> = held.collect();
+        let fixed = held.concat();
+        // The fourth point of a body follows the other three.
+        let plane = bodies.iter().flat_map(|body| body.first..body.first + POINTS - 1);
+        let measured = problem.held.iter().map(|held| held.panel);
+        let measured = measured.chain(problem.pulled.iter().map(|pulled| pulled.panel));
+        Self {
+            measured: measured.map(|panel| bodies[panel].arcs.clone()).collect(),
+            pulled: problem.pulled.iter().map(|pulled| bodies[pulled.panel].first).collect(),
+            flat: match problem.restraint {
+                OutOfPlaneRestraint::HeldFlat => plane.filter(|n| !fixed.contains(n)).collect(),
+                OutOfPlaneRestraint::Table | OutOfPlaneRestraint::Nothing => Vec::new(),
+            },
+            on_table: Vec::new(),
+            held,
+            bodies,
+        }
+    }
+
+    fn of_meshed_panels(problem: &SheetProblem, mesh: &SheetMesh) -> Result<Self, Fault> {
         let mut held = Vec::with_capacity(problem.held.len());
         for support in &problem.held {
             held.push(mesh.through(&held_nodes(support, mesh)?));
@@ -37,19 +75,19 @@ impl SheetNodes {
             let node = nearest.ok_or_else(|| no_nodes(pulled.panel))?;
             Ok(mesh.middle[node])
         });
-        let pulled = pulled.collect::<Result<_, Fault>>()?;
-        let rims = problem.rims.iter().map(|rim| {
-            let nodes = mesh.rim(&problem.shape, rim.window, rim.side);
-            mesh.through(&nodes)
-        });
-        let rims: Vec<Vec<usize>> = rims.collect();
-        let fixed: BTreeSet<usize> = held.iter().chain(&rims).flatten().copied().collect();
-        let panels = || {
-            let panels = 0..problem.shape.panels.len();
-            panels.flat_map(|panel| mesh.plane_nodes(Part::Panel(panel)))
-        };
+        let pulled = pulled.collect::<Result<Vec<_>, Fault>>()?;
+        let fixed: BTreeSet<usize> = held.iter().flatten().copied().collect();
+        let panels = || mesh.panels.iter().flatten().copied();
         let unless_fixed = |nodes: BTreeSet<usize>| nodes.difference(&fixed).copied().collect();
-        let mut found = Self { held, pulled, rims, flat: Vec::new(), on_table: Vec::new() };
+        let measured = held.iter().cloned().chain(pulled.iter().map(|node| vec![*node]));
+        let mut found = Self {
+            bodies: Vec::new(),
+            measured: measured.collect(),
+            held,
+            pulled,
+            flat: Vec::new(),
+            on_table: Vec::new(),
+        };
         match problem.restraint {
             OutOfPlaneRestraint::HeldFlat => {
                 let plane: BTreeSet<usize> = panels().collect();
@@ -85,7 +123,7 @@ fn no_nodes(panel: usize) -> Fault {
 /// The plane nodes of a support.
 fn held_nodes(support: &Held, mesh: &SheetMesh) -> Result<Vec<usize>, Fault> {
     let part = Part::Panel(support.panel);
-    let all = mesh.plane_nodes(part);
+    let all = mesh.panels[support.panel].clone();
     let nodes = match support.place {
         Place::Panel => all,
         Place::Point(at) => mesh.nearest(part, at).into_iter().collect(),

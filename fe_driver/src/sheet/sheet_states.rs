@@ -36,9 +36,9 @@ pub struct SheetState {
     pub panel_energy: f64,
     /// Kinetic energy (N mm); zero on a static path.
     pub kinetic_energy: f64,
-    /// Resultant of the reactions of the supports (N), without the weight of what they hold
-    /// themselves.
-    pub support_force: [f64; 3],
+    /// Reaction of each support (N), without the weight of what it holds itself; zero along what it
+    /// leaves free in the plane.
+    pub support_forces: Vec<[f64; 3]>,
 }
 
 /// A panel: the rigid motion in space that its nodes outside of the windows follow best, and what

@@ -96,7 +96,9 @@ pub(super) fn left_out(scene: &Scene) -> Option<&'static str> {
         Posture::HeldFlat => Some(
             "what holds the panels flat, and its friction; the weight of the sheet, if its plane is not horizontal",
         ),
-        Posture::Mounted => Some("friction on the board, and the weight of the sheet if the board is upright"),
+        Posture::Mounted => {
+            Some("friction on the board, and the weight of the sheet if the board is upright")
+        }
         Posture::Lying => Some("in the design, friction"),
         Posture::Hanging if is_heavy(scene) => None,
         Posture::Hanging | Posture::Free => Some("the weight of the sheet"),
