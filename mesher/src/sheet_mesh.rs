@@ -65,16 +65,18 @@ impl SheetMesh {
                 }
             }
         }
-        let solid = Extrusion::new(&plane, shape.thickness, shape.layers, |node| height[node]);
+        let meshed = shape.meshed_thickness();
+        let raised = 0.5 * (shape.thickness - meshed);
+        let solid = Extrusion::new(&plane, meshed, shape.layers, |node| raised + height[node]);
         check_elements(&plane, &solid.gauss_volumes)?;
         let volume: f64 = solid.gauss_volumes.iter().flatten().sum();
-        let (area, exact) = (volume / shape.thickness, shape.area());
+        let (area, exact) = (volume / meshed, shape.area());
         if (area - exact).abs() > MAX_AREA_ERROR * exact {
             return Err(wrong_area(area, exact));
         }
         let mut mesh = Self {
             panels: Vec::new(),
-            middle: solid.levels.level(shape.layers),
+            middle: solid.levels.level(if shape.half { 0 } else { shape.layers }),
             bottom: solid.levels.level(0),
             nodes: solid.nodes,
             elements: solid.elements,

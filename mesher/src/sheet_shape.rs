@@ -39,8 +39,12 @@ pub struct SheetShape {
     pub windows: Vec<PlacedWindow>,
     /// Plane mesh of the windows.
     pub plane: Structured,
-    /// Layers of elements through the thickness; even, so that the middle of the sheet has nodes.
+    /// Layers of elements through the meshed thickness; even if that is all of it, so that the
+    /// middle of the sheet has nodes.
     pub layers: usize,
+    /// Whether only the upper half of the thickness is meshed, of a sheet that is symmetric about
+    /// its middle.
+    pub half: bool,
     /// Size of the elements of the panels (mm).
     pub element_size: f64,
 }
@@ -75,6 +79,11 @@ impl SheetShape {
     /// thick would make them softer than they are (docs/results/plates).
     pub fn bends_in_plane(w_lig: f64, thickness: f64) -> bool {
         w_lig <= IN_PLANE * thickness
+    }
+
+    /// The meshed part of the thickness (mm).
+    pub fn meshed_thickness(&self) -> f64 {
+        if self.half { 0.5 * self.thickness } else { self.thickness }
     }
 
     /// The outline of a panel outside of its windows, counter-clockwise (mm).

@@ -46,6 +46,12 @@ impl SheetModel<'_> {
         if self.problem.dynamic { SECONDS } else { 1.0 }
     }
 
+    /// How many times the sheet contains what is meshed.
+    pub(crate) fn copies(&self) -> f64 {
+        let shape = &self.problem.shape;
+        shape.thickness / shape.meshed_thickness()
+    }
+
     /// The node whose displacement is the stroke, counted from 0.
     fn control(&self) -> usize {
         self.mesh.nodes.len()
@@ -261,7 +267,8 @@ impl SheetModel<'_> {
             let total = self.problem.total_load();
             add_line!(d, "*CLOAD,AMPLITUDE=LOADS");
             for (node, freedom, fraction) in self.loaded() {
-                add_line!(d, "{node},{freedom},{}", real(total * fraction));
+                let force = total * fraction / self.copies();
+                add_line!(d, "{node},{freedom},{}", real(force));
             }
         }
         if let Some([x, y, z]) = self.problem.down {
@@ -273,6 +280,7 @@ impl SheetModel<'_> {
             }
             for body in &self.nodes.bodies {
                 for (axis, force) in body.weight([x, y, z]).into_iter().enumerate() {
+                    let force = force / self.copies();
                     add_line!(d, "{},{},{}", body.centre() + 1, axis + 1, real(force));
                 }
             }

@@ -50,6 +50,11 @@ impl SheetNodes {
         let fixed = held.concat();
         // The fourth point of a body follows the other three.
         let plane = bodies.iter().flat_map(|body| body.first..body.first + POINTS - 1);
+        let of_arcs: BTreeSet<usize> =
+            bodies.iter().flat_map(|body| body.arcs.iter().copied()).collect();
+        let symmetric = mesh.middle.iter().copied();
+        let symmetric = symmetric.filter(|n| problem.shape.half && !of_arcs.contains(n));
+        let plane = plane.chain(symmetric);
         let measured = problem.held.iter().map(|held| held.panel);
         let measured = measured.chain(problem.pulled.iter().map(|pulled| pulled.panel));
         Self {

@@ -25,12 +25,12 @@ pub(crate) fn states(model: &SheetModel, frames: &[SheetFrame]) -> SheetStates {
     }
 }
 
-/// The energy of a window, or of the panels after the last (N mm).
-fn energy(frame: &SheetFrame, index: usize) -> f64 {
-    frame.energies[index].unwrap_or(f64::NAN)
-}
-
 impl SheetModel<'_> {
+    /// The energy of a window, or of the panels after the last (N mm).
+    fn energy(&self, frame: &SheetFrame, index: usize) -> f64 {
+        self.copies() * frame.energies[index].unwrap_or(f64::NAN)
+    }
+
     /// `windows` are the elements of each window.
     fn state(&self, frame: &SheetFrame, windows: &[Vec<usize>]) -> SheetState {
         let problem = self.problem;
@@ -62,7 +62,7 @@ impl SheetModel<'_> {
             hinges: (windows.iter().enumerate())
                 .map(|(hinge, elements)| self.hinge(frame, hinge, elements))
                 .collect(),
-            panel_energy: energy(frame, windows.len()),
+            panel_energy: self.energy(frame, windows.len()),
             kinetic_energy: frame.kinetic_energy.unwrap_or(0.0),
             support_forces,
         }
@@ -75,7 +75,7 @@ impl SheetModel<'_> {
         let body = self.nodes.bodies.get(panel);
         let weight = body.map_or([0.0; 3], |body| body.weight(problem.down.unwrap_or_default()));
         let force = frame.forces[index].unwrap_or([f64::NAN; 3]);
-        [0, 1, 2].map(|i| force[i] - on * weight[i])
+        [0, 1, 2].map(|i| self.copies() * force[i] - on * weight[i])
     }
 
     /// Positions of the middle surface above a plane node, before and after (mm).
@@ -121,8 +121,8 @@ impl SheetModel<'_> {
         });
         let design = &shape.windows[hinge].design;
         let material = &self.problem.material;
-        let damage = Damage::new(points.collect(), design, shape.thickness, material);
-        HingeState { energy: energy(frame, hinge), d: damage.d, d_peak: damage.d_peak }
+        let damage = Damage::new(points.collect(), design, shape.meshed_thickness(), material);
+        HingeState { energy: self.energy(frame, hinge), d: damage.d, d_peak: damage.d_peak }
     }
 
     fn surface(&self, frame: &SheetFrame) -> SheetSurface {
