@@ -79,13 +79,15 @@ pub(crate) use calculix::cards::{
 };
 pub(crate) use calculix::dat::{Block, Printed, at_node, numbers, read_printed};
 pub(crate) use calculix::deck_run::{DeckRun, read_if_there, time_reached};
-pub(crate) use calculix::driven_arc::{DrivenArc, PanelMotion, even_lambdas, rotated};
+pub(crate) use calculix::driven_arc::{
+    DrivenArc, PanelMotion, even_lambdas, rotated, write_motion,
+};
 pub(crate) use calculix::response::{Damage, samples};
 pub(crate) use campaign::campaign_folder::{CampaignFolder, Index};
 pub(crate) use campaign::extra_rays::read_extra_rays;
 pub(crate) use campaign::history::{EventLog, history_name, overlaps};
 pub(crate) use record_file::{damaged, entries, read_json, short_hash, unless_damaged, write_json};
-pub(crate) use sheet::rigid_body::{GRAVITY, POINTS, RigidBody};
+pub(crate) use sheet::rigid_body::{GRAVITY, POINTS, RigidBody, STIFFNESS};
 pub(crate) use sheet::rigid_motion::RigidMotion;
 pub(crate) use sheet::sheet_deck::{SheetModel, force_set, hinge_set};
 pub(crate) use sheet::sheet_nodes::SheetNodes;

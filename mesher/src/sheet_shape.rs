@@ -3,10 +3,9 @@
 //! A panel is bounded by finished edges, half a kerf inside of the lines of its cuts, and ends at
 //! the arcs of its windows.
 
-use crate::{Side, Structured, Window, polar_angle};
+use crate::{Side, Structured, Window, panel_arc};
 use hinge::HingeDesign;
 use serde::{Deserialize, Serialize};
-use std::f64::consts::PI;
 
 /// Ligament width over thickness up to which a ligament of a sheet bends in the plane first, and
 /// tips over later.
@@ -89,11 +88,13 @@ impl SheetShape {
     /// The outline of a panel outside of its windows, counter-clockwise (mm).
     pub fn outline(&self, panel: usize) -> Vec<[f64; 2]> {
         let at_corner = |(corner, point): (usize, &[f64; 2])| {
-            let places = self.windows.iter().flat_map(|window| {
-                std::iter::zip(Side::BOTH, window.panels).map(move |place| (window, place))
-            });
-            let mut windows = places.filter(|(_, (_, place))| *place == (panel, corner));
-            windows.next().map_or(vec![*point], |(window, (side, _))| window.arc(side))
+            let place = (panel, corner);
+            let at = |window: &&PlacedWindow| window.panels.contains(&place);
+            match self.windows.iter().find(at) {
+                Some(window) if window.panels[0] == place => window.arc(Side::A),
+                Some(window) => window.arc(Side::B),
+                None => vec![*point],
+            }
         };
         self.panels[panel].corners.iter().enumerate().flat_map(at_corner).collect()
     }
@@ -121,17 +122,9 @@ impl PanelShape {
 impl PlacedWindow {
     /// Points of its arc on a panel, clockwise about its origin (mm).
     fn arc(&self, side: Side) -> Vec<[f64; 2]> {
-        let radius = self.design.r_win;
-        let kerf = polar_angle(Window(&self.design).kerf_at_radius(side, radius));
-        let [from, to] = match side {
-            Side::A => [kerf, -PI],
-            Side::B => [0.0, kerf],
-        };
-        let point = |piece: usize| {
-            let angle = from + (to - from) * piece as f64 / ARC_PIECES as f64;
-            self.frame.point([radius * angle.cos(), radius * angle.sin()])
-        };
-        (0..=ARC_PIECES).map(point).collect()
+        let (window, radius) = (Window(&self.design), self.design.r_win);
+        let points = panel_arc(&window, side, radius, ARC_PIECES).into_iter().rev();
+        points.map(|point| self.frame.point(point)).collect()
     }
 }
 

@@ -70,7 +70,7 @@ pub use element_windows::{ElementWindows, UnsolvedHinge, verification_tier};
 pub use final_design::{final_design, most_cpu_seconds};
 pub use learning::{Accuracy, Learning, LearningEnd, LearningRound, LearningTask};
 pub use rows::{collected, collected_windows, rows};
-pub use sheet_check::{HingeCheck, PanelCheck, SheetCheck, StateCheck, SupportCheck};
+pub use sheet_check::{HingeCheck, PanelCheck, SheetCheck, StateCheck};
 pub use sheet_errors::SheetErrors;
 pub use sheet_task::SheetTask;
 pub use spot_check::{SpotStates, spot_check};

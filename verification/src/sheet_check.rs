@@ -60,8 +60,9 @@ pub struct SheetCheck {
     pub hinges: Vec<HingeCheck>,
     /// The panels at its end.
     pub panels: Vec<PanelCheck>,
-    /// The supports at its end.
-    pub supports: Vec<SupportCheck>,
+    /// Reactions of the supports of the scene in the plane at its end (N), by the hinge law and by
+    /// finite elements; none by the law if the path ends early.
+    pub supports: [Vec<f64>; 2],
     /// How much of the target is seen at its end, by the hinge law and by finite elements; `None`
     /// if there is no state.
     pub seen: Option<[f64; 2]>,
@@ -133,16 +134,6 @@ pub struct PanelCheck {
     pub z: [f64; 2],
     /// Largest bending (mm).
     pub bending: f64,
-}
-
-/// A support at the end of a path.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct SupportCheck {
-    /// Number of its panel.
-    pub panel: usize,
-    /// Its reaction in the plane (N), by the hinge law and by finite elements; by the law `None` if
-    /// the path ends early.
-    pub force: [Option<f64>; 2],
 }
 
 impl SheetCheck {

@@ -73,23 +73,21 @@ impl SheetCheck {
         if let Some([by_law, by_elements]) = self.seen {
             page.text(format!("Seen of the target: {by_elements:.3}; by law {by_law:.3}."));
         }
-        page.table(self.support_table());
+        page.text(self.support_forces());
         page.table(self.hinge_table());
         page.table(self.panel_table());
     }
 
     /// Median and greatest of the forces of the supports.
-    fn support_table(&self) -> Table {
-        let forces = |by: usize| -> Option<Vec<f64>> {
-            self.supports.iter().map(|support| support.force[by]).collect()
-        };
-        let of_all: [(&str, fn(Vec<f64>) -> f64); 2] =
-            [("median", median), ("greatest", |forces| forces.into_iter().fold(0.0, f64::max))];
-        Columns::new()
-            .column("force of a support", |(name, _): &(&str, fn(Vec<f64>) -> f64)| *name)
-            .column("N", |(_, of_all)| Cell::fixed(forces(1).map(of_all), 3))
-            .column("by law", |(_, of_all)| Cell::fixed(forces(0).map(of_all), 3))
-            .table(&of_all)
+    fn support_forces(&self) -> String {
+        let [by_law, by_elements] = self.supports.each_ref().map(|forces| {
+            if forces.is_empty() {
+                return "not known".to_owned();
+            }
+            let greatest = forces.iter().copied().fold(0.0, f64::max);
+            format!("median {:.3} N, greatest {greatest:.3} N", median(forces.clone()))
+        });
+        format!("Forces of supports: {by_elements}; by law {by_law}.")
     }
 
     fn hinge_table(&self) -> Table {

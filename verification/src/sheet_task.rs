@@ -1,6 +1,6 @@
 //! A whole sheet by finite elements: its solve, and what the hinge law predicts of it.
 
-use crate::sheet_check::{HingeCheck, PanelCheck, SheetCheck, StateCheck, SupportCheck, findings};
+use crate::sheet_check::{HingeCheck, PanelCheck, SheetCheck, StateCheck, findings};
 use crate::verification_error::{VerificationError, refused};
 use crate::whole_sheet::{no_posture, sheet_problem, with_support};
 use analysis::actuation_curve::ActuationCurve;
@@ -131,7 +131,7 @@ impl SheetTask {
             path: path.collect(),
             hinges,
             panels,
-            supports: last.map_or_else(Vec::new, |last| self.supports(last)),
+            supports: last.map_or_else(Default::default, |last| self.supports(last)),
             seen: last.map(|last| self.seen(last)),
             panel_energy: last.map_or(0.0, |last| {
                 last.panel_energy / last.internal_energy().max(f64::MIN_POSITIVE)
@@ -233,29 +233,22 @@ impl SheetTask {
             .map(|motions| seen_in(&self.scene, &self.deployment, &motions))
     }
 
-    /// The reactions of the supports in the last state.
-    fn supports(&self, last: &SheetState) -> Vec<SupportCheck> {
+    /// The reactions of the supports in the plane in the last state (N).
+    fn supports(&self, last: &SheetState) -> [Vec<f64>; 2] {
         let sheet = &self.deployment.sheet;
         let designs = sheet.designs();
         // Between load steps the law has no equilibrium.
         let mechanics = self.problem.model.mechanics().filter(|_| last.fraction >= 1.0);
-        let by_law = mechanics.map(|mechanics| {
+        let by_law = mechanics.map_or_else(Vec::new, |mechanics| {
             let law = mechanics.law.prepare(&designs);
-            let configuration = &self.deployment.final_step().configuration;
-            mechanics.solver.reactions(mechanics.hinged(sheet, &*law, false), configuration)
+            let hinged = mechanics.hinged(sheet, &*law, false);
+            let end = self.deployment.final_step();
+            let forces = mechanics.solver.reactions(hinged, &end.configuration);
+            let supports = self.scene.actuation().supports.into_iter();
+            supports.map(|support| forces[support.panel]).collect()
         });
-        let supports = std::iter::zip(self.scene.actuation().supports, &last.support_forces);
-        let check = supports.map(|(support, [x, y, _])| SupportCheck {
-            panel: support.panel,
-            force: [
-                by_law.as_ref().map(|forces| {
-                    let [x, y, _] = forces[support.panel];
-                    x.hypot(y)
-                }),
-                Some(x.hypot(*y)),
-            ],
-        });
-        check.collect()
+        [by_law, last.support_forces.clone()]
+            .map(|forces| forces.into_iter().map(|[x, y, _]| x.hypot(y)).collect())
     }
 
     /// The least gap of the flanks of a cut (mm), by the motion of the panels in the plane.

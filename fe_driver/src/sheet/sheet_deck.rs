@@ -5,8 +5,8 @@
 //! increment, because CalculiX accumulates the total internal energy between *printed* increments.
 
 use crate::{
-    GRAVITY, Held, SECONDS, SheetNodes, SheetProblem, real, write_amplitude, write_element,
-    write_increments, write_material, write_nodes, write_set,
+    GRAVITY, Held, SECONDS, STIFFNESS, SheetNodes, SheetProblem, real, write_amplitude,
+    write_element, write_increments, write_material, write_nodes, write_set,
 };
 use mesher::{ElementKind, Part, SheetMesh, SheetShape, Side};
 use support::add_line;
@@ -129,7 +129,8 @@ impl SheetModel<'_> {
         }
         if !self.nodes.bodies.is_empty() {
             // CalculiX 2.20 reads an empty line before the stiffness.
-            add_line!(d, "*SPRING,ELSET=PANELS\n\n{}", real(self.problem.rigid_stiffness()));
+            let stiffness = STIFFNESS * self.problem.material.young * self.problem.shape.thickness;
+            add_line!(d, "*SPRING,ELSET=PANELS\n\n{}", real(stiffness));
         }
     }
 

@@ -1,6 +1,6 @@
 //! The nodes of a meshed sheet at which it is held, pulled and supported by a table.
 
-use crate::{Held, OutOfPlaneRestraint, POINTS, Place, RigidBody, SheetProblem};
+use crate::{Held, OutOfPlaneRestraint, POINTS, Place, Pulled, RigidBody, SheetProblem};
 use mesher::{Panels, Part, SheetMesh};
 use std::collections::BTreeSet;
 use support::fault::Fault;
@@ -12,7 +12,7 @@ const ON_LINE: f64 = 1e-6;
 const SUPPORTED: f64 = 1.45;
 
 /// Nodes of a sheet problem; they count from 0.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct SheetNodes {
     /// The rigid panels; none if panels are meshed.
     pub bodies: Vec<RigidBody>,
@@ -30,73 +30,47 @@ pub(crate) struct SheetNodes {
 
 impl SheetNodes {
     pub(crate) fn new(problem: &SheetProblem, mesh: &SheetMesh) -> Result<Self, Fault> {
-        match problem.shape.model {
-            Panels::Rigid => Ok(Self::of_rigid_panels(problem, mesh)),
-            Panels::Meshed => Self::of_meshed_panels(problem, mesh),
+        let mut found = Self::default();
+        let is_rigid = problem.shape.model == Panels::Rigid;
+        if is_rigid {
+            // After the control node.
+            found.bodies = RigidBody::of_panels(problem, mesh, mesh.nodes.len() + 1);
         }
-    }
-
-    fn of_rigid_panels(problem: &SheetProblem, mesh: &SheetMesh) -> Self {
-        // After the control node.
-        let bodies = RigidBody::of_panels(problem, mesh, mesh.nodes.len() + 1);
-        let held = problem.held.iter().map(|held| {
-            let first = bodies[held.panel].first;
-            match held.place {
-                Place::Point(_) => vec![first],
-                Place::Panel | Place::Line(_) => (first..first + POINTS).collect(),
-            }
-        });
-        let held: Vec<Vec<usize>> = held.collect();
-        let fixed = held.concat();
-        // The fourth point of a body follows the other three.
-        let plane = bodies.iter().flat_map(|body| body.first..body.first + POINTS - 1);
-        let of_arcs: BTreeSet<usize> =
-            bodies.iter().flat_map(|body| body.arcs.iter().copied()).collect();
-        let symmetric = mesh.middle.iter().copied();
-        let symmetric = symmetric.filter(|n| problem.shape.half && !of_arcs.contains(n));
-        let plane = plane.chain(symmetric);
-        let measured = problem.held.iter().map(|held| held.panel);
-        let measured = measured.chain(problem.pulled.iter().map(|pulled| pulled.panel));
-        Self {
-            measured: measured.map(|panel| bodies[panel].arcs.clone()).collect(),
-            pulled: problem.pulled.iter().map(|pulled| bodies[pulled.panel].first).collect(),
-            flat: match problem.restraint {
-                OutOfPlaneRestraint::HeldFlat => plane.filter(|n| !fixed.contains(n)).collect(),
-                OutOfPlaneRestraint::Table | OutOfPlaneRestraint::Nothing => Vec::new(),
-            },
-            on_table: Vec::new(),
-            held,
-            bodies,
-        }
-    }
-
-    fn of_meshed_panels(problem: &SheetProblem, mesh: &SheetMesh) -> Result<Self, Fault> {
-        let mut held = Vec::with_capacity(problem.held.len());
         for support in &problem.held {
-            held.push(mesh.through(&held_nodes(support, mesh)?));
+            let nodes = match found.bodies.get(support.panel) {
+                Some(body) => body.held(support.place),
+                None => mesh.through(&held_nodes(support, mesh)?),
+            };
+            found.measure(support.panel, nodes.clone());
+            found.held.push(nodes);
         }
-        let pulled = problem.pulled.iter().map(|pulled| {
-            let nearest = mesh.nearest(Part::Panel(pulled.panel), pulled.at);
-            let node = nearest.ok_or_else(|| no_nodes(pulled.panel))?;
-            Ok(mesh.middle[node])
-        });
-        let pulled = pulled.collect::<Result<Vec<_>, Fault>>()?;
-        let fixed: BTreeSet<usize> = held.iter().flatten().copied().collect();
+        for Pulled { panel, at, .. } in &problem.pulled {
+            let node = match found.bodies.get(*panel) {
+                Some(body) => body.first,
+                None => {
+                    let nearest = mesh.nearest(Part::Panel(*panel), *at);
+                    mesh.middle[nearest.ok_or_else(|| no_nodes(*panel))?]
+                }
+            };
+            found.measure(*panel, vec![node]);
+            found.pulled.push(node);
+        }
+        let fixed: BTreeSet<usize> = found.held.iter().flatten().copied().collect();
         let panels = || mesh.panels.iter().flatten().copied();
+        let of_panels: BTreeSet<usize> = panels().collect();
         let unless_fixed = |nodes: BTreeSet<usize>| nodes.difference(&fixed).copied().collect();
-        let measured = held.iter().cloned().chain(pulled.iter().map(|node| vec![*node]));
-        let mut found = Self {
-            bodies: Vec::new(),
-            measured: measured.collect(),
-            held,
-            pulled,
-            flat: Vec::new(),
-            on_table: Vec::new(),
-        };
         match problem.restraint {
+            OutOfPlaneRestraint::HeldFlat if is_rigid => {
+                // The fourth point of a body follows the other three, as its arcs do.
+                let plane =
+                    found.bodies.iter().flat_map(|body| body.first..body.first + POINTS - 1);
+                let of_windows = (0..mesh.middle.len()).filter(|node| !of_panels.contains(node));
+                let symmetric = of_windows.filter(|_| problem.shape.half);
+                let plane = plane.chain(symmetric.map(|node| mesh.middle[node]));
+                found.flat = unless_fixed(plane.collect());
+            }
             OutOfPlaneRestraint::HeldFlat => {
-                let plane: BTreeSet<usize> = panels().collect();
-                let plane: Vec<usize> = plane.into_iter().collect();
+                let plane: Vec<usize> = of_panels.into_iter().collect();
                 found.flat = unless_fixed(mesh.through(&plane).into_iter().collect());
             }
             OutOfPlaneRestraint::Table => {
@@ -118,6 +92,13 @@ impl SheetNodes {
             OutOfPlaneRestraint::Nothing => {}
         }
         Ok(found)
+    }
+
+    /// Forces at `nodes` of a panel are a support's or a load's; on a rigid panel forces at its
+    /// arcs.
+    fn measure(&mut self, panel: usize, nodes: Vec<usize>) {
+        let body = self.bodies.get(panel);
+        self.measured.push(body.map_or(nodes, |body| body.arcs.clone()))
     }
 }
 

@@ -50,14 +50,6 @@ pub struct Held {
     pub motion: [Option<f64>; 2],
 }
 
-impl Held {
-    /// Of a force on the panel (N), the part along what is held.
-    pub(crate) fn reaction(&self, [x, y, z]: [f64; 3]) -> [f64; 3] {
-        let [along_x, along_y] = self.motion.map(|motion| motion.map_or(0.0, |_| 1.0));
-        [along_x * x, along_y * y, z]
-    }
-}
-
 /// A panel that is pulled.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Pulled {

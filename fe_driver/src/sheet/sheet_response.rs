@@ -4,7 +4,7 @@ use crate::{
     Damage, HingeState, PanelState, RigidMotion, SheetFrame, SheetModel, SheetState, SheetStates,
     SheetSurface,
 };
-use mesher::{Panels, Part};
+use mesher::Part;
 use std::collections::HashMap;
 
 /// Freedoms of a node.
@@ -51,8 +51,11 @@ impl SheetModel<'_> {
             }
         }
         let supports = problem.held.iter().enumerate();
-        let support_forces =
-            supports.map(|(i, held)| held.reaction(self.force(frame, i, held.panel))).collect();
+        let support_forces = supports.map(|(i, held)| {
+            let [x, y, z] = self.force(frame, i, held.panel);
+            let [holds_x, holds_y] = held.motion.map(|motion| motion.is_some());
+            [if holds_x { x } else { 0.0 }, if holds_y { y } else { 0.0 }, z]
+        });
         SheetState {
             lambda,
             fraction: problem.history().load_fraction(lambda),
@@ -64,7 +67,7 @@ impl SheetModel<'_> {
                 .collect(),
             panel_energy: self.energy(frame, windows.len()),
             kinetic_energy: frame.kinetic_energy.unwrap_or(0.0),
-            support_forces,
+            support_forces: support_forces.collect(),
         }
     }
 
@@ -99,16 +102,10 @@ impl SheetModel<'_> {
             bending,
             z: [0.0; 2],
         };
-        let outline = self.problem.shape.outline(panel).into_iter();
-        let heights: Vec<f64> = match self.problem.shape.model {
-            Panels::Rigid => outline.map(|point| state.moved(point)[2]).collect(),
-            Panels::Meshed => after.iter().map(|point| point[2]).collect(),
-        };
-        let [low, high] = [f64::min, f64::max];
-        state.z = [
-            heights.iter().copied().fold(f64::INFINITY, low),
-            heights.iter().copied().fold(f64::NEG_INFINITY, high),
-        ];
+        let heights = self.problem.shape.outline(panel).into_iter().map(|at| state.moved(at)[2]);
+        let [mut low, mut high] = [f64::INFINITY, f64::NEG_INFINITY];
+        heights.for_each(|z| (low, high) = (low.min(z), high.max(z)));
+        state.z = [low, high];
         state
     }
 

@@ -53,7 +53,7 @@ pub struct PanelState {
     pub rotation: [[f64; 3]; 3],
     /// Largest distance of a node from the rigid panel along its normal (mm).
     pub bending: f64,
-    /// Lowest and highest z of its nodes (mm).
+    /// Lowest and highest z of the outline of the rigid panel (mm).
     pub z: [f64; 2],
 }
 

@@ -8,7 +8,7 @@ use fe_driver::{
     SolveService, SolveStore, Solver, WindowProblem, WindowSolve,
 };
 use hinge::{HingeDeformation, HingeDesign, SheetMaterial};
-use mesher::{Frame, MeshError, PanelShape, PlacedWindow, PlaneRecipe, SheetShape, Tier};
+use mesher::{Frame, MeshError, PanelShape, Panels, PlacedWindow, PlaneRecipe, SheetShape, Tier};
 use std::f64::consts::PI;
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
@@ -50,15 +50,17 @@ fn problem(keeping: OutOfPlaneRestraint, stroke: f64) -> SheetProblem {
     SheetProblem {
         shape: SheetShape {
             thickness: 0.1,
+            model: Panels::Meshed,
             panels: vec![panel(0.0, left), pulled],
             windows: vec![PlacedWindow {
                 design: design(),
                 frame: Frame { origin: [WIDTH, HEIGHT], e_x: [1.0, 0.0] },
-                panels: [Some((0, 2)), Some((1, 3))],
+                panels: [(0, 2), (1, 3)],
                 bump: 1.0,
             }],
             plane,
             layers: 2,
+            half: false,
             element_size: 12.0,
         },
         tier: Tier::Tiny,
@@ -66,7 +68,6 @@ fn problem(keeping: OutOfPlaneRestraint, stroke: f64) -> SheetProblem {
         restraint: keeping,
         held: vec![Held { panel: 0, place: Place::Panel, motion: [Some(0.0); 2] }],
         pulled: vec![Pulled { panel: 1, at, force: [2.0, 0.0] }],
-        rims: Vec::new(),
         stroke: Some(stroke),
         down: None,
         step: SheetProblem::usual_step(keeping, false),
@@ -123,7 +124,7 @@ fn a_hinge_of_a_sheet_held_flat_is_its_window() {
     let energy = total_energy(end);
     assert!((work - energy).abs() < 2e-3 * energy, "{work} {energy}");
     // The only horizontal force is the load; the reaction balances it.
-    assert!((end.support_force[0] + before[1]).abs() < 1e-3 * before[1]);
+    assert!((end.support_forces[0][0] + before[1]).abs() < 1e-3 * before[1]);
 
     let states: Vec<HingeDeformation> = sheet.states.iter().map(deformation).collect();
     let path = DeformationPath::through(&states).unwrap();
@@ -168,6 +169,68 @@ fn a_free_film_tilts() {
     assert!((end.load_factor / other.load_factor - 1.0).abs() < 1e-4);
 }
 
+/// Rigid panels change little: not the plate of 3 mm with its own weight, whole or the half above
+/// its middle, nor the film that nothing holds, nor what holds the panels.
+#[test]
+fn rigid_panels_move_as_meshed_panels() {
+    let mut plate = problem(OutOfPlaneRestraint::HeldFlat, 4.0);
+    (plate.shape.thickness, plate.material.thickness) = (3.0, 3.0);
+    plate.shape.windows[0].bump = 0.0;
+    plate.down = Some([0.0, -1.0, 0.0]);
+    let mut half = plate.clone();
+    (half.shape.half, half.shape.layers) = (true, 1);
+    let free = problem(OutOfPlaneRestraint::Nothing, 1.0);
+    for (meshed, mut rigid) in [(&plate, plate.clone()), (&plate, half), (&free, free.clone())] {
+        rigid.shape.model = Panels::Rigid;
+        let [meshed, rigid] = [meshed, &rigid].map(|problem| solved(problem));
+        let [meshed, rigid] = [&meshed, &rigid].map(|states| states.states.last().unwrap());
+        let ratio = rigid.load_factor / meshed.load_factor;
+        assert!((ratio - 1.0).abs() < 0.01, "{ratio}");
+        let [one, other] = [meshed, rigid].map(|state| state.panels[1]);
+        for corner in [[0.0, 0.0], [2.0 * WIDTH, 0.0], [2.0 * WIDTH, HEIGHT]] {
+            let [p, q] = [one, other].map(|panel| panel.moved(corner));
+            assert!(std::iter::zip(p, q).all(|(p, q)| (p - q).abs() < 0.1), "{p:?} {q:?}");
+        }
+        assert!((one.turn() - other.turn()).abs().to_degrees() < 0.1);
+        let [one, other] = [meshed, rigid].map(|state| state.support_forces[0]);
+        let largest = one[0].abs();
+        assert!(
+            std::iter::zip(one, other).all(|(p, q)| (p - q).abs() < 0.02 * largest),
+            "{one:?} {other:?}"
+        );
+    }
+}
+
+/// Three screws through the panels of a plate hold it on a board, and each has its own force.
+#[test]
+fn screws_hold_a_plate_on_a_board() {
+    let mut mounted = problem(OutOfPlaneRestraint::Nothing, 0.0);
+    (mounted.shape.thickness, mounted.material.thickness) = (3.0, 3.0);
+    (mounted.shape.model, mounted.stroke) = (Panels::Rigid, None);
+    mounted.shape.windows[0].bump = 0.02;
+    mounted.pulled.clear();
+    let pin = |panel, at, shift| Held {
+        panel,
+        place: Place::Point(at),
+        motion: [Some(shift), Some(0.0)],
+    };
+    mounted.held = vec![pin(0, [10.0, 10.0], 0.0), pin(1, [90.0, 10.0], 3.0)];
+    let mut clamp = pin(0, [10.0, 50.0], 0.0);
+    mounted.held.push(clamp);
+    assert_eq!(mounted.validate(), Ok(()));
+    clamp.place = Place::Point([50.0, 10.0]);
+    mounted.held[2] = clamp;
+    assert!(mounted.validate().is_err());
+    mounted.held.pop();
+    mounted.held[0].place = Place::Panel;
+    let sheet = solved(&mounted);
+    let end = sheet.states.last().unwrap();
+    let [x, y, z] = end.panels[1].moved([90.0, 10.0]);
+    assert!((x - 93.0).abs() < 1e-3 && (y - 10.0).abs() < 1e-3 && z.abs() < 1e-3, "{x} {y} {z}");
+    let [one, other] = [0, 1].map(|support| end.support_forces[support]);
+    assert!(other[0] > 0.1 && (one[0] + other[0]).abs() < 1e-3 * other[0], "{one:?} {other:?}");
+}
+
 /// A sheet on a table sinks by its weight over the stiffness of the table's springs, and the table
 /// carries its weight.
 #[test]
@@ -194,7 +257,7 @@ fn weight_in_the_plane_comes_on_before_the_stroke() {
     let by_area = thin().weight_by_area();
     let panel = by_area * WIDTH * HEIGHT;
     let window = by_area * 0.25 * PI * design().r_win.powi(2);
-    let [_, up, _] = end.support_force;
+    let [_, up, _] = end.support_forces[0];
     assert!((panel..panel + window).contains(&up), "{up} {panel}");
 }
 
@@ -282,6 +345,8 @@ fn sheets_that_cannot_be_solved_are_refused() {
     unheld.held.clear();
     let mut still = flat();
     still.pulled.clear();
+    let mut touching = flat();
+    (touching.shape.model, touching.contact) = (Panels::Rigid, true);
     let mut falling = problem(OutOfPlaneRestraint::Nothing, 1.0);
     falling.held[0].place = Place::Point([0.2 * WIDTH, 0.2 * HEIGHT]);
     for (problem, expected) in [
@@ -292,6 +357,7 @@ fn sheets_that_cannot_be_solved_are_refused() {
         (unheld, "no panel is held"),
         (still, "nothing pulls the sheet"),
         (falling, "no panel is clamped"),
+        (touching, "use --sheet meshed"),
     ] {
         let message = refused(problem);
         assert!(message.contains(expected), "{expected}: {message}");

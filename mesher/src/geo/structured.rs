@@ -184,7 +184,7 @@ fn inner_half_disc(window: &Window, recipe: &Structured) -> Vec<[f64; 2]> {
 }
 
 /// Points at equal angles on one panel's part of the circle `radius`, counter-clockwise.
-fn panel_arc(window: &Window, side: Side, radius: f64, columns: usize) -> Vec<[f64; 2]> {
+pub(crate) fn panel_arc(window: &Window, side: Side, radius: f64, columns: usize) -> Vec<[f64; 2]> {
     let kerf = window.kerf_at_radius(side, radius);
     let (from, to) = match side {
         Side::B => (polar_angle(kerf), 0.0),

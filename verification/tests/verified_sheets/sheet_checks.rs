@@ -2,7 +2,7 @@
 //! hinge law.
 
 use fe_driver::{CalculiX, SolveService, SolveStore};
-use mesher::Tier;
+use mesher::{Panels, Tier};
 use scene::{CellsConfig, Posture, Scene, SceneConfig, TrimmedPanel};
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
@@ -25,7 +25,15 @@ fn four_panels() -> Scene {
 }
 
 fn task(scene: &Scene, support: Option<Posture>) -> Result<SheetTask, VerificationError> {
-    SheetTask::new(scene, &scene.start(), support, Tier::Tiny, None)
+    task_of(scene, support, Panels::Meshed)
+}
+
+fn task_of(
+    scene: &Scene,
+    support: Option<Posture>,
+    panels: Panels,
+) -> Result<SheetTask, VerificationError> {
+    SheetTask::new(scene, &scene.start(), support, Tier::Tiny, panels)
 }
 
 fn checked(task: &SheetTask, limit: Duration) -> SheetCheck {
@@ -68,6 +76,20 @@ fn panels_held_flat_go_where_the_law_has_them() {
     for part in ["agrees with the hinge law", "panels held flat", "| hinge | w_lig", "| 3 |"] {
         assert!(page.contains(part), "{page}");
     }
+    let [seen, of_law] = check.seen.unwrap();
+    assert!((seen - of_law).abs() < 0.01 && page.contains("Seen of the target"), "{seen} {of_law}");
+    let rigid =
+        checked(&task_of(&four_panels(), None, Panels::Rigid).unwrap(), Duration::from_secs(300));
+    let with_rigid = rigid.last().unwrap();
+    assert!((with_rigid.load.unwrap()[1] / by_elements - 1.0).abs() < 0.01, "{with_rigid:?}");
+    assert!((with_rigid.opening_deg[1] - last.opening_deg[1]).abs() < 0.1, "{with_rigid:?}");
+    assert!(
+        std::iter::zip(&rigid.panels, &check.panels)
+            .all(|(one, other)| (one.off - other.off).abs() < 0.1)
+    );
+    assert!(rigid.unknowns < check.unknowns);
+    let [by_law, by_elements] = rigid.supports.each_ref().map(|forces| forces[0]);
+    assert!((by_elements / by_law - 1.0).abs() < 0.12, "{:?}", rigid.supports);
     // The path agrees with the path of the law from its beginning.
     let half = branch.path.iter().find(|state| state.fraction > 0.5).unwrap();
     assert!(half.corners[1] < 0.005 * check.size, "{half:?}");
@@ -89,35 +111,6 @@ fn a_trimmed_panel_is_meshed_as_its_boundary() {
     let last = checked(&task, Duration::from_secs(300));
     let last = last.last().unwrap();
     assert!(last.fraction == 1.0 && last.corners[0] < 0.5, "{last:?}");
-}
-
-/// Four of six panels; the other two move as the law predicts.
-#[test]
-fn a_patch_of_a_sheet_is_where_the_law_has_it() {
-    let task_of = |panel| {
-        let scene = scene(|config| {
-            config.sheet.panels = [2, 3];
-            config.sheet.size = Some([140.0, 210.0]);
-            config.supports[0].panel = [0, 2];
-        });
-        SheetTask::new(&scene, &scene.start(), None, Tier::Tiny, Some(panel))
-    };
-    let check = checked(&task_of([1, 2]).unwrap(), Duration::from_secs(300));
-    assert!(check.is_patch && check.counts[0] == 4, "{:?}", check.counts);
-    let branch = &check;
-    let last = branch.last().unwrap();
-    assert_eq!((last.fraction, last.load), (1.0, None));
-    assert!(last.corners[0] < 0.003 * check.size, "{last:?}");
-    assert!((last.opening_deg[0] - last.opening_deg[1]).abs() < 0.3);
-    let numbers: Vec<usize> = branch.panels.iter().map(|panel| panel.panel).collect();
-    assert_eq!(numbers, [2, 3, 4, 5]);
-    assert!(check.document().to_string().contains("A patch of a larger sheet"));
-
-    let versions = CalculiX::find().unwrap().versions();
-    let pulled = task_of([1, 0]).unwrap().solve(&versions).unwrap_err();
-    assert!(pulled.to_string().contains("pulled by a prescribed stroke"), "{pulled}");
-    let absent = task_of([2, 0]).err().unwrap();
-    assert!(absent.to_string().contains("no panel [2, 0]"), "{absent}");
 }
 
 /// At the time limit, what was solved is reported, and the rest is said not to be known.
@@ -153,7 +146,7 @@ fn what_has_no_counterpart_is_refused() {
         assert!(message.contains(expected), "{expected}: {message}");
     }
     let unstructured =
-        SheetTask::new(&four_panels(), &four_panels().start(), None, Tier::Paper, None);
+        SheetTask::new(&four_panels(), &four_panels().start(), None, Tier::Paper, Panels::Rigid);
     let versions = CalculiX::find().unwrap().versions();
     let error = unstructured.unwrap().solve(&versions).unwrap_err();
     assert!(error.to_string().contains("no structured mesh"), "{error}");
