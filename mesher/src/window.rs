@@ -5,12 +5,10 @@
 //! to (r_win, 0). All coordinates are in the hinge frame, in mm.
 
 use hinge::HingeDesign;
-use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 
 /// The two panels of a hinge: A on the -x side of the main cut, B on the +x side.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Side {
     /// Panel A, on the -x side of the main cut.
     A,

@@ -89,6 +89,7 @@ impl SheetTask {
         let (scene, sheet) = (&self.scene, &self.deployment.sheet);
         let problem =
             sheet_problem(scene, sheet, self.support, self.tier, self.panels, self.contact)?;
+        problem.validate()?;
         Ok(SheetSolve::new(problem, versions))
     }
 

@@ -54,11 +54,9 @@ impl SheetLayout {
 
     /// The place of a set of elements in [`SheetFrame::energies`].
     fn index(&self, set: &str) -> Option<usize> {
-        if set == "PANELS" {
-            return Some(self.hinges);
-        }
-        let hinge = set.strip_prefix('H')?.parse().ok()?;
-        (hinge < self.hinges && hinge_set(hinge) == set).then_some(hinge)
+        (0..self.hinges)
+            .find(|hinge| hinge_set(*hinge) == set)
+            .or((set == "PANELS").then_some(self.hinges))
     }
 }
 

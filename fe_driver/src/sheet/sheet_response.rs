@@ -5,7 +5,6 @@ use crate::{
     SheetSurface,
 };
 use mesher::Part;
-use std::collections::HashMap;
 
 /// Freedoms of a node.
 const FREEDOMS: usize = 3;
@@ -35,6 +34,7 @@ impl SheetModel<'_> {
     fn state(&self, frame: &SheetFrame, windows: &[Vec<usize>]) -> SheetState {
         let problem = self.problem;
         let lambda = frame.time / self.duration();
+        let fraction = problem.history().load_fraction(lambda);
         let total = problem.total_load();
         let panels: Vec<_> =
             (0..problem.shape.panels.len()).map(|k| self.panel(frame, k)).collect();
@@ -44,10 +44,10 @@ impl SheetModel<'_> {
             let (at, moved) = (pulled.at, panels[pulled.panel].moved(pulled.at));
             let force = self.force(frame, problem.held.len() + i, pulled.panel);
             for axis in 0..2 {
-                let fraction = pulled.force[axis] / total;
-                stroke += fraction * (moved[axis] - at[axis]);
-                load += fraction * force[axis];
-                square += fraction * fraction;
+                let part = pulled.force[axis] / total;
+                stroke += part * (moved[axis] - at[axis]);
+                load += part * force[axis];
+                square += part * part;
             }
         }
         let supports = problem.held.iter().enumerate();
@@ -58,8 +58,8 @@ impl SheetModel<'_> {
         });
         SheetState {
             lambda,
-            fraction: problem.history().load_fraction(lambda),
-            stroke,
+            fraction,
+            stroke: problem.stroke.map_or(stroke, |end| fraction * end),
             load_factor: if total > 0.0 { load / square / total } else { 0.0 },
             panels,
             hinges: (windows.iter().enumerate())
@@ -123,32 +123,23 @@ impl SheetModel<'_> {
     }
 
     fn surface(&self, frame: &SheetFrame) -> SheetSurface {
-        let mut surface = SheetSurface::default();
-        let mut indices = HashMap::new();
         let (faces, panels) = (&self.mesh.plane.faces, self.problem.shape.panels.len());
-        for (face, part) in std::iter::zip(faces, &self.mesh.parts) {
-            let corners = face[..face.len() / 2].iter().map(|node| {
-                *indices.entry(*node).or_insert_with(|| {
-                    let [before, _] = self.position(frame, *node);
-                    surface.points.push(before);
-                    surface.displacements.push(frame.displacements[*node]);
-                    surface.points.len() - 1
-                })
-            });
-            let corners = corners.collect();
-            surface.faces.push(corners);
-            surface.parts.push(match part {
-                Part::Panel(panel) => *panel,
-                Part::Window(window) => panels + window,
-            });
-        }
-        surface.plastic_strain = (0..faces.len())
-            .map(|face| {
-                let above = (face..self.mesh.elements.len()).step_by(faces.len());
-                let strains = above.flat_map(|element| frame.peeq[element].iter().copied());
-                strains.fold(0.0, f64::max)
-            })
-            .collect();
+        let part = |part: &Part| match part {
+            Part::Panel(panel) => *panel,
+            Part::Window(window) => panels + window,
+        };
+        let strain = |face| {
+            let above = (face..self.mesh.elements.len()).step_by(faces.len());
+            let strains = above.flat_map(|element| frame.peeq[element].iter().copied());
+            strains.fold(0.0, f64::max)
+        };
+        let mut surface = SheetSurface {
+            points: self.mesh.middle.iter().map(|node| self.mesh.nodes[*node]).collect(),
+            displacements: frame.displacements.clone(),
+            faces: faces.iter().map(|face| face[..face.len() / 2].to_vec()).collect(),
+            parts: self.mesh.parts.iter().map(part).collect(),
+            plastic_strain: (0..faces.len()).map(strain).collect(),
+        };
         for panel in 0..self.nodes.bodies.len() {
             self.add_rigid_panel(&mut surface, frame, panel);
         }

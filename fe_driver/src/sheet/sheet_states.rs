@@ -71,7 +71,7 @@ pub struct HingeState {
 /// The middle surface of a sheet; indices count from 0.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct SheetSurface {
-    /// Corner nodes of its faces in the flat sheet, bumps included (mm).
+    /// Its nodes in the flat sheet, bumps included (mm).
     pub points: Vec<[f64; 3]>,
     /// Their displacements (mm).
     pub displacements: Vec<[f64; 3]>,
