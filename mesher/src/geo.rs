@@ -5,7 +5,6 @@ mod structured;
 mod unstructured;
 
 pub(crate) use sheet_script::sheet_script;
-pub(crate) use structured::panel_arc;
 
 use crate::{Boundary, Frame, PlaneRecipe, Window};
 use std::ops::RangeInclusive;

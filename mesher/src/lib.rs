@@ -40,7 +40,6 @@ mod tier;
 mod window;
 
 pub(crate) use extrusion::{Extrusion, Levels};
-pub(crate) use geo::panel_arc;
 pub(crate) use msh::sides;
 pub(crate) use quality::{MAX_AREA_ERROR, check_elements, wrong_area};
 pub(crate) use window::{cross, dot, minus, polar_angle, unit};

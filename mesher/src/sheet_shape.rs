@@ -3,7 +3,7 @@
 //! A panel is bounded by finished edges, half a kerf inside of the lines of its cuts, and ends at
 //! the arcs of its windows.
 
-use crate::{Side, Structured, Window, panel_arc};
+use crate::{Side, Structured, Window};
 use hinge::HingeDesign;
 use serde::{Deserialize, Serialize};
 
@@ -123,7 +123,7 @@ impl PlacedWindow {
     /// Points of its arc on a panel, clockwise about its origin (mm).
     fn arc(&self, side: Side) -> Vec<[f64; 2]> {
         let (window, radius) = (Window(&self.design), self.design.r_win);
-        let points = panel_arc(&window, side, radius, ARC_PIECES).into_iter().rev();
+        let points = window.panel_arc(side, radius, ARC_PIECES).into_iter().rev();
         points.map(|point| self.frame.point(point)).collect()
     }
 }

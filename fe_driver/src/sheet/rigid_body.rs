@@ -1,5 +1,5 @@
-//! A rigid panel in a deck: four points without elements, joined by stiff springs, on whose
-//! displacements those of the arcs of its windows depend linearly.
+//! A rigid panel in a deck: four points without elements, joined by stiff springs. The arcs of its
+//! windows depend linearly on their displacements.
 //!
 //! Unlike the rigid bodies of CalculiX, whose tangent lacks the moment of forces on a body that
 //! turns, this converges at large rotations.
@@ -114,7 +114,7 @@ impl RigidBody {
 impl SheetProblem {
     /// Density of the material (t/mm^3).
     pub(crate) fn density(&self) -> f64 {
-        // From kg/m^3.
+        // kg/m^3 to t/mm^3.
         1e-12 * self.material.density_kg_m3
     }
 }
