@@ -79,17 +79,20 @@ pub(crate) use calculix::cards::{
 };
 pub(crate) use calculix::dat::{Block, Printed, at_node, numbers, read_printed};
 pub(crate) use calculix::deck_run::{DeckRun, read_if_there, time_reached};
-pub(crate) use calculix::driven_arc::{DrivenArc, PanelMotion, even_lambdas, rotated};
+pub(crate) use calculix::driven_arc::{
+    DrivenArc, PanelMotion, even_lambdas, rotated, write_motion,
+};
 pub(crate) use calculix::response::{Damage, samples};
 pub(crate) use campaign::campaign_folder::{CampaignFolder, Index};
 pub(crate) use campaign::extra_rays::read_extra_rays;
 pub(crate) use campaign::history::{EventLog, history_name, overlaps};
 pub(crate) use record_file::{damaged, entries, read_json, short_hash, unless_damaged, write_json};
+pub(crate) use sheet::rigid_body::{GRAVITY, POINTS, RigidBody, STIFFNESS};
 pub(crate) use sheet::rigid_motion::RigidMotion;
-pub(crate) use sheet::sheet_deck::{SheetModel, hinge_set};
+pub(crate) use sheet::sheet_deck::{SheetModel, force_set, hinge_set};
 pub(crate) use sheet::sheet_nodes::SheetNodes;
 pub(crate) use sheet::sheet_output::{SheetFrame, SheetLayout};
-pub(crate) use sheet::sheet_problem::{SECONDS, interpolated};
+pub(crate) use sheet::sheet_problem::SECONDS;
 pub(crate) use sheet::sheet_response::states;
 pub(crate) use solve::attempts::{Event, Job, Workers, now};
 pub(crate) use solve::solve_folder::{SolveState, host};
@@ -112,7 +115,7 @@ pub use campaign::slurm::{
 pub use campaign::spot_paths::{DrawnStates, SpotPath, random_paths};
 pub use campaign::status::{Status, Tally, Throughput, known_parts, status};
 pub use sheet::sheet_problem::{
-    DrivenRim, Held, History, OutOfPlaneRestraint, Place, Pulled, SheetProblem, SheetSolve,
+    Held, History, OutOfPlaneRestraint, Place, Pulled, SheetProblem, SheetSolve,
 };
 pub use sheet::sheet_solver::sheet_reached;
 pub use sheet::sheet_states::{HingeState, PanelState, SheetState, SheetStates, SheetSurface};

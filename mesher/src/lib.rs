@@ -6,7 +6,7 @@
 //! alpha), or from free triangles as in the paper. This crate extrudes the plane mesh to layers of
 //! solid elements, adds the imperfection that initiates buckling, and rejects a mesh that is
 //! unsuitable for the solver. In a whole sheet ([`SheetShape`]) every hinge has the mesh of its
-//! window, and every panel is meshed between its windows and its edges.
+//! window; a panel is rigid, or meshed between its windows and its edges.
 //!
 //! ```no_run
 //! use hinge::HingeConstants;
@@ -51,7 +51,7 @@ pub use meshing::{MeshError, WindowShape};
 pub use msh::{Boundary, PlaneMesh, read_msh};
 pub use quality::MeshQuality;
 pub use sheet_mesh::{Part, SheetMesh};
-pub use sheet_shape::{Frame, PanelShape, PlacedWindow, SheetShape};
+pub use sheet_shape::{Frame, PanelShape, Panels, PlacedWindow, SheetShape};
 pub use svg::plane_mesh_svg;
 pub use tier::{Imperfection, MeshRecipe, PlaneRecipe, Structured, Tier, Unstructured};
 pub use window::{Side, Window};

@@ -1,8 +1,8 @@
 //! A sheet as solid elements: its plane mesh extruded to layers, with a bump at every hinge.
 
 use crate::{
-    Extrusion, Imperfection, Levels, MAX_AREA_ERROR, PlacedWindow, PlaneMesh, SheetShape, Side,
-    Window, check_elements, cross, dot, minus, unit, wrong_area,
+    Extrusion, Imperfection, Levels, MAX_AREA_ERROR, Panels, PlacedWindow, PlaneMesh, SheetShape,
+    Side, Window, check_elements, cross, dot, minus, unit, wrong_area,
 };
 use support::fault::Fault;
 
@@ -30,6 +30,9 @@ pub struct SheetMesh {
     pub plane: PlaneMesh,
     /// The part of each face, and of each element of each layer above it.
     pub parts: Vec<Part>,
+    /// The plane nodes of each panel in increasing order; of a rigid panel on the arcs of its
+    /// windows.
+    pub panels: Vec<Vec<usize>>,
     /// Node positions, bumps included (mm).
     pub nodes: Vec<[f64; 3]>,
     /// Elements in the node order of their [`ElementKind`](crate::ElementKind), layer by layer in
@@ -62,15 +65,18 @@ impl SheetMesh {
                 }
             }
         }
-        let solid = Extrusion::new(&plane, shape.thickness, shape.layers, |node| height[node]);
+        let meshed = shape.meshed_thickness();
+        let raised = 0.5 * (shape.thickness - meshed);
+        let solid = Extrusion::new(&plane, meshed, shape.layers, |node| raised + height[node]);
         check_elements(&plane, &solid.gauss_volumes)?;
         let volume: f64 = solid.gauss_volumes.iter().flatten().sum();
-        let (area, exact) = (volume / shape.thickness, shape.area());
+        let (area, exact) = (volume / meshed, shape.area());
         if (area - exact).abs() > MAX_AREA_ERROR * exact {
             return Err(wrong_area(area, exact));
         }
-        Ok(Self {
-            middle: solid.levels.level(shape.layers),
+        let mut mesh = Self {
+            panels: Vec::new(),
+            middle: solid.levels.level(if shape.half { 0 } else { shape.layers }),
             bottom: solid.levels.level(0),
             nodes: solid.nodes,
             elements: solid.elements,
@@ -78,7 +84,14 @@ impl SheetMesh {
             levels: solid.levels,
             plane,
             parts,
-        })
+        };
+        mesh.panels = (0..panels)
+            .map(|panel| match shape.model {
+                Panels::Rigid => mesh.arcs(shape, panel),
+                Panels::Meshed => mesh.plane_nodes(Part::Panel(panel)),
+            })
+            .collect();
+        Ok(mesh)
     }
 
     /// The part of an element.
@@ -103,29 +116,29 @@ impl SheetMesh {
         self.levels.through(plane)
     }
 
-    /// The plane nodes on the arc of a window on one of its panels.
-    pub fn rim(&self, shape: &SheetShape, window: usize, side: Side) -> Vec<usize> {
-        let placed = &shape.windows[window];
-        let (design, frame) = (&placed.design, &placed.frame);
-        let (of_window, tip) = (Window(design), design.tip());
-        let on_rim = |node: &usize| {
-            let local = frame.local(self.plane.nodes[*node]);
-            let [x, y] = local;
-            let across = dot(minus(local, tip), of_window.normal());
-            across * side.sign() > 0.0 && (x.hypot(y) / design.r_win - 1.0).abs() < ON_RIM
-        };
-        let mut nodes = self.plane_nodes(Part::Window(window));
-        nodes.retain(on_rim);
+    /// The plane nodes on the arcs of the windows of a panel, in increasing order.
+    fn arcs(&self, shape: &SheetShape, panel: usize) -> Vec<usize> {
+        let mut nodes = Vec::new();
+        for (number, PlacedWindow { design, frame, panels, .. }) in shape.windows.iter().enumerate()
+        {
+            let sides = std::iter::zip(Side::BOTH, panels).filter(|(_, (of, _))| *of == panel);
+            for (side, _) in sides {
+                nodes.extend(self.plane_nodes(Part::Window(number)).into_iter().filter(|node| {
+                    let local = frame.local(self.plane.nodes[*node]);
+                    let [x, y] = local;
+                    let across = dot(minus(local, design.tip()), Window(design).normal());
+                    across * side.sign() > 0.0 && (x.hypot(y) / design.r_win - 1.0).abs() < ON_RIM
+                }));
+            }
+        }
+        nodes.sort_unstable();
         nodes
     }
 
     /// The side faces of elements that are the flank of a window's main cut on one of its panels,
-    /// without those at ligaments and holes: (element, edge of its lower face). None on a panel
-    /// that is not a part of the sheet.
+    /// without those at ligaments and holes: (element, edge of its lower face).
     pub fn flank(&self, shape: &SheetShape, window: usize, side: Side) -> Vec<(usize, usize)> {
-        let Some([from, to]) = shape.flank(window, side) else {
-            return Vec::new();
-        };
+        let [from, to] = shape.flank(window, side);
         let (direction, length) = (unit(from, to), dot(minus(to, from), unit(from, to)));
         let on_flank = |node: &usize| {
             let point = self.plane.nodes[*node];
@@ -173,42 +186,38 @@ impl PlacedWindow {
 }
 
 impl SheetShape {
-    /// The finished edge of a panel along the main cut of a window; `None` if the panel is not a
-    /// part of the sheet.
-    fn flank(&self, window: usize, side: Side) -> Option<[[f64; 2]; 2]> {
+    /// The finished edge of a panel along the main cut of a window.
+    fn flank(&self, window: usize, side: Side) -> [[f64; 2]; 2] {
         let [a, b] = self.windows[window].panels;
         // Edges are counted by the corner at which they begin, counter-clockwise: the flank ends at
         // the corner of A.
         let (panel, edge) = match side {
-            Side::A => a.map(|(panel, corner)| (panel, self.panels[panel].edge_before(corner))),
+            Side::A => (a.0, self.panels[a.0].edge_before(a.1)),
             Side::B => b,
-        }?;
-        Some(self.panels[panel].edge(edge))
+        };
+        self.panels[panel].edge(edge)
     }
 
-    /// Area of the sheet (mm^2): windows, and panels without the sectors of their windows.
+    /// Area of the mesh (mm^2): windows, and panels that are meshed.
     fn area(&self) -> f64 {
-        let windows = self.windows.iter().map(|placed| {
-            let (window, radius) = (Window(&placed.design), placed.design.r_win);
-            // What the finished panels have in the half-disc is not theirs: the two sectors from
-            // the crossing of their edges, at the corner of a panel, to the arcs.
-            let sector = |(side, place): (Side, Option<(usize, usize)>)| {
-                let (panel, corner) = place?;
-                let apex = placed.frame.local(self.panels[panel].corners[corner]);
-                let kerf = window.kerf_at_radius(side, radius);
-                let free = [radius * side.sign(), 0.0];
-                let angle = window.arc_angle(side);
-                let triangle = 0.5 * cross(minus(kerf, apex), minus(free, apex)).abs();
-                let segment = 0.5 * radius * radius * (angle - angle.sin());
-                Some(triangle + segment)
-            };
-            let sectors = std::iter::zip(Side::BOTH, placed.panels).filter_map(sector);
-            window.area() - sectors.sum::<f64>()
-        });
-        let panels = self.panels.iter().map(|panel| {
-            let edges = (0..panel.corners.len()).map(|corner| panel.edge(corner));
-            0.5 * edges.map(|[from, to]| cross(from, to)).sum::<f64>()
-        });
-        windows.sum::<f64>() + panels.sum::<f64>()
+        let windows = self.windows.iter().map(|placed| Window(&placed.design).area());
+        let panels = match self.model {
+            Panels::Rigid => 0..0,
+            Panels::Meshed => 0..self.panels.len(),
+        };
+        windows.chain(panels.map(|panel| self.rest(panel)[0])).sum()
+    }
+
+    /// A panel outside of its windows: its area (mm^2) and its centroid (mm).
+    pub fn rest(&self, panel: usize) -> [f64; 3] {
+        let outline = self.outline(panel);
+        let next = outline.iter().cycle().skip(1);
+        let mut sums = [0.0; 3];
+        for (from, to) in std::iter::zip(&outline, next) {
+            let twice = cross(*from, *to);
+            sums[0] += 0.5 * twice;
+            (0..2).for_each(|i| sums[i + 1] += twice * (from[i] + to[i]) / 6.0);
+        }
+        [sums[0], sums[1] / sums[0], sums[2] / sums[0]]
     }
 }

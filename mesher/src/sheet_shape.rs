@@ -1,9 +1,9 @@
-//! A cut sheet of panels and the windows that join them, or a part of one.
+//! A cut sheet of panels and the windows that join them.
 //!
 //! A panel is bounded by finished edges, half a kerf inside of the lines of its cuts, and ends at
 //! the arcs of its windows.
 
-use crate::Structured;
+use crate::{Side, Structured, Window};
 use hinge::HingeDesign;
 use serde::{Deserialize, Serialize};
 
@@ -11,19 +11,39 @@ use serde::{Deserialize, Serialize};
 /// tips over later.
 const IN_PLANE: f64 = 2.0;
 
+/// Pieces of the arc of a window in the outline of a panel.
+const ARC_PIECES: usize = 12;
+
+/// How panels are modelled outside of the windows.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Panels {
+    /// Rigid bodies that hold the arcs of their windows: only windows are meshed.
+    #[default]
+    Rigid,
+    /// Meshed, as the windows are.
+    Meshed,
+}
+
 /// All that determines the mesh of a sheet.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SheetShape {
     /// Sheet thickness (mm).
     pub thickness: f64,
+    /// How panels are modelled.
+    pub model: Panels,
     /// The panels.
     pub panels: Vec<PanelShape>,
     /// The windows of the hinges.
     pub windows: Vec<PlacedWindow>,
     /// Plane mesh of the windows.
     pub plane: Structured,
-    /// Layers of elements through the thickness; even, so that the middle of the sheet has nodes.
+    /// Layers of elements through the meshed thickness; even if that is all of it, so that the
+    /// middle of the sheet has nodes.
     pub layers: usize,
+    /// Whether only the upper half of the thickness is meshed, of a sheet that is symmetric about
+    /// its middle.
+    pub half: bool,
     /// Size of the elements of the panels (mm).
     pub element_size: f64,
 }
@@ -45,9 +65,8 @@ pub struct PlacedWindow {
     /// The hinge frame: its origin is the foot of the ligament on the finished edge of the
     /// secondary cut.
     pub frame: Frame,
-    /// Panels A and B, each with the number of its corner; `None` for a panel that is not a part of
-    /// the sheet.
-    pub panels: [Option<(usize, usize)>; 2],
+    /// Panels A and B, each with the number of its corner.
+    pub panels: [(usize, usize); 2],
     /// Height of the bump that initiates buckling, over the thickness; its sign is the side to
     /// which it points.
     pub bump: f64,
@@ -59,6 +78,25 @@ impl SheetShape {
     /// thick would make them softer than they are (docs/results/plates).
     pub fn bends_in_plane(w_lig: f64, thickness: f64) -> bool {
         w_lig <= IN_PLANE * thickness
+    }
+
+    /// The meshed part of the thickness (mm).
+    pub fn meshed_thickness(&self) -> f64 {
+        if self.half { 0.5 * self.thickness } else { self.thickness }
+    }
+
+    /// The outline of a panel outside of its windows, counter-clockwise (mm).
+    pub fn outline(&self, panel: usize) -> Vec<[f64; 2]> {
+        let at_corner = |(corner, point): (usize, &[f64; 2])| {
+            let place = (panel, corner);
+            let at = |window: &&PlacedWindow| window.panels.contains(&place);
+            match self.windows.iter().find(at) {
+                Some(window) if window.panels[0] == place => window.arc(Side::A),
+                Some(window) => window.arc(Side::B),
+                None => vec![*point],
+            }
+        };
+        self.panels[panel].corners.iter().enumerate().flat_map(at_corner).collect()
     }
 }
 
@@ -78,6 +116,15 @@ impl PanelShape {
         if !self.marks.contains(&point) {
             self.marks.push(point);
         }
+    }
+}
+
+impl PlacedWindow {
+    /// Points of its arc on a panel, clockwise about its origin (mm).
+    fn arc(&self, side: Side) -> Vec<[f64; 2]> {
+        let (window, radius) = (Window(&self.design), self.design.r_win);
+        let points = window.panel_arc(side, radius, ARC_PIECES).into_iter().rev();
+        points.map(|point| self.frame.point(point)).collect()
     }
 }
 

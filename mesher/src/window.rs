@@ -5,12 +5,10 @@
 //! to (r_win, 0). All coordinates are in the hinge frame, in mm.
 
 use hinge::HingeDesign;
-use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 
 /// The two panels of a hinge: A on the -x side of the main cut, B on the +x side.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Side {
     /// Panel A, on the -x side of the main cut.
     A,
@@ -78,6 +76,29 @@ impl Window<'_> {
             Side::A => angle + PI,
             Side::B => -angle,
         }
+    }
+
+    /// Points at equal angles on one panel's part of the circle `radius`, counter-clockwise.
+    pub(crate) fn panel_arc(&self, side: Side, radius: f64, columns: usize) -> Vec<[f64; 2]> {
+        let kerf = self.kerf_at_radius(side, radius);
+        let (from, to) = match side {
+            Side::B => (polar_angle(kerf), 0.0),
+            Side::A => (-PI, polar_angle(kerf)),
+        };
+        let at = |j: usize| {
+            let angle = from + (to - from) * j as f64 / columns as f64;
+            [radius * angle.cos(), radius * angle.sin()]
+        };
+        let mut points: Vec<_> = (0..=columns).map(at).collect();
+        // The end points are set exactly, so that the free edge is straight and the kerf faces are
+        // flat.
+        let (free, cut) = match side {
+            Side::B => (columns, 0),
+            Side::A => (0, columns),
+        };
+        points[free] = [radius.copysign(points[free][0]), 0.0];
+        points[cut] = kerf;
+        points
     }
 
     /// Exact area of the window (mm^2), by Green's theorem over its arcs and segments.

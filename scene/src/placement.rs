@@ -32,8 +32,13 @@ pub fn placed(scene: &Scene, sheet: &Sheet, configuration: &[[f64; 3]]) -> Confi
 /// What one sees of the opened panels, gaps closed, in the position in which the objective compares
 /// it: the area in common with the target over the area of both.
 pub fn seen(scene: &Scene, deployment: &Deployment) -> f64 {
+    seen_in(scene, deployment, &deployment.final_step().configuration)
+}
+
+/// What one sees of the panels of a deployment in another configuration.
+pub fn seen_in(scene: &Scene, deployment: &Deployment, configuration: &[[f64; 3]]) -> f64 {
     let sheet = &deployment.sheet;
-    let configuration = placed(scene, sheet, &deployment.final_step().configuration);
+    let configuration = placed(scene, sheet, configuration);
     let panels = Region::union_of(deployed_boundaries(sheet, &configuration));
     let target = scene.target.region();
     // A target that is fitted to the sheet is as large as the sheet.

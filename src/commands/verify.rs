@@ -8,7 +8,7 @@ use crate::ui::count::count;
 use anyhow::{Context, Result};
 use app::run_folder;
 use clap::Args;
-use mesher::Tier;
+use mesher::{Panels, Tier};
 use output::drawing;
 use scene::Posture;
 use serde::Serialize;
@@ -39,22 +39,19 @@ pub struct VerifyCommand {
     /// and `plate-reference` the sheet is balanced on the cheaper `default` and `plate`
     #[arg(long, value_name = "N", default_value_t = 6, requires = "equilibrium", value_parser = count::<usize>)]
     rounds: usize,
-    /// Solve the whole sheet, every window and every panel: minutes to an hour. Compares corners,
-    /// load, openings and energies, and reports whether the panels stay in their plane. Writes
-    /// sheet.md, sheet.vtu and pictures from above and from the side. Rewrites report and page of
-    /// the run with what was found
-    #[arg(long, group = "mode")]
-    sheet: bool,
-    /// What keeps the panels of the whole sheet in their plane: held-flat, lying (on a table),
-    /// hanging, free [default: the posture of the scene]
+    /// Solve the whole sheet: minutes. Panels are `rigid`, and only the windows of the hinges
+    /// deform; or `meshed`: everything deforms, in up to ten times the time. Compares corners, load,
+    /// openings, energies and forces of supports, and reports whether the panels stay in their plane.
+    /// Writes sheet.md, sheet.vtu and pictures from above and from the side. Rewrites report and
+    /// page of the run with what was found
+    #[arg(long, value_name = "PANELS", group = "mode", num_args = 0..=1, default_missing_value = "rigid", value_parser = whole_sheet::panels)]
+    sheet: Option<Panels>,
+    /// What keeps the panels of the whole sheet in their plane: held-flat, mounted (on a board),
+    /// lying (on a table; meshed panels), hanging, free [default: the posture of the scene]
     #[arg(long, value_name = "SUPPORT", requires = "sheet", value_parser = whole_sheet::support)]
     support: Option<Posture>,
-    /// Solve the panel COLUMN,ROW and those around it instead of the whole sheet, for sheets that
-    /// are too large; the other panels move as the hinge law predicts
-    #[arg(long, value_name = "COLUMN,ROW", requires = "sheet", value_parser = whole_sheet::panel)]
-    patch: Option<[usize; 2]>,
-    /// The flanks of cuts touch in the whole sheet, instead of passing through each other; several
-    /// times the time. Where they meet, the solve may end early
+    /// The flanks of cuts touch in the whole sheet of meshed panels, instead of passing through each
+    /// other; several times the time. Where they meet, the solve may end early
     #[arg(long, requires = "sheet")]
     contact: bool,
     /// Print JSON instead of text
@@ -70,8 +67,8 @@ pub struct VerifyCommand {
 impl VerifyCommand {
     pub(crate) fn run(&self) -> Result<()> {
         let (scene, design, name) = self.inspected.read()?;
-        if self.sheet {
-            return self.whole_sheet(&scene, &design, &name);
+        if let Some(panels) = self.sheet {
+            return self.whole_sheet(&scene, &design, &name, panels);
         }
         let surrogate = scene
             .surrogate()

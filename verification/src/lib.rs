@@ -6,7 +6,7 @@
 //! | rows of a database from solved windows, and back | [`rows`], [`collected`], [`collected_windows`] |
 //! | a sheet in equilibrium with the forces of finite elements | [`balanced`], [`SheetErrors`] |
 //! | a design searched for with finite elements for its hinges | [`final_design`] |
-//! | the whole sheet, every window and every panel | [`SheetTask`], [`SheetCheck`] |
+//! | the whole sheet, its panels rigid or meshed | [`SheetTask`], [`SheetCheck`] |
 //! | errors of weights at random states | [`spot_check`], [`SpotStates`] |
 //! | rays of a campaign solved in rounds until weights are accurate | [`Learning`] |
 //!
@@ -52,7 +52,6 @@ mod element_windows;
 mod final_design;
 mod finished_panel;
 mod learning;
-mod patch;
 mod rows;
 mod sheet_check;
 mod sheet_errors;

@@ -4,7 +4,7 @@
 use analysis::design_checks::WholeSheet;
 use analysis::flatness::Flatness;
 use fe_driver::SheetSurface;
-use mesher::Tier;
+use mesher::{Panels, Tier};
 use scene::Posture;
 use serde::Serialize;
 use support::severity::{Finding, Severity};
@@ -25,10 +25,10 @@ pub struct SheetCheck {
     pub support: Posture,
     /// Mesh tier of the windows.
     pub tier: Tier,
-    /// Numbers of panels and of hinges that were solved.
+    /// How its panels were modelled.
+    pub model: Panels,
+    /// Numbers of panels and of hinges.
     pub counts: [usize; 2],
-    /// Whether the sheet has others, which move as the hinge law predicts.
-    pub is_patch: bool,
     /// Whether flanks of cuts touch.
     pub contact: bool,
     /// Longer side of the flat sheet (mm).
@@ -60,6 +60,12 @@ pub struct SheetCheck {
     pub hinges: Vec<HingeCheck>,
     /// The panels at its end.
     pub panels: Vec<PanelCheck>,
+    /// Reactions of the supports of the scene in the plane at its end (N), by the hinge law and by
+    /// finite elements; none by the law if the path ends early.
+    pub supports: [Vec<f64>; 2],
+    /// How much of the target is seen at its end, by the hinge law and by finite elements; `None`
+    /// if there is no state.
+    pub seen: Option<[f64; 2]>,
     /// Internal energy of the panels outside of the windows over the whole internal energy (1) at
     /// its end.
     pub panel_energy: f64,
@@ -73,9 +79,9 @@ pub struct SheetCheck {
 pub struct StateCheck {
     /// Fraction of the stroke or of the loads.
     pub fraction: f64,
-    /// Stroke of the loads (mm); `None` for a patch.
+    /// Stroke of the loads (mm); `None` without loads.
     pub stroke: Option<[f64; 2]>,
-    /// Load (N); `None` for a patch.
+    /// Load (N); `None` without loads.
     pub load: Option<[f64; 2]>,
     /// Distance of the panel corners in space (mm): root mean square and maximum.
     pub corners: [f64; 2],
@@ -93,11 +99,10 @@ pub struct StateCheck {
     /// Kinetic over internal energy; zero on a static path.
     pub kinetic: f64,
     /// Distance of the flanks of a cut where they come nearest (mm), negative where they pass
-    /// through each other; `None` for a patch, and where panels tilt, whose flanks pass each other
-    /// in space.
+    /// through each other; `None` where panels tilt, whose flanks pass each other in space.
     pub flank_gap: Option<f64>,
-    /// The margin against leaving the plane by the hinge law, at its next load step; `None` for a
-    /// patch, and if the law has none.
+    /// The margin against leaving the plane by the hinge law, at its next load step; `None` if the
+    /// law has none.
     pub margin: Option<f64>,
 }
 
@@ -132,9 +137,9 @@ pub struct PanelCheck {
 }
 
 impl SheetCheck {
-    /// What a run keeps of it; `None` for a part of a sheet, and if there is no state.
+    /// What a run keeps of it; `None` if there is no state.
     pub fn summary(&self) -> Option<WholeSheet> {
-        let last = self.last().filter(|_| !self.is_patch)?;
+        let last = self.last()?;
         let tilts = self.path.iter().map(|state| state.tilt_deg);
         Some(WholeSheet {
             support: self.support,

@@ -1,7 +1,9 @@
 //! The page of a whole sheet by finite elements.
 
 use crate::sheet_check::{HingeCheck, PanelCheck, SheetCheck, StateCheck};
+use mesher::Panels;
 use support::document::Document;
+use support::statistics::median;
 use support::table::{Cell, Columns, Table};
 
 /// Number of rows of a path on the page.
@@ -15,17 +17,16 @@ impl SheetCheck {
         page.heading(1, "The whole sheet, by finite elements");
         page.text(format!(
             "The {}, {}: {panels} panels, {hinges} hinges, windows of tier {}, ligaments {least:.2} to {most:.2} times as wide as the \
-             sheet is thick. Every window and every panel is meshed, and nothing is rigid. By law: the equilibrium with the \
+             sheet is thick. {} By law: the equilibrium with the \
              scene's hinge law, whose panels are rigid and stay in the plane; between its load steps it is interpolated.",
             self.design,
             self.support.in_words(),
             self.tier,
+            match self.model {
+                Panels::Rigid => "Every window is meshed, and a panel is a rigid body that holds the arcs of its windows.",
+                Panels::Meshed => "Every window and every panel is meshed, and nothing is rigid.",
+            },
         ));
-        if self.is_patch {
-            page.text(
-                "A patch of a larger sheet: the panels around it move as the hinge law predicts.",
-            );
-        }
         let [meshed, of_law] = self.radius;
         if meshed < of_law {
             page.text(format!(
@@ -69,8 +70,24 @@ impl SheetCheck {
             "Panels outside of the windows hold {:.2} % of the energy.",
             100.0 * self.panel_energy
         ));
+        if let Some([by_law, by_elements]) = self.seen {
+            page.text(format!("Seen of the target: {by_elements:.3}; by law {by_law:.3}."));
+        }
+        page.text(self.support_forces());
         page.table(self.hinge_table());
         page.table(self.panel_table());
+    }
+
+    /// Median and greatest of the forces of the supports.
+    fn support_forces(&self) -> String {
+        let [by_law, by_elements] = self.supports.each_ref().map(|forces| {
+            if forces.is_empty() {
+                return "not known".to_owned();
+            }
+            let greatest = forces.iter().copied().fold(0.0, f64::max);
+            format!("median {:.3} N, greatest {greatest:.3} N", median(forces.clone()))
+        });
+        format!("Forces of supports: {by_elements}; by law {by_law}.")
     }
 
     fn hinge_table(&self) -> Table {

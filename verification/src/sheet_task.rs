@@ -1,6 +1,5 @@
 //! A whole sheet by finite elements: its solve, and what the hinge law predicts of it.
 
-use crate::patch::SheetPart;
 use crate::sheet_check::{HingeCheck, PanelCheck, SheetCheck, StateCheck, findings};
 use crate::verification_error::{VerificationError, refused};
 use crate::whole_sheet::{no_posture, sheet_problem, with_support};
@@ -15,7 +14,8 @@ use design::sheet::cut_sheet::Panel;
 use design::sheet::kinematics::{Configuration, deployed_boundaries, hinge_deformations};
 use fe_driver::{PanelState, SheetSolve, SheetState, Solved, ToolVersions};
 use hinge::HingeDesign;
-use mesher::Tier;
+use mesher::{Panels, Tier};
+use scene::placement::seen_in;
 use scene::{Posture, Scene};
 use std::array::from_fn;
 use support::statistics::rms_and_maximum;
@@ -33,14 +33,12 @@ pub struct SheetTask {
     /// What keeps the panels in their plane.
     support: Posture,
     tier: Tier,
+    panels: Panels,
     /// Whether the flanks of its cuts touch; `false` unless set.
     pub contact: bool,
-    /// The panels and hinges that are solved.
-    part: SheetPart,
     /// Displacement and load by the law, before the loads and at every load step.
     curve: Vec<[f64; 2]>,
-    /// The plate out of its plane by the law at every load step; `None` for a patch, and where the
-    /// law has none.
+    /// The plate out of its plane by the law at every load step; `None` where the law has none.
     out_of_plane: Option<Vec<OutOfPlane>>,
 }
 
@@ -55,14 +53,13 @@ struct LawState {
 }
 
 impl SheetTask {
-    /// The design of a scene, kept in its plane by `support`, or as its posture states. With a
-    /// `patch`, only the panel [column, row] and those around it are solved.
+    /// The design of a scene, kept in its plane by `support`, or as its posture states.
     pub fn new(
         scene: &Scene,
         design: &DesignVector,
         support: Option<Posture>,
         tier: Tier,
-        patch: Option<[usize; 2]>,
+        panels: Panels,
     ) -> Result<Self, VerificationError> {
         let scene = with_support(scene, support)?;
         let posture = scene.config.posture.map(|posture| posture.kind);
@@ -77,14 +74,9 @@ impl SheetTask {
         Ok(Self {
             support: support.or(posture).ok_or_else(no_posture)?,
             tier,
+            panels,
             contact: false,
-            part: match patch {
-                Some(panel) => SheetPart::around(&deployment.sheet, panel)?,
-                None => SheetPart::whole(&deployment.sheet),
-            },
-            out_of_plane: (patch.is_none())
-                .then(|| out_of_plane(&scene, &problem, &deployment))
-                .flatten(),
+            out_of_plane: out_of_plane(&scene, &problem, &deployment),
             curve,
             deployment,
             problem,
@@ -95,8 +87,9 @@ impl SheetTask {
     /// The solve.
     pub fn solve(&self, versions: &ToolVersions) -> Result<SheetSolve, VerificationError> {
         let (scene, sheet) = (&self.scene, &self.deployment.sheet);
-        let problem = sheet_problem(scene, sheet, self.support, self.tier, self.contact)?;
-        let problem = self.part.of(problem, &self.deployment)?;
+        let problem =
+            sheet_problem(scene, sheet, self.support, self.tier, self.panels, self.contact)?;
+        problem.validate()?;
         Ok(SheetSolve::new(problem, versions))
     }
 
@@ -116,8 +109,8 @@ impl SheetTask {
             design: design.to_owned(),
             support: self.support,
             tier: self.tier,
-            counts: [self.part.panels.len(), self.part.hinges.len()],
-            is_patch: self.is_patch(),
+            model: self.panels,
+            counts: [sheet.panels.len(), sheet.hinges.len()],
             contact: self.contact,
             size: sheet.outline.size(),
             radius: [
@@ -127,7 +120,7 @@ impl SheetTask {
                 sheet.options.process.r_win,
             ],
             slenderness: [widths.clone().fold(f64::INFINITY, f64::min), widths.fold(0.0, f64::max)],
-            outside: (self.part.hinges.iter().copied())
+            outside: (0..sheet.hinges.len())
                 .filter(|h| self.deployment.path.iter().any(|step| !step.inside[*h]))
                 .collect(),
             driven: self.scene.config.drive.is_some(),
@@ -139,6 +132,8 @@ impl SheetTask {
             path: path.collect(),
             hinges,
             panels,
+            supports: last.map_or_else(Default::default, |last| self.supports(last)),
+            seen: last.map(|last| self.seen(last)),
             panel_energy: last.map_or(0.0, |last| {
                 last.panel_energy / last.internal_energy().max(f64::MIN_POSITIVE)
             }),
@@ -147,11 +142,6 @@ impl SheetTask {
         };
         check.findings = findings(&check);
         check
-    }
-
-    /// Whether only a part of the sheet is solved.
-    fn is_patch(&self) -> bool {
-        self.part.panels.len() < self.deployment.sheet.panels.len()
     }
 
     /// What the law predicts at a fraction of the loads, linear between its load steps.
@@ -186,9 +176,9 @@ impl SheetTask {
     fn corner_errors(&self, configuration: &[[f64; 3]], state: &SheetState) -> Vec<Vec<f64>> {
         let sheet = &self.deployment.sheet;
         let deployed = deployed_boundaries(sheet, configuration);
-        let panels = std::iter::zip(&self.part.panels, &state.panels);
-        let errors = panels.map(|(&panel, moved)| {
-            let corners = std::iter::zip(&sheet.panels[panel].boundary, &deployed[panel]);
+        let panels = std::iter::zip(&sheet.panels, &state.panels).zip(&deployed);
+        let errors = panels.map(|((panel, moved), deployed)| {
+            let corners = std::iter::zip(&panel.boundary, deployed);
             let error = |(flat, [u, v]): (&[f64; 2], &[f64; 2])| {
                 let [x, y, z] = moved.moved(*flat);
                 (x - u).hypot(y - v).hypot(z)
@@ -205,43 +195,67 @@ impl SheetTask {
             self.by_law(state.fraction);
         let errors = self.corner_errors(&configuration, state).concat();
         let openings = hinge_deformations(sheet, &configuration);
-        let hinges = &self.part.hinges;
         let mean = |opening: &dyn Fn(usize) -> f64| {
-            let sum: f64 = hinges.iter().map(|&h| opening(h)).sum();
-            (sum / hinges.len() as f64).to_degrees()
+            let sum: f64 = (0..openings.len()).map(opening).sum();
+            (sum / openings.len() as f64).to_degrees()
         };
         // The work of supports that move is no load of the solved sheet.
-        let (whole, pulled) = (!self.is_patch(), !self.is_patch() && full_load > 0.0);
+        let pulled = full_load > 0.0;
         StateCheck {
             fraction: state.fraction,
             stroke: pulled.then_some([displacement, state.stroke]),
             load: pulled.then_some([load, state.load_factor * full_load]),
             corners: rms_and_maximum(errors),
-            opening_deg: [
-                mean(&|h| openings[h].theta),
-                mean(&|h| self.opening(state, h, &configuration)),
-            ],
+            opening_deg: [mean(&|h| openings[h].theta), mean(&|h| self.opening(state, h))],
             tilt_deg: state.tilt().to_degrees(),
             z: state.z(),
             bending: (state.panels.iter()).fold(0.0, |most, panel| panel.bending.max(most)),
             kinetic: state.kinetic_energy / state.internal_energy().max(f64::MIN_POSITIVE),
-            flank_gap: (whole && state.tilt() < UPRIGHT).then(|| self.flank_gap(state)),
+            flank_gap: (state.tilt() < UPRIGHT).then(|| self.flank_gap(state)),
             margin,
             tilt_by_law_deg: tilt.map(f64::to_degrees),
         }
     }
 
-    /// The least gap of the flanks of a cut (mm), by the motion of the panels in the plane.
-    fn flank_gap(&self, state: &SheetState) -> f64 {
-        let sheet = &self.deployment.sheet;
+    /// The motion of the panels in the plane.
+    fn in_plane(&self, state: &SheetState) -> Configuration {
         let motion = |(panel, moved): (&Panel, &PanelState)| {
             let [x, y] = panel.reference;
             let [u, v, _] = moved.moved(panel.reference);
             [u - x, v - y, moved.turn()]
         };
-        let configuration: Configuration =
-            std::iter::zip(&sheet.panels, &state.panels).map(motion).collect();
-        let states = hinge_deformations(sheet, &configuration);
+        std::iter::zip(&self.deployment.sheet.panels, &state.panels).map(motion).collect()
+    }
+
+    /// How much of the target is seen.
+    fn seen(&self, state: &SheetState) -> [f64; 2] {
+        let LawState { configuration, .. } = self.by_law(state.fraction);
+        [configuration, self.in_plane(state)]
+            .map(|motions| seen_in(&self.scene, &self.deployment, &motions))
+    }
+
+    /// The reactions of the supports in the plane in the last state (N).
+    fn supports(&self, last: &SheetState) -> [Vec<f64>; 2] {
+        let sheet = &self.deployment.sheet;
+        let designs = sheet.designs();
+        // Between load steps the law has no equilibrium.
+        let mechanics = self.problem.model.mechanics().filter(|_| last.fraction >= 1.0);
+        let by_law = mechanics.map_or_else(Vec::new, |mechanics| {
+            let law = mechanics.law.prepare(&designs);
+            let hinged = mechanics.hinged(sheet, &*law, false);
+            let end = self.deployment.final_step();
+            let forces = mechanics.solver.reactions(hinged, &end.configuration);
+            let supports = self.scene.actuation().supports.into_iter();
+            supports.map(|support| forces[support.panel]).collect()
+        });
+        [by_law, last.support_forces.clone()]
+            .map(|forces| forces.into_iter().map(|[x, y, _]| x.hypot(y)).collect())
+    }
+
+    /// The least gap of the flanks of a cut (mm), by the motion of the panels in the plane.
+    fn flank_gap(&self, state: &SheetState) -> f64 {
+        let sheet = &self.deployment.sheet;
+        let states = hinge_deformations(sheet, &self.in_plane(state));
         let regime = |design: &HingeDesign| self.scene.material.regime(design.w_lig);
         let hinges = std::iter::zip(&sheet.hinges, sheet.designs());
         let gaps = std::iter::zip(hinges, states).map(|((hinge, design), state)| {
@@ -254,15 +268,10 @@ impl SheetTask {
         gaps.fold(f64::INFINITY, f64::min)
     }
 
-    /// Rotation of a hinge in the plane by finite elements (rad); a panel that is not solved moves
-    /// by the law.
-    fn opening(&self, state: &SheetState, hinge: usize, by_law: &[[f64; 3]]) -> f64 {
+    /// Rotation of a hinge in the plane by finite elements (rad).
+    fn opening(&self, state: &SheetState, hinge: usize) -> f64 {
         let hinge = &self.deployment.sheet.hinges[hinge];
-        let turn = |panel: usize| match self.part.panels.binary_search(&panel) {
-            Ok(place) => state.panels[place].turn(),
-            Err(_) => by_law[panel][2],
-        };
-        turn(hinge.panel_b()) - turn(hinge.panel_a())
+        state.panels[hinge.panel_b()].turn() - state.panels[hinge.panel_a()].turn()
     }
 
     /// Hinges and panels in the last state.
@@ -275,12 +284,10 @@ impl SheetTask {
         let energies = mechanics
             .map(|mechanics| mechanics.law.prepare(&designs).energies(&states, Order::Value));
         let full = last.fraction >= 1.0;
-        let hinges = std::iter::zip(&self.part.hinges, &last.hinges);
-        let hinges = hinges.map(|(&h, found)| HingeCheck {
+        let hinges = last.hinges.iter().enumerate().map(|(h, found)| HingeCheck {
             hinge: h,
             w_lig: sheet.hinges[h].w_lig,
-            theta_deg: [states[h].theta, self.opening(last, h, &configuration)]
-                .map(f64::to_degrees),
+            theta_deg: [states[h].theta, self.opening(last, h)].map(f64::to_degrees),
             energy: [energies.as_ref().map_or(f64::NAN, |energies| energies[h].w), found.energy],
             d_peak: [
                 full.then(|| self.deployment.damage_max(DamageMeasure::Peak, h)).flatten(),
@@ -288,8 +295,8 @@ impl SheetTask {
             ],
         });
         let errors = self.corner_errors(&configuration, last);
-        let panels = std::iter::zip(&self.part.panels, &last.panels).zip(errors);
-        let panels = panels.map(|((&number, panel), errors)| PanelCheck {
+        let panels = std::iter::zip(&last.panels, errors).enumerate();
+        let panels = panels.map(|(number, (panel, errors))| PanelCheck {
             panel: number,
             tilt_deg: panel.tilt().to_degrees(),
             off: errors.into_iter().fold(0.0, f64::max),

@@ -1,4 +1,4 @@
-//! A designed sheet as a finite-element problem: every window and every panel.
+//! A designed sheet as a finite-element problem.
 
 use crate::finished_panel::FinishedPanel;
 use crate::verification_error::{VerificationError, refused};
@@ -8,7 +8,7 @@ use design::sheet::topology::PanelCorner;
 use fe_driver::{Held, OutOfPlaneRestraint, Place, Pulled, SheetProblem};
 use hinge::{HingeDesign, Regime};
 use mesher::{
-    Frame, Imperfection, PanelShape, PlacedWindow, PlaneRecipe, SheetMesh, SheetShape, Tier,
+    Frame, Imperfection, PanelShape, Panels, PlacedWindow, PlaneRecipe, SheetMesh, SheetShape, Tier,
 };
 use scene::{Posture, PostureConfig, Scene, SupportKind};
 use support::fault::fault;
@@ -70,6 +70,7 @@ pub(crate) fn sheet_problem(
     sheet: &Sheet,
     support: Posture,
     tier: Tier,
+    panels: Panels,
     contact: bool,
 ) -> Result<SheetProblem, VerificationError> {
     let (pulled, held) = (pulled(scene, sheet)?, held(scene, sheet)?);
@@ -86,7 +87,10 @@ pub(crate) fn sheet_problem(
         Posture::Lying => OutOfPlaneRestraint::Table,
         Posture::Mounted | Posture::Hanging | Posture::Free => OutOfPlaneRestraint::Nothing,
     };
-    let mut shape = sheet_shape(sheet, scene.material.thickness, tier)?;
+    let mut shape = sheet_shape(sheet, scene.material.thickness, tier, panels)?;
+    if restraint == OutOfPlaneRestraint::HeldFlat {
+        halve(&mut shape);
+    }
     for pulled in &pulled {
         shape.panels[pulled.panel].mark(pulled.at);
     }
@@ -105,7 +109,6 @@ pub(crate) fn sheet_problem(
         restraint,
         held,
         pulled,
-        rims: Vec::new(),
         stroke: scene.config.drive.map(|drive| drive.stroke),
         down,
         step: SheetProblem::usual_step(restraint, contact),
@@ -210,7 +213,12 @@ pub(crate) fn meshed_radii(sheet: &Sheet) -> Result<Vec<f64>, VerificationError>
 }
 
 /// The finished sheet with its windows, whose bumps are all on one side.
-fn sheet_shape(sheet: &Sheet, thickness: f64, tier: Tier) -> Result<SheetShape, VerificationError> {
+fn sheet_shape(
+    sheet: &Sheet,
+    thickness: f64,
+    tier: Tier,
+    model: Panels,
+) -> Result<SheetShape, VerificationError> {
     let PlaneRecipe::Structured(plane) = tier.recipe().plane else {
         return Err(refused(format!(
             "the tier {tier} has no structured mesh: whole sheets are meshed with tiny, small, \
@@ -230,7 +238,7 @@ fn sheet_shape(sheet: &Sheet, thickness: f64, tier: Tier) -> Result<SheetShape, 
                     fault(format!("panel {panel}"), what, "choose another shape in [cells]")
                 };
                 let number = finished[panel].number_of(corner).ok_or_else(cut_off)?;
-                Ok::<_, VerificationError>(Some((panel, number)))
+                Ok::<_, VerificationError>((panel, number))
             };
             let regime = if SheetShape::bends_in_plane(design.w_lig, thickness) {
                 Regime::Plate
@@ -247,14 +255,27 @@ fn sheet_shape(sheet: &Sheet, thickness: f64, tier: Tier) -> Result<SheetShape, 
     );
     Ok(SheetShape {
         thickness,
+        model,
         windows: placed.collect::<Result<_, VerificationError>>()?,
         panels: (finished.into_iter())
             .map(|panel| PanelShape { corners: panel.corners(), marks: Vec::new() })
             .collect(),
         plane,
         layers: LAYERS,
+        half: false,
         element_size: ELEMENT_SIZE * smallest,
     })
+}
+
+/// Leaves the lower half to symmetry where panels are rigid and stay in the plane, and ligaments
+/// bend in it.
+fn halve(shape: &mut SheetShape) {
+    let bends =
+        |window: &PlacedWindow| SheetShape::bends_in_plane(window.design.w_lig, shape.thickness);
+    if shape.model == Panels::Rigid && shape.windows.iter().all(bends) {
+        (shape.half, shape.layers) = (true, LAYERS / 2);
+        shape.windows.iter_mut().for_each(|window| window.bump = 0.0);
+    }
 }
 
 /// Estimates from sheets of 13 000 and 51 000 unknowns on one core of a busy machine.

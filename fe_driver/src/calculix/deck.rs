@@ -6,8 +6,8 @@
 //! energy between *printed* increments and it would otherwise be wrong.
 
 use crate::{
-    DeformationPath, DrivenArc, PanelMotion, StepControl, even_lambdas, write_element,
-    write_increments, write_material, write_nodes, write_set,
+    DeformationPath, DrivenArc, StepControl, even_lambdas, write_element, write_increments,
+    write_material, write_motion, write_nodes, write_set,
 };
 use hinge::SheetMaterial;
 use mesher::WindowMesh;
@@ -31,15 +31,9 @@ pub fn deck(model: &WindowModel) -> String {
     write_set(d, "NSET", "BOTTOM", &mesh.bottom);
     write_material(d, model.material);
     add_line!(d, "*SOLID SECTION,ELSET=EALL,MATERIAL=SHEET");
-    let arc = DrivenArc {
-        nodes: &mesh.arc_b,
-        about: mesh.design.tip(),
-        drivers: [turner, mover],
-        amplitudes: "Q",
-    };
+    let arc = DrivenArc { nodes: &mesh.arc_b, about: mesh.design.tip(), drivers: [turner, mover] };
     arc.write_equations(d, &mesh.nodes);
-    let motion = |lambda| PanelMotion::new(&model.path.at(lambda));
-    arc.write_amplitudes(d, &lambdas(model.path), 1.0, motion);
+    write_motion(d, &lambdas(model.path), model.path);
     let turn = model.path.turn();
     write_step(d, model.step, turn.unwrap_or(1.0));
     add_line!(d, "*BOUNDARY\nARCA,1,3,0.\nARCB,3,3,0.\nCONTROL,3,3,0.");

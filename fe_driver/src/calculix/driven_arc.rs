@@ -1,10 +1,9 @@
-//! An arc of nodes that moves with a rigid panel: of a window, or where a part of a sheet is joined
-//! to the rest.
+//! An arc of a window that moves with a rigid panel.
 //!
 //! Two control nodes without elements carry the four amplitudes of the motion ([`PanelMotion`]);
 //! linear constraint equations couple the arc to them.
 
-use crate::{real, write_amplitude};
+use crate::{DeformationPath, real, write_amplitude};
 use hinge::{HingeDeformation, HingeForces};
 use support::add_line;
 
@@ -21,8 +20,6 @@ pub(crate) struct DrivenArc<'a> {
     pub about: [f64; 2],
     /// The control nodes of (q1, q2) and of (q3, q4), counted from 1.
     pub drivers: [usize; 2],
-    /// Name of its amplitudes, before their number.
-    pub amplitudes: &'a str,
 }
 
 impl DrivenArc<'_> {
@@ -43,29 +40,22 @@ impl DrivenArc<'_> {
         }
     }
 
-    /// The motion at given lambdas, in a step of the given duration.
-    pub(crate) fn write_amplitudes(
-        &self,
-        d: &mut String,
-        lambdas: &[f64],
-        duration: f64,
-        motion: impl Fn(f64) -> PanelMotion,
-    ) {
-        for i in 0..4 {
-            let pairs =
-                (lambdas.iter()).map(|lambda| [duration * lambda, motion(*lambda).amplitudes()[i]]);
-            write_amplitude(d, &format!("{}{}", self.amplitudes, i + 1), pairs);
-        }
-    }
-
     /// The boundary conditions of the control nodes in the plane.
     pub(crate) fn write_boundary(&self, d: &mut String) {
         let [turner, mover] = self.drivers;
         let freedoms = [(turner, 1), (turner, 2), (mover, 1), (mover, 2)];
         for (i, (node, freedom)) in freedoms.into_iter().enumerate() {
-            add_line!(d, "*BOUNDARY,AMPLITUDE={}{}", self.amplitudes, i + 1);
+            add_line!(d, "*BOUNDARY,AMPLITUDE=Q{}", i + 1);
             add_line!(d, "{node},{freedom},{freedom},1.");
         }
+    }
+}
+
+/// The motion along a path at given lambdas.
+pub(crate) fn write_motion(d: &mut String, lambdas: &[f64], path: &DeformationPath) {
+    for i in 0..4 {
+        let at = |lambda: &f64| [*lambda, PanelMotion::new(&path.at(*lambda)).amplitudes()[i]];
+        write_amplitude(d, &format!("Q{}", i + 1), lambdas.iter().map(at));
     }
 }
 
@@ -138,10 +128,7 @@ mod tests {
         let end = HingeDeformation { a: -1.0, s: 2.0, theta: 1.2 };
         let mut text = String::new();
         let path = DeformationPath::straight(end);
-        let arc = DrivenArc { nodes: &[], about: [0.0; 2], drivers: [1, 2], amplitudes: "Q" };
-        let lambdas: Vec<f64> = even_lambdas().collect();
-        let motion = |lambda| PanelMotion::new(&path.at(lambda));
-        arc.write_amplitudes(&mut text, &lambdas, 1.0, motion);
+        write_motion(&mut text, &even_lambdas().collect::<Vec<f64>>(), &path);
         let tables: Vec<Vec<f64>> = text
             .split("*AMPLITUDE,NAME=Q")
             .skip(1)

@@ -5,10 +5,9 @@
 //! increment, because CalculiX accumulates the total internal energy between *printed* increments.
 
 use crate::{
-    DrivenArc, Held, PanelMotion, SECONDS, SheetNodes, SheetProblem, even_lambdas, interpolated,
-    real, write_amplitude, write_element, write_increments, write_material, write_nodes, write_set,
+    GRAVITY, Held, SECONDS, STIFFNESS, SheetNodes, SheetProblem, real, write_amplitude,
+    write_element, write_increments, write_material, write_nodes, write_set,
 };
-use hinge::STANDARD_GRAVITY;
 use mesher::{ElementKind, Part, SheetMesh, SheetShape, Side};
 use support::add_line;
 
@@ -31,14 +30,14 @@ pub(crate) struct SheetModel<'a> {
     pub nodes: &'a SheetNodes,
 }
 
+/// Name of the set of nodes whose forces add up to the force of a support or of a load.
+pub(crate) fn force_set(index: usize) -> String {
+    format!("FORCE{index}")
+}
+
 /// Name of the set of a hinge's elements.
 pub(crate) fn hinge_set(hinge: usize) -> String {
     format!("H{hinge}")
-}
-
-/// Name of the amplitudes of a rim, before their number.
-fn rim_amplitudes(rim: usize) -> String {
-    format!("R{rim}Q")
 }
 
 impl SheetModel<'_> {
@@ -47,21 +46,20 @@ impl SheetModel<'_> {
         if self.problem.dynamic { SECONDS } else { 1.0 }
     }
 
+    /// How many times the sheet contains what is meshed.
+    pub(crate) fn copies(&self) -> f64 {
+        let shape = &self.problem.shape;
+        shape.thickness / shape.meshed_thickness()
+    }
+
     /// The node whose displacement is the stroke, counted from 0.
     fn control(&self) -> usize {
         self.mesh.nodes.len()
     }
 
-    /// The two nodes that drive a rim, counted from 0: their first two displacements are (cos phi -
-    /// 1, sin phi) and (u_x, u_y).
-    fn drivers(&self, rim: usize) -> [usize; 2] {
-        let first = self.control() + 1 + 2 * rim;
-        [first, first + 1]
-    }
-
     /// The first node below the table, counted from 0.
     fn ground(&self) -> usize {
-        self.drivers(self.problem.rims.len())[0]
+        self.control() + 1
     }
 
     /// The deck.
@@ -74,22 +72,19 @@ impl SheetModel<'_> {
         for (i, nodes) in self.nodes.held.iter().enumerate() {
             write_set(d, "NSET", &format!("HELD{i}"), nodes);
         }
-        write_set(d, "NSET", "HELD", &self.nodes.held.concat());
-        write_set(d, "NSET", "PULLED", &self.nodes.pulled);
+        for (i, nodes) in self.nodes.measured.iter().enumerate() {
+            write_set(d, "NSET", &force_set(i), nodes);
+        }
         write_material(d, &problem.material);
-        // kg/m^3 to t/mm^3.
-        let density = 1e-12 * problem.material.density_kg_m3;
-        add_line!(d, "*DENSITY\n{}", real(density));
+        add_line!(d, "*DENSITY\n{}", real(problem.density()));
         add_line!(d, "*SOLID SECTION,ELSET=EALL,MATERIAL=SHEET");
+        self.write_bodies(d);
         if problem.contact {
             self.write_contact(d);
         }
         self.write_table(d);
         self.write_stroke(d);
         self.write_history(d);
-        for rim in 0..self.problem.rims.len() {
-            self.write_rim(d, rim);
-        }
         add_line!(d, "*STEP,NLGEOM,INC={}", problem.step.max_increments);
         if problem.dynamic {
             add_line!(d, "*DYNAMIC,ALPHA={DAMPING}");
@@ -124,6 +119,19 @@ impl SheetModel<'_> {
             let elements = of(&|part| part == Part::Window(hinge));
             write_set(d, "ELSET", &hinge_set(hinge), &elements)
         })
+    }
+
+    /// Rigid panels, whose springs are the set PANELS.
+    fn write_bodies(&self, d: &mut String) {
+        let mut first = self.mesh.elements.len();
+        for body in &self.nodes.bodies {
+            first = body.write(d, first, self.mesh);
+        }
+        if !self.nodes.bodies.is_empty() {
+            // CalculiX 2.20 reads an empty line before the stiffness.
+            let stiffness = STIFFNESS * self.problem.material.young * self.problem.shape.thickness;
+            add_line!(d, "*SPRING,ELSET=PANELS\n\n{}", real(stiffness));
+        }
     }
 
     /// Contact of the flanks of every cut, without friction, as stiff as a strip of the material as
@@ -233,30 +241,6 @@ impl SheetModel<'_> {
         write_amplitude(d, "LOADS", in_time(history.loads))
     }
 
-    /// A rim, with the amplitudes `R<rim>Q1` to `R<rim>Q4`.
-    fn arc<'a>(&'a self, rim: usize, amplitudes: &'a str) -> DrivenArc<'a> {
-        DrivenArc {
-            nodes: &self.nodes.rims[rim],
-            about: self.problem.rims[rim].about,
-            drivers: self.drivers(rim).map(|node| node + 1),
-            amplitudes,
-        }
-    }
-
-    fn write_rim(&self, d: &mut String, rim: usize) {
-        let amplitudes = rim_amplitudes(rim);
-        let arc = self.arc(rim, &amplitudes);
-        let [turner, mover] = arc.drivers;
-        add_line!(d, "*NODE\n{turner},0.,0.,0.\n{mover},0.,0.,0.");
-        arc.write_equations(d, &self.mesh.nodes);
-        let motion = |lambda: f64| {
-            let [_, x, y, theta] = interpolated(&self.problem.rims[rim].path, lambda);
-            PanelMotion { theta, du: [x, y] }
-        };
-        let lambdas: Vec<f64> = even_lambdas().collect();
-        arc.write_amplitudes(d, &lambdas, self.duration(), motion)
-    }
-
     fn write_boundary(&self, d: &mut String) {
         for (i, Held { motion, .. }) in self.problem.held.iter().enumerate() {
             add_line!(d, "*BOUNDARY,AMPLITUDE=LOADS");
@@ -272,14 +256,6 @@ impl SheetModel<'_> {
             add_line!(d, "*BOUNDARY");
             self.nodes.flat.iter().for_each(|node| add_line!(d, "{},3,3,0.", node + 1));
         }
-        for (rim, nodes) in self.nodes.rims.iter().enumerate() {
-            let amplitudes = rim_amplitudes(rim);
-            let arc = self.arc(rim, &amplitudes);
-            let [turner, mover] = arc.drivers;
-            add_line!(d, "*BOUNDARY\n{turner},3,3,0.\n{mover},3,3,0.");
-            nodes.iter().for_each(|node| add_line!(d, "{},3,3,0.", node + 1));
-            arc.write_boundary(d);
-        }
         if let Some(stroke) = self.problem.stroke {
             let control = self.control() + 1;
             add_line!(d, "*BOUNDARY\n{control},2,3,0.");
@@ -292,24 +268,30 @@ impl SheetModel<'_> {
             let total = self.problem.total_load();
             add_line!(d, "*CLOAD,AMPLITUDE=LOADS");
             for (node, freedom, fraction) in self.loaded() {
-                add_line!(d, "{node},{freedom},{}", real(total * fraction));
+                let force = total * fraction / self.copies();
+                add_line!(d, "{node},{freedom},{}", real(force));
             }
         }
         if let Some([x, y, z]) = self.problem.down {
-            // m/s^2 to mm/s^2.
-            let gravity = real(1e3 * STANDARD_GRAVITY);
+            let gravity = real(GRAVITY);
             add_line!(d, "*DLOAD,AMPLITUDE=WEIGHT");
             add_line!(d, "EALL,GRAV,{gravity},{},{},{}", real(x), real(y), real(z));
+            if !self.nodes.bodies.is_empty() {
+                add_line!(d, "*CLOAD,AMPLITUDE=WEIGHT");
+            }
+            for body in &self.nodes.bodies {
+                for (axis, force) in body.weight([x, y, z]).into_iter().enumerate() {
+                    let force = force / self.copies();
+                    add_line!(d, "{},{},{}", body.centre() + 1, axis + 1, real(force));
+                }
+            }
         }
     }
 
     fn write_output(&self, d: &mut String) {
         add_line!(d, "*NODE PRINT,NSET=MIDDLE,FREQUENCY=1\nU");
-        if !self.nodes.pulled.is_empty() {
-            add_line!(d, "*NODE PRINT,NSET=PULLED,FREQUENCY=1\nRF");
-        }
-        if !self.nodes.held.is_empty() {
-            add_line!(d, "*NODE PRINT,NSET=HELD,FREQUENCY=1,TOTALS=ONLY\nRF");
+        for set in (0..self.nodes.measured.len()).map(force_set) {
+            add_line!(d, "*NODE PRINT,NSET={set},FREQUENCY=1,TOTALS=ONLY\nRF");
         }
         let hinges = (0..self.problem.shape.windows.len()).map(hinge_set);
         for set in hinges.chain(["PANELS".to_owned()]) {

@@ -1,7 +1,7 @@
 //! The nodes of a meshed sheet at which it is held, pulled and supported by a table.
 
-use crate::{Held, OutOfPlaneRestraint, Place, SheetProblem};
-use mesher::{Part, SheetMesh};
+use crate::{Held, OutOfPlaneRestraint, POINTS, Place, Pulled, RigidBody, SheetProblem};
+use mesher::{Panels, Part, SheetMesh};
 use std::collections::BTreeSet;
 use support::fault::Fault;
 
@@ -12,14 +12,16 @@ const ON_LINE: f64 = 1e-6;
 const SUPPORTED: f64 = 1.45;
 
 /// Nodes of a sheet problem; they count from 0.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct SheetNodes {
+    /// The rigid panels; none if panels are meshed.
+    pub bodies: Vec<RigidBody>,
     /// The nodes of each support, in the order of the problem.
     pub held: Vec<Vec<usize>>,
     /// The node of each load, in the middle of the thickness.
     pub pulled: Vec<usize>,
-    /// The nodes of each driven rim, in the order of the problem.
-    pub rims: Vec<Vec<usize>>,
+    /// The nodes whose forces add up to the force of each support, then of each load.
+    pub measured: Vec<Vec<usize>>,
     /// Nodes that cannot leave the plane, other than the nodes of supports.
     pub flat: Vec<usize>,
     /// Nodes of the lower face that a table supports.
@@ -28,32 +30,47 @@ pub(crate) struct SheetNodes {
 
 impl SheetNodes {
     pub(crate) fn new(problem: &SheetProblem, mesh: &SheetMesh) -> Result<Self, Fault> {
-        let mut held = Vec::with_capacity(problem.held.len());
-        for support in &problem.held {
-            held.push(mesh.through(&held_nodes(support, mesh)?));
+        let mut found = Self::default();
+        let is_rigid = problem.shape.model == Panels::Rigid;
+        if is_rigid {
+            // After the control node.
+            found.bodies = RigidBody::of_panels(problem, mesh, mesh.nodes.len() + 1);
         }
-        let pulled = problem.pulled.iter().map(|pulled| {
-            let nearest = mesh.nearest(Part::Panel(pulled.panel), pulled.at);
-            let node = nearest.ok_or_else(|| no_nodes(pulled.panel))?;
-            Ok(mesh.middle[node])
-        });
-        let pulled = pulled.collect::<Result<_, Fault>>()?;
-        let rims = problem.rims.iter().map(|rim| {
-            let nodes = mesh.rim(&problem.shape, rim.window, rim.side);
-            mesh.through(&nodes)
-        });
-        let rims: Vec<Vec<usize>> = rims.collect();
-        let fixed: BTreeSet<usize> = held.iter().chain(&rims).flatten().copied().collect();
-        let panels = || {
-            let panels = 0..problem.shape.panels.len();
-            panels.flat_map(|panel| mesh.plane_nodes(Part::Panel(panel)))
-        };
+        for support in &problem.held {
+            let nodes = match found.bodies.get(support.panel) {
+                Some(body) => body.held(support.place),
+                None => mesh.through(&held_nodes(support, mesh)?),
+            };
+            found.measure(support.panel, nodes.clone());
+            found.held.push(nodes);
+        }
+        for Pulled { panel, at, .. } in &problem.pulled {
+            let node = match found.bodies.get(*panel) {
+                Some(body) => body.first,
+                None => {
+                    let nearest = mesh.nearest(Part::Panel(*panel), *at);
+                    mesh.middle[nearest.ok_or_else(|| no_nodes(*panel))?]
+                }
+            };
+            found.measure(*panel, vec![node]);
+            found.pulled.push(node);
+        }
+        let fixed: BTreeSet<usize> = found.held.iter().flatten().copied().collect();
+        let panels = || mesh.panels.iter().flatten().copied();
+        let of_panels: BTreeSet<usize> = panels().collect();
         let unless_fixed = |nodes: BTreeSet<usize>| nodes.difference(&fixed).copied().collect();
-        let mut found = Self { held, pulled, rims, flat: Vec::new(), on_table: Vec::new() };
         match problem.restraint {
+            OutOfPlaneRestraint::HeldFlat if is_rigid => {
+                // The fourth point of a body follows the other three, as its arcs do.
+                let plane =
+                    found.bodies.iter().flat_map(|body| body.first..body.first + POINTS - 1);
+                let of_windows = (0..mesh.middle.len()).filter(|node| !of_panels.contains(node));
+                let symmetric = of_windows.filter(|_| problem.shape.half);
+                let plane = plane.chain(symmetric.map(|node| mesh.middle[node]));
+                found.flat = unless_fixed(plane.collect());
+            }
             OutOfPlaneRestraint::HeldFlat => {
-                let plane: BTreeSet<usize> = panels().collect();
-                let plane: Vec<usize> = plane.into_iter().collect();
+                let plane: Vec<usize> = of_panels.into_iter().collect();
                 found.flat = unless_fixed(mesh.through(&plane).into_iter().collect());
             }
             OutOfPlaneRestraint::Table => {
@@ -76,6 +93,13 @@ impl SheetNodes {
         }
         Ok(found)
     }
+
+    /// Forces at `nodes` of a panel are a support's or a load's; on a rigid panel forces at its
+    /// arcs.
+    fn measure(&mut self, panel: usize, nodes: Vec<usize>) {
+        let body = self.bodies.get(panel);
+        self.measured.push(body.map_or(nodes, |body| body.arcs.clone()))
+    }
 }
 
 fn no_nodes(panel: usize) -> Fault {
@@ -85,7 +109,7 @@ fn no_nodes(panel: usize) -> Fault {
 /// The plane nodes of a support.
 fn held_nodes(support: &Held, mesh: &SheetMesh) -> Result<Vec<usize>, Fault> {
     let part = Part::Panel(support.panel);
-    let all = mesh.plane_nodes(part);
+    let all = mesh.panels[support.panel].clone();
     let nodes = match support.place {
         Place::Panel => all,
         Place::Point(at) => mesh.nearest(part, at).into_iter().collect(),

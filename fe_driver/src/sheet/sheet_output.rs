@@ -1,6 +1,6 @@
 //! What CalculiX prints of a sheet in an increment.
 
-use crate::{Block, Printed, SheetModel, at_node, hinge_set, numbers};
+use crate::{Block, Printed, SheetModel, at_node, force_set, hinge_set, numbers};
 use mesher::{ElementKind, Part};
 
 /// What a complete increment of a sheet prints.
@@ -8,10 +8,9 @@ use mesher::{ElementKind, Part};
 pub(crate) struct SheetLayout {
     /// The nodes in the middle of the thickness, in their order.
     middle: Vec<usize>,
-    /// The loaded nodes.
-    pulled: Vec<usize>,
+    /// Number of supports and loads.
+    forces: usize,
     hinges: usize,
-    is_held: bool,
     /// Gauss points of each element of a window; 0 for the elements of panels.
     points: Vec<usize>,
     is_dynamic: bool,
@@ -25,10 +24,8 @@ pub(crate) struct SheetFrame {
     /// Displacements of the nodes in the middle of the thickness (mm), in the order of the plane
     /// nodes.
     pub displacements: Vec<[f64; 3]>,
-    /// Forces on the loaded nodes (N), in the order of the loads.
-    pub pulls: Vec<Option<[f64; 3]>>,
-    /// Sum of the reactions of the supports (N).
-    pub support_force: Option<[f64; 3]>,
+    /// Forces at the nodes of each support, then of each load (N).
+    pub forces: Vec<Option<[f64; 3]>>,
     /// Internal energy of each window, then of the panels (N mm).
     pub energies: Vec<Option<f64>>,
     /// Kinetic energy (N mm).
@@ -43,9 +40,8 @@ impl SheetLayout {
         let points = mesh.elements.iter().enumerate();
         Self {
             middle: mesh.middle.clone(),
-            pulled: model.nodes.pulled.clone(),
+            forces: model.nodes.measured.len(),
             hinges: model.problem.shape.windows.len(),
-            is_held: !model.nodes.held.is_empty(),
             points: points
                 .map(|(element, nodes)| match mesh.part(element) {
                     Part::Window(_) => ElementKind::of(nodes).gauss_points(),
@@ -58,11 +54,9 @@ impl SheetLayout {
 
     /// The place of a set of elements in [`SheetFrame::energies`].
     fn index(&self, set: &str) -> Option<usize> {
-        if set == "PANELS" {
-            return Some(self.hinges);
-        }
-        let hinge = set.strip_prefix('H')?.parse().ok()?;
-        (hinge < self.hinges && hinge_set(hinge) == set).then_some(hinge)
+        (0..self.hinges)
+            .find(|hinge| hinge_set(*hinge) == set)
+            .or((set == "PANELS").then_some(self.hinges))
     }
 }
 
@@ -92,20 +86,11 @@ impl Printed for SheetFrame {
                 }
                 self.displacements.push(values);
             }
-            Block::Reactions => {
-                let (node, force) = at_node(fields)?;
-                self.pulls.resize(layout.pulled.len(), None);
-                // Two loads at one point have the same node.
-                let mut known = false;
-                for (pull, loaded) in std::iter::zip(&mut self.pulls, &layout.pulled) {
-                    if *loaded == node {
-                        *pull = Some(force);
-                        known = true;
-                    }
-                }
-                return known.then_some(());
+            Block::TotalForce => {
+                self.forces.resize(layout.forces, None);
+                let index = (0..layout.forces).find(|index| force_set(*index) == set)?;
+                self.forces[index] = Some(numbers(fields)?);
             }
-            Block::TotalForce => self.support_force = Some(numbers(fields)?),
             Block::Energy => {
                 let [energy] = numbers(fields)?;
                 self.energies.resize(layout.hinges + 1, None);
@@ -125,7 +110,7 @@ impl Printed for SheetFrame {
                 }
                 strains.push(numbers::<1>(&[value])?[0]);
             }
-            Block::Stress => return None,
+            Block::Reactions | Block::Stress => return None,
         }
         Some(())
     }
@@ -133,9 +118,8 @@ impl Printed for SheetFrame {
     fn is_complete(&self, layout: &SheetLayout) -> bool {
         let strains = self.peeq.iter().map(Vec::len);
         self.displacements.len() == layout.middle.len()
-            && self.pulls.len() == layout.pulled.len()
-            && self.pulls.iter().all(Option::is_some)
-            && self.support_force.is_some() == layout.is_held
+            && self.forces.len() == layout.forces
+            && self.forces.iter().all(Option::is_some)
             && self.energies.len() == layout.hinges + 1
             && self.energies.iter().all(Option::is_some)
             && self.kinetic_energy.is_some() == layout.is_dynamic

@@ -6,14 +6,14 @@
 
 use crate::{StepControl, ToolVersions};
 use hinge::SheetMaterial;
-use mesher::{SheetShape, Side, Tier};
+use mesher::{Panels, SheetShape, Tier};
 use serde::{Deserialize, Serialize};
 use support::fault::{Fault, fault};
 use support::interpolation::piece;
 
 /// Version of the geometry, the input deck and the evaluation of sheets. It is increased when a
 /// change of the code changes results; solves of an older version are then stale.
-const RECIPE_VERSION: u32 = 2;
+const RECIPE_VERSION: u32 = 3;
 
 /// What keeps the panels in their plane.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -61,21 +61,6 @@ pub struct Pulled {
     pub force: [f64; 2],
 }
 
-/// The arc of a window on a panel that is not a part of the sheet, and the motion of that panel in
-/// the plane.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct DrivenRim {
-    /// Index of the window.
-    pub window: usize,
-    /// The panel of the window that is missing.
-    pub side: Side,
-    /// The point of the panel that its motion refers to, in the flat sheet (mm).
-    pub about: [f64; 2],
-    /// (lambda, u_x, u_y, phi), with lambda increasing from 0 to 1 and straight lines between (mm,
-    /// rad).
-    pub path: Vec<[f64; 4]>,
-}
-
 /// A sheet problem, without what solves it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SheetProblem {
@@ -92,9 +77,6 @@ pub struct SheetProblem {
     pub held: Vec<Held>,
     /// Loads.
     pub pulled: Vec<Pulled>,
-    /// Where a part of a sheet is joined to the rest; none in a whole sheet.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub rims: Vec<DrivenRim>,
     /// The stroke at the end of the path (mm) if it is prescribed: the work of the full loads over
     /// the sum of their magnitudes. Without it the loads grow.
     pub stroke: Option<f64>,
@@ -134,6 +116,8 @@ pub struct History {
     pub loads: Vec<[f64; 2]>,
 }
 
+/// Least area that points off one line span (mm^2).
+const LEAST_SPREAD: f64 = 1.0;
 /// The part of the path in which the weight comes on before the loads.
 const WEIGHT_FIRST: f64 = 0.1;
 /// The part of a dynamic path in which a table takes up the weight.
@@ -165,22 +149,40 @@ impl SheetProblem {
     /// An error if the problem has no solution.
     pub fn validate(&self) -> Result<(), Fault> {
         let moves = |held: &Held| held.motion.into_iter().flatten().any(|shift| shift != 0.0);
-        if self.total_load() == 0.0 && self.rims.is_empty() && !self.held.iter().any(moves) {
+        if self.total_load() == 0.0 && !self.held.iter().any(moves) {
             let remedy = "it needs a load, or a support that moves";
             return Err(fault("", "nothing pulls the sheet", remedy));
         }
-        if self.held.is_empty() && self.rims.is_empty() {
+        if self.held.is_empty() {
             return Err(fault("", "no panel is held", "the sheet is free to move"));
         }
-        let clamped = |held: &Held| !matches!(held.place, Place::Point(_));
-        if self.restraint == OutOfPlaneRestraint::Nothing
-            && self.rims.is_empty()
-            && !self.held.iter().any(clamped)
-        {
+        if self.restraint == OutOfPlaneRestraint::Nothing && !self.is_held_upright() {
             let what = "nothing keeps the sheet in its plane, and no panel is clamped";
-            return Err(fault("", what, "it would fall out of it; clamp a panel, or hold it flat"));
+            let remedy = "it would fall out of it; clamp a panel, pin three that are not on one line, or hold it flat";
+            return Err(fault("", what, remedy));
+        }
+        if self.shape.model == Panels::Rigid
+            && (self.contact || self.restraint == OutOfPlaneRestraint::Table)
+        {
+            let what = "rigid panels have no flanks that touch and do not rest on a table";
+            return Err(fault("", what, "use --sheet meshed"));
         }
         Ok(())
+    }
+
+    /// Whether its supports alone keep the sheet from turning out of its plane: a clamp, or points
+    /// that are not on one line.
+    fn is_held_upright(&self) -> bool {
+        let point = |held: &Held| match held.place {
+            Place::Point(at) => Some(at),
+            Place::Panel | Place::Line(_) => None,
+        };
+        let points: Option<Vec<[f64; 2]>> = self.held.iter().map(point).collect();
+        points.is_none_or(|points| {
+            let [x, y] = points[0];
+            let arms = points.iter().map(|point| [point[0] - x, point[1] - y]);
+            arms.clone().any(|p| arms.clone().any(|q| p[0] * q[1] - p[1] * q[0] > LEAST_SPREAD))
+        })
     }
 
     /// The sum of the magnitudes of the loads (N).
@@ -227,26 +229,19 @@ impl SheetProblem {
 impl History {
     /// The fraction of the loads at `lambda`.
     pub fn load_fraction(&self, lambda: f64) -> f64 {
-        interpolated(&self.loads, lambda)[1]
+        interpolated(&self.loads, lambda)
     }
 
-    /// The lambda at which a fraction of the loads is on, or of the weight if that comes on before
-    /// them.
-    pub fn lambda_of(&self, weight: f64, loads: f64) -> f64 {
-        let table = if weight < 1.0 { &self.weight } else { &self.loads };
-        let inverse: Vec<[f64; 2]> =
-            (table.iter()).map(|[lambda, fraction]| [*fraction, *lambda]).collect();
-        // The last lambda at which no load is on.
-        let from = inverse.iter().rposition(|[fraction, _]| *fraction == 0.0);
-        let wanted = if weight < 1.0 { weight } else { loads };
-        interpolated(&inverse[from.unwrap_or(0)..], wanted)[1]
+    /// The fraction of the weight at `lambda`.
+    pub(crate) fn weight_fraction(&self, lambda: f64) -> f64 {
+        interpolated(&self.weight, lambda)
     }
 }
 
-/// The values at `x` of a table of (x, values), with straight lines between.
-pub(crate) fn interpolated<const N: usize>(table: &[[f64; N]], x: f64) -> [f64; N] {
-    let (from, to, fraction) = piece(table, |row| row[0], x);
-    std::array::from_fn(|i| from[i] + fraction * (to[i] - from[i]))
+/// The value at `x` of a table of (x, value), with straight lines between.
+fn interpolated(table: &[[f64; 2]], x: f64) -> f64 {
+    let ([_, from], [_, to], fraction) = piece(table, |row| row[0], x);
+    from + fraction * (to - from)
 }
 
 impl SheetSolve {
@@ -269,8 +264,5 @@ mod tests {
         let at = |lambda| history.load_fraction(lambda);
         assert_eq!([at(0.0), at(0.05), at(0.1), at(1.0)], [0.0, 0.0, 0.0, 1.0]);
         assert!((at(0.55) - 0.5).abs() < 1e-15);
-        let of = |weight, loads| history.lambda_of(weight, loads);
-        assert!((of(0.5, 0.0) - 0.05).abs() < 1e-15 && (of(1.0, 0.5) - 0.55).abs() < 1e-15);
-        assert_eq!([of(1.0, 0.0), of(1.0, 1.0)], [0.1, 1.0]);
     }
 }

@@ -5,7 +5,7 @@ use crate::{
     SheetNodes, SheetProblem, SheetSolve, SheetStates, Solution, Solve, SolveError, SolveFolder,
     Solver, ToolVersions, states, time_reached,
 };
-use mesher::Tier;
+use mesher::{Panels, Tier};
 use std::fmt::Display;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
@@ -50,8 +50,10 @@ impl Solve for SheetSolve {
         _lambda: f64,
     ) -> Option<AttemptKind> {
         match (failure, attempt) {
+            // Rigid panels have no mass.
             (FailureKind::Diverged, AttemptKind::Requested) => {
-                (!self.problem.dynamic).then_some(AttemptKind::Dynamic)
+                let has_mass = self.problem.shape.model == Panels::Meshed;
+                (has_mass && !self.problem.dynamic).then_some(AttemptKind::Dynamic)
             }
             _ => None,
         }

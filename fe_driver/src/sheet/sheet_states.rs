@@ -36,9 +36,9 @@ pub struct SheetState {
     pub panel_energy: f64,
     /// Kinetic energy (N mm); zero on a static path.
     pub kinetic_energy: f64,
-    /// Resultant of the reactions of the supports (N), without the weight of what they hold
-    /// themselves.
-    pub support_force: [f64; 3],
+    /// Reaction of each support (N), without the weight of what it holds itself; zero along what it
+    /// leaves free in the plane.
+    pub support_forces: Vec<[f64; 3]>,
 }
 
 /// A panel: the rigid motion in space that its nodes outside of the windows follow best, and what
@@ -53,7 +53,7 @@ pub struct PanelState {
     pub rotation: [[f64; 3]; 3],
     /// Largest distance of a node from the rigid panel along its normal (mm).
     pub bending: f64,
-    /// Lowest and highest z of its nodes (mm).
+    /// Lowest and highest z of the outline of the rigid panel (mm).
     pub z: [f64; 2],
 }
 
@@ -71,7 +71,7 @@ pub struct HingeState {
 /// The middle surface of a sheet; indices count from 0.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct SheetSurface {
-    /// Corner nodes of its faces in the flat sheet, bumps included (mm).
+    /// Its nodes in the flat sheet, bumps included (mm).
     pub points: Vec<[f64; 3]>,
     /// Their displacements (mm).
     pub displacements: Vec<[f64; 3]>,

@@ -8,7 +8,7 @@ use fe_driver::{
     SolveService, SolveStore, Solver, WindowProblem, WindowSolve,
 };
 use hinge::{HingeDeformation, HingeDesign, SheetMaterial};
-use mesher::{Frame, MeshError, PanelShape, PlacedWindow, PlaneRecipe, SheetShape, Tier};
+use mesher::{Frame, MeshError, PanelShape, Panels, PlacedWindow, PlaneRecipe, SheetShape, Tier};
 use std::f64::consts::PI;
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
@@ -50,15 +50,17 @@ fn problem(keeping: OutOfPlaneRestraint, stroke: f64) -> SheetProblem {
     SheetProblem {
         shape: SheetShape {
             thickness: 0.1,
+            model: Panels::Meshed,
             panels: vec![panel(0.0, left), pulled],
             windows: vec![PlacedWindow {
                 design: design(),
                 frame: Frame { origin: [WIDTH, HEIGHT], e_x: [1.0, 0.0] },
-                panels: [Some((0, 2)), Some((1, 3))],
+                panels: [(0, 2), (1, 3)],
                 bump: 1.0,
             }],
             plane,
             layers: 2,
+            half: false,
             element_size: 12.0,
         },
         tier: Tier::Tiny,
@@ -66,7 +68,6 @@ fn problem(keeping: OutOfPlaneRestraint, stroke: f64) -> SheetProblem {
         restraint: keeping,
         held: vec![Held { panel: 0, place: Place::Panel, motion: [Some(0.0); 2] }],
         pulled: vec![Pulled { panel: 1, at, force: [2.0, 0.0] }],
-        rims: Vec::new(),
         stroke: Some(stroke),
         down: None,
         step: SheetProblem::usual_step(keeping, false),
@@ -123,7 +124,7 @@ fn a_hinge_of_a_sheet_held_flat_is_its_window() {
     let energy = total_energy(end);
     assert!((work - energy).abs() < 2e-3 * energy, "{work} {energy}");
     // The only horizontal force is the load; the reaction balances it.
-    assert!((end.support_force[0] + before[1]).abs() < 1e-3 * before[1]);
+    assert!((end.support_forces[0][0] + before[1]).abs() < 1e-3 * before[1]);
 
     let states: Vec<HingeDeformation> = sheet.states.iter().map(deformation).collect();
     let path = DeformationPath::through(&states).unwrap();
@@ -168,6 +169,47 @@ fn a_free_film_tilts() {
     assert!((end.load_factor / other.load_factor - 1.0).abs() < 1e-4);
 }
 
+/// A plate of 3 mm, whole or the half above its middle.
+#[test]
+fn rigid_panels_move_as_meshed_panels() {
+    let mut plate = problem(OutOfPlaneRestraint::HeldFlat, 4.0);
+    (plate.shape.thickness, plate.material.thickness) = (3.0, 3.0);
+    (plate.shape.windows[0].bump, plate.down) = (0.0, Some([0.0, -1.0, 0.0]));
+    let mut half = plate.clone();
+    (half.shape.half, half.shape.layers) = (true, 1);
+    for mut rigid in [plate.clone(), half] {
+        rigid.shape.model = Panels::Rigid;
+        let ends = [&plate, &rigid].map(|problem| solved(problem).states.pop().unwrap());
+        let [one, other] = &ends;
+        assert!((other.load_factor / one.load_factor - 1.0).abs() < 0.01, "{ends:?}");
+        let turned = one.panels[1].turn() - other.panels[1].turn();
+        assert!(turned.abs().to_degrees() < 0.1, "{ends:?}");
+        let [p, q] = ends.each_ref().map(|end| end.panels[1].moved([2.0 * WIDTH, 0.0]));
+        assert!(std::iter::zip(p, q).all(|(p, q)| (p - q).abs() < 0.1), "{p:?} {q:?}");
+        let [p, q] = ends.each_ref().map(|end| end.support_forces[0]);
+        assert!((p[0] - q[0]).hypot(p[1] - q[1]) < 0.02 * p[0].abs(), "{p:?} {q:?}");
+    }
+}
+
+/// A clamp and a screw that moves hold a plate on a board, with equal and opposite forces.
+#[test]
+fn a_screw_holds_a_plate_on_a_board() {
+    let mut mounted = problem(OutOfPlaneRestraint::Nothing, 0.0);
+    (mounted.shape.thickness, mounted.material.thickness) = (3.0, 3.0);
+    (mounted.shape.model, mounted.stroke) = (Panels::Rigid, None);
+    mounted.shape.windows[0].bump = 0.02;
+    mounted.pulled.clear();
+    let pin = |panel, at| Held { panel, place: Place::Point(at), motion: [Some(3.0), None] };
+    mounted.held.push(pin(1, [90.0, 10.0]));
+    let end = solved(&mounted).states.pop().unwrap();
+    let [x, _, z] = end.panels[1].moved([90.0, 10.0]);
+    assert!((x - 93.0).abs() < 1e-3 && z.abs() < 1e-3, "{x} {z}");
+    let [one, other] = [0, 1].map(|support| end.support_forces[support][0]);
+    assert!(other > 0.1 && (one + other).abs() < 1e-3 * other, "{one} {other}");
+    mounted.held = [[10.0, 10.0], [10.0, 50.0], [90.0, 10.0]].map(|at| pin(0, at)).to_vec();
+    assert_eq!(mounted.validate(), Ok(()));
+}
+
 /// A sheet on a table sinks by its weight over the stiffness of the table's springs, and the table
 /// carries its weight.
 #[test]
@@ -194,7 +236,7 @@ fn weight_in_the_plane_comes_on_before_the_stroke() {
     let by_area = thin().weight_by_area();
     let panel = by_area * WIDTH * HEIGHT;
     let window = by_area * 0.25 * PI * design().r_win.powi(2);
-    let [_, up, _] = end.support_force;
+    let [_, up, _] = end.support_forces[0];
     assert!((panel..panel + window).contains(&up), "{up} {panel}");
 }
 

@@ -1,9 +1,9 @@
-//! The mesh of a sheet: the structured mesh of every window, and one surface a panel between
-//! windows and edges.
+//! The mesh of a sheet: the structured mesh of every window, and unless panels are rigid, one
+//! surface a panel between windows and edges.
 
 use super::Script;
 use super::structured::{self, Rim};
-use crate::{Frame, PlacedWindow, SheetShape, Window, cross, dot, minus, unit};
+use crate::{Frame, Panels, PlacedWindow, SheetShape, Window, cross, dot, minus, unit};
 use support::add_line;
 
 /// Largest distance of a point on the edge of a panel from it (mm).
@@ -31,14 +31,13 @@ pub(crate) fn sheet_script(shape: &SheetShape) -> Result<String, String> {
         let curves = structured::add(&mut geo, &Window(&window.design), &shape.plane);
         faces.push(first..=geo.patches);
         let sides = [curves.rim_a, curves.rim_b];
-        for (rim, place) in std::iter::zip(sides, window.panels) {
-            if let Some((panel, corner)) = place {
-                let ends = rim.ends.map(|end| window.frame.point(end));
-                rims[panel][corner] = Some(Arc { number, rim, ends });
-            }
+        for (rim, (panel, corner)) in std::iter::zip(sides, window.panels) {
+            let ends = rim.ends.map(|end| window.frame.point(end));
+            rims[panel][corner] = Some(Arc { number, rim, ends });
         }
     }
     geo.frame = Frame::default();
+    rims.retain(|_| shape.model == Panels::Meshed);
     for (panel, rims) in rims.into_iter().enumerate() {
         let outline = PanelOutline { shape, panel, rims };
         let surface = outline.add(&mut geo)?;

@@ -86,7 +86,7 @@ pub(super) fn add(geo: &mut Script, window: &Window, recipe: &Structured) -> Win
     let growth = (design.r_win / (inner_radius(design.fillet_ratio) * design.w_lig))
         .powf(1.0 / recipe.outer_rings as f64);
     let mut rim = |side, start: usize| {
-        let positions = panel_arc(window, side, design.r_win, recipe.arc_columns);
+        let positions = window.panel_arc(side, design.r_win, recipe.arc_columns);
         let points = geo.points(&positions);
         let rays = geo.rays(&outer_ids[start..], &points, recipe.outer_rings, |_| growth);
         let arcs = geo.arcs(centre, &points);
@@ -177,33 +177,10 @@ fn inner_half_disc(window: &Window, recipe: &Structured) -> Vec<[f64; 2]> {
         let xi = 1.0 - 2.0 * i as f64 / recipe.edge_columns as f64;
         [radius * (k * xi).sinh() / k.sinh(), 0.0]
     });
-    let mut rim = panel_arc(window, Side::B, radius, recipe.arc_columns);
+    let mut rim = window.panel_arc(Side::B, radius, recipe.arc_columns);
     rim.extend(edge);
-    rim.extend(panel_arc(window, Side::A, radius, recipe.arc_columns));
+    rim.extend(window.panel_arc(Side::A, radius, recipe.arc_columns));
     rim
-}
-
-/// Points at equal angles on one panel's part of the circle `radius`, counter-clockwise.
-fn panel_arc(window: &Window, side: Side, radius: f64, columns: usize) -> Vec<[f64; 2]> {
-    let kerf = window.kerf_at_radius(side, radius);
-    let (from, to) = match side {
-        Side::B => (polar_angle(kerf), 0.0),
-        Side::A => (-PI, polar_angle(kerf)),
-    };
-    let at = |j: usize| {
-        let angle = from + (to - from) * j as f64 / columns as f64;
-        [radius * angle.cos(), radius * angle.sin()]
-    };
-    let mut points: Vec<_> = (0..=columns).map(at).collect();
-    // The end points are set exactly, so that the free edge is straight and the kerf faces are
-    // flat.
-    let (free, cut) = match side {
-        Side::B => (columns, 0),
-        Side::A => (0, columns),
-    };
-    points[free] = [radius.copysign(points[free][0]), 0.0];
-    points[cut] = kerf;
-    points
 }
 
 /// Corners of the columns on the circle of radius `rho` (mm) about the tip: a blend of the

@@ -9,6 +9,7 @@ use app::progress::{announce, duration, watched};
 use app::{output_file, picture, run_folder};
 use design::pattern::design_vector::DesignVector;
 use fe_driver::{SheetSolve, Solve, sheet_reached};
+use mesher::Panels;
 use output::drawing::{Surface, View, surface};
 use scene::{Posture, Scene};
 use std::time::Duration;
@@ -26,13 +27,9 @@ pub(super) fn support(text: &str) -> Result<Posture, String> {
         .map_err(|_| "choose held-flat, mounted, lying, hanging or free".to_owned())
 }
 
-/// Reads the value of `--patch`.
-pub(super) fn panel(text: &str) -> Result<[usize; 2], String> {
-    let numbers: Result<Vec<usize>, _> = text.split(',').map(|n| n.trim().parse()).collect();
-    numbers
-        .ok()
-        .and_then(|numbers| numbers.try_into().ok())
-        .ok_or_else(|| "write a column and a row, counted from 0, such as 3,2".to_owned())
+/// Reads the value of `--sheet`.
+pub(super) fn panels(text: &str) -> Result<Panels, String> {
+    serde_json::from_value(text.into()).map_err(|_| "choose rigid or meshed".to_owned())
 }
 
 impl VerifyCommand {
@@ -42,9 +39,10 @@ impl VerifyCommand {
         scene: &Scene,
         design: &DesignVector,
         name: &str,
+        panels: Panels,
     ) -> Result<()> {
         let tier = self.tier.unwrap_or_else(|| usual_sheet_tier(scene));
-        let task = SheetTask::new(scene, design, self.support, tier, self.patch);
+        let task = SheetTask::new(scene, design, self.support, tier, panels);
         let mut task = task.map_err(task_error)?;
         task.contact = self.contact;
         let calculix = FeSolver::find()?;
@@ -92,7 +90,7 @@ impl VerifyCommand {
         match memory::available_mib() {
             Some(available) if needed > available => Err(anyhow!(
                 "the solve needs about {needed:.0} MiB of memory, and {available:.0} MiB are available: use a coarser --tier, or \
-                 a part of the sheet"
+                 rigid panels"
             )),
             _ => Ok(()),
         }
