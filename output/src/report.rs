@@ -69,8 +69,8 @@ pub struct Report {
     pub facts: Vec<Fact>,
     /// How the sheet is mounted on a board; `None` if it is not.
     pub mounting: Option<Mounting>,
-    /// Load and stroke at the end of the path; `None` without equilibrium, or if nothing moves the
-    /// sheet.
+    /// Load and stroke at the end of the path; `None` without equilibrium, of a mounted sheet, and if
+    /// nothing moves the sheet.
     #[serde(skip)]
     pub reached: Option<Reached>,
     /// How much of the hinges is modelled.
@@ -142,14 +142,18 @@ impl Report {
         force: bool,
     ) -> Self {
         let (deployment, problem) = (&designed.best.deployment, &designed.problem);
+        let mounting = Mounting::new(scene, problem, deployment);
+        // A mean over fasteners says nothing of one.
+        let reached =
+            mounting.is_none().then(|| Reached::new(scene, problem, deployment)).flatten();
         let run = FinishedRun {
             designed,
             after: Scores::new(&problem.objective, &designed.best),
             seen: seen(scene, deployment),
             checks,
-            mounting: Mounting::new(scene, problem, deployment),
+            mounting,
             changes: what_if(scene, problem, &designed.search.best, deployment),
-            reached: Reached::new(scene, problem, deployment),
+            reached,
         };
         let hinges = HingeRow::all(scene, deployment);
         let mut deployed = DeployedDesign {

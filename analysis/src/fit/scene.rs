@@ -17,8 +17,8 @@ use design::sheet::topology::Topology;
 use faer::c64;
 use hinge::Regime;
 use scene::{
-    At, CellsConfig, Level, Posture, PostureConfig, Scene, SceneConfig, SceneError, StartConfig,
-    SupportConfig, SupportKind, rounded,
+    At, CellsConfig, Level, Posture, PostureConfig, Scene, SceneConfig, StartConfig, SupportConfig,
+    SupportKind, rounded,
 };
 
 /// The largest opening that is planned (rad): 60 degrees.
@@ -66,8 +66,6 @@ pub struct FittedScene {
 #[derive(Debug, thiserror::Error)]
 #[allow(missing_docs, reason = "the message of a variant is its documentation")]
 pub enum FitError {
-    #[error(transparent)]
-    Scene(#[from] SceneError),
     #[error(
         "the sheet has pins (level = \"pin\"): its search is on pins already; a fit is for a sheet with a hinge law"
     )]
@@ -103,7 +101,7 @@ pub fn fitted(scene: &Scene) -> Result<FittedScene, FitError> {
     let lost = lost(&sheet);
     let size = sheet.size(&target);
     let kept_by = lost.first().and_then(|_| kept_by(&target, size, limits));
-    let (config, held) = fasten(scene, &sheet, &topology, side)?;
+    let (config, held) = fasten(scene, &sheet, &topology, side);
     Ok(FittedScene {
         config,
         held,
@@ -180,13 +178,15 @@ fn fasten(
     sheet: &EvenSheet,
     topology: &Topology,
     side: f64,
-) -> Result<(SceneConfig, Option<Held>), SceneError> {
+) -> (SceneConfig, Option<Held>) {
     let laid = LaidSheet::new(sheet, topology, side);
     let mut best: Option<(SceneConfig, Held)> = None;
     for count in COUNTS {
         let config = laid.keys(scene, sheet, &fastened(topology, count));
         let [flat, even] = [0.0, laid.opened].map(|opened| laid.middles(opened));
-        let Some(held) = Held::of(&scene.changed(config.clone())?, &flat, &even) else { continue };
+        // A sheet that is refused is not balanced: what is seen of its target says more.
+        let changed = scene.changed(config.clone()).ok();
+        let Some(held) = changed.and_then(|scene| Held::of(&scene, &flat, &even)) else { continue };
         let suffices = held.suffices();
         if suffices || best.as_ref().is_none_or(|(_, best)| held.off < best.off) {
             best = Some((config, held));
@@ -196,10 +196,10 @@ fn fasten(
         }
     }
     let most = fastened(topology, COUNTS[COUNTS.len() - 1]);
-    Ok(match best {
+    match best {
         Some((config, held)) => (config, Some(held)),
         None => (laid.keys(scene, sheet, &most), None),
-    })
+    }
 }
 
 /// An even sheet in the coordinates of its scene: turned back, so that the drawing stands upright,

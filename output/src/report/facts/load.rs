@@ -13,10 +13,7 @@ use scene::{FRICTION, Posture};
 use surrogate::SpringbackErrors;
 
 pub(super) fn load_and_stroke(of: &DeployedDesign, run: &FinishedRun) -> Vec<Fact> {
-    // A mean over fasteners says nothing of one.
-    let Some(reached) = run.reached.as_ref().filter(|_| run.mounting.is_none()) else {
-        return Vec::new();
-    };
+    let Some(reached) = &run.reached else { return Vec::new() };
     let [length, force] = reached.units;
     let last = of.deployment.final_step();
     let early = last.status == Status::Diverged;
