@@ -55,9 +55,9 @@ fn fastened(held: &Held) -> String {
         format!("; between them panels stay in the plane up to {margin:.1} times the forces")
     });
     let enough = if held.suffices() {
-        ", the fewest of 3, 4, 6, 8, 12 and 16 that suffice"
+        ", the fewest of 3, 4, 6, 8, 12, 16 and 24 that suffice"
     } else {
-        ", and none of 3 to 16 suffices"
+        ", and none of 3 to 24 suffices"
     };
     format!(
         "{count} fasteners hold it{enough}: panels {off:.2} % of the longer side from the even opening (root mean square), \

@@ -11,7 +11,7 @@ use std::collections::VecDeque;
 use support::statistics::rms_and_maximum;
 
 /// Numbers of fasteners that are tried.
-pub(super) const COUNTS: [usize; 6] = [3, 4, 6, 8, 12, 16];
+pub(super) const COUNTS: [usize; 7] = [3, 4, 6, 8, 12, 16, 24];
 /// Distance of the panels from the even opening over the longer side of the sheet, root mean square,
 /// up to which fasteners suffice.
 const EVEN: f64 = 0.002;
