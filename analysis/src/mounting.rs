@@ -19,16 +19,16 @@ const ROUND: f64 = 10.0;
 const SAFETY: f64 = 2.0;
 
 /// The fasteners of a mounted sheet in the order in which they are put in.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Mounting {
     /// Up to the first whose hole does not reach its place.
     pub fasteners: Vec<Fastener>,
     /// Number of fasteners.
     pub count: usize,
-    /// Largest distance of a panel corner from where the sheet ends if all holes move at once (mm).
+    /// Largest distance of a panel corner from where the sheet ends if all holes move at once (mm);
+    /// infinite if a hole does not reach its place.
     pub apart: f64,
     /// The motions of the panels of the opened sheet on the board.
-    #[serde(skip)]
     pub opened: Configuration,
 }
 

@@ -144,7 +144,7 @@ impl Unchanged<'_> {
         );
         ChangedSheet {
             seen: seen(self.scene, &response.deployment),
-            corners: rms_and_maximum(off.into_iter()),
+            corners: rms_and_maximum(off),
             openings: [designed, changed].map(|step| step.mean_opening()),
         }
     }

@@ -13,7 +13,7 @@ use scene::{Paper, Scene};
 use serde::Serialize;
 use std::fmt::{self, Display, Formatter};
 use std::path::{Path, PathBuf};
-use support::nearest::nearest;
+use support::nearest::unknown;
 use support::severity::Severity;
 
 /// A design that may be cut.
@@ -205,13 +205,8 @@ pub struct MachineFile {
 /// The machine with a name.
 pub fn machine_named<'a>(machines: &'a Machines, name: &str) -> Result<&'a Machine> {
     let machine = machines.machine.iter().find(|machine| machine.name == name);
-    machine.with_context(|| {
-        let known = machines.machine.iter().map(|machine| &*machine.name);
-        let known: Vec<&str> = known.collect();
-        let near = nearest(name, known.iter().copied());
-        let near = near.map_or(String::new(), |near| format!("; did you mean {near}?"));
-        format!("unknown machine {name}: use {}{near}", known.join(", "))
-    })
+    let known = machines.machine.iter().map(|machine| &*machine.name);
+    machine.with_context(|| unknown("machine", name, known))
 }
 
 /// Writes the DXF and the SVG of a drawing.

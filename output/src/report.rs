@@ -68,6 +68,7 @@ pub struct Report {
     /// on.
     pub facts: Vec<Fact>,
     /// How the sheet is mounted on a board; `None` if it is not.
+    #[serde(skip)]
     pub mounting: Option<Mounting>,
     /// Load and stroke at the end of the path; `None` without equilibrium, of a mounted sheet, and if
     /// nothing moves the sheet.

@@ -10,6 +10,14 @@ pub fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Opti
         .map(|(_, candidate)| candidate)
 }
 
+/// What is wrong with the name of a thing, such as a machine, that is none of `known`.
+pub fn unknown<'a>(what: &str, name: &str, known: impl IntoIterator<Item = &'a str>) -> String {
+    let known: Vec<&str> = known.into_iter().collect();
+    let near = nearest(name, known.iter().copied());
+    let near = near.map_or(String::new(), |near| format!("; did you mean {near}?"));
+    format!("unknown {what} {name}: use {}{near}", known.join(", "))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -6,7 +6,7 @@ use design::sheet::cutting_process::Hole;
 use output::cut_file::{Features, Machines};
 use scene::SceneConfig;
 use std::f64::consts::FRAC_PI_2;
-use support::nearest::nearest;
+use support::nearest::unknown;
 
 /// What is added to the limits of a service (mm).
 const ROOM: f64 = 0.05;
@@ -17,12 +17,8 @@ const NARROWEST: f64 = 0.95;
 pub(super) fn for_service(config: &mut SceneConfig, name: &str, thickness: f64) -> Result<()> {
     let services = Machines::shipped().service;
     let service = services.iter().find(|service| service.name == name);
-    let service = service.with_context(|| {
-        let known: Vec<&str> = services.iter().map(|service| &*service.name).collect();
-        let near = nearest(name, known.iter().copied());
-        let near = near.map_or(String::new(), |near| format!("; did you mean {near}?"));
-        format!("unknown service {name}: use {}{near}", known.join(", "))
-    })?;
+    let known = services.iter().map(|service| &*service.name);
+    let service = service.with_context(|| unknown("service", name, known))?;
     let least = service.limits(thickness);
     let [narrowest, widest] = config.ligament.range;
     let process = &mut config.process;

@@ -23,12 +23,13 @@ pub(crate) fn step(number: usize, of: &Fastener) -> String {
     if number == 1 {
         return format!("1: fasten panel P{panel} at place 1, free to turn");
     }
+    let outside = match of.outside {
+        1 => "1 hinge leaves".to_owned(),
+        count => format!("{count} hinges leave"),
+    };
     let damage = match of.damage {
         _ if of.outside > 0 => {
-            format!(
-                "; {} hinges leave the training domain on the way: move the panels next to it along",
-                of.outside
-            )
+            format!("; {outside} the training domain on the way: move the panels next to it along")
         }
         Some(damage) => format!("; largest damage on the way {}", rounded(damage, 2)),
         None => String::new(),
