@@ -296,7 +296,7 @@ fn a_silhouette_becomes_a_cut_file_without_another_control() {
     tab.wait(fit);
     let fitted = tab.value(figure);
     tab.click("#design");
-    tab.wait(&says("left", "best so far"));
+    tab.wait(FOUND);
     reload(&mut tab, &studio);
     tab.wait(FOUND);
     // An even pattern needs no search.

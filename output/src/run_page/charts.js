@@ -105,7 +105,7 @@ function nameLines(svg, names, x, top, bottom) {
 }
 
 function drawCurve(state) {
-  if (!states.curve) return;
+  if (!states.curve || !run.stroke) return;
   const [what, [length, force]] = run.stroke;
   const points = states.curve.filter(Boolean);
   const jumps = states.curve.filter((point, i) => point && states.status[states.index.indexOf(i)] === "limit-point");

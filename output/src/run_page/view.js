@@ -13,7 +13,7 @@ function stateName(i) {
 function stateText(i) {
   const parts = [stateName(i)];
   if (run.carries_load) parts.push(`load factor ${shown(states.load_factor[i])}`);
-  if (states.curve?.[states.index[i]]) {
+  if (run.stroke && states.curve?.[states.index[i]]) {
     const [displacement, load] = states.curve[states.index[i]];
     const [length, force] = run.stroke[1];
     parts.push(`load ${shown(load)} ${force}`, `${length === "rad" ? "rotation" : "stroke"} ${shown(displacement)} ${length}`);
@@ -59,7 +59,7 @@ function writeTexts() {
   byId("scene").textContent = run.scene;
   byId("legend").textContent = legend();
   byId("forces-card").hidden = run.actuation.loads.length + run.actuation.supports.length === 0;
-  byId("curve-card").hidden = !states.curve;
+  byId("curve-card").hidden = !states.curve || !run.stroke;
 }
 
 function writeBudget() {
