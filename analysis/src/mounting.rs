@@ -43,7 +43,7 @@ pub struct Fastener {
     pub place: [f64; 2],
     /// The way of its hole to that place when it is put in (mm).
     pub way: [f64; 2],
-    /// Greatest force of the hand on that way (N).
+    /// Largest force of the hand on that way (N).
     pub pull: f64,
     /// Force that it holds in the end (N).
     pub holds: f64,

@@ -1,5 +1,6 @@
 //! What becomes of a deployed sheet if one thing is not as designed: it is balanced again.
 
+use design::equilibrium::warm_start::WarmStart;
 use design::objective::design_problem::{Deployment, DesignProblem};
 use design::objective::response::{Conditions, Response};
 use design::pattern::design_vector::{DesignVector, WidthChart};
@@ -43,6 +44,8 @@ struct Unchanged<'a> {
     problem: &'a DesignProblem,
     design: &'a DesignVector,
     deployment: &'a Deployment,
+    /// Its path, from which the changed sheets are corrected.
+    known: WarmStart,
 }
 
 /// The changes of a design whose fasteners or dead loads open it; none for other sheets.
@@ -53,7 +56,8 @@ pub fn what_if(
     deployment: &Deployment,
 ) -> Vec<WhatIf> {
     let Some(mechanics) = problem.model.mechanics() else { return Vec::new() };
-    let of = Unchanged { scene, problem, design, deployment };
+    let known = deployment.warm_start();
+    let of = Unchanged { scene, problem, design, deployment, known };
     let percent = |part: f64| format!("{:.0} %", 100.0 * part);
     let [less, more] = [-1.0, 1.0];
     let stresses = [less, more].map(|sign| {
@@ -130,8 +134,7 @@ impl Unchanged<'_> {
         problem: Option<DesignProblem>,
         design: &DesignVector,
     ) -> Option<WhatIf> {
-        let known = self.deployment.warm_start();
-        let response = problem?.response(design, Some(&known)).ok();
+        let response = problem?.response(design, Some(&self.known)).ok();
         Some(WhatIf { change, end: response.map(|response| self.end(&response)) })
     }
 

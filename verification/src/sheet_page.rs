@@ -78,14 +78,14 @@ impl SheetCheck {
         page.table(self.panel_table());
     }
 
-    /// Median and greatest of the forces of the supports.
+    /// Median and largest of the forces of the supports.
     fn support_forces(&self) -> String {
         let [by_law, by_elements] = self.supports.each_ref().map(|forces| {
             if forces.is_empty() {
                 return "not known".to_owned();
             }
-            let greatest = forces.iter().copied().fold(0.0, f64::max);
-            format!("median {:.3} N, greatest {greatest:.3} N", median(forces.clone()))
+            let largest = forces.iter().copied().fold(0.0, f64::max);
+            format!("median {:.3} N, largest {largest:.3} N", median(forces.clone()))
         });
         format!("Forces of supports: {by_elements}; by law {by_law}.")
     }

@@ -32,7 +32,7 @@ pub struct Held {
     /// Distance of the middles of the panels from the even opening over the longer side of the
     /// sheet, root mean square.
     pub off: f64,
-    /// Greatest force of a fastener (N).
+    /// Largest force of a fastener (N).
     pub force: f64,
     /// Part of the force that the edge of its hole bears.
     pub of_borne: f64,

@@ -13,7 +13,6 @@ use design::geometry::region::Region;
 use design::geometry::similarity::Similarity;
 use design::pattern::grid::Grid;
 use design::sheet::topology::Topology;
-
 use faer::c64;
 use hinge::Regime;
 use scene::{
@@ -180,10 +179,10 @@ fn fasten(
     side: f64,
 ) -> (SceneConfig, Option<Held>) {
     let laid = LaidSheet::new(sheet, topology, side);
+    let [flat, even] = [0.0, laid.opened].map(|opened| laid.middles(opened));
     let mut best: Option<(SceneConfig, Held)> = None;
     for count in COUNTS {
         let config = laid.keys(scene, sheet, &fastened(topology, count));
-        let [flat, even] = [0.0, laid.opened].map(|opened| laid.middles(opened));
         // A sheet that is refused is not balanced: what is seen of its target says more.
         let changed = scene.changed(config.clone()).ok();
         let Some(held) = changed.and_then(|scene| Held::of(&scene, &flat, &even)) else { continue };
@@ -195,10 +194,12 @@ fn fasten(
             break;
         }
     }
-    let most = fastened(topology, COUNTS[COUNTS.len() - 1]);
     match best {
         Some((config, held)) => (config, Some(held)),
-        None => (laid.keys(scene, sheet, &most), None),
+        None => {
+            let most = fastened(topology, COUNTS[COUNTS.len() - 1]);
+            (laid.keys(scene, sheet, &most), None)
+        }
     }
 }
 
@@ -209,13 +210,13 @@ struct LaidSheet<'a> {
     grid: Grid,
     /// The first cell of the grid.
     first: c64,
-    /// From sides of a panel to mm, turned back.
+    /// The map from sides of a panel to mm, turned back.
     back: c64,
     /// Lower left corner before it is at the origin (mm).
     low: c64,
     /// The middle of all panels, which stays (sides of a panel).
     middle: c64,
-    /// By how much the distances of panels grow, relative to them.
+    /// The growth of the distances of panels, relative to them.
     opened: f64,
 }
 
@@ -239,7 +240,7 @@ impl<'a> LaidSheet<'a> {
         self.first + complex(self.topology.places[panel].map(|i| i as f64 + 0.5))
     }
 
-    /// From the pattern to the sheet (mm).
+    /// A point of the pattern in the sheet (mm).
     fn in_sheet(&self, at: c64) -> [f64; 2] {
         point(self.back * (at - self.first) - self.low)
     }

@@ -27,7 +27,7 @@ pub struct MountingStep {
     pub panel: usize,
     /// The way of its hole to its place (mm); zero for the first one.
     pub way: [f64; 2],
-    /// Greatest force of the hand on the way (N).
+    /// Largest force of the hand on the way (N).
     pub force: f64,
     /// The equilibria on the way; none for the first one. It ends early if no equilibrium is
     /// found.
@@ -189,7 +189,7 @@ mod tests {
                 assert!((at - support.value).abs() < 1e-9, "{support:?}: {at}");
             }
         }
-        // The work of a hand that begins without a force is at most its greatest force times way.
+        // The work of a hand that begins without a force is at most its largest force times way.
         assert!(steps[1].force > 0.0 && steps[1].way[0].hypot(steps[1].way[1]) > 10.0);
         let at_once = solver.path(hinged).pop().unwrap().configuration;
         let last = &steps[2].end;

@@ -11,7 +11,7 @@ use design::sheet::kinematics::deployed_boundaries;
 const ARM: f64 = 8.0;
 /// Height of a number, and its distance from the cross (mm).
 const NUMBER: f64 = 6.0;
-const BESIDE: f64 = 3.0;
+const ASIDE: f64 = 3.0;
 
 /// The board, at 1:1 in the coordinates of `deployed.dxf`.
 pub(crate) fn board(sheet: &Sheet, mounting: &Mounting) -> CutDrawing {
@@ -33,7 +33,7 @@ pub(crate) fn board(sheet: &Sheet, mounting: &Mounting) -> CutDrawing {
         if radius > 0.0 {
             drawing.add(Layer::Attachments, Shape::Circle { centre, radius });
         }
-        let at = centre.map(|x| x + BESIDE);
+        let at = centre.map(|x| x + ASIDE);
         drawing.add(Layer::Attachments, Shape::Text(Text::line(at, NUMBER, &(i + 1).to_string())));
     }
     drawing
