@@ -1,6 +1,7 @@
 //! The chain from cut pattern to design gradient: reference cases, closed forms, Taylor tests,
 //! extreme input.
 
+mod authors;
 mod cases;
 mod closed_forms;
 mod driven;
