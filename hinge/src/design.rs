@@ -123,8 +123,15 @@ impl HingeDesign {
         Self { alpha: PI - self.alpha, ..*self }
     }
 
-    /// Rejects a design that cannot be cut; the error names the violated inequality.
+    /// Rejects a hinge of a sheet that cannot be cut; the error names the violated inequality.
     pub fn validate(&self) -> Result<(), InvalidDesign> {
+        self.validate_coupon()?;
+        self.exceeds_radius(MIN_WINDOW)
+    }
+
+    /// Rejects a coupon that cannot be cut. Its grips may be closer to the ligament than the other
+    /// panels of a sheet.
+    pub fn validate_coupon(&self) -> Result<(), InvalidDesign> {
         let Self { w_lig, alpha, fillet_ratio, kerf, r_win } = *self;
         let refuse = |what: String| Err(Fault::from(what).into());
         let named = ["w_lig", "alpha", "fillet_ratio", "kerf", "r_win"];
@@ -151,13 +158,17 @@ impl HingeDesign {
         if kerf <= 0.0 || kerf >= limit {
             return Err(InvalidDesign::Kerf { kerf, limit });
         }
-        let limit = MIN_WINDOW * w_lig;
-        if r_win <= limit {
-            return refuse(format!(
-                "r_win = {r_win} mm violates r_win > {MIN_WINDOW} w_lig = {limit} mm"
-            ));
+        self.exceeds_radius(1.0 + 2.0 * fillet_ratio)
+    }
+
+    /// An error unless the radius of the window exceeds `minimum` ligament widths.
+    fn exceeds_radius(&self, minimum: f64) -> Result<(), InvalidDesign> {
+        let (r_win, limit) = (self.r_win, minimum * self.w_lig);
+        if r_win > limit {
+            return Ok(());
         }
-        Ok(())
+        let what = format!("r_win = {r_win} mm violates r_win > {minimum} w_lig = {limit} mm");
+        Err(Fault::from(what).into())
     }
 }
 

@@ -103,7 +103,7 @@ fn check<'a>(
     designs: impl IntoIterator<Item = &'a HingeDesign>,
 ) -> Result<(), MeshError> {
     for design in designs {
-        design.validate().map_err(|error| MeshError::Invalid(error.to_string()))?;
+        design.validate_coupon().map_err(|error| MeshError::Invalid(error.to_string()))?;
     }
     if thickness.is_finite() && thickness > 0.0 {
         return Ok(());

@@ -2,7 +2,7 @@
 
 use crate::checked_scene::Scene;
 use design::geometry::plane::{complex, point};
-use design::geometry::region::{self, Region};
+use design::geometry::region;
 use design::objective::design_problem::Deployment;
 use design::objective::{centre, shape};
 use design::sheet::cut_sheet::Sheet;
@@ -39,13 +39,14 @@ pub fn seen(scene: &Scene, deployment: &Deployment) -> f64 {
 pub fn seen_in(scene: &Scene, deployment: &Deployment, configuration: &[[f64; 3]]) -> f64 {
     let sheet = &deployment.sheet;
     let configuration = placed(scene, sheet, configuration);
-    let panels = Region::union_of(deployed_boundaries(sheet, &configuration));
     let target = scene.target.region();
     // A target that is fitted to the sheet is as large as the sheet.
     let turn = shape::turn(deployment.fit);
     let centre = complex(centre::of(&scene.target.points));
-    let panels = panels.map(|at| point(centre + turn * (complex(at) - centre)));
-    region::seen(&panels, &target)
+    let placed = |at: &[f64; 2]| point(centre + turn * (complex(*at) - centre));
+    let panels = deployed_boundaries(sheet, &configuration);
+    let panels = panels.iter().map(|panel| panel.iter().map(placed).collect()).collect();
+    region::seen(panels, &target)
 }
 
 fn corners(sheet: &Sheet, corners: Vec<PanelCorner>, configuration: &[[f64; 3]]) -> Vec<[f64; 2]> {

@@ -147,7 +147,7 @@ fn largest(target: &Region, stock: [f64; 2], limits: Limits) -> Option<EvenSheet
     for _ in 0..SIZES {
         let sheet = EvenSheet::new(target, size, limits, THOROUGH)?;
         let upright = c64::cis(-sheet.place.rotation());
-        let flat = sheet.opened(0.0).map(|at| point(upright * complex(at)));
+        let flat = Region::union_of(sheet.opened(0.0)).map(|at| point(upright * complex(at)));
         let factor = growth(flat.extent(), stock);
         size *= 0.995 * factor;
         if factor < 1.0 {
@@ -227,7 +227,7 @@ impl<'a> LaidSheet<'a> {
         let flat = sheet.opened(0.0);
         let first = complex(first.map(f64::from));
         let turned = |at: &[f64; 2]| point(back * (complex(*at) - first));
-        let low = complex(bounds(flat.contours().flatten().map(turned))[0]);
+        let low = complex(bounds(flat.iter().flatten().map(turned))[0]);
         let opened = sheet.limits.opening.pitch() - 1.0;
         let mut laid = Self { topology, grid, first, back, low, middle: c64::ZERO, opened };
         let count = topology.panel_count();

@@ -290,11 +290,11 @@ impl<'a> Edge<'a> {
     }
 }
 
-/// What opened panels cover.
-pub(super) fn opened(panels: &BTreeMap<Cell, Region>, opening: Opening) -> Region {
-    let contours = panels.iter().flat_map(|(cell, panel)| {
+/// The contours of opened panels.
+pub(super) fn opened(panels: &BTreeMap<Cell, Region>, opening: Opening) -> Vec<Contour> {
+    let moved = |(cell, panel): (&Cell, &Region)| {
         let motion = opening.motion(*cell);
         panel.map(|at| moved(motion, at)).polygons.into_iter().flatten()
-    });
-    Region::union_of(contours.collect())
+    };
+    panels.iter().flat_map(moved).collect()
 }
