@@ -270,6 +270,33 @@ mod tests {
         drawing
     }
 
+    /// What one sees of panels, by points of a raster instead of polygons.
+    fn seen_in_points(panels: Vec<Contour>, drawing: &Region) -> f64 {
+        const REACH: i32 = 10;
+        let step = 0.04 * drawing.longer_side() / f64::from(REACH);
+        let [low, _] = drawing.bounds();
+        let at = |[i, j]: [i32; 2]| [low[0] + step * f64::from(i), low[1] + step * f64::from(j)];
+        let all = (-REACH..=REACH).flat_map(|x| (-REACH..=REACH).map(move |y| [x, y]));
+        let disc: Vec<_> = all.filter(|[x, y]| x * x + y * y <= REACH * REACH).collect();
+        let around = |[i, j]: [i32; 2]| disc.iter().map(move |[x, y]| [i + x, j + y]);
+        let panels = Raster::new(&Region::union_of(panels), step);
+        let side = -30..290;
+        let is_near = |point| around(point).any(|it| panels.contains(at(it)));
+        let row = |i| side.clone().map(|j| is_near([i, j])).collect();
+        let near: Vec<Vec<bool>> = side.clone().map(row).collect();
+        let is_closed = |[i, j]: [i32; 2]| {
+            near.get((i + 30) as usize).is_some_and(|row| row.get((j + 30) as usize) == Some(&true))
+        };
+        let [mut common, mut both] = [0.0; 2];
+        for point in side.clone().flat_map(|i| side.clone().map(move |j| [i, j])) {
+            let inside = drawing.contains(at(point));
+            let seen = around(point).all(is_closed);
+            common += f64::from(u8::from(inside && seen));
+            both += f64::from(u8::from(inside || seen));
+        }
+        common / both
+    }
+
     #[test]
     fn drawn_sheets_are_mechanisms_whose_panels_never_overlap() {
         let mut made = 0;
@@ -304,6 +331,10 @@ mod tests {
                 }
             }
             assert!(sheet.seen > 0.8, "{seed}: {}", sheet.seen);
+            if seed % 20 == 0 {
+                let seen = seen_in_points(sheet.opened(1.0), &sheet.drawing);
+                assert!((sheet.seen - seen).abs() < 0.01, "{seed}: {} {seen}", sheet.seen);
+            }
             for panel in sheet.panels.values() {
                 assert_eq!(panel.polygons.len(), 1);
                 assert_eq!(panel.polygons[0].len(), 1, "{seed}: a hole");
