@@ -7,6 +7,7 @@ use scene::Scene;
 use serde_json::Value;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
+use support::fault::unread;
 use support::regular_file;
 use support::table::Table;
 
@@ -102,7 +103,6 @@ fn report(path: &Path) -> Result<Value> {
     if !path.exists() {
         return Ok(Value::Null);
     }
-    let text =
-        regular_file::read(path).with_context(|| format!("cannot read {}", path.display()))?;
+    let text = regular_file::read(path).map_err(unread(path))?;
     serde_json::from_slice(&text).with_context(|| format!("{} is not a report", path.display()))
 }

@@ -23,6 +23,7 @@ use anyhow::{Context, Result, bail, ensure};
 use hinge::{Regime, SheetMaterial};
 use scene::{Posture, Scene, Stock, rounded};
 use std::path::{Path, PathBuf};
+use support::fault::unread;
 use support::text_file;
 use surrogate::{Card, Surrogate};
 use toml_edit::{Array, ArrayOfTables, DocumentMut};
@@ -351,7 +352,7 @@ fn readme(folder: &Path, why: &str, regime: Regime, trained: bool, whole_build: 
 
 /// Text of a material file in another thickness (mm).
 pub fn material_text(path: &Path, thickness: f64) -> Result<String> {
-    let text = text_file::read(path).with_context(|| format!("cannot read {}", path.display()))?;
+    let text = text_file::read(path).map_err(unread(path))?;
     let mut material: DocumentMut = text.parse()?;
     set(&mut material["thickness"], thickness);
     Ok(material.to_string())

@@ -2,6 +2,7 @@
 
 use anyhow::{Context, Result, ensure};
 use std::path::Path;
+use support::fault::unwritten;
 use support::whole_file;
 
 /// Creates a folder and its missing parents.
@@ -17,8 +18,7 @@ pub fn create_folder_of(file: &Path) -> Result<()> {
 
 /// Writes a file atomically; its folder must exist.
 pub fn write(path: &Path, contents: impl AsRef<[u8]>) -> Result<()> {
-    whole_file::write(path, contents.as_ref())
-        .with_context(|| format!("cannot write {}", path.display()))
+    Ok(whole_file::write(path, contents.as_ref()).map_err(unwritten(path))?)
 }
 
 /// An error if the file exists.

@@ -23,7 +23,7 @@ pub use findings::{Rule, Warning, rules};
 pub use hinge_row::HingeRow;
 pub use reached::Reached;
 
-use crate::cut_file::{CutLines, FabricationError};
+use crate::cut_file::CutLines;
 use crate::report::deployed::{DeployedDesign, FinishedRun, left_out};
 use crate::report::facts::facts;
 use crate::report::findings::findings;
@@ -38,6 +38,7 @@ use scene::design_run::Designed;
 use scene::placement::seen;
 use scene::{CoarseSearch, Level, Scene};
 use serde::Serialize;
+use support::fault::Fault;
 use support::severity::Severity;
 
 /// The report of a run, for people (`Display`) and programs (JSON).
@@ -97,7 +98,7 @@ pub struct Report {
 pub fn warnings(
     scene: &Scene,
     deployment: &Deployment,
-    cuts: &Result<CutLines, FabricationError>,
+    cuts: &Result<CutLines, Fault>,
 ) -> Vec<Warning> {
     let hinges = HingeRow::all(scene, deployment);
     findings(&DeployedDesign { scene, deployment, cuts, hinges, run: None, severities: Vec::new() })
@@ -138,7 +139,7 @@ impl Report {
     pub fn new(
         scene: &Scene,
         designed: &Designed,
-        cuts: &Result<CutLines, FabricationError>,
+        cuts: &Result<CutLines, Fault>,
         checks: DesignChecks,
         force: bool,
     ) -> Self {

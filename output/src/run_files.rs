@@ -2,8 +2,8 @@
 //! docs/RUN-PAGE.md lists it.
 
 use crate::cut_file::{
-    CutDrawing, CutLines, FabricationError, SheetDrawing, attachment_list, cut_list, cut_summary,
-    deployed_panels, dxf, mark_errors, svg,
+    CutDrawing, CutLines, SheetDrawing, attachment_list, cut_list, cut_summary, deployed_panels,
+    dxf, mark_errors, svg,
 };
 use crate::drawing;
 use crate::mounting_kit::{board, kit_pdf, steps_svg};
@@ -19,6 +19,7 @@ use scene::placement::placed;
 use scene::run_inputs::STATE_FILE;
 use scene::{Paper, Scene};
 use std::io;
+use support::fault::Fault;
 
 /// A file of a run folder.
 pub struct RunFile {
@@ -47,7 +48,7 @@ pub enum Writer {
 pub struct Results<'a> {
     pub(crate) scene: &'a Scene,
     pub(crate) designed: &'a Designed,
-    pub(crate) cuts: &'a Result<CutLines, FabricationError>,
+    pub(crate) cuts: &'a Result<CutLines, Fault>,
     pub(crate) report: &'a Report,
     /// The drawing of the sheet, if it is cut.
     pub(crate) sheet: Option<SheetDrawing>,
@@ -76,7 +77,7 @@ pub const RUN_FILES: [RunFile; 21] = [
     result(
         "run.html",
         "the run on one page: open it in a browser, click a hinge, move the slider",
-        |run| Ok(Some(run_page(run.scene, run.designed, run.report)?.into())),
+        |run| Ok(Some(run_page(run.scene, run.designed, run.report).into())),
     ),
     result("cut.dxf", CUTS, |run| Ok(run.annotated().map(|drawing| dxf(&drawing).into()))),
     result("cut.svg", CUTS, |run| Ok(run.annotated().map(|drawing| svg(&drawing).into()))),

@@ -56,7 +56,7 @@ const PICTURE_WIDTH: u32 = 2000;
 
 impl CompareCommand {
     pub(crate) fn run(&self) -> Result<()> {
-        let (scene, design, _) = self.designed.read_run()?;
+        let (scene, design, _) = self.designed.chosen().read_run()?;
         let problem = scene.problem()?;
         let _held = run_folder::hold(&self.out)?;
         if self.template {

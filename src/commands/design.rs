@@ -6,11 +6,12 @@ mod by_elements;
 use crate::ui::with_unit::{self, Accuracy};
 use crate::ui::{interrupt, processors};
 use analysis::refinement::refine;
-use anyhow::{Context, Result, bail, ensure};
+use anyhow::{Result, bail, ensure};
 use app::design::{ended, hold, search, write_refined};
 use app::design_runs::{Run, compare, refuse_shared_folders};
 use app::failure::Unfinished;
 use app::fitting::fit_to_target;
+use app::output_file;
 use app::progress::{Progress, announce};
 use clap::Args;
 use design::objective::scores::shown;
@@ -135,8 +136,7 @@ impl DesignCommand {
     fn run_many(&self, mut runs: Vec<Run>) -> Result<()> {
         let stop = interrupt::stop_flag()?;
         let folder = self.out.clone().unwrap_or("runs/designs".into());
-        std::fs::create_dir_all(&folder)
-            .with_context(|| format!("cannot create the folder {}", folder.display()))?;
+        output_file::create_folder(&folder)?;
         // The windows of a single sheet occupy all processors.
         let workers = match self.level {
             Some(Level::Final) => 1,

@@ -60,7 +60,7 @@ impl InspectCommand {
             let message = "--opening-deg is an option of deploy alone\n";
             exit::print_answer(&clap::Error::raw(ErrorKind::ArgumentConflict, message));
         }
-        let (scene, design, name) = self.inspected.read()?;
+        let (scene, design, name) = self.inspected.chosen().read()?;
         let scene = match self.level {
             Some(level) => scene.at_level(level)?,
             None => scene,

@@ -44,7 +44,7 @@ struct Of<'a> {
 
 impl LevelsCommand {
     pub(crate) fn run(&self) -> Result<()> {
-        let (scene, design, name) = self.inspected.read()?;
+        let (scene, design, name) = self.inspected.chosen().read()?;
         let stop = interrupt::stop_flag()?;
         let found = levels(&scene, &design, stop, &mut |level| {
             announce(&format!("level {level}"));

@@ -66,7 +66,7 @@ pub struct VerifyCommand {
 
 impl VerifyCommand {
     pub(crate) fn run(&self) -> Result<()> {
-        let (scene, design, name) = self.inspected.read()?;
+        let (scene, design, name) = self.inspected.chosen().read()?;
         if let Some(panels) = self.sheet {
             return self.whole_sheet(&scene, &design, &name, panels);
         }

@@ -5,7 +5,7 @@
 //! there is a file [`PAUSE`].
 
 use crate::catalogue::Catalogue;
-use crate::event::{Event, Kind};
+use crate::event::{Event, Kind, locked};
 use crate::full_analysis::{FullAnalysis, Listener, refusal};
 use crate::request::Request;
 use crate::session::{Fetched, Next, Session};
@@ -13,8 +13,8 @@ use anyhow::{Context, Result};
 use app::failure::message;
 use std::cell::RefCell;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, PoisonError};
 use support::regular_file;
 
 const REQUEST: &str = "request.json";
@@ -72,8 +72,8 @@ extern "C" fn rest() {
 #[unsafe(no_mangle)]
 extern "C" fn paths() {
     with(|studio| {
-        let files = (studio.files.lock()).unwrap_or_else(PoisonError::into_inner);
-        let json = serde_json::to_string(&*files).expect("paths of this program are UTF-8");
+        let json = serde_json::to_string(&*locked(&studio.files))
+            .expect("paths of this program are UTF-8");
         println!("paths\t{json}");
     });
 }

@@ -1,9 +1,9 @@
 //! The scene that is shown, and the answers to requests.
 
 use crate::catalogue::is_example;
-use crate::draft::{Draft, Steps, draft};
-use crate::event::{Event, Kind};
-use crate::full_analysis::{FullAnalysis, Listener, Resting, Shown, refusal, run_name};
+use crate::draft::{Steps, draft, draft_data};
+use crate::event::{Event, Kind, locked};
+use crate::full_analysis::{FullAnalysis, Listener, Resting, refusal, run_name, shown};
 use crate::opened::{Opened, Run, fitted_to};
 use crate::panels::with_panels;
 use crate::project::Project;
@@ -17,7 +17,6 @@ use app::failure::message;
 use app::run_folder;
 use app::shell_word::shell_word;
 use design::optimise::outer_loop::Ended;
-use output::run_page::PageData;
 use scene::design_run::inverse_design;
 use scene::{Scene, SceneConfig};
 use serde::Serialize;
@@ -25,7 +24,7 @@ use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex};
 use std::time::Instant;
 use support::caught_panic;
 
@@ -241,8 +240,8 @@ impl Session {
         if self.opened()?.by.is_none() {
             self.tell_scene();
         }
-        let draft = Draft::new(&self.opened()?.scene, &problem, &deployment, begin);
-        (self.listener)(Event::new(Kind::Draft, &draft));
+        let draft = draft_data(&self.opened()?.scene, &problem, &deployment, begin);
+        self.tell(Kind::Draft, &draft);
         Ok(())
     }
 
@@ -303,16 +302,14 @@ impl Session {
         let problem = scene.problem()?;
         let mut steps = Steps::default();
         let listener = &self.listener;
-        let designed = inverse_design(&scene, stop, &mut |search| {
+        let designed = inverse_design(&scene, stop, &mut |_, search| {
             if let Some(step) = steps.step(&scene, &problem, search) {
                 listener(Event::new(Kind::Step, &step));
             }
         })?;
         self.tell(Kind::Working, &"files");
         let report = write_run(&scene, &designed, false)?;
-        let page = PageData::new(&scene, &designed, &report);
-        let run = Some(run_name(&scene));
-        self.tell(Kind::Page, &Shown { page, run, ms: None });
+        (self.listener)(shown(&scene, &designed, &report, Some(run_name(&scene)), None));
         let adopted = SceneConfig {
             output: self.opened()?.project.next_run(),
             ..scene.starting_at(&designed.search.best)
@@ -391,7 +388,7 @@ impl Session {
         self.tell(Kind::Files, &json!({ "files": listed, "verdicts": run.verdicts }));
         let names = listed.into_iter().map(|file| file.name);
         let fetched = names.map(|name| (name.clone(), folder.join(name)));
-        *self.files.lock().unwrap_or_else(PoisonError::into_inner) = fetched.collect();
+        *locked(&self.files) = fetched.collect();
         Ok(())
     }
 

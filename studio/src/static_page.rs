@@ -8,6 +8,7 @@ use app::new_project::WEIGHTS;
 use app::output_file;
 use serde_json::json;
 use std::path::{Path, PathBuf};
+use support::fault::unread;
 use support::regular_file;
 
 /// Folders of the materials and examples of the studio, and of the files that they name.
@@ -26,8 +27,7 @@ pub fn write(folder: &Path) -> Result<()> {
     }
     files.sort();
     for file in &files {
-        let bytes = regular_file::read(file);
-        let bytes = bytes.with_context(|| format!("cannot read {}", file.display()))?;
+        let bytes = regular_file::read(file).map_err(unread(file))?;
         let copy = folder.join(file);
         output_file::create_folder_of(&copy)?;
         output_file::write(&copy, bytes)?;

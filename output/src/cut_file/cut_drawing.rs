@@ -87,10 +87,8 @@ impl CutDrawing {
     }
 
     /// Adds a cross with arms of the given length (mm).
-    pub(crate) fn add_cross(&mut self, layer: Layer, [x, y]: [f64; 2], arm: f64) {
-        for ends in [[[x - arm, y], [x + arm, y]], [[x, y - arm], [x, y + arm]]] {
-            self.add(layer, Shape::Line(ends));
-        }
+    pub(crate) fn add_cross(&mut self, layer: Layer, at: [f64; 2], arm: f64) {
+        self.shapes.extend(Shape::cross(at, arm).map(|line| (layer, line)));
     }
 
     /// The shapes that the tool cuts.

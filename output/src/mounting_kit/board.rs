@@ -3,7 +3,7 @@
 use crate::cut_file::{CutDrawing, Layer};
 use crate::display::{Shape, Text, rectangle};
 use analysis::mounting::Mounting;
-use design::geometry::polygon::bounds;
+use design::geometry::polygon::{bounds, size};
 use design::sheet::cut_sheet::Sheet;
 use design::sheet::kinematics::deployed_boundaries;
 
@@ -17,9 +17,9 @@ const ASIDE: f64 = 3.0;
 pub(crate) fn board(sheet: &Sheet, mounting: &Mounting) -> CutDrawing {
     let mut drawing = CutDrawing::default();
     let panels = deployed_boundaries(sheet, &mounting.opened);
-    let [low, high] = bounds(panels.iter().flatten().copied());
-    let size = mounting.board(sheet);
-    let border = [0, 1].map(|axis| 0.5 * (size[axis] - (high[axis] - low[axis])));
+    let opened = bounds(panels.iter().flatten().copied());
+    let ([low, high], board, size) = (opened, mounting.board(sheet), size(opened));
+    let border = [0, 1].map(|axis| 0.5 * (board[axis] - size[axis]));
     let corners =
         [[0, 1].map(|axis| low[axis] - border[axis]), [0, 1].map(|axis| high[axis] + border[axis])];
     drawing.add(Layer::Registration, Shape::Polygon(rectangle(corners).to_vec()));

@@ -3,9 +3,10 @@
 use super::{W_LIG, uniform};
 use design::sheet::cut_sheet::AttachmentPoint;
 use design::sheet::cut_sheet::PanelPoint;
-use output::cut_file::{CutLines, FabricationError, Layer, attachment_list, dxf};
+use output::cut_file::{CutLines, Layer, attachment_list, dxf};
 use output::display::Shape;
 use scene::CuttingConfig;
+use support::fault::Fault;
 
 fn attachment(point: PanelPoint) -> AttachmentPoint {
     AttachmentPoint {
@@ -16,7 +17,7 @@ fn attachment(point: PanelPoint) -> AttachmentPoint {
     }
 }
 
-fn cuts(attachment: AttachmentPoint) -> Result<CutLines, FabricationError> {
+fn cuts(attachment: AttachmentPoint) -> Result<CutLines, Fault> {
     let (pattern, sheet) = uniform(W_LIG);
     CutLines::new(&pattern, &sheet, CuttingConfig::default(), &[attachment])
 }

@@ -10,7 +10,7 @@ use support::table::Table;
 
 /// Print what a run would solve, why, and the estimated time
 #[derive(Args)]
-pub(super) struct PlanCommand {
+pub(crate) struct PlanCommand {
     #[command(flatten)]
     campaign: CampaignArgs,
     /// Print JSON

@@ -17,7 +17,7 @@ use verification::every_ray_failed;
 /// Exit code 0 if nothing is left to solve, 75 if stopped before that by Ctrl-C or by --time-limit:
 /// run the same command again to continue.
 #[derive(Args)]
-pub(super) struct RunCommand {
+pub(crate) struct RunCommand {
     #[command(flatten)]
     campaign: CampaignArgs,
     #[command(flatten)]

@@ -18,7 +18,7 @@ use std::num::NonZeroUsize;
 /// variables (SBATCH_PARTITION, SBATCH_ACCOUNT). Example: kirigami campaign submit
 /// configs/campaigns/pet-0.5mm.toml --shards 32 --time 240
 #[derive(Args)]
-pub(super) struct SubmitCommand {
+pub(crate) struct SubmitCommand {
     #[command(flatten)]
     campaign: CampaignArgs,
     /// Number of tasks, at most one a ray; each solves every N-th ray

@@ -15,7 +15,7 @@ use verification::{SCALE, spread_table};
 /// mesh, and writes them to compare.md. Example: kirigami dataset
 /// compare data/polypropylene-3mm/hinges.parquet
 #[derive(Args)]
-pub(super) struct CompareCommand {
+pub(crate) struct CompareCommand {
     /// Database to evaluate (Parquet with its manifest)
     #[arg(value_name = "DATABASE")]
     database: PathBuf,

@@ -17,7 +17,7 @@ use support::toml_file;
 /// tear. Exits with 1 if a verdict is an error. Example: kirigami material check
 /// configs/materials/pet-0.5mm.toml configs/scenes/pet-7x7.toml
 #[derive(Args)]
-pub(super) struct CheckCommand {
+pub(crate) struct CheckCommand {
     /// Material (TOML); see configs/materials
     #[arg(value_name = "MATERIAL")]
     material: PathBuf,

@@ -24,7 +24,7 @@ use tensile::{
 /// material fit strip-*.csv --name film --thickness 0.5 --density-kg-m3 1390
 #[derive(Args)]
 #[command(allow_negative_numbers = true)]
-pub(super) struct FitCommand {
+pub(crate) struct FitCommand {
     /// Records of the specimens: tables as text, such as CSV
     #[arg(value_name = "TEST", required = true)]
     tests: Vec<PathBuf>,

@@ -45,7 +45,7 @@ use verification::{
 /// and training that can be edited. Example: kirigami material learn
 /// configs/materials/polypropylene-0.8mm.toml --accuracy 1% --time 1h --out runs/polypropylene
 #[derive(Args)]
-pub(super) struct LearnCommand {
+pub(crate) struct LearnCommand {
     /// Material (TOML), as written by `material fit`
     #[arg(value_name = "MATERIAL")]
     material: PathBuf,
