@@ -20,7 +20,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::FRAC_PI_2;
 use support::fault::{Fault, at};
 use support::key_limits::{self, within};
-use support::{bail, ensure};
+use support::{ensure, refuse};
 
 /// Distance of a point on the edge of a panel from it (mm).
 const ON_EDGE: f64 = 1e-6;
@@ -31,7 +31,7 @@ pub(super) fn keys(scene: &SceneConfig) -> Result<(), Fault> {
     level(scene)?;
     // The title is written to SVG pictures, which must not contain control characters.
     if let Some(control) = scene.title.chars().find(|c| c.is_control()) {
-        bail!("title contains the control character {control:?}: remove it");
+        refuse!("title contains the control character {control:?}: remove it");
     }
     sheet(scene)
 }
@@ -56,11 +56,11 @@ pub(super) fn level(scene: &SceneConfig) -> Result<(), Fault> {
     }
     let files = scene.surrogate.as_ref().ok_or_else(|| no_section("surrogate"))?;
     match scene.level {
-        Level::Draft if files.draft.is_none() => bail!(
+        Level::Draft if files.draft.is_none() => refuse!(
             "the level `draft` reads a smaller network: name it (surrogate.draft), train one (`kirigami train DATABASE --config \
              configs/training/small.toml`), or use level = \"standard\""
         ),
-        Level::Fine if files.ensemble.is_empty() => bail!(
+        Level::Fine if files.ensemble.is_empty() => refuse!(
             "the level `fine` takes the mean of several networks: name the further ones (surrogate.ensemble), train them (`kirigami train \
              DATABASE --seeds 4`), or use level = \"standard\""
         ),
@@ -127,10 +127,10 @@ fn ligament(scene: &SceneConfig) -> Result<(), Fault> {
     for w_lig in [min, max] {
         match process.hinge(w_lig, FRAC_PI_2).validate() {
             Ok(()) => {}
-            Err(InvalidDesign::Kerf { kerf, limit }) => bail!(
+            Err(InvalidDesign::Kerf { kerf, limit }) => refuse!(
                 "process.slit_width = {kerf} mm violates 0 < slit_width < {limit} mm, the diameter of the smallest hole: the slit ends in it"
             ),
-            Err(error) => bail!("ligament.range and process, at w_lig = {w_lig} mm: {error}"),
+            Err(error) => refuse!("ligament.range and process, at w_lig = {w_lig} mm: {error}"),
         }
     }
     let kerf = scene.cutting.tool_kerf(slit);

@@ -107,19 +107,9 @@ fn same_size(path: &Path, fits: bool) -> Result<(), Fault> {
 ///
 /// It is an error if the run is of another scene or model.
 pub fn design_of_run(scene: &Scene) -> Result<Option<DesignVector>, Fault> {
-    let path = scene.output().join(STATE_FILE);
-    let Some(state) = RunState::load(&path)? else {
-        return Ok(None);
-    };
-    let changed = state.changes(scene, &SEARCH_KEYS);
-    ensure!(
-        changed.is_empty(),
-        "{} is not the run of this scene, {changed} changed since: design it again (`kirigami design --restart`), or \
-         name the file with --design to take its design nevertheless",
-        path.display()
-    );
-    same_size(&path, state.search.fits(&scene.start()))?;
-    Ok(Some(state.search.best))
+    let remedy = "design it again (`kirigami design --restart`), or name the file with --design to take its design nevertheless";
+    let state = RunState::unchanged(scene, &SEARCH_KEYS, "is not the run of this scene", remedy)?;
+    Ok(state.map(|state| state.search.best))
 }
 
 /// How the run in the scene's run folder was left, and its best design; `None` if there is no run.
@@ -304,15 +294,6 @@ impl RunState {
         }
     }
 
-    /// The state in a file; `None` if there is no file.
-    fn load(path: &Path) -> Result<Option<Self>, Fault> {
-        let text = match regular_file::read(path) {
-            Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(None),
-            text => text.map_err(unused(path))?,
-        };
-        sealed_json::from_slice(&text).map(Some).map_err(|error| no_state(path, &error))
-    }
-
     /// The keys of the scene and the inputs besides that changed since the run, in words; those
     /// `allowed` may. Empty if there are none.
     fn changes(&self, scene: &Scene, allowed: &[&str]) -> String {
@@ -354,14 +335,29 @@ impl RunState {
 
     /// The state of an earlier run of the same scene; only the number of steps may differ.
     fn read(scene: &Scene) -> Result<Option<Self>, Fault> {
+        let remedy = "restart it (--restart), or choose another output folder";
+        Self::unchanged(scene, &[], "belongs to another run", remedy)
+    }
+
+    /// The state in the run folder of a scene, from which only the number of steps and the keys
+    /// `allowed` may differ; the error says what the state is otherwise, and a remedy.
+    fn unchanged(
+        scene: &Scene,
+        allowed: &[&str],
+        otherwise: &str,
+        remedy: &str,
+    ) -> Result<Option<Self>, Fault> {
         let path = scene.output().join(STATE_FILE);
-        let Some(state) = Self::load(&path)? else {
-            return Ok(None);
+        let text = match regular_file::read(&path) {
+            Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(None),
+            text => text.map_err(unused(&path))?,
         };
-        let changed = state.changes(scene, &[]);
+        let state: Self =
+            sealed_json::from_slice(&text).map_err(|error| no_state(&path, &error))?;
+        let changed = state.changes(scene, allowed);
         ensure!(
             changed.is_empty(),
-            "{} belongs to another run, {changed} changed since: restart it (--restart), or choose another output folder",
+            "{} {otherwise}, {changed} changed since: {remedy}",
             path.display()
         );
         same_size(&path, state.search.fits(&scene.start()))?;

@@ -17,7 +17,7 @@ use std::fmt;
 use std::path::Path;
 use std::sync::Arc;
 use support::fault::{Fault, at, said};
-use support::{bail, ensure};
+use support::{ensure, refuse};
 use surrogate::Surrogate;
 
 /// Stiffness of the contact of panel edges relative to k_theta, and the void angle (rad) at which
@@ -124,7 +124,7 @@ impl LoadedHinge {
         if objective.damage == 0.0 || predicts(objective.damage_measure) {
             return Ok(());
         }
-        bail!(
+        refuse!(
             "{}",
             if predicts(DamageMeasure::Mean) {
                 "objective.damage_measure = \"peak\": the weights do not predict D_peak: use \"mean\", or train on a database \
@@ -236,7 +236,7 @@ fn same_training(config: &SceneConfig, networks: &[Surrogate]) -> Result<(), Fau
     if let Some(twice) = twice {
         let files = config.weights_files();
         let [one, other] = twice.map(|i| files[i].display());
-        bail!(
+        refuse!(
             "surrogate.ensemble: {one} and {other} are the same network, whose spread is zero: name networks of other seeds"
         );
     }

@@ -96,15 +96,6 @@ pub(super) fn keep(scene: &Scene) -> Result<InputHashes, Fault> {
     Ok(kept.hashes)
 }
 
-/// Writes a file of a folder unless it has these contents already.
-fn write_to(folder: &Path, name: &str, contents: &[u8]) -> Result<(), Fault> {
-    let path = folder.join(name);
-    if !path.exists() || read(&path)? != contents {
-        whole_file::write(&path, contents).map_err(unused(&path))?;
-    }
-    Ok(())
-}
-
 /// The files that were written to a run folder.
 struct Kept<'a> {
     scene: &'a Scene,
@@ -115,7 +106,10 @@ impl Kept<'_> {
     /// Writes a file unless it has these contents already; returns its path relative to the run
     /// folder.
     fn write(&mut self, name: &str, contents: &[u8]) -> Result<PathBuf, Fault> {
-        write_to(&self.scene.output(), name, contents)?;
+        let path = self.scene.output().join(name);
+        if !path.exists() || read(&path)? != contents {
+            whole_file::write(&path, contents).map_err(unused(&path))?;
+        }
         let hash = blake3::hash(contents).to_hex().to_string();
         self.hashes.insert(name.to_owned(), hash);
         Ok(name.into())

@@ -8,7 +8,7 @@ use hinge::{HingeDeformation, HingeDesign};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 use std::sync::Arc;
-use support::fault::{Fault, at};
+use support::fault::{Fault, at, said};
 use support::file_error::FileError;
 use support::{ensure, regular_file, sealed_json, whole_file};
 
@@ -34,9 +34,10 @@ pub struct SolvedHinges {
 
 /// The error of a scene at the level `final` that names no solved hinges.
 pub(super) fn no_file() -> Fault {
-    "the level `final` needs surrogate.solved_hinges: `kirigami design SCENE --level final` solves the hinges by finite elements; the \
-     finest level without them is `fine`, or `standard`"
-        .into()
+    said(
+        "the level `final` needs surrogate.solved_hinges: `kirigami design SCENE --level final` solves the hinges by finite elements; the \
+         finest level without them is `fine`, or `standard`",
+    )
 }
 
 impl SolvedHinges {

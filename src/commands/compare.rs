@@ -91,11 +91,8 @@ impl CompareCommand {
         write("openings.csv", &report.openings_csv())?;
         let svg = drawing::measured(path.sheet, &measured.best, &report);
         picture::save(&svg, &self.out.join("comparison"), PICTURE_WIDTH)?;
-        if self.json {
-            println!("{json}");
-        } else {
-            println!("{document}\nwritten to {}", self.out.display());
-        }
+        let text = format!("{document}\nwritten to {}", self.out.display());
+        println!("{}", if self.json { json } else { text });
         Ok(())
     }
 

@@ -2,6 +2,7 @@
 
 mod compare;
 
+use crate::ui;
 use anyhow::{Result, ensure};
 use app::output_file;
 use clap::Subcommand;
@@ -48,11 +49,7 @@ impl DatasetCommand {
         match self {
             Self::Summary { database, json } => {
                 let database = Database::read(database)?;
-                if *json {
-                    println!("{}", serde_json::to_string_pretty(database.manifest())?);
-                } else {
-                    println!("{database}");
-                }
+                ui::print(*json, database.manifest(), &database)?;
             }
             Self::Check { database: file } => {
                 let database = Database::read(file)?;

@@ -4,7 +4,7 @@
 mod by_elements;
 
 use crate::ui::with_unit::{self, Accuracy};
-use crate::ui::{interrupt, processors};
+use crate::ui::{self, interrupt, processors};
 use analysis::refinement::refine;
 use anyhow::{Result, bail, ensure};
 use app::design::{ended, hold, search, write_refined};
@@ -88,12 +88,9 @@ impl DesignCommand {
                     config.output = out.unwrap_or_else(|| config.output.clone());
                 })?;
                 let report = with_level_bars(&scene, |progress| self.design(&scene, progress))?;
-                if self.json {
-                    println!("{}", serde_json::to_string_pretty(&report)?);
-                } else {
-                    let folder = scene.output().canonicalize()?;
-                    println!("{}\nwritten to {}", report.document(), folder.display());
-                }
+                let folder = scene.output().canonicalize()?;
+                let text = format!("{}\nwritten to {}", report.document(), folder.display());
+                ui::print(self.json, &report, text)?;
                 ended(&scene, &report)
             }
             _ => {

@@ -4,7 +4,7 @@ mod whole_sheet;
 
 use crate::commands::inspect::scene_args::Inspected;
 use crate::commands::solve_args::{SolveArgs, task_error};
-use crate::ui::count::count;
+use crate::ui::{self, count::count};
 use anyhow::{Context, Result};
 use app::run_folder;
 use clap::Args;
@@ -89,11 +89,7 @@ impl VerifyCommand {
     }
 
     fn print(&self, found: &impl Serialize, document: &Document) -> Result<()> {
-        if self.json {
-            println!("{}", serde_json::to_string_pretty(found)?);
-        } else {
-            println!("{document}\nwritten to {}", self.out.display());
-        }
-        Ok(())
+        let text = format!("{document}\nwritten to {}", self.out.display());
+        ui::print(self.json, found, text)
     }
 }

@@ -52,14 +52,14 @@ pub fn at<E: fmt::Display>(place: impl fmt::Display) -> impl FnOnce(E) -> Fault 
 macro_rules! ensure {
     ($holds:expr, $($message:tt)+) => {
         if !$holds {
-            $crate::bail!($($message)+);
+            $crate::refuse!($($message)+);
         }
     };
 }
 
 /// Returns the fault with a message, given as to `format!`.
 #[macro_export]
-macro_rules! bail {
+macro_rules! refuse {
     ($($message:tt)+) => {
         return Err($crate::fault::Fault::from(format!($($message)+)).into())
     };

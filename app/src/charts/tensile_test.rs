@@ -40,11 +40,11 @@ fn small_strains(area: &Area, fit: &MaterialFit) -> ChartResult {
         all.push(guide([at(0.0), at(0.97 * top)]));
     }
     let at_yield = 100.0 * yields / young + 0.2;
-    let beside = at_yield + 0.03 * (end - start);
+    let label_x = at_yield + 0.03 * (end - start);
     all.extend([
         mark((at_yield, yields)),
-        text(format!("E = {young:.0} MPa"), (beside, 0.5 * yields)),
-        text(format!("Rp0.2 = {yields:.1} MPa"), (beside, 0.4 * yields)),
+        text(format!("E = {young:.0} MPa"), (label_x, 0.5 * yields)),
+        text(format!("Rp0.2 = {yields:.1} MPa"), (label_x, 0.4 * yields)),
     ]);
     let names = SeriesLabelPosition::LowerRight;
     chart(area, "Modulus and offset yield", (strain, stress), all, names)
@@ -67,12 +67,12 @@ fn records(area: &Area, fit: &MaterialFit, name: &str) -> ChartResult {
         let draws = fit.specimens.iter().filter_map(|specimen| specimen.draw);
         all.extend(draws.map(|draw| mark((100.0 * draw.upper_yield_strain, draw.upper_yield))));
         // The text takes a third of the width.
-        let beside =
+        let label_x =
             if natural + 0.36 * end < end { natural + 0.02 * end } else { natural - 0.36 * end };
         all.extend([
             text(format!("upper yield {:.1} MPa", upper.mean), (0.04 * end, 1.06 * upper.mean)),
             text(format!("draw plateau {stress:.1} MPa"), (0.15 * end, 1.13 * stress)),
-            text(format!("natural draw ratio {:.2}", ratio.mean), (beside, 0.5 * stress)),
+            text(format!("natural draw ratio {:.2}", ratio.mean), (label_x, 0.5 * stress)),
         ]);
     }
     chart(area, name, axes, all, SeriesLabelPosition::UpperRight)

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::path::Path;
 use support::fault::Fault;
-use support::{ensure, toml_file};
+use support::{ensure, refuse, toml_file};
 
 /// The shipped table.
 const SHIPPED: &str = include_str!("../../../configs/machines.toml");
@@ -167,10 +167,12 @@ impl Machine {
     /// The paths in a sheet and the marks on it, in the order of the pattern; an error if they do
     /// not exist.
     fn paths(&self, cuts: &CutLines) -> Result<CutDrawing, Fault> {
-        let kerf = self.tool_kerf.or(cuts.cutting.kerf).ok_or(
-            "the paths of this machine allow for the width that its tool removes, which is not known: set cutting.kerf (mm) in the \
-             scene",
-        )?;
+        let Some(kerf) = self.tool_kerf.or(cuts.cutting.kerf) else {
+            refuse!(
+                "the paths of this machine allow for the width that its tool removes, which is not known: set cutting.kerf (mm) in the \
+                 scene"
+            );
+        };
         let lines = self.lines || cuts.is_one_pass(kerf);
         // Lines of no width are the middles of slits, for drawing programs.
         ensure!(

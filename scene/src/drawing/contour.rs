@@ -2,7 +2,7 @@
 
 use design::geometry::polygon;
 use support::fault::Fault;
-use support::{bail, ensure};
+use support::{ensure, refuse};
 
 /// Points closer than this fraction of the largest coordinate are merged: usvg rounds to f32.
 pub(super) const WELD: f64 = 1e-6;
@@ -97,7 +97,7 @@ impl Contour {
         let near_zero: Vec<_> = self.points.iter().map(|[x, y]| [x - x0, y - y0]).collect();
         if let Some([x, y]) = polygon::self_crossing(&near_zero) {
             let [x, y] = [x + x0, y + y0].map(rounded);
-            bail!(
+            refuse!(
                 "the path crosses or touches itself near ({x}, {y}); move its points until \
                  the outline is one simple loop"
             );

@@ -10,7 +10,7 @@ use crate::drawing::{dxf_contours, holes, svg_path};
 use design::geometry::polygon;
 use std::path::{Path, PathBuf};
 use support::fault::{Fault, at};
-use support::{bail, text_file};
+use support::{refuse, text_file};
 
 /// First bytes of a file that is compressed by gzip.
 const GZIP: &[u8] = b"\x1F\x8B";
@@ -65,8 +65,9 @@ fn decoded(bytes: &[u8]) -> Result<String, Fault> {
 
 pub(super) fn of_text(text: &str, number: Option<usize>) -> Result<Outline, Fault> {
     let first = text.lines().find(|line| !line.trim().is_empty());
-    let empty = "the file is empty; draw one closed outline and save it as SVG or DXF";
-    let first = first.ok_or(empty)?.trim();
+    let Some(first) = first.map(str::trim) else {
+        refuse!("the file is empty; draw one closed outline and save it as SVG or DXF");
+    };
     // Group code 0 begins a section, 999 is a comment.
     if ["0", "999"].contains(&first) {
         let (contours, has_unit) = dxf_contours::read(text)?;
@@ -76,7 +77,7 @@ pub(super) fn of_text(text: &str, number: Option<usize>) -> Result<Outline, Faul
         let known = OTHERS.iter().find(|(start, _)| first.starts_with(start));
         let start: String = first.chars().take(20).collect();
         let what = known.map_or("no drawing that is read", |(_, what)| what);
-        bail!(
+        refuse!(
             "the file begins with `{}`: it is {what}; export the drawing as SVG or DXF",
             start.escape_debug()
         );
@@ -126,14 +127,14 @@ fn chosen(
             if let Some(branch) = branch.filter(|_| !contours.iter().any(Contour::is_whole)) {
                 branch.check()?;
             }
-            bail!(
+            refuse!(
                 "the drawing has {} pieces, by size {}; a sheet is one of them: delete the others, or write the number of one \
                  behind the name of the file, as in `drawing.svg#1`, which takes it with its holes",
                 pieces.len(),
                 listed(pieces.iter().map(|piece| (*piece, &contours[*piece])))
             )
         }
-        (Some(number), _) if number == 0 || number > found => bail!(
+        (Some(number), _) if number == 0 || number > found => refuse!(
             "there is no contour {number}: the drawing has {found}, by size {}",
             listed(contours.iter().enumerate())
         ),

@@ -15,7 +15,7 @@ use std::collections::HashMap;
 use std::f64::consts::TAU;
 use std::ops::Range;
 use support::fault::Fault;
-use support::{bail, ensure};
+use support::{ensure, refuse};
 
 /// Difference of an angle from a full circle at which it is one, written with few digits (rad).
 const FULL: f64 = 1e-3;
@@ -215,7 +215,7 @@ fn records(text: &str) -> Result<Vec<Record<'_>>, Fault> {
         let line = blank + 2 * i + 1;
         let [code, value] = [pair[0], pair[1]];
         let Ok(group) = code.parse::<i32>() else {
-            bail!("line {line} of the DXF file: `{code}` is no group code");
+            refuse!("line {line} of the DXF file: `{code}` is no group code");
         };
         ensure!(
             !matches!(group, 10..=79 | 210..=239) || value.parse().is_ok_and(f64::is_finite),
@@ -229,7 +229,7 @@ fn records(text: &str) -> Result<Vec<Record<'_>>, Fault> {
             None => {}
         }
     }
-    bail!("line {} of the DXF file: the file ends without EOF; export it again", lines.len())
+    refuse!("line {} of the DXF file: the file ends without EOF; export it again", lines.len())
 }
 
 /// Points, and whether they are closed.

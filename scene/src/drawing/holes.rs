@@ -3,8 +3,8 @@
 use crate::drawing::contour::{Contour, LISTED, rounded};
 use design::geometry::polygon;
 use design::geometry::region::Region;
-use support::bail;
 use support::fault::Fault;
+use support::refuse;
 
 /// Smallest area of a hole over the area of the outline: specks of a tracing are smaller.
 const SPECK: f64 = 1e-4;
@@ -55,7 +55,7 @@ pub(super) fn of(
     let near_zero = all.map(|points| points.iter().map(|[x, y]| [x - x0, y - y0]).collect());
     if let Some([x, y]) = polygon::crossing(near_zero.collect::<Vec<Vec<_>>>().iter()) {
         let [x, y] = [x + x0, y + y0].map(rounded);
-        bail!(
+        refuse!(
             "contours cross or touch each other near ({x}, {y}); move them apart, or delete one of them"
         );
     }

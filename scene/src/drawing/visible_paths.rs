@@ -3,8 +3,8 @@
 
 use crate::drawing::contour::flatten;
 use design::geometry::polygon;
-use support::bail;
 use support::fault::Fault;
+use support::refuse;
 use usvg::tiny_skia_path::{PathSegment, Point};
 use usvg::{ClipPath, Group, Node, Path, Transform};
 
@@ -38,7 +38,7 @@ pub(super) fn add_visible<'a>(group: &'a Group, paths: &mut Vec<&'a Path>) -> Re
     let clip = clip.map(|clip| ("clipPath", clip.id()));
     let cut = clip.or_else(|| group.mask().map(|mask| ("mask", mask.id())));
     match cut {
-        Some((element, id)) if paths.len() > before => bail!(
+        Some((element, id)) if paths.len() > before => refuse!(
             "the path is drawn in part alone, because of the {element} `{id}`; release it in the drawing program, so that the \
              path itself is the outline"
         ),
