@@ -4,11 +4,9 @@
 //! pixels first, each at a least distance from those before it. A pixel of another colour, at an
 //! edge, has the nearest of them.
 
-use crate::output_file;
-use crate::picture::rasterise;
+use crate::{output_file, picture::rasterise};
 use anyhow::{Context, Result};
-use std::collections::HashMap;
-use std::path::Path;
+use std::{collections::HashMap, path::Path};
 
 /// Duration of the whole animation (ms) and of its last frame, and the limits of the other frames.
 const TOTAL_MS: u16 = 3000;

@@ -15,9 +15,7 @@ pub use parity::parity;
 pub use tensile_test::tensile_test;
 
 use anyhow::{Result, anyhow};
-use plotters::chart::SeriesLabelPosition;
-use plotters::coord::Shift;
-use plotters::prelude::*;
+use plotters::{chart::SeriesLabelPosition, coord::Shift, prelude::*};
 use std::ops::Range;
 
 /// Colour of the first curve and of points.

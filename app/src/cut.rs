@@ -1,20 +1,22 @@
 //! The cut files of a designed sheet: for a person, for paper and for machines.
 
-use crate::chosen::Chosen;
-use crate::run_folder;
+use crate::{chosen::Chosen, run_folder};
 use anyhow::{Context, Result, ensure};
 use design::objective::design_problem::Deployment;
-use output::cut_file::{
-    CutDrawing, CutLines, Features, Machine, Machines, SheetDrawing, Tiling, Totals,
-    attachment_list, cut_list, cut_summary, dxf, mark_errors, svg, tiles_pdf,
+use output::{
+    cut_file::{
+        CutDrawing, CutLines, Features, Machine, Machines, SheetDrawing, Tiling, Totals,
+        attachment_list, cut_list, cut_summary, dxf, mark_errors, svg, tiles_pdf,
+    },
+    report::{Warning, warnings},
 };
-use output::report::{Warning, warnings};
 use scene::{Paper, Scene};
 use serde::Serialize;
-use std::fmt::{self, Display, Formatter};
-use std::path::{Path, PathBuf};
-use support::nearest::unknown;
-use support::severity::Severity;
+use std::{
+    fmt::{self, Display, Formatter},
+    path::{Path, PathBuf},
+};
+use support::{nearest::unknown, severity::Severity};
 
 /// A design that may be cut.
 pub struct CheckedCut {

@@ -1,20 +1,20 @@
 //! A design run: its search and the files of its results.
 
-use crate::animation;
-use crate::failure::Unfinished;
-use crate::{picture, run_folder};
+use crate::{animation, failure::Unfinished, picture, run_folder};
 use anyhow::{Context, Result, bail, ensure};
 use design::optimise::outer_loop::Ended;
-use output::drawing::deployment_frames;
-use output::report::{Report, Warning};
-use output::run_files::{ANIMATION, RUN_FILES, Writer};
-use output::run_results::{remove_run, write_results};
-use scene::Scene;
-use scene::design_run::{Designed, LEVELS, OnStep, inverse_design};
-use scene::run_inputs::{SCENE_FILE, holds_a_run};
-use std::fs::File;
-use std::path::Path;
-use std::sync::atomic::AtomicBool;
+use output::{
+    drawing::deployment_frames,
+    report::{Report, Warning},
+    run_files::{ANIMATION, RUN_FILES, Writer},
+    run_results::{remove_run, write_results},
+};
+use scene::{
+    Scene,
+    design_run::{Designed, LEVELS, OnStep, inverse_design},
+    run_inputs::{SCENE_FILE, holds_a_run},
+};
+use std::{fs::File, path::Path, sync::atomic::AtomicBool};
 use support::fault::unread;
 
 /// Width of the pictures (px).

@@ -5,11 +5,11 @@ use crate::run_folder;
 use anyhow::{Context, Result, ensure};
 use scene::Scene;
 use serde_json::Value;
-use std::collections::BTreeSet;
-use std::path::{Path, PathBuf};
-use support::fault::unread;
-use support::regular_file;
-use support::table::Table;
+use std::{
+    collections::BTreeSet,
+    path::{Path, PathBuf},
+};
+use support::{fault::unread, regular_file, table::Table};
 
 /// One design run.
 pub struct Run {

@@ -2,10 +2,14 @@
 
 use crate::output_file;
 use anyhow::{Context, Result};
-use resvg::usvg::fontdb::Database;
-use resvg::{tiny_skia, usvg};
-use std::path::{Path, PathBuf};
-use std::sync::{Arc, LazyLock};
+use resvg::{
+    tiny_skia,
+    usvg::{self, fontdb::Database},
+};
+use std::{
+    path::{Path, PathBuf},
+    sync::{Arc, LazyLock},
+};
 
 /// Writes `<stem>.svg` and `<stem>.png`, the latter `width` pixels wide; returns both paths.
 pub fn save(svg: &str, stem: &Path, width: u32) -> Result<[PathBuf; 2]> {

@@ -23,23 +23,24 @@ pub use findings::{Rule, Warning, rules};
 pub use hinge_row::HingeRow;
 pub use reached::Reached;
 
-use crate::cut_file::CutLines;
-use crate::report::deployed::{DeployedDesign, FinishedRun, left_out};
-use crate::report::facts::facts;
-use crate::report::findings::findings;
-use analysis::design_checks::DesignChecks;
-use analysis::error_budget::ErrorBudget;
-use analysis::mounting::Mounting;
-use analysis::what_if::what_if;
-use design::objective::design_problem::Deployment;
-use design::objective::scores::Scores;
-use design::optimise::outer_loop::Ended;
-use scene::design_run::Designed;
-use scene::placement::seen;
-use scene::{CoarseSearch, Level, Scene};
+use crate::{
+    cut_file::CutLines,
+    report::{
+        deployed::{DeployedDesign, FinishedRun, left_out},
+        facts::facts,
+        findings::findings,
+    },
+};
+use analysis::{
+    design_checks::DesignChecks, error_budget::ErrorBudget, mounting::Mounting, what_if::what_if,
+};
+use design::{
+    objective::{design_problem::Deployment, scores::Scores},
+    optimise::outer_loop::Ended,
+};
+use scene::{CoarseSearch, Level, Scene, design_run::Designed, placement::seen};
 use serde::Serialize;
-use support::fault::Fault;
-use support::severity::Severity;
+use support::{fault::Fault, severity::Severity};
 
 /// The report of a run, for people (`Display`) and programs (JSON).
 #[derive(Clone, Debug, Serialize)]

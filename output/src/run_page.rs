@@ -11,10 +11,8 @@ mod page_data;
 
 pub use page_data::{history, page_data, sheet_data};
 
-use crate::display::text_of_element;
-use crate::report::Report;
-use scene::Scene;
-use scene::design_run::Designed;
+use crate::{display::text_of_element, report::Report};
+use scene::{Scene, design_run::Designed};
 
 const TEMPLATE: &str = include_str!("run_page/page.html");
 const STYLE: &str = include_str!("run_page/page.css");

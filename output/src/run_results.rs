@@ -1,16 +1,21 @@
 //! The results of a run, written to its folder besides its state, and deleted before a new search.
 
-use crate::cut_file::{CutLines, SheetDrawing};
-use crate::report::Report;
-use crate::run_files::{RUN_FILES, Results, Writer};
+use crate::{
+    cut_file::{CutLines, SheetDrawing},
+    report::Report,
+    run_files::{RUN_FILES, Results, Writer},
+};
 use analysis::design_checks::DesignChecks;
-use scene::Scene;
-use scene::design_run::{Designed, START};
-use std::io;
-use std::path::Path;
-use support::fault::{Fault, at};
-use support::file_error::FileError;
-use support::whole_file;
+use scene::{
+    Scene,
+    design_run::{Designed, START},
+};
+use std::{io, path::Path};
+use support::{
+    fault::{Fault, at},
+    file_error::FileError,
+    whole_file,
+};
 
 /// Writes the results of [`RUN_FILES`]: the picture of the flat sheet for a design with cut lines,
 /// the cut files for a design without errors, or if `force`.

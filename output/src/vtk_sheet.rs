@@ -4,11 +4,15 @@
 //! Points are the points of the flat sheet; the point data `displacement (mm)` moves them to the
 //! deployed sheet.
 
-use design::equilibrium::load_step::LoadStep;
-use design::hinge_law::DamageMeasure;
-use design::objective::design_problem::Deployment;
-use design::sheet::cut_sheet::{Panel, Sheet};
-use design::sheet::kinematics::{deployed, deployed_boundaries};
+use design::{
+    equilibrium::load_step::LoadStep,
+    hinge_law::DamageMeasure,
+    objective::design_problem::Deployment,
+    sheet::{
+        cut_sheet::{Panel, Sheet},
+        kinematics::{deployed, deployed_boundaries},
+    },
+};
 use support::vtk::{CellKind, Field, UnstructuredGrid};
 
 /// A state of the deployment.

@@ -1,13 +1,14 @@
 //! The cells of a sheet: which voids of its pattern are kept, and the shapes of the panels that are
 //! trimmed.
 
-use design::geometry::polygon::{area, self_crossing};
-use design::pattern::grid::Grid;
-use design::sheet::topology::Topology;
+use design::{
+    geometry::polygon::{area, self_crossing},
+    pattern::grid::Grid,
+    sheet::topology::Topology,
+};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use support::fault::Fault;
-use support::{ensure, refuse};
+use support::{ensure, fault::Fault, refuse};
 
 /// A kept void in a row of the voids.
 const KEPT: char = 'o';

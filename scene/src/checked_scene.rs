@@ -1,20 +1,25 @@
 //! A scene that was read and checked, together with the files that it names.
 
-use crate::checks;
-use crate::keys::{SceneConfig, folder, resolved};
-use crate::level::Level;
-use crate::loaded_hinge::LoadedHinge;
-use crate::posture::PostureConfig;
-use crate::solved_hinges::SolvedHinges;
-use crate::springback_file;
-use crate::target::{TARGET_POINTS, Target};
-use design::sheet::cut_sheet::SheetOptions;
-use design::sheet::topology::Topology;
+use crate::{
+    checks,
+    keys::{SceneConfig, folder, resolved},
+    level::Level,
+    loaded_hinge::LoadedHinge,
+    posture::PostureConfig,
+    solved_hinges::SolvedHinges,
+    springback_file,
+    target::{TARGET_POINTS, Target},
+};
+use design::sheet::{cut_sheet::SheetOptions, topology::Topology};
 use hinge::SheetMaterial;
-use std::path::{Path, PathBuf};
-use std::sync::Arc;
-use support::fault::{Fault, at, said};
-use support::relative_path;
+use std::{
+    path::{Path, PathBuf},
+    sync::Arc,
+};
+use support::{
+    fault::{Fault, at, said},
+    relative_path,
+};
 use surrogate::{Springback, Surrogate};
 
 /// Version of geometry, mechanics and objective: raised when a change of the code changes the loss

@@ -3,24 +3,34 @@
 //! The ranges are wider than the ranges of any real sheet, and narrower than an error by a factor
 //! of 1000.
 
-use crate::actuation::{At, Attached, SheetEdge, SupportKind};
-use crate::keys::SceneConfig;
-use crate::level::Level;
-use crate::posture::Posture;
-use crate::sheet_config::SheetConfig;
-use crate::solved_hinges;
-use crate::target::Target;
-use design::geometry::polygon::{distance, distance_to_outline, edges, mean};
-use design::geometry::region::Region;
-use design::pattern::cut_pattern::CutPattern;
-use design::sheet::panel::boundary;
-use design::sheet::topology::Topology;
+use crate::{
+    actuation::{At, Attached, SheetEdge, SupportKind},
+    keys::SceneConfig,
+    level::Level,
+    posture::Posture,
+    sheet_config::SheetConfig,
+    solved_hinges,
+    target::Target,
+};
+use design::{
+    geometry::{
+        polygon::{distance, distance_to_outline, edges, mean},
+        region::Region,
+    },
+    pattern::cut_pattern::CutPattern,
+    sheet::{panel::boundary, topology::Topology},
+};
 use hinge::InvalidDesign;
-use std::collections::{BTreeMap, BTreeSet};
-use std::f64::consts::FRAC_PI_2;
-use support::fault::{Fault, at};
-use support::key_limits::{self, within};
-use support::{ensure, refuse};
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    f64::consts::FRAC_PI_2,
+};
+use support::{
+    ensure,
+    fault::{Fault, at},
+    key_limits::{self, within},
+    refuse,
+};
 
 /// Distance of a point on the edge of a panel from it (mm).
 const ON_EDGE: f64 = 1e-6;

@@ -3,25 +3,36 @@
 //! The state is saved about once per second and at the end; the next run of the scene continues
 //! from it.
 
-use crate::checked_scene::{MODEL_PARTS, Scene};
-use crate::coarse_search::CoarseSearch;
-use crate::keys::SceneConfig;
-use crate::level::Level;
-use crate::run_inputs::{self, InputHashes, STATE_FILE, unused};
-use design::objective::design_problem::{DesignProblem, Evaluation};
-use design::objective::terms::panel_width::thinnest_panel;
-use design::optimise::outer_loop::{Ended, SearchState, Until, optimise};
-use design::pattern::design_vector::DesignVector;
+use crate::{
+    checked_scene::{MODEL_PARTS, Scene},
+    coarse_search::CoarseSearch,
+    keys::SceneConfig,
+    level::Level,
+    run_inputs::{self, InputHashes, STATE_FILE, unused},
+};
+use design::{
+    objective::{
+        design_problem::{DesignProblem, Evaluation},
+        terms::panel_width::thinnest_panel,
+    },
+    optimise::outer_loop::{Ended, SearchState, Until, optimise},
+    pattern::design_vector::DesignVector,
+};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
-use std::collections::BTreeSet;
-use std::path::Path;
-use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
-use std::time::{Duration, Instant};
-use support::fault::{Fault, at};
-use support::sealed_json::{self, SealError};
-use support::{ensure, regular_file, whole_file};
+use std::{
+    collections::BTreeSet,
+    path::Path,
+    sync::{Arc, atomic::AtomicBool},
+    time::{Duration, Instant},
+};
+use support::{
+    ensure,
+    fault::{Fault, at},
+    regular_file,
+    sealed_json::{self, SealError},
+    whole_file,
+};
 
 /// The folder of the coarse searches, in the folder of a run.
 pub const LEVELS: &str = "levels";

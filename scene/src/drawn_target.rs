@@ -1,9 +1,11 @@
 //! A drawing as the target of a sheet.
 
 use crate::target::{Target, TargetShape};
-use design::geometry::plane::{complex, point};
-use design::geometry::polygon;
-use design::geometry::similarity::Similarity;
+use design::geometry::{
+    plane::{complex, point},
+    polygon,
+    similarity::Similarity,
+};
 use std::path::Path;
 use support::fault::Fault;
 

@@ -1,23 +1,24 @@
 //! The hinge law of a scene, loaded with the files it needs.
 
-use crate::checks::no_section;
-use crate::hinge_model::LinearConstants;
-use crate::keys::{SceneConfig, resolved};
-use crate::level::Level;
-use crate::solved_hinges::SolvedHinges;
-use design::equilibrium::tangent::MIN_PIVOT_RATIO;
-use design::hinge_law::{
-    Contact, DamageMeasure, HingeLaw, LinearLaw, MeanLaw, Order, SurrogateLaw,
+use crate::{
+    checks::no_section,
+    hinge_model::LinearConstants,
+    keys::{SceneConfig, resolved},
+    level::Level,
+    solved_hinges::SolvedHinges,
 };
-use design::sheet::cut_sheet::HingePoint;
-use design::sheet::topology::Topology;
+use design::{
+    equilibrium::tangent::MIN_PIVOT_RATIO,
+    hinge_law::{Contact, DamageMeasure, HingeLaw, LinearLaw, MeanLaw, Order, SurrogateLaw},
+    sheet::{cut_sheet::HingePoint, topology::Topology},
+};
 use hinge::{HingeDeformation, Regime, SheetMaterial};
-use std::f64::consts::FRAC_PI_2;
-use std::fmt;
-use std::path::Path;
-use std::sync::Arc;
-use support::fault::{Fault, at, said};
-use support::{ensure, refuse};
+use std::{f64::consts::FRAC_PI_2, fmt, path::Path, sync::Arc};
+use support::{
+    ensure,
+    fault::{Fault, at, said},
+    refuse,
+};
 use surrogate::Surrogate;
 
 /// Stiffness of the contact of panel edges relative to k_theta, and the void angle (rad) at which

@@ -1,11 +1,9 @@
 //! A scene at another level than its own.
 
-use crate::checked_scene::Scene;
-use crate::checks;
-use crate::hinge_model::PinConfig;
-use crate::keys::SceneConfig;
-use crate::level::Level;
-use crate::loaded_hinge::springs_at_start;
+use crate::{
+    checked_scene::Scene, checks, hinge_model::PinConfig, keys::SceneConfig, level::Level,
+    loaded_hinge::springs_at_start,
+};
 use support::fault::Fault;
 
 /// The opening of pins at the start (deg), where a scene names none.

@@ -1,15 +1,21 @@
 //! From a scene to its design problem and its start design.
 
-use crate::checked_scene::Scene;
-use crate::keys::SceneConfig;
-use crate::loaded_hinge::HingeBehaviour;
-use crate::sheet_config::StartConfig;
-use design::equilibrium::solver::EquilibriumSolver;
-use design::objective::design_problem::{DesignProblem, Mechanics, Model};
-use design::objective::loss::Objective;
-use design::objective::terms::TermContext;
-use design::pattern::design_vector::{DesignVector, WidthChart};
-use design::pattern::grid::Grid;
+use crate::{
+    checked_scene::Scene, keys::SceneConfig, loaded_hinge::HingeBehaviour,
+    sheet_config::StartConfig,
+};
+use design::{
+    equilibrium::solver::EquilibriumSolver,
+    objective::{
+        design_problem::{DesignProblem, Mechanics, Model},
+        loss::Objective,
+        terms::TermContext,
+    },
+    pattern::{
+        design_vector::{DesignVector, WidthChart},
+        grid::Grid,
+    },
+};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use support::fault::{Fault, at};

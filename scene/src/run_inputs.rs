@@ -13,16 +13,19 @@
 //!
 //! The state of the run holds the BLAKE3 hash of each of them.
 
-use crate::checked_scene::Scene;
-use crate::drawing::drawn_outline::numbered;
-use crate::keys::{SceneConfig, resolved};
+use crate::{
+    checked_scene::Scene,
+    drawing::drawn_outline::numbered,
+    keys::{SceneConfig, resolved},
+};
 use serde::{Deserialize, Serialize};
-use std::collections::BTreeMap;
-use std::convert::Infallible;
-use std::fmt::Display;
-use std::path::{Path, PathBuf};
-use support::fault::Fault;
-use support::{ensure, regular_file, sealed_json, whole_file};
+use std::{
+    collections::BTreeMap,
+    convert::Infallible,
+    fmt::Display,
+    path::{Path, PathBuf},
+};
+use support::{ensure, fault::Fault, regular_file, sealed_json, whole_file};
 
 /// The state of a run, in its folder.
 pub const STATE_FILE: &str = "state.json";

@@ -2,15 +2,19 @@
 //! energy.
 
 use crate::keys::{SceneConfig, resolved};
-use design::hinge_law::{CorrectedLaw, Correction, HingeLaw, MissingForces, Order};
-use design::sheet::topology::Topology;
+use design::{
+    hinge_law::{CorrectedLaw, Correction, HingeLaw, MissingForces, Order},
+    sheet::topology::Topology,
+};
 use hinge::{HingeDeformation, HingeDesign};
 use serde::{Deserialize, Serialize};
-use std::path::Path;
-use std::sync::Arc;
-use support::fault::{Fault, at, said};
-use support::file_error::FileError;
-use support::{ensure, regular_file, sealed_json, whole_file};
+use std::{path::Path, sync::Arc};
+use support::{
+    ensure,
+    fault::{Fault, at, said},
+    file_error::FileError,
+    regular_file, sealed_json, whole_file,
+};
 
 /// A hinge at the end of its path by finite elements.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]

@@ -2,10 +2,11 @@
 
 use crate::keys::{SceneConfig, resolved};
 use hinge::SheetMaterial;
-use std::f64::consts::FRAC_PI_2;
-use std::path::Path;
-use support::ensure;
-use support::fault::{Fault, at};
+use std::{f64::consts::FRAC_PI_2, path::Path};
+use support::{
+    ensure,
+    fault::{Fault, at},
+};
 use surrogate::Springback;
 
 /// The law that the scene at `path` names; `None` if it names none, or has another hinge law.

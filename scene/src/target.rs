@@ -1,18 +1,24 @@
 //! The target outline T of (16): a closed curve, sampled densely at equal arc lengths.
 
-use crate::drawing::drawn_outline;
-use crate::drawing::outline_points;
-use design::geometry::plane::{complex, point};
-use design::geometry::polygon;
-use design::geometry::region::Region;
-use design::geometry::similarity::Similarity;
+use crate::drawing::{drawn_outline, outline_points};
+use design::geometry::{
+    plane::{complex, point},
+    polygon,
+    region::Region,
+    similarity::Similarity,
+};
 use faer::c64;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use std::f64::consts::TAU;
-use std::path::{Path, PathBuf};
-use support::fault::{Fault, at};
-use support::{ensure, key_limits, regular_file};
+use std::{
+    f64::consts::TAU,
+    path::{Path, PathBuf},
+};
+use support::{
+    ensure,
+    fault::{Fault, at},
+    key_limits, regular_file,
+};
 
 /// A target as written in a scene; lengths in mm, in the coordinates of the flat sheet.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]

@@ -1,21 +1,19 @@
 //! `kirigami compare`: points measured on a deployed sheet, compared with its predicted equilibrium
 //! path.
 
-use crate::commands::inspect::scene_args::Inspected;
-use crate::commands::points_file::PointsFile;
-use analysis::measured_points::Mark;
-use analysis::measured_sheet::MeasuredSheet;
-use analysis::shape_path::ShapePath;
+use crate::commands::{inspect::scene_args::Inspected, points_file::PointsFile};
+use analysis::{measured_points::Mark, measured_sheet::MeasuredSheet, shape_path::ShapePath};
 use anyhow::{Context, Result, ensure};
 use app::{picture, run_folder};
 use clap::Args;
 use design::sheet::cut_sheet::Sheet;
-use output::drawing;
-use output::measurement::MeasurementReport;
+use output::{drawing, measurement::MeasurementReport};
 use scene::Scene;
-use std::collections::BTreeSet;
-use std::fmt::Write;
-use std::path::{Path, PathBuf};
+use std::{
+    collections::BTreeSet,
+    fmt::Write,
+    path::{Path, PathBuf},
+};
 
 /// Compare points measured on a deployed sheet with the prediction
 ///

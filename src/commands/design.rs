@@ -3,24 +3,27 @@
 #[cfg(feature = "pipeline")]
 mod by_elements;
 
-use crate::ui::with_unit::{self, Accuracy};
-use crate::ui::{self, interrupt, processors};
+use crate::ui::{
+    self, interrupt, processors,
+    with_unit::{self, Accuracy},
+};
 use analysis::refinement::refine;
 use anyhow::{Result, bail, ensure};
-use app::design::{ended, hold, search, write_refined};
-use app::design_runs::{Run, compare, refuse_shared_folders};
-use app::failure::Unfinished;
-use app::fitting::fit_to_target;
-use app::output_file;
-use app::progress::{Progress, announce};
+use app::{
+    design::{ended, hold, search, write_refined},
+    design_runs::{Run, compare, refuse_shared_folders},
+    failure::Unfinished,
+    fitting::fit_to_target,
+    output_file,
+    progress::{Progress, announce},
+};
 use clap::Args;
-use design::objective::scores::shown;
-use design::objective::term::in_words;
-use design::optimise::outer_loop::StepRecord;
+use design::{
+    objective::{scores::shown, term::in_words},
+    optimise::outer_loop::StepRecord,
+};
 use output::report::Report;
-use scene::design_run::OnStep;
-use scene::run_inputs::scene_file;
-use scene::{Level, Scene, SceneConfig};
+use scene::{Level, Scene, SceneConfig, design_run::OnStep, run_inputs::scene_file};
 use std::path::{Path, PathBuf};
 use support::worker_pool::{NoThread, Reports, work_through};
 

@@ -2,11 +2,12 @@
 
 pub mod scene_args;
 
-use crate::commands::inspect::scene_args::Inspected;
-use crate::ui::{exit, print_of, with_unit};
+use crate::{
+    commands::inspect::scene_args::Inspected,
+    ui::{exit, print_of, with_unit},
+};
 use anyhow::{Context, Result};
-use clap::error::ErrorKind;
-use clap::{Args, ValueEnum};
+use clap::{Args, ValueEnum, error::ErrorKind};
 use output::listing;
 use scene::Level;
 

@@ -1,16 +1,18 @@
 //! `kirigami levels`: what every level of a scene costs, and how far it is from the finest.
 
-use crate::commands::inspect::scene_args::Inspected;
-use crate::ui::{interrupt, print_of};
+use crate::{
+    commands::inspect::scene_args::Inspected,
+    ui::{interrupt, print_of},
+};
 use analysis::levels::{LevelCost, Levels, levels};
 use anyhow::Result;
-use app::design_checks::record;
-use app::progress::announce;
-use app::{charts, output_file};
+use app::{charts, design_checks::record, output_file, progress::announce};
 use clap::Args;
 use std::path::PathBuf;
-use support::document::Document;
-use support::table::{Cell, Table};
+use support::{
+    document::Document,
+    table::{Cell, Table},
+};
 
 /// Compare the levels of a scene: seconds of a search, and the difference to the finest level
 ///

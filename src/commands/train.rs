@@ -1,7 +1,9 @@
 //! `kirigami train`: trains the weights of the hinge energy on a hinge database.
 
-use crate::commands::campaign::{DATABASE, SPOT_CHECK};
-use crate::ui::interrupt;
+use crate::{
+    commands::campaign::{DATABASE, SPOT_CHECK},
+    ui::interrupt,
+};
 use anyhow::Result;
 use app::train::{TrainingTask, train_campaign};
 use clap::Args;

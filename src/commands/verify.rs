@@ -2,9 +2,13 @@
 
 mod whole_sheet;
 
-use crate::commands::inspect::scene_args::Inspected;
-use crate::commands::solve_args::{SolveArgs, task_error};
-use crate::ui::{self, count::count};
+use crate::{
+    commands::{
+        inspect::scene_args::Inspected,
+        solve_args::{SolveArgs, task_error},
+    },
+    ui::{self, count::count},
+};
 use anyhow::{Context, Result};
 use app::run_folder;
 use clap::Args;

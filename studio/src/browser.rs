@@ -4,17 +4,23 @@
 //! a tab, and the data as JSON. A worker hears nothing while it computes: a search pauses once
 //! there is a file [`PAUSE`].
 
-use crate::catalogue::Catalogue;
-use crate::event::{Event, Kind, locked};
-use crate::full_analysis::{FullAnalysis, Listener, refusal};
-use crate::request::Request;
-use crate::session::{Fetched, Next, Session};
+use crate::{
+    catalogue::Catalogue,
+    event::{Event, Kind, locked},
+    full_analysis::{FullAnalysis, Listener, refusal},
+    request::Request,
+    session::{Fetched, Next, Session},
+};
 use anyhow::{Context, Result};
 use app::failure::message;
-use std::cell::RefCell;
-use std::path::{Path, PathBuf};
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::{
+    cell::RefCell,
+    path::{Path, PathBuf},
+    sync::{
+        Arc,
+        atomic::{AtomicBool, Ordering},
+    },
+};
 use support::regular_file;
 
 const REQUEST: &str = "request.json";

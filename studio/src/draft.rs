@@ -2,9 +2,10 @@
 //! and in every step of a search.
 
 use crate::full_analysis::milliseconds;
-use design::equilibrium::warm_start::WarmStart;
-use design::optimise::outer_loop::SearchState;
-use design::{Deployment, DesignError, DesignProblem, DesignVector};
+use design::{
+    Deployment, DesignError, DesignProblem, DesignVector, equilibrium::warm_start::WarmStart,
+    optimise::outer_loop::SearchState,
+};
 use output::run_page::{history, sheet_data};
 use scene::Scene;
 use serde_json::{Value, json};

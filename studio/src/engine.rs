@@ -3,20 +3,26 @@
 //! While something is dragged every change is answered by a draft; when no request comes for a
 //! moment, by the full analysis: the path followed from the flat sheet, and the report.
 
-use crate::catalogue::Catalogue;
-use crate::event::{Event, Kind, locked};
-use crate::full_analysis::{FullAnalysis, Listener};
-use crate::project::Project;
-use crate::request::Request;
-use crate::session::{Fetched, Next, Session};
+use crate::{
+    catalogue::Catalogue,
+    event::{Event, Kind, locked},
+    full_analysis::{FullAnalysis, Listener},
+    project::Project,
+    request::Request,
+    session::{Fetched, Next, Session},
+};
 use anyhow::{Context, Result};
 use scene::Scene;
-use std::collections::VecDeque;
-use std::path::PathBuf;
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Condvar, Mutex, PoisonError};
-use std::thread::JoinHandle;
-use std::time::Duration;
+use std::{
+    collections::VecDeque,
+    path::PathBuf,
+    sync::{
+        Arc, Condvar, Mutex, PoisonError,
+        atomic::{AtomicBool, Ordering},
+    },
+    thread::JoinHandle,
+    time::Duration,
+};
 
 /// Time without a request after which the full analysis is computed.
 const REST: Duration = Duration::from_millis(200);

@@ -4,9 +4,10 @@
 //! An event holds all that a page needs to know of its kind, so that only the latest matters.
 
 use serde::Serialize;
-use std::sync::Arc;
-use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
-use std::time::Duration;
+use std::{
+    sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError},
+    time::Duration,
+};
 use strum::IntoStaticStr;
 
 /// What an event is about.

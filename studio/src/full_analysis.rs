@@ -6,15 +6,20 @@ use analysis::design_checks::DesignChecks;
 use anyhow::{Context, Result};
 use app::failure::message;
 use design::equilibrium::warm_start::WarmStart;
-use output::cut_file::CutLines;
-use output::report::Report;
-use output::run_page::{page_data, sheet_data};
-use scene::Scene;
-use scene::design_run::Designed;
+use output::{
+    cut_file::CutLines,
+    report::Report,
+    run_page::{page_data, sheet_data},
+};
+use scene::{Scene, design_run::Designed};
 use serde_json::json;
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Condvar, Mutex, PoisonError};
-use std::time::Instant;
+use std::{
+    sync::{
+        Arc, Condvar, Mutex, PoisonError,
+        atomic::{AtomicBool, Ordering},
+    },
+    time::Instant,
+};
 use support::caught_panic;
 
 /// Who hears the events.

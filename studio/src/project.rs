@@ -8,16 +8,16 @@
 
 use crate::request::{Drawing, NewSheet};
 use anyhow::{Context, Result, ensure};
-use app::new_project::NewProject;
-use app::output_file;
+use app::{new_project::NewProject, output_file};
 use design::optimise::outer_loop::Ended;
 use output::run_files::RUN_FILES;
-use scene::design_run::{left_run, stored_design};
-use scene::run_inputs::{INPUTS, SCENE_FILE, STATE_FILE, scene_file};
-use scene::{Scene, SceneConfig};
+use scene::{
+    Scene, SceneConfig,
+    design_run::{left_run, stored_design},
+    run_inputs::{INPUTS, SCENE_FILE, STATE_FILE, scene_file},
+};
 use std::path::{Path, PathBuf};
-use support::fault::unread;
-use support::{regular_file, text_file};
+use support::{fault::unread, regular_file, text_file};
 
 /// The first line of a scene that the studio writes. It changes no other scene.
 const HEAD: &str =

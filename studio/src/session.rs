@@ -1,31 +1,38 @@
 //! The scene that is shown, and the answers to requests.
 
-use crate::catalogue::is_example;
-use crate::draft::{Steps, draft, draft_data};
-use crate::event::{Event, Kind, locked};
-use crate::full_analysis::{FullAnalysis, Listener, Resting, refusal, run_name, shown};
-use crate::opened::{Opened, Run, fitted_to};
-use crate::panels::with_panels;
-use crate::project::Project;
-use crate::request::{Change, Drawing, Files, NewSheet, Request};
-use crate::run_listing::files_of_run;
+use crate::{
+    catalogue::is_example,
+    draft::{Steps, draft, draft_data},
+    event::{Event, Kind, locked},
+    full_analysis::{FullAnalysis, Listener, Resting, refusal, run_name, shown},
+    opened::{Opened, Run, fitted_to},
+    panels::with_panels,
+    project::Project,
+    request::{Change, Drawing, Files, NewSheet, Request},
+    run_listing::files_of_run,
+};
 use analysis::levels::levels;
 use anyhow::{Context, Result, anyhow, ensure};
-use app::cut::{machine_file_of_run, tiles_of_run};
-use app::design::write_run;
-use app::failure::message;
-use app::run_folder;
-use app::shell_word::shell_word;
+use app::{
+    cut::{machine_file_of_run, tiles_of_run},
+    design::write_run,
+    failure::message,
+    run_folder,
+    shell_word::shell_word,
+};
 use design::optimise::outer_loop::Ended;
-use scene::design_run::inverse_design;
-use scene::{Scene, SceneConfig};
+use scene::{Scene, SceneConfig, design_run::inverse_design};
 use serde::Serialize;
 use serde_json::{Value, json};
-use std::collections::BTreeMap;
-use std::path::PathBuf;
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex};
-use std::time::Instant;
+use std::{
+    collections::BTreeMap,
+    path::PathBuf,
+    sync::{
+        Arc, Mutex,
+        atomic::{AtomicBool, Ordering},
+    },
+    time::Instant,
+};
 use support::caught_panic;
 
 /// The files that can be fetched, by the names that pages know.

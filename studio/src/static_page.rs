@@ -4,12 +4,10 @@
 
 use crate::page::{Connection, page};
 use anyhow::{Context, Result};
-use app::new_project::WEIGHTS;
-use app::output_file;
+use app::{new_project::WEIGHTS, output_file};
 use serde_json::json;
 use std::path::{Path, PathBuf};
-use support::fault::unread;
-use support::regular_file;
+use support::{fault::unread, regular_file};
 
 /// Folders of the materials and examples of the studio, and of the files that they name.
 const CONFIGS: [&str; 4] =

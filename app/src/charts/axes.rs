@@ -1,9 +1,11 @@
 //! What the charts share: two axes, curves and marks, and the box with their names.
 
 use super::{Area, ChartResult, FONT, GUIDE};
-use plotters::chart::SeriesLabelPosition;
-use plotters::coord::ranged1d::{AsRangedCoord, Ranged, ValueFormatter};
-use plotters::prelude::*;
+use plotters::{
+    chart::SeriesLabelPosition,
+    coord::ranged1d::{AsRangedCoord, Ranged, ValueFormatter},
+    prelude::*,
+};
 use std::collections::HashSet;
 
 /// An axis: its range, linear or logarithmic, its name and the text of a tick.

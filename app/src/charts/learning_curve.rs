@@ -1,7 +1,9 @@
 //! Chart of the losses of a training against the epoch.
 
-use super::axes::{Axis, Look, chart, series};
-use super::*;
+use super::{
+    axes::{Axis, Look, chart, series},
+    *,
+};
 
 /// Training and validation loss against the epoch, the loss on a logarithmic axis.
 pub fn learning_curve(training: &[f64], validation: &[f64]) -> Result<String> {

@@ -1,9 +1,10 @@
 //! Chart of the levels of a scene: seconds of a search against the difference to the finest level.
 
-use super::axes::{Axis, Look, chart, series};
-use super::*;
-use analysis::error_budget::ErrorCause;
-use analysis::levels::Levels;
+use super::{
+    axes::{Axis, Look, chart, series},
+    *,
+};
+use analysis::{error_budget::ErrorCause, levels::Levels};
 
 /// Size of the chart (px).
 const SIZE: (u32, u32) = (640, 460);

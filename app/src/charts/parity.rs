@@ -1,7 +1,9 @@
 //! Parity charts: predicted against computed values.
 
-use super::axes::{Axis, Look, chart, series};
-use super::*;
+use super::{
+    axes::{Axis, Look, chart, series},
+    *,
+};
 use dataset::ComparedState;
 
 /// Charts side by side, one for each quantity of [`dataset::COMPARED`] that is known, with its

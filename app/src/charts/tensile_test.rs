@@ -1,8 +1,10 @@
 //! Chart of a fitted material: the records of its specimens at small strains and in full, and the
 //! hardening curve.
 
-use super::axes::{Axis, Look, Series, chart, series};
-use super::*;
+use super::{
+    axes::{Axis, Look, Series, chart, series},
+    *,
+};
 use tensile::{HardeningRow, MaterialFit, Origin, Specimen};
 
 /// Maximum number of points of a drawn curve; a record may have a hundred thousand.

@@ -4,16 +4,23 @@
 //! `X-seed-S.state`, from which a stopped training continues. The states remain: from them the
 //! command that finds all seeds trained writes the weights, the curves and the comparison.
 
-use crate::failure::Unfinished;
-use crate::progress::announce;
-use crate::train::kept_fits::{continued_fit, is_of};
-use crate::train::{TrainingTask, hold};
-use crate::{output_file, run_folder};
+use crate::{
+    failure::Unfinished,
+    output_file,
+    progress::announce,
+    run_folder,
+    train::{
+        TrainingTask, hold,
+        kept_fits::{continued_fit, is_of},
+    },
+};
 use ::train::{Trained, TrainingConfig};
 use anyhow::{Context, Result, bail, ensure};
 use dataset::Database;
-use std::path::{Path, PathBuf};
-use std::sync::atomic::Ordering;
+use std::{
+    path::{Path, PathBuf},
+    sync::atomic::Ordering,
+};
 use support::table::{Cell, Table};
 use surrogate::Surrogate;
 

@@ -1,10 +1,14 @@
 //! Where panels are held and pulled: holes for nails and hooks, which are cut, and marks, which are
 //! not.
 
-use crate::cut_file::cut_drawing::{CutDrawing, Layer};
-use crate::display::Shape;
-use design::sheet::attachment::{Clearance, Obstacle};
-use design::sheet::cut_sheet::{AttachmentPoint, Sheet};
+use crate::{
+    cut_file::cut_drawing::{CutDrawing, Layer},
+    display::Shape,
+};
+use design::sheet::{
+    attachment::{Clearance, Obstacle},
+    cut_sheet::{AttachmentPoint, Sheet},
+};
 use support::fault::Fault;
 
 /// Half the length of the arms of a mark (mm).

@@ -1,8 +1,10 @@
 //! Shapes on layers: what every cut file draws. The shapes of a layer are cut one after the other.
 
 use crate::display::{Colour, Shape, Style, Text};
-use design::geometry::polygon::{area, mean};
-use design::geometry::region::Contour;
+use design::geometry::{
+    polygon::{area, mean},
+    region::Contour,
+};
 use serde::{Deserialize, Serialize};
 
 /// The tool or the purpose of a shape, in the order of cutting: what is cut later holds what is cut

@@ -17,21 +17,26 @@
 //! **Over-run.** A slit that is open on the outline is cut beyond the finished edge, so that no web
 //! is left between the two cuts.
 
-use crate::cut_file::attachments::PlacedAttachment;
-use crate::cut_file::cut_drawing::{CutDrawing, Layer};
-use crate::cut_file::gaps::{self, Cut};
-use crate::display::Shape;
-use design::geometry::polygon::{
-    distance, distance_between_segments, distance_to_segment, edges, side,
+use crate::{
+    cut_file::{
+        attachments::PlacedAttachment,
+        cut_drawing::{CutDrawing, Layer},
+        gaps::{self, Cut},
+    },
+    display::Shape,
 };
-use design::geometry::region::Contour;
-use design::objective::design_problem::Deployment;
-use design::pattern::cut_pattern::CutPattern;
-use design::sheet::cut_sheet::{AttachmentPoint, Hinge, Sheet};
+use design::{
+    geometry::{
+        polygon::{distance, distance_between_segments, distance_to_segment, edges, side},
+        region::Contour,
+    },
+    objective::design_problem::Deployment,
+    pattern::cut_pattern::CutPattern,
+    sheet::cut_sheet::{AttachmentPoint, Hinge, Sheet},
+};
 use scene::{CuttingConfig, Scene};
 use std::collections::BTreeMap;
-use support::ensure;
-use support::fault::Fault;
+use support::{ensure, fault::Fault};
 
 /// The least 1 + cos of the turn of an outline at a corner that moves in full with its edges.
 const SHARPEST: f64 = 0.1;

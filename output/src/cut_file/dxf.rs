@@ -5,12 +5,13 @@
 //! same in every file is in `dxf.txt`, where `+NAME` is a new handle and `@NAME` that handle again. Reference:
 //! Autodesk, DXF Reference (AutoCAD 2000).
 
-use crate::cut_file::cut_drawing::{CutDrawing, Layer};
-use crate::display::{Anchor, Shape, Text};
+use crate::{
+    cut_file::cut_drawing::{CutDrawing, Layer},
+    display::{Anchor, Shape, Text},
+};
 use design::geometry::polygon::size;
 use scene::drawing::bulged::Vertex;
-use std::collections::HashMap;
-use std::fmt::Display;
+use std::{collections::HashMap, fmt::Display};
 use support::add_line;
 
 const TEMPLATE: &str = include_str!("dxf.txt");

@@ -3,10 +3,11 @@
 //! Two cuts leave at least the width of a slit between them, and so do holes and outline. A slit then meets
 //! the outline at most once and no other cut, so that the sheet stays in one piece.
 
-use design::geometry::polygon::{distance_between_segments, distance_to_outline};
-use design::geometry::region::Contour;
-use support::ensure;
-use support::fault::Fault;
+use design::geometry::{
+    polygon::{distance_between_segments, distance_to_outline},
+    region::Contour,
+};
+use support::{ensure, fault::Fault};
 
 /// A cut with the width of the tool: the points nearer than `radius` to the segment `ends`, which
 /// is a point for a hole.

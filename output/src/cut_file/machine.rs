@@ -1,14 +1,14 @@
 //! Machines and services: what their files hold, and what they can cut.
 
-use crate::cut_file::cut_drawing::{CutDrawing, Pen};
-use crate::cut_file::cut_lines::CutLines;
-use crate::cut_file::sheet_drawing::registration_marks;
+use crate::cut_file::{
+    cut_drawing::{CutDrawing, Pen},
+    cut_lines::CutLines,
+    sheet_drawing::registration_marks,
+};
 use design::geometry::polygon::{bounds, distance_to_outline, size};
 use serde::{Deserialize, Serialize};
-use std::fmt;
-use std::path::Path;
-use support::fault::Fault;
-use support::{ensure, refuse, toml_file};
+use std::{fmt, path::Path};
+use support::{ensure, fault::Fault, refuse, toml_file};
 
 /// The shipped table.
 const SHIPPED: &str = include_str!("../../../configs/machines.toml");

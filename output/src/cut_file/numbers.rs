@@ -3,10 +3,14 @@
 //! A panel is convex and no slit enters it: a text inside of it is clear of all slits. A hinge's
 //! number is inside one of its two panels, as near to its hole as the cuts allow.
 
-use crate::cut_file::cut_lines::CutLines;
-use crate::display::{Text, rectangle};
-use design::geometry::polygon::{distance, edges, side};
-use design::sheet::cut_sheet::Sheet;
+use crate::{
+    cut_file::cut_lines::CutLines,
+    display::{Text, rectangle},
+};
+use design::{
+    geometry::polygon::{distance, edges, side},
+    sheet::cut_sheet::Sheet,
+};
 
 /// Height of panel numbers relative to the root of the panel's area, and its maximum (mm).
 const PANEL_HEIGHT: f64 = 0.1;

@@ -4,10 +4,17 @@
 //! Neighbouring tiles print the same strip. A dashed line in its middle with two crosses is at the
 //! same place of the sheet on both: trim one of them there, lay it on the other, cross on cross.
 
-use crate::cut_file::cut_drawing::CutDrawing;
-use crate::cut_file::tiling::{BORDER, FOOTER, OVERLAP, Tiling, cell_name};
-use crate::display::pdf::{self, Form, clip, draw, page, place};
-use crate::display::{Canvas, Colour, Style, Text, rectangle};
+use crate::{
+    cut_file::{
+        cut_drawing::CutDrawing,
+        tiling::{BORDER, FOOTER, OVERLAP, Tiling, cell_name},
+    },
+    display::{
+        Canvas, Colour, Style, Text,
+        pdf::{self, Form, clip, draw, page, place},
+        rectangle,
+    },
+};
 use design::geometry::polygon::{mean, size};
 use pdf_writer::{Content, Name};
 

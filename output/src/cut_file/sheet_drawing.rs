@@ -1,13 +1,16 @@
 //! The drawing of a whole sheet: its cuts in cutting order, numbers, scale, instructions and
 //! registration marks.
 
-use crate::cut_file::cut_drawing::{CutDrawing, Layer};
-use crate::cut_file::cut_lines::CutLines;
-use crate::cut_file::numbers::numbers;
-use crate::cut_file::totals::Totals;
-use crate::display::{Shape, Text};
-use design::geometry::polygon::size;
-use design::sheet::cut_sheet::Sheet;
+use crate::{
+    cut_file::{
+        cut_drawing::{CutDrawing, Layer},
+        cut_lines::CutLines,
+        numbers::numbers,
+        totals::Totals,
+    },
+    display::{Shape, Text},
+};
+use design::{geometry::polygon::size, sheet::cut_sheet::Sheet};
 use hinge::SheetMaterial;
 
 /// Height of the instructions relative to the size of the sheet, and its minimum (mm).

@@ -1,8 +1,10 @@
 //! SVG at 1:1, one user unit per millimetre from the upper left corner of the page, one group per
 //! layer.
 
-use crate::cut_file::cut_drawing::CutDrawing;
-use crate::display::{document, group};
+use crate::{
+    cut_file::cut_drawing::CutDrawing,
+    display::{document, group},
+};
 use design::geometry::polygon::size;
 
 /// Margin around the drawing (mm).

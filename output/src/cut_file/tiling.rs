@@ -1,8 +1,7 @@
 //! A drawing on pages of paper, which overlap.
 
 use scene::Paper;
-use support::ensure;
-use support::fault::Fault;
+use support::{ensure, fault::Fault};
 
 /// Border that printers leave white (mm).
 pub(super) const BORDER: f64 = 10.0;

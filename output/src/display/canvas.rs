@@ -1,7 +1,9 @@
 //! Pictures: shapes with styles, and their SVG: y upwards, 0.1 um resolution.
 
-use crate::display::shape::{Anchor, Shape, Text, rectangle};
-use crate::display::style::{Colour, Style};
+use crate::display::{
+    shape::{Anchor, Shape, Text, rectangle},
+    style::{Colour, Style},
+};
 use design::geometry::polygon::{distance, size};
 use scene::drawing::bulged::{Vertex, centre};
 use std::fmt::Write;

@@ -1,8 +1,10 @@
 //! Pages of PDF in mm, in Helvetica, which every reader has. Styles are colours, widths and dashes:
 //! no opacity, no halo.
 
-use crate::display::shape::{Anchor, Shape, Text};
-use crate::display::style::{Colour, Style};
+use crate::display::{
+    shape::{Anchor, Shape, Text},
+    style::{Colour, Style},
+};
 use design::geometry::polygon::size;
 use pdf_writer::{Content, Finish, Name, Pdf, Rect, Ref, Str};
 use scene::drawing::bulged::flattened;

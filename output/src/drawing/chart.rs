@@ -1,7 +1,9 @@
 //! A small chart in a rectangle of a picture: axes with round ticks, and positions of values.
 
-use crate::display::{Anchor, Canvas, Style, trimmed};
-use crate::drawing::page::{INK, MUTED, round_below};
+use crate::{
+    display::{Anchor, Canvas, Style, trimmed},
+    drawing::page::{INK, MUTED, round_below},
+};
 
 /// A rectangle of the page with one value range along x and one along y.
 pub(super) struct Chart {

@@ -1,19 +1,23 @@
 //! The deployed sheet with its target; the hinge windows are coloured by their opening angle.
 
-use crate::deployment_states::{kept, states_before};
-use crate::display::{Anchor, Canvas, Style};
-use crate::drawing::load_marks::{self, Mark, marks};
-use crate::drawing::page::{ACCENT, ColourScale, INK, MUTED, Page, panels};
-use design::equilibrium::load_step::LoadStep;
-use design::objective::design_problem::Deployment;
-use design::sheet::cut_sheet::Sheet;
-use design::sheet::hinge_window::Window;
-use design::sheet::kinematics::{
-    Configuration, deployed as moved, deployed_boundaries, hinge_deformations,
+use crate::{
+    deployment_states::{kept, states_before},
+    display::{Anchor, Canvas, Style},
+    drawing::{
+        load_marks::{self, Mark, marks},
+        page::{ACCENT, ColourScale, INK, MUTED, Page, panels},
+    },
 };
-use scene::Scene;
-use scene::design_run::Designed;
-use scene::placement::placed;
+use design::{
+    equilibrium::load_step::LoadStep,
+    objective::design_problem::Deployment,
+    sheet::{
+        cut_sheet::Sheet,
+        hinge_window::Window,
+        kinematics::{Configuration, deployed as moved, deployed_boundaries, hinge_deformations},
+    },
+};
+use scene::{Scene, design_run::Designed, placement::placed};
 
 /// The sheet of a scene in the state that is compared with the target, with the loads there.
 pub fn deployed(scene: &Scene, deployment: &Deployment) -> String {

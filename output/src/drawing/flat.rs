@@ -1,10 +1,14 @@
 //! The flat pattern: panels, cuts, holes, ligaments with their windows, hinge numbers.
 
-use crate::cut_file::CutLines;
-use crate::display::{Anchor, Canvas, Style};
-use crate::drawing::page::{ACCENT, INK, MUTED, Page, TEAL, panel_colour};
-use design::sheet::cut_sheet::{Hinge, Sheet};
-use design::sheet::hinge_window::Window;
+use crate::{
+    cut_file::CutLines,
+    display::{Anchor, Canvas, Style},
+    drawing::page::{ACCENT, INK, MUTED, Page, TEAL, panel_colour},
+};
+use design::sheet::{
+    cut_sheet::{Hinge, Sheet},
+    hinge_window::Window,
+};
 
 /// The flat sheet with its cuts.
 pub fn flat(title: &str, sheet: &Sheet, cuts: &CutLines) -> String {

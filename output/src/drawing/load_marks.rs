@@ -2,11 +2,11 @@
 //! every force, a curved arrow in the sense of every couple.
 
 use crate::report::rounded;
-use design::equilibrium::load_step::LoadStep;
-use design::sheet::cut_sheet::Sheet;
-use design::sheet::kinematics::deployed as moved;
-use scene::placement::placed;
-use scene::{Scene, SupportedPanel};
+use design::{
+    equilibrium::load_step::LoadStep,
+    sheet::{cut_sheet::Sheet, kinematics::deployed as moved},
+};
+use scene::{Scene, SupportedPanel, placement::placed};
 use std::f64::consts::PI;
 
 /// A part of a symbol (mm).

@@ -2,16 +2,19 @@
 //! with magnified residuals, hinge openings measured against predicted, errors of the panel centres
 //! against the floor.
 
-use crate::display::{Anchor, Canvas, Style};
-use crate::drawing::chart::Chart;
-use crate::drawing::page::{self, ACCENT, INK, MUTED, Page, TEAL};
-use crate::measurement::MeasurementReport;
-use analysis::measured_openings::MeasuredOpening;
-use analysis::measured_points::FittedPoint;
-use analysis::path_fit::Fit;
-use design::geometry::polygon::{bounds, size};
-use design::sheet::cut_sheet::Sheet;
-use design::sheet::kinematics::deployed_boundaries;
+use crate::{
+    display::{Anchor, Canvas, Style},
+    drawing::{
+        chart::Chart,
+        page::{self, ACCENT, INK, MUTED, Page, TEAL},
+    },
+    measurement::MeasurementReport,
+};
+use analysis::{measured_openings::MeasuredOpening, measured_points::FittedPoint, path_fit::Fit};
+use design::{
+    geometry::polygon::{bounds, size},
+    sheet::{cut_sheet::Sheet, kinematics::deployed_boundaries},
+};
 
 /// Magnifications of the residuals.
 const MAGNIFICATIONS: [f64; 8] = [1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0];

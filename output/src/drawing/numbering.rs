@@ -1,7 +1,9 @@
 //! The numbers of the panels and of their corners on the flat sheet, as a measurement names them.
 
-use crate::display::{Anchor, Style};
-use crate::drawing::page::{ACCENT, INK, MUTED, Page, TEAL, panel_colour};
+use crate::{
+    display::{Anchor, Style},
+    drawing::page::{ACCENT, INK, MUTED, Page, TEAL, panel_colour},
+};
 use design::sheet::cut_sheet::Sheet;
 
 /// Distance of a corner's number from the corner, as a fraction of the distance to the centre.

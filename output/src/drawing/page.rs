@@ -2,9 +2,13 @@
 //! scale.
 
 use crate::display::{Anchor, Canvas, Colour, Style, rectangle, trimmed};
-use design::geometry::polygon::{bounds, size};
-use design::geometry::region::Contour;
-use design::sheet::topology::Topology;
+use design::{
+    geometry::{
+        polygon::{bounds, size},
+        region::Contour,
+    },
+    sheet::topology::Topology,
+};
 
 /// Colour of main lines and titles.
 pub const INK: Colour = [31, 41, 51];

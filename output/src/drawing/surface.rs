@@ -1,7 +1,9 @@
 //! A surface in space, seen along an axis, with the faces in colours.
 
-use crate::display::Style;
-use crate::drawing::page::{ColourScale, INK, Page};
+use crate::{
+    display::Style,
+    drawing::page::{ColourScale, INK, Page},
+};
 use design::geometry::polygon::{bounds, size};
 
 /// From where a surface is seen.

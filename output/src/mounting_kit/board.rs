@@ -1,11 +1,14 @@
 //! The board behind a mounted sheet, seen from the front: numbered crosses and the opened panels.
 
-use crate::cut_file::{CutDrawing, Layer};
-use crate::display::{Shape, Text, rectangle};
+use crate::{
+    cut_file::{CutDrawing, Layer},
+    display::{Shape, Text, rectangle},
+};
 use analysis::mounting::Mounting;
-use design::geometry::polygon::{bounds, size};
-use design::sheet::cut_sheet::Sheet;
-use design::sheet::kinematics::deployed_boundaries;
+use design::{
+    geometry::polygon::{bounds, size},
+    sheet::{cut_sheet::Sheet, kinematics::deployed_boundaries},
+};
 
 /// Half the length of the arms of a cross (mm).
 const ARM: f64 = 8.0;

@@ -1,14 +1,19 @@
 //! The kit as PDF: what to buy and the steps, the board on tiles at 1:1, and the board on one page.
 
-use crate::cut_file::{Tiling, form, tile_pages};
-use crate::display::pdf::{self, draw, page, place};
-use crate::display::{Canvas, Style, Text};
-use crate::drawing::page::{INK, MUTED};
-use crate::mounting_kit::board::board;
-use crate::mounting_kit::step_pictures::{StepPictures, lines};
+use crate::{
+    cut_file::{Tiling, form, tile_pages},
+    display::{
+        Canvas, Style, Text,
+        pdf::{self, draw, page, place},
+    },
+    drawing::page::{INK, MUTED},
+    mounting_kit::{
+        board::board,
+        step_pictures::{StepPictures, lines},
+    },
+};
 use analysis::mounting::Mounting;
-use design::geometry::polygon::size;
-use design::sheet::cut_sheet::Sheet;
+use design::{geometry::polygon::size, sheet::cut_sheet::Sheet};
 use pdf_writer::Content;
 use scene::Paper;
 use support::fault::Fault;

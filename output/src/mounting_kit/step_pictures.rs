@@ -1,12 +1,18 @@
 //! A picture of every step in which a sheet is mounted, with what to do.
 
-use crate::display::{Canvas, Style, Text};
-use crate::drawing::page::{ACCENT, INK, MUTED, panels};
-use crate::report::mounting_step;
+use crate::{
+    display::{Canvas, Style, Text},
+    drawing::page::{ACCENT, INK, MUTED, panels},
+    report::mounting_step,
+};
 use analysis::mounting::{Fastener, Mounting};
-use design::geometry::polygon::bounds;
-use design::sheet::cut_sheet::Sheet;
-use design::sheet::kinematics::{Configuration, deployed, deployed_boundaries};
+use design::{
+    geometry::polygon::bounds,
+    sheet::{
+        cut_sheet::Sheet,
+        kinematics::{Configuration, deployed, deployed_boundaries},
+    },
+};
 
 /// Height of the letters, distance of lines, and width of a letter on the mean (mm).
 const LETTERS: f64 = 2.3;

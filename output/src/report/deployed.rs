@@ -1,19 +1,20 @@
 //! What facts and findings are about: a deployed design and, after a search, its run.
 
-use crate::cut_file::CutLines;
-use crate::report::hinge_row::HingeRow;
-use crate::report::numbers::rounded;
-use crate::report::reached::Reached;
-use analysis::design_checks::{DesignChecks, WholeSheet};
-use analysis::mounting::Mounting;
-use analysis::what_if::WhatIf;
-use design::geometry::polygon::{bounds, size};
-use design::objective::design_problem::Deployment;
-use design::objective::scores::Scores;
-use scene::design_run::Designed;
-use scene::{Posture, Scene};
-use support::fault::Fault;
-use support::severity::Severity;
+use crate::{
+    cut_file::CutLines,
+    report::{hinge_row::HingeRow, numbers::rounded, reached::Reached},
+};
+use analysis::{
+    design_checks::{DesignChecks, WholeSheet},
+    mounting::Mounting,
+    what_if::WhatIf,
+};
+use design::{
+    geometry::polygon::{bounds, size},
+    objective::{design_problem::Deployment, scores::Scores},
+};
+use scene::{Posture, Scene, design_run::Designed};
+use support::{fault::Fault, severity::Severity};
 
 /// A deployed design.
 pub(super) struct DeployedDesign<'a> {

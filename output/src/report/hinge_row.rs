@@ -1,12 +1,12 @@
 //! One hinge in the report.
 
-use analysis::flanks::flank_gap;
-use analysis::localisation::gamma;
-use analysis::path_separation::path_separation;
-use design::geometry::polygon::{distance, edges};
-use design::hinge_law::DamageMeasure;
-use design::objective::design_problem::Deployment;
-use design::sheet::cut_sheet::{Hinge, Sheet};
+use analysis::{flanks::flank_gap, localisation::gamma, path_separation::path_separation};
+use design::{
+    geometry::polygon::{distance, edges},
+    hinge_law::DamageMeasure,
+    objective::design_problem::Deployment,
+    sheet::cut_sheet::{Hinge, Sheet},
+};
 use hinge::HingeDesign;
 use scene::{Posture, Scene};
 use serde::Serialize;

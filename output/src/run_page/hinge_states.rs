@@ -1,15 +1,18 @@
 //! The states of panels and hinges along the path.
 
-use crate::deployment_states::{kept, states_before};
-use crate::report::force_spreads;
-use crate::run_page::packed::packed;
+use crate::{
+    deployment_states::{kept, states_before},
+    report::force_spreads,
+    run_page::packed::packed,
+};
 use analysis::actuation_curve::ActuationCurve;
-use design::equilibrium::load_step::LoadStep;
-use design::hinge_law::{DamageMeasure, Order};
-use design::objective::design_problem::{Deployment, DesignProblem, Mechanics};
-use design::sheet::cut_sheet::Sheet;
-use scene::Scene;
-use scene::placement::placed;
+use design::{
+    equilibrium::load_step::LoadStep,
+    hinge_law::{DamageMeasure, Order},
+    objective::design_problem::{Deployment, DesignProblem, Mechanics},
+    sheet::cut_sheet::Sheet,
+};
+use scene::{Scene, placement::placed};
 use serde_json::{Value, json};
 use surrogate::Surrogate;
 

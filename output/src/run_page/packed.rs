@@ -1,7 +1,6 @@
 //! Lists of numbers in the data of the page.
 
-use base64::Engine;
-use base64::engine::general_purpose::STANDARD;
+use base64::{Engine, engine::general_purpose::STANDARD};
 
 /// Numbers as base64 of little-endian 32-bit floats; NaN is a number that is not known.
 pub(super) fn packed(numbers: impl IntoIterator<Item = f64>) -> String {

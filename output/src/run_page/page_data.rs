@@ -1,19 +1,22 @@
 //! The data of the page.
 
-use crate::deployment_states::kept;
-use crate::mounting_kit::steps_svg;
-use crate::report::{BUDGET_HEADING, HingeRow, Report, extent, miss, worst_first};
-use crate::run_page::hinge_states::hinge_states;
-use crate::run_page::packed::packed;
-use design::objective::design_problem::{Deployment, DesignProblem};
-use design::objective::loss::Objective;
-use design::objective::scores::outline_error;
-use design::objective::term::in_words;
-use design::optimise::outer_loop::StepRecord;
-use design::sheet::cut_sheet::Sheet;
-use scene::Scene;
-use scene::design_run::Designed;
-use scene::placement::seen;
+use crate::{
+    deployment_states::kept,
+    mounting_kit::steps_svg,
+    report::{BUDGET_HEADING, HingeRow, Report, extent, miss, worst_first},
+    run_page::{hinge_states::hinge_states, packed::packed},
+};
+use design::{
+    objective::{
+        design_problem::{Deployment, DesignProblem},
+        loss::Objective,
+        scores::outline_error,
+        term::in_words,
+    },
+    optimise::outer_loop::StepRecord,
+    sheet::cut_sheet::Sheet,
+};
+use scene::{Scene, design_run::Designed, placement::seen};
 use serde_json::{Value, json};
 use surrogate::Surrogate;
 

@@ -3,9 +3,7 @@
 //! so is refused by its name.
 
 use simplecss::{AttributeOperator, DeclarationTokenizer, PseudoClass, StyleSheet};
-use std::collections::HashMap;
-use std::ops::Range;
-use std::str::FromStr;
+use std::{collections::HashMap, ops::Range, str::FromStr};
 use support::fault::Fault;
 use svgtypes::{Angle, Length, LengthUnit};
 use usvg::roxmltree::{Attribute, Document, Node};

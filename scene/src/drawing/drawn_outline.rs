@@ -4,13 +4,18 @@
 //! If the drawing has several pieces the outline is named by its number among the contours, the
 //! largest first.
 
-use crate::drawing::contour::{Contour, LISTED, rounded};
-use crate::drawing::joined_lines::joined;
-use crate::drawing::{dxf_contours, holes, svg_path};
+use crate::drawing::{
+    contour::{Contour, LISTED, rounded},
+    dxf_contours, holes,
+    joined_lines::joined,
+    svg_path,
+};
 use design::geometry::polygon;
 use std::path::{Path, PathBuf};
-use support::fault::{Fault, at};
-use support::{refuse, text_file};
+use support::{
+    fault::{Fault, at},
+    refuse, text_file,
+};
 
 /// First bytes of a file that is compressed by gzip.
 const GZIP: &[u8] = b"\x1F\x8B";

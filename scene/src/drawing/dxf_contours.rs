@@ -5,17 +5,18 @@
 //! are LINE, ARC, CIRCLE, ELLIPSE, SPLINE, LWPOLYLINE, POLYLINE and the blocks of INSERT, on layers
 //! that are shown. Reference: Autodesk, DXF Reference (AutoCAD 2000).
 
-use crate::drawing::bulged::{Vertex, arc, flattened};
-use crate::drawing::contour::{Contour, WELD};
-use crate::drawing::spline;
-use design::geometry::plane::{I, complex, point};
-use design::geometry::polygon;
+use crate::drawing::{
+    bulged::{Vertex, arc, flattened},
+    contour::{Contour, WELD},
+    spline,
+};
+use design::geometry::{
+    plane::{I, complex, point},
+    polygon,
+};
 use faer::c64;
-use std::collections::HashMap;
-use std::f64::consts::TAU;
-use std::ops::Range;
-use support::fault::Fault;
-use support::{ensure, refuse};
+use std::{collections::HashMap, f64::consts::TAU, ops::Range};
+use support::{ensure, fault::Fault, refuse};
 
 /// Difference of an angle from a full circle at which it is one, written with few digits (rad).
 const FULL: f64 = 1e-3;

@@ -1,10 +1,8 @@
 //! The contours that lie in others: the holes of an outline.
 
 use crate::drawing::contour::{Contour, LISTED, rounded};
-use design::geometry::polygon;
-use design::geometry::region::Region;
-use support::fault::Fault;
-use support::refuse;
+use design::geometry::{polygon, region::Region};
+use support::{fault::Fault, refuse};
 
 /// Smallest area of a hole over the area of the outline: specks of a tracing are smaller.
 const SPECK: f64 = 1e-4;

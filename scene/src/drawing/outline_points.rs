@@ -3,13 +3,13 @@
 //! lines or before a constant. Blank lines separate blocks, which are joined where their ends meet;
 //! a line above them may count their points, as in airfoils in the form of Lednicer.
 
-use crate::drawing::contour::Contour;
-use crate::drawing::drawn_outline::listed;
-use crate::drawing::joined_lines::joined;
+use crate::drawing::{contour::Contour, drawn_outline::listed, joined_lines::joined};
 use std::path::Path;
-use support::fault::{Fault, at};
-use support::text_file;
-use support::text_table::{TextRow, TextTable};
+use support::{
+    fault::{Fault, at},
+    text_file,
+    text_table::{TextRow, TextTable},
+};
 
 /// Units behind the names of columns, with their length (mm).
 const UNITS: [(&str, f64); 5] =

@@ -3,14 +3,17 @@
 //! usvg reads the document: it converts rect, circle, ellipse and polygon to paths and arcs to
 //! cubic curves, and it resolves styles, `<use>` and transforms.
 
-use crate::drawing::contour::{Contour, WELD};
-use crate::drawing::css_geometry::edited;
-use crate::drawing::visible_paths::{Subpath, add_visible, is_filled, subpaths, transformed};
-use crate::drawing::{css_geometry, near_origin, svg_warnings};
-use support::ensure;
-use support::fault::Fault;
-use usvg::roxmltree::{Document, ParsingOptions};
-use usvg::{ImageHrefResolver, Options, Path, Transform, Tree};
+use crate::drawing::{
+    contour::{Contour, WELD},
+    css_geometry::{self, edited},
+    near_origin, svg_warnings,
+    visible_paths::{Subpath, add_visible, is_filled, subpaths, transformed},
+};
+use support::{ensure, fault::Fault};
+use usvg::{
+    ImageHrefResolver, Options, Path, Transform, Tree,
+    roxmltree::{Document, ParsingOptions},
+};
 
 /// Removes the background colour of the root element and markers, which usvg would draw as paths,
 /// and draws lines of no width, which are hairlines of a laser.

@@ -3,10 +3,11 @@
 
 use crate::drawing::contour::flatten;
 use design::geometry::polygon;
-use support::fault::Fault;
-use support::refuse;
-use usvg::tiny_skia_path::{PathSegment, Point};
-use usvg::{ClipPath, Group, Node, Path, Transform};
+use support::{fault::Fault, refuse};
+use usvg::{
+    ClipPath, Group, Node, Path, Transform,
+    tiny_skia_path::{PathSegment, Point},
+};
 
 /// How far a path may reach out of a clip around it, over the length of an edge of the clip:
 /// rounding.

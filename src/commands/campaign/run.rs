@@ -1,15 +1,15 @@
 //! `kirigami campaign run`
 
 use super::campaign_args::{CampaignArgs, print_tally};
-use crate::commands::solve_args::{FeSolver, SolveArgs};
-use crate::ui::interrupt;
+use crate::{
+    commands::solve_args::{FeSolver, SolveArgs},
+    ui::interrupt,
+};
 use anyhow::{Result, bail, ensure};
-use app::failure::Unfinished;
-use app::progress::Progress;
+use app::{failure::Unfinished, progress::Progress};
 use clap::Args;
 use fe_driver::{RunOptions, Shard, Tally};
-use std::path::Path;
-use std::time::Duration;
+use std::{path::Path, time::Duration};
 use verification::every_ray_failed;
 
 /// Solve all rays that are not solved yet

@@ -1,8 +1,10 @@
 //! `kirigami campaign submit`
 
 use super::campaign_args::CampaignArgs;
-use crate::commands::solve_args::FeSolver;
-use crate::ui::count::{count, jobs};
+use crate::{
+    commands::solve_args::FeSolver,
+    ui::count::{count, jobs},
+};
 use anyhow::Result;
 use app::progress::duration;
 use clap::Args;

@@ -1,8 +1,7 @@
 //! `kirigami dataset compare`: differences of a mesh from a finer one on the same rays.
 
 use anyhow::{Result, ensure};
-use app::train::correction;
-use app::{output_file, run_folder};
+use app::{output_file, run_folder, train::correction};
 use clap::Args;
 use dataset::{ComparedRay, ComparedState, Database, compare, left_out};
 use std::path::PathBuf;

@@ -4,11 +4,12 @@ use analysis::material_check::{Intended, MaterialCheck};
 use anyhow::{Result, bail, ensure};
 use clap::Args;
 use hinge::{Regime, SheetMaterial};
-use scene::run_inputs::scene_file;
-use scene::{Posture, SceneConfig};
+use scene::{Posture, SceneConfig, run_inputs::scene_file};
 use std::path::PathBuf;
-use support::table::{Cell, Table};
-use support::toml_file;
+use support::{
+    table::{Cell, Table},
+    toml_file,
+};
 
 /// Check a material before windows are solved with it
 ///

@@ -1,9 +1,7 @@
 //! `kirigami material fit`: from the files of a testing machine to a material file.
 
 use anyhow::{Result, ensure};
-use app::charts::tensile_test;
-use app::shell_word::shell_word;
-use app::{output_file, picture, run_folder};
+use app::{charts::tensile_test, output_file, picture, run_folder, shell_word::shell_word};
 use clap::Args;
 use hinge::SheetMaterial;
 use std::path::{Path, PathBuf};

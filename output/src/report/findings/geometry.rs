@@ -1,14 +1,22 @@
 //! Findings about the target, the panels and their windows, and the cuts.
 
 use super::{Rule, at, found, rule};
-use crate::cut_file::{ROUNDING, fits};
-use crate::display::Shape;
-use crate::report::deployed::{DeployedDesign, miss};
-use crate::report::numbers::rounded;
-use design::equilibrium::load_step::LoadStep;
-use design::geometry::polygon::size;
-use design::sheet::hinge_window::Window;
-use design::sheet::validity::{OVERLAP, overlap};
+use crate::{
+    cut_file::{ROUNDING, fits},
+    display::Shape,
+    report::{
+        deployed::{DeployedDesign, miss},
+        numbers::rounded,
+    },
+};
+use design::{
+    equilibrium::load_step::LoadStep,
+    geometry::polygon::size,
+    sheet::{
+        hinge_window::Window,
+        validity::{OVERLAP, overlap},
+    },
+};
 use scene::placement::{NOT_SEEN, RECOGNISED};
 use support::severity::Severity::{Error, Note, Warning};
 

@@ -1,16 +1,22 @@
 //! Findings about the path, its load, weight and friction, and panels that leave the plane.
 
 use super::{Found, Rule, found, rule};
-use crate::report::deployed::{DeployedDesign, is_heavy, left_out, of_the_load, posture};
-use crate::report::numbers::rounded;
-use analysis::calibration::CALIBRATION;
-use analysis::flatness::{Flatness, error_on_table};
-use analysis::mounting::{Fastener, borne_by_hole};
-use analysis::out_of_plane::{MOST, Stability};
-use analysis::unit::Unit;
-use design::equilibrium::load_step::{LoadStep, Status};
-use design::geometry::polygon::contains;
-use design::sheet::cut_sheet::PanelPoint;
+use crate::report::{
+    deployed::{DeployedDesign, is_heavy, left_out, of_the_load, posture},
+    numbers::rounded,
+};
+use analysis::{
+    calibration::CALIBRATION,
+    flatness::{Flatness, error_on_table},
+    mounting::{Fastener, borne_by_hole},
+    out_of_plane::{MOST, Stability},
+    unit::Unit,
+};
+use design::{
+    equilibrium::load_step::{LoadStep, Status},
+    geometry::polygon::contains,
+    sheet::cut_sheet::PanelPoint,
+};
 use hinge::Regime;
 use scene::{FRICTION, Posture};
 use support::severity::Severity::{Error, Note, Warning};
