@@ -83,8 +83,8 @@ fn hinge_points(
 ) -> UnstructuredGrid {
     // The reference point moves with both panels, which part by (a, s): their mean is drawn.
     let moved = sheet.hinges.iter().map(|hinge| {
-        let [a, b] = [hinge.panel_a(), hinge.panel_b()]
-            .map(|k| deployed(&sheet.panels[k], configuration[k], hinge.attachment));
+        let [a, b] =
+            hinge.panels().map(|k| deployed(&sheet.panels[k], configuration[k], hinge.attachment));
         (hinge.attachment, [0, 1].map(|axis| 0.5 * (a[axis] + b[axis])))
     });
     let of = |name, value: &dyn Fn(usize) -> f64| {

@@ -31,45 +31,31 @@ pub(crate) fn shown(
     scene: &Scene,
     designed: &Designed,
     report: &Report,
-    run: Option<String>,
+    is_run: bool,
     ms: Option<f64>,
 ) -> Event {
+    let run = is_run.then(|| run_name(scene));
     let page = page_data(scene, designed, report);
     Event::new(Kind::Page, &json!({ "page": page, "run": run, "ms": ms }))
 }
 
 /// A sheet at rest.
-pub(crate) enum Resting {
-    /// The start of a scene.
-    Start(Scene),
-    /// The best design of the run of a scene.
-    Run(Scene),
+pub(crate) struct Resting {
+    pub scene: Scene,
+    /// Whether it is the best design of the run of the scene, and not the start of the scene.
+    pub is_run: bool,
 }
 
 impl Resting {
-    fn scene(&self) -> &Scene {
-        let (Self::Start(scene) | Self::Run(scene)) = self;
-        scene
-    }
-
     fn designed(&self, stop: Arc<AtomicBool>) -> Result<Designed> {
-        match self {
-            Self::Start(scene) => Ok(Designed::at_start(scene, stop)?),
-            Self::Run(scene) => Designed::of_run(scene, stop)?.with_context(|| {
-                let folder = scene.output();
-                format!(
-                    "the run in {} is gone: change the sheet, or design it again",
-                    folder.display()
-                )
-            }),
+        let scene = &self.scene;
+        if !self.is_run {
+            return Ok(Designed::at_start(scene, stop)?);
         }
-    }
-
-    fn run(&self) -> Option<String> {
-        match self {
-            Self::Start(_) => None,
-            Self::Run(scene) => Some(run_name(scene)),
-        }
+        Designed::of_run(scene, stop)?.with_context(|| {
+            let folder = scene.output();
+            format!("the run in {} is gone: change the sheet, or design it again", folder.display())
+        })
     }
 }
 
@@ -165,7 +151,7 @@ impl FullAnalysis {
         let begin = Instant::now();
         let computed = caught_panic::catch(|| {
             let designed = sheet.designed(Arc::clone(&stop))?;
-            self.show_path(sheet.scene(), &designed, &stop);
+            self.show_path(&sheet.scene, &designed, &stop);
             Ok::<_, anyhow::Error>(page_of(&sheet, &designed, begin))
         });
         // Under the lock: nothing is shown after a stop.
@@ -197,10 +183,10 @@ pub(crate) fn refusal(why: &str) -> Event {
 
 /// The page of a sheet, and its path.
 fn page_of(sheet: &Resting, designed: &Designed, begin: Instant) -> (Event, WarmStart) {
-    let scene = sheet.scene();
+    let scene = &sheet.scene;
     let best = &designed.best.deployment;
     let cuts = CutLines::of(scene, best);
     let report = Report::new(scene, designed, &cuts, DesignChecks::default(), false);
-    let event = shown(scene, designed, &report, sheet.run(), Some(milliseconds(begin)));
+    let event = shown(scene, designed, &report, sheet.is_run, Some(milliseconds(begin)));
     (event, best.warm_start())
 }

@@ -177,10 +177,9 @@ impl Session {
         self.list_files()?;
         self.tell(Kind::Working, &"everyday");
         let sheet = self.opened()?;
-        self.analysis.compute(match sheet.run() {
-            Some(run) => Resting::Run(run.scene.clone()),
-            None => Resting::Start(sheet.scene.clone()),
-        });
+        let run = sheet.run();
+        let scene = run.map_or(&sheet.scene, |run| &run.scene).clone();
+        self.analysis.compute(Resting { scene, is_run: run.is_some() });
         Ok(())
     }
 
@@ -316,7 +315,7 @@ impl Session {
         })?;
         self.tell(Kind::Working, &"files");
         let report = write_run(&scene, &designed, false)?;
-        (self.listener)(shown(&scene, &designed, &report, Some(run_name(&scene)), None));
+        (self.listener)(shown(&scene, &designed, &report, true, None));
         let adopted = SceneConfig {
             output: self.opened()?.project.next_run(),
             ..scene.starting_at(&designed.search.best)

@@ -86,7 +86,7 @@ impl Taken {
     fn new(cuts: &CutLines, sheet: &Sheet, k: usize) -> Self {
         let hinges = std::iter::zip(&sheet.hinges, &cuts.holes);
         let holes = hinges
-            .filter(|(hinge, _)| [hinge.panel_a(), hinge.panel_b()].contains(&k))
+            .filter(|(hinge, _)| hinge.panels().contains(&k))
             .map(|(_, hole)| (hole.centre, hole.radius));
         Self {
             corners: sheet.panels[k].corners,

@@ -2,10 +2,10 @@
 
 use crate::{
     deployment_states::{kept, states_before},
-    display::{Anchor, Canvas, Style},
+    display::{Canvas, Style},
     drawing::{
-        load_marks::{self, Mark, marks},
-        page::{ACCENT, ColourScale, INK, MUTED, Page, panels},
+        load_marks,
+        page::{ACCENT, ColourScale, INK, MUTED, Page, panels, windows},
     },
 };
 use design::{
@@ -13,7 +13,6 @@ use design::{
     objective::design_problem::Deployment,
     sheet::{
         cut_sheet::Sheet,
-        hinge_window::Window,
         kinematics::{Configuration, deployed as moved, deployed_boundaries, hinge_deformations},
     },
 };
@@ -87,16 +86,14 @@ impl<'a> State<'a> {
         let boundaries = deployed_boundaries(self.sheet, &self.configuration);
         let line = canvas.stroke(INK, 1.1);
         panels(canvas, &self.sheet.topology, boundaries, line);
-        self.windows(canvas, scale);
+        let style = |h| Style::fill(scale.colour(self.openings_deg[h])).opacity(0.85, 1.0);
+        windows(canvas, self.sheet, style, |k, point| {
+            moved(&self.sheet.panels[k], self.configuration[k], point)
+        });
         self.target(canvas);
-        self.loads(canvas);
+        load_marks::draw(canvas, self.scene, self.sheet, self.step);
         page.colour_scale(scale, "\u{3b8} (deg)");
         page.finish()
-    }
-
-    /// The deployed position of a point of panel k.
-    fn moved(&self, k: usize, point: [f64; 2]) -> [f64; 2] {
-        moved(&self.sheet.panels[k], self.configuration[k], point)
     }
 
     /// Points that enclose everything drawn.
@@ -112,35 +109,6 @@ impl<'a> State<'a> {
         let target = &self.scene.target;
         for contour in target.holes.iter().chain([&target.points]) {
             canvas.polygon(contour, style);
-        }
-    }
-
-    /// Draws each window in two parts, which move with their panels.
-    fn windows(&self, canvas: &mut Canvas, scale: &ColourScale) {
-        let hinges = self.sheet.hinges.iter().zip(Window::of_sheet(self.sheet));
-        for ((hinge, window), &value) in hinges.zip(&self.openings_deg) {
-            let style = Style::fill(scale.colour(value)).opacity(0.85, 1.0);
-            for k in [hinge.panel_a(), hinge.panel_b()] {
-                let part = window.inside(&self.sheet.panels[k]).map(|point| self.moved(k, point));
-                part.contours().for_each(|contour| canvas.polygon(contour, style));
-            }
-        }
-    }
-
-    /// Draws the symbols of the supports, and the loads with their magnitudes.
-    fn loads(&self, canvas: &mut Canvas) {
-        let (stroke, fill) = (canvas.stroke(ACCENT, 3.0), Style::fill(ACCENT));
-        let (support, label) = (Style::fill(INK), canvas.haloed(ACCENT));
-        for mark in marks(self.scene, self.sheet, self.step, canvas.unit) {
-            match mark {
-                Mark::Support(corners) => canvas.polygon(&corners, support),
-                Mark::Shaft(points) => canvas.polyline(&points, stroke),
-                Mark::Head(corners) => canvas.polygon(&corners, fill),
-                Mark::Label([x, y], text) => {
-                    let (size, below) = (14.0 * canvas.unit, [x, y - 5.0 * canvas.unit]);
-                    canvas.text(below, size, Anchor::Middle, label, &text);
-                }
-            }
         }
     }
 }

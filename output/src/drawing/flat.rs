@@ -3,7 +3,7 @@
 use crate::{
     cut_file::CutLines,
     display::{Anchor, Canvas, Style},
-    drawing::page::{ACCENT, INK, MUTED, Page, TEAL, panel_colour},
+    drawing::page::{ACCENT, INK, MUTED, Page, TEAL, panel_colour, windows},
 };
 use design::sheet::{
     cut_sheet::{Hinge, Sheet},
@@ -22,7 +22,8 @@ pub fn flat(title: &str, sheet: &Sheet, cuts: &CutLines) -> String {
     );
     let mut page = Page::around(cuts.outlines.concat(), title, &subtitle, false);
     panels(&mut page.canvas, sheet);
-    windows(&mut page.canvas, sheet);
+    let style = Style::stroke(TEAL, 0.8 * page.canvas.unit).filled(TEAL).opacity(0.12, 0.45);
+    windows(&mut page.canvas, sheet, |_| style, |_, point| point);
     cut_lines(&mut page.canvas, cuts);
     ligaments(&mut page.canvas, sheet);
     page.finish()
@@ -37,16 +38,6 @@ fn panels(canvas: &mut Canvas, sheet: &Sheet) {
         let [x, y] = panel.centroid;
         let at = [x, y - 0.35 * height];
         canvas.text(at, height, Anchor::Middle, muted, &format!("P{k}"));
-    }
-}
-
-fn windows(canvas: &mut Canvas, sheet: &Sheet) {
-    let style = Style::stroke(TEAL, 0.8 * canvas.unit).filled(TEAL).opacity(0.12, 0.45);
-    for (hinge, window) in sheet.hinges.iter().zip(Window::of_sheet(sheet)) {
-        for panel in [hinge.panel_a(), hinge.panel_b()] {
-            let part = window.inside(&sheet.panels[panel]);
-            part.contours().for_each(|contour| canvas.polygon(contour, style));
-        }
     }
 }
 

@@ -7,7 +7,7 @@ use design::{
         polygon::{bounds, size},
         region::Contour,
     },
-    sheet::topology::Topology,
+    sheet::{cut_sheet::Sheet, hinge_window::Window, topology::Topology},
 };
 
 /// Colour of main lines and titles.
@@ -63,6 +63,22 @@ pub(crate) fn panels(
 ) {
     for (k, boundary) in boundaries.into_iter().enumerate() {
         canvas.polygon(&boundary, line.filled(panel_colour(topology, k)));
+    }
+}
+
+/// Draws each hinge window of a sheet in two parts, which are `moved` with their panels, in the
+/// `style` of its hinge.
+pub(super) fn windows(
+    canvas: &mut Canvas,
+    sheet: &Sheet,
+    style: impl Fn(usize) -> Style,
+    moved: impl Fn(usize, [f64; 2]) -> [f64; 2],
+) {
+    for (h, (hinge, window)) in sheet.hinges.iter().zip(Window::of_sheet(sheet)).enumerate() {
+        for k in hinge.panels() {
+            let part = window.inside(&sheet.panels[k]).map(|point| moved(k, point));
+            part.contours().for_each(|contour| canvas.polygon(contour, style(h)));
+        }
     }
 }
 

@@ -28,9 +28,14 @@ pub(super) struct Contour {
 }
 
 impl Contour {
+    /// The lower left and the upper right corner of its bounding box.
+    pub(super) fn bounds(&self) -> [[f64; 2]; 2] {
+        polygon::bounds(self.points.iter().copied())
+    }
+
     /// Width and height of its bounding box.
     pub(super) fn size(&self) -> [f64; 2] {
-        polygon::size(polygon::bounds(self.points.iter().copied()))
+        polygon::size(self.bounds())
     }
 
     /// Whether it has an inside.
@@ -92,10 +97,7 @@ impl Contour {
             found <= MOST_POINTS,
             "the path has {found} points; simplify the outline to at most {MOST_POINTS}"
         );
-        let [x0, y0] = self.points[0];
-        let near_zero: Vec<_> = self.points.iter().map(|[x, y]| [x - x0, y - y0]).collect();
-        if let Some([x, y]) = polygon::self_crossing(&near_zero) {
-            let [x, y] = [x + x0, y + y0].map(rounded);
+        if let Some([x, y]) = crossing(&[self]) {
             refuse!(
                 "the path crosses or touches itself near ({x}, {y}); move its points until \
                  the outline is one simple loop"
@@ -103,6 +105,16 @@ impl Contour {
         }
         Ok(gap)
     }
+}
+
+/// A common point of the lines of contours. Coordinates are taken from a point of the last one:
+/// numbers near zero have more digits.
+pub(super) fn crossing(contours: &[&Contour]) -> Option<[f64; 2]> {
+    let [x0, y0] = contours.last()?.points[0];
+    let near_zero = contours.iter().map(|contour| -> Vec<_> {
+        contour.points.iter().map(|[x, y]| [x - x0, y - y0]).collect()
+    });
+    polygon::crossing(near_zero).map(|[x, y]| [x + x0, y + y0].map(rounded))
 }
 
 /// Number of segments of a flattened curve.

@@ -10,7 +10,6 @@ use crate::drawing::{
     joined_lines::joined,
     svg_path,
 };
-use design::geometry::polygon;
 use std::path::{Path, PathBuf};
 use support::{
     fault::{Fault, at},
@@ -151,7 +150,7 @@ fn chosen(
 pub(super) fn listed<'a>(contours: impl Iterator<Item = (usize, &'a Contour)>) -> String {
     let words = contours.take(LISTED).map(|(i, contour)| {
         let [width, height] = contour.size().map(rounded);
-        let [x, y] = polygon::bounds(contour.points.iter().copied())[0].map(rounded);
+        let [x, y] = contour.bounds()[0].map(rounded);
         let open = match (contour.closed, contour.branches) {
             (true, _) => "",
             (_, true) => " (branches)",
@@ -165,6 +164,7 @@ pub(super) fn listed<'a>(contours: impl Iterator<Item = (usize, &'a Contour)>) -
 #[cfg(test)]
 mod tests {
     use super::*;
+    use design::geometry::polygon;
     use std::fmt::Write;
 
     fn svg(content: &str) -> String {

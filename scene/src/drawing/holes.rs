@@ -1,6 +1,6 @@
 //! The contours that lie in others: the holes of an outline.
 
-use crate::drawing::contour::{Contour, LISTED, rounded};
+use crate::drawing::contour::{Contour, LISTED, crossing};
 use design::geometry::{polygon, region::Region};
 use support::{fault::Fault, refuse};
 
@@ -9,8 +9,7 @@ const SPECK: f64 = 1e-4;
 
 /// For each contour those before it, the larger ones, that it lies in, at least in part.
 pub(super) fn around(contours: &[Contour]) -> Vec<Vec<usize>> {
-    let boxes: Vec<_> =
-        contours.iter().map(|contour| polygon::bounds(contour.points.iter().copied())).collect();
+    let boxes: Vec<_> = contours.iter().map(Contour::bounds).collect();
     let mut around = vec![Vec::new(); contours.len()];
     for outer in (0..contours.len()).filter(|outer| contours[*outer].is_whole()) {
         let inside = Region { polygons: vec![vec![contours[outer].points.clone()]] };
@@ -48,11 +47,8 @@ pub(super) fn of(
     for contour in &inner {
         contours[*contour].check()?;
     }
-    let [x0, y0] = contours[outline].points[0];
-    let all = inner.iter().chain([&outline]).map(|contour| &contours[*contour].points);
-    let near_zero = all.map(|points| points.iter().map(|[x, y]| [x - x0, y - y0]).collect());
-    if let Some([x, y]) = polygon::crossing(near_zero.collect::<Vec<Vec<_>>>().iter()) {
-        let [x, y] = [x + x0, y + y0].map(rounded);
+    let all = inner.iter().chain([&outline]).map(|contour| &contours[*contour]);
+    if let Some([x, y]) = crossing(&all.collect::<Vec<_>>()) {
         refuse!(
             "contours cross or touch each other near ({x}, {y}); move them apart, or delete one of them"
         );

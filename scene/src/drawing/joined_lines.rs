@@ -32,7 +32,7 @@ fn once(whole: Vec<Contour>, nodes: &mut Nodes) -> Vec<Contour> {
     let mut kept: Vec<Contour> = Vec::new();
     for contour in whole {
         // Only contours of one bounding box are compared.
-        let corners = polygon::bounds(contour.points.iter().copied()).map(|p| nodes.node(p));
+        let corners = contour.bounds().map(|p| nodes.node(p));
         let rivals: &mut Vec<usize> = twins.entry(corners).or_default();
         let mut edges = |contour: &Contour| {
             let mut edges = nodes.lines(polygon::edges(&contour.points));

@@ -148,7 +148,7 @@ pub(super) const RULES: [Rule; 8] = [
             let sheet = &of.deployment.sheet;
             let windows = Window::of_sheet(sheet).into_iter().zip(&sheet.hinges);
             let leaving = windows.enumerate().filter(|(_, (window, hinge))| {
-                let [a, b] = [hinge.panel_a(), hinge.panel_b()].map(|panel| &sheet.panels[panel]);
+                let [a, b] = hinge.panels().map(|panel| &sheet.panels[panel]);
                 !window.within(a, b)
             });
             let r_win = sheet.options.process.r_win;
