@@ -15,7 +15,7 @@ use scene::{
     run_inputs::{SCENE_FILE, holds_a_run},
 };
 use std::{fs::File, path::Path, sync::atomic::AtomicBool};
-use support::fault::unread;
+use support::unread;
 
 /// Width of the pictures (px).
 const PICTURE_WIDTH: u32 = 1600;

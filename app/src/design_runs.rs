@@ -9,7 +9,7 @@ use std::{
     collections::BTreeSet,
     path::{Path, PathBuf},
 };
-use support::{fault::unread, regular_file, table::Table};
+use support::{regular_file, table::Table, unread};
 
 /// One design run.
 pub struct Run {

@@ -28,7 +28,7 @@ use anyhow::{Context, Result, bail, ensure};
 use hinge::{Regime, SheetMaterial};
 use scene::{Posture, Scene, Stock, rounded};
 use std::path::{Path, PathBuf};
-use support::{fault::unread, text_file};
+use support::{text_file, unread};
 use surrogate::{Card, Surrogate};
 use toml_edit::{Array, ArrayOfTables, DocumentMut};
 

@@ -2,7 +2,7 @@
 
 use anyhow::{Context, Result, ensure};
 use std::path::Path;
-use support::{fault::unwritten, whole_file};
+use support::{unwritten, whole_file};
 
 /// Creates a folder and its missing parents.
 pub fn create_folder(folder: &Path) -> Result<()> {

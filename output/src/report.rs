@@ -40,7 +40,7 @@ use design::{
 };
 use scene::{CoarseSearch, Level, Scene, design_run::Designed, placement::seen};
 use serde::Serialize;
-use support::{fault::Fault, severity::Severity};
+use support::{Fault, severity::Severity};
 
 /// The report of a run, for people (`Display`) and programs (JSON).
 #[derive(Clone, Debug, Serialize)]

@@ -18,7 +18,7 @@ use design::{
 };
 use scene::{Paper, Scene, design_run::Designed, placement::placed, run_inputs::STATE_FILE};
 use std::io;
-use support::fault::Fault;
+use support::Fault;
 
 /// A file of a run folder.
 pub struct RunFile {

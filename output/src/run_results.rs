@@ -11,11 +11,7 @@ use scene::{
     design_run::{Designed, START},
 };
 use std::{io, path::Path};
-use support::{
-    fault::{Fault, at},
-    file_error::FileError,
-    whole_file,
-};
+use support::{Fault, FileError, at, whole_file};
 
 /// Writes the results of [`RUN_FILES`]: the picture of the flat sheet for a design with cut lines,
 /// the cut files for a design without errors, or if `force`.

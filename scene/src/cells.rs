@@ -8,7 +8,7 @@ use design::{
 };
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use support::{ensure, fault::Fault, refuse};
+use support::{Fault, ensure, refuse};
 
 /// A kept void in a row of the voids.
 const KEPT: char = 'o';

@@ -16,10 +16,7 @@ use std::{
     path::{Path, PathBuf},
     sync::Arc,
 };
-use support::{
-    fault::{Fault, at, said},
-    relative_path,
-};
+use support::{Fault, at, relative_path, said};
 use surrogate::{Springback, Surrogate};
 
 /// Version of geometry, mechanics and objective: raised when a change of the code changes the loss

@@ -26,8 +26,7 @@ use std::{
     f64::consts::FRAC_PI_2,
 };
 use support::{
-    ensure,
-    fault::{Fault, at},
+    Fault, at, ensure,
     key_limits::{self, within},
     refuse,
 };

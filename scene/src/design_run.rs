@@ -27,9 +27,7 @@ use std::{
     time::{Duration, Instant},
 };
 use support::{
-    ensure,
-    fault::{Fault, at},
-    regular_file,
+    Fault, at, ensure, regular_file,
     sealed_json::{self, SealError},
     whole_file,
 };

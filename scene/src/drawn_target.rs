@@ -7,7 +7,7 @@ use design::geometry::{
     similarity::Similarity,
 };
 use std::path::Path;
-use support::fault::Fault;
+use support::Fault;
 
 /// Points along a drawn outline from which its area is computed.
 const DRAWING_POINTS: usize = 2000;

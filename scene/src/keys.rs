@@ -26,7 +26,7 @@ use std::{
     path::{Component, Path, PathBuf},
     sync::Arc,
 };
-use support::fault::Fault;
+use support::Fault;
 
 /// The keys of a scene file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]

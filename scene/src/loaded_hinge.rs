@@ -14,11 +14,7 @@ use design::{
 };
 use hinge::{HingeDeformation, Regime, SheetMaterial};
 use std::{f64::consts::FRAC_PI_2, fmt, path::Path, sync::Arc};
-use support::{
-    ensure,
-    fault::{Fault, at, said},
-    refuse,
-};
+use support::{Fault, at, ensure, refuse, said};
 use surrogate::Surrogate;
 
 /// Stiffness of the contact of panel edges relative to k_theta, and the void angle (rad) at which

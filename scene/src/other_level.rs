@@ -4,7 +4,7 @@ use crate::{
     checked_scene::Scene, checks, hinge_model::PinConfig, keys::SceneConfig, level::Level,
     loaded_hinge::springs_at_start,
 };
-use support::fault::Fault;
+use support::Fault;
 
 /// The opening of pins at the start (deg), where a scene names none.
 const PIN_OPENING: f64 = 25.0;

@@ -18,7 +18,7 @@ use design::{
 };
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use support::fault::{Fault, at};
+use support::{Fault, at};
 
 impl Scene {
     /// Numbers of panels.

@@ -25,7 +25,7 @@ use std::{
     fmt::Display,
     path::{Path, PathBuf},
 };
-use support::{ensure, fault::Fault, regular_file, sealed_json, whole_file};
+use support::{Fault, ensure, regular_file, sealed_json, whole_file};
 
 /// The state of a run, in its folder.
 pub const STATE_FILE: &str = "state.json";

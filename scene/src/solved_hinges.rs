@@ -9,12 +9,7 @@ use design::{
 use hinge::{HingeDeformation, HingeDesign};
 use serde::{Deserialize, Serialize};
 use std::{path::Path, sync::Arc};
-use support::{
-    ensure,
-    fault::{Fault, at, said},
-    file_error::FileError,
-    regular_file, sealed_json, whole_file,
-};
+use support::{Fault, FileError, at, ensure, regular_file, said, sealed_json, whole_file};
 
 /// A hinge at the end of its path by finite elements.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]

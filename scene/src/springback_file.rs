@@ -3,10 +3,7 @@
 use crate::keys::{SceneConfig, resolved};
 use hinge::SheetMaterial;
 use std::{f64::consts::FRAC_PI_2, path::Path};
-use support::{
-    ensure,
-    fault::{Fault, at},
-};
+use support::{Fault, at, ensure};
 use surrogate::Springback;
 
 /// The law that the scene at `path` names; `None` if it names none, or has another hinge law.

@@ -14,11 +14,7 @@ use std::{
     f64::consts::TAU,
     path::{Path, PathBuf},
 };
-use support::{
-    ensure,
-    fault::{Fault, at},
-    key_limits, regular_file,
-};
+use support::{Fault, at, ensure, key_limits, regular_file};
 
 /// A target as written in a scene; lengths in mm, in the coordinates of the flat sheet.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]

@@ -17,7 +17,7 @@ use scene::{
     run_inputs::{INPUTS, SCENE_FILE, STATE_FILE, scene_file},
 };
 use std::path::{Path, PathBuf};
-use support::{fault::unread, regular_file, text_file};
+use support::{regular_file, text_file, unread};
 
 /// The first line of a scene that the studio writes. It changes no other scene.
 const HEAD: &str =

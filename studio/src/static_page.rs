@@ -7,7 +7,7 @@ use anyhow::{Context, Result};
 use app::{new_project::WEIGHTS, output_file};
 use serde_json::json;
 use std::path::{Path, PathBuf};
-use support::{fault::unread, regular_file};
+use support::{regular_file, unread};
 
 /// Folders of the materials and examples of the studio, and of the files that they name.
 const CONFIGS: [&str; 4] =

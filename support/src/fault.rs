@@ -61,7 +61,7 @@ macro_rules! ensure {
 #[macro_export]
 macro_rules! refuse {
     ($($message:tt)+) => {
-        return Err($crate::fault::Fault::from(format!($($message)+)).into())
+        return Err($crate::Fault::from(format!($($message)+)).into())
     };
 }
 

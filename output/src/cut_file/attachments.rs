@@ -9,7 +9,7 @@ use design::sheet::{
     attachment::{Clearance, Obstacle},
     cut_sheet::{AttachmentPoint, Sheet},
 };
-use support::fault::Fault;
+use support::Fault;
 
 /// Half the length of the arms of a mark (mm).
 const ARM: f64 = 2.0;

@@ -36,7 +36,7 @@ use design::{
 };
 use scene::{CuttingConfig, Scene};
 use std::collections::BTreeMap;
-use support::{ensure, fault::Fault};
+use support::{Fault, ensure};
 
 /// The least 1 + cos of the turn of an outline at a corner that moves in full with its edges.
 const SHARPEST: f64 = 0.1;

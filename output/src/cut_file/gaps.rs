@@ -7,7 +7,7 @@ use design::geometry::{
     polygon::{distance_between_segments, distance_to_outline},
     region::Contour,
 };
-use support::{ensure, fault::Fault};
+use support::{Fault, ensure};
 
 /// A cut with the width of the tool: the points nearer than `radius` to the segment `ends`, which
 /// is a point for a hole.

@@ -8,7 +8,7 @@ use crate::cut_file::{
 use design::geometry::polygon::{bounds, distance_to_outline, size};
 use serde::{Deserialize, Serialize};
 use std::{fmt, path::Path};
-use support::{ensure, fault::Fault, refuse, toml_file};
+use support::{Fault, ensure, refuse, toml_file};
 
 /// The shipped table.
 const SHIPPED: &str = include_str!("../../../configs/machines.toml");

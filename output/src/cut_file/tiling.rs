@@ -1,7 +1,7 @@
 //! A drawing on pages of paper, which overlap.
 
 use scene::Paper;
-use support::{ensure, fault::Fault};
+use support::{Fault, ensure};
 
 /// Border that printers leave white (mm).
 pub(super) const BORDER: f64 = 10.0;

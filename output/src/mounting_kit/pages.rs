@@ -16,7 +16,7 @@ use analysis::mounting::Mounting;
 use design::{geometry::polygon::size, sheet::cut_sheet::Sheet};
 use pdf_writer::Content;
 use scene::Paper;
-use support::fault::Fault;
+use support::Fault;
 
 /// Border of the pages, columns and rows of pictures, their distance, and the height of the head
 /// (mm).

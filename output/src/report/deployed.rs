@@ -14,7 +14,7 @@ use design::{
     objective::{design_problem::Deployment, scores::Scores},
 };
 use scene::{Posture, Scene, design_run::Designed};
-use support::{fault::Fault, severity::Severity};
+use support::{Fault, severity::Severity};
 
 /// A deployed design.
 pub(super) struct DeployedDesign<'a> {

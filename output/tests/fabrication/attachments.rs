@@ -6,7 +6,7 @@ use design::sheet::cut_sheet::PanelPoint;
 use output::cut_file::{CutLines, Layer, attachment_list, dxf};
 use output::display::Shape;
 use scene::CuttingConfig;
-use support::fault::Fault;
+use support::Fault;
 
 fn attachment(point: PanelPoint) -> AttachmentPoint {
     AttachmentPoint {

@@ -19,7 +19,7 @@ use scene::design_run::{Designed, inverse_design};
 use scene::{Level, Scene, SceneConfig};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
-use support::fault::Fault;
+use support::Fault;
 use tempfile::TempDir;
 use testkit::derivatives::assert_close;
 

@@ -1,7 +1,7 @@
 //! A line in a drawing, and what makes it an outline.
 
 use design::geometry::polygon;
-use support::{ensure, fault::Fault, refuse};
+use support::{Fault, ensure, refuse};
 
 /// Points closer than this fraction of the largest coordinate are merged: usvg rounds to f32.
 pub(super) const WELD: f64 = 1e-6;

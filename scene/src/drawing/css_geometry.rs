@@ -4,7 +4,7 @@
 
 use simplecss::{AttributeOperator, DeclarationTokenizer, PseudoClass, StyleSheet};
 use std::{collections::HashMap, ops::Range, str::FromStr};
-use support::fault::Fault;
+use support::Fault;
 use svgtypes::{Angle, Length, LengthUnit};
 use usvg::roxmltree::{Attribute, Document, Node};
 

@@ -11,10 +11,7 @@ use crate::drawing::{
     svg_path,
 };
 use std::path::{Path, PathBuf};
-use support::{
-    fault::{Fault, at},
-    refuse, text_file,
-};
+use support::{Fault, at, refuse, text_file};
 
 /// First bytes of a file that is compressed by gzip.
 const GZIP: &[u8] = b"\x1F\x8B";

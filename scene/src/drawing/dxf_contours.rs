@@ -16,7 +16,7 @@ use design::geometry::{
 };
 use faer::c64;
 use std::{collections::HashMap, f64::consts::TAU, ops::Range};
-use support::{ensure, fault::Fault, refuse};
+use support::{Fault, ensure, refuse};
 
 /// Difference of an angle from a full circle at which it is one, written with few digits (rad).
 const FULL: f64 = 1e-3;

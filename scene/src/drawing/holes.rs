@@ -2,7 +2,7 @@
 
 use crate::drawing::contour::{Contour, LISTED, crossing};
 use design::geometry::{polygon, region::Region};
-use support::{fault::Fault, refuse};
+use support::{Fault, refuse};
 
 /// Smallest area of a hole over the area of the outline: specks of a tracing are smaller.
 const SPECK: f64 = 1e-4;

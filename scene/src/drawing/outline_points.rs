@@ -6,8 +6,7 @@
 use crate::drawing::{contour::Contour, drawn_outline::listed, joined_lines::joined};
 use std::path::Path;
 use support::{
-    fault::{Fault, at},
-    text_file,
+    Fault, at, text_file,
     text_table::{TextRow, TextTable},
 };
 

@@ -9,7 +9,7 @@ use crate::drawing::{
     near_origin, svg_warnings,
     visible_paths::{Subpath, add_visible, is_filled, subpaths, transformed},
 };
-use support::{ensure, fault::Fault};
+use support::{Fault, ensure};
 use usvg::{
     ImageHrefResolver, Options, Path, Transform, Tree,
     roxmltree::{Document, ParsingOptions},

@@ -3,7 +3,7 @@
 
 use crate::drawing::contour::flatten;
 use design::geometry::polygon;
-use support::{fault::Fault, refuse};
+use support::{Fault, refuse};
 use usvg::{
     ClipPath, Group, Node, Path, Transform,
     tiny_skia_path::{PathSegment, Point},
