@@ -35,6 +35,7 @@ pub struct Cli {
 
 #[derive(Subcommand)]
 enum Command {
+    #[command(subcommand)]
     Material(material::MaterialCommand),
     Design(design::DesignCommand),
     Cut(cut::CutCommand),

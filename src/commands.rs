@@ -2,16 +2,19 @@
 
 /// Subcommands, each run by its own command.
 macro_rules! subcommands {
-    ($visible:vis enum $name:ident { $($(#[$of:meta])* $variant:ident($command:ty),)* }) => {
+    ($(#[$about:meta])* $visible:vis enum $name:ident {
+        $($(#[cfg($of:meta)])? $(#[command($kind:ident)])? $variant:ident($command:ty),)*
+    }) => {
+        $(#[$about])*
         #[derive(clap::Subcommand)]
         $visible enum $name {
-            $($(#[$of])* $variant($command),)*
+            $($(#[cfg($of)])? $(#[command($kind)])? $variant($command),)*
         }
 
         impl $name {
             pub(crate) fn run(&self) -> anyhow::Result<()> {
                 match self {
-                    $($(#[$of])* Self::$variant(command) => command.run(),)*
+                    $($(#[cfg($of)])? Self::$variant(command) => command.run(),)*
                 }
             }
         }

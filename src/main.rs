@@ -1,9 +1,13 @@
 //! The `kirigami` program; see [`kirigami::cli`].
 
 use clap::Parser;
-use kirigami::cli::Cli;
-use kirigami::ui::exit::{self, Exit};
-use kirigami::ui::interrupt;
+use kirigami::{
+    cli::Cli,
+    ui::{
+        exit::{self, Exit},
+        interrupt,
+    },
+};
 
 fn main() -> Exit {
     interrupt::end_quietly_when_nobody_reads();

@@ -8,26 +8,10 @@
 use crate::error_budget::{ErrorBudget, ErrorCause};
 use crate::level_difference::AtLevel;
 use design::optimise::outer_loop::{Ended, Until};
-use scene::design_run::{BegunRun, Designed, Earlier, InverseDesignError, LEVELS, OnStep};
-use scene::{Scene, SceneError};
+use scene::Scene;
+use scene::design_run::{BegunRun, Designed, Earlier, LEVELS, OnStep};
 use std::sync::atomic::AtomicBool;
-use support::fault::{Fault, fault};
-
-/// Why no design is found.
-#[derive(Debug, thiserror::Error)]
-#[allow(missing_docs, reason = "the message of a variant is its documentation")]
-pub enum RefinementError {
-    #[error(transparent)]
-    Fault(#[from] Fault),
-    #[error(transparent)]
-    Design(#[from] InverseDesignError),
-}
-
-impl From<SceneError> for RefinementError {
-    fn from(error: SceneError) -> Self {
-        Self::Design(error.into())
-    }
-}
+use support::{Fault, refuse};
 
 /// The smallest tolerance over the size of the sheet: a hundred times the residual of an
 /// equilibrium.
@@ -41,22 +25,21 @@ pub fn refine(
     tolerance: f64,
     stop: &AtomicBool,
     progress: OnStep,
-) -> Result<Designed, RefinementError> {
+) -> Result<Designed, Fault> {
     let levels = scene.learned_levels();
     let size = scene.config.sheet.outline().size();
     let least = LEAST * size;
     if tolerance < least {
-        let what = format!("{tolerance} mm is less than the rounding of a sheet of {size:.0} mm");
-        return Err(fault("", what, format!("ask for at least {least:.1e} mm")).into());
+        refuse!(
+            "{tolerance} mm is less than the rounding of a sheet of {size:.0} mm: ask for at least {least:.1e} mm"
+        );
     }
     let ([coarsest], finer @ [_, ..]) = levels.split_at(levels.len().min(1)) else {
         let found = levels.first().map_or("no learned level".into(), |it| format!("`{it}` alone"));
-        return Err(fault(
-            "",
-            format!("an accuracy is measured by two learned levels, and the scene has {found}"),
-            "name a smaller network (surrogate.draft) or further ones (surrogate.ensemble), or design at one level (--level)",
-        )
-        .into());
+        refuse!(
+            "an accuracy is measured by two learned levels, and the scene has {found}: name a smaller network (surrogate.draft) \
+             or further ones (surrogate.ensemble), or design at one level (--level)"
+        );
     };
     let mut earlier = Earlier::default();
     let mut run = BegunRun::new(scene.at_level(*coarsest)?, None)?;
@@ -89,13 +72,13 @@ pub fn refine(
             earlier.optimiser = Some(designed.search);
             if suffices {
                 next.scene.config.optimiser.steps = 0;
-                return Ok(next.search(&earlier, None, stop, progress)?);
+                return next.search(&earlier, None, stop, progress);
             }
             run = next;
             break;
         }
     }
-    Ok(run.search(&earlier, None, stop, progress)?)
+    run.search(&earlier, None, stop, progress)
 }
 
 /// The error of the panel corners by the mesh of the windows (mm, the largest), which no level

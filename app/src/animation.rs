@@ -4,11 +4,9 @@
 //! pixels first, each at a least distance from those before it. A pixel of another colour, at an
 //! edge, has the nearest of them.
 
-use crate::picture::rasterise;
+use crate::{output_file, picture::rasterise};
 use anyhow::{Context, Result};
-use std::collections::HashMap;
-use std::path::Path;
-use support::whole_file;
+use std::{collections::HashMap, path::Path};
 
 /// Duration of the whole animation (ms) and of its last frame, and the limits of the other frames.
 const TOTAL_MS: u16 = 3000;
@@ -32,7 +30,7 @@ pub(crate) fn save(frames: &[String], path: &Path, width: u32) -> Result<()> {
     let (height, _) = *pixels.first().context("an animation without frames")?;
     let frames: Vec<Vec<Colour>> = pixels.into_iter().map(|(_, frame)| frame).collect();
     let bytes = encode(&frames, [width, height])?;
-    whole_file::write(path, &bytes).with_context(|| format!("cannot write {}", path.display()))
+    output_file::write(path, bytes)
 }
 
 fn encode(

@@ -15,8 +15,7 @@ pub use parity::parity;
 pub use tensile_test::tensile_test;
 
 use anyhow::{Result, anyhow};
-use plotters::coord::Shift;
-use plotters::prelude::*;
+use plotters::{chart::SeriesLabelPosition, coord::Shift, prelude::*};
 use std::ops::Range;
 
 /// Colour of the first curve and of points.
@@ -41,9 +40,8 @@ pub const FONT: &str = "DejaVu Sans";
 /// A part of the drawing area.
 pub type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 /// The result of drawing.
-pub type ChartResult = Result<(), ChartError>;
-/// Why a chart could not be drawn.
-pub type ChartError = DrawingAreaErrorKind<<SVGBackend<'static> as DrawingBackend>::ErrorType>;
+pub type ChartResult =
+    Result<(), DrawingAreaErrorKind<<SVGBackend<'static> as DrawingBackend>::ErrorType>>;
 
 /// A chart of the given size on a white background, as SVG.
 pub fn drawn(size: (u32, u32), draw: impl FnOnce(&Area) -> ChartResult) -> Result<String> {

@@ -2,9 +2,11 @@
 
 use anyhow::{Context, Result};
 use design::pattern::design_vector::DesignVector;
-use scene::Scene;
-use scene::design_run::{design_of_run, stored_design};
-use scene::run_inputs::{STATE_FILE, scene_file};
+use scene::{
+    Scene,
+    design_run::{design_of_run, stored_design},
+    run_inputs::{STATE_FILE, scene_file},
+};
 use std::path::Path;
 
 /// The name of the start design.

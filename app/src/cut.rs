@@ -1,20 +1,22 @@
 //! The cut files of a designed sheet: for a person, for paper and for machines.
 
-use crate::chosen::Chosen;
-use crate::run_folder;
+use crate::{chosen::Chosen, run_folder};
 use anyhow::{Context, Result, ensure};
 use design::objective::design_problem::Deployment;
-use output::cut_file::{
-    CutDrawing, CutLines, FabricationError, Features, Machine, Machines, SheetDrawing, Tiling,
-    Totals, attachment_list, cut_list, cut_summary, dxf, mark_errors, svg, tiles_pdf,
+use output::{
+    cut_file::{
+        CutDrawing, CutLines, Features, Machine, Machines, SheetDrawing, Tiling, Totals,
+        attachment_list, cut_list, cut_summary, dxf, mark_errors, svg, tiles_pdf,
+    },
+    report::{Warning, warnings},
 };
-use output::report::{Warning, warnings};
 use scene::{Paper, Scene};
 use serde::Serialize;
-use std::fmt::{self, Display, Formatter};
-use std::path::{Path, PathBuf};
-use support::nearest::unknown;
-use support::severity::Severity;
+use std::{
+    fmt::{self, Display, Formatter},
+    path::{Path, PathBuf},
+};
+use support::{nearest::unknown, severity::Severity};
 
 /// A design that may be cut.
 pub struct CheckedCut {
@@ -80,11 +82,7 @@ impl CheckedCut {
         for drawing in [&mut annotated, &mut whole.numbered] {
             mark_errors(drawing, &self.errors);
         }
-        let tiles = paper.map(|paper| {
-            let tiling = Tiling::new(paper, whole.numbered.bounds())?;
-            Ok::<_, FabricationError>((paper, tiling))
-        });
-        let tiles = tiles.transpose()?;
+        let tiling = paper.map(|paper| Tiling::new(paper, whole.numbered.bounds())).transpose()?;
         let out = self.out_or(out, "cut");
         let _held = run_folder::hold(&out)?;
         remove_earlier(&out)?;
@@ -93,12 +91,12 @@ impl CheckedCut {
         written.file("cut-list.csv", &cut_list(sheet, cuts))?;
         written.file("attachments.csv", &attachment_list(cuts, None))?;
         written.file("cut-summary.csv", &cut_summary(cuts, &whole.totals))?;
-        if let Some((paper, tiling)) = &tiles {
+        if let Some((paper, tiling)) = paper.zip(tiling.as_ref()) {
             let title = &scene.config.title;
             let pdf = tiles_pdf(&whole.numbered, tiling, title, &whole.notes);
-            written.file(&tiles_name(*paper), &pdf)?;
+            written.file(&tiles_name(paper), &pdf)?;
         }
-        Ok(SheetFiles { totals: whole.totals, tiling: tiles.map(|(_, tiling)| tiling), written })
+        Ok(SheetFiles { totals: whole.totals, tiling, written })
     }
 
     /// Writes the file of a machine.

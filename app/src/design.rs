@@ -1,20 +1,21 @@
 //! A design run: its search and the files of its results.
 
-use crate::animation;
-use crate::failure::Unfinished;
-use crate::{picture, run_folder};
+use crate::{animation, failure::Unfinished, picture, run_folder};
 use anyhow::{Context, Result, bail, ensure};
 use design::optimise::outer_loop::Ended;
-use output::drawing::deployment_frames;
-use output::report::{Report, Warning};
-use output::run_files::{ANIMATION, RUN_FILES, Writer};
-use output::run_results::{remove_run, write_results};
-use scene::Scene;
-use scene::design_run::{BegunRun, Designed, Earlier, LEVELS, OnStep};
-use scene::run_inputs::{SCENE_FILE, holds_a_run};
-use std::fs::File;
-use std::path::Path;
-use std::sync::atomic::AtomicBool;
+use output::{
+    drawing::deployment_frames,
+    report::{Report, Warning},
+    run_files::{ANIMATION, RUN_FILES, Writer},
+    run_results::{remove_run, write_results},
+};
+use scene::{
+    Scene,
+    design_run::{Designed, LEVELS, OnStep, inverse_design},
+    run_inputs::{SCENE_FILE, holds_a_run},
+};
+use std::{fs::File, path::Path, sync::atomic::AtomicBool};
+use support::unread;
 
 /// Width of the pictures (px).
 const PICTURE_WIDTH: u32 = 1600;
@@ -42,9 +43,7 @@ pub fn hold(scene: &Scene, restart: bool) -> Result<File> {
 /// Searches at the level of the scene and writes the results; `force` also writes cut files of a
 /// design with errors.
 pub fn search(scene: &Scene, force: bool, stop: &AtomicBool, progress: OnStep) -> Result<Report> {
-    let run = BegunRun::new(scene.clone(), None)?;
-    let designed = run.search(&Earlier::default(), None, stop, progress)?;
-    write_run(scene, &designed, force)
+    write_run(scene, &inverse_design(scene, stop, progress)?, force)
 }
 
 /// Writes the results of a design that was found on several levels.
@@ -109,8 +108,7 @@ fn rasterise(folder: &Path) -> Result<()> {
     for file in pictures {
         let vector = folder.join(file.name).with_extension("svg");
         if vector.exists() {
-            let svg = std::fs::read_to_string(&vector)
-                .with_context(|| format!("cannot read {}", vector.display()))?;
+            let svg = std::fs::read_to_string(&vector).map_err(unread(&vector))?;
             picture::save(&svg, &vector.with_extension(""), PICTURE_WIDTH)?;
         }
     }

@@ -1,15 +1,12 @@
 //! What commands measure of the design of a run, in the report and the page of the run.
 
-use crate::progress::announce;
-use crate::run_folder;
+use crate::{progress::announce, run_folder};
 use analysis::design_checks::DesignChecks;
 use anyhow::Result;
 use design::pattern::design_vector::DesignVector;
 use output::run_results::write_results;
-use scene::Scene;
-use scene::design_run::Designed;
-use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
+use scene::{Scene, design_run::Designed};
+use std::sync::{Arc, atomic::AtomicBool};
 
 /// Adds a check of the design of a scene's run, and writes the results of the run again. Cut files
 /// that are there stay, with the errors of the design in them.

@@ -5,10 +5,11 @@ use crate::run_folder;
 use anyhow::{Context, Result, ensure};
 use scene::Scene;
 use serde_json::Value;
-use std::collections::BTreeSet;
-use std::path::{Path, PathBuf};
-use support::regular_file;
-use support::table::Table;
+use std::{
+    collections::BTreeSet,
+    path::{Path, PathBuf},
+};
+use support::{regular_file, table::Table, unread};
 
 /// One design run.
 pub struct Run {
@@ -102,7 +103,6 @@ fn report(path: &Path) -> Result<Value> {
     if !path.exists() {
         return Ok(Value::Null);
     }
-    let text =
-        regular_file::read(path).with_context(|| format!("cannot read {}", path.display()))?;
+    let text = regular_file::read(path).map_err(unread(path))?;
     serde_json::from_slice(&text).with_context(|| format!("{} is not a report", path.display()))
 }

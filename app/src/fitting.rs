@@ -1,11 +1,12 @@
 //! A sheet of an even pattern for a drawing, and what is said of it.
 
 use crate::progress::announce;
-use analysis::fit::fasteners::Held;
-use analysis::fit::scene::{FittedScene, fitted};
+use analysis::fit::{
+    fasteners::Held,
+    scene::{FittedScene, fitted},
+};
 use anyhow::{Result, ensure};
-use scene::Scene;
-use scene::placement::NOT_SEEN;
+use scene::{Scene, placement::NOT_SEEN};
 
 /// Makes the sheet that opens onto the target of a scene; also returns what a person may expect of
 /// it. A sheet that shows too little of its target is refused unless `anyway`.

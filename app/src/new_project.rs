@@ -7,23 +7,28 @@ mod for_service;
 mod silhouette;
 mod template;
 
-use crate::WHOLE_BUILD;
-use crate::input_file;
-use crate::new_project::cut_from::CutFrom;
-use crate::new_project::edited::{heading, map, scale, set};
-use crate::new_project::first_scene::FirstScene;
-use crate::new_project::for_service::for_service;
-use crate::new_project::silhouette::fitted_text;
-use crate::new_project::template::Template;
-use crate::output_file;
-use crate::shell_word::shell_word;
-use analysis::fit::opening::{damage_of_turn, safe_opening};
-use analysis::material_check::{Intended, MaterialCheck};
+use crate::{
+    WHOLE_BUILD, input_file,
+    new_project::{
+        cut_from::CutFrom,
+        edited::{heading, map, scale, set},
+        first_scene::FirstScene,
+        for_service::for_service,
+        silhouette::fitted_text,
+        template::Template,
+    },
+    output_file,
+    shell_word::shell_word,
+};
+use analysis::{
+    fit::opening::{damage_of_turn, safe_opening},
+    material_check::{Intended, MaterialCheck},
+};
 use anyhow::{Context, Result, bail, ensure};
 use hinge::{Regime, SheetMaterial};
 use scene::{Posture, Scene, Stock, rounded};
 use std::path::{Path, PathBuf};
-use support::text_file;
+use support::{text_file, unread};
 use surrogate::{Card, Surrogate};
 use toml_edit::{Array, ArrayOfTables, DocumentMut};
 
@@ -351,7 +356,7 @@ fn readme(folder: &Path, why: &str, regime: Regime, trained: bool, whole_build: 
 
 /// Text of a material file in another thickness (mm).
 pub fn material_text(path: &Path, thickness: f64) -> Result<String> {
-    let text = text_file::read(path).with_context(|| format!("cannot read {}", path.display()))?;
+    let text = text_file::read(path).map_err(unread(path))?;
     let mut material: DocumentMut = text.parse()?;
     set(&mut material["thickness"], thickness);
     Ok(material.to_string())

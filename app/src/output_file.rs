@@ -2,7 +2,7 @@
 
 use anyhow::{Context, Result, ensure};
 use std::path::Path;
-use support::whole_file;
+use support::{unwritten, whole_file};
 
 /// Creates a folder and its missing parents.
 pub fn create_folder(folder: &Path) -> Result<()> {
@@ -17,8 +17,7 @@ pub fn create_folder_of(file: &Path) -> Result<()> {
 
 /// Writes a file atomically; its folder must exist.
 pub fn write(path: &Path, contents: impl AsRef<[u8]>) -> Result<()> {
-    whole_file::write(path, contents.as_ref())
-        .with_context(|| format!("cannot write {}", path.display()))
+    Ok(whole_file::write(path, contents.as_ref()).map_err(unwritten(path))?)
 }
 
 /// An error if the file exists.

@@ -1,20 +1,22 @@
 //! Raster images: a PNG is written next to every SVG.
 
+use crate::output_file;
 use anyhow::{Context, Result};
-use resvg::usvg::fontdb::Database;
-use resvg::{tiny_skia, usvg};
-use std::path::{Path, PathBuf};
-use std::sync::{Arc, LazyLock};
-use support::whole_file;
+use resvg::{
+    tiny_skia,
+    usvg::{self, fontdb::Database},
+};
+use std::{
+    path::{Path, PathBuf},
+    sync::{Arc, LazyLock},
+};
 
 /// Writes `<stem>.svg` and `<stem>.png`, the latter `width` pixels wide; returns both paths.
 pub fn save(svg: &str, stem: &Path, width: u32) -> Result<[PathBuf; 2]> {
     let [vector, raster] = ["svg", "png"].map(|extension| stem.with_extension(extension));
     let png = rasterise(svg, width)?.encode_png()?;
-    for (path, bytes) in [(&vector, svg.as_bytes()), (&raster, &png)] {
-        whole_file::write(path, bytes)
-            .with_context(|| format!("cannot write {}", path.display()))?;
-    }
+    output_file::write(&vector, svg)?;
+    output_file::write(&raster, png)?;
     Ok([vector, raster])
 }
 

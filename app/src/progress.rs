@@ -2,9 +2,11 @@
 //! one line per step.
 
 use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressStyle};
-use std::cell::{Cell, OnceCell};
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::{Duration, Instant};
+use std::{
+    cell::{Cell, OnceCell},
+    sync::atomic::{AtomicBool, Ordering},
+    time::{Duration, Instant},
+};
 use support::verbose;
 
 /// Interval between progress lines when the output is no terminal.

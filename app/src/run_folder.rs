@@ -2,11 +2,8 @@
 
 use crate::output_file;
 use anyhow::{Context, Result, bail};
-use std::fs::File;
-use std::io::ErrorKind;
-use std::path::Path;
-use support::lock_file;
-use support::table::Table;
+use std::{fs::File, io::ErrorKind, path::Path};
+use support::{lock_file, table::Table};
 
 /// Creates the folder and locks it until the returned file is dropped.
 pub fn hold(folder: &Path) -> Result<File> {

@@ -4,8 +4,7 @@
 use anyhow::Result;
 use dataset::{COMPARED, ComparedState, Database, Row, reference_rms};
 use std::path::Path;
-use support::document::Document;
-use support::table::Table;
+use support::{document::Document, table::Table};
 use surrogate::Surrogate;
 use train::{ErrorInterval, Parity, spot_check};
 

@@ -4,20 +4,23 @@ mod campaign;
 mod kept_fits;
 mod seeds;
 
-pub use campaign::train_campaign;
-use kept_fits::continued_fit;
-pub use kept_fits::kept_fit;
-
 use crate::{charts, input_file, output_file, picture, run_folder};
 use ::train::{Epoch, Trained, TrainingConfig};
 use anyhow::{Context, Result, bail};
+pub use campaign::train_campaign;
 use dataset::{ComparedState, Database, LeftOut};
-use std::fmt::Write;
-use std::fs::File;
-use std::path::{Path, PathBuf};
-use std::sync::atomic::AtomicBool;
-use support::document::Document;
-use support::table::{Cell, Table};
+use kept_fits::continued_fit;
+pub use kept_fits::kept_fit;
+use std::{
+    fmt::Write,
+    fs::File,
+    path::{Path, PathBuf},
+    sync::atomic::AtomicBool,
+};
+use support::{
+    document::Document,
+    table::{Cell, Table},
+};
 use surrogate::{ErrorBin, Surrogate, TestErrors};
 use verification::spread_table;
 

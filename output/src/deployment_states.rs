@@ -1,9 +1,11 @@
 //! The states in which a deployment is shown: the flat sheet, then every load step. A sheet on pins
 //! has no load steps; it is shown at equal steps of its opening.
 
-use design::equilibrium::load_step::LoadStep;
-use design::objective::design_problem::{Deployment, DesignProblem, Model};
-use design::sheet::ideal_deployment::ideal_deployment;
+use design::{
+    equilibrium::load_step::LoadStep,
+    objective::design_problem::{Deployment, DesignProblem, Model},
+    sheet::ideal_deployment::ideal_deployment,
+};
 use hinge::HingeDeformation;
 
 /// Number of openings at which a sheet on pins is shown.

@@ -8,12 +8,13 @@ mod tables;
 
 pub use agreement::{Agreement, OpeningSpread, Spread};
 
-use analysis::measured_openings::{MeasuredOpening, MeasuredPanel, openings, scatter, slip};
-use analysis::measured_points::FittedPoint;
-use analysis::measured_sheet::MeasuredSheet;
-use analysis::path_fit::Fit;
-use design::geometry::plane::point;
-use design::sheet::cut_sheet::Sheet;
+use analysis::{
+    measured_openings::{MeasuredOpening, MeasuredPanel, openings, scatter, slip},
+    measured_points::FittedPoint,
+    measured_sheet::MeasuredSheet,
+    path_fit::Fit,
+};
+use design::{geometry::plane::point, sheet::cut_sheet::Sheet};
 use faer::c64;
 use serde::Serialize;
 

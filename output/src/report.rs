@@ -23,22 +23,24 @@ pub use findings::{Rule, Warning, rules};
 pub use hinge_row::HingeRow;
 pub use reached::Reached;
 
-use crate::cut_file::{CutLines, FabricationError};
-use crate::report::deployed::{DeployedDesign, FinishedRun, left_out};
-use crate::report::facts::facts;
-use crate::report::findings::findings;
-use analysis::design_checks::DesignChecks;
-use analysis::error_budget::ErrorBudget;
-use analysis::mounting::Mounting;
-use analysis::what_if::what_if;
-use design::objective::design_problem::Deployment;
-use design::objective::scores::Scores;
-use design::optimise::outer_loop::Ended;
-use scene::design_run::Designed;
-use scene::placement::seen;
-use scene::{CoarseSearch, Level, Scene};
+use crate::{
+    cut_file::CutLines,
+    report::{
+        deployed::{DeployedDesign, FinishedRun, left_out},
+        facts::facts,
+        findings::findings,
+    },
+};
+use analysis::{
+    design_checks::DesignChecks, error_budget::ErrorBudget, mounting::Mounting, what_if::what_if,
+};
+use design::{
+    objective::{design_problem::Deployment, scores::Scores},
+    optimise::outer_loop::Ended,
+};
+use scene::{CoarseSearch, Level, Scene, design_run::Designed, placement::seen};
 use serde::Serialize;
-use support::severity::Severity;
+use support::{Fault, severity::Severity};
 
 /// The report of a run, for people (`Display`) and programs (JSON).
 #[derive(Clone, Debug, Serialize)]
@@ -97,7 +99,7 @@ pub struct Report {
 pub fn warnings(
     scene: &Scene,
     deployment: &Deployment,
-    cuts: &Result<CutLines, FabricationError>,
+    cuts: &Result<CutLines, Fault>,
 ) -> Vec<Warning> {
     let hinges = HingeRow::all(scene, deployment);
     findings(&DeployedDesign { scene, deployment, cuts, hinges, run: None, severities: Vec::new() })
@@ -138,7 +140,7 @@ impl Report {
     pub fn new(
         scene: &Scene,
         designed: &Designed,
-        cuts: &Result<CutLines, FabricationError>,
+        cuts: &Result<CutLines, Fault>,
         checks: DesignChecks,
         force: bool,
     ) -> Self {

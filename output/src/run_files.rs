@@ -1,24 +1,24 @@
 //! The files of a run folder: `design` writes them from this table, `--restart` deletes by it,
 //! docs/RUN-PAGE.md lists it.
 
-use crate::cut_file::{
-    CutDrawing, CutLines, FabricationError, SheetDrawing, attachment_list, cut_list, cut_summary,
-    deployed_panels, dxf, mark_errors, svg,
+use crate::{
+    cut_file::{
+        CutDrawing, CutLines, SheetDrawing, attachment_list, cut_list, cut_summary,
+        deployed_panels, dxf, mark_errors, svg,
+    },
+    drawing,
+    mounting_kit::{board, kit_pdf, steps_svg},
+    report::{Report, Warning},
+    run_page::run_page,
 };
-use crate::drawing;
-use crate::mounting_kit::{board, kit_pdf, steps_svg};
-use crate::report::{Report, Warning};
-use crate::run_page::run_page;
-use analysis::design_checks::CHECKS_FILE;
-use analysis::mounting::Mounting;
-use design::objective::design_problem::Deployment;
-use design::sheet::cut_sheet::Sheet;
-use design::sheet::kinematics::deployed_boundaries;
-use scene::design_run::Designed;
-use scene::placement::placed;
-use scene::run_inputs::STATE_FILE;
-use scene::{Paper, Scene};
+use analysis::{design_checks::CHECKS_FILE, mounting::Mounting};
+use design::{
+    objective::design_problem::Deployment,
+    sheet::{cut_sheet::Sheet, kinematics::deployed_boundaries},
+};
+use scene::{Paper, Scene, design_run::Designed, placement::placed, run_inputs::STATE_FILE};
 use std::io;
+use support::Fault;
 
 /// A file of a run folder.
 pub struct RunFile {
@@ -47,7 +47,7 @@ pub enum Writer {
 pub struct Results<'a> {
     pub(crate) scene: &'a Scene,
     pub(crate) designed: &'a Designed,
-    pub(crate) cuts: &'a Result<CutLines, FabricationError>,
+    pub(crate) cuts: &'a Result<CutLines, Fault>,
     pub(crate) report: &'a Report,
     /// The drawing of the sheet, if it is cut.
     pub(crate) sheet: Option<SheetDrawing>,
@@ -76,7 +76,7 @@ pub const RUN_FILES: [RunFile; 21] = [
     result(
         "run.html",
         "the run on one page: open it in a browser, click a hinge, move the slider",
-        |run| Ok(Some(run_page(run.scene, run.designed, run.report)?.into())),
+        |run| Ok(Some(run_page(run.scene, run.designed, run.report).into())),
     ),
     result("cut.dxf", CUTS, |run| Ok(run.annotated().map(|drawing| dxf(&drawing).into()))),
     result("cut.svg", CUTS, |run| Ok(run.annotated().map(|drawing| svg(&drawing).into()))),

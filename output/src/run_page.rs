@@ -9,12 +9,10 @@ mod hinge_states;
 mod packed;
 mod page_data;
 
-pub use page_data::{History, PageData, SheetData};
+pub use page_data::{history, page_data, sheet_data};
 
-use crate::display::text_of_element;
-use crate::report::Report;
-use scene::Scene;
-use scene::design_run::Designed;
+use crate::{display::text_of_element, report::Report};
+use scene::{Scene, design_run::Designed};
 
 const TEMPLATE: &str = include_str!("run_page/page.html");
 const STYLE: &str = include_str!("run_page/page.css");
@@ -47,15 +45,11 @@ pub struct Page<'a> {
     pub data: &'a str,
 }
 
-pub(super) fn run_page(
-    scene: &Scene,
-    designed: &Designed,
-    report: &Report,
-) -> Result<String, serde_json::Error> {
-    let data = serde_json::to_string(&PageData::new(scene, designed, report))?;
+pub(super) fn run_page(scene: &Scene, designed: &Designed, report: &Report) -> String {
+    let data = page_data(scene, designed, report).to_string();
     let page =
         Page { title: &report.title, scripts: OF_RUN.to_owned(), data: &data, ..Page::default() };
-    Ok(page.to_html())
+    page.to_html()
 }
 
 impl Page<'_> {

@@ -1,16 +1,17 @@
 //! The results of a run, written to its folder besides its state, and deleted before a new search.
 
-use crate::cut_file::{CutLines, SheetDrawing};
-use crate::report::Report;
-use crate::run_files::{RUN_FILES, Results, Writer};
+use crate::{
+    cut_file::{CutLines, SheetDrawing},
+    report::Report,
+    run_files::{RUN_FILES, Results, Writer},
+};
 use analysis::design_checks::DesignChecks;
-use scene::Scene;
-use scene::design_run::{Designed, InverseDesignError};
-use std::io;
-use std::path::Path;
-use support::fault::{Fault, fault};
-use support::file_error::FileError;
-use support::whole_file;
+use scene::{
+    Scene,
+    design_run::{Designed, START},
+};
+use std::{io, path::Path};
+use support::{Fault, FileError, at, whole_file};
 
 /// Writes the results of [`RUN_FILES`]: the picture of the flat sheet for a design with cut lines,
 /// the cut files for a design without errors, or if `force`.
@@ -45,18 +46,18 @@ pub fn write_results(scene: &Scene, designed: &Designed, force: bool) -> Result<
 }
 
 fn unwritten(error: FileError) -> Fault {
-    fault("", format!("cannot write {error}"), "")
+    format!("cannot write {error}").into()
 }
 
 /// Removes the files of an earlier run of the scene, so that the next one begins at the start
 /// design. The copies of its inputs stay. An error, and nothing is removed, if the start has no
 /// objective value.
-pub fn remove_run(scene: &Scene) -> Result<(), InverseDesignError> {
+pub fn remove_run(scene: &Scene) -> Result<(), Fault> {
     let start = scene.problem()?.evaluate(&scene.start());
-    start.map_err(InverseDesignError::Start)?;
+    start.map_err(at(START))?;
     for file in &RUN_FILES {
         let path = scene.output().join(file.name);
-        remove(&path).map_err(FileError::at(&path))?;
+        remove(&path).map_err(at(format!("cannot use {}", path.display())))?;
     }
     Ok(())
 }

@@ -4,11 +4,15 @@
 //! Points are the points of the flat sheet; the point data `displacement (mm)` moves them to the
 //! deployed sheet.
 
-use design::equilibrium::load_step::LoadStep;
-use design::hinge_law::DamageMeasure;
-use design::objective::design_problem::Deployment;
-use design::sheet::cut_sheet::{Panel, Sheet};
-use design::sheet::kinematics::{deployed, deployed_boundaries};
+use design::{
+    equilibrium::load_step::LoadStep,
+    hinge_law::DamageMeasure,
+    objective::design_problem::Deployment,
+    sheet::{
+        cut_sheet::{Panel, Sheet},
+        kinematics::{deployed, deployed_boundaries},
+    },
+};
 use support::vtk::{CellKind, Field, UnstructuredGrid};
 
 /// A state of the deployment.
@@ -79,8 +83,8 @@ fn hinge_points(
 ) -> UnstructuredGrid {
     // The reference point moves with both panels, which part by (a, s): their mean is drawn.
     let moved = sheet.hinges.iter().map(|hinge| {
-        let [a, b] = [hinge.panel_a(), hinge.panel_b()]
-            .map(|k| deployed(&sheet.panels[k], configuration[k], hinge.attachment));
+        let [a, b] =
+            hinge.panels().map(|k| deployed(&sheet.panels[k], configuration[k], hinge.attachment));
         (hinge.attachment, [0, 1].map(|axis| 0.5 * (a[axis] + b[axis])))
     });
     let of = |name, value: &dyn Fn(usize) -> f64| {

@@ -1,8 +1,9 @@
 //! NumPy arrays in and out. What cannot be read as real numbers without loss is an error that names
 //! the argument.
 
-use numpy::ndarray::ArrayD;
-use numpy::{Element, IntoPyArray, PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
+use numpy::{
+    Element, IntoPyArray, PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods, ndarray::ArrayD,
+};
 use pyo3::{
     exceptions::{PyTypeError, PyValueError},
     prelude::*,

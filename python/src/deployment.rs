@@ -16,8 +16,8 @@ use std::sync::Arc;
 /// single one.
 #[pyclass(frozen, module = "kirigami")]
 pub(crate) struct Deployment {
-    problem: Arc<DesignProblem>,
-    deployment: design::Deployment,
+    pub(crate) problem: Arc<DesignProblem>,
+    pub(crate) deployment: design::Deployment,
 }
 
 /// The equilibrium at full load.
@@ -25,10 +25,6 @@ pub(crate) struct Deployment {
 pub(crate) struct State(pub(crate) Response);
 
 impl Deployment {
-    pub(crate) fn new(problem: Arc<DesignProblem>, deployment: design::Deployment) -> Self {
-        Self { problem, deployment }
-    }
-
     /// An error if there is no equilibrium at full load.
     pub(crate) fn at_full_load(&self) -> PyResult<&LoadStep> {
         self.deployment.at_full_load().map_err(errors::design)

@@ -209,7 +209,7 @@ impl Problem {
         let deployment = self.solved(|| problem.deploy_near(&design, known.as_deref()))?;
         let deployment = deployment.map_err(errors::design)?;
         self.warm().path.keep(&deployment);
-        Ok(Deployment::new(problem, deployment))
+        Ok(Deployment { problem, deployment })
     }
 
     /// The same as `deploy`, but NoEquilibrium is raised if none was found at full load.

@@ -1,7 +1,6 @@
 //! The keys of a scene, and names of choices, as Python gives them.
 
-use crate::errors;
-use crate::waiting::unlocked;
+use crate::{errors, waiting::unlocked};
 use design::SearchMethod;
 use pyo3::{exceptions::PyValueError, prelude::*, types::PyDict};
 use scene::{Level, Scene, SceneConfig};

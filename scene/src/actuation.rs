@@ -1,13 +1,13 @@
 //! Supports and loads as written in a scene, with panels named by [column, row].
 
-use design::pattern::grid::{EDGES, Grid};
-use design::sheet::cut_sheet::PanelPoint;
-use design::sheet::topology::Topology;
+use design::{
+    pattern::grid::{EDGES, Grid},
+    sheet::{cut_sheet::PanelPoint, topology::Topology},
+};
 use hinge::STANDARD_GRAVITY;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use std::f64::consts::TAU;
-use std::fmt;
+use std::{f64::consts::TAU, fmt};
 
 /// A supported panel.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]

@@ -1,15 +1,19 @@
 //! Supports and loads of a scene on the panels of its sheet: what solver, drawings, run page and
 //! report read.
 
-use crate::actuation::{
-    Attached, EdgeLoadConfig, LoadConfig, OpeningCoupleConfig, SupportConfig, name,
+use crate::{
+    actuation::{Attached, EdgeLoadConfig, LoadConfig, OpeningCoupleConfig, SupportConfig, name},
+    checked_scene::Scene,
 };
-use crate::checked_scene::Scene;
-use design::equilibrium::supports::{Dof, Load, Support};
-use design::geometry::polygon::distance;
-use design::pattern::grid::EDGES;
-use design::sheet::cut_sheet::AttachmentPoint;
-use design::sheet::topology::{HingeSite, Topology};
+use design::{
+    equilibrium::supports::{Dof, Load, Support},
+    geometry::polygon::distance,
+    pattern::grid::EDGES,
+    sheet::{
+        cut_sheet::AttachmentPoint,
+        topology::{HingeSite, Topology},
+    },
+};
 use serde::Serialize;
 use std::collections::BTreeMap;
 

@@ -1,12 +1,14 @@
 //! The cells of a sheet: which voids of its pattern are kept, and the shapes of the panels that are
 //! trimmed.
 
-use design::geometry::polygon::{area, self_crossing};
-use design::pattern::grid::Grid;
-use design::sheet::topology::Topology;
+use design::{
+    geometry::polygon::{area, self_crossing},
+    pattern::grid::Grid,
+    sheet::topology::Topology,
+};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use support::fault::{Fault, fault};
+use support::{Fault, ensure, refuse};
 
 /// A kept void in a row of the voids.
 const KEPT: char = 'o';
@@ -64,46 +66,42 @@ impl From<&Topology> for CellsConfig {
 impl CellsConfig {
     /// The panels and hinges that it describes.
     pub(crate) fn topology(&self, grid: Grid) -> Result<Topology, Fault> {
-        let wrong =
-            |what: String| fault("cells", what, "write them again by `kirigami init --target`");
+        let built = self.built(grid);
+        let wrong = |what| format!("cells: {what}: write them again by `kirigami init --target`");
+        Ok(built.map_err(wrong)?)
+    }
+
+    fn built(&self, grid: Grid) -> Result<Topology, Fault> {
         let fits = |row: &String| {
             row.chars().count() == grid.m - 1 && row.chars().all(|c| c == KEPT || c == LEFT_OUT)
         };
-        if self.voids.len() != grid.n - 1 || !self.voids.iter().all(fits) {
-            return Err(wrong(format!(
-                "`voids` are not {} rows of {} characters `{KEPT}` and `{LEFT_OUT}`, the voids between {} x {} cells",
-                grid.n - 1,
-                grid.m - 1,
-                grid.m,
-                grid.n
-            )));
-        }
+        ensure!(
+            self.voids.len() == grid.n - 1 && self.voids.iter().all(fits),
+            "`voids` are not {} rows of {} characters `{KEPT}` and `{LEFT_OUT}`, the voids between {} x {} cells",
+            grid.n - 1,
+            grid.m - 1,
+            grid.m,
+            grid.n
+        );
         let rows = self.voids.iter().rev();
         let kept: Vec<bool> = rows.flat_map(|row| row.chars().map(|c| c == KEPT)).collect();
         let mut topology = Topology::of_voids(grid, &kept);
-        if !topology.is_mechanism() {
-            return Err(wrong(
-                "the kept `voids` are no mechanism of one piece: each must have a kept neighbour in its row or column, and \
-                 all must be joined"
-                    .to_owned(),
-            ));
-        }
+        ensure!(
+            topology.is_mechanism(),
+            "the kept `voids` are no mechanism of one piece: each must have a kept neighbour in its row or column, and \
+             all must be joined"
+        );
         for TrimmedPanel { panel: [p, q], corners, outer } in &self.trimmed {
             let Some(number) = topology.panel(*p, *q) else {
-                return Err(wrong(format!(
-                    "`trimmed` names the cell [{p}, {q}], which is no panel"
-                )));
+                refuse!("`trimmed` names the cell [{p}, {q}], which is no panel");
             };
             let simple = corners.len() > 2 && corners.iter().flatten().all(|x| x.abs() < 100.0);
-            if !simple || area(corners) <= 0.0 || self_crossing(corners).is_some() {
-                return Err(wrong(format!(
-                    "the corners of panel [{p}, {q}] are no polygon, counter-clockwise, that does not cross itself"
-                )));
-            }
+            ensure!(
+                simple && area(corners) > 0.0 && self_crossing(corners).is_none(),
+                "the corners of panel [{p}, {q}] are no polygon, counter-clockwise, that does not cross itself"
+            );
             if let Some(corner) = outer.iter().find(|corner| **corner >= corners.len()) {
-                return Err(wrong(format!(
-                    "panel [{p}, {q}] has no corner {corner}, which is `outer`"
-                )));
+                refuse!("panel [{p}, {q}] has no corner {corner}, which is `outer`");
             }
             topology.outer.extend(outer.iter().map(|corner| (number, *corner)));
             topology.trims[number] = Some(corners.as_slice().into());

@@ -1,20 +1,22 @@
 //! A scene that was read and checked, together with the files that it names.
 
-use crate::checks;
-use crate::keys::{SceneConfig, folder, resolved};
-use crate::level::Level;
-use crate::loaded_hinge::LoadedHinge;
-use crate::posture::PostureConfig;
-use crate::scene_error::SceneError;
-use crate::solved_hinges::SolvedHinges;
-use crate::springback_file;
-use crate::target::{TARGET_POINTS, Target};
-use design::sheet::cut_sheet::SheetOptions;
-use design::sheet::topology::Topology;
+use crate::{
+    checks,
+    keys::{SceneConfig, folder, resolved},
+    level::Level,
+    loaded_hinge::LoadedHinge,
+    posture::PostureConfig,
+    solved_hinges::SolvedHinges,
+    springback_file,
+    target::{TARGET_POINTS, Target},
+};
+use design::sheet::{cut_sheet::SheetOptions, topology::Topology};
 use hinge::SheetMaterial;
-use std::path::{Path, PathBuf};
-use std::sync::Arc;
-use support::relative_path;
+use std::{
+    path::{Path, PathBuf},
+    sync::Arc,
+};
+use support::{Fault, at, relative_path, said};
 use surrogate::{Springback, Surrogate};
 
 /// Version of geometry, mechanics and objective: raised when a change of the code changes the loss
@@ -51,19 +53,19 @@ pub struct Scene {
 
 impl Scene {
     /// Reads a scene and the files that it names, and checks all values.
-    pub fn read(path: &Path) -> Result<Self, SceneError> {
-        Self::new(support::toml_file::read(path)?, path)
+    pub fn read(path: &Path) -> Result<Self, Fault> {
+        Self::new(support::toml_file::read(path).map_err(said)?, path)
     }
 
     /// Reads the material, the target and the weights of a scene whose paths are relative to the
     /// file at `path`, and checks all values.
-    pub fn new(config: SceneConfig, path: &Path) -> Result<Self, SceneError> {
+    pub fn new(config: SceneConfig, path: &Path) -> Result<Self, Fault> {
         Self::with_networks(config, path, None)
     }
 
     /// The scene with other keys, in the same place. Its weights are read again only if the keys
     /// that say how they are read changed.
-    pub fn changed(&self, config: SceneConfig) -> Result<Self, SceneError> {
+    pub fn changed(&self, config: SceneConfig) -> Result<Self, Fault> {
         let reads = |config: &SceneConfig| {
             let process = config.process;
             (
@@ -80,29 +82,30 @@ impl Scene {
         config: SceneConfig,
         path: &Path,
         known: Option<&[Surrogate]>,
-    ) -> Result<Self, SceneError> {
-        checks::keys(&config).map_err(SceneError::at(path))?;
-        let topology = config.topology().map_err(SceneError::at(path))?;
-        checks::config(&config, &topology).map_err(SceneError::at(path))?;
-        let material_path = resolved(path, &config.material);
-        let measured = SheetMaterial::load(&material_path)?;
+    ) -> Result<Self, Fault> {
+        let place = &path.display();
+        let checked = checks::keys(&config).and_then(|()| {
+            let topology = config.topology()?;
+            checks::config(&config, &topology).map(|()| topology)
+        });
+        let topology = checked.map_err(at(place))?;
+        let measured = SheetMaterial::load(&resolved(path, &config.material)).map_err(said)?;
         let material = SheetMaterial {
             thickness: config.thickness.unwrap_or(measured.thickness),
             ..measured.clone()
         };
-        (material.validate()).map_err(SceneError::at(path))?;
+        material.validate().map_err(at(place))?;
         let target = Target::sample(&config.target, folder(path), TARGET_POINTS);
-        let mut target = target.map_err(SceneError::at(path))?;
+        let mut target = target.map_err(at(place))?;
         if !target.holes.is_empty() && config.cells.is_none() {
             target.notes.push(
                 "a sheet without `cells` fills its holes: `kirigami init --target` writes one with them"
                     .to_owned(),
             );
         }
-        checks::target(&target, &config).map_err(SceneError::at(path))?;
+        checks::target(&target, &config).map_err(at(place))?;
         let hinge = LoadedHinge::load(&config, &topology, &measured, path, known)?;
-        let springback = springback_file::load(&config, &measured, path);
-        let springback = springback.map_err(SceneError::at(path))?;
+        let springback = springback_file::load(&config, &measured, path).map_err(at(place))?;
         let path = path.to_owned();
         Ok(Self { config, topology, material, measured, target, hinge, springback, path })
     }

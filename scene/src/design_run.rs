@@ -3,31 +3,43 @@
 //! The state is saved about once per second and at the end; the next run of the scene continues
 //! from it.
 
-use crate::checked_scene::{MODEL_PARTS, Scene};
-use crate::coarse_search::CoarseSearch;
-use crate::keys::SceneConfig;
-use crate::level::Level;
-use crate::run_inputs::{self, InputHashes, RunInputsError, STATE_FILE};
-use crate::scene_error::SceneError;
-use design::objective::design_problem::{DesignError, DesignProblem, Evaluation};
-use design::objective::terms::panel_width::thinnest_panel;
-use design::optimise::outer_loop::{Ended, SearchState, Until, optimise};
-use design::pattern::design_vector::DesignVector;
+use crate::{
+    checked_scene::{MODEL_PARTS, Scene},
+    coarse_search::CoarseSearch,
+    keys::SceneConfig,
+    level::Level,
+    run_inputs::{self, InputHashes, STATE_FILE, unused},
+};
+use design::{
+    objective::{
+        design_problem::{DesignProblem, Evaluation},
+        terms::panel_width::thinnest_panel,
+    },
+    optimise::outer_loop::{Ended, SearchState, Until, optimise},
+    pattern::design_vector::DesignVector,
+};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
-use std::collections::BTreeSet;
-use std::path::{Path, PathBuf};
-use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
-use std::time::{Duration, Instant};
-use support::file_error::FileError;
-use support::sealed_json::{self, SealError};
-use support::{regular_file, whole_file};
+use std::{
+    collections::BTreeSet,
+    path::Path,
+    sync::{Arc, atomic::AtomicBool},
+    time::{Duration, Instant},
+};
+use support::{
+    Fault, at, ensure, regular_file,
+    sealed_json::{self, SealError},
+    whole_file,
+};
 
 /// The folder of the coarse searches, in the folder of a run.
 pub const LEVELS: &str = "levels";
 
 const SAVE_EVERY: Duration = Duration::from_secs(1);
+
+/// What an error of the start is about.
+pub const START: &str = "the start of the search cannot be evaluated";
+const BEST: &str = "the best design of the run cannot be evaluated again";
 
 /// A finished run.
 pub struct Designed {
@@ -46,49 +58,6 @@ pub struct Designed {
     /// The searches at coarser levels that found the start; empty if the search began at the start
     /// of the scene.
     pub coarse_searches: Vec<CoarseSearch>,
-}
-
-/// Why a run failed.
-#[derive(Debug, thiserror::Error)]
-#[allow(missing_docs, reason = "the message of a variant is its documentation")]
-pub enum InverseDesignError {
-    #[error(transparent)]
-    Scene(#[from] SceneError),
-    #[error(transparent)]
-    Inputs(#[from] RunInputsError),
-    #[error("the start of the search cannot be evaluated: {0}")]
-    Start(DesignError),
-    #[error(
-        "the start of the search has a panel of {thinnest:.3} mm, not wider than objective.min_panel_width = {minimum} mm: \
-         reduce that, sheet.panels or optimiser.start_noise"
-    )]
-    ThinStart { thinnest: f64, minimum: f64 },
-    #[error("the best design of the run cannot be evaluated again: {0}")]
-    Best(DesignError),
-    #[error("cannot use {0}")]
-    Folder(#[from] FileError),
-    #[error(
-        "{path} is neither the state of a run nor a design ({source}): give another file, or restart the \
-         run",
-        path = .path.display()
-    )]
-    State { path: PathBuf, source: SealError },
-    #[error(
-        "{path} contains a design of another size than the scene's: give another file, or restart the run",
-        path = .path.display()
-    )]
-    OtherSize { path: PathBuf },
-    #[error(
-        "{path} belongs to another run, {changed} changed since: restart it (--restart), or choose another output folder",
-        path = .path.display()
-    )]
-    OtherScene { path: PathBuf, changed: String },
-    #[error(
-        "{path} is not the run of this scene, {changed} changed since: design it again (`kirigami design --restart`), or \
-         name the file with --design to take its design nevertheless",
-        path = .path.display()
-    )]
-    Outdated { path: PathBuf, changed: String },
 }
 
 /// The scene of a run and the state of its search.
@@ -110,47 +79,53 @@ struct RunState {
 }
 
 /// The design in a JSON file: the best design of a run's state, or a design alone.
-pub fn stored_design(path: &Path, scene: &Scene) -> Result<DesignVector, InverseDesignError> {
+pub fn stored_design(path: &Path, scene: &Scene) -> Result<DesignVector, Fault> {
     #[derive(Deserialize)]
     #[serde(untagged)]
     enum Stored {
         Run { best: DesignVector },
         Alone(DesignVector),
     }
-    let text = regular_file::read(path).map_err(FileError::at(path))?;
-    let stored = sealed_json::from_slice_by_hand(&text)
-        .map_err(|source| InverseDesignError::State { path: path.to_owned(), source })?;
+    let text = regular_file::read(path).map_err(unused(path))?;
+    let stored = sealed_json::from_slice_by_hand(&text);
+    let stored = stored.map_err(|error| no_state(path, &error))?;
     let (Stored::Run { best: design } | Stored::Alone(design)) = stored;
-    if design.same_shape(&scene.start()) {
-        return Ok(design);
-    }
-    let path = path.to_owned();
-    Err(InverseDesignError::OtherSize { path })
+    same_size(path, design.same_shape(&scene.start()))?;
+    Ok(design)
+}
+
+fn no_state(path: &Path, error: &SealError) -> Fault {
+    format!(
+        "{} is neither the state of a run nor a design ({error}): give another file, or restart the \
+         run",
+        path.display()
+    )
+    .into()
+}
+
+fn same_size(path: &Path, fits: bool) -> Result<(), Fault> {
+    ensure!(
+        fits,
+        "{} contains a design of another size than the scene's: give another file, or restart the run",
+        path.display()
+    );
+    Ok(())
 }
 
 /// The best design of the run in the scene's run folder; `None` if there is no run.
 ///
 /// It is an error if the run is of another scene or model.
-pub fn design_of_run(scene: &Scene) -> Result<Option<DesignVector>, InverseDesignError> {
-    let path = scene.output().join(STATE_FILE);
-    let Some(state) = RunState::load(&path)? else {
-        return Ok(None);
-    };
-    if let Some(changed) = state.changes(scene, &SEARCH_KEYS) {
-        return Err(InverseDesignError::Outdated { path, changed });
-    }
-    if state.search.fits(&scene.start()) {
-        Ok(Some(state.search.best))
-    } else {
-        Err(InverseDesignError::OtherSize { path })
-    }
+pub fn design_of_run(scene: &Scene) -> Result<Option<DesignVector>, Fault> {
+    let remedy = "design it again (`kirigami design --restart`), or name the file with --design to take its design nevertheless";
+    let state = RunState::unchanged(scene, &SEARCH_KEYS, "is not the run of this scene", remedy)?;
+    Ok(state.map(|state| state.search.best))
 }
 
 /// How the run in the scene's run folder was left, and its best design; `None` if there is no run.
 ///
 /// It is an error if the run is of another scene or model.
-pub fn left_run(scene: &Scene) -> Result<Option<(Ended, DesignVector)>, InverseDesignError> {
-    let state = RunState::read(&scene.output().join(STATE_FILE), scene)?;
+pub fn left_run(scene: &Scene) -> Result<Option<(Ended, DesignVector)>, Fault> {
+    let state = RunState::read(scene)?;
     Ok(state.map(|state| (state.left(), state.search.best)))
 }
 
@@ -183,7 +158,7 @@ pub struct BegunRun {
 impl Designed {
     /// The start of a scene before any step of its search, with its path followed from the flat
     /// sheet until `stop` becomes true.
-    pub fn at_start(scene: &Scene, stop: Arc<AtomicBool>) -> Result<Self, InverseDesignError> {
+    pub fn at_start(scene: &Scene, stop: Arc<AtomicBool>) -> Result<Self, Fault> {
         let run = BegunRun::new(scene.clone(), Some(stop))?;
         let search = run.begun();
         run.designed(Ended::Stopped, search, Vec::new())
@@ -191,11 +166,8 @@ impl Designed {
 
     /// The run in the run folder of a scene as it was left, with its paths followed from the flat
     /// sheet until `stop` becomes true; `None` if there is no run.
-    pub fn of_run(
-        scene: &Scene,
-        stop: Arc<AtomicBool>,
-    ) -> Result<Option<Self>, InverseDesignError> {
-        let Some(state) = RunState::read(&scene.output().join(STATE_FILE), scene)? else {
+    pub fn of_run(scene: &Scene, stop: Arc<AtomicBool>) -> Result<Option<Self>, Fault> {
+        let Some(state) = RunState::read(scene)? else {
             return Ok(None);
         };
         let run = BegunRun::new(scene.clone(), Some(stop))?;
@@ -208,12 +180,12 @@ impl Designed {
 
 impl BegunRun {
     /// Evaluates the start of a scene; its paths are followed until `stop` becomes true.
-    pub fn new(scene: Scene, stop: Option<Arc<AtomicBool>>) -> Result<Self, InverseDesignError> {
+    pub fn new(scene: Scene, stop: Option<Arc<AtomicBool>>) -> Result<Self, Fault> {
         let mut problem = scene.problem()?;
         if let Some(stop) = stop {
             problem.stop_by(stop);
         }
-        let start = problem.evaluate(&scene.start()).map_err(InverseDesignError::Start)?;
+        let start = problem.evaluate(&scene.start()).map_err(at(START))?;
         Ok(Self { scene, problem, start })
     }
 
@@ -235,15 +207,15 @@ impl BegunRun {
         until: Option<Until>,
         stop: &AtomicBool,
         progress: OnStep,
-    ) -> Result<Designed, InverseDesignError> {
+    ) -> Result<Designed, Fault> {
         let Self { scene, problem, start } = &self;
         let (level, steps) = (scene.config.level, scene.config.optimiser.steps);
         let until = until.unwrap_or(steps.into());
         let folder = scene.output();
-        std::fs::create_dir_all(&folder).map_err(FileError::at(&folder))?;
+        std::fs::create_dir_all(&folder).map_err(unused(&folder))?;
         let path = folder.join(STATE_FILE);
         wide_enough(scene, start)?;
-        let (searches, mut search) = match RunState::read(&path, scene)? {
+        let (searches, mut search) = match RunState::read(scene)? {
             Some(state) => (state.coarse_searches, state.search),
             None => {
                 let search = match &earlier.optimiser {
@@ -275,7 +247,7 @@ impl BegunRun {
                 save(search, None)?;
                 saved = Instant::now();
             }
-            Ok::<_, FileError>(())
+            Ok::<_, Fault>(())
         })?;
         save(&search, Some(&ended))?;
         self.designed(ended, search, searches)
@@ -287,11 +259,11 @@ impl BegunRun {
         ended: Ended,
         search: SearchState,
         coarse_searches: Vec<CoarseSearch>,
-    ) -> Result<Designed, InverseDesignError> {
+    ) -> Result<Designed, Fault> {
         let Self { scene, problem, start } = self;
         let best = match search.best == scene.start() {
             true => start.clone(),
-            false => problem.evaluate(&search.best).map_err(InverseDesignError::Best)?,
+            false => problem.evaluate(&search.best).map_err(at(BEST))?,
         };
         Ok(Designed { scene, problem, ended, search, start, best, coarse_searches })
     }
@@ -301,21 +273,22 @@ impl BegunRun {
 pub fn inverse_design(
     scene: &Scene,
     stop: &AtomicBool,
-    progress: &mut dyn FnMut(&SearchState),
-) -> Result<Designed, InverseDesignError> {
-    let run = BegunRun::new(scene.clone(), None)?;
-    run.search(&Earlier::default(), None, stop, &mut |_, search| progress(search))
+    progress: OnStep,
+) -> Result<Designed, Fault> {
+    BegunRun::new(scene.clone(), None)?.search(&Earlier::default(), None, stop, progress)
 }
 
 /// An error if a panel of the start is so thin that the barrier of the minimum width is infinite.
-fn wide_enough(scene: &Scene, start: &Evaluation) -> Result<(), InverseDesignError> {
+fn wide_enough(scene: &Scene, start: &Evaluation) -> Result<(), Fault> {
     let minimum = scene.config.objective.min_panel_width;
     let panels = start.deployment.sheet.panels.iter();
     let panels: Vec<_> = panels.map(|panel| panel.corners).collect();
     let thinnest = thinnest_panel(&panels);
-    if minimum > 0.0 && thinnest <= minimum {
-        return Err(InverseDesignError::ThinStart { thinnest, minimum });
-    }
+    ensure!(
+        minimum <= 0.0 || thinnest > minimum,
+        "the start of the search has a panel of {thinnest:.3} mm, not wider than objective.min_panel_width = {minimum} mm: \
+         reduce that, sheet.panels or optimiser.start_noise"
+    );
     Ok(())
 }
 
@@ -330,21 +303,9 @@ impl RunState {
         }
     }
 
-    /// The state in a file; `None` if there is no file.
-    fn load(path: &Path) -> Result<Option<Self>, InverseDesignError> {
-        let text = match regular_file::read(path) {
-            Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(None),
-            text => text.map_err(FileError::at(path))?,
-        };
-        let state = sealed_json::from_slice(&text);
-        state
-            .map(Some)
-            .map_err(|source| InverseDesignError::State { path: path.to_owned(), source })
-    }
-
     /// The keys of the scene and the inputs besides that changed since the run, in words; those
-    /// `allowed` may.
-    fn changes(&self, scene: &Scene, allowed: &[&str]) -> Option<String> {
+    /// `allowed` may. Empty if there are none.
+    fn changes(&self, scene: &Scene, allowed: &[&str]) -> String {
         let forbidden = |name: &&str| !allowed.contains(name);
         let keys = self.changed_keys(scene);
         let keys = keys.iter().map(String::as_str).filter(forbidden);
@@ -352,7 +313,7 @@ impl RunState {
         let changed: Vec<String> = (keys.map(|key| format!("the key `{key}`")))
             .chain(inputs.map(|input| format!("the {input}")))
             .collect();
-        (!changed.is_empty()).then(|| changed.join(", "))
+        changed.join(", ")
     }
 
     /// The keys of the scene that changed since the run, without those that may: the number of
@@ -382,22 +343,38 @@ impl RunState {
     }
 
     /// The state of an earlier run of the same scene; only the number of steps may differ.
-    fn read(path: &Path, scene: &Scene) -> Result<Option<Self>, InverseDesignError> {
-        let Some(state) = Self::load(path)? else {
-            return Ok(None);
+    fn read(scene: &Scene) -> Result<Option<Self>, Fault> {
+        let remedy = "restart it (--restart), or choose another output folder";
+        Self::unchanged(scene, &[], "belongs to another run", remedy)
+    }
+
+    /// The state in the run folder of a scene, from which only the number of steps and the keys
+    /// `allowed` may differ; the error says what the state is otherwise, and a remedy.
+    fn unchanged(
+        scene: &Scene,
+        allowed: &[&str],
+        otherwise: &str,
+        remedy: &str,
+    ) -> Result<Option<Self>, Fault> {
+        let path = scene.output().join(STATE_FILE);
+        let text = match regular_file::read(&path) {
+            Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(None),
+            text => text.map_err(unused(&path))?,
         };
-        let path = path.to_owned();
-        if let Some(changed) = state.changes(scene, &[]) {
-            return Err(InverseDesignError::OtherScene { path, changed });
-        }
-        if !state.search.fits(&scene.start()) {
-            return Err(InverseDesignError::OtherSize { path });
-        }
+        let state: Self =
+            sealed_json::from_slice(&text).map_err(|error| no_state(&path, &error))?;
+        let changed = state.changes(scene, allowed);
+        ensure!(
+            changed.is_empty(),
+            "{} {otherwise}, {changed} changed since: {remedy}",
+            path.display()
+        );
+        same_size(&path, state.search.fits(&scene.start()))?;
         Ok(Some(state))
     }
 
-    fn write(&self, path: &Path) -> Result<(), FileError> {
-        let text = sealed_json::to_vec(self).map_err(FileError::at(path))?;
-        whole_file::write(path, &text).map_err(FileError::at(path))
+    fn write(&self, path: &Path) -> Result<(), Fault> {
+        let text = sealed_json::to_vec(self).map_err(unused(path))?;
+        whole_file::write(path, &text).map_err(unused(path))
     }
 }

@@ -1,21 +1,20 @@
 //! A drawing as the target of a sheet.
 
-use crate::target::{Target, TargetError, TargetShape};
-use design::geometry::plane::{complex, point};
-use design::geometry::polygon;
-use design::geometry::similarity::Similarity;
+use crate::target::{Target, TargetShape};
+use design::geometry::{
+    plane::{complex, point},
+    polygon,
+    similarity::Similarity,
+};
 use std::path::Path;
+use support::Fault;
 
 /// Points along a drawn outline from which its area is computed.
 const DRAWING_POINTS: usize = 2000;
 
 /// Centre of the bounding box and height (mm) at which the outline of a drawing (SVG or DXF), with
 /// its holes, has the given area (mm^2) and the mean of its points at `centre` (mm).
-pub fn place_drawing(
-    file: &Path,
-    centre: [f64; 2],
-    area: f64,
-) -> Result<([f64; 2], f64), TargetError> {
+pub fn place_drawing(file: &Path, centre: [f64; 2], area: f64) -> Result<([f64; 2], f64), Fault> {
     let of_height_1 = TargetShape::Svg {
         file: file.to_owned(),
         centre: [0.0; 2],

@@ -1,27 +1,32 @@
 //! The keys of a scene file.
 
-use crate::actuation::{
-    Attached, DriveConfig, EdgeLoadConfig, LoadConfig, OpeningCoupleConfig, SupportConfig, name,
+use crate::{
+    actuation::{
+        Attached, DriveConfig, EdgeLoadConfig, LoadConfig, OpeningCoupleConfig, SupportConfig, name,
+    },
+    cells::CellsConfig,
+    cutting::CuttingConfig,
+    hinge_model::{LinearConstants, PinConfig, SurrogateFile},
+    level::Level,
+    posture::PostureConfig,
+    sheet_config::{LigamentConfig, SheetConfig, StartConfig},
+    target::TargetShape,
+    tolerances::ToleranceConfig,
 };
-use crate::cells::CellsConfig;
-use crate::cutting::CuttingConfig;
-use crate::hinge_model::{LinearConstants, PinConfig, SurrogateFile};
-use crate::level::Level;
-use crate::posture::PostureConfig;
-use crate::sheet_config::{LigamentConfig, SheetConfig, StartConfig};
-use crate::target::TargetShape;
-use crate::tolerances::ToleranceConfig;
-use design::equilibrium::settings::SolverSettings;
-use design::objective::terms::ObjectiveConfig;
-use design::optimise::search::SearchMethod;
-use design::sheet::cutting_process::CuttingProcess;
-use design::sheet::topology::Topology;
+use design::{
+    equilibrium::settings::SolverSettings,
+    objective::terms::ObjectiveConfig,
+    optimise::search::SearchMethod,
+    sheet::{cutting_process::CuttingProcess, topology::Topology},
+};
 use hinge::SheetMaterial;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use std::path::{Component, Path, PathBuf};
-use std::sync::Arc;
-use support::fault::Fault;
+use std::{
+    path::{Component, Path, PathBuf},
+    sync::Arc,
+};
+use support::Fault;
 
 /// The keys of a scene file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]

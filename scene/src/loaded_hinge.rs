@@ -1,22 +1,20 @@
 //! The hinge law of a scene, loaded with the files it needs.
 
-use crate::hinge_model::LinearConstants;
-use crate::invalid_scene::{InvalidScene, WeightsMismatch};
-use crate::keys::{SceneConfig, resolved};
-use crate::level::Level;
-use crate::scene_error::SceneError;
-use crate::solved_hinges::SolvedHinges;
-use design::equilibrium::tangent::MIN_PIVOT_RATIO;
-use design::hinge_law::{
-    Contact, DamageMeasure, HingeLaw, LinearLaw, MeanLaw, Order, SurrogateLaw,
+use crate::{
+    checks::no_section,
+    hinge_model::LinearConstants,
+    keys::{SceneConfig, resolved},
+    level::Level,
+    solved_hinges::SolvedHinges,
 };
-use design::sheet::cut_sheet::HingePoint;
-use design::sheet::topology::Topology;
+use design::{
+    equilibrium::tangent::MIN_PIVOT_RATIO,
+    hinge_law::{Contact, DamageMeasure, HingeLaw, LinearLaw, MeanLaw, Order, SurrogateLaw},
+    sheet::{cut_sheet::HingePoint, topology::Topology},
+};
 use hinge::{HingeDeformation, Regime, SheetMaterial};
-use std::f64::consts::FRAC_PI_2;
-use std::fmt;
-use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::{f64::consts::FRAC_PI_2, fmt, path::Path, sync::Arc};
+use support::{Fault, at, ensure, refuse, said};
 use surrogate::Surrogate;
 
 /// Stiffness of the contact of panel edges relative to k_theta, and the void angle (rad) at which
@@ -71,7 +69,7 @@ impl LoadedHinge {
         measured: &SheetMaterial,
         path: &Path,
         known: Option<&[Surrogate]>,
-    ) -> Result<Self, SceneError> {
+    ) -> Result<Self, Fault> {
         let networks = match known {
             Some(known) => known.to_vec(),
             None => networks(config, measured, path)?,
@@ -79,16 +77,12 @@ impl LoadedHinge {
         let hinge = match config.level {
             Level::Pin => pinned(config),
             Level::Linear => linear(config, topology),
-            Level::Draft | Level::Standard | Level::Fine => learned(config, networks, None),
-            Level::Final => {
-                let solved = SolvedHinges::load(config, topology, path);
-                let solved = solved.map_err(SceneError::at(path))?;
-                learned(config, networks, Some(solved))
-            }
+            Level::Final => SolvedHinges::load(config, topology, path)
+                .and_then(|solved| learned(config, networks, Some(solved))),
+            _ => learned(config, networks, None),
         };
-        let hinge = hinge.map_err(SceneError::at(path))?;
-        (hinge.check_objective(config)).map_err(SceneError::at(path))?;
-        Ok(hinge)
+        let checked = hinge.and_then(|hinge| hinge.check_objective(config).map(|()| hinge));
+        checked.map_err(at(path.display()))
     }
 
     /// Whether the hinges carry load, so that the deployed state is an equilibrium.
@@ -114,11 +108,12 @@ impl LoadedHinge {
     }
 
     /// An error if the objective needs a prediction that the law does not make.
-    fn check_objective(&self, config: &SceneConfig) -> Result<(), InvalidScene> {
+    fn check_objective(&self, config: &SceneConfig) -> Result<(), Fault> {
         let objective = &config.objective;
-        if objective.domain > 0.0 && self.predictors().is_empty() {
-            return Err(InvalidScene::NoDomain);
-        }
+        ensure!(
+            objective.domain <= 0.0 || !self.predictors().is_empty(),
+            "objective.domain needs level = \"standard\": no other law has a domain"
+        );
         let predicts = |measure| match &self.behaviour {
             HingeBehaviour::Pinned { .. } => false,
             HingeBehaviour::Elastic { law, .. } => law.damage_scale(measure).is_some(),
@@ -126,11 +121,15 @@ impl LoadedHinge {
         if objective.damage == 0.0 || predicts(objective.damage_measure) {
             return Ok(());
         }
-        Err(if predicts(DamageMeasure::Mean) {
-            InvalidScene::NoPeakDamage
-        } else {
-            InvalidScene::NoDamage
-        })
+        refuse!(
+            "{}",
+            if predicts(DamageMeasure::Mean) {
+                "objective.damage_measure = \"peak\": the weights do not predict D_peak: use \"mean\", or train on a database \
+                 that contains it"
+            } else {
+                "objective.damage: only the learned hinge law predicts damage: use level = \"standard\" or damage = 0"
+            }
+        )
     }
 }
 
@@ -139,33 +138,23 @@ fn networks(
     config: &SceneConfig,
     measured: &SheetMaterial,
     path: &Path,
-) -> Result<Vec<Surrogate>, SceneError> {
-    let load = |weights: PathBuf| {
+) -> Result<Vec<Surrogate>, Fault> {
+    let scene = path.display();
+    let mut networks = Vec::new();
+    for weights in config.weights_files() {
         let file = resolved(path, &weights);
-        if !file.is_file() {
-            return Err(SceneError::at(path)(InvalidScene::NoWeights { file }));
-        }
-        network(config, measured, path, &file)
-    };
-    let networks: Vec<Surrogate> =
-        (config.weights_files().into_iter().map(load)).collect::<Result<_, _>>()?;
-    same_training(config, &networks).map_err(SceneError::at(path))?;
+        let weights = file.display();
+        ensure!(
+            file.is_file(),
+            "{scene}: surrogate.weights: there is no file {weights}: train it, or give the constants of level = \"linear\""
+        );
+        let surrogate = Surrogate::load(&file).map_err(said)?;
+        let place = format!("{scene}: the weights {weights} are for ");
+        let fitted = fitted(config, measured, surrogate);
+        networks.push(fitted.map_err(|mismatch| place + &mismatch.to_string())?);
+    }
+    same_training(config, &networks).map_err(at(scene))?;
     Ok(networks)
-}
-
-/// Weights at the thickness of the sheet of the scene at `path`, or an error if they are not for
-/// its hinges. `measured` is the material in the thickness of its file.
-fn network(
-    config: &SceneConfig,
-    measured: &SheetMaterial,
-    path: &Path,
-    weights: &Path,
-) -> Result<Surrogate, SceneError> {
-    let surrogate = Surrogate::load(weights)?;
-    fitted(config, measured, surrogate).map_err(|source| {
-        let file = weights.to_owned();
-        SceneError::at(path)(InvalidScene::OtherHinges { file, source })
-    })
 }
 
 /// The learned law; the contact stiffness is relative to the secant stiffness of a hinge of the
@@ -174,9 +163,8 @@ fn learned(
     config: &SceneConfig,
     networks: Vec<Surrogate>,
     solved: Option<SolvedHinges>,
-) -> Result<LoadedHinge, InvalidScene> {
-    let surrogate = networks.first();
-    let surrogate = surrogate.ok_or(InvalidScene::NoSection("surrogate"))?;
+) -> Result<LoadedHinge, Fault> {
+    let surrogate = networks.first().ok_or_else(|| no_section("surrogate"))?;
     let [_, _, [closed, _]] = surrogate.domain().bounds();
     let wall = if closed < 0.0 { closed } else { CONTACT_WALL };
     let k_theta = springs_at_start(config, surrogate).k_theta;
@@ -230,13 +218,13 @@ pub(super) fn springs_at_start(config: &SceneConfig, surrogate: &Surrogate) -> L
 
 /// The contact for hinges with the stiffness `k_theta`, which becomes infinite at the void angle
 /// `wall` (rad).
-fn contact(k_theta: f64, wall: f64) -> Result<Contact, InvalidScene> {
-    Ok(Contact::new(CONTACT_STIFFNESS * k_theta, wall, 0.0)?)
+fn contact(k_theta: f64, wall: f64) -> Result<Contact, Fault> {
+    Contact::new(CONTACT_STIFFNESS * k_theta, wall, 0.0)
 }
 
 /// The spread of networks trained on different data estimates the error of neither, and the spread
 /// of one network is zero.
-fn same_training(config: &SceneConfig, networks: &[Surrogate]) -> Result<(), InvalidScene> {
+fn same_training(config: &SceneConfig, networks: &[Surrogate]) -> Result<(), Fault> {
     let hashes: Vec<String> = networks.iter().map(Surrogate::hash).collect();
     let twice = (1..hashes.len()).find_map(|j| {
         let i = hashes[..j].iter().position(|hash| *hash == hashes[j])?;
@@ -244,25 +232,29 @@ fn same_training(config: &SceneConfig, networks: &[Surrogate]) -> Result<(), Inv
     });
     if let Some(twice) = twice {
         let files = config.weights_files();
-        let files = twice.map(|i| files[i].clone());
-        return Err(InvalidScene::SameNetwork { files });
+        let [one, other] = twice.map(|i| files[i].display());
+        refuse!(
+            "surrogate.ensemble: {one} and {other} are the same network, whose spread is zero: name networks of other seeds"
+        );
     }
     let data = |network: &Surrogate| {
         let card = network.card();
         (card.dataset_hash.clone(), card.split_hash.clone())
     };
-    if networks.windows(2).all(|pair| data(&pair[0]) == data(&pair[1])) {
-        return Ok(());
-    }
-    Err(InvalidScene::OtherTraining)
+    ensure!(
+        networks.windows(2).all(|pair| data(&pair[0]) == data(&pair[1])),
+        "surrogate.ensemble: all networks must be trained on the data of surrogate.weights"
+    );
+    Ok(())
 }
 
-fn pinned(config: &SceneConfig) -> Result<LoadedHinge, InvalidScene> {
-    let pin = config.pin.ok_or(InvalidScene::NoSection("pin"))?;
-    let held_or_loaded = !config.supports.is_empty() || config.has_loads();
-    if held_or_loaded || config.drive.is_some() {
-        return Err(InvalidScene::HeldPins);
-    }
+fn pinned(config: &SceneConfig) -> Result<LoadedHinge, Fault> {
+    let pin = config.pin.ok_or_else(|| no_section("pin"))?;
+    ensure!(
+        config.supports.is_empty() && !config.has_loads() && config.drive.is_none(),
+        "supports, loads, edge_loads, opening_couples, drive: level = \"pin\" has no equilibrium: remove these \
+         sections, or use level = \"linear\""
+    );
     Ok(LoadedHinge {
         behaviour: HingeBehaviour::Pinned { opening: pin.opening_deg.to_radians(), held: pin.held },
         hinge_point: HingePoint::Corner,
@@ -271,14 +263,16 @@ fn pinned(config: &SceneConfig) -> Result<LoadedHinge, InvalidScene> {
     })
 }
 
-fn linear(config: &SceneConfig, topology: &Topology) -> Result<LoadedHinge, InvalidScene> {
-    let constants = config.linear.ok_or(InvalidScene::NoSection("linear"))?;
+fn linear(config: &SceneConfig, topology: &Topology) -> Result<LoadedHinge, Fault> {
+    let constants = config.linear.ok_or_else(|| no_section("linear"))?;
     let LinearConstants { k_a, k_s, k_theta } = constants;
     let panel = config.sheet.mean_panel_area().abs();
     let ratio = k_theta / (k_a.max(k_s) * panel);
-    if ratio < MIN_PIVOT_RATIO {
-        return Err(InvalidScene::Soft { ratio });
-    }
+    ensure!(
+        ratio >= MIN_PIVOT_RATIO,
+        "linear.k_theta is {ratio:.0e} times the greater of linear.k_a and linear.k_s times the area of a panel: below \
+         {MIN_PIVOT_RATIO:.0e} rotations are lost in the rounding of the translations. Raise k_theta, or lower k_a and k_s"
+    );
     Ok(LoadedHinge {
         behaviour: HingeBehaviour::Elastic {
             law: Arc::new(LinearLaw::uniform([k_a, k_s, k_theta], topology.hinge_count())),
@@ -295,49 +289,58 @@ fn linear(config: &SceneConfig, topology: &Topology) -> Result<LoadedHinge, Inva
 const ROUNDED: f64 = 1e-6;
 
 /// The surrogate at the thickness of the scene's sheet. It is valid only for the material law and
-/// for hinges similar to those it was trained with; the kerf of the cutter may differ.
+/// for hinges similar to those it was trained with; the kerf of the cutter may differ. An error says
+/// what the weights are for.
 fn fitted(
     config: &SceneConfig,
     material: &SheetMaterial,
     surrogate: Surrogate,
-) -> Result<Surrogate, WeightsMismatch> {
+) -> Result<Surrogate, Fault> {
     let (card, process) = (surrogate.card(), config.process);
-    let law = material.law_hash();
+    let (law, named, file) = (material.law_hash(), &card.material, &material.name);
     match &card.material_hash {
-        Some(trained) if *trained == law => {}
-        Some(trained_law) => {
-            return Err(WeightsMismatch::Law {
-                trained: card.material.clone(),
-                trained_law: trained_law.clone(),
-                file: material.name.clone(),
-                law,
-            });
-        }
-        None if card.material == material.name => {}
-        None => {
-            return Err(WeightsMismatch::Material {
-                trained: card.material.clone(),
-                file: material.name.clone(),
-            });
-        }
+        Some(trained) => ensure!(
+            *trained == law,
+            "another material law than the scene: `{named}` ({trained}; the file `{file}` has {law}). Name \
+             the material file of the training, with its thickness; the key `thickness` of the scene gives the sheet another. \
+             If its numbers have changed, train again"
+        ),
+        None => ensure!(named == file, "the material `{named}`, the scene's is `{file}`"),
     }
     let scale = config.scale(material);
     let trained = card.domain.w_lig.map(|w_lig| w_lig / material.thickness);
     let range = (config.ligament.range).map(|w_lig| w_lig / scale / material.thickness);
     let regime = Regime::of(trained[1]);
-    if range.into_iter().any(|width| Regime::of(width) != regime) {
-        return Err(WeightsMismatch::Regime { trained, range });
-    }
+    ensure!(
+        range.into_iter().all(|width| Regime::of(width) == regime),
+        "ligaments of {:.2} to {:.2} thicknesses, but ligament.range of the scene is {:.2} to {:.2} thicknesses of its sheet: \
+         ligaments no wider than the sheet is thick bend in its plane, wider ones buckle, and no law holds for both. \
+         Change ligament.range or the weights",
+        trained[0],
+        trained[1],
+        range[0],
+        range[1]
+    );
     let trained = surrogate.holes();
     let [narrowest, widest] = config.ligament.range;
     // The widest ligament has the smallest ratio of a hole of given diameter.
     let scene = [widest, narrowest].map(|w_lig| process.hinge(w_lig, FRAC_PI_2).fillet_ratio);
-    if scene[0] < trained[0] || scene[1] > trained[1] {
-        return Err(WeightsMismatch::Holes { trained, scene });
-    }
+    ensure!(
+        scene[0] >= trained[0] && scene[1] <= trained[1],
+        "holes with a radius of {} w_lig, but the scene has {}: change `fillet_ratio` or `hole_diameter` in [process], \
+         or name weights for such holes",
+        ratios(trained),
+        ratios(scene)
+    );
     let (trained, scene) = (scale * card.hinge.r_win, process.r_win);
-    if (scene / trained - 1.0).abs() > ROUNDED {
-        return Err(WeightsMismatch::Window { trained, scene });
-    }
+    ensure!(
+        (scene / trained - 1.0).abs() <= ROUNDED,
+        "windows of r_win = {trained} mm in a sheet of this thickness, but the scene has process.r_win = {scene}"
+    );
     Ok(if scale == 1.0 { surrogate } else { surrogate.scaled(scale) })
+}
+
+/// One radius of holes over w_lig, or the range of several.
+fn ratios([least, most]: [f64; 2]) -> String {
+    if least == most { format!("{least}") } else { format!("{least:.3} to {most:.3}") }
 }

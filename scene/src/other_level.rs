@@ -1,12 +1,10 @@
 //! A scene at another level than its own.
 
-use crate::checked_scene::Scene;
-use crate::checks;
-use crate::hinge_model::PinConfig;
-use crate::keys::SceneConfig;
-use crate::level::Level;
-use crate::loaded_hinge::springs_at_start;
-use crate::scene_error::SceneError;
+use crate::{
+    checked_scene::Scene, checks, hinge_model::PinConfig, keys::SceneConfig, level::Level,
+    loaded_hinge::springs_at_start,
+};
+use support::Fault;
 
 /// The opening of pins at the start (deg), where a scene names none.
 const PIN_OPENING: f64 = 25.0;
@@ -25,7 +23,7 @@ impl Scene {
     /// The scene at another level. What the level does not have is left out: at `pin` supports,
     /// loads and drive, below `draft` what the objective reads from a learned law. A scene without
     /// springs gets the springs of its learned law.
-    pub fn at_level(&self, level: Level) -> Result<Self, SceneError> {
+    pub fn at_level(&self, level: Level) -> Result<Self, Fault> {
         let mut config = self.config.clone();
         config.level = level;
         if !level.is_learned() {

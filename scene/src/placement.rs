@@ -1,13 +1,18 @@
 //! The deployed sheet in the position in which the objective compares it with the target.
 
 use crate::checked_scene::Scene;
-use design::geometry::plane::{complex, point};
-use design::geometry::region;
-use design::objective::design_problem::Deployment;
-use design::objective::{centre, shape};
-use design::sheet::cut_sheet::Sheet;
-use design::sheet::kinematics::{Configuration, deployed, deployed_boundaries};
-use design::sheet::topology::PanelCorner;
+use design::{
+    geometry::{
+        plane::{complex, point},
+        region,
+    },
+    objective::{centre, design_problem::Deployment, shape},
+    sheet::{
+        cut_sheet::Sheet,
+        kinematics::{Configuration, deployed, deployed_boundaries},
+        topology::PanelCorner,
+    },
+};
 
 /// How much of a target is seen at least if a viewer recognises it.
 pub const RECOGNISED: f64 = 0.9;

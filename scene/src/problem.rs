@@ -1,18 +1,24 @@
 //! From a scene to its design problem and its start design.
 
-use crate::checked_scene::Scene;
-use crate::keys::SceneConfig;
-use crate::loaded_hinge::HingeBehaviour;
-use crate::scene_error::SceneError;
-use crate::sheet_config::StartConfig;
-use design::equilibrium::solver::EquilibriumSolver;
-use design::objective::design_problem::{DesignProblem, Mechanics, Model};
-use design::objective::loss::Objective;
-use design::objective::terms::TermContext;
-use design::pattern::design_vector::{DesignVector, WidthChart};
-use design::pattern::grid::Grid;
+use crate::{
+    checked_scene::Scene, keys::SceneConfig, loaded_hinge::HingeBehaviour,
+    sheet_config::StartConfig,
+};
+use design::{
+    equilibrium::solver::EquilibriumSolver,
+    objective::{
+        design_problem::{DesignProblem, Mechanics, Model},
+        loss::Objective,
+        terms::TermContext,
+    },
+    pattern::{
+        design_vector::{DesignVector, WidthChart},
+        grid::Grid,
+    },
+};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
+use support::{Fault, at};
 
 impl Scene {
     /// Numbers of panels.
@@ -21,7 +27,7 @@ impl Scene {
     }
 
     /// The design problem: everything that is constant during the design.
-    pub fn problem(&self) -> Result<DesignProblem, SceneError> {
+    pub fn problem(&self) -> Result<DesignProblem, Fault> {
         let model = self.model()?;
         Ok(DesignProblem {
             topology: self.topology.clone(),
@@ -85,18 +91,18 @@ impl Scene {
         })
     }
 
-    fn model(&self) -> Result<Model, SceneError> {
+    fn model(&self) -> Result<Model, Fault> {
         let (law, contact) = match &self.hinge.behaviour {
             HingeBehaviour::Pinned { opening, .. } => {
                 return Ok(Model::Ideal { opening: *opening });
             }
             HingeBehaviour::Elastic { law, contact } => (law.clone(), *contact),
         };
-        let solver = self.solver().map_err(SceneError::at(&self.path))?;
+        let solver = self.solver().map_err(at(self.path.display()))?;
         Ok(Model::Equilibrium(Box::new(Mechanics { law, contact: Some(contact), solver })))
     }
 
-    fn solver(&self) -> Result<EquilibriumSolver, support::fault::Fault> {
+    fn solver(&self) -> Result<EquilibriumSolver, Fault> {
         let level = self.config.level;
         let settings = level.solver(self.config.solver);
         let actuation = self.actuation();

@@ -13,17 +13,19 @@
 //!
 //! The state of the run holds the BLAKE3 hash of each of them.
 
-use crate::checked_scene::Scene;
-use crate::drawing::drawn_outline::numbered;
-use crate::keys::{SceneConfig, resolved};
+use crate::{
+    checked_scene::Scene,
+    drawing::drawn_outline::numbered,
+    keys::{SceneConfig, resolved},
+};
 use serde::{Deserialize, Serialize};
-use std::collections::BTreeMap;
-use std::convert::Infallible;
-use std::io;
-use std::path::{Path, PathBuf};
-use support::file_error::FileError;
-use support::sealed_json::{self, SealError};
-use support::{regular_file, whole_file};
+use std::{
+    collections::BTreeMap,
+    convert::Infallible,
+    fmt::Display,
+    path::{Path, PathBuf},
+};
+use support::{Fault, ensure, regular_file, sealed_json, whole_file};
 
 /// The state of a run, in its folder.
 pub const STATE_FILE: &str = "state.json";
@@ -36,27 +38,9 @@ const MATERIAL_FILE: &str = "inputs/material.toml";
 /// The BLAKE3 hash of every input of a run, by its path relative to the run folder.
 pub(super) type InputHashes = BTreeMap<String, String>;
 
-/// Why the inputs of a run cannot be written or read.
-#[derive(Debug, thiserror::Error)]
-#[allow(missing_docs, reason = "the message of a variant is its documentation")]
-pub enum RunInputsError {
-    #[error("cannot use {0}")]
-    File(#[from] FileError),
-    #[error("{path} is a folder without the state of a run: name a scene, or the folder of a run", path = .path.display())]
-    NoRun { path: PathBuf },
-    #[error("{path} is not the state of a run: {source}", path = .path.display())]
-    State { path: PathBuf, source: SealError },
-    #[error(
-        "{path} is not the file that the run was made with (BLAKE3 {found}, not {expected}): copy the whole run folder \
-         again, or run `kirigami design` with the scene again",
-        path = .path.display()
-    )]
-    Changed { path: PathBuf, expected: String, found: String },
-}
-
 /// The scene file that `path` names: itself, or if it is the folder of a run, the scene of the run,
 /// after a check that none of the copied inputs has changed.
-pub fn scene_file(path: &Path) -> Result<PathBuf, RunInputsError> {
+pub fn scene_file(path: &Path) -> Result<PathBuf, Fault> {
     /// The part of a run's state that names its inputs.
     #[derive(Deserialize)]
     struct Named {
@@ -66,24 +50,22 @@ pub fn scene_file(path: &Path) -> Result<PathBuf, RunInputsError> {
         return Ok(path.to_owned());
     }
     let state = path.join(STATE_FILE);
-    if !state.exists() {
-        let path = path.to_owned();
-        return Err(RunInputsError::NoRun { path });
-    }
-    let text = read(&state)?;
-    let named: Named = match sealed_json::from_slice(&text) {
-        Ok(named) => named,
-        Err(source) => {
-            let path = state;
-            return Err(RunInputsError::State { path, source });
-        }
-    };
+    ensure!(
+        state.exists(),
+        "{} is a folder without the state of a run: name a scene, or the folder of a run",
+        path.display()
+    );
+    let named: Named = sealed_json::from_slice(&read(&state)?)
+        .map_err(|error| format!("{} is not the state of a run: {error}", state.display()))?;
     for (name, expected) in named.inputs {
         let path = path.join(name);
         let found = blake3::hash(&read(&path)?).to_hex().to_string();
-        if found != expected {
-            return Err(RunInputsError::Changed { path, expected, found });
-        }
+        ensure!(
+            found == expected,
+            "{} is not the file that the run was made with (BLAKE3 {found}, not {expected}): copy the whole run folder \
+             again, or run `kirigami design` with the scene again",
+            path.display()
+        );
     }
     Ok(path.join(SCENE_FILE))
 }
@@ -95,10 +77,10 @@ pub fn holds_a_run(folder: &Path) -> bool {
 
 /// Copies the files that a scene reads to its run folder, and writes the scene that names the
 /// copies.
-pub(super) fn keep(scene: &Scene) -> Result<InputHashes, FileError> {
+pub(super) fn keep(scene: &Scene) -> Result<InputHashes, Fault> {
     let mut kept = Kept { scene, hashes: InputHashes::new() };
     let folder = scene.output().join(INPUTS);
-    whole_file::create_folder(&folder).map_err(FileError::at(&folder))?;
+    whole_file::create_folder(&folder).map_err(unused(&folder))?;
     let mut config = scene.config.without_unread_weights();
     config.output = ".".into();
     config.material = kept.write(MATERIAL_FILE, &toml(&scene.measured, &folder)?)?;
@@ -117,15 +99,6 @@ pub(super) fn keep(scene: &Scene) -> Result<InputHashes, FileError> {
     Ok(kept.hashes)
 }
 
-/// Writes a file of a folder unless it has these contents already.
-pub(crate) fn write_to(folder: &Path, name: &str, contents: &[u8]) -> Result<(), FileError> {
-    let path = folder.join(name);
-    if !path.exists() || read(&path)? != contents {
-        whole_file::write(&path, contents).map_err(FileError::at(&path))?;
-    }
-    Ok(())
-}
-
 /// The files that were written to a run folder.
 struct Kept<'a> {
     scene: &'a Scene,
@@ -135,14 +108,17 @@ struct Kept<'a> {
 impl Kept<'_> {
     /// Writes a file unless it has these contents already; returns its path relative to the run
     /// folder.
-    fn write(&mut self, name: &str, contents: &[u8]) -> Result<PathBuf, FileError> {
-        write_to(&self.scene.output(), name, contents)?;
+    fn write(&mut self, name: &str, contents: &[u8]) -> Result<PathBuf, Fault> {
+        let path = self.scene.output().join(name);
+        if !path.exists() || read(&path)? != contents {
+            whole_file::write(&path, contents).map_err(unused(&path))?;
+        }
         let hash = blake3::hash(contents).to_hex().to_string();
         self.hashes.insert(name.to_owned(), hash);
         Ok(name.into())
     }
 
-    fn copy(&mut self, from: &Path, name: &str) -> Result<PathBuf, FileError> {
+    fn copy(&mut self, from: &Path, name: &str) -> Result<PathBuf, Fault> {
         let contents = read(from)?;
         self.write(name, &contents)
     }
@@ -197,11 +173,15 @@ impl SceneConfig {
     }
 }
 
-pub(crate) fn toml(value: &impl Serialize, folder: &Path) -> Result<Vec<u8>, FileError> {
-    let text = toml::to_string(value).map_err(io::Error::other);
-    Ok(text.map_err(FileError::at(folder))?.into_bytes())
+fn toml(value: &impl Serialize, folder: &Path) -> Result<Vec<u8>, Fault> {
+    Ok(toml::to_string(value).map_err(unused(folder))?.into_bytes())
 }
 
-pub(crate) fn read(path: &Path) -> Result<Vec<u8>, FileError> {
-    regular_file::read(path).map_err(FileError::at(path))
+/// Maps an error with a file or a folder of a run, for use in `map_err`.
+pub(crate) fn unused<E: Display>(path: &Path) -> impl FnOnce(E) -> Fault {
+    move |error| format!("cannot use {}: {error}", path.display()).into()
+}
+
+fn read(path: &Path) -> Result<Vec<u8>, Fault> {
+    regular_file::read(path).map_err(unused(path))
 }

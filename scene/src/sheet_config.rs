@@ -1,8 +1,10 @@
 //! The flat sheet of a scene: outline, panels, ligaments, and the start pattern of the search.
 
-use design::pattern::coordinates::{PatternCoordinates, logistic, partial_sums};
-use design::pattern::cut_pattern::Outline;
-use design::pattern::grid::Grid;
+use design::pattern::{
+    coordinates::{PatternCoordinates, logistic, partial_sums},
+    cut_pattern::Outline,
+    grid::Grid,
+};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -73,7 +75,7 @@ impl StartConfig {
     }
 
     /// The start pattern of the search.
-    pub fn pattern(&self, grid: Grid) -> Result<PatternCoordinates, support::fault::Fault> {
+    pub fn pattern(&self, grid: Grid) -> Result<PatternCoordinates, support::Fault> {
         let uniform = PatternCoordinates::uniform(grid);
         let start = PatternCoordinates {
             z: match &self.r {

@@ -2,15 +2,14 @@
 //! energy.
 
 use crate::keys::{SceneConfig, resolved};
-use design::hinge_law::{CorrectedLaw, Correction, HingeLaw, MissingForces, Order};
-use design::sheet::topology::Topology;
+use design::{
+    hinge_law::{CorrectedLaw, Correction, HingeLaw, MissingForces, Order},
+    sheet::topology::Topology,
+};
 use hinge::{HingeDeformation, HingeDesign};
 use serde::{Deserialize, Serialize};
-use std::path::{Path, PathBuf};
-use std::sync::Arc;
-use support::file_error::FileError;
-use support::sealed_json::{self, SealError};
-use support::{regular_file, whole_file};
+use std::{path::Path, sync::Arc};
+use support::{Fault, FileError, at, ensure, regular_file, said, sealed_json, whole_file};
 
 /// A hinge at the end of its path by finite elements.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -32,23 +31,12 @@ pub struct SolvedHinges {
     pub hinges: Vec<Option<SolvedHinge>>,
 }
 
-/// Why the level `final` has no solved hinges.
-#[derive(Debug, thiserror::Error)]
-#[allow(missing_docs, reason = "the message of a variant is its documentation")]
-pub enum SolvedHingesError {
-    #[error(
+/// The error of a scene at the level `final` that names no solved hinges.
+pub(super) fn no_file() -> Fault {
+    said(
         "the level `final` needs surrogate.solved_hinges: `kirigami design SCENE --level final` solves the hinges by finite elements; the \
-         finest level without them is `fine`, or `standard`"
-    )]
-    NoFile,
-    #[error("surrogate.solved_hinges: {0}")]
-    Read(#[from] FileError),
-    #[error("surrogate.solved_hinges: {} is not a file of solved hinges: {source}", file.display())]
-    Other { file: PathBuf, source: SealError },
-    #[error(
-        "surrogate.solved_hinges: {} has {found} hinges and the sheet {expected}: it is of another sheet", file.display()
-    )]
-    OtherSheet { file: PathBuf, found: usize, expected: usize },
+         finest level without them is `fine`, or `standard`",
+    )
 }
 
 impl SolvedHinges {
@@ -57,18 +45,18 @@ impl SolvedHinges {
         config: &SceneConfig,
         topology: &Topology,
         path: &Path,
-    ) -> Result<Self, SolvedHingesError> {
+    ) -> Result<Self, Fault> {
         let named = (config.surrogate.as_ref()).and_then(|files| files.solved_hinges.as_ref());
-        let file = resolved(path, named.ok_or(SolvedHingesError::NoFile)?);
-        let text = regular_file::read(&file).map_err(FileError::at(&file))?;
-        let solved: Self = match sealed_json::from_slice(&text) {
-            Ok(solved) => solved,
-            Err(source) => return Err(SolvedHingesError::Other { file, source }),
-        };
+        let file = resolved(path, named.ok_or_else(no_file)?);
+        let place = format!("surrogate.solved_hinges: {}", file.display());
+        let text = regular_file::read(&file).map_err(at(&place))?;
+        let solved = sealed_json::from_slice::<Self>(&text)
+            .map_err(|error| format!("{place} is not a file of solved hinges: {error}"))?;
         let (found, expected) = (solved.hinges.len(), topology.hinge_count());
-        if found != expected {
-            return Err(SolvedHingesError::OtherSheet { file, found, expected });
-        }
+        ensure!(
+            found == expected,
+            "{place} has {found} hinges and the sheet {expected}: it is of another sheet"
+        );
         Ok(solved)
     }
 

@@ -1,12 +1,11 @@
 //! The material that a sheet is cut from: papers by their names, other stock by its sides.
 
 use schemars::JsonSchema;
-use serde::de::IntoDeserializer;
-use serde::de::value::Error;
-use serde::{Deserialize, Serialize};
-use std::fmt;
-use std::ops::RangeInclusive;
-use std::str::FromStr;
+use serde::{
+    Deserialize, Serialize,
+    de::{IntoDeserializer, value::Error},
+};
+use std::{fmt, ops::RangeInclusive, str::FromStr};
 
 /// A paper: ISO 216 A, or of North America (ANSI A and B).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]

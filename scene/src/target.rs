@@ -1,20 +1,20 @@
 //! The target outline T of (16): a closed curve, sampled densely at equal arc lengths.
 
-use crate::drawing::contour::DrawingError;
-use crate::drawing::drawn_outline;
-use crate::drawing::outline_points::{self, PointsError};
-use design::geometry::plane::{complex, point};
-use design::geometry::polygon;
-use design::geometry::region::Region;
-use design::geometry::similarity::Similarity;
+use crate::drawing::{drawn_outline, outline_points};
+use design::geometry::{
+    plane::{complex, point},
+    polygon,
+    region::Region,
+    similarity::Similarity,
+};
 use faer::c64;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use std::f64::consts::TAU;
-use std::path::{Path, PathBuf};
-use support::file_error::FileError;
-use support::key_limits::{self, OutOfRange};
-use support::regular_file;
+use std::{
+    f64::consts::TAU,
+    path::{Path, PathBuf},
+};
+use support::{Fault, at, ensure, key_limits, regular_file};
 
 /// A target as written in a scene; lengths in mm, in the coordinates of the flat sheet.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -98,22 +98,6 @@ impl TargetShape {
 /// Number of points on the target of a scene.
 pub const TARGET_POINTS: usize = 1000;
 
-/// Why a target is not an outline.
-#[derive(Debug, thiserror::Error)]
-#[allow(missing_docs, reason = "the message of a variant is its documentation")]
-pub enum TargetError {
-    #[error("cannot read the target outline {0}")]
-    Read(#[from] FileError),
-    #[error(transparent)]
-    Points(#[from] PointsError),
-    #[error("{path}: {source}", path = .path.display())]
-    Drawing { path: PathBuf, source: DrawingError },
-    #[error(transparent)]
-    OutOfRange(#[from] OutOfRange),
-    #[error("the target outline encloses no area: give at least three corners in order")]
-    NoArea,
-}
-
 /// The sampled target.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Target {
@@ -132,7 +116,7 @@ pub struct Target {
 
 impl Target {
     /// Samples a shape at `count` points; file names are relative to `folder`.
-    pub fn sample(shape: &TargetShape, folder: &Path, count: usize) -> Result<Self, TargetError> {
+    pub fn sample(shape: &TargetShape, folder: &Path, count: usize) -> Result<Self, Fault> {
         key_limits::check::<TargetShape>(shape)?;
         match shape {
             TargetShape::Circle { centre, radius } => {
@@ -159,13 +143,15 @@ impl Target {
             }
             TargetShape::Svg { file, centre, height, rotation_deg } => {
                 let (path, number) = drawn_outline::numbered(&folder.join(file));
-                let bytes = regular_file::read(&path).map_err(FileError::at(&path))?;
-                let refused = |source| TargetError::Drawing { path: path.clone(), source };
-                let drawn = drawn_outline::of_file(&bytes, number).map_err(&refused)?;
-                let [low, high] = polygon::bounds(drawn.vertices.iter().copied());
-                let own = high[1] - low[1];
+                let named = &path.display();
+                let bytes = regular_file::read(&path);
+                let bytes = bytes.map_err(at(format!("cannot read the target outline {named}")))?;
+                let drawn = drawn_outline::of_file(&bytes, number).map_err(at(named))?;
+                let [_, own] = polygon::size(polygon::bounds(drawn.vertices.iter().copied()));
                 let height = height.or(drawn.has_unit.then_some(own));
-                let height = height.ok_or_else(|| refused(DrawingError::NoUnit))?;
+                let height = height.ok_or_else(|| {
+                    format!("{named}: the drawing states no unit: give `height` (mm)")
+                })?;
                 let place = place(&drawn.vertices, *centre, height, *rotation_deg)?;
                 let placed = |vertices: &Vec<[f64; 2]>| -> Vec<[f64; 2]> {
                     vertices.iter().map(|vertex| point(place.of(complex(*vertex)))).collect()
@@ -197,8 +183,7 @@ impl Target {
 
     /// Extent of the samples along x (mm).
     pub fn width(&self) -> f64 {
-        let [low, high] = polygon::bounds(self.points.iter().copied());
-        high[0] - low[0]
+        polygon::size(polygon::bounds(self.points.iter().copied()))[0]
     }
 
     /// Distance of a point to the curve through the samples (mm).
@@ -218,14 +203,14 @@ impl Target {
     }
 }
 
+const NO_AREA: &str = "the target outline encloses no area: give at least three corners in order";
+
 /// `count` points at equal arc lengths along a closed polygon.
-fn along_polygon(vertices: &[[f64; 2]], count: usize) -> Result<Target, TargetError> {
+fn along_polygon(vertices: &[[f64; 2]], count: usize) -> Result<Target, Fault> {
     let edges = || polygon::edges(vertices);
     let lengths: Vec<f64> = edges().map(|(p, q)| polygon::distance(p, q)).collect();
     let length: f64 = lengths.iter().sum();
-    if polygon::area(vertices).abs() <= 1e-9 * length * length {
-        return Err(TargetError::NoArea);
-    }
+    ensure!(polygon::area(vertices).abs() > 1e-9 * length * length, "{NO_AREA}");
     let mut points = Vec::with_capacity(count);
     let mut start = 0.0;
     for ((p, q), edge) in edges().zip(lengths) {
@@ -276,11 +261,9 @@ fn place(
     centre: [f64; 2],
     height: f64,
     rotation_deg: f64,
-) -> Result<Similarity, TargetError> {
+) -> Result<Similarity, Fault> {
     let [[left, low], [right, high]] = polygon::bounds(vertices.iter().copied());
-    if high <= low || vertices.is_empty() {
-        return Err(TargetError::NoArea);
-    }
+    ensure!(high > low && !vertices.is_empty(), "{NO_AREA}");
     let turn = c64::cis(rotation_deg.to_radians()) * (height / (high - low));
     let middle = complex([0.5 * (left + right), 0.5 * (low + high)]);
     Ok(Similarity { turn, shift: complex(centre) - turn * middle })
@@ -291,7 +274,7 @@ mod tests {
     use super::*;
     use testkit::derivatives::assert_close;
 
-    fn sample(shape: TargetShape, count: usize) -> Result<Target, TargetError> {
+    fn sample(shape: TargetShape, count: usize) -> Result<Target, Fault> {
         Target::sample(&shape, Path::new("."), count)
     }
 

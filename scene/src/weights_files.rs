@@ -1,8 +1,6 @@
 //! The weights that the hinge law of a scene reads.
 
-use crate::hinge_model::SurrogateFile;
-use crate::keys::SceneConfig;
-use crate::level::Level;
+use crate::{hinge_model::SurrogateFile, keys::SceneConfig, level::Level};
 use std::path::{Path, PathBuf};
 
 impl SceneConfig {

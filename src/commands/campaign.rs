@@ -11,32 +11,17 @@ mod submit;
 pub(crate) use campaign_args::{DATABASE, SPOT_CHECK};
 pub(crate) use run::RayProgress;
 
-use anyhow::Result;
-use clap::Args;
-
-/// Regenerate the hinge database: a campaign of window solves
-///
-/// A campaign is a TOML file (see configs/campaigns) and a folder of jobs. It can be stopped and
-/// run again at any time; finished jobs are not solved again.
-#[derive(Args)]
-pub struct CampaignCommand {
-    #[command(subcommand)]
-    action: Action,
-}
-
 subcommands! {
-    enum Action {
+    /// Regenerate the hinge database: a campaign of window solves
+    ///
+    /// A campaign is a TOML file (see configs/campaigns) and a folder of jobs. It can be stopped and
+    /// run again at any time; finished jobs are not solved again.
+    pub(crate) enum CampaignCommand {
         Plan(plan::PlanCommand),
         Run(run::RunCommand),
         Submit(submit::SubmitCommand),
         Status(status::StatusCommand),
         Collect(collect::CollectCommand),
         Restore(restore::RestoreCommand),
-    }
-}
-
-impl CampaignCommand {
-    pub(crate) fn run(&self) -> Result<()> {
-        self.action.run()
     }
 }

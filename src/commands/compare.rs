@@ -1,21 +1,19 @@
 //! `kirigami compare`: points measured on a deployed sheet, compared with its predicted equilibrium
 //! path.
 
-use crate::commands::inspect::scene_args::Inspected;
-use crate::commands::points_file::PointsFile;
-use analysis::measured_points::Mark;
-use analysis::measured_sheet::MeasuredSheet;
-use analysis::shape_path::ShapePath;
+use crate::commands::{inspect::scene_args::Inspected, points_file::PointsFile};
+use analysis::{measured_points::Mark, measured_sheet::MeasuredSheet, shape_path::ShapePath};
 use anyhow::{Context, Result, ensure};
 use app::{picture, run_folder};
 use clap::Args;
 use design::sheet::cut_sheet::Sheet;
-use output::drawing;
-use output::measurement::MeasurementReport;
+use output::{drawing, measurement::MeasurementReport};
 use scene::Scene;
-use std::collections::BTreeSet;
-use std::fmt::Write;
-use std::path::{Path, PathBuf};
+use std::{
+    collections::BTreeSet,
+    fmt::Write,
+    path::{Path, PathBuf},
+};
 
 /// Compare points measured on a deployed sheet with the prediction
 ///
@@ -56,7 +54,7 @@ const PICTURE_WIDTH: u32 = 2000;
 
 impl CompareCommand {
     pub(crate) fn run(&self) -> Result<()> {
-        let (scene, design, _) = self.designed.read_run()?;
+        let (scene, design, _) = self.designed.chosen().read_run()?;
         let problem = scene.problem()?;
         let _held = run_folder::hold(&self.out)?;
         if self.template {
@@ -91,11 +89,8 @@ impl CompareCommand {
         write("openings.csv", &report.openings_csv())?;
         let svg = drawing::measured(path.sheet, &measured.best, &report);
         picture::save(&svg, &self.out.join("comparison"), PICTURE_WIDTH)?;
-        if self.json {
-            println!("{json}");
-        } else {
-            println!("{document}\nwritten to {}", self.out.display());
-        }
+        let text = format!("{document}\nwritten to {}", self.out.display());
+        println!("{}", if self.json { json } else { text });
         Ok(())
     }
 

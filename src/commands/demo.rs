@@ -2,8 +2,10 @@
 
 use anyhow::{Result, ensure};
 use clap::Args;
-use std::path::{Path, PathBuf};
-use std::time::Instant;
+use std::{
+    path::{Path, PathBuf},
+    time::Instant,
+};
 use support::table::Table;
 
 /// Run the whole chain once: window solves, database, training, design, cut file

@@ -3,23 +3,27 @@
 #[cfg(feature = "pipeline")]
 mod by_elements;
 
-use crate::ui::with_unit::{self, Accuracy};
-use crate::ui::{interrupt, processors};
+use crate::ui::{
+    self, interrupt, processors,
+    with_unit::{self, Accuracy},
+};
 use analysis::refinement::refine;
-use anyhow::{Context, Result, bail, ensure};
-use app::design::{ended, hold, search, write_refined};
-use app::design_runs::{Run, compare, refuse_shared_folders};
-use app::failure::Unfinished;
-use app::fitting::fit_to_target;
-use app::progress::{Progress, announce};
+use anyhow::{Result, bail, ensure};
+use app::{
+    design::{ended, hold, search, write_refined},
+    design_runs::{Run, compare, refuse_shared_folders},
+    failure::Unfinished,
+    fitting::fit_to_target,
+    output_file,
+    progress::{Progress, announce},
+};
 use clap::Args;
-use design::objective::scores::shown;
-use design::objective::term::in_words;
-use design::optimise::outer_loop::StepRecord;
+use design::{
+    objective::{scores::shown, term::in_words},
+    optimise::outer_loop::StepRecord,
+};
 use output::report::Report;
-use scene::design_run::OnStep;
-use scene::run_inputs::scene_file;
-use scene::{Level, Scene, SceneConfig};
+use scene::{Level, Scene, SceneConfig, design_run::OnStep, run_inputs::scene_file};
 use std::path::{Path, PathBuf};
 use support::worker_pool::{NoThread, Reports, work_through};
 
@@ -87,12 +91,9 @@ impl DesignCommand {
                     config.output = out.unwrap_or_else(|| config.output.clone());
                 })?;
                 let report = with_level_bars(&scene, |progress| self.design(&scene, progress))?;
-                if self.json {
-                    println!("{}", serde_json::to_string_pretty(&report)?);
-                } else {
-                    let folder = scene.output().canonicalize()?;
-                    println!("{}\nwritten to {}", report.document(), folder.display());
-                }
+                let folder = scene.output().canonicalize()?;
+                let text = format!("{}\nwritten to {}", report.document(), folder.display());
+                ui::print(self.json, &report, text)?;
                 ended(&scene, &report)
             }
             _ => {
@@ -135,8 +136,7 @@ impl DesignCommand {
     fn run_many(&self, mut runs: Vec<Run>) -> Result<()> {
         let stop = interrupt::stop_flag()?;
         let folder = self.out.clone().unwrap_or("runs/designs".into());
-        std::fs::create_dir_all(&folder)
-            .with_context(|| format!("cannot create the folder {}", folder.display()))?;
+        output_file::create_folder(&folder)?;
         // The windows of a single sheet occupy all processors.
         let workers = match self.level {
             Some(Level::Final) => 1,

@@ -1,15 +1,16 @@
 //! `kirigami doctor`: the build, and whether what it needs is found.
 
 use anyhow::{Result, ensure};
-use app::WHOLE_BUILD;
-use app::new_project::WEIGHTS;
+use app::{WHOLE_BUILD, new_project::WEIGHTS};
 use clap::Args;
 #[cfg(feature = "pipeline")]
 use fe_driver::CCX;
 #[cfg(feature = "pipeline")]
 use mesher::GMSH;
-use std::env::consts::{ARCH, OS};
-use std::path::Path;
+use std::{
+    env::consts::{ARCH, OS},
+    path::Path,
+};
 #[cfg(feature = "pipeline")]
 use support::program::Tool;
 use surrogate::Surrogate;

@@ -1,8 +1,8 @@
 //! `kirigami export`: the deployment of a designed sheet for other programs.
 
 use crate::commands::inspect::scene_args::Inspected;
-use anyhow::{Context, Result};
-use app::run_folder;
+use anyhow::Result;
+use app::{output_file, run_folder};
 use clap::Args;
 use output::vtk_sheet::vtk_states;
 use std::path::PathBuf;
@@ -24,12 +24,11 @@ pub struct ExportCommand {
 
 impl ExportCommand {
     pub(crate) fn run(&self) -> Result<()> {
-        let (scene, design, _) = self.designed.read_run()?;
+        let (scene, design, _) = self.designed.chosen().read_run()?;
         let deployment = scene.problem()?.deploy(&design)?;
         let _held = run_folder::hold(&self.out)?;
         let folder = self.out.join("vtk");
-        std::fs::create_dir_all(&folder)
-            .with_context(|| format!("cannot create the folder {}", folder.display()))?;
+        output_file::create_folder(&folder)?;
         let mut grids = Vec::new();
         for (i, state) in vtk_states(&deployment).iter().enumerate() {
             for (part, (kind, grid)) in

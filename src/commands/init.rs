@@ -20,7 +20,7 @@ use std::path::PathBuf;
 /// my-sheet --thickness 3 --size 210x297; kirigami init first --stock a4 --margin 5; kirigami init
 /// film --thickness 0.1; kirigami init leaf --thickness 2 --size 300x300 --target
 /// configs/targets/leaf.svg
-#[derive(Args)]
+#[derive(Args, Clone)]
 pub struct InitCommand {
     /// Folder to create
     #[arg(value_name = "FOLDER")]
@@ -62,18 +62,30 @@ pub struct InitCommand {
 
 impl InitCommand {
     pub(crate) fn run(&self) -> Result<()> {
+        let Self {
+            folder,
+            material,
+            thickness,
+            size,
+            stock,
+            margin,
+            target,
+            anyway,
+            service,
+            weights,
+        } = self.clone();
         let project = NewProject {
-            folder: self.folder.clone(),
-            material: self.material.clone(),
-            thickness: self.thickness,
-            size: self.size,
-            stock: self.stock,
-            margin: self.margin,
-            target: self.target.clone(),
-            weights: self.weights.clone(),
-            service: self.service.clone(),
+            folder,
+            material,
+            thickness,
+            size,
+            stock,
+            margin,
+            target,
+            weights,
+            service,
             any_width: false,
-            anyway: self.anyway,
+            anyway,
         };
         println!("{}", project.create()?);
         Ok(())

@@ -2,14 +2,14 @@
 
 pub mod scene_args;
 
-use crate::commands::inspect::scene_args::Inspected;
-use crate::ui::{exit, with_unit};
+use crate::{
+    commands::inspect::scene_args::Inspected,
+    ui::{exit, print_of, with_unit},
+};
 use anyhow::{Context, Result};
-use clap::error::ErrorKind;
-use clap::{Args, ValueEnum};
-use output::listing::{self, Listing};
+use clap::{Args, ValueEnum, error::ErrorKind};
+use output::listing;
 use scene::Level;
-use serde::Serialize;
 
 /// Print the numbers of one stage of a design
 ///
@@ -46,47 +46,30 @@ enum Stage {
     Gradient,
 }
 
-/// A listing with the design that it is of.
-#[derive(Serialize)]
-struct Of {
-    design: String,
-    #[serde(flatten)]
-    listing: Listing,
-}
-
 impl InspectCommand {
     pub(crate) fn run(&self) -> Result<()> {
         if self.opening_deg.is_some() && self.stage != Stage::Deploy {
             let message = "--opening-deg is an option of deploy alone\n";
             exit::print_answer(&clap::Error::raw(ErrorKind::ArgumentConflict, message));
         }
-        let (scene, design, name) = self.inspected.read()?;
+        let (scene, design, name) = self.inspected.chosen().read()?;
         let scene = match self.level {
             Some(level) => scene.at_level(level)?,
             None => scene,
         };
         let problem = || scene.problem();
-        match self.stage {
-            Stage::Pattern => self.print(name, listing::pattern(&problem()?, &design)?),
+        let listing = match self.stage {
+            Stage::Pattern => listing::pattern(&problem()?, &design)?,
             Stage::Deploy => {
                 let problem = problem()?;
                 let opening = (self.opening_deg.map(f64::to_radians))
                     .or(problem.opening(&design))
                     .context("this scene's hinges are not pins: pass --opening-deg")?;
-                self.print(name, listing::deployment(&problem, &design, opening)?)
+                listing::deployment(&problem, &design, opening)?
             }
-            Stage::Equilibrium => self.print(name, listing::equilibrium(&problem()?, &design)?),
-            Stage::Gradient => self.print(name, listing::gradient(&scene, &problem()?, &design)?),
-        }
-    }
-
-    fn print(&self, design: String, listing: Listing) -> Result<()> {
-        if self.json {
-            let of = Of { design, listing };
-            println!("{}", serde_json::to_string_pretty(&of)?);
-        } else {
-            print!("{design}\n\n{listing}");
-        }
-        Ok(())
+            Stage::Equilibrium => listing::equilibrium(&problem()?, &design)?,
+            Stage::Gradient => listing::gradient(&scene, &problem()?, &design)?,
+        };
+        print_of(self.json, &name, &listing, &listing)
     }
 }

@@ -1,17 +1,18 @@
 //! `kirigami levels`: what every level of a scene costs, and how far it is from the finest.
 
-use crate::commands::inspect::scene_args::Inspected;
-use crate::ui::interrupt;
+use crate::{
+    commands::inspect::scene_args::Inspected,
+    ui::{interrupt, print_of},
+};
 use analysis::levels::{LevelCost, Levels, levels};
 use anyhow::Result;
-use app::design_checks::record;
-use app::progress::announce;
-use app::{charts, output_file};
+use app::{charts, design_checks::record, output_file, progress::announce};
 use clap::Args;
-use serde::Serialize;
 use std::path::PathBuf;
-use support::document::Document;
-use support::table::{Cell, Table};
+use support::{
+    document::Document,
+    table::{Cell, Table},
+};
 
 /// Compare the levels of a scene: seconds of a search, and the difference to the finest level
 ///
@@ -34,17 +35,9 @@ pub struct LevelsCommand {
     picture: Option<PathBuf>,
 }
 
-/// The levels with the design that they are of.
-#[derive(Serialize)]
-struct Of<'a> {
-    design: String,
-    #[serde(flatten)]
-    levels: &'a Levels,
-}
-
 impl LevelsCommand {
     pub(crate) fn run(&self) -> Result<()> {
-        let (scene, design, name) = self.inspected.read()?;
+        let (scene, design, name) = self.inspected.chosen().read()?;
         let stop = interrupt::stop_flag()?;
         let found = levels(&scene, &design, stop, &mut |level| {
             announce(&format!("level {level}"));
@@ -52,12 +45,7 @@ impl LevelsCommand {
         if let Some(path) = &self.picture {
             output_file::write(path, charts::levels(&found)?)?;
         }
-        if self.json {
-            let of = Of { design: name, levels: &found };
-            println!("{}", serde_json::to_string_pretty(&of)?);
-        } else {
-            println!("{name}\n\n{}", document(&found));
-        }
+        print_of(self.json, &name, &found, document(&found))?;
         if self.inspected.chosen().is_run(&scene) {
             record(&scene, &design, |checks| checks.levels = Some(found))?;
         }

@@ -1,13 +1,11 @@
 //! `kirigami mesh`: the finite-element mesh of one hinge window.
 
-use crate::commands::window_args::WindowArgs;
-use crate::ui::interrupt;
+use crate::{commands::window_args::WindowArgs, ui::interrupt};
 use anyhow::Result;
 use app::{picture, run_folder};
 use clap::Args;
 use mesher::{Gmsh, Tier, WindowShape, plane_mesh_svg, vtk_grid};
-use std::path::PathBuf;
-use std::time::Duration;
+use std::{path::PathBuf, time::Duration};
 
 /// Mesh one hinge window and draw it
 ///

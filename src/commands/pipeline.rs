@@ -7,9 +7,12 @@ subcommands! {
     pub(crate) enum PipelineCommand {
         Mesh(mesh::MeshCommand),
         Solve(solve::SolveCommand),
+        #[command(subcommand)]
         Campaign(campaign::CampaignCommand),
+        #[command(subcommand)]
         Dataset(dataset::DatasetCommand),
         Train(train::TrainCommand),
+        #[command(subcommand)]
         Surrogate(surrogate::SurrogateCommand),
         Verify(verify::VerifyCommand),
     }

@@ -4,10 +4,11 @@ use analysis::measured_points::{Mark, MeasuredPoint};
 use anyhow::{Context, Result, anyhow, bail, ensure};
 use clap::ValueEnum;
 use design::geometry::similarity::Scale;
-use std::collections::HashMap;
-use std::path::Path;
-use support::csv_table::{NamedTable, name_and_unit};
-use support::nearest::nearest;
+use std::{collections::HashMap, path::Path};
+use support::{
+    csv_table::{NamedTable, name_and_unit},
+    nearest::nearest,
+};
 
 /// The columns of a file; the last two come from the template, and are not read.
 const COLUMNS: [&str; 7] = ["panel", "corner", "x", "y", "unit", "flat_x_mm", "flat_y_mm"];

@@ -1,20 +1,20 @@
 //! `kirigami solve`: one window solved along one ray, printed as a table.
 
-use crate::commands::solve_args::{FeSolver, LIMIT};
-use crate::commands::window_args::WindowArgs;
-use crate::ui::interrupt;
+use crate::{
+    commands::{
+        solve_args::{FeSolver, LIMIT},
+        window_args::WindowArgs,
+    },
+    ui::interrupt,
+};
 use anyhow::{Error, Result, bail};
-use app::failure::Unfinished;
-use app::input_file;
-use app::progress::watched;
-use app::run_folder;
+use app::{failure::Unfinished, input_file, progress::watched, run_folder};
 use clap::Args;
 use fe_driver::{Cause, Ray, Solver, WindowProblem, WindowSolve, reached};
 use hinge::{HingeDeformation, HingeSample, SheetMaterial};
 use mesher::Tier;
 use serde_json::json;
-use std::path::PathBuf;
-use std::time::Duration;
+use std::{path::PathBuf, time::Duration};
 use support::table::{Cell, Table};
 
 /// Solve one hinge window by finite elements and print its ray

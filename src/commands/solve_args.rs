@@ -1,17 +1,11 @@
 //! Options of window solves, and the service that they describe.
 
-use crate::ui::count::jobs;
-use crate::ui::interrupt;
-use crate::ui::processors;
+use crate::ui::{count::jobs, interrupt, processors};
 use anyhow::Result;
-use app::failure::Unfinished;
-use app::progress::Progress;
+use app::{failure::Unfinished, progress::Progress};
 use clap::Args;
 use fe_driver::{Solve, SolveListError, SolveService, SolveStore, Solver};
-use std::cell::RefCell;
-use std::num::NonZeroUsize;
-use std::path::Path;
-use std::time::Duration;
+use std::{cell::RefCell, num::NonZeroUsize, path::Path, time::Duration};
 use verification::VerificationError;
 
 /// The solver of windows and sheets of every command.

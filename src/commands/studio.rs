@@ -5,13 +5,11 @@ use anyhow::Result;
 use clap::Args;
 use rand::random;
 use scene::{Level, Scene};
-use std::path::{Path, PathBuf};
-use std::sync::Arc;
-use studio::engine::Engine;
-use studio::event::Post;
-use studio::project::Project;
-use studio::server::Studio;
-use studio::static_page;
+use std::{
+    path::{Path, PathBuf},
+    sync::Arc,
+};
+use studio::{engine::Engine, event::Post, project::Project, server::Studio, static_page};
 
 /// Draw a sheet in the browser, watch it open, and design it
 ///

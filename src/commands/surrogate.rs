@@ -3,25 +3,10 @@
 mod card;
 mod test;
 
-use anyhow::Result;
-use clap::Args;
-
-/// Show the card of exported weights, and measure their errors against finite elements
-#[derive(Args)]
-pub struct SurrogateCommand {
-    #[command(subcommand)]
-    action: Action,
-}
-
 subcommands! {
-    enum Action {
+    /// Show the card of exported weights, and measure their errors against finite elements
+    pub(crate) enum SurrogateCommand {
         Card(card::CardCommand),
         Test(test::TestCommand),
-    }
-}
-
-impl SurrogateCommand {
-    pub(crate) fn run(&self) -> Result<()> {
-        self.action.run()
     }
 }

@@ -1,7 +1,9 @@
 //! `kirigami train`: trains the weights of the hinge energy on a hinge database.
 
-use crate::commands::campaign::{DATABASE, SPOT_CHECK};
-use crate::ui::interrupt;
+use crate::{
+    commands::campaign::{DATABASE, SPOT_CHECK},
+    ui::interrupt,
+};
 use anyhow::Result;
 use app::train::{TrainingTask, train_campaign};
 use clap::Args;
@@ -18,7 +20,7 @@ use std::path::{Path, PathBuf};
 /// each with four seeds: the best one is runs/CAMPAIGN/weights/NAME.safetensors, the others NAME-1
 /// to NAME-3, its ensemble. It tests them on the spot check of the campaign, and records the errors
 /// on their cards.
-#[derive(Args)]
+#[derive(Args, Clone)]
 pub struct TrainCommand {
     /// Database as written by `kirigami campaign collect` (Parquet with its manifest), or a
     /// campaign (TOML)
@@ -68,15 +70,7 @@ impl TrainCommand {
                 [DATABASE, SPOT_CHECK],
             );
         }
-        let task = TrainingTask {
-            database: self.database.clone(),
-            config: self.config.clone(),
-            out: self.out.clone(),
-            from: self.from.clone(),
-            seeds: self.seeds,
-            replace: self.replace,
-            stop,
-        };
-        task.run()
+        let Self { database, config, out, from, seeds, replace } = self.clone();
+        TrainingTask { database, config, out, from, seeds, replace, stop }.run()
     }
 }

@@ -2,9 +2,13 @@
 
 mod whole_sheet;
 
-use crate::commands::inspect::scene_args::Inspected;
-use crate::commands::solve_args::{SolveArgs, task_error};
-use crate::ui::count::count;
+use crate::{
+    commands::{
+        inspect::scene_args::Inspected,
+        solve_args::{SolveArgs, task_error},
+    },
+    ui::{self, count::count},
+};
 use anyhow::{Context, Result};
 use app::run_folder;
 use clap::Args;
@@ -66,7 +70,7 @@ pub struct VerifyCommand {
 
 impl VerifyCommand {
     pub(crate) fn run(&self) -> Result<()> {
-        let (scene, design, name) = self.inspected.read()?;
+        let (scene, design, name) = self.inspected.chosen().read()?;
         if let Some(panels) = self.sheet {
             return self.whole_sheet(&scene, &design, &name, panels);
         }
@@ -89,11 +93,7 @@ impl VerifyCommand {
     }
 
     fn print(&self, found: &impl Serialize, document: &Document) -> Result<()> {
-        if self.json {
-            println!("{}", serde_json::to_string_pretty(found)?);
-        } else {
-            println!("{document}\nwritten to {}", self.out.display());
-        }
-        Ok(())
+        let text = format!("{document}\nwritten to {}", self.out.display());
+        ui::print(self.json, found, text)
     }
 }

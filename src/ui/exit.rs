@@ -1,10 +1,11 @@
 //! Exit codes and the error message of a command.
 
 use app::failure::{Unfinished, message};
-use std::io::Write;
-use std::process::{ExitCode, Termination};
-use support::caught_panic;
-use support::worker_pool::NoThread;
+use std::{
+    io::Write,
+    process::{ExitCode, Termination},
+};
+use support::{caught_panic, worker_pool::NoThread};
 
 /// The exit codes of every command; besides, 2 stands for a wrong command line and 130 for a second
 /// Ctrl-C.

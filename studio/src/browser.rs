@@ -4,17 +4,23 @@
 //! a tab, and the data as JSON. A worker hears nothing while it computes: a search pauses once
 //! there is a file [`PAUSE`].
 
-use crate::catalogue::Catalogue;
-use crate::event::{Event, Kind};
-use crate::full_analysis::{FullAnalysis, Listener, refusal};
-use crate::request::Request;
-use crate::session::{Fetched, Next, Session};
+use crate::{
+    catalogue::Catalogue,
+    event::{Event, Kind, locked},
+    full_analysis::{FullAnalysis, Listener, refusal},
+    request::Request,
+    session::{Fetched, Next, Session},
+};
 use anyhow::{Context, Result};
 use app::failure::message;
-use std::cell::RefCell;
-use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, PoisonError};
+use std::{
+    cell::RefCell,
+    path::{Path, PathBuf},
+    sync::{
+        Arc,
+        atomic::{AtomicBool, Ordering},
+    },
+};
 use support::regular_file;
 
 const REQUEST: &str = "request.json";
@@ -72,8 +78,8 @@ extern "C" fn rest() {
 #[unsafe(no_mangle)]
 extern "C" fn paths() {
     with(|studio| {
-        let files = (studio.files.lock()).unwrap_or_else(PoisonError::into_inner);
-        let json = serde_json::to_string(&*files).expect("paths of this program are UTF-8");
+        let json = serde_json::to_string(&*locked(&studio.files))
+            .expect("paths of this program are UTF-8");
         println!("paths\t{json}");
     });
 }

@@ -2,15 +2,16 @@
 
 use crate::key_meanings::meanings;
 use anyhow::Result;
-use app::new_project::WEIGHTS;
-use app::new_project::first_scene::PANEL;
+use app::new_project::{WEIGHTS, first_scene::PANEL};
 use hinge::SheetMaterial;
 use output::cut_file::Machines;
 use scene::Level;
 use serde::Serialize;
 use serde_json::{Value, json};
-use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::{
+    collections::BTreeMap,
+    path::{Path, PathBuf},
+};
 use support::text_file;
 use surrogate::Card;
 

@@ -2,44 +2,26 @@
 //! and in every step of a search.
 
 use crate::full_analysis::milliseconds;
-use design::equilibrium::warm_start::WarmStart;
-use design::optimise::outer_loop::SearchState;
-use design::{Deployment, DesignError, DesignProblem, DesignVector};
-use output::run_page::{History, SheetData};
+use design::{
+    Deployment, DesignError, DesignProblem, DesignVector, equilibrium::warm_start::WarmStart,
+    optimise::outer_loop::SearchState,
+};
+use output::run_page::{history, sheet_data};
 use scene::Scene;
-use serde::Serialize;
+use serde_json::{Value, json};
 use std::time::{Duration, Instant};
 
 /// Time between two steps of a search that are shown.
 const SHOW_EVERY: Duration = Duration::from_millis(80);
 
 /// What a draft shows.
-#[derive(Serialize)]
-pub(crate) struct Draft<'a> {
-    sheet: SheetData<'a>,
-    ms: f64,
-}
-
-/// A step of a search.
-#[derive(Serialize)]
-pub(crate) struct Step<'a> {
-    step: usize,
-    of: usize,
-    /// Time that the other steps will take at most (s); `None` at the first one.
-    seconds_left: Option<f64>,
-    history: History,
-    draft: Option<Draft<'a>>,
-}
-
-impl<'a> Draft<'a> {
-    pub(crate) fn new(
-        scene: &'a Scene,
-        problem: &DesignProblem,
-        deployment: &Deployment,
-        begin: Instant,
-    ) -> Self {
-        Self { sheet: SheetData::new(scene, problem, deployment), ms: milliseconds(begin) }
-    }
+pub(crate) fn draft_data(
+    scene: &Scene,
+    problem: &DesignProblem,
+    deployment: &Deployment,
+    begin: Instant,
+) -> Value {
+    json!({ "sheet": sheet_data(scene, problem, deployment), "ms": milliseconds(begin) })
 }
 
 /// The steps of a search that are shown: not more than the page can draw.
@@ -52,12 +34,13 @@ pub(crate) struct Steps {
 }
 
 impl Steps {
-    pub(crate) fn step<'a>(
+    /// A step of a search, if it is shown.
+    pub(crate) fn step(
         &mut self,
-        scene: &'a Scene,
+        scene: &Scene,
         problem: &DesignProblem,
         search: &SearchState,
-    ) -> Option<Step<'a>> {
+    ) -> Option<Value> {
         if self.last.is_some_and(|last| last.elapsed() < SHOW_EVERY) {
             return None;
         }
@@ -69,13 +52,14 @@ impl Steps {
         let deployment = draft(problem, search.last_design(), self.known.as_ref()).ok();
         self.known = deployment.as_ref().map(Deployment::warm_start);
         self.last = Some(Instant::now());
-        Some(Step {
-            step,
-            of,
-            seconds_left: (made > 0).then_some(left),
-            history: History::new(&problem.objective, &search.history),
-            draft: deployment.map(|deployment| Draft::new(scene, problem, &deployment, begin)),
-        })
+        Some(json!({
+            "step": step,
+            "of": of,
+            // Time that the other steps will take at most (s); null at the first one.
+            "seconds_left": (made > 0).then_some(left),
+            "history": history(&problem.objective, &search.history),
+            "draft": deployment.map(|deployment| draft_data(scene, problem, &deployment, begin)),
+        }))
     }
 }
 

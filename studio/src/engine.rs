@@ -3,20 +3,26 @@
 //! While something is dragged every change is answered by a draft; when no request comes for a
 //! moment, by the full analysis: the path followed from the flat sheet, and the report.
 
-use crate::catalogue::Catalogue;
-use crate::event::{Event, Kind};
-use crate::full_analysis::{FullAnalysis, Listener};
-use crate::project::Project;
-use crate::request::Request;
-use crate::session::{Fetched, Next, Session};
+use crate::{
+    catalogue::Catalogue,
+    event::{Event, Kind, locked},
+    full_analysis::{FullAnalysis, Listener},
+    project::Project,
+    request::Request,
+    session::{Fetched, Next, Session},
+};
 use anyhow::{Context, Result};
 use scene::Scene;
-use std::collections::VecDeque;
-use std::path::PathBuf;
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
-use std::thread::JoinHandle;
-use std::time::Duration;
+use std::{
+    collections::VecDeque,
+    path::PathBuf,
+    sync::{
+        Arc, Condvar, Mutex, PoisonError,
+        atomic::{AtomicBool, Ordering},
+    },
+    thread::JoinHandle,
+    time::Duration,
+};
 
 /// Time without a request after which the full analysis is computed.
 const REST: Duration = Duration::from_millis(200);
@@ -77,14 +83,13 @@ impl Engine {
 
     /// The file that the event of the files of a run names so.
     pub fn file(&self, name: &str) -> Option<PathBuf> {
-        let files = self.files.lock().unwrap_or_else(PoisonError::into_inner);
-        files.get(name).cloned()
+        locked(&self.files).get(name).cloned()
     }
 
     /// Queues a request. Consecutive changes are merged into the last one; at most one search is
     /// running or queued.
     pub fn ask(&self, request: Request) {
-        let mut waiting = self.inbox.lock();
+        let mut waiting = locked(&self.inbox.waiting);
         match &request {
             Request::Pause => return self.stop_search.store(true, Ordering::Relaxed),
             Request::Design => {
@@ -107,24 +112,19 @@ impl Engine {
     /// Answers no further request, pauses a search, and waits until its state and the scene are on
     /// disk.
     pub fn end(&self) {
-        self.inbox.lock().closed = true;
+        locked(&self.inbox.waiting).closed = true;
         self.stop_search.store(true, Ordering::Relaxed);
         self.inbox.news.notify_one();
-        let mut thread = self.thread.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(thread) = thread.take() {
+        if let Some(thread) = locked(&self.thread).take() {
             let _ = thread.join();
         }
     }
 }
 
 impl Inbox {
-    fn lock(&self) -> MutexGuard<'_, Waiting> {
-        self.waiting.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-
     /// The next request, or a rest if there is none for a while and the sheet is not at rest.
     fn next(&self, at_rest: bool) -> Next {
-        let mut waiting = self.lock();
+        let mut waiting = locked(&self.waiting);
         waiting.searching = false;
         let idle = |waiting: &mut Waiting| waiting.requests.is_empty() && !waiting.closed;
         let mut waiting = if at_rest {

@@ -4,9 +4,10 @@
 //! An event holds all that a page needs to know of its kind, so that only the latest matters.
 
 use serde::Serialize;
-use std::sync::Arc;
-use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
-use std::time::Duration;
+use std::{
+    sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError},
+    time::Duration,
+};
 use strum::IntoStaticStr;
 
 /// What an event is about.
@@ -55,6 +56,11 @@ impl Event {
     }
 }
 
+/// Locks; what a thread that panicked has left is used.
+pub(crate) fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
 /// The latest event of every kind.
 #[derive(Default)]
 pub struct Post {
@@ -73,7 +79,7 @@ struct Latest {
 impl Post {
     /// Stores an event and wakes the readers.
     pub fn deliver(&self, event: Event) {
-        let mut latest = self.lock();
+        let mut latest = locked(&self.latest);
         latest.count += 1;
         let number = latest.count;
         let opens = event.kind == Kind::Sheet;
@@ -89,16 +95,12 @@ impl Post {
     /// The events since that with the number `seen`, as soon as there are any; none if there are
     /// none for as long as `patience`.
     pub fn since(&self, seen: u64, patience: Duration) -> Vec<(u64, Arc<Event>)> {
-        let latest = self.lock();
+        let latest = locked(&self.latest);
         let waited =
             (self.news).wait_timeout_while(latest, patience, |latest| latest.count == seen);
         let (latest, _) = waited.unwrap_or_else(PoisonError::into_inner);
         let unseen = latest.events.iter().filter(|(number, _)| *number > seen);
         unseen.cloned().collect()
-    }
-
-    fn lock(&self) -> MutexGuard<'_, Latest> {
-        self.latest.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 

@@ -1,68 +1,61 @@
 //! The full analysis on a thread of its own: the path followed from the flat sheet, and the
 //! report. Drafts go on meanwhile.
 
-use crate::event::{Event, Kind};
+use crate::event::{Event, Kind, locked};
 use analysis::design_checks::DesignChecks;
 use anyhow::{Context, Result};
 use app::failure::message;
 use design::equilibrium::warm_start::WarmStart;
-use output::cut_file::CutLines;
-use output::report::Report;
-use output::run_page::{PageData, SheetData};
-use scene::Scene;
-use scene::design_run::Designed;
-use serde::Serialize;
+use output::{
+    cut_file::CutLines,
+    report::Report,
+    run_page::{page_data, sheet_data},
+};
+use scene::{Scene, design_run::Designed};
 use serde_json::json;
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
-use std::time::Instant;
+use std::{
+    sync::{
+        Arc, Condvar, Mutex, PoisonError,
+        atomic::{AtomicBool, Ordering},
+    },
+    time::Instant,
+};
 use support::caught_panic;
 
 /// Who hears the events.
 pub(crate) type Listener = Arc<dyn Fn(Event) + Send + Sync>;
 
-/// A page as full analyses and runs show it.
-#[derive(Serialize)]
-pub(crate) struct Shown<'a> {
-    pub page: PageData<'a>,
-    /// The run whose best design it is, if the sheet has one.
-    pub run: Option<String>,
-    /// How long it took; `None` at the end of a search.
-    pub ms: Option<f64>,
+/// A page as full analyses and runs show it: with the run whose best design it is, if the sheet has
+/// one, and how long it took (ms), unless it is the end of a search.
+pub(crate) fn shown(
+    scene: &Scene,
+    designed: &Designed,
+    report: &Report,
+    is_run: bool,
+    ms: Option<f64>,
+) -> Event {
+    let run = is_run.then(|| run_name(scene));
+    let page = page_data(scene, designed, report);
+    Event::new(Kind::Page, &json!({ "page": page, "run": run, "ms": ms }))
 }
 
 /// A sheet at rest.
-pub(crate) enum Resting {
-    /// The start of a scene.
-    Start(Scene),
-    /// The best design of the run of a scene.
-    Run(Scene),
+pub(crate) struct Resting {
+    pub scene: Scene,
+    /// Whether it is the best design of the run of the scene, and not the start of the scene.
+    pub is_run: bool,
 }
 
 impl Resting {
-    fn scene(&self) -> &Scene {
-        let (Self::Start(scene) | Self::Run(scene)) = self;
-        scene
-    }
-
     fn designed(&self, stop: Arc<AtomicBool>) -> Result<Designed> {
-        match self {
-            Self::Start(scene) => Ok(Designed::at_start(scene, stop)?),
-            Self::Run(scene) => Designed::of_run(scene, stop)?.with_context(|| {
-                let folder = scene.output();
-                format!(
-                    "the run in {} is gone: change the sheet, or design it again",
-                    folder.display()
-                )
-            }),
+        let scene = &self.scene;
+        if !self.is_run {
+            return Ok(Designed::at_start(scene, stop)?);
         }
-    }
-
-    fn run(&self) -> Option<String> {
-        match self {
-            Self::Start(_) => None,
-            Self::Run(scene) => Some(run_name(scene)),
-        }
+        Designed::of_run(scene, stop)?.with_context(|| {
+            let folder = scene.output();
+            format!("the run in {} is gone: change the sheet, or design it again", folder.display())
+        })
     }
 }
 
@@ -112,7 +105,7 @@ impl FullAnalysis {
     /// Computes a sheet next, and nothing else.
     pub(crate) fn compute(&self, sheet: Resting) {
         self.stop();
-        self.lock().sheet = Some(sheet);
+        locked(&self.wanted).sheet = Some(sheet);
         self.news.notify_one();
         if cfg!(target_family = "wasm") {
             self.work();
@@ -121,28 +114,24 @@ impl FullAnalysis {
 
     /// The path of the last computation that was shown, once.
     pub(crate) fn last_path(&self) -> Option<WarmStart> {
-        self.lock().path.take()
+        locked(&self.wanted).path.take()
     }
 
     /// Shows nothing of what is under way. Returns the path of the last computation that was shown,
     /// once.
     pub(crate) fn stop(&self) -> Option<WarmStart> {
-        let mut wanted = self.lock();
+        let mut wanted = locked(&self.wanted);
         wanted.sheet = None;
         wanted.stop.store(true, Ordering::Relaxed);
         wanted.path.take()
     }
 
-    fn lock(&self) -> MutexGuard<'_, Wanted> {
-        self.wanted.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-
     /// Shows the path of a sheet while its report is written.
     fn show_path(&self, scene: &Scene, designed: &Designed, stop: &AtomicBool) {
-        let sheet = SheetData::new(scene, &designed.problem, &designed.best.deployment);
+        let sheet = sheet_data(scene, &designed.problem, &designed.best.deployment);
         let event = Event::new(Kind::Path, &sheet);
         // Under the lock: nothing is shown after a stop.
-        let _wanted = self.lock();
+        let _wanted = locked(&self.wanted);
         if !stop.load(Ordering::Relaxed) {
             (self.listener)(event);
         }
@@ -151,8 +140,8 @@ impl FullAnalysis {
     /// Computes the next sheet, as soon as there is one.
     fn work(&self) {
         let nothing = |wanted: &mut Wanted| wanted.sheet.is_none();
-        let mut wanted =
-            (self.news.wait_while(self.lock(), nothing)).unwrap_or_else(PoisonError::into_inner);
+        let mut wanted = (self.news.wait_while(locked(&self.wanted), nothing))
+            .unwrap_or_else(PoisonError::into_inner);
         let Some(sheet) = wanted.sheet.take() else {
             return;
         };
@@ -162,11 +151,11 @@ impl FullAnalysis {
         let begin = Instant::now();
         let computed = caught_panic::catch(|| {
             let designed = sheet.designed(Arc::clone(&stop))?;
-            self.show_path(sheet.scene(), &designed, &stop);
+            self.show_path(&sheet.scene, &designed, &stop);
             Ok::<_, anyhow::Error>(page_of(&sheet, &designed, begin))
         });
         // Under the lock: nothing is shown after a stop.
-        let mut wanted = self.lock();
+        let mut wanted = locked(&self.wanted);
         if stop.load(Ordering::Relaxed) {
             return;
         }
@@ -194,12 +183,10 @@ pub(crate) fn refusal(why: &str) -> Event {
 
 /// The page of a sheet, and its path.
 fn page_of(sheet: &Resting, designed: &Designed, begin: Instant) -> (Event, WarmStart) {
-    let scene = sheet.scene();
+    let scene = &sheet.scene;
     let best = &designed.best.deployment;
     let cuts = CutLines::of(scene, best);
     let report = Report::new(scene, designed, &cuts, DesignChecks::default(), false);
-    let page = PageData::new(scene, designed, &report);
-    let (run, ms) = (sheet.run(), Some(milliseconds(begin)));
-    let event = Event::new(Kind::Page, &Shown { page, run, ms });
+    let event = shown(scene, designed, &report, sheet.is_run, Some(milliseconds(begin)));
     (event, best.warm_start())
 }

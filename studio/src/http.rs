@@ -3,9 +3,11 @@
 //! A request has a few seconds to arrive, and a page as many to read: a connection that stays
 //! silent keeps no thread.
 
-use std::io::{self, Read, Write};
-use std::net::TcpStream;
-use std::time::{Duration, Instant};
+use std::{
+    io::{self, Read, Write},
+    net::TcpStream,
+    time::{Duration, Instant},
+};
 
 /// Maximum size of the body of a request (bytes): a drawing, or a scene with 100 000 panels.
 pub(crate) const MOST_BYTES: usize = 16 << 20;

@@ -3,15 +3,14 @@
 use crate::project::Project;
 use analysis::fit::scene::fitted;
 use anyhow::Result;
-use app::cut::Verdict;
-use app::fitting::expected;
-use design::equilibrium::warm_start::WarmStart;
-use design::optimise::outer_loop::Ended;
-use scene::target::TargetShape;
-use scene::{Scene, SceneConfig, place_drawing};
+use app::{cut::Verdict, fitting::expected};
+use design::{equilibrium::warm_start::WarmStart, optimise::outer_loop::Ended};
+use scene::{Scene, SceneConfig, place_drawing, target::TargetShape};
 use serde_json::{Value, json};
-use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::{
+    collections::BTreeMap,
+    path::{Path, PathBuf},
+};
 
 /// An opened sheet.
 pub(crate) struct Opened {

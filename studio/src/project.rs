@@ -8,15 +8,16 @@
 
 use crate::request::{Drawing, NewSheet};
 use anyhow::{Context, Result, ensure};
-use app::new_project::NewProject;
-use app::output_file;
+use app::{new_project::NewProject, output_file};
 use design::optimise::outer_loop::Ended;
 use output::run_files::RUN_FILES;
-use scene::design_run::{left_run, stored_design};
-use scene::run_inputs::{INPUTS, SCENE_FILE, STATE_FILE, scene_file};
-use scene::{Scene, SceneConfig};
+use scene::{
+    Scene, SceneConfig,
+    design_run::{left_run, stored_design},
+    run_inputs::{INPUTS, SCENE_FILE, STATE_FILE, scene_file},
+};
 use std::path::{Path, PathBuf};
-use support::{regular_file, text_file};
+use support::{regular_file, text_file, unread};
 
 /// The first line of a scene that the studio writes. It changes no other scene.
 const HEAD: &str =
@@ -165,8 +166,7 @@ fn copy_run(from: &Path, to: &Path) -> Result<()> {
     names.extend(RUN_FILES.iter().map(|file| PathBuf::from(file.name)));
     for name in names.iter().filter(|name| from.join(name).is_file()) {
         let (from, to) = (from.join(name), to.join(name));
-        let contents = regular_file::read(&from);
-        let contents = contents.with_context(|| format!("cannot read {}", from.display()))?;
+        let contents = regular_file::read(&from).map_err(unread(&from))?;
         output_file::create_folder_of(&to)?;
         output_file::write(&to, contents)?;
     }

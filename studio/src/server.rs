@@ -15,17 +15,23 @@
 //! machine, at any port, as ports are forwarded: a page of another name that resolves to 127.0.0.1
 //! has that name there.
 
-use crate::engine::Engine;
-use crate::event::Post;
-use crate::http::{Answer, Request};
-use crate::page::{Connection, page};
+use crate::{
+    engine::Engine,
+    event::Post,
+    http::{Answer, Request},
+    page::{Connection, page},
+};
 use anyhow::{Context, Result};
 use percent_encoding::percent_decode_str;
-use std::io::{self, Write};
-use std::net::{Ipv4Addr, TcpListener, TcpStream};
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::Duration;
+use std::{
+    io::{self, Write},
+    net::{Ipv4Addr, TcpListener, TcpStream},
+    sync::{
+        Arc,
+        atomic::{AtomicBool, Ordering},
+    },
+    time::Duration,
+};
 use support::regular_file;
 
 /// How often the flag that ends the server is read.

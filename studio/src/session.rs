@@ -1,32 +1,38 @@
 //! The scene that is shown, and the answers to requests.
 
-use crate::catalogue::is_example;
-use crate::draft::{Draft, Steps, draft};
-use crate::event::{Event, Kind};
-use crate::full_analysis::{FullAnalysis, Listener, Resting, Shown, refusal, run_name};
-use crate::opened::{Opened, Run, fitted_to};
-use crate::panels::with_panels;
-use crate::project::Project;
-use crate::request::{Change, Drawing, Files, NewSheet, Request};
-use crate::run_listing::files_of_run;
+use crate::{
+    catalogue::is_example,
+    draft::{Steps, draft, draft_data},
+    event::{Event, Kind, locked},
+    full_analysis::{FullAnalysis, Listener, Resting, refusal, run_name, shown},
+    opened::{Opened, Run, fitted_to},
+    panels::with_panels,
+    project::Project,
+    request::{Change, Drawing, Files, NewSheet, Request},
+    run_listing::files_of_run,
+};
 use analysis::levels::levels;
 use anyhow::{Context, Result, anyhow, ensure};
-use app::cut::{machine_file_of_run, tiles_of_run};
-use app::design::write_run;
-use app::failure::message;
-use app::run_folder;
-use app::shell_word::shell_word;
+use app::{
+    cut::{machine_file_of_run, tiles_of_run},
+    design::write_run,
+    failure::message,
+    run_folder,
+    shell_word::shell_word,
+};
 use design::optimise::outer_loop::Ended;
-use output::run_page::PageData;
-use scene::design_run::inverse_design;
-use scene::{Scene, SceneConfig};
+use scene::{Scene, SceneConfig, design_run::inverse_design};
 use serde::Serialize;
 use serde_json::{Value, json};
-use std::collections::BTreeMap;
-use std::path::PathBuf;
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex, PoisonError};
-use std::time::Instant;
+use std::{
+    collections::BTreeMap,
+    path::PathBuf,
+    sync::{
+        Arc, Mutex,
+        atomic::{AtomicBool, Ordering},
+    },
+    time::Instant,
+};
 use support::caught_panic;
 
 /// The files that can be fetched, by the names that pages know.
@@ -171,10 +177,9 @@ impl Session {
         self.list_files()?;
         self.tell(Kind::Working, &"everyday");
         let sheet = self.opened()?;
-        self.analysis.compute(match sheet.run() {
-            Some(run) => Resting::Run(run.scene.clone()),
-            None => Resting::Start(sheet.scene.clone()),
-        });
+        let run = sheet.run();
+        let scene = run.map_or(&sheet.scene, |run| &run.scene).clone();
+        self.analysis.compute(Resting { scene, is_run: run.is_some() });
         Ok(())
     }
 
@@ -241,8 +246,8 @@ impl Session {
         if self.opened()?.by.is_none() {
             self.tell_scene();
         }
-        let draft = Draft::new(&self.opened()?.scene, &problem, &deployment, begin);
-        (self.listener)(Event::new(Kind::Draft, &draft));
+        let draft = draft_data(&self.opened()?.scene, &problem, &deployment, begin);
+        self.tell(Kind::Draft, &draft);
         Ok(())
     }
 
@@ -303,16 +308,14 @@ impl Session {
         let problem = scene.problem()?;
         let mut steps = Steps::default();
         let listener = &self.listener;
-        let designed = inverse_design(&scene, stop, &mut |search| {
+        let designed = inverse_design(&scene, stop, &mut |_, search| {
             if let Some(step) = steps.step(&scene, &problem, search) {
                 listener(Event::new(Kind::Step, &step));
             }
         })?;
         self.tell(Kind::Working, &"files");
         let report = write_run(&scene, &designed, false)?;
-        let page = PageData::new(&scene, &designed, &report);
-        let run = Some(run_name(&scene));
-        self.tell(Kind::Page, &Shown { page, run, ms: None });
+        (self.listener)(shown(&scene, &designed, &report, true, None));
         let adopted = SceneConfig {
             output: self.opened()?.project.next_run(),
             ..scene.starting_at(&designed.search.best)
@@ -391,7 +394,7 @@ impl Session {
         self.tell(Kind::Files, &json!({ "files": listed, "verdicts": run.verdicts }));
         let names = listed.into_iter().map(|file| file.name);
         let fetched = names.map(|name| (name.clone(), folder.join(name)));
-        *self.files.lock().unwrap_or_else(PoisonError::into_inner) = fetched.collect();
+        *locked(&self.files) = fetched.collect();
         Ok(())
     }
 

@@ -4,11 +4,10 @@
 
 use crate::page::{Connection, page};
 use anyhow::{Context, Result};
-use app::new_project::WEIGHTS;
-use app::output_file;
+use app::{new_project::WEIGHTS, output_file};
 use serde_json::json;
 use std::path::{Path, PathBuf};
-use support::regular_file;
+use support::{regular_file, unread};
 
 /// Folders of the materials and examples of the studio, and of the files that they name.
 const CONFIGS: [&str; 4] =
@@ -26,8 +25,7 @@ pub fn write(folder: &Path) -> Result<()> {
     }
     files.sort();
     for file in &files {
-        let bytes = regular_file::read(file);
-        let bytes = bytes.with_context(|| format!("cannot read {}", file.display()))?;
+        let bytes = regular_file::read(file).map_err(unread(file))?;
         let copy = folder.join(file);
         output_file::create_folder_of(&copy)?;
         output_file::write(&copy, bytes)?;

@@ -37,6 +37,34 @@ impl From<&str> for Fault {
     }
 }
 
+/// The fault that another error describes, for use in `map_err`.
+pub fn said(error: impl fmt::Display) -> Fault {
+    error.to_string().into()
+}
+
+/// Maps an error at a place, such as a file or a key, for use in `map_err`.
+pub fn at<E: fmt::Display>(place: impl fmt::Display) -> impl FnOnce(E) -> Fault {
+    move |error| format!("{place}: {error}").into()
+}
+
+/// Returns the fault with a message, given as to `format!`, unless a condition holds.
+#[macro_export]
+macro_rules! ensure {
+    ($holds:expr, $($message:tt)+) => {
+        if !$holds {
+            $crate::refuse!($($message)+);
+        }
+    };
+}
+
+/// Returns the fault with a message, given as to `format!`.
+#[macro_export]
+macro_rules! refuse {
+    ($($message:tt)+) => {
+        return Err($crate::Fault::from(format!($($message)+)).into())
+    };
+}
+
 /// Maps the error of reading `path`, for use in `map_err`.
 pub fn unread<E: fmt::Display>(path: &Path) -> impl FnOnce(E) -> Fault {
     move |error| format!("cannot read {}: {error}", path.display()).into()

@@ -2,6 +2,7 @@
 //! `schemars(range(..))` of its field, and its unit in the first parentheses of the field's
 //! documentation, as in "Thickness of the sheet (mm)".
 
+use crate::fault::Fault;
 use schemars::{JsonSchema, schema_for};
 use serde::Serialize;
 use serde_json::Value;
@@ -12,6 +13,12 @@ use std::fmt;
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{0}")]
 pub struct OutOfRange(String);
+
+impl From<OutOfRange> for Fault {
+    fn from(OutOfRange(what): OutOfRange) -> Self {
+        what.into()
+    }
+}
 
 /// The smallest and the largest admissible number; infinite without a limit.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -55,3 +55,6 @@ pub mod verbose;
 pub mod vtk;
 pub mod whole_file;
 pub mod worker_pool;
+
+pub use fault::{Fault, at, said, unread, unwritten};
+pub use file_error::FileError;

@@ -3,8 +3,6 @@
 use dataset::DatasetError;
 use design::objective::design_problem::DesignError;
 use fe_driver::{CampaignError, SolveListError};
-use scene::SceneError;
-use scene::design_run::InverseDesignError;
 use std::path::Path;
 use support::fault::Fault;
 use support::file_error::FileError;
@@ -20,11 +18,7 @@ pub enum VerificationError {
     #[error(transparent)]
     Dataset(#[from] DatasetError),
     #[error(transparent)]
-    Scene(#[from] SceneError),
-    #[error(transparent)]
     Design(#[from] DesignError),
-    #[error(transparent)]
-    Run(#[from] InverseDesignError),
     #[error("cannot use {0}")]
     File(#[from] FileError),
     #[error("finite elements solved no hinge: {0}. Try another mesh with --tier")]

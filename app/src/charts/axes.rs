@@ -1,12 +1,12 @@
-//! What the charts share: axes with names, named lines, the box with the names.
+//! What the charts share: two axes, curves and marks, and the box with their names.
 
-use super::{Area, ChartError, ChartResult, FONT, GUIDE};
-use plotters::chart::SeriesLabelPosition;
-use plotters::coord::ranged1d::{AsRangedCoord, Ranged, ValueFormatter};
-use plotters::prelude::*;
-
-/// A chart with two axes.
-pub type Chart<'a, X, Y> = ChartContext<'a, SVGBackend<'a>, Cartesian2d<X, Y>>;
+use super::{Area, ChartResult, FONT, GUIDE};
+use plotters::{
+    chart::SeriesLabelPosition,
+    coord::ranged1d::{AsRangedCoord, Ranged, ValueFormatter},
+    prelude::*,
+};
+use std::collections::HashSet;
 
 /// An axis: its range, linear or logarithmic, its name and the text of a tick.
 pub struct Axis<'n, R> {
@@ -36,24 +36,58 @@ impl<'n, R> Axis<'n, R> {
     }
 }
 
-/// An empty chart with a caption, which may be empty.
-pub fn axes<'a, X, Y>(
-    area: &Area<'a>,
+/// How points are drawn; sizes in px.
+#[derive(Clone, Copy)]
+pub enum Look {
+    /// A line through them.
+    Line,
+    /// A dashed line through them.
+    Dashed,
+    /// A circle of this radius at each.
+    Circles(i32),
+    /// A cross of this size at each.
+    Crosses(i32),
+    /// A rectangle between two corners.
+    Band,
+    /// The name of the series at each, in a font of this size.
+    Text(i32),
+}
+
+/// A curve or marks of a chart.
+pub struct Series {
+    name: String,
+    points: Vec<(f64, f64)>,
+    look: Look,
+    style: ShapeStyle,
+}
+
+/// A curve or marks. In the box with the names is the first series of every name that is not empty.
+pub fn series(
+    name: impl Into<String>,
+    points: impl IntoIterator<Item = (f64, f64)>,
+    look: Look,
+    style: impl Into<ShapeStyle>,
+) -> Series {
+    let points = points.into_iter().collect();
+    Series { name: name.into(), points, look, style: style.into() }
+}
+
+/// Draws a chart with a caption, and at a position the box with the names of its series.
+pub fn chart<X, Y>(
+    area: &Area,
     caption: &str,
-    across: Axis<X>,
-    up: Axis<Y>,
-) -> Result<Chart<'a, X::CoordDescType, Y::CoordDescType>, ChartError>
+    (across, up): (Axis<X>, Axis<Y>),
+    all: Vec<Series>,
+    box_with_names: SeriesLabelPosition,
+) -> ChartResult
 where
     X: AsRangedCoord<Value = f64>,
     Y: AsRangedCoord<Value = f64>,
     X::CoordDescType: Ranged<ValueType = f64> + ValueFormatter<f64>,
     Y::CoordDescType: Ranged<ValueType = f64> + ValueFormatter<f64>,
 {
-    let mut builder = ChartBuilder::on(area);
-    if !caption.is_empty() {
-        builder.caption(caption, (FONT, 15));
-    }
-    let mut chart = builder
+    let mut chart = ChartBuilder::on(area)
+        .caption(caption, (FONT, 15))
         .margin(10)
         .margin_right(24)
         .x_label_area_size(40)
@@ -68,54 +102,36 @@ where
         .x_desc(across.name)
         .y_desc(up.name)
         .draw()?;
-    Ok(chart)
-}
-
-/// A line with its name.
-pub fn line<X, Y>(
-    chart: &mut Chart<'_, X, Y>,
-    name: &str,
-    points: impl IntoIterator<Item = (f64, f64)>,
-    style: impl Into<ShapeStyle>,
-) -> ChartResult
-where
-    X: Ranged<ValueType = f64>,
-    Y: Ranged<ValueType = f64>,
-{
-    let style = style.into();
-    chart
-        .draw_series(LineSeries::new(points, style))?
-        .label(name)
-        .legend(move |(x, y)| PathElement::new([(x, y), (x + 16, y)], style));
-    Ok(())
-}
-
-/// Filled circles.
-pub fn marks<X, Y>(
-    chart: &mut Chart<'_, X, Y>,
-    points: impl IntoIterator<Item = (f64, f64)>,
-    size: i32,
-    colour: impl Into<RGBAColor>,
-) -> ChartResult
-where
-    X: Ranged<ValueType = f64>,
-    Y: Ranged<ValueType = f64>,
-{
-    let colour = colour.into();
-    let circle = |at| Circle::new(at, size, colour.filled());
-    chart.draw_series(points.into_iter().map(circle))?;
-    Ok(())
-}
-
-/// The box with the names of the lines.
-pub fn names<X, Y>(chart: &mut Chart<'_, X, Y>, position: SeriesLabelPosition) -> ChartResult
-where
-    X: Ranged<ValueType = f64>,
-    Y: Ranged<ValueType = f64>,
-{
+    let mut named = HashSet::from([String::new()]);
+    for Series { name, points, look, style } in all {
+        let each = points.iter().copied();
+        let drawn = match look {
+            Look::Line => chart.draw_series(LineSeries::new(points, style)),
+            Look::Dashed => chart.draw_series(DashedLineSeries::new(points, 6, 4, style)),
+            Look::Circles(size) => chart.draw_series(each.map(|at| Circle::new(at, size, style))),
+            Look::Crosses(size) => chart.draw_series(each.map(|at| Cross::new(at, size, style))),
+            Look::Band => chart.draw_series([Rectangle::new([points[0], points[1]], style)]),
+            Look::Text(size) => {
+                let text = |at| Text::new(name.clone(), at, (FONT, size).into_font());
+                chart.draw_series(each.map(text))?;
+                continue;
+            }
+        }?;
+        if named.insert(name.clone()) {
+            drawn.label(name).legend(move |(x, y)| match look {
+                Look::Circles(size) => Circle::new((x + 9, y), size, style).into_dyn(),
+                Look::Crosses(size) => Cross::new((x + 9, y), size, style).into_dyn(),
+                Look::Band => Rectangle::new([(x, y - 5), (x + 18, y + 5)], style).into_dyn(),
+                _ => PathElement::new([(x, y), (x + 16, y)], style).into_dyn(),
+            });
+        }
+    }
+    if named.len() == 1 {
+        return Ok(());
+    }
     chart
         .configure_series_labels()
-        .position(position)
+        .position(box_with_names)
         .label_font((FONT, 12))
         .border_style(GUIDE)
         .background_style(WHITE.mix(0.85))

@@ -1,9 +1,10 @@
 //! Chart of the levels of a scene: seconds of a search against the difference to the finest level.
 
-use super::axes::{Axis, axes, names};
-use super::*;
-use analysis::error_budget::ErrorCause;
-use analysis::levels::Levels;
+use super::{
+    axes::{Axis, Look, chart, series},
+    *,
+};
+use analysis::{error_budget::ErrorCause, levels::Levels};
 
 /// Size of the chart (px).
 const SIZE: (u32, u32) = (640, 460);
@@ -36,33 +37,27 @@ pub fn levels(found: &Levels) -> Result<String> {
     let heights = heights.chain(others).chain(of(ErrorCause::WindowMesh));
     let across = around(points.iter().map(|point| point.0));
     let up = around(heights);
+    let seconds = Axis::powers(across.clone().log_scale(), "seconds of a search");
+    let corners = Axis::powers(up.clone().log_scale(), "largest difference of a panel corner, mm");
+    let band = of(ErrorCause::WindowMesh).map(|mesh| {
+        let corners = [(across.start, up.start), (across.end, mesh)];
+        let name = "below: not known better, mesh of the windows";
+        series(name, corners, Look::Band, GUIDE.mix(0.25).filled())
+    });
+    let lines = LINES.into_iter().filter_map(|(cause, colour)| {
+        let corners = of(cause)?;
+        let ends = [across.start, across.end].map(|seconds| (seconds, corners));
+        Some(series(cause.name(), ends, Look::Line, colour.stroke_width(1)))
+    });
+    let places = points.iter().map(|point| (point.0, point.1));
+    let dots = series("", places, Look::Circles(5), POINT.filled());
+    let names = points.iter().map(|(seconds, corners, name)| {
+        series(*name, [(1.12 * seconds, *corners)], Look::Text(13), BLACK)
+    });
+    let all = band.into_iter().chain(lines).chain([dots]).chain(names).collect();
+    let names = SeriesLabelPosition::UpperRight;
     drawn(SIZE, |root| {
-        let seconds = Axis::powers(across.clone().log_scale(), "seconds of a search");
-        let corners =
-            Axis::powers(up.clone().log_scale(), "largest difference of a panel corner, mm");
-        let mut chart = axes(root, "Levels, and what no level lowers", seconds, corners)?;
-        if let Some(mesh) = of(ErrorCause::WindowMesh) {
-            let band = [(across.start, up.start), (across.end, mesh)];
-            chart
-                .draw_series([Rectangle::new(band, GUIDE.mix(0.25).filled())])?
-                .label("below: not known better, mesh of the windows")
-                .legend(|(x, y)| {
-                    Rectangle::new([(x, y - 5), (x + 18, y + 5)], GUIDE.mix(0.25).filled())
-                });
-        }
-        for (cause, colour) in LINES {
-            if let Some(corners) = of(cause) {
-                let ends = [across.start, across.end].map(|seconds| (seconds, corners));
-                axes::line(&mut chart, cause.name(), ends, colour.stroke_width(1))?;
-            }
-        }
-        chart.draw_series(
-            (points.iter()).map(|point| Circle::new((point.0, point.1), 5, POINT.filled())),
-        )?;
-        chart.draw_series(points.iter().map(|(seconds, corners, name)| {
-            Text::new((*name).to_owned(), (1.12 * seconds, *corners), (FONT, 13).into_font())
-        }))?;
-        names(&mut chart, SeriesLabelPosition::UpperRight)
+        chart(root, "Levels, and what no level lowers", (seconds, corners), all, names)
     })
 }
 

@@ -12,14 +12,17 @@
 //! It is rotated about the held panel by the rotation that the panel would have in the symmetric
 //! deployment.
 
-use crate::input_file;
-use crate::new_project::cut_from::CutFrom;
-use crate::new_project::edited::{heading, scale, set};
-use crate::new_project::template::Template;
+use crate::{
+    input_file,
+    new_project::{
+        cut_from::CutFrom,
+        edited::{heading, scale, set},
+        template::Template,
+    },
+};
 use anyhow::{Context, Result};
 use hinge::Regime;
-use scene::drawing::drawn_outline::numbered;
-use scene::{CuttingConfig, Paper, place_drawing, rounded};
+use scene::{CuttingConfig, Paper, drawing::drawn_outline::numbered, place_drawing, rounded};
 use std::path::Path;
 use support::relative_path;
 use toml_edit::{Array, DocumentMut, Item, Table, value};

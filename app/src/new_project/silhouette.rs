@@ -1,8 +1,10 @@
 //! The scene of a sheet that opens onto a drawing: what the fit has chosen, written into the first
 //! scene.
 
-use crate::fitting::fit_to_target;
-use crate::new_project::edited::{heading, set};
+use crate::{
+    fitting::fit_to_target,
+    new_project::edited::{heading, set},
+};
 use anyhow::{Context, Result};
 use scene::{Scene, SceneConfig, TargetShape};
 use toml_edit::{Array, DocumentMut, value};

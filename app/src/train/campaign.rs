@@ -1,14 +1,18 @@
 //! The trainings of a campaign: of every network that it names, four seeds, tested on its spot
 //! check.
 
-use crate::state_errors::{print_errors, record};
-use crate::train::TrainingTask;
+use crate::{
+    state_errors::{print_errors, record},
+    train::TrainingTask,
+};
 use ::train::TrainingConfig;
 use anyhow::{Context, Result, ensure};
 use dataset::Database;
 use fe_driver::Campaign;
-use std::path::{Path, PathBuf};
-use std::sync::atomic::AtomicBool;
+use std::{
+    path::{Path, PathBuf},
+    sync::atomic::AtomicBool,
+};
 use support::toml_file;
 use surrogate::Surrogate;
 

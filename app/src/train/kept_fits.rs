@@ -1,14 +1,14 @@
 //! Trainings that continue after a stop, and networks stored in a folder, so that each is trained
 //! once.
 
-use crate::failure::Unfinished;
-use crate::output_file;
-use crate::progress::Progress;
+use crate::{failure::Unfinished, output_file, progress::Progress};
 use ::train::{Start, TrainError, Trained, Training, TrainingConfig, TrainingData};
 use anyhow::{Result, bail};
-use std::path::Path;
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::{Duration, Instant};
+use std::{
+    path::Path,
+    sync::atomic::{AtomicBool, Ordering},
+    time::{Duration, Instant},
+};
 use surrogate::{Card, Surrogate};
 
 /// Maximum training time that is lost if the process is killed.

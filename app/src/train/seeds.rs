@@ -4,33 +4,34 @@
 //! `X-seed-S.state`, from which a stopped training continues. The states remain: from them the
 //! command that finds all seeds trained writes the weights, the curves and the comparison.
 
-use crate::failure::Unfinished;
-use crate::progress::announce;
-use crate::train::kept_fits::{continued_fit, is_of};
-use crate::train::{TrainingTask, hold};
-use crate::{output_file, run_folder};
+use crate::{
+    failure::Unfinished,
+    output_file,
+    progress::announce,
+    run_folder,
+    train::{
+        TrainingTask, hold,
+        kept_fits::{continued_fit, is_of},
+    },
+};
 use ::train::{Trained, TrainingConfig};
 use anyhow::{Context, Result, bail, ensure};
 use dataset::Database;
-use std::path::{Path, PathBuf};
-use std::sync::atomic::Ordering;
+use std::{
+    path::{Path, PathBuf},
+    sync::atomic::Ordering,
+};
 use support::table::{Cell, Table};
 use surrogate::Surrogate;
 
-/// What all seeds of one command have in common.
-#[derive(Clone, Copy)]
-struct Shared<'a> {
+/// The trainings of all seeds of one command.
+struct Seeds<'a> {
+    task: &'a TrainingTask<'a>,
     database: &'a Database,
     /// Initial weights of every training; random ones if `None`.
     base: Option<&'a Surrogate>,
-}
-
-impl Shared<'_> {
-    /// Whether a file holds weights of the training with this configuration.
-    fn holds(self, weights: &Path, config: &TrainingConfig) -> bool {
-        let loaded = Surrogate::load(weights);
-        loaded.is_ok_and(|weights| is_of(weights.card(), self.database.into(), config, self.base))
-    }
+    /// The configuration of every seed.
+    configs: Vec<TrainingConfig>,
 }
 
 impl TrainingTask<'_> {
@@ -44,38 +45,51 @@ impl TrainingTask<'_> {
         let seeds = config.seed..config.seed + self.seeds;
         let with = |seed| TrainingConfig { seed, ..config.clone() };
         let configs: Vec<TrainingConfig> = seeds.map(with).collect();
-        let shared = Shared { database, base };
-        self.refuse_other_weights(&configs, shared)?;
-        self.train_each(&configs, shared)?;
-        self.choose(&configs, shared)
+        let seeds = Seeds { task: self, database, base, configs };
+        if !self.replace {
+            seeds.refuse_other_weights()?;
+        }
+        seeds.train_each()?;
+        seeds.choose()
+    }
+
+    /// The path of the weights of one of several seeds.
+    pub(super) fn member(&self, seed: u64) -> PathBuf {
+        self.with_suffix(&format!("seed-{seed}.safetensors"))
+    }
+}
+
+impl Seeds<'_> {
+    /// Whether a file holds weights of the training with this configuration.
+    fn holds(&self, weights: &Path, config: &TrainingConfig) -> bool {
+        let loaded = Surrogate::load(weights);
+        loaded.is_ok_and(|weights| is_of(weights.card(), self.database.into(), config, self.base))
     }
 
     /// An error if files of other trainings would be replaced.
-    fn refuse_other_weights(&self, configs: &[TrainingConfig], shared: Shared) -> Result<()> {
-        if self.replace {
-            return Ok(());
-        }
-        for config in configs {
-            let member = self.member(config.seed);
-            if !shared.holds(&member, config) {
+    fn refuse_other_weights(&self) -> Result<()> {
+        for config in &self.configs {
+            let member = self.task.member(config.seed);
+            if !self.holds(&member, config) {
                 output_file::refuse_existing(&member)?;
             }
         }
-        if !(configs.iter()).any(|config| shared.holds(&self.out, config)) {
-            output_file::refuse_existing(&self.out)?;
+        let out = &self.task.out;
+        if !self.configs.iter().any(|config| self.holds(out, config)) {
+            output_file::refuse_existing(out)?;
         }
         Ok(())
     }
 
     /// Trains the seeds. One that fails does not end the others.
-    fn train_each(&self, configs: &[TrainingConfig], shared: Shared) -> Result<()> {
+    fn train_each(&self) -> Result<()> {
         let (mut left, mut failed) = (0, 0);
-        for config in configs {
-            if self.stop.load(Ordering::Relaxed) {
+        for config in &self.configs {
+            if self.task.stop.load(Ordering::Relaxed) {
                 left += 1;
                 continue;
             }
-            match self.train_seed(config, shared) {
+            match self.train_seed(config) {
                 Ok(()) => {}
                 Err(error) if error.is::<Unfinished>() => left += 1,
                 Err(error) => {
@@ -85,54 +99,47 @@ impl TrainingTask<'_> {
             }
         }
         match left {
-            0 => ensure!(failed == 0, "{failed} of {} trainings failed", configs.len()),
+            0 => ensure!(failed == 0, "{failed} of {} trainings failed", self.configs.len()),
             _ => bail!(Unfinished { left, what: "trainings" }),
         }
         Ok(())
     }
 
-    fn train_seed(&self, config: &TrainingConfig, shared: Shared) -> Result<()> {
-        let member = self.member(config.seed);
+    /// Trains a seed, unless its training has ended and its state is there.
+    fn train_seed(&self, config: &TrainingConfig) -> Result<()> {
+        let member = self.task.member(config.seed);
         let _held = hold(&member)?;
-        if !self.is_trained(config, shared) {
+        if !(state(&member).exists() && self.holds(&member, config)) {
             announce(&format!("seed {} -> {}", config.seed, member.display()));
-            let trained = self.continued(config, shared, self.replace)?;
+            let trained = self.continued(config, self.task.replace)?;
             trained.surrogate.save(&member)?;
         }
         Ok(())
     }
 
-    /// Whether the training of a seed has ended, and its state is there.
-    fn is_trained(&self, config: &TrainingConfig, shared: Shared) -> bool {
-        let member = self.member(config.seed);
-        state(&member).exists() && shared.holds(&member, config)
-    }
-
-    fn continued(&self, config: &TrainingConfig, shared: Shared, discard: bool) -> Result<Trained> {
-        let state = state(&self.member(config.seed));
-        let Shared { database, base } = shared;
-        continued_fit(database.into(), config, base, &state, discard, self.stop)
+    fn continued(&self, config: &TrainingConfig, discard: bool) -> Result<Trained> {
+        let state = state(&self.task.member(config.seed));
+        continued_fit(self.database.into(), config, self.base, &state, discard, self.task.stop)
     }
 
     /// Writes the weights of the best seed with their curves and plots, and the comparison of the
     /// seeds.
-    fn choose(&self, configs: &[TrainingConfig], shared: Shared) -> Result<()> {
-        let members = configs.iter();
-        let members = members.map(|config| self.continued(config, shared, false));
+    fn choose(&self) -> Result<()> {
+        let members = self.configs.iter().map(|config| self.continued(config, false));
         let members: Vec<Trained> = members.collect::<Result<_>>()?;
         let errors = members.iter().map(validation_error).enumerate();
         let best = errors.min_by(|(_, left), (_, right)| left.total_cmp(right));
         let (best, _) = best.context("`--seeds` must be at least 1")?;
         let mut table = Table::new(COLUMNS);
-        for (place, (config, member)) in configs.iter().zip(&members).enumerate() {
+        for (place, (config, member)) in self.configs.iter().zip(&members).enumerate() {
             table.row(self.cells(config, member, place == best));
         }
-        let name = self.with_suffix("seeds");
+        let name = self.task.with_suffix("seeds");
         let folder = name.parent().unwrap_or(Path::new(""));
         let name = name.file_name().unwrap_or_default().to_string_lossy();
         run_folder::write_table(folder, &name, &table)?;
         println!("{table}\n");
-        self.write(&members[best])
+        self.task.write(&members[best])
     }
 
     /// The cells of one seed in the comparison.
@@ -145,13 +152,8 @@ impl TrainingTask<'_> {
         let validation = validation_errors(member).map(|error| 100.0 * error);
         let errors = validation.into_iter().chain(member.test_errors.percents());
         cells.extend(errors.map(|percent| Cell::fixed(percent, 2)));
-        cells.push(Cell::text(self.member(config.seed).display()));
+        cells.push(Cell::text(self.task.member(config.seed).display()));
         cells
-    }
-
-    /// The path of the weights of one of several seeds.
-    pub(super) fn member(&self, seed: u64) -> PathBuf {
-        self.with_suffix(&format!("seed-{seed}.safetensors"))
     }
 }
 

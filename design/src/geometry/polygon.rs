@@ -82,6 +82,11 @@ pub fn bounds(points: impl IntoIterator<Item = [f64; 2]>) -> [[f64; 2]; 2] {
     })
 }
 
+/// Width and height of a rectangle from its lower left to its upper right corner.
+pub fn size([low, high]: [[f64; 2]; 2]) -> [f64; 2] {
+    [high[0] - low[0], high[1] - low[1]]
+}
+
 /// Distance from a point to the segment from `a` to `b` (mm).
 pub fn distance_to_segment(point: [f64; 2], a: [f64; 2], b: [f64; 2]) -> f64 {
     distance(point, nearest_on_segment(point, a, b))

@@ -1,11 +1,15 @@
 //! Where panels are held and pulled: holes for nails and hooks, which are cut, and marks, which are
 //! not.
 
-use crate::cut_file::cut_drawing::{CutDrawing, Layer};
-use crate::cut_file::fabrication_error::FabricationError;
-use crate::display::Shape;
-use design::sheet::attachment::{Clearance, Obstacle};
-use design::sheet::cut_sheet::{AttachmentPoint, Sheet};
+use crate::{
+    cut_file::cut_drawing::{CutDrawing, Layer},
+    display::Shape,
+};
+use design::sheet::{
+    attachment::{Clearance, Obstacle},
+    cut_sheet::{AttachmentPoint, Sheet},
+};
+use support::Fault;
 
 /// Half the length of the arms of a mark (mm).
 const ARM: f64 = 2.0;
@@ -27,10 +31,10 @@ pub struct PlacedAttachment {
 
 impl PlacedAttachment {
     /// An attachment on its sheet; an error if its hole or its clip lacks room.
-    pub(super) fn new(sheet: &Sheet, at: &AttachmentPoint) -> Result<Self, FabricationError> {
+    pub(super) fn new(sheet: &Sheet, at: &AttachmentPoint) -> Result<Self, Fault> {
         let clearances = at.clearances(sheet);
         if let Some(short) = clearances.iter().find(|room| room.distance < room.least) {
-            return Err(without_room(at.name.clone(), *short));
+            return Err(without_room(&at.name, *short));
         }
         Ok(Self {
             name: at.name.clone(),
@@ -58,16 +62,21 @@ impl PlacedAttachment {
 }
 
 /// What keeps an attachment from being made.
-fn without_room(name: String, short: Clearance) -> FabricationError {
-    let Clearance { obstacle, distance, least } = short;
+fn without_room(name: &str, Clearance { obstacle, distance, least }: Clearance) -> Fault {
     let (part, what) = match obstacle {
         Obstacle::Ends(_) => {
-            let (width, room) = (least, distance);
-            return FabricationError::ClipTooWide { name, width, room };
+            return format!(
+                "the clip of {name} is {least} mm wide, its edge {distance:.1} mm: use a narrower clip"
+            )
+            .into();
         }
         Obstacle::Edge(_) => ("centre of the hole", "the edge of its panel".to_owned()),
         Obstacle::HoleToHinge(h) => ("centre of the hole", format!("the tip of hinge {h}")),
         Obstacle::ClipToHinge(h) => ("clip", format!("the tip of hinge {h}")),
     };
-    FabricationError::TooNear { part, name, what, distance, least }
+    format!(
+        "the {part} of {name} is {distance:.1} mm from {what}, and needs {least:.1} mm: move its `at` away from there, or make \
+         it smaller"
+    )
+    .into()
 }

@@ -1,8 +1,10 @@
 //! Shapes on layers: what every cut file draws. The shapes of a layer are cut one after the other.
 
 use crate::display::{Colour, Shape, Style, Text};
-use design::geometry::polygon::{area, mean};
-use design::geometry::region::Contour;
+use design::geometry::{
+    polygon::{area, mean},
+    region::Contour,
+};
 use serde::{Deserialize, Serialize};
 
 /// The tool or the purpose of a shape, in the order of cutting: what is cut later holds what is cut
@@ -87,10 +89,8 @@ impl CutDrawing {
     }
 
     /// Adds a cross with arms of the given length (mm).
-    pub(crate) fn add_cross(&mut self, layer: Layer, [x, y]: [f64; 2], arm: f64) {
-        for ends in [[[x - arm, y], [x + arm, y]], [[x, y - arm], [x, y + arm]]] {
-            self.add(layer, Shape::Line(ends));
-        }
+    pub(crate) fn add_cross(&mut self, layer: Layer, at: [f64; 2], arm: f64) {
+        self.shapes.extend(Shape::cross(at, arm).map(|line| (layer, line)));
     }
 
     /// The shapes that the tool cuts.

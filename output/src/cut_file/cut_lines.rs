@@ -17,20 +17,26 @@
 //! **Over-run.** A slit that is open on the outline is cut beyond the finished edge, so that no web
 //! is left between the two cuts.
 
-use crate::cut_file::attachments::PlacedAttachment;
-use crate::cut_file::cut_drawing::{CutDrawing, Layer};
-use crate::cut_file::fabrication_error::FabricationError;
-use crate::cut_file::gaps::{self, Cut};
-use crate::display::Shape;
-use design::geometry::polygon::{
-    distance, distance_between_segments, distance_to_segment, edges, side,
+use crate::{
+    cut_file::{
+        attachments::PlacedAttachment,
+        cut_drawing::{CutDrawing, Layer},
+        gaps::{self, Cut},
+    },
+    display::Shape,
 };
-use design::geometry::region::Contour;
-use design::objective::design_problem::Deployment;
-use design::pattern::cut_pattern::CutPattern;
-use design::sheet::cut_sheet::{AttachmentPoint, Hinge, Sheet};
+use design::{
+    geometry::{
+        polygon::{distance, distance_between_segments, distance_to_segment, edges, side},
+        region::Contour,
+    },
+    objective::design_problem::Deployment,
+    pattern::cut_pattern::CutPattern,
+    sheet::cut_sheet::{AttachmentPoint, Hinge, Sheet},
+};
 use scene::{CuttingConfig, Scene};
 use std::collections::BTreeMap;
+use support::{Fault, ensure};
 
 /// The least 1 + cos of the turn of an outline at a corner that moves in full with its edges.
 const SHARPEST: f64 = 0.1;
@@ -74,7 +80,7 @@ pub struct CutLines {
 
 impl CutLines {
     /// The cuts of a deployed design of a scene.
-    pub fn of(scene: &Scene, deployment: &Deployment) -> Result<Self, FabricationError> {
+    pub fn of(scene: &Scene, deployment: &Deployment) -> Result<Self, Fault> {
         let attachments = scene.actuation().attachments;
         let (pattern, sheet) = (&deployment.pattern, &deployment.sheet);
         Self::new(pattern, sheet, scene.config.cutting, &attachments)
@@ -88,7 +94,7 @@ impl CutLines {
         sheet: &Sheet,
         cutting: CuttingConfig,
         attachments: &[AttachmentPoint],
-    ) -> Result<Self, FabricationError> {
+    ) -> Result<Self, Fault> {
         let process = sheet.options.process;
         let holes: Vec<Hole> = sheet
             .hinges
@@ -96,13 +102,12 @@ impl CutLines {
             .map(|hinge| Hole { centre: hinge.tip, radius: process.hole_radius(hinge.w_lig) })
             .collect();
         for (hinge, hole) in holes.iter().enumerate() {
-            if 2.0 * hole.radius <= process.slit_width {
-                return Err(FabricationError::HoleTooSmall {
-                    hinge,
-                    diameter: 2.0 * hole.radius,
-                    slit: process.slit_width,
-                });
-            }
+            let (diameter, slit) = (2.0 * hole.radius, process.slit_width);
+            ensure!(
+                diameter > slit,
+                "the hole of hinge {hinge} is {diameter:.3} mm wide, which must exceed the slit of {slit} mm: \
+                 increase the ligament width or the fillet ratio"
+            );
         }
         let cuts = Self {
             slits: slits(pattern, sheet, &holes)?,
@@ -121,12 +126,15 @@ impl CutLines {
 
     /// The ligaments at the ends of a cut shorten it: every ligament must still end at its
     /// secondary cut, and every edge of a panel must be cut somewhere.
-    fn reach_what_they_cut(&self, sheet: &Sheet) -> Result<(), FabricationError> {
+    fn reach_what_they_cut(&self, sheet: &Sheet) -> Result<(), Fault> {
         for (hinge, modelled) in sheet.hinges.iter().enumerate() {
             let (width, modelled) = (self.clearance(hinge), modelled.w_lig);
-            if width > modelled + ROUNDING {
-                return Err(FabricationError::CutEndsBeforeLigament { hinge, width, modelled });
-            }
+            ensure!(
+                width <= modelled + ROUNDING,
+                "the cut opposite hinge {hinge} ends before its ligament, which is {width:.3} mm wide there and {modelled:.3} mm in \
+                 the model: narrow the ligaments at the ends of that cut, or keep the panels larger (objective.panel_shape, \
+                 objective.min_panel_width)"
+            );
         }
         let slits = self.slits.iter().map(|slit| slit.ends);
         let lines: Vec<_> = slits.chain(self.outline_edges()).collect();
@@ -143,9 +151,11 @@ impl CutLines {
             };
             let is_edge = |side| !of.is_trimmed() || hangs(side);
             let mut sides = edges(&of.corners).enumerate().filter(|(side, _)| is_edge(*side));
-            if !sides.all(|(_, (p, q))| is_cut([p, q])) {
-                return Err(FabricationError::EdgeNotCut { panel });
-            }
+            ensure!(
+                sides.all(|(_, (p, q))| is_cut([p, q])),
+                "an edge of panel {panel} is not cut: the ligaments at its ends are longer than the edge: narrow them, or keep the \
+                 panels larger (objective.panel_shape, objective.min_panel_width)"
+            );
         }
         Ok(())
     }
@@ -289,11 +299,7 @@ fn carries(line: &[[f64; 2]; 2], edge: [[f64; 2]; 2]) -> bool {
 }
 
 /// Every slit once: the main cut of one hinge (open on the outline) or of two.
-fn slits(
-    pattern: &CutPattern,
-    sheet: &Sheet,
-    holes: &[Hole],
-) -> Result<Vec<Slit>, FabricationError> {
+fn slits(pattern: &CutPattern, sheet: &Sheet, holes: &[Hole]) -> Result<Vec<Slit>, Fault> {
     let sites = &sheet.topology.sites;
     let at_corner: BTreeMap<usize, usize> =
         sites.iter().enumerate().map(|(hinge, site)| (site.corner, hinge)).collect();
@@ -311,9 +317,11 @@ fn slits(
         let main = sheet.hinges[hinge].main;
         let length = main[0] * (end[0] - tip[0]) + main[1] * (end[1] - tip[1]);
         let drilled = holes[hinge].radius + other.map_or(0.0, |other| holes[other].radius);
-        if length <= drilled {
-            return Err(FabricationError::SlitVanishes { hinge, length, drilled });
-        }
+        ensure!(
+            length > drilled,
+            "the slit at hinge {hinge} would be {length:.3} mm long, but the holes at its ends take \
+             {drilled:.3} mm: narrow the ligament or lengthen the cut"
+        );
         slits.push(Slit { ends: [tip, end], hinges: [Some(hinge), other] });
     }
     Ok(slits)

@@ -1,10 +1,11 @@
 //! The cut list: what to drill, what a caliper reads, and the amount of cutting, as CSV.
 
-use crate::cut_file::cut_lines::CutLines;
-use crate::cut_file::totals::{Totals, holes_by_diameter};
+use crate::cut_file::{
+    cut_lines::CutLines,
+    totals::{Totals, holes_by_diameter},
+};
 use analysis::mounting::{Fastener, Mounting};
-use design::geometry::polygon::distance;
-use design::sheet::cut_sheet::Sheet;
+use design::{geometry::polygon::distance, sheet::cut_sheet::Sheet};
 
 /// One row a hinge: its hole, its ligament as designed and as measured by a caliper next to the
 /// hole, and its panels.

@@ -4,8 +4,10 @@
 //! is then shortened by 2-opt: a run of cuts is cut backwards wherever this reduces the travel
 //! between the cuts.
 
-use crate::cut_file::cut_drawing::{CutDrawing, Layer};
-use crate::display::Shape;
+use crate::{
+    cut_file::cut_drawing::{CutDrawing, Layer},
+    display::Shape,
+};
 use design::geometry::polygon::distance;
 
 /// Maximum number of cuts in a run that is reversed: it bounds the time of a sweep over large

@@ -1,195 +1,113 @@
 //! DXF R2000 (AC1015) in millimetres, one layer per tool.
 //!
 //! A DXF file is a list of pairs, a group code and a value, in the sections HEADER, TABLES, BLOCKS,
-//! ENTITIES and OBJECTS. Every object has a hexadecimal handle and names its owner's. Reference:
+//! ENTITIES and OBJECTS. Every object has a hexadecimal handle and names its owner's. What is the
+//! same in every file is in `dxf.txt`, where `+NAME` is a new handle and `@NAME` that handle again. Reference:
 //! Autodesk, DXF Reference (AutoCAD 2000).
 
-use crate::cut_file::cut_drawing::{CutDrawing, Layer};
-use crate::display::{Anchor, Shape, Text};
+use crate::{
+    cut_file::cut_drawing::{CutDrawing, Layer},
+    display::{Anchor, Shape, Text},
+};
+use design::geometry::polygon::size;
 use scene::drawing::bulged::Vertex;
-use std::fmt::{Display, Write};
+use std::{collections::HashMap, fmt::Display};
+use support::add_line;
+
+const TEMPLATE: &str = include_str!("dxf.txt");
 
 /// The file of a drawing, identical for identical drawings.
 pub fn dxf(drawing: &CutDrawing) -> String {
-    let extent = drawing.bounds();
-    let mut body = Pairs::default();
-    let model_space = body.tables(drawing);
-    body.section("ENTITIES");
-    for (layer, shape) in &drawing.shapes {
-        body.entity(model_space, *layer, shape);
-    }
-    body.pair(0, "ENDSEC");
-    body.objects();
-    body.pair(0, "EOF");
-
+    let bounds = drawing.bounds();
+    let ([low, high], [width, height]) = (bounds, size(bounds));
+    let layers: Vec<Layer> = drawing.layers().collect();
+    let handles = TEMPLATE.matches("\n+").count() + layers.len() + drawing.shapes.len();
     let mut file = Pairs::default();
-    file.header(extent, body.handles + 1);
-    file.text + &body.text
+    for line in TEMPLATE.lines() {
+        match line {
+            "{seed}" => file.line(format_args!("{:X}", handles + 1)),
+            "{groups}" => file.line(format_args!("{handles:X}")),
+            "{low}" => file.point(10, low),
+            "{high}" => file.point(10, high),
+            // The view that a reader opens: the whole drawing.
+            "{view}" => {
+                file.ordinates(12, [low[0] + 0.5 * width, low[1] + 0.5 * height]);
+                file.pair(40, 1.1 * height.max(0.5 * width));
+            }
+            "{count}" => file.line(1 + layers.len()),
+            "{layers}" => layers.iter().for_each(|layer| file.layer(drawing, *layer)),
+            "{entities}" => {
+                (drawing.shapes.iter()).for_each(|(layer, shape)| file.entity(*layer, shape));
+            }
+            line => file.fixed(line),
+        }
+    }
+    file.text
 }
 
-/// The pairs written so far, and the last handle.
+/// The pairs written so far, the last handle, and the handles of the template.
 #[derive(Default)]
 struct Pairs {
     text: String,
     handles: u32,
+    named: HashMap<&'static str, u32>,
 }
 
 impl Pairs {
+    fn line(&mut self, value: impl Display) {
+        add_line!(self.text, "{value}");
+    }
+
     fn pair(&mut self, code: u16, value: impl Display) {
-        // Writing to a String cannot fail.
-        let _ = write!(self.text, "{code:>3}\n{value}\n");
+        add_line!(self.text, "{code:>3}\n{value}");
     }
 
-    fn pairs<const N: usize>(&mut self, pairs: [(u16, &str); N]) {
-        (pairs.iter()).for_each(|(code, value)| self.pair(*code, value));
+    /// A line of the template.
+    fn fixed(&mut self, line: &'static str) {
+        if let Some(name) = line.strip_prefix('+') {
+            self.handles += 1;
+            self.named.insert(name, self.handles);
+        }
+        match line.strip_prefix(['+', '@']) {
+            Some(name) => {
+                let handle = self.named[name];
+                self.line(format_args!("{handle:X}"));
+            }
+            None => self.line(line),
+        }
     }
 
-    fn handle(&mut self, code: u16, handle: u32) {
-        self.pair(code, format_args!("{handle:X}"));
+    /// x and y of a point, x with the given code.
+    fn ordinates(&mut self, code: u16, [x, y]: [f64; 2]) {
+        self.pair(code, x);
+        self.pair(code + 10, y);
     }
 
     /// The coordinates of a point, x with the given code.
-    fn point(&mut self, code: u16, [x, y]: [f64; 2]) {
-        for (axis, value) in [x, y, 0.0].into_iter().enumerate() {
-            self.pair(code + 10 * axis as u16, value);
-        }
+    fn point(&mut self, code: u16, at: [f64; 2]) {
+        self.ordinates(code, at);
+        self.pair(code + 20, 0);
     }
 
-    fn section(&mut self, name: &str) {
-        self.pairs([(0, "SECTION"), (2, name)]);
-    }
-
-    /// Begins an object with a new handle, which is returned.
-    fn object(&mut self, kind: &str, owner: u32, classes: &[&str]) -> u32 {
+    /// Begins an object, which belongs to an object of the template, with a new handle.
+    fn object(&mut self, kind: &str, owner: &str, classes: &[&str]) {
         self.handles += 1;
         self.pair(0, kind);
-        // Code 5 is another value of a dimension style.
-        let code = if kind == "DIMSTYLE" { 105 } else { 5 };
-        self.handle(code, self.handles);
-        self.handle(330, owner);
+        for (code, handle) in [(5, self.handles), (330, self.named[owner])] {
+            self.pair(code, format_args!("{handle:X}"));
+        }
         classes.iter().for_each(|class| self.pair(100, class));
-        self.handles
     }
 
-    fn header(&mut self, [low, high]: [[f64; 2]; 2], next_handle: u32) {
-        self.section("HEADER");
-        self.pairs([(9, "$ACADVER"), (1, "AC1015")]);
-        self.pairs([(9, "$DWGCODEPAGE"), (3, "ANSI_1252")]);
-        self.pairs([(9, "$HANDSEED"), (5, &format!("{next_handle:X}"))]);
-        // Millimetres, metric.
-        self.pairs([(9, "$INSUNITS"), (70, "4")]);
-        self.pairs([(9, "$MEASUREMENT"), (70, "1")]);
-        for (name, corner) in [("$EXTMIN", low), ("$EXTMAX", high)] {
-            self.pair(9, name);
-            self.point(10, corner);
-        }
-        self.pair(0, "ENDSEC");
+    fn layer(&mut self, drawing: &CutDrawing, layer: Layer) {
+        self.object("LAYER", "layers", &["AcDbSymbolTableRecord", "AcDbLayerTableRecord"]);
+        self.pair(2, layer.name());
+        self.pair(70, 0);
+        self.pair(62, drawing.pen(layer).1);
+        self.pair(6, "Continuous");
     }
 
-    /// Writes TABLES and BLOCKS; returns the handle of the model space, which owns the entities.
-    fn tables(&mut self, drawing: &CutDrawing) -> u32 {
-        let [low, high] = drawing.bounds();
-        self.section("TABLES");
-        let table = self.table("VPORT", 1);
-        self.record("VPORT", table, "AcDbViewportTableRecord", "*Active");
-        // The view that a reader opens: the whole drawing.
-        let size = [high[0] - low[0], high[1] - low[1]];
-        let centre = [low[0] + 0.5 * size[0], low[1] + 0.5 * size[1]];
-        for (code, [x, y]) in [(10, [0.0, 0.0]), (11, [1.0, 1.0]), (12, centre)] {
-            self.pair(code, x);
-            self.pair(code + 10, y);
-        }
-        self.pair(40, 1.1 * size[1].max(0.5 * size[0]));
-        self.pair(41, 2.0);
-        self.pair(0, "ENDTAB");
-
-        let table = self.table("LTYPE", 3);
-        for name in ["ByBlock", "ByLayer", "Continuous"] {
-            self.record("LTYPE", table, "AcDbLinetypeTableRecord", name);
-            self.pairs([(3, ""), (72, "65"), (73, "0"), (40, "0")]);
-        }
-        self.pair(0, "ENDTAB");
-
-        let layers: Vec<_> = drawing.layers().collect();
-        let table = self.table("LAYER", 1 + layers.len());
-        let layers = layers.into_iter().map(|layer| (layer.name(), drawing.pen(layer).1));
-        for (name, colour) in [("0", 7)].into_iter().chain(layers) {
-            self.record("LAYER", table, "AcDbLayerTableRecord", name);
-            self.pair(62, colour);
-            self.pair(6, "Continuous");
-        }
-        self.pair(0, "ENDTAB");
-
-        let table = self.table("STYLE", 1);
-        self.record("STYLE", table, "AcDbTextStyleTableRecord", "Standard");
-        self.pairs([(40, "0"), (41, "1"), (50, "0"), (71, "0"), (42, "2.5")]);
-        self.pairs([(3, "txt"), (4, ""), (0, "ENDTAB")]);
-
-        for empty in ["VIEW", "UCS"] {
-            self.table(empty, 0);
-            self.pair(0, "ENDTAB");
-        }
-        let table = self.table("APPID", 1);
-        self.record("APPID", table, "AcDbRegAppTableRecord", "ACAD");
-        self.pair(0, "ENDTAB");
-        let table = self.table("DIMSTYLE", 1);
-        self.pair(100, "AcDbDimStyleTable");
-        self.record("DIMSTYLE", table, "AcDbDimStyleTableRecord", "Standard");
-        self.pair(0, "ENDTAB");
-
-        let table = self.table("BLOCK_RECORD", 2);
-        let spaces = ["*Model_Space", "*Paper_Space"].map(|name| {
-            let handle = self.object(
-                "BLOCK_RECORD",
-                table,
-                &["AcDbSymbolTableRecord", "AcDbBlockTableRecord"],
-            );
-            self.pair(2, name);
-            self.pair(340, 0);
-            (name, handle)
-        });
-        self.pairs([(0, "ENDTAB"), (0, "ENDSEC")]);
-        self.blocks(spaces);
-        spaces[0].1
-    }
-
-    fn table(&mut self, name: &str, entries: usize) -> u32 {
-        self.pair(0, "TABLE");
-        self.pair(2, name);
-        self.handles += 1;
-        self.handle(5, self.handles);
-        self.handle(330, 0);
-        self.pair(100, "AcDbSymbolTable");
-        self.pair(70, entries);
-        self.handles
-    }
-
-    fn record(&mut self, kind: &str, table: u32, class: &str, name: &str) {
-        self.object(kind, table, &["AcDbSymbolTableRecord", class]);
-        self.pairs([(2, name), (70, "0")]);
-    }
-
-    fn blocks(&mut self, spaces: [(&str, u32); 2]) {
-        self.section("BLOCKS");
-        for (name, space) in spaces {
-            for (kind, class) in [("BLOCK", "AcDbBlockBegin"), ("ENDBLK", "AcDbBlockEnd")] {
-                self.object(kind, space, &["AcDbEntity"]);
-                if name == "*Paper_Space" {
-                    self.pair(67, 1);
-                }
-                self.pair(8, 0);
-                self.pair(100, class);
-                if kind == "BLOCK" {
-                    self.pairs([(2, name), (70, "0")]);
-                    self.point(10, [0.0; 2]);
-                    self.pairs([(3, name), (1, "")]);
-                }
-            }
-        }
-        self.pair(0, "ENDSEC");
-    }
-
-    fn entity(&mut self, space: u32, layer: Layer, shape: &Shape) {
+    fn entity(&mut self, layer: Layer, shape: &Shape) {
         let (kind, class) = match shape {
             Shape::Line(_) => ("LINE", "AcDbLine"),
             Shape::Circle { .. } => ("CIRCLE", "AcDbCircle"),
@@ -198,7 +116,7 @@ impl Pairs {
             }
             Shape::Text(_) => ("TEXT", "AcDbText"),
         };
-        self.object(kind, space, &["AcDbEntity"]);
+        self.object(kind, "model", &["AcDbEntity"]);
         self.pair(8, layer.name());
         self.pair(100, class);
         match shape {
@@ -220,9 +138,8 @@ impl Pairs {
     fn vertices(&mut self, closed: bool, vertices: impl ExactSizeIterator<Item = Vertex>) {
         self.pair(90, vertices.len());
         self.pair(70, u8::from(closed));
-        for ([x, y], bulge) in vertices {
-            self.pair(10, x);
-            self.pair(20, y);
+        for (at, bulge) in vertices {
+            self.ordinates(10, at);
             if bulge != 0.0 {
                 self.pair(42, bulge);
             }
@@ -245,15 +162,6 @@ impl Pairs {
         }
         self.pair(100, class);
         self.pair(73, vertical);
-    }
-
-    fn objects(&mut self) {
-        self.section("OBJECTS");
-        let root = self.object("DICTIONARY", 0, &["AcDbDictionary"]);
-        self.pairs([(281, "1"), (3, "ACAD_GROUP")]);
-        self.handle(350, root + 1);
-        self.object("DICTIONARY", root, &["AcDbDictionary"]);
-        self.pairs([(281, "1"), (0, "ENDSEC")]);
     }
 }
 

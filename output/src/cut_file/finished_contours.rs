@@ -3,11 +3,17 @@
 //! A slit between two hinges is one contour. One that is open on the outline is a notch of the
 //! outline, which thereby stays one contour.
 
-use crate::cut_file::cut_drawing::{CutDrawing, Layer};
-use crate::cut_file::cut_lines::{CutLines, Slit};
-use crate::display::Shape;
-use design::geometry::polygon::{distance, distance_to_segment, edges};
-use design::geometry::region::Contour;
+use crate::{
+    cut_file::{
+        cut_drawing::{CutDrawing, Layer},
+        cut_lines::{CutLines, Slit},
+    },
+    display::Shape,
+};
+use design::geometry::{
+    polygon::{distance, distance_to_segment, edges},
+    region::Contour,
+};
 use scene::drawing::bulged::Vertex;
 use std::f64::consts::PI;
 

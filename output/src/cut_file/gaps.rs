@@ -3,9 +3,11 @@
 //! Two cuts leave at least the width of a slit between them, and so do holes and outline. A slit then meets
 //! the outline at most once and no other cut, so that the sheet stays in one piece.
 
-use crate::cut_file::fabrication_error::FabricationError;
-use design::geometry::polygon::{distance_between_segments, distance_to_outline};
-use design::geometry::region::Contour;
+use design::geometry::{
+    polygon::{distance_between_segments, distance_to_outline},
+    region::Contour,
+};
+use support::{Fault, ensure};
 
 /// A cut with the width of the tool: the points nearer than `radius` to the segment `ends`, which
 /// is a point for a hole.
@@ -17,18 +19,16 @@ pub(super) struct Cut {
 }
 
 /// An error if cuts leave less than `least` (mm) between them, or a hole and the outline do.
-pub(super) fn check(
-    mut cuts: Vec<Cut>,
-    outlines: &[Contour],
-    least: f64,
-) -> Result<(), FabricationError> {
+pub(super) fn check(mut cuts: Vec<Cut>, outlines: &[Contour], least: f64) -> Result<(), Fault> {
     for hole in cuts.iter().filter(|cut| cut.ends[0] == cut.ends[1]) {
         let to_outlines = outlines.iter().map(|outline| distance_to_outline(hole.ends[0], outline));
         let gap = to_outlines.fold(f64::INFINITY, f64::min) - hole.radius;
-        if gap < least {
-            let hinge = hole.hinges[0];
-            return Err(FabricationError::CutMeetsOutline { hinge, gap, least });
-        }
+        ensure!(
+            gap >= least,
+            "the hole of hinge {} leaves {gap:.3} mm to the outline, less than a slit of {least} mm: move the cut \
+             (objective.panel_shape) or reduce the fillet ratio",
+            hole.hinges[0]
+        );
     }
     // Cuts from left to right: only those that begin before another ends can meet it.
     let side = |cut: &Cut, of: fn(f64, f64) -> f64| of(cut.ends[0][0], cut.ends[1][0]);
@@ -44,10 +44,13 @@ pub(super) fn check(
             }
             let apart = distance_between_segments(cut.ends, other.ends);
             let gap = apart - cut.radius - other.radius;
-            if gap < least {
-                let hinges = [cut.hinges[0], other.hinges[0]];
-                return Err(FabricationError::CutsMeet { hinges, gap, least });
-            }
+            ensure!(
+                gap >= least,
+                "the cuts at the hinges {} and {} leave {gap:.3} mm between them, less than a slit of {least} mm: move them \
+                 apart (objective.panel_shape) or narrow the ligaments",
+                cut.hinges[0],
+                other.hinges[0]
+            );
         }
     }
     Ok(())
@@ -65,11 +68,9 @@ mod tests {
             check(vec![cut([[1.0, 5.0], [8.0, 5.0]], 0), cut(ends, 1)], &outline, 0.2)
         };
         assert!(of([[1.0, 6.0], [8.0, 5.5]]).is_ok());
-        let met = of([[5.0, 8.0], [5.0, 1.0]]);
-        let meet = matches!(met, Err(FabricationError::CutsMeet { gap, .. }) if gap < 0.0);
-        assert!(meet, "{met:?}");
-        let at_edge = of([[5.0, 8.9]; 2]);
-        let meet = matches!(at_edge, Err(FabricationError::CutMeetsOutline { hinge: 1, .. }));
-        assert!(meet, "{at_edge:?}");
+        let met = of([[5.0, 8.0], [5.0, 1.0]]).unwrap_err().to_string();
+        assert!(met.starts_with("the cuts at the hinges 0 and 1 leave -"), "{met}");
+        let at_edge = of([[5.0, 8.9]; 2]).unwrap_err().to_string();
+        assert!(at_edge.starts_with("the hole of hinge 1 leaves"), "{at_edge}");
     }
 }

@@ -1,14 +1,14 @@
 //! Machines and services: what their files hold, and what they can cut.
 
-use crate::cut_file::cut_drawing::{CutDrawing, Pen};
-use crate::cut_file::cut_lines::CutLines;
-use crate::cut_file::fabrication_error::FabricationError;
-use crate::cut_file::sheet_drawing::registration_marks;
-use design::geometry::polygon::{bounds, distance_to_outline};
+use crate::cut_file::{
+    cut_drawing::{CutDrawing, Pen},
+    cut_lines::CutLines,
+    sheet_drawing::registration_marks,
+};
+use design::geometry::polygon::{bounds, distance_to_outline, size};
 use serde::{Deserialize, Serialize};
-use std::fmt;
-use std::path::Path;
-use support::toml_file;
+use std::{fmt, path::Path};
+use support::{Fault, ensure, refuse, toml_file};
 
 /// The shipped table.
 const SHIPPED: &str = include_str!("../../../configs/machines.toml");
@@ -155,7 +155,7 @@ impl Service {
 impl Machine {
     /// The drawing of a sheet for this machine, in cutting order; an error if the paths do not
     /// exist.
-    pub fn drawing(&self, cuts: &CutLines) -> Result<CutDrawing, FabricationError> {
+    pub fn drawing(&self, cuts: &CutLines) -> Result<CutDrawing, Fault> {
         let mut drawing = self.paths(cuts)?.in_cutting_order(cuts.outlines[0][0]);
         if self.marks {
             registration_marks(&mut drawing, self.over_run(cuts));
@@ -166,13 +166,21 @@ impl Machine {
 
     /// The paths in a sheet and the marks on it, in the order of the pattern; an error if they do
     /// not exist.
-    fn paths(&self, cuts: &CutLines) -> Result<CutDrawing, FabricationError> {
-        let kerf = self.tool_kerf.or(cuts.cutting.kerf).ok_or(FabricationError::NoKerf)?;
+    fn paths(&self, cuts: &CutLines) -> Result<CutDrawing, Fault> {
+        let Some(kerf) = self.tool_kerf.or(cuts.cutting.kerf) else {
+            refuse!(
+                "the paths of this machine allow for the width that its tool removes, which is not known: set cutting.kerf (mm) in the \
+                 scene"
+            );
+        };
         let lines = self.lines || cuts.is_one_pass(kerf);
         // Lines of no width are the middles of slits, for drawing programs.
-        if lines && kerf > 0.0 && !cuts.is_one_pass(kerf) {
-            return Err(FabricationError::SlitTooWide { slit: cuts.slit_width, kerf });
-        }
+        ensure!(
+            !lines || kerf <= 0.0 || cuts.is_one_pass(kerf),
+            "the slits are {} mm wide (process.slit_width), and the tool cuts lines of {kerf} mm: use a machine that cuts \
+             around slits, or design slits as wide as the tool cuts (cutting.kerf)",
+            cuts.slit_width
+        );
         let mut cuts = cuts.clone();
         cuts.cutting.over_run = self.over_run(&cuts);
         Ok(cuts.paths(kerf, lines, self.least_hole, self.marks))
@@ -193,7 +201,6 @@ impl CutLines {
     /// The smallest features of the sheet.
     pub fn features(&self) -> Features {
         let least = |values: &mut dyn Iterator<Item = f64>| values.fold(f64::INFINITY, f64::min);
-        let [low, high] = bounds(self.outlines.iter().flatten().copied());
         let to_edge = |centre: [f64; 2]| {
             let all = self.outlines.iter().map(|outline| distance_to_outline(centre, outline));
             all.fold(f64::INFINITY, f64::min)
@@ -207,7 +214,7 @@ impl CutLines {
             slot: self.slit_width,
             bridge: least(&mut (0..self.holes.len()).map(|hinge| self.caliper(hinge))),
             edge: least(&mut holes.iter().map(|(centre, radius)| to_edge(*centre) - radius)),
-            size: [0, 1].map(|axis| high[axis] - low[axis]),
+            size: size(bounds(self.outlines.iter().flatten().copied())),
         }
     }
 }

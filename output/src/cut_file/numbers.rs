@@ -3,10 +3,14 @@
 //! A panel is convex and no slit enters it: a text inside of it is clear of all slits. A hinge's
 //! number is inside one of its two panels, as near to its hole as the cuts allow.
 
-use crate::cut_file::cut_lines::CutLines;
-use crate::display::{Text, rectangle};
-use design::geometry::polygon::{distance, edges, side};
-use design::sheet::cut_sheet::Sheet;
+use crate::{
+    cut_file::cut_lines::CutLines,
+    display::{Text, rectangle},
+};
+use design::{
+    geometry::polygon::{distance, edges, side},
+    sheet::cut_sheet::Sheet,
+};
 
 /// Height of panel numbers relative to the root of the panel's area, and its maximum (mm).
 const PANEL_HEIGHT: f64 = 0.1;
@@ -82,7 +86,7 @@ impl Taken {
     fn new(cuts: &CutLines, sheet: &Sheet, k: usize) -> Self {
         let hinges = std::iter::zip(&sheet.hinges, &cuts.holes);
         let holes = hinges
-            .filter(|(hinge, _)| [hinge.panel_a(), hinge.panel_b()].contains(&k))
+            .filter(|(hinge, _)| hinge.panels().contains(&k))
             .map(|(_, hole)| (hole.centre, hole.radius));
         Self {
             corners: sheet.panels[k].corners,

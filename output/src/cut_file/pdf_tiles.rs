@@ -4,10 +4,18 @@
 //! Neighbouring tiles print the same strip. A dashed line in its middle with two crosses is at the
 //! same place of the sheet on both: trim one of them there, lay it on the other, cross on cross.
 
-use crate::cut_file::cut_drawing::CutDrawing;
-use crate::cut_file::tiling::{BORDER, FOOTER, OVERLAP, Tiling, cell_name};
-use crate::display::pdf::{self, Form, clip, draw, page, place};
-use crate::display::{Canvas, Colour, Style, Text, rectangle};
+use crate::{
+    cut_file::{
+        cut_drawing::CutDrawing,
+        tiling::{BORDER, FOOTER, OVERLAP, Tiling, cell_name},
+    },
+    display::{
+        Canvas, Colour, Style, Text,
+        pdf::{self, Form, clip, draw, page, place},
+        rectangle,
+    },
+};
+use design::geometry::polygon::{mean, size};
 use pdf_writer::{Content, Name};
 
 /// Width of the lines of the drawing and of the marks around it (mm).
@@ -93,10 +101,9 @@ fn trim_line(canvas: &mut Canvas, [low, high]: [[f64; 2]; 2], axis: usize, at: f
     let thin = Style::stroke(GREY, THIN);
     canvas.line(point(begin), point(end), thin.dashed(2.0, 2.0));
     for place in CROSSES {
-        let [x, y] = point(begin + place * (end - begin));
-        canvas.line([x - ARM, y], [x + ARM, y], thin);
-        canvas.line([x, y - ARM], [x, y + ARM], thin);
-        canvas.circle([x, y], 0.5 * ARM, thin);
+        let at = point(begin + place * (end - begin));
+        canvas.cross(at, ARM, thin);
+        canvas.circle(at, 0.5 * ARM, thin);
     }
 }
 
@@ -121,15 +128,15 @@ fn overview(drawing: &CutDrawing, tiling: &Tiling, title: &str, notes: &[String]
     }
     let (low, high) = (tiling.tile(rows - 1, 0)[0], tiling.tile(0, columns - 1)[1]);
     let room = [tiling.page[0] - 2.0 * BORDER, y - 2.0 * SMALL - BORDER - FOOTER];
-    let scale = f64::min(room[0] / (high[0] - low[0]), room[1] / (high[1] - low[1]));
+    let [width, height] = size([low, high]);
+    let scale = f64::min(room[0] / width, room[1] / height);
     let origin = [BORDER - scale * low[0], BORDER + FOOTER - scale * low[1]];
     let on_page = |[x, y]: [f64; 2]| [origin[0] + scale * x, origin[1] + scale * y];
     for (row, column) in (0..rows).flat_map(|row| (0..columns).map(move |column| (row, column))) {
-        let [low, high] = tiling.tile(row, column).map(on_page);
-        canvas.polygon(&rectangle([low, high]), Style::stroke([200; 3], THIN));
-        let middle = [0, 1].map(|axis| 0.5 * (low[axis] + high[axis]));
-        let size = [high[0] - low[0], high[1] - low[1]];
-        let height = f64::min(0.3 * size[0], 0.4 * size[1]).min(20.0);
+        let corners = tiling.tile(row, column).map(on_page);
+        canvas.polygon(&rectangle(corners), Style::stroke([200; 3], THIN));
+        let (middle, [width, height]) = (mean(&corners), size(corners));
+        let height = f64::min(0.3 * width, 0.4 * height).min(20.0);
         let name = Text::centred(middle, height, cell_name(row, column));
         canvas.add(Style::fill([225; 3]), name);
     }

@@ -1,12 +1,16 @@
 //! The drawing of a whole sheet: its cuts in cutting order, numbers, scale, instructions and
 //! registration marks.
 
-use crate::cut_file::cut_drawing::{CutDrawing, Layer};
-use crate::cut_file::cut_lines::CutLines;
-use crate::cut_file::numbers::numbers;
-use crate::cut_file::totals::Totals;
-use crate::display::{Shape, Text};
-use design::sheet::cut_sheet::Sheet;
+use crate::{
+    cut_file::{
+        cut_drawing::{CutDrawing, Layer},
+        cut_lines::CutLines,
+        numbers::numbers,
+        totals::Totals,
+    },
+    display::{Shape, Text},
+};
+use design::{geometry::polygon::size, sheet::cut_sheet::Sheet};
 use hinge::SheetMaterial;
 
 /// Height of the instructions relative to the size of the sheet, and its minimum (mm).
@@ -81,8 +85,8 @@ impl SheetDrawing {
 /// noticed.
 pub(super) fn registration_marks(drawing: &mut CutDrawing, over_run: f64) {
     let [low, high] = Shape::extent(drawing.on(Layer::Outline));
-    let size = f64::max(high[0] - low[0], high[1] - low[1]);
-    let radius = (0.004 * size).clamp(1.0, 5.0);
+    let [width, height] = size([low, high]);
+    let radius = (0.004 * width.max(height)).clamp(1.0, 5.0);
     let off = over_run + 4.0 * radius;
     let (low, high) = (low.map(|x| x - off), high.map(|x| x + off));
     for centre in [low, [high[0], low[1]], [low[0], high[1]]] {

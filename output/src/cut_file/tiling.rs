@@ -1,7 +1,7 @@
 //! A drawing on pages of paper, which overlap.
 
-use crate::cut_file::fabrication_error::FabricationError;
 use scene::Paper;
+use support::{Fault, ensure};
 
 /// Border that printers leave white (mm).
 pub(super) const BORDER: f64 = 10.0;
@@ -25,7 +25,7 @@ pub struct Tiling {
 
 impl Tiling {
     /// Tiles for a drawing from `low` to `high` (mm), in the orientation that takes fewer pages.
-    pub fn new(paper: Paper, [low, high]: [[f64; 2]; 2]) -> Result<Self, FabricationError> {
+    pub fn new(paper: Paper, [low, high]: [[f64; 2]; 2]) -> Result<Self, Fault> {
         let [width, height] = paper.size();
         let tilings = [[width, height], [height, width]].map(|page| {
             let window = window(page);
@@ -43,12 +43,12 @@ impl Tiling {
         });
         let [portrait, landscape] = tilings;
         let tiling = if landscape.pages() < portrait.pages() { landscape } else { portrait };
-        let (pages, limit) = (tiling.pages(), MAX_PAGES);
-        if pages > limit {
-            Err(FabricationError::TooManyPages { pages, limit })
-        } else {
-            Ok(tiling)
-        }
+        let pages = tiling.pages();
+        ensure!(
+            pages <= MAX_PAGES,
+            "the drawing takes {pages} pages, more than {MAX_PAGES}: choose a larger paper"
+        );
+        Ok(tiling)
     }
 
     /// Number of tiles.

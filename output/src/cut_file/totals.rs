@@ -1,10 +1,11 @@
 //! The amount of cutting.
 
-use crate::cut_file::cut_drawing::{CutDrawing, Layer};
-use crate::display::Shape;
+use crate::{
+    cut_file::cut_drawing::{CutDrawing, Layer},
+    display::Shape,
+};
 use serde::Serialize;
-use std::collections::BTreeMap;
-use std::fmt;
+use std::{collections::BTreeMap, fmt};
 
 /// Totals of a drawing in cutting order.
 #[derive(Clone, Debug, PartialEq, Serialize)]

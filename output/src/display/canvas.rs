@@ -1,8 +1,10 @@
 //! Pictures: shapes with styles, and their SVG: y upwards, 0.1 um resolution.
 
-use crate::display::shape::{Anchor, Shape, Text, rectangle};
-use crate::display::style::{Colour, Style};
-use design::geometry::polygon::distance;
+use crate::display::{
+    shape::{Anchor, Shape, Text, rectangle},
+    style::{Colour, Style},
+};
+use design::geometry::polygon::{distance, size};
 use scene::drawing::bulged::{Vertex, centre};
 use std::fmt::Write;
 
@@ -13,6 +15,8 @@ const CAPITALS: f64 = 0.729;
 #[derive(Clone, Debug, Default)]
 pub struct Canvas {
     pub(crate) shapes: Vec<(Style, Shape)>,
+    /// The unit of lines and texts in a picture of a sheet: a thousandth of its width (mm).
+    pub(crate) unit: f64,
 }
 
 impl Canvas {
@@ -26,6 +30,11 @@ impl Canvas {
     /// A straight line between two points (mm).
     pub fn line(&mut self, from: [f64; 2], to: [f64; 2], style: Style) {
         self.shapes.push((style, Shape::Line([from, to])));
+    }
+
+    /// A cross with arms of a length (mm).
+    pub(crate) fn cross(&mut self, at: [f64; 2], arm: f64, style: Style) {
+        self.shapes.extend(Shape::cross(at, arm).map(|line| (style, line)));
     }
 
     /// A circle with its centre and radius in mm.
@@ -68,8 +77,8 @@ impl Canvas {
 }
 
 /// An SVG document of the rectangle from `low` to `high` (mm).
-pub(crate) fn document([low, high]: [[f64; 2]; 2], width: f64, unit: &str, body: &str) -> String {
-    let size = [high[0] - low[0], high[1] - low[1]];
+pub(crate) fn document(corners: [[f64; 2]; 2], width: f64, unit: &str, body: &str) -> String {
+    let (size, [low, high]) = (size(corners), corners);
     format!(
         "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n\
          <svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{}{unit}\" height=\"{}{unit}\" \

@@ -1,8 +1,11 @@
 //! Pages of PDF in mm, in Helvetica, which every reader has. Styles are colours, widths and dashes:
 //! no opacity, no halo.
 
-use crate::display::shape::{Anchor, Shape, Text};
-use crate::display::style::{Colour, Style};
+use crate::display::{
+    shape::{Anchor, Shape, Text},
+    style::{Colour, Style},
+};
+use design::geometry::polygon::size;
 use pdf_writer::{Content, Finish, Name, Pdf, Rect, Ref, Str};
 use scene::drawing::bulged::flattened;
 
@@ -68,9 +71,9 @@ pub(crate) fn page() -> Content {
 }
 
 /// Restricts what follows to a rectangle, until the state is restored.
-pub(crate) fn clip(content: &mut Content, [low, high]: [[f64; 2]; 2]) {
-    let size = [high[0] - low[0], high[1] - low[1]].map(|x| x as f32);
-    content.rect(low[0] as f32, low[1] as f32, size[0], size[1]);
+pub(crate) fn clip(content: &mut Content, corners: [[f64; 2]; 2]) {
+    let [[x, y], [width, height]] = [corners[0], size(corners)].map(|it| it.map(|x| x as f32));
+    content.rect(x, y, width, height);
     content.clip_nonzero().end_path();
 }
 

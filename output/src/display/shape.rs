@@ -92,6 +92,11 @@ impl Text {
 }
 
 impl Shape {
+    /// A cross with arms of a length (mm).
+    pub(crate) fn cross([x, y]: [f64; 2], arm: f64) -> [Self; 2] {
+        [[[x - arm, y], [x + arm, y]], [[x, y - arm], [x, y + arm]]].map(Self::Line)
+    }
+
     /// Where a tool begins and ends. A hole begins and ends at its centre, where the tool pierces
     /// the material.
     pub fn ends(&self) -> [[f64; 2]; 2] {

@@ -1,7 +1,9 @@
 //! A small chart in a rectangle of a picture: axes with round ticks, and positions of values.
 
-use crate::display::{Anchor, Style, trimmed};
-use crate::drawing::page::{INK, MUTED, Sketch, round_below};
+use crate::{
+    display::{Anchor, Canvas, Style, trimmed},
+    drawing::page::{INK, MUTED, round_below},
+};
 
 /// A rectangle of the page with one value range along x and one along y.
 pub(super) struct Chart {
@@ -14,17 +16,17 @@ impl Chart {
     /// Draws the frame, the ticks and the names of the axes of a chart between the corners `low`
     /// and `high` of the page (mm). `ticks` selects the axes that have ticks.
     pub(super) fn new(
-        sketch: &mut Sketch,
+        canvas: &mut Canvas,
         [low, high]: [[f64; 2]; 2],
         ranges: [[f64; 2]; 2],
         names: [&str; 2],
         ticks: [bool; 2],
     ) -> Self {
         let chart = Self { low, high, ranges };
-        let u = sketch.unit;
-        let (axis, muted) = (sketch.stroke(MUTED, 1.0), Style::fill(MUTED));
-        sketch.canvas.line(low, [high[0], low[1]], axis);
-        sketch.canvas.line(low, [low[0], high[1]], axis);
+        let u = canvas.unit;
+        let (axis, muted) = (canvas.stroke(MUTED, 1.0), Style::fill(MUTED));
+        canvas.line(low, [high[0], low[1]], axis);
+        canvas.line(low, [low[0], high[1]], axis);
         let offsets = [([0.0, -4.0], [0.0, -18.0]), ([-4.0, 0.0], [-20.0, -4.0])];
         for (i, (end, label)) in offsets.into_iter().enumerate().filter(|(i, _)| ticks[*i]) {
             for value in chart.ticks(i) {
@@ -32,15 +34,15 @@ impl Chart {
                 place[i] = value;
                 let [x, y] = chart.at(place);
                 let shifted = |[dx, dy]: [f64; 2]| [x + dx * u, y + dy * u];
-                sketch.canvas.line([x, y], shifted(end), axis);
-                sketch.text(shifted(label), 12.0 * u, Anchor::Middle, muted, &trimmed(value, 3));
+                canvas.line([x, y], shifted(end), axis);
+                canvas.text(shifted(label), 12.0 * u, Anchor::Middle, muted, &trimmed(value, 3));
             }
         }
         let ink = Style::fill(INK);
         let middle = [(low[0] + high[0]) / 2.0, low[1] - 36.0 * u];
-        sketch.text(middle, 13.0 * u, Anchor::Middle, ink, names[0]);
+        canvas.text(middle, 13.0 * u, Anchor::Middle, ink, names[0]);
         let above = [low[0] - 30.0 * u, high[1] + 10.0 * u];
-        sketch.text(above, 13.0 * u, Anchor::Start, ink, names[1]);
+        canvas.text(above, 13.0 * u, Anchor::Start, ink, names[1]);
         chart
     }
 

@@ -1,19 +1,22 @@
 //! The deployed sheet with its target; the hinge windows are coloured by their opening angle.
 
-use crate::deployment_states::{kept, states_before};
-use crate::display::{Anchor, Style};
-use crate::drawing::load_marks::{self, Mark, marks};
-use crate::drawing::page::{ACCENT, ColourScale, INK, MUTED, PANELS, Page, Sketch};
-use design::equilibrium::load_step::LoadStep;
-use design::objective::design_problem::Deployment;
-use design::sheet::cut_sheet::Sheet;
-use design::sheet::hinge_window::Window;
-use design::sheet::kinematics::{
-    Configuration, deployed as moved, deployed_boundaries, hinge_deformations,
+use crate::{
+    deployment_states::{kept, states_before},
+    display::{Canvas, Style},
+    drawing::{
+        load_marks,
+        page::{ACCENT, ColourScale, INK, MUTED, Page, panels, windows},
+    },
 };
-use scene::Scene;
-use scene::design_run::Designed;
-use scene::placement::placed;
+use design::{
+    equilibrium::load_step::LoadStep,
+    objective::design_problem::Deployment,
+    sheet::{
+        cut_sheet::Sheet,
+        kinematics::{Configuration, deployed as moved, deployed_boundaries, hinge_deformations},
+    },
+};
+use scene::{Scene, design_run::Designed, placement::placed};
 
 /// The sheet of a scene in the state that is compared with the target, with the loads there.
 pub fn deployed(scene: &Scene, deployment: &Deployment) -> String {
@@ -75,22 +78,22 @@ impl<'a> State<'a> {
     /// The picture of the state on a page around the points `extent`.
     fn drawn(&self, extent: Vec<[f64; 2]>, subtitle: &str, scale: &ColourScale) -> String {
         let mut page = Page::around(extent, &self.scene.config.title, subtitle, true);
-        let sketch = &mut page.sketch;
-        let ghost = sketch.dashed(MUTED, 0.8, 3.0);
+        let canvas = &mut page.canvas;
+        let ghost = canvas.dashed(MUTED, 0.8, 3.0);
         if self.sheet.topology.is_full() {
-            sketch.canvas.polygon(&self.sheet.outline.corners, ghost);
+            canvas.polygon(&self.sheet.outline.corners, ghost);
         }
-        self.panels(sketch);
-        self.windows(sketch, scale);
-        self.target(sketch);
-        self.loads(sketch);
+        let boundaries = deployed_boundaries(self.sheet, &self.configuration);
+        let line = canvas.stroke(INK, 1.1);
+        panels(canvas, &self.sheet.topology, boundaries, line);
+        let style = |h| Style::fill(scale.colour(self.openings_deg[h])).opacity(0.85, 1.0);
+        windows(canvas, self.sheet, style, |k, point| {
+            moved(&self.sheet.panels[k], self.configuration[k], point)
+        });
+        self.target(canvas);
+        load_marks::draw(canvas, self.scene, self.sheet, self.step);
         page.colour_scale(scale, "\u{3b8} (deg)");
         page.finish()
-    }
-
-    /// The deployed position of a point of panel k.
-    fn moved(&self, k: usize, point: [f64; 2]) -> [f64; 2] {
-        moved(&self.sheet.panels[k], self.configuration[k], point)
     }
 
     /// Points that enclose everything drawn.
@@ -101,49 +104,11 @@ impl<'a> State<'a> {
         points
     }
 
-    fn panels(&self, sketch: &mut Sketch) {
-        let corners = deployed_boundaries(self.sheet, &self.configuration);
-        for (k, corners) in corners.iter().enumerate() {
-            let fill = PANELS[usize::from(!self.sheet.topology.is_even(k))];
-            let style = sketch.stroke(INK, 1.1).filled(fill);
-            sketch.canvas.polygon(corners, style);
-        }
-    }
-
-    fn target(&self, sketch: &mut Sketch) {
-        let style = sketch.dashed(ACCENT, 2.2, 9.0);
+    fn target(&self, canvas: &mut Canvas) {
+        let style = canvas.dashed(ACCENT, 2.2, 9.0);
         let target = &self.scene.target;
         for contour in target.holes.iter().chain([&target.points]) {
-            sketch.canvas.polygon(contour, style);
-        }
-    }
-
-    /// Draws each window in two parts, which move with their panels.
-    fn windows(&self, sketch: &mut Sketch, scale: &ColourScale) {
-        let hinges = self.sheet.hinges.iter().zip(Window::of_sheet(self.sheet));
-        for ((hinge, window), &value) in hinges.zip(&self.openings_deg) {
-            let style = Style::fill(scale.colour(value)).opacity(0.85, 1.0);
-            for k in [hinge.panel_a(), hinge.panel_b()] {
-                let part = window.inside(&self.sheet.panels[k]).map(|point| self.moved(k, point));
-                part.contours().for_each(|contour| sketch.canvas.polygon(contour, style));
-            }
-        }
-    }
-
-    /// Draws the symbols of the supports, and the loads with their magnitudes.
-    fn loads(&self, sketch: &mut Sketch) {
-        let (stroke, fill) = (sketch.stroke(ACCENT, 3.0), Style::fill(ACCENT));
-        let (support, label) = (Style::fill(INK), sketch.haloed(ACCENT));
-        for mark in marks(self.scene, self.sheet, self.step, sketch.unit) {
-            match mark {
-                Mark::Support(corners) => sketch.canvas.polygon(&corners, support),
-                Mark::Shaft(points) => sketch.canvas.polyline(&points, stroke),
-                Mark::Head(corners) => sketch.canvas.polygon(&corners, fill),
-                Mark::Label([x, y], text) => {
-                    let (size, below) = (14.0 * sketch.unit, [x, y - 5.0 * sketch.unit]);
-                    sketch.text(below, size, Anchor::Middle, label, &text);
-                }
-            }
+            canvas.polygon(contour, style);
         }
     }
 }

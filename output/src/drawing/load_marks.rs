@@ -1,25 +1,17 @@
 //! Supports and loads in a state of the path: a symbol on every supported panel, an arrow along
 //! every force, a curved arrow in the sense of every couple.
 
-use crate::report::rounded;
-use design::equilibrium::load_step::LoadStep;
-use design::sheet::cut_sheet::Sheet;
-use design::sheet::kinematics::deployed as moved;
-use scene::placement::placed;
-use scene::{Scene, SupportedPanel};
+use crate::{
+    display::{Anchor, Canvas, Style},
+    drawing::page::{ACCENT, INK},
+    report::rounded,
+};
+use design::{
+    equilibrium::load_step::LoadStep,
+    sheet::{cut_sheet::Sheet, kinematics::deployed as moved},
+};
+use scene::{Scene, placement::placed};
 use std::f64::consts::PI;
-
-/// A part of a symbol (mm).
-pub(crate) enum Mark {
-    /// The filled symbol of a support.
-    Support(Vec<[f64; 2]>),
-    /// The shaft of an arrow.
-    Shaft(Vec<[f64; 2]>),
-    /// The filled head of an arrow.
-    Head(Vec<[f64; 2]>),
-    /// A magnitude, and the middle of the text.
-    Label([f64; 2], String),
-}
 
 /// Half the size of the symbol of a support, in units of the picture, as the lengths below.
 const SUPPORT: f64 = 9.0;
@@ -81,17 +73,18 @@ pub(super) fn extent(scene: &Scene, sheet: &Sheet, step: &LoadStep) -> Vec<[f64;
         .collect()
 }
 
-/// The marks of a state; `unit` is the unit of the picture (mm). Of equal loads the first has a
-/// label.
-pub(crate) fn marks(scene: &Scene, sheet: &Sheet, step: &LoadStep, unit: f64) -> Vec<Mark> {
-    let mut marks = supports(scene, sheet, step, unit);
+/// Draws the supports and the loads of a state. Of equal loads the first has a label.
+pub(super) fn draw(canvas: &mut Canvas, scene: &Scene, sheet: &Sheet, step: &LoadStep) {
+    supports(canvas, scene, sheet, step);
+    let unit = canvas.unit;
     let loads = PanelLoad::on_panels(scene, sheet, step);
     let largest = loads.iter().map(PanelLoad::size).fold(0.0, f64::max);
     let mut labelled: Vec<String> = Vec::new();
-    let mut label = |marks: &mut Vec<Mark>, key: String, at: [f64; 2], text: String| {
+    let mut label = |canvas: &mut Canvas, key: String, [x, y]: [f64; 2], text: &str| {
         if !labelled.contains(&key) {
             labelled.push(key);
-            marks.push(Mark::Label(at, text));
+            let (below, style) = ([x, y - 5.0 * unit], canvas.haloed(ACCENT));
+            canvas.text(below, 14.0 * unit, Anchor::Middle, style, text);
         }
     };
     for load in &loads {
@@ -105,51 +98,56 @@ pub(crate) fn marks(scene: &Scene, sheet: &Sheet, step: &LoadStep, unit: f64) ->
             };
             let tip = SHORTEST + (LONGEST - SHORTEST) * size / largest;
             let neck = tip - HEAD[0];
-            marks.push(Mark::Shaft(vec![[x, y], at([neck + 2.0, 0.0])]));
             let head = [[tip, 0.0], [neck, HEAD[1]], [neck, -HEAD[1]]];
-            marks.push(Mark::Head(head.map(at).to_vec()));
+            arrow(canvas, &[[x, y], at([neck + 2.0, 0.0])], head.map(at));
             let text = format!("{} N", rounded(size, 4));
             let [x, y] = load.force.map(|component| rounded(component, 4));
             let key = format!("{x} {y}");
             // The half width of a character and the half height of a text are 4.1 and 8 units.
             let width = 4.1 * text.chars().count() as f64;
             let beyond = tip + 8.0 + width * c.abs() + 8.0 * s.abs();
-            label(&mut marks, key, at([beyond, 0.0]), text);
+            label(canvas, key, at([beyond, 0.0]), &text);
         }
         if load.couple != 0.0 {
-            marks.extend(curved_arrow(load.at, load.couple.signum(), unit));
+            curved_arrow(canvas, load.at, load.couple.signum());
             // On the side that the arrow of the force leaves free.
             let side = if load.force[1] < 0.0 { 1.0 } else { -1.0 };
             let text = format!("{} N mm", rounded(load.couple.abs(), 4));
             let at = [x, y + side * (RADIUS + 18.0) * unit];
-            label(&mut marks, rounded(load.couple, 4), at, text);
+            label(canvas, rounded(load.couple, 4), at, &text);
         }
     }
-    marks
 }
 
-fn supports(scene: &Scene, sheet: &Sheet, step: &LoadStep, unit: f64) -> Vec<Mark> {
+fn supports(canvas: &mut Canvas, scene: &Scene, sheet: &Sheet, step: &LoadStep) {
     let placed = placed(scene, sheet, &step.configuration);
-    let symbol = |support: &SupportedPanel| {
+    for support in scene.actuation().supports {
         let k = support.panel;
         let [x, y] = moved(&sheet.panels[k], placed[k], sheet.panels[k].reference);
-        let around = |[a, b]: &[f64; 2]| [x + a * SUPPORT * unit, y + b * SUPPORT * unit];
-        Mark::Support(support.symbol.iter().map(around).collect())
-    };
-    scene.actuation().supports.iter().map(symbol).collect()
+        let around =
+            |[a, b]: &[f64; 2]| [x + a * SUPPORT * canvas.unit, y + b * SUPPORT * canvas.unit];
+        let corners: Vec<_> = support.symbol.iter().map(around).collect();
+        canvas.polygon(&corners, Style::fill(INK));
+    }
+}
+
+fn arrow(canvas: &mut Canvas, shaft: &[[f64; 2]], head: [[f64; 2]; 3]) {
+    canvas.polyline(shaft, canvas.stroke(ACCENT, 3.0));
+    canvas.polygon(&head, Style::fill(ACCENT));
 }
 
 /// A curved arrow about a point, counter-clockwise for the sense 1, clockwise for -1.
-fn curved_arrow([x, y]: [f64; 2], sense: f64, unit: f64) -> [Mark; 2] {
+fn curved_arrow(canvas: &mut Canvas, [x, y]: [f64; 2], sense: f64) {
     // Symmetric about the vertical axis, open at the bottom.
     let [from, to] = [-PI / 2.0 + OPEN, 1.5 * PI - OPEN];
     let at = |radius: f64, angle: f64| {
-        let radius = radius * unit;
+        let radius = radius * canvas.unit;
         [x + sense * radius * angle.cos(), y + radius * angle.sin()]
     };
     let length = HEAD[0] / RADIUS;
     let arc = (0..=24).map(|i| from + f64::from(i) / 24.0 * (to - length - from));
     let neck = to - length;
     let head = [at(RADIUS, to + 0.1), at(RADIUS - HEAD[1], neck), at(RADIUS + HEAD[1], neck)];
-    [Mark::Shaft(arc.map(|angle| at(RADIUS, angle)).collect()), Mark::Head(head.to_vec())]
+    let arc: Vec<_> = arc.map(|angle| at(RADIUS, angle)).collect();
+    arrow(canvas, &arc, head);
 }

@@ -2,16 +2,19 @@
 //! with magnified residuals, hinge openings measured against predicted, errors of the panel centres
 //! against the floor.
 
-use crate::display::{Anchor, Style};
-use crate::drawing::chart::Chart;
-use crate::drawing::page::{ACCENT, INK, MUTED, PANELS, Page, Sketch, TEAL};
-use crate::measurement::MeasurementReport;
-use analysis::measured_openings::MeasuredOpening;
-use analysis::measured_points::FittedPoint;
-use analysis::path_fit::Fit;
-use design::geometry::polygon::bounds;
-use design::sheet::cut_sheet::Sheet;
-use design::sheet::kinematics::deployed_boundaries;
+use crate::{
+    display::{Anchor, Canvas, Style},
+    drawing::{
+        chart::Chart,
+        page::{self, ACCENT, INK, MUTED, Page, TEAL},
+    },
+    measurement::MeasurementReport,
+};
+use analysis::{measured_openings::MeasuredOpening, measured_points::FittedPoint, path_fit::Fit};
+use design::{
+    geometry::polygon::{bounds, size},
+    sheet::{cut_sheet::Sheet, kinematics::deployed_boundaries},
+};
 
 /// Magnifications of the residuals.
 const MAGNIFICATIONS: [f64; 8] = [1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0];
@@ -28,7 +31,7 @@ pub fn measured(sheet: &Sheet, fit: &Fit, report: &MeasurementReport) -> String 
     let factor = magnification(fit, panel_size);
     let residuals_drawn = fit.points.iter().map(|point| residual(point, factor)[1]);
     let [low, high] = bounds(panels.iter().flatten().copied().chain(residuals_drawn));
-    let (width, height) = (high[0] - low[0], high[1] - low[1]);
+    let [width, height] = size([low, high]);
     // Both charts stand at the right of the sheet, one above the other.
     let side = f64::max(0.36 * width, 0.34 * height);
     let left = high[0] + 0.45 * side;
@@ -48,16 +51,13 @@ pub fn measured(sheet: &Sheet, fit: &Fit, report: &MeasurementReport) -> String 
         "Measured (teal) on predicted (grey) {state}; residuals magnified {factor} times{rms}"
     );
     let mut page = Page::around(whole, &report.title, &subtitle, false);
-    let sketch = &mut page.sketch;
-    for (k, panel) in panels.iter().enumerate() {
-        let fill = PANELS[usize::from(!sheet.topology.is_even(k))];
-        let style = sketch.stroke(MUTED, 1.2).filled(fill);
-        sketch.canvas.polygon(panel, style);
-    }
-    outlines(sketch, sheet, fit);
-    residuals(sketch, fit, factor, panel_size);
-    openings(sketch, [[left, top - 1.05 * side], [left + side, top - 0.05 * side]], report);
-    centres(sketch, [[left, top - 2.55 * side], [left + side, top - 1.55 * side]], report);
+    let canvas = &mut page.canvas;
+    let line = canvas.stroke(MUTED, 1.2);
+    page::panels(canvas, &sheet.topology, panels, line);
+    outlines(canvas, sheet, fit);
+    residuals(canvas, fit, factor, panel_size);
+    openings(canvas, [[left, top - 1.05 * side], [left + side, top - 0.05 * side]], report);
+    centres(canvas, [[left, top - 2.55 * side], [left + side, top - 1.55 * side]], report);
     page.finish()
 }
 
@@ -69,31 +69,31 @@ fn magnification(fit: &Fit, panel_size: f64) -> f64 {
 }
 
 /// Draws the edges of the panels whose two corners are measured.
-fn outlines(sketch: &mut Sketch, sheet: &Sheet, fit: &Fit) {
+fn outlines(canvas: &mut Canvas, sheet: &Sheet, fit: &Fit) {
     let mut measured = vec![[None; 4]; sheet.panels.len()];
     for point in &fit.points {
         if let Some(corner) = point.mark.corner {
             measured[point.mark.panel][corner] = Some(point.measured);
         }
     }
-    let stroke = sketch.stroke(TEAL, 1.2);
+    let stroke = canvas.stroke(TEAL, 1.2);
     for corners in measured {
         for corner in 0..4 {
             if let (Some(from), Some(to)) = (corners[corner], corners[(corner + 1) % 4]) {
-                sketch.canvas.line(from, to, stroke);
+                canvas.line(from, to, stroke);
             }
         }
     }
 }
 
 /// Draws a line from every predicted point along its residual.
-fn residuals(sketch: &mut Sketch, fit: &Fit, factor: f64, panel_size: f64) {
-    let (stroke, dot) = (sketch.stroke(ACCENT, 1.6), Style::fill(ACCENT));
-    let size = f64::min(2.2 * sketch.unit, 0.03 * panel_size);
+fn residuals(canvas: &mut Canvas, fit: &Fit, factor: f64, panel_size: f64) {
+    let (stroke, dot) = (canvas.stroke(ACCENT, 1.6), Style::fill(ACCENT));
+    let size = f64::min(2.2 * canvas.unit, 0.03 * panel_size);
     for point in &fit.points {
         let [from, to] = residual(point, factor);
-        sketch.canvas.line(from, to, stroke);
-        sketch.canvas.circle(from, size, dot);
+        canvas.line(from, to, stroke);
+        canvas.circle(from, size, dot);
     }
 }
 
@@ -105,7 +105,7 @@ fn residual(point: &FittedPoint, factor: f64) -> [[f64; 2]; 2] {
 
 /// Draws the openings measured against predicted, with two standard errors and the line of
 /// agreement.
-fn openings(sketch: &mut Sketch, corners: [[f64; 2]; 2], report: &MeasurementReport) {
+fn openings(canvas: &mut Canvas, corners: [[f64; 2]; 2], report: &MeasurementReport) {
     let bar = |opening: &MeasuredOpening| {
         [-2.0, 2.0].map(|k| opening.measured_deg + k * opening.error_deg)
     };
@@ -121,22 +121,22 @@ fn openings(sketch: &mut Sketch, corners: [[f64; 2]; 2], report: &MeasurementRep
     let margin = f64::max(0.08 * (high - low), 0.2);
     let range = [low - margin, high + margin];
     let names = ["predicted opening (deg)", "measured opening (deg)"];
-    let chart = Chart::new(sketch, corners, [range; 2], names, [true; 2]);
-    let line = sketch.dashed(MUTED, 1.0, 4.0);
-    sketch.canvas.line(chart.at([range[0]; 2]), chart.at([range[1]; 2]), line);
-    let (stroke, dot) = (sketch.stroke(TEAL, 1.0), Style::fill(TEAL));
+    let chart = Chart::new(canvas, corners, [range; 2], names, [true; 2]);
+    let line = canvas.dashed(MUTED, 1.0, 4.0);
+    canvas.line(chart.at([range[0]; 2]), chart.at([range[1]; 2]), line);
+    let (stroke, dot) = (canvas.stroke(TEAL, 1.0), Style::fill(TEAL));
     // Many openings are drawn as small dots.
-    let radius = if report.openings.len() > 100 { 1.6 } else { 3.0 } * sketch.unit;
+    let radius = if report.openings.len() > 100 { 1.6 } else { 3.0 } * canvas.unit;
     for opening in &report.openings {
         let predicted = opening.predicted_deg;
         let [from, to] = bar(opening).map(|measured| chart.at([predicted, measured]));
-        sketch.canvas.line(from, to, stroke);
-        sketch.canvas.circle(chart.at([predicted, opening.measured_deg]), radius, dot);
+        canvas.line(from, to, stroke);
+        canvas.circle(chart.at([predicted, opening.measured_deg]), radius, dot);
     }
 }
 
 /// Draws the error of every panel centre as a bar, and the floor of the measurement as a line.
-fn centres(sketch: &mut Sketch, corners: [[f64; 2]; 2], report: &MeasurementReport) {
+fn centres(canvas: &mut Canvas, corners: [[f64; 2]; 2], report: &MeasurementReport) {
     let panels = &report.panels;
     if panels.is_empty() {
         return;
@@ -147,7 +147,7 @@ fn centres(sketch: &mut Sketch, corners: [[f64; 2]; 2], report: &MeasurementRepo
     let ranges = [[0.0, panels.len() as f64], [0.0, 1.08 * highest]];
     let name = if floor.is_some() { "panel; floor dashed" } else { "panel" };
     let names = [name, "error of the panel centre (mm)"];
-    let chart = Chart::new(sketch, corners, ranges, names, [panels.len() > NUMBERED, true]);
+    let chart = Chart::new(canvas, corners, ranges, names, [panels.len() > NUMBERED, true]);
     let muted = Style::fill(MUTED);
     for (place, panel) in panels.iter().enumerate() {
         let above = floor.is_some_and(|floor| panel.distance() > floor);
@@ -155,19 +155,19 @@ fn centres(sketch: &mut Sketch, corners: [[f64; 2]; 2], report: &MeasurementRepo
         let [left, right] = [0.15, 0.85].map(|part| place as f64 + part);
         let top = panel.distance();
         let bar = [[left, 0.0], [right, 0.0], [right, top], [left, top]].map(|at| chart.at(at));
-        sketch.canvas.polygon(&bar, fill);
+        canvas.polygon(&bar, fill);
         if panels.len() <= NUMBERED {
             let [x, y] = chart.at([place as f64 + 0.5, 0.0]);
-            let below = [x, y - 16.0 * sketch.unit];
+            let below = [x, y - 16.0 * canvas.unit];
             let number = format!("P{}", panel.panel);
             // A number of three characters is about as wide as its font is high times two.
             let pitch = chart.at([1.0, 0.0])[0] - chart.at([0.0, 0.0])[0];
-            let height = f64::min(11.0 * sketch.unit, 0.45 * pitch);
-            sketch.text(below, height, Anchor::Middle, muted, &number);
+            let height = f64::min(11.0 * canvas.unit, 0.45 * pitch);
+            canvas.text(below, height, Anchor::Middle, muted, &number);
         }
     }
     if let Some(floor) = floor {
-        let line = sketch.dashed(INK, 1.2, 4.0);
-        sketch.canvas.line(chart.at([0.0, floor]), chart.at([ranges[0][1], floor]), line);
+        let line = canvas.dashed(INK, 1.2, 4.0);
+        canvas.line(chart.at([0.0, floor]), chart.at([ranges[0][1], floor]), line);
     }
 }

@@ -2,7 +2,13 @@
 //! scale.
 
 use crate::display::{Anchor, Canvas, Colour, Style, rectangle, trimmed};
-use design::geometry::polygon::bounds;
+use design::{
+    geometry::{
+        polygon::{bounds, size},
+        region::Contour,
+    },
+    sheet::{cut_sheet::Sheet, hinge_window::Window, topology::Topology},
+};
 
 /// Colour of main lines and titles.
 pub const INK: Colour = [31, 41, 51];
@@ -13,7 +19,7 @@ pub const ACCENT: Colour = [194, 65, 12];
 /// Second colour of emphasis.
 pub const TEAL: Colour = [15, 118, 110];
 /// Colours of panels with even and odd column + row, which rotate in opposite senses.
-pub const PANELS: [Colour; 2] = [[234, 240, 246], [246, 240, 228]];
+const PANELS: [Colour; 2] = [[234, 240, 246], [246, 240, 228]];
 
 /// Width of a picture on a screen (px).
 const WIDTH_PX: f64 = 1400.0;
@@ -38,16 +44,9 @@ fn fitted(text: &str, size: f64, character: f64, wide: f64) -> (f64, String) {
     (SMALLEST, kept + "\u{2026}")
 }
 
-/// A drawing in sheet coordinates, with the unit of its strokes and texts.
-pub(crate) struct Sketch {
-    pub canvas: Canvas,
-    /// In a picture a thousandth of its width (mm).
-    pub unit: f64,
-}
-
 /// A picture: a drawing with margins for texts.
 pub(crate) struct Page {
-    pub sketch: Sketch,
+    pub canvas: Canvas,
     /// Lower and upper corner of the drawn content, without the margins (mm).
     low: [f64; 2],
     high: [f64; 2],
@@ -55,7 +54,40 @@ pub(crate) struct Page {
     corners: [[f64; 2]; 2],
 }
 
-impl Sketch {
+/// Draws the panels of a sheet, which have these boundaries (mm) and lines of this style.
+pub(crate) fn panels(
+    canvas: &mut Canvas,
+    topology: &Topology,
+    boundaries: impl IntoIterator<Item = Contour>,
+    line: Style,
+) {
+    for (k, boundary) in boundaries.into_iter().enumerate() {
+        canvas.polygon(&boundary, line.filled(panel_colour(topology, k)));
+    }
+}
+
+/// Draws each hinge window of a sheet in two parts, which are `moved` with their panels, in the
+/// `style` of its hinge.
+pub(super) fn windows(
+    canvas: &mut Canvas,
+    sheet: &Sheet,
+    style: impl Fn(usize) -> Style,
+    moved: impl Fn(usize, [f64; 2]) -> [f64; 2],
+) {
+    for (h, (hinge, window)) in sheet.hinges.iter().zip(Window::of_sheet(sheet)).enumerate() {
+        for k in hinge.panels() {
+            let part = window.inside(&sheet.panels[k]).map(|point| moved(k, point));
+            part.contours().for_each(|contour| canvas.polygon(contour, style(h)));
+        }
+    }
+}
+
+/// The colour of a panel.
+pub(crate) fn panel_colour(topology: &Topology, panel: usize) -> Colour {
+    PANELS[usize::from(!topology.is_even(panel))]
+}
+
+impl Canvas {
     /// A line with the given width in units.
     pub(crate) fn stroke(&self, colour: Colour, width: f64) -> Style {
         Style::stroke(colour, width * self.unit).round()
@@ -65,18 +97,6 @@ impl Sketch {
     pub(crate) fn dashed(&self, colour: Colour, width: f64, dash: f64) -> Style {
         let dash = dash * self.unit;
         self.stroke(colour, width).dashed(dash, 0.7 * dash)
-    }
-
-    /// Writes a text in a font of the given size (mm).
-    pub(crate) fn text(
-        &mut self,
-        at: [f64; 2],
-        size: f64,
-        anchor: Anchor,
-        style: Style,
-        text: &str,
-    ) {
-        self.canvas.text(at, size, anchor, style, text);
     }
 
     /// A text that remains readable over lines.
@@ -96,9 +116,10 @@ impl Page {
     ) -> Self {
         let [low, high] = bounds(points);
         let right = if colour_scale { 130.0 } else { 40.0 };
-        let content = f64::max(high[0] - low[0], 0.8 * (high[1] - low[1]));
+        let [width, height] = size([low, high]);
+        let content = f64::max(width, 0.8 * height);
         let unit = content / (1000.0 - 40.0 - right);
-        let slack = (content - (high[0] - low[0])) / 2.0;
+        let slack = (content - width) / 2.0;
         let page_low = [low[0] - slack - 40.0 * unit, low[1] - 90.0 * unit];
         let page_high = [high[0] + slack + right * unit, high[1] + 100.0 * unit];
         let corners = [page_low, page_high];
@@ -113,34 +134,35 @@ impl Page {
         let below = [left, top - 70.0 * unit];
         let (size, subtitle) = fitted(subtitle, 15.0, PLAIN_WIDTH, wide);
         canvas.text(below, size * unit, Anchor::Start, muted, &subtitle);
-        let mut page = Self { sketch: Sketch { canvas, unit }, low, high, corners };
+        canvas.unit = unit;
+        let mut page = Self { canvas, low, high, corners };
         page.scale_bar([left, page_low[1] + 32.0 * unit]);
         page
     }
 
     pub(crate) fn finish(self) -> String {
-        self.sketch.canvas.svg(self.corners, WIDTH_PX, "px")
+        self.canvas.svg(self.corners, WIDTH_PX, "px")
     }
 
     /// Draws a scale bar with a round length between a tenth and a quarter of the picture's width.
     fn scale_bar(&mut self, at: [f64; 2]) {
         let length = round_below((self.corners[1][0] - self.corners[0][0]) / 4.0);
-        let (height, end) = (5.0 * self.sketch.unit, at[0] + length);
-        let stroke = self.sketch.stroke(INK, 1.6);
-        self.sketch.canvas.line(at, [end, at[1]], stroke);
+        let (height, end) = (5.0 * self.canvas.unit, at[0] + length);
+        let stroke = self.canvas.stroke(INK, 1.6);
+        self.canvas.line(at, [end, at[1]], stroke);
         for x in [at[0], end] {
-            self.sketch.canvas.line([x, at[1] - height], [x, at[1] + height], stroke);
+            self.canvas.line([x, at[1] - height], [x, at[1] + height], stroke);
         }
         let text = format!("{length} mm");
-        let at = [end + 12.0 * self.sketch.unit, at[1] - 5.0 * self.sketch.unit];
+        let at = [end + 12.0 * self.canvas.unit, at[1] - 5.0 * self.canvas.unit];
         let muted = Style::fill(MUTED);
-        self.sketch.text(at, 15.0 * self.sketch.unit, Anchor::Start, muted, &text);
+        self.canvas.text(at, 15.0 * self.canvas.unit, Anchor::Start, muted, &text);
     }
 
     /// Draws the colours of `scale` from bottom to top at the right edge, with its ticks.
     pub(crate) fn colour_scale(&mut self, scale: &ColourScale, name: &str) {
         const BANDS: usize = 60;
-        let u = self.sketch.unit;
+        let u = self.canvas.unit;
         let right = self.corners[1][0];
         let (x0, x1) = (right - 88.0 * u, right - 68.0 * u);
         let middle = (self.low[1] + self.high[1]) / 2.0;
@@ -152,20 +174,20 @@ impl Page {
             // Neighbouring bands overlap slightly so that no seam is visible.
             let y1 = at((f1 + 0.3 / BANDS as f64).min(1.0));
             let band = rectangle([[x0, at(f0)], [x1, y1]]);
-            self.sketch.canvas.polygon(&band, Style::fill(viridis((f0 + f1) / 2.0)));
+            self.canvas.polygon(&band, Style::fill(viridis((f0 + f1) / 2.0)));
         }
         let muted = Style::fill(MUTED);
         for tick in 0..=scale.steps() {
             let value = scale.low + scale.step * tick as f64;
             let y = at(tick as f64 / scale.steps() as f64);
-            let stroke = self.sketch.stroke(MUTED, 1.0);
-            self.sketch.canvas.line([x1, y], [x1 + 4.0 * u, y], stroke);
+            let stroke = self.canvas.stroke(MUTED, 1.0);
+            self.canvas.line([x1, y], [x1 + 4.0 * u, y], stroke);
             let text = trimmed(value, 3);
             let at = [x1 + 9.0 * u, y - 5.0 * u];
-            self.sketch.text(at, 14.0 * u, Anchor::Start, muted, &text);
+            self.canvas.text(at, 14.0 * u, Anchor::Start, muted, &text);
         }
         let above = [(x0 + x1) / 2.0, at(1.0) + 16.0 * u];
-        self.sketch.text(above, 14.0 * u, Anchor::Middle, muted, name);
+        self.canvas.text(above, 14.0 * u, Anchor::Middle, muted, name);
     }
 }
 

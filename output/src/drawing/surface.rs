@@ -1,8 +1,10 @@
 //! A surface in space, seen along an axis, with the faces in colours.
 
-use crate::display::Style;
-use crate::drawing::page::{ColourScale, INK, Page};
-use design::geometry::polygon::bounds;
+use crate::{
+    display::Style,
+    drawing::page::{ColourScale, INK, Page},
+};
+use design::geometry::polygon::{bounds, size};
 
 /// From where a surface is seen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -49,7 +51,8 @@ pub fn surface(surface: &Surface, view: View, title: &str, subtitle: &str) -> St
     let corners: Vec<[f64; 2]> = seen.iter().map(|(at, _)| *at).collect();
     let [low, high] = bounds(corners.iter().copied());
     // A sheet seen from its edge is flat: the colour scale needs a height.
-    let room = (LEAST_HEIGHT * (high[0] - low[0]) - (high[1] - low[1])).max(0.0) / 2.0;
+    let [width, height] = size([low, high]);
+    let room = (LEAST_HEIGHT * width - height).max(0.0) / 2.0;
     let corners = [[low[0], low[1] - room], [high[0], high[1] + room]];
     let mut page = Page::around(corners, title, subtitle, true);
     let scale = ColourScale::covering([surface.largest]);
@@ -62,9 +65,9 @@ pub fn surface(surface: &Surface, view: View, title: &str, subtitle: &str) -> St
     for face in order {
         let outline: Vec<_> = surface.faces[face].iter().map(|p| seen[*p].0).collect();
         let fill = Style::fill(scale.colour(surface.values[face]));
-        page.sketch.canvas.polygon(&outline, fill);
-        let edge = page.sketch.stroke(INK, 0.15);
-        page.sketch.canvas.polygon(&outline, edge);
+        page.canvas.polygon(&outline, fill);
+        let edge = page.canvas.stroke(INK, 0.15);
+        page.canvas.polygon(&outline, edge);
     }
     page.colour_scale(&scale, surface.name);
     page.finish()

@@ -1,12 +1,16 @@
 //! The ideal deployment in numbers.
 
 use crate::listing::Listing;
-use design::objective::design_problem::{DesignError, DesignProblem};
-use design::pattern::design_vector::DesignVector;
-use design::sheet::ideal_deployment::{check_opening, ideal_deployment};
-use design::sheet::kinematics::{deployed_corners, hinge_deformations};
-use design::sheet::opening_limits::{CONTACT, Span};
-use design::sheet::validity::overlap;
+use design::{
+    objective::design_problem::{DesignError, DesignProblem},
+    pattern::design_vector::DesignVector,
+    sheet::{
+        ideal_deployment::{check_opening, ideal_deployment},
+        kinematics::{deployed_corners, hinge_deformations},
+        opening_limits::{CONTACT, Span},
+        validity::overlap,
+    },
+};
 use serde_json::json;
 use support::table::Table;
 

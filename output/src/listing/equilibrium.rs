@@ -1,14 +1,13 @@
 //! The equilibrium path in numbers.
 
 use crate::listing::Listing;
-use design::equilibrium::hinged_sheet::HingedSheet;
-use design::equilibrium::load_step::LoadStep;
-use design::equilibrium::solver::EquilibriumSolver;
-use design::hinge_law::{HingeEnergy, Order};
-use design::objective::design_problem::{Deployment, DesignError, DesignProblem};
-use design::pattern::design_vector::DesignVector;
-use design::sheet::kinematics::deployed_corners;
-use design::sheet::validity::overlap;
+use design::{
+    equilibrium::{hinged_sheet::HingedSheet, load_step::LoadStep, solver::EquilibriumSolver},
+    hinge_law::{HingeEnergy, Order},
+    objective::design_problem::{Deployment, DesignError, DesignProblem},
+    pattern::design_vector::DesignVector,
+    sheet::{kinematics::deployed_corners, validity::overlap},
+};
 use serde_json::{Value, json};
 use support::table::Table;
 

@@ -1,12 +1,15 @@
 //! Objective and gradient in numbers.
 
 use crate::listing::Listing;
-use design::objective::design_problem::{DesignError, DesignProblem};
-use design::objective::loss::TermValues;
-use design::objective::scores::outline_error;
-use design::pattern::design_vector::DesignVector;
-use scene::Scene;
-use scene::placement::seen;
+use design::{
+    objective::{
+        design_problem::{DesignError, DesignProblem},
+        loss::TermValues,
+        scores::outline_error,
+    },
+    pattern::design_vector::DesignVector,
+};
+use scene::{Scene, placement::seen};
 use serde_json::json;
 use support::table::Table;
 

@@ -1,15 +1,13 @@
 //! The flat sheet in numbers.
 
 use crate::listing::Listing;
-use design::objective::design_problem::{DesignError, DesignProblem};
-use design::pattern::design_vector::DesignVector;
-use design::pattern::grid::Endpoint;
-use design::sheet::cut_sheet::Hinge;
-use design::sheet::opening_limits::Span;
-use design::sheet::validity::Validity;
+use design::{
+    objective::design_problem::{DesignError, DesignProblem},
+    pattern::{design_vector::DesignVector, grid::Endpoint},
+    sheet::{cut_sheet::Hinge, opening_limits::Span, validity::Validity},
+};
 use serde_json::{Value, json};
-use support::document::Document;
-use support::table::Table;
+use support::{document::Document, table::Table};
 
 /// Cuts a design and lists pattern, panels and hinges of its flat sheet.
 pub fn pattern(problem: &DesignProblem, design: &DesignVector) -> Result<Listing, DesignError> {

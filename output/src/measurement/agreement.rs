@@ -1,7 +1,9 @@
 //! How far a measured sheet is from a state of its path.
 
-use analysis::measured_openings::{MeasuredOpening, MeasuredPanel, openings};
-use analysis::path_fit::Fit;
+use analysis::{
+    measured_openings::{MeasuredOpening, MeasuredPanel, openings},
+    path_fit::Fit,
+};
 use design::sheet::cut_sheet::Sheet;
 use serde::Serialize;
 use support::statistics::root_mean_square;

@@ -1,11 +1,12 @@
 //! The report of a measured sheet as parts for people, and its tables.
 
 use crate::measurement::{Agreement, Closed, MeasurementReport, OpeningSpread, Spread};
-use analysis::measured_openings::MeasuredOpening;
-use analysis::measured_points::FittedPoint;
+use analysis::{measured_openings::MeasuredOpening, measured_points::FittedPoint};
 use design::objective::scores::shown;
-use support::document::Document;
-use support::table::{Cell, Columns, Table};
+use support::{
+    document::Document,
+    table::{Cell, Columns, Table},
+};
 
 /// Number of hinges and of panels on the printed page; the tables hold all of them.
 const LISTED: usize = 12;

@@ -1,11 +1,14 @@
 //! The board behind a mounted sheet, seen from the front: numbered crosses and the opened panels.
 
-use crate::cut_file::{CutDrawing, Layer};
-use crate::display::{Shape, Text, rectangle};
+use crate::{
+    cut_file::{CutDrawing, Layer},
+    display::{Shape, Text, rectangle},
+};
 use analysis::mounting::Mounting;
-use design::geometry::polygon::bounds;
-use design::sheet::cut_sheet::Sheet;
-use design::sheet::kinematics::deployed_boundaries;
+use design::{
+    geometry::polygon::{bounds, size},
+    sheet::{cut_sheet::Sheet, kinematics::deployed_boundaries},
+};
 
 /// Half the length of the arms of a cross (mm).
 const ARM: f64 = 8.0;
@@ -17,9 +20,9 @@ const ASIDE: f64 = 3.0;
 pub(crate) fn board(sheet: &Sheet, mounting: &Mounting) -> CutDrawing {
     let mut drawing = CutDrawing::default();
     let panels = deployed_boundaries(sheet, &mounting.opened);
-    let [low, high] = bounds(panels.iter().flatten().copied());
-    let size = mounting.board(sheet);
-    let border = [0, 1].map(|axis| 0.5 * (size[axis] - (high[axis] - low[axis])));
+    let opened = bounds(panels.iter().flatten().copied());
+    let ([low, high], board, size) = (opened, mounting.board(sheet), size(opened));
+    let border = [0, 1].map(|axis| 0.5 * (board[axis] - size[axis]));
     let corners =
         [[0, 1].map(|axis| low[axis] - border[axis]), [0, 1].map(|axis| high[axis] + border[axis])];
     drawing.add(Layer::Registration, Shape::Polygon(rectangle(corners).to_vec()));

@@ -1,15 +1,22 @@
 //! The kit as PDF: what to buy and the steps, the board on tiles at 1:1, and the board on one page.
 
-use crate::cut_file::{FabricationError, Tiling, form, tile_pages};
-use crate::display::pdf::{self, draw, page, place};
-use crate::display::{Canvas, Style, Text};
-use crate::drawing::page::{INK, MUTED};
-use crate::mounting_kit::board::board;
-use crate::mounting_kit::step_pictures::{StepPictures, lines};
+use crate::{
+    cut_file::{Tiling, form, tile_pages},
+    display::{
+        Canvas, Style, Text,
+        pdf::{self, draw, page, place},
+    },
+    drawing::page::{INK, MUTED},
+    mounting_kit::{
+        board::board,
+        step_pictures::{StepPictures, lines},
+    },
+};
 use analysis::mounting::Mounting;
-use design::sheet::cut_sheet::Sheet;
+use design::{geometry::polygon::size, sheet::cut_sheet::Sheet};
 use pdf_writer::Content;
 use scene::Paper;
+use support::Fault;
 
 /// Border of the pages, columns and rows of pictures, their distance, and the height of the head
 /// (mm).
@@ -29,7 +36,7 @@ pub(crate) fn kit_pdf(
     sheet: &Sheet,
     mounting: &Mounting,
     paper: Paper,
-) -> Result<Vec<u8>, FabricationError> {
+) -> Result<Vec<u8>, Fault> {
     let drawing = board(sheet, mounting);
     let [low, high] = drawing.bounds();
     let tiling = Tiling::new(paper, [low, high])?;
@@ -39,10 +46,10 @@ pub(crate) fn kit_pdf(
     let tiles = tile_pages(&tiling, title);
     pages.extend(tiles.into_iter().map(|tile| (tiling.page, tile)));
     let mut whole = page();
-    place(&mut whole, 1.0, [0, 1].map(|axis| BORDER - low[axis]));
+    place(&mut whole, 1.0, low.map(|x| BORDER - x));
     let form = form(&drawing);
     whole.x_object(form.name);
-    pages.push(([0, 1].map(|axis| high[axis] - low[axis] + 2.0 * BORDER), whole));
+    pages.push((size([low, high]).map(|side| side + 2.0 * BORDER), whole));
     Ok(pdf::file(&form, pages))
 }
 

@@ -1,12 +1,18 @@
 //! A picture of every step in which a sheet is mounted, with what to do.
 
-use crate::display::{Canvas, Style, Text};
-use crate::drawing::page::{ACCENT, INK, MUTED, PANELS};
-use crate::report::mounting_step;
+use crate::{
+    display::{Canvas, Style, Text},
+    drawing::page::{ACCENT, INK, MUTED, panels},
+    report::mounting_step,
+};
 use analysis::mounting::{Fastener, Mounting};
-use design::geometry::polygon::bounds;
-use design::sheet::cut_sheet::Sheet;
-use design::sheet::kinematics::{Configuration, deployed, deployed_boundaries};
+use design::{
+    geometry::polygon::bounds,
+    sheet::{
+        cut_sheet::Sheet,
+        kinematics::{Configuration, deployed, deployed_boundaries},
+    },
+};
 
 /// Height of the letters, distance of lines, and width of a letter on the mean (mm).
 const LETTERS: f64 = 2.3;
@@ -58,15 +64,13 @@ impl<'a> StepPictures<'a> {
         let put_in = &self.mounting.fasteners[..step];
         let state = put_in.last().map_or(&flat, |fastener| &fastener.sheet);
         let text = match put_in.last() {
-            None => "Cut the sheet. Move every panel to and fro once, so that no panel sticks to the next. Draw the crosses of the template on the board."
+            None => "Cut the sheet. Move every panel back and forth once, so that no panel sticks to the next. Draw the crosses of the template on the board."
                 .to_owned(),
             Some(fastener) => mounting_step(step, fastener),
         };
-        for (k, boundary) in deployed_boundaries(self.sheet, state).into_iter().enumerate() {
-            let fill = PANELS[usize::from(!self.sheet.topology.is_even(k))];
-            let boundary: Vec<[f64; 2]> = boundary.into_iter().map(place).collect();
-            canvas.polygon(&boundary, Style::stroke(MUTED, THIN).filled(fill));
-        }
+        let boundaries = deployed_boundaries(self.sheet, state).into_iter();
+        let placed = boundaries.map(|boundary| boundary.into_iter().map(place).collect());
+        panels(canvas, &self.sheet.topology, placed, Style::stroke(MUTED, THIN));
         for (i, fastener) in self.mounting.fasteners.iter().enumerate() {
             self.mark(canvas, i + 1, fastener, i < step, place);
         }
@@ -95,12 +99,10 @@ impl<'a> StepPictures<'a> {
         place: impl Fn([f64; 2]) -> [f64; 2],
     ) {
         let [x, y] = place(fastener.place);
-        let style = Style::stroke(ACCENT, THICK);
         if is_in {
             canvas.circle([x, y], FASTENER, Style::fill(INK));
         } else {
-            canvas.line([x - ARM, y], [x + ARM, y], style);
-            canvas.line([x, y - ARM], [x, y + ARM], style);
+            canvas.cross([x, y], ARM, Style::stroke(ACCENT, THICK));
         }
         let at = [x + ARM, y + 0.5 * ARM];
         let colour = if is_in { INK } else { ACCENT };

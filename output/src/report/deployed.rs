@@ -1,25 +1,27 @@
 //! What facts and findings are about: a deployed design and, after a search, its run.
 
-use crate::cut_file::{CutLines, FabricationError};
-use crate::report::hinge_row::HingeRow;
-use crate::report::numbers::rounded;
-use crate::report::reached::Reached;
-use analysis::design_checks::{DesignChecks, WholeSheet};
-use analysis::mounting::Mounting;
-use analysis::what_if::WhatIf;
-use design::geometry::polygon::bounds;
-use design::objective::design_problem::Deployment;
-use design::objective::scores::Scores;
-use scene::design_run::Designed;
-use scene::{Posture, Scene};
-use support::severity::Severity;
+use crate::{
+    cut_file::CutLines,
+    report::{hinge_row::HingeRow, numbers::rounded, reached::Reached},
+};
+use analysis::{
+    design_checks::{DesignChecks, WholeSheet},
+    mounting::Mounting,
+    what_if::WhatIf,
+};
+use design::{
+    geometry::polygon::{bounds, size},
+    objective::{design_problem::Deployment, scores::Scores},
+};
+use scene::{Posture, Scene, design_run::Designed};
+use support::{Fault, severity::Severity};
 
 /// A deployed design.
 pub(super) struct DeployedDesign<'a> {
     pub scene: &'a Scene,
     pub deployment: &'a Deployment,
     /// The cut lines of the sheet.
-    pub cuts: &'a Result<CutLines, FabricationError>,
+    pub cuts: &'a Result<CutLines, Fault>,
     /// All hinges.
     pub hinges: Vec<HingeRow>,
     /// The run whose best design it is; `None` for only a design.
@@ -132,8 +134,7 @@ pub(crate) fn miss(seen: f64, outline_error: f64, size: [f64; 2]) -> String {
 }
 
 pub(crate) fn extent(points: impl IntoIterator<Item = [f64; 2]>) -> [f64; 2] {
-    let [low, high] = bounds(points);
-    [high[0] - low[0], high[1] - low[1]]
+    size(bounds(points))
 }
 
 #[cfg(test)]

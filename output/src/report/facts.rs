@@ -7,8 +7,10 @@ mod mounting;
 
 pub(crate) use mounting::step as mounting_step;
 
-use crate::report::deployed::{DeployedDesign, FinishedRun};
-use crate::report::numbers::rounded;
+use crate::report::{
+    deployed::{DeployedDesign, FinishedRun},
+    numbers::rounded,
+};
 use analysis::unit::Unit;
 use serde::Serialize;
 use serde_json::Value;

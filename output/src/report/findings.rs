@@ -7,8 +7,7 @@ mod load;
 
 use crate::report::deployed::DeployedDesign;
 use serde::Serialize;
-use std::cmp::Reverse;
-use std::fmt;
+use std::{cmp::Reverse, fmt};
 use support::severity::Severity;
 
 /// A limit of the model or of fabrication that a design exceeds.

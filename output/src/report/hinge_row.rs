@@ -1,12 +1,12 @@
 //! One hinge in the report.
 
-use analysis::flanks::flank_gap;
-use analysis::localisation::gamma;
-use analysis::path_separation::path_separation;
-use design::geometry::polygon::{distance, edges};
-use design::hinge_law::DamageMeasure;
-use design::objective::design_problem::Deployment;
-use design::sheet::cut_sheet::{Hinge, Sheet};
+use analysis::{flanks::flank_gap, localisation::gamma, path_separation::path_separation};
+use design::{
+    geometry::polygon::{distance, edges},
+    hinge_law::DamageMeasure,
+    objective::design_problem::Deployment,
+    sheet::cut_sheet::{Hinge, Sheet},
+};
 use hinge::HingeDesign;
 use scene::{Posture, Scene};
 use serde::Serialize;
@@ -64,7 +64,7 @@ impl HingeRow {
         let states: Vec<_> = (deployment.path.iter()).map(|step| step.deformations[h]).collect();
         Self {
             hinge: h,
-            panels: [hinge.panel_a(), hinge.panel_b()],
+            panels: hinge.panels(),
             w_lig: hinge.w_lig,
             alpha_deg: hinge.alpha.to_degrees(),
             theta_deg: last.theta.to_degrees(),
@@ -85,7 +85,8 @@ impl HingeRow {
 
 /// The shortest edge of the two panels of a hinge (mm).
 fn shortest_edge(sheet: &Sheet, hinge: &Hinge) -> f64 {
-    [hinge.panel_a(), hinge.panel_b()]
+    hinge
+        .panels()
         .iter()
         .flat_map(|&panel| edges(&sheet.panels[panel].corners))
         .map(|(p, q)| distance(p, q))

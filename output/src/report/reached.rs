@@ -1,8 +1,10 @@
 //! The end of an equilibrium path.
 
 use crate::report::numbers::rounded;
-use analysis::actuation_curve::{ActuationCurve, LimitPoint, LoadPeak, Mover};
-use analysis::unit::Unit;
+use analysis::{
+    actuation_curve::{ActuationCurve, LimitPoint, LoadPeak, Mover},
+    unit::Unit,
+};
 use design::objective::design_problem::{Deployment, DesignProblem};
 use scene::{Scene, panel_name};
 

@@ -1,12 +1,13 @@
 //! The report as parts for people: about sixty lines for a small sheet.
 
-use crate::report::numbers::rounded;
-use crate::report::{BUDGET_HEADING, HingeRow, Report};
+use crate::report::{BUDGET_HEADING, HingeRow, Report, numbers::rounded};
 use design::objective::scores::{Scores, shown};
 use std::cmp::Ordering;
-use support::document::Document;
-use support::severity::Severity;
-use support::table::{Cell, Columns, Table};
+use support::{
+    document::Document,
+    severity::Severity,
+    table::{Cell, Columns, Table},
+};
 
 /// Maximum number of hinges that are all listed.
 const ALL_LISTED: usize = 24;

@@ -1,16 +1,19 @@
 //! The states of panels and hinges along the path.
 
-use crate::deployment_states::{kept, states_before};
-use crate::report::force_spreads;
-use crate::run_page::packed::Packed;
+use crate::{
+    deployment_states::{kept, states_before},
+    report::force_spreads,
+    run_page::packed::packed,
+};
 use analysis::actuation_curve::ActuationCurve;
-use design::equilibrium::load_step::{LoadStep, Status};
-use design::hinge_law::{DamageMeasure, Order};
-use design::objective::design_problem::{Deployment, DesignProblem, Mechanics};
-use design::sheet::cut_sheet::Sheet;
-use scene::Scene;
-use scene::placement::placed;
-use serde::Serialize;
+use design::{
+    equilibrium::load_step::LoadStep,
+    hinge_law::{DamageMeasure, Order},
+    objective::design_problem::{Deployment, DesignProblem, Mechanics},
+    sheet::cut_sheet::Sheet,
+};
+use scene::{Scene, placement::placed};
+use serde_json::{Value, json};
 use surrogate::Surrogate;
 
 /// Maximum number of numbers in the states: 4 bytes each, and a third more in base64, are 4 MB. Of
@@ -21,105 +24,77 @@ const MOST_NUMBERS: usize = 750_000;
 const OF_PANEL: usize = 3;
 const OF_HINGE: usize = 11;
 
-/// The states, each list with one entry, or one row, for each state; NaN is not known.
-#[derive(Serialize)]
-pub(super) struct HingeStates {
-    /// Number of states, those that are left out included, and the index of each state shown.
-    of: usize,
-    index: Vec<usize>,
-    load_factor: Vec<f64>,
-    /// Number of load steps in which the weight comes on, before the steps of the loads.
-    weight_steps: usize,
-    status: Vec<Status>,
-    /// (displacement, load) of what moves the sheet, for all states of the path; `None` before the
-    /// whole weight is on.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    curve: Option<Vec<Option<[f64; 2]>>>,
-    /// (u_x, u_y, phi) of the panels (mm, mm, rad).
-    motions: Packed,
-    /// (a, s, theta) of the hinges (mm, mm, rad).
-    deformations: Packed,
-    /// Whether the hinges are inside the training domain.
-    inside: Packed,
-    /// Energies of the hinges under load (N mm).
-    #[serde(skip_serializing_if = "Option::is_none")]
-    energy: Option<Packed>,
-    /// (F_a, F_s, M_theta) of the hinges (N, N, N mm).
-    #[serde(skip_serializing_if = "Option::is_none")]
-    forces: Option<Packed>,
-    /// D, known up to the state in which a hinge leaves the training domain.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    damage: Option<Packed>,
-    /// D_peak, likewise.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    damage_peak: Option<Packed>,
-    /// Standard deviation of the forces over the ensemble (%), relative to the forces on the path.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    spread: Option<Packed>,
-    /// (F_x, F_y, M) of every support of the scene (N, N, N mm); zero in the free directions.
-    reactions: Packed,
-}
-
-impl HingeStates {
-    /// The states of a deployment; with the spread of several networks.
-    pub(super) fn new(
-        scene: &Scene,
-        problem: &DesignProblem,
-        deployment: &Deployment,
-        networks: &[Surrogate],
-    ) -> Self {
-        let sheet = &deployment.sheet;
-        let before = states_before(problem, deployment);
-        let all: Vec<&LoadStep> = before.iter().chain(&deployment.path).collect();
-        let size = OF_PANEL * sheet.panels.len() + OF_HINGE * sheet.hinges.len();
-        let index = kept(all.len(), MOST_NUMBERS / size);
-        let shown: Vec<&LoadStep> = index.iter().map(|&i| all[i]).collect();
-        let mechanics = problem.model.mechanics();
-        let by_hinge = |of: &dyn Fn(usize, usize) -> f64| -> Packed {
-            let numbers = |&i: &usize| (0..sheet.hinges.len()).map(move |h| of(i, h));
-            index.iter().flat_map(numbers).collect()
-        };
-        let damage = |measure: DamageMeasure| {
-            let known = known_damage(deployment, before.len(), measure)?;
-            Some(by_hinge(&|i, h| known[i][h]))
-        };
-        let of_mechanics = mechanics
-            .map(|mechanics| forces_and_reactions(scene, mechanics, &deployment.sheet, &shown));
-        let (forces, reactions) = of_mechanics.unzip();
-        let weight_steps = deployment.weight_steps().len();
-        let curve = mechanics.and_then(|mechanics| ActuationCurve::new(mechanics, deployment));
-        Self {
-            of: all.len(),
-            load_factor: shown.iter().map(|state| state.load_factor).collect(),
-            status: shown.iter().map(|state| state.status).collect(),
-            weight_steps,
-            curve: curve.map(|curve| {
-                let before = std::iter::repeat_n(None, weight_steps);
-                before.chain(curve.points.into_iter().map(Some)).collect()
-            }),
-            motions: (shown.iter())
-                .flat_map(|state| placed(scene, sheet, &state.configuration))
-                .flatten()
-                .collect(),
-            deformations: (shown.iter())
-                .flat_map(|state| state.deformations.iter().flat_map(|eps| eps.to_array()))
-                .collect(),
-            inside: by_hinge(&|i, h| f64::from(u8::from(all[i].inside[h]))),
-            energy: mechanics.map(|_| by_hinge(&|i, h| all[i].energies[h])),
-            forces,
-            damage: damage(DamageMeasure::Mean),
-            damage_peak: damage(DamageMeasure::Peak),
-            spread: force_spreads(networks, deployment).map(|spreads| {
-                // The flat sheet has no forces.
-                by_hinge(&|i, h| match i.checked_sub(1) {
-                    None => 0.0,
-                    Some(step) => spreads.get(step).map_or(f64::NAN, |of| 100.0 * of[h]),
-                })
-            }),
-            reactions: reactions.unwrap_or_else(|| Packed::from_iter([])),
-            index,
-        }
-    }
+/// The states of a deployment, each list with one entry, or one row, for each state; NaN is not
+/// known, and null a list of which nothing is. With the spread of several networks.
+pub(super) fn hinge_states(
+    scene: &Scene,
+    problem: &DesignProblem,
+    deployment: &Deployment,
+    networks: &[Surrogate],
+) -> Value {
+    let sheet = &deployment.sheet;
+    let before = states_before(problem, deployment);
+    let all: Vec<&LoadStep> = before.iter().chain(&deployment.path).collect();
+    let size = OF_PANEL * sheet.panels.len() + OF_HINGE * sheet.hinges.len();
+    let index = kept(all.len(), MOST_NUMBERS / size);
+    let shown: Vec<&LoadStep> = index.iter().map(|&i| all[i]).collect();
+    let mechanics = problem.model.mechanics();
+    let by_hinge = |of: &dyn Fn(usize, usize) -> f64| {
+        let numbers = |&i: &usize| (0..sheet.hinges.len()).map(move |h| of(i, h));
+        packed(index.iter().flat_map(numbers))
+    };
+    let damage = |measure: DamageMeasure| {
+        let known = known_damage(deployment, before.len(), measure)?;
+        Some(by_hinge(&|i, h| known[i][h]))
+    };
+    let of_mechanics =
+        mechanics.map(|mechanics| forces_and_reactions(scene, mechanics, sheet, &shown));
+    let (forces, reactions) = of_mechanics.unzip();
+    let weight_steps = deployment.weight_steps().len();
+    let curve = mechanics.and_then(|mechanics| ActuationCurve::new(mechanics, deployment));
+    let curve = curve.map(|curve| {
+        let before = std::iter::repeat_n(None, weight_steps);
+        before.chain(curve.points.into_iter().map(Some)).collect::<Vec<_>>()
+    });
+    let spread = force_spreads(networks, deployment).map(|spreads| {
+        // The flat sheet has no forces.
+        by_hinge(&|i, h| match i.checked_sub(1) {
+            None => 0.0,
+            Some(step) => spreads.get(step).map_or(f64::NAN, |of| 100.0 * of[h]),
+        })
+    });
+    let states = || shown.iter();
+    let motions = states().flat_map(|state| placed(scene, sheet, &state.configuration));
+    let deformations = states().flat_map(|state| &state.deformations);
+    json!({
+        // Number of states, those that are left out included, and the index of each state shown.
+        "of": all.len(),
+        "index": index,
+        "load_factor": states().map(|state| state.load_factor).collect::<Vec<_>>(),
+        // Number of load steps in which the weight comes on, before the steps of the loads.
+        "weight_steps": weight_steps,
+        "status": states().map(|state| state.status).collect::<Vec<_>>(),
+        // (displacement, load) of what moves the sheet, for all states of the path; null before the
+        // whole weight is on.
+        "curve": curve,
+        // (u_x, u_y, phi) of the panels (mm, mm, rad).
+        "motions": packed(motions.flatten()),
+        // (a, s, theta) of the hinges (mm, mm, rad).
+        "deformations": packed(deformations.flat_map(|eps| eps.to_array())),
+        // Whether the hinges are inside the training domain.
+        "inside": by_hinge(&|i, h| f64::from(u8::from(all[i].inside[h]))),
+        // Energies of the hinges under load (N mm).
+        "energy": mechanics.map(|_| by_hinge(&|i, h| all[i].energies[h])),
+        // (F_a, F_s, M_theta) of the hinges (N, N, N mm).
+        "forces": forces,
+        // D and D_peak, known up to the state in which a hinge leaves the training domain.
+        "damage": damage(DamageMeasure::Mean),
+        "damage_peak": damage(DamageMeasure::Peak),
+        // Standard deviation of the forces over the ensemble (%), relative to the forces on the path.
+        "spread": spread,
+        // (F_x, F_y, M) of every support of the scene (N, N, N mm); zero in the free directions.
+        "reactions": reactions.unwrap_or_default(),
+    })
 }
 
 /// (F_a, F_s, M_theta) of every hinge and (F_x, F_y, M) of every support of the scene in states.
@@ -128,7 +103,7 @@ fn forces_and_reactions(
     mechanics: &Mechanics,
     sheet: &Sheet,
     states: &[&LoadStep],
-) -> (Packed, Packed) {
+) -> (String, String) {
     let supports = scene.actuation().supports;
     let law = mechanics.law.prepare(&sheet.designs());
     let hinged = mechanics.hinged(sheet, &*law, false);
@@ -142,7 +117,7 @@ fn forces_and_reactions(
             held.map(|(motion, force)| motion.map_or(0.0, |_| force))
         }));
     }
-    (forces.into_iter().collect(), reactions.into_iter().collect())
+    (packed(forces), packed(reactions))
 }
 
 /// The damage of every hinge in every state: zero in the states before the path, NaN from the state

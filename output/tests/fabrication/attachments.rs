@@ -3,9 +3,10 @@
 use super::{W_LIG, uniform};
 use design::sheet::cut_sheet::AttachmentPoint;
 use design::sheet::cut_sheet::PanelPoint;
-use output::cut_file::{CutLines, FabricationError, Layer, attachment_list, dxf};
+use output::cut_file::{CutLines, Layer, attachment_list, dxf};
 use output::display::Shape;
 use scene::CuttingConfig;
+use support::Fault;
 
 fn attachment(point: PanelPoint) -> AttachmentPoint {
     AttachmentPoint {
@@ -16,7 +17,7 @@ fn attachment(point: PanelPoint) -> AttachmentPoint {
     }
 }
 
-fn cuts(attachment: AttachmentPoint) -> Result<CutLines, FabricationError> {
+fn cuts(attachment: AttachmentPoint) -> Result<CutLines, Fault> {
     let (pattern, sheet) = uniform(W_LIG);
     CutLines::new(&pattern, &sheet, CuttingConfig::default(), &[attachment])
 }
@@ -83,7 +84,7 @@ fn a_hole_near_an_edge_or_a_hinge_is_refused() {
     assert!(error.contains("the edge of its panel"), "{error}");
     let (_, sheet) = uniform(W_LIG);
     let mut hinges = sheet.hinges.iter();
-    let near = hinges.find(|hinge| [hinge.panel_a(), hinge.panel_b()].contains(&4));
+    let near = hinges.find(|hinge| hinge.panels().contains(&4));
     let tip = near.unwrap().tip;
     let towards = |share: f64| [0, 1].map(|c| tip[c] + share * ([x, y][c] - tip[c]));
     let error = hole(towards(0.3), 2.0).unwrap_err();

@@ -19,7 +19,7 @@ use design::pattern::cut_pattern::{CutPattern, Outline};
 use design::pattern::grid::Grid;
 use design::sheet::cut_sheet::{HingePoint, Sheet, SheetOptions};
 use hinge::{HingeConstants, SheetMaterial};
-use output::cut_file::{CutLines, FabricationError, Layer, SheetDrawing, Slit};
+use output::cut_file::{CutLines, Layer, SheetDrawing, Slit};
 use output::display::Shape;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -218,10 +218,10 @@ fn a_ligament_has_the_width_of_the_window_model() {
 fn ligaments_that_leave_no_slit_are_refused() {
     let of = |w_lig| {
         let (pattern, sheet) = uniform(w_lig);
-        CutLines::new(&pattern, &sheet, CuttingConfig::default(), &[]).unwrap_err()
+        CutLines::new(&pattern, &sheet, CuttingConfig::default(), &[]).unwrap_err().to_string()
     };
-    assert!(matches!(of(398.0), FabricationError::SlitVanishes { .. }));
-    assert!(matches!(of(0.6), FabricationError::HoleTooSmall { .. }));
+    assert!(of(398.0).starts_with("the slit at hinge 0 would be"));
+    assert!(of(0.6).starts_with("the hole of hinge 0 is"));
 }
 
 /// The ligament at the end of a cut shortens it: in sheets of short panels a cut may end before the
@@ -232,13 +232,10 @@ fn cuts_that_are_too_short_for_their_ligaments_and_panels_are_refused() {
     let mut refused = [0, 0];
     for seed in 0..300 {
         let (pattern, sheet) = sheet(grid, &drawn(grid, seed, 2.0), 25.0);
-        match CutLines::new(&pattern, &sheet, CuttingConfig::default(), &[]) {
-            Err(FabricationError::CutEndsBeforeLigament { hinge: h, width, modelled }) => {
-                assert!(width > modelled && modelled == sheet.hinges[h].w_lig);
-                refused[0] += 1;
-            }
-            Err(FabricationError::EdgeNotCut { .. }) => refused[1] += 1,
-            _ => {}
+        if let Err(error) = CutLines::new(&pattern, &sheet, CuttingConfig::default(), &[]) {
+            let error = error.to_string();
+            refused[0] += u32::from(error.contains("ends before its ligament"));
+            refused[1] += u32::from(error.starts_with("an edge of panel"));
         }
     }
     assert!(refused.iter().all(|count| *count > 0), "{refused:?}");

@@ -15,10 +15,11 @@ mod sections;
 use design::optimise::outer_loop::SearchState;
 use output::report::{Report, Warning};
 use output::run_results::write_results;
-use scene::design_run::{Designed, InverseDesignError, inverse_design};
-use scene::{Scene, SceneConfig};
+use scene::design_run::{Designed, inverse_design};
+use scene::{Level, Scene, SceneConfig};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
+use support::Fault;
 use tempfile::TempDir;
 use testkit::derivatives::assert_close;
 
@@ -186,9 +187,9 @@ fn assert_says(text: &str, part: &str) {
 }
 
 /// Runs a scene, which is stopped after a step.
-fn run(scene: &Scene, stop_after: Option<usize>) -> Result<Designed, InverseDesignError> {
+fn run(scene: &Scene, stop_after: Option<usize>) -> Result<Designed, Fault> {
     let stop = AtomicBool::new(false);
-    let mut watch = |search: &SearchState| {
+    let mut watch = |_: Level, search: &SearchState| {
         let enough = stop_after.is_some_and(|step| search.last().step >= step);
         stop.store(enough, Ordering::Relaxed);
     };

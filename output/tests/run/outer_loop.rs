@@ -68,7 +68,7 @@ fn resumes(text: &str) {
     assert_eq!(resumed.search.best, uninterrupted.search.best);
     // A finished run makes no further steps.
     let mut steps = 0;
-    inverse_design(&scene, &AtomicBool::new(false), &mut |_| steps += 1).unwrap();
+    inverse_design(&scene, &AtomicBool::new(false), &mut |_, _| steps += 1).unwrap();
     assert_eq!(steps, 0);
 }
 

@@ -1,6 +1,7 @@
 //! A line in a drawing, and what makes it an outline.
 
 use design::geometry::polygon;
+use support::{Fault, ensure, refuse};
 
 /// Points closer than this fraction of the largest coordinate are merged: usvg rounds to f32.
 pub(super) const WELD: f64 = 1e-6;
@@ -11,79 +12,6 @@ const TOO_FAR: f64 = 1000.0;
 pub(super) const MOST_POINTS: usize = 100_000;
 /// Number of contours that a message lists.
 pub(super) const LISTED: usize = 5;
-
-/// Why a file has no outline; lengths and coordinates are in the page of an SVG file (px), or in a
-/// DXF file (mm if it states its unit).
-#[derive(Debug, thiserror::Error)]
-#[allow(missing_docs, reason = "the message of a variant is its documentation")]
-pub enum DrawingError {
-    #[error("the file is empty; draw one closed outline and save it as SVG or DXF")]
-    Empty,
-    #[error("the file is not readable as SVG: {0}; save the drawing as plain SVG")]
-    NotSvg(usvg::Error),
-    #[error("the file {what}; export the drawing as SVG or DXF")]
-    OtherKind { what: String },
-    #[error("the file is no drawing: {0}")]
-    NotText(std::io::Error),
-    #[error("line {line} of the DXF file: {what}")]
-    NotDxf { line: usize, what: String },
-    #[error(
-        "an entity of the kind {kind} on the layer `{layer}` is not read; explode it in the drawing program, or switch its \
-         layer off if it is no part of the outline"
-    )]
-    Unread { kind: String, layer: String },
-    #[error(
-        "the style `{name}: {value}` is not read; apply it in the drawing program, or write it as an attribute"
-    )]
-    Style { name: String, value: String },
-    #[error(
-        "there is no visible path in the file{why}; draw the outline as a path, polygon, rect, circle \
-         or ellipse with a fill or a stroke, outside of <defs>, or in DXF as lines, arcs, polylines or splines in model \
-         space on a layer that is on, thawed and plotted"
-    )]
-    NoPath { why: String },
-    #[error(
-        "the drawing has {found} pieces, by size {listed}; a sheet is one of them: delete the others, or write the number of one \
-         behind the name of the file, as in `drawing.svg#1`, which takes it with its holes"
-    )]
-    Several { found: usize, listed: String },
-    #[error("there is no contour {number}: the drawing has {found}, by size {listed}")]
-    NoSuch { number: usize, found: usize, listed: String },
-    #[error(
-        "lines branch at ({x}, {y}), or lie on each other there in part: delete those that are not part of the outline"
-    )]
-    Branch { x: f64, y: f64 },
-    #[error(
-        "the path is drawn in part alone, because of the {element} `{id}`; release it in the drawing program, so that the \
-         path itself is the outline"
-    )]
-    Cut { element: &'static str, id: String },
-    #[error("the path has {found} points; simplify the outline to at most {MOST_POINTS}")]
-    TooManyPoints { found: usize },
-    #[error(
-        "the path ends open at ({x}, {y}), {gap} from its start; close it (in SVG data with Z), or correct the mistake in the data \
-         after this point"
-    )]
-    Open { x: f64, y: f64, gap: f64 },
-    #[error(
-        "the outline is {times:.0} times its own size away from the origin of its coordinates, and is read with seven digits; \
-         move it to the origin"
-    )]
-    TooFar { times: f64 },
-    #[error("the path has {found} different points; draw an outline of at least 3 points")]
-    TooFewPoints { found: usize },
-    #[error(
-        "the path crosses or touches itself near ({x}, {y}); move its points until \
-         the outline is one simple loop"
-    )]
-    SelfCrossing { x: f64, y: f64 },
-    #[error(
-        "contours cross or touch each other near ({x}, {y}); move them apart, or delete one of them"
-    )]
-    Crossing { x: f64, y: f64 },
-    #[error("the drawing states no unit: give `height` (mm)")]
-    NoUnit,
-}
 
 /// A line of a drawing, flattened to segments.
 #[derive(Clone, Debug, Default)]
@@ -100,10 +28,14 @@ pub(super) struct Contour {
 }
 
 impl Contour {
+    /// The lower left and the upper right corner of its bounding box.
+    pub(super) fn bounds(&self) -> [[f64; 2]; 2] {
+        polygon::bounds(self.points.iter().copied())
+    }
+
     /// Width and height of its bounding box.
     pub(super) fn size(&self) -> [f64; 2] {
-        let [low, high] = polygon::bounds(self.points.iter().copied());
-        [high[0] - low[0], high[1] - low[1]]
+        polygon::size(self.bounds())
     }
 
     /// Whether it has an inside.
@@ -130,8 +62,9 @@ impl Contour {
         self
     }
 
-    /// Checks that it is an outline; returns the length of the line that closes it.
-    pub(super) fn check(&self) -> Result<f64, DrawingError> {
+    /// Checks that it is an outline; returns the length of the line that closes it. Lengths and
+    /// coordinates are in the page of an SVG file (px), or in a DXF file (mm if it states its unit).
+    pub(super) fn check(&self) -> Result<f64, Fault> {
         let found = self.points.len();
         let last = self.points[found - 1];
         let gap = match self.closed {
@@ -139,32 +72,49 @@ impl Contour {
             false => polygon::distance(self.points[0], last),
         };
         let [x, y] = last.map(rounded);
-        if self.branches && !self.closed {
-            return Err(DrawingError::Branch { x, y });
-        }
-        if found < 3 {
-            return Err(DrawingError::TooFewPoints { found });
-        }
-        if !self.is_whole() {
-            return Err(DrawingError::Open { x, y, gap: rounded(gap) });
-        }
+        ensure!(
+            self.closed || !self.branches,
+            "lines branch at ({x}, {y}), or lie on each other there in part: delete those that are not part of the outline"
+        );
+        ensure!(
+            found > 2,
+            "the path has {found} different points; draw an outline of at least 3 points"
+        );
+        ensure!(
+            self.is_whole(),
+            "the path ends open at ({x}, {y}), {} from its start; close it (in SVG data with Z), or correct the mistake in the data \
+             after this point",
+            rounded(gap)
+        );
         let [width, height] = self.size();
         let times = self.rounding / WELD / width.max(height);
-        if times > TOO_FAR {
-            return Err(DrawingError::TooFar { times });
+        ensure!(
+            times <= TOO_FAR,
+            "the outline is {times:.0} times its own size away from the origin of its coordinates, and is read with seven digits; \
+             move it to the origin"
+        );
+        ensure!(
+            found <= MOST_POINTS,
+            "the path has {found} points; simplify the outline to at most {MOST_POINTS}"
+        );
+        if let Some([x, y]) = crossing(&[self]) {
+            refuse!(
+                "the path crosses or touches itself near ({x}, {y}); move its points until \
+                 the outline is one simple loop"
+            );
         }
-        if found > MOST_POINTS {
-            return Err(DrawingError::TooManyPoints { found });
-        }
-        let [x0, y0] = self.points[0];
-        let near_zero: Vec<_> = self.points.iter().map(|[x, y]| [x - x0, y - y0]).collect();
-        match polygon::self_crossing(&near_zero) {
-            Some([x, y]) => {
-                Err(DrawingError::SelfCrossing { x: rounded(x + x0), y: rounded(y + y0) })
-            }
-            None => Ok(gap),
-        }
+        Ok(gap)
     }
+}
+
+/// A common point of the lines of contours. Coordinates are taken from a point of the last one:
+/// numbers near zero have more digits.
+pub(super) fn crossing(contours: &[&Contour]) -> Option<[f64; 2]> {
+    let [x0, y0] = contours.last()?.points[0];
+    let near_zero = contours.iter().map(|contour| -> Vec<_> {
+        contour.points.iter().map(|[x, y]| [x - x0, y - y0]).collect()
+    });
+    polygon::crossing(near_zero).map(|[x, y]| [x + x0, y + y0].map(rounded))
 }
 
 /// Number of segments of a flattened curve.

@@ -2,11 +2,9 @@
 //! as attributes and as SVG has transforms, because usvg reads them only so. What cannot be written
 //! so is refused by its name.
 
-use crate::drawing::contour::DrawingError;
 use simplecss::{AttributeOperator, DeclarationTokenizer, PseudoClass, StyleSheet};
-use std::collections::HashMap;
-use std::ops::Range;
-use std::str::FromStr;
+use std::{collections::HashMap, ops::Range, str::FromStr};
+use support::Fault;
 use svgtypes::{Angle, Length, LengthUnit};
 use usvg::roxmltree::{Attribute, Document, Node};
 
@@ -44,7 +42,7 @@ pub(super) fn edited(text: &str, mut edits: Vec<Edit>) -> String {
 }
 
 /// The edits of the text of a document.
-pub(super) fn edits(document: &Document) -> Result<Vec<Edit>, DrawingError> {
+pub(super) fn edits(document: &Document) -> Result<Vec<Edit>, Fault> {
     let mut sheet = StyleSheet::new();
     let styles = document.descendants().filter(|node| node.has_tag_name("style"));
     styles.filter_map(|node| node.text()).for_each(|text| sheet.parse_more(text));
@@ -86,10 +84,6 @@ impl<'a> Styled<'a> {
         Self { node, styles }
     }
 
-    fn refused(&self, name: &str, value: &str) -> DrawingError {
-        DrawingError::Style { name: name.into(), value: value.into() }
-    }
-
     /// An attribute of SVG: drawing programs have others of the same name in their own namespaces,
     /// such as `inkscape:zoom`.
     fn own(&self, name: &str) -> Option<Attribute<'a, 'a>> {
@@ -97,7 +91,7 @@ impl<'a> Styled<'a> {
     }
 
     /// The value of an attribute, if a style gives one.
-    fn geometry(&self, name: &str) -> Result<Option<String>, DrawingError> {
+    fn geometry(&self, name: &str) -> Result<Option<String>, Fault> {
         let Some((value, _)) = self.styles.get(name).filter(|(value, _)| *value != "auto") else {
             return Ok(None);
         };
@@ -108,17 +102,17 @@ impl<'a> Styled<'a> {
             let length = Length::from_str(value).ok();
             length.filter(|it| it.unit != LengthUnit::None || it.number == 0.0).map(|_| *value)
         };
-        read.map(|read| Some(read.into())).ok_or_else(|| self.refused(name, value))
+        read.map(|read| Some(read.into())).ok_or_else(|| refused(name, value))
     }
 
     /// The transform as SVG writes it, if a style gives one.
-    fn transform(&self) -> Result<Option<String>, DrawingError> {
+    fn transform(&self) -> Result<Option<String>, Fault> {
         for (name, read) in OTHERS {
             let style = self.styles.get(name).map(|(value, _)| *value);
             if let Some(value) = style.or_else(|| self.own(name).map(|own| own.value()))
                 && !read.iter().any(|start| value.starts_with(start))
             {
-                return Err(self.refused(name, value));
+                return Err(refused(name, value));
             }
         }
         let mut list = String::new();
@@ -134,7 +128,7 @@ impl<'a> Styled<'a> {
                 _ => format!("{name}({value})"),
             };
             let matrices = matrices(&functions).filter(|_| !important);
-            list += &matrices.ok_or_else(|| self.refused(name, value))?;
+            list += &matrices.ok_or_else(|| refused(name, value))?;
         }
         if !self.styles.contains_key("transform") {
             list += self.own("transform").map_or("", |own| own.value());
@@ -157,6 +151,14 @@ impl<'a> Styled<'a> {
         let end = start + length.unwrap_or(tag.len());
         (end..end, format!(" {name}='{value}'"))
     }
+}
+
+/// The error of a style that is not read.
+fn refused(name: &str, value: &str) -> Fault {
+    format!(
+        "the style `{name}: {value}` is not read; apply it in the drawing program, or write it as an attribute"
+    )
+    .into()
 }
 
 /// Functions of CSS as matrices of SVG; `None` if one is not of the plane or has no unit.

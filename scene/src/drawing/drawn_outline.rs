@@ -4,12 +4,14 @@
 //! If the drawing has several pieces the outline is named by its number among the contours, the
 //! largest first.
 
-use crate::drawing::contour::{Contour, DrawingError, LISTED, rounded};
-use crate::drawing::joined_lines::joined;
-use crate::drawing::{dxf_contours, holes, svg_path};
-use design::geometry::polygon;
+use crate::drawing::{
+    contour::{Contour, LISTED, rounded},
+    dxf_contours, holes,
+    joined_lines::joined,
+    svg_path,
+};
 use std::path::{Path, PathBuf};
-use support::text_file;
+use support::{Fault, at, refuse, text_file};
 
 /// First bytes of a file that is compressed by gzip.
 const GZIP: &[u8] = b"\x1F\x8B";
@@ -50,21 +52,23 @@ pub fn numbered(name: &Path) -> (PathBuf, Option<usize>) {
 }
 
 /// The outline in the bytes of a drawing; if it has several, the one with the given number.
-pub(crate) fn of_file(bytes: &[u8], number: Option<usize>) -> Result<Outline, DrawingError> {
+pub(crate) fn of_file(bytes: &[u8], number: Option<usize>) -> Result<Outline, Fault> {
     if bytes.starts_with(GZIP) {
-        let svg = usvg::decompress_svgz(bytes).map_err(DrawingError::NotSvg)?;
+        let svg = usvg::decompress_svgz(bytes).map_err(svg_path::not_svg)?;
         return of_text(&decoded(&svg)?, number);
     }
     of_text(&decoded(bytes)?, number)
 }
 
-fn decoded(bytes: &[u8]) -> Result<String, DrawingError> {
-    text_file::decoded(bytes).map_err(DrawingError::NotText)
+fn decoded(bytes: &[u8]) -> Result<String, Fault> {
+    text_file::decoded(bytes).map_err(at("the file is no drawing"))
 }
 
-pub(super) fn of_text(text: &str, number: Option<usize>) -> Result<Outline, DrawingError> {
+pub(super) fn of_text(text: &str, number: Option<usize>) -> Result<Outline, Fault> {
     let first = text.lines().find(|line| !line.trim().is_empty());
-    let first = first.ok_or(DrawingError::Empty)?.trim();
+    let Some(first) = first.map(str::trim) else {
+        refuse!("the file is empty; draw one closed outline and save it as SVG or DXF");
+    };
     // Group code 0 begins a section, 999 is a comment.
     if ["0", "999"].contains(&first) {
         let (contours, has_unit) = dxf_contours::read(text)?;
@@ -74,8 +78,10 @@ pub(super) fn of_text(text: &str, number: Option<usize>) -> Result<Outline, Draw
         let known = OTHERS.iter().find(|(start, _)| first.starts_with(start));
         let start: String = first.chars().take(20).collect();
         let what = known.map_or("no drawing that is read", |(_, what)| what);
-        let what = format!("begins with `{}`: it is {what}", start.escape_debug());
-        return Err(DrawingError::OtherKind { what });
+        refuse!(
+            "the file begins with `{}`: it is {what}; export the drawing as SVG or DXF",
+            start.escape_debug()
+        );
     }
     let (contours, warnings) = svg_path::contours(text)?;
     let mut outline = outline(contours, number, false)?;
@@ -89,7 +95,7 @@ fn outline(
     contours: Vec<Contour>,
     number: Option<usize>,
     has_unit: bool,
-) -> Result<Outline, DrawingError> {
+) -> Result<Outline, Fault> {
     let mut contours = joined(contours);
     let area = |contour: &Contour| {
         let [width, height] = contour.size();
@@ -111,24 +117,28 @@ fn chosen(
     contours: &[Contour],
     around: &[Vec<usize>],
     number: Option<usize>,
-) -> Result<usize, DrawingError> {
+) -> Result<usize, Fault> {
     let found = contours.len();
     let pieces: Vec<usize> = (0..found).filter(|i| around[*i].is_empty()).collect();
     match (number, &pieces[..]) {
-        (_, []) => Err(DrawingError::NoPath { why: String::new() }),
+        (_, []) => Err(svg_path::no_path("")),
         (None, [piece]) => Ok(*piece),
         (None, _) => {
             let branch = contours.iter().find(|contour| contour.branches);
             if let Some(branch) = branch.filter(|_| !contours.iter().any(Contour::is_whole)) {
                 branch.check()?;
             }
-            let listed = listed(pieces.iter().map(|piece| (*piece, &contours[*piece])));
-            Err(DrawingError::Several { found: pieces.len(), listed })
+            refuse!(
+                "the drawing has {} pieces, by size {}; a sheet is one of them: delete the others, or write the number of one \
+                 behind the name of the file, as in `drawing.svg#1`, which takes it with its holes",
+                pieces.len(),
+                listed(pieces.iter().map(|piece| (*piece, &contours[*piece])))
+            )
         }
-        (Some(number), _) if number == 0 || number > found => {
-            let listed = listed(contours.iter().enumerate());
-            Err(DrawingError::NoSuch { number, found, listed })
-        }
+        (Some(number), _) if number == 0 || number > found => refuse!(
+            "there is no contour {number}: the drawing has {found}, by size {}",
+            listed(contours.iter().enumerate())
+        ),
         (Some(number), _) => Ok(number - 1),
     }
 }
@@ -137,7 +147,7 @@ fn chosen(
 pub(super) fn listed<'a>(contours: impl Iterator<Item = (usize, &'a Contour)>) -> String {
     let words = contours.take(LISTED).map(|(i, contour)| {
         let [width, height] = contour.size().map(rounded);
-        let [x, y] = polygon::bounds(contour.points.iter().copied())[0].map(rounded);
+        let [x, y] = contour.bounds()[0].map(rounded);
         let open = match (contour.closed, contour.branches) {
             (true, _) => "",
             (_, true) => " (branches)",
@@ -151,6 +161,7 @@ pub(super) fn listed<'a>(contours: impl Iterator<Item = (usize, &'a Contour)>) -
 #[cfg(test)]
 mod tests {
     use super::*;
+    use design::geometry::polygon;
     use std::fmt::Write;
 
     fn svg(content: &str) -> String {

@@ -5,15 +5,18 @@
 //! are LINE, ARC, CIRCLE, ELLIPSE, SPLINE, LWPOLYLINE, POLYLINE and the blocks of INSERT, on layers
 //! that are shown. Reference: Autodesk, DXF Reference (AutoCAD 2000).
 
-use crate::drawing::bulged::{Vertex, arc, flattened};
-use crate::drawing::contour::{Contour, DrawingError, WELD};
-use crate::drawing::spline;
-use design::geometry::plane::{I, complex, point};
-use design::geometry::polygon;
+use crate::drawing::{
+    bulged::{Vertex, arc, flattened},
+    contour::{Contour, WELD},
+    spline,
+};
+use design::geometry::{
+    plane::{I, complex, point},
+    polygon,
+};
 use faer::c64;
-use std::collections::HashMap;
-use std::f64::consts::TAU;
-use std::ops::Range;
+use std::{collections::HashMap, f64::consts::TAU, ops::Range};
+use support::{Fault, ensure, refuse};
 
 /// Difference of an angle from a full circle at which it is one, written with few digits (rad).
 const FULL: f64 = 1e-3;
@@ -111,8 +114,13 @@ impl<'a> Record<'a> {
         c64::new(self.number(code), self.number(code + 10))
     }
 
-    fn unread(&self, kind: &str) -> DrawingError {
-        DrawingError::Unread { kind: kind.into(), layer: self.text(8).into() }
+    fn unread(&self, kind: &str) -> Fault {
+        format!(
+            "an entity of the kind {kind} on the layer `{}` is not read; explode it in the drawing program, or switch its \
+             layer off if it is no part of the outline",
+            self.text(8)
+        )
+        .into()
     }
 }
 
@@ -136,7 +144,7 @@ impl Place {
 
 /// The contours of a DXF text, and whether they are in mm: in the unit of the file if it states
 /// none.
-pub(super) fn read(text: &str) -> Result<(Vec<Contour>, bool), DrawingError> {
+pub(super) fn read(text: &str) -> Result<(Vec<Contour>, bool), Fault> {
     let records = records(text)?;
     let mut section = "";
     let mut unit = 0.0;
@@ -187,9 +195,9 @@ pub(super) fn read(text: &str) -> Result<(Vec<Contour>, bool), DrawingError> {
     drawing.draw(entities, whole, 0)?;
     let contours = drawing.contours;
     let all = contours.iter().flat_map(|(points, _)| points.iter().copied());
-    let [low, high] = polygon::bounds(all);
+    let [width, height] = polygon::size(polygon::bounds(all));
     let scale = if unit > 0.0 { unit } else { 1.0 };
-    let rounding = WELD * scale * f64::max(high[0] - low[0], high[1] - low[1]);
+    let rounding = WELD * scale * width.max(height);
     let contours = contours.into_iter().map(|(points, closed)| Contour {
         points: points.into_iter().map(|p| p.map(|x| scale * x)).collect(),
         closed,
@@ -200,21 +208,21 @@ pub(super) fn read(text: &str) -> Result<(Vec<Contour>, bool), DrawingError> {
 }
 
 /// The records of a file, which must be whole; what follows its end is not read.
-fn records(text: &str) -> Result<Vec<Record<'_>>, DrawingError> {
+fn records(text: &str) -> Result<Vec<Record<'_>>, Fault> {
     let mut records: Vec<Record> = Vec::new();
     let lines: Vec<&str> = text.lines().map(str::trim).collect();
     let blank = lines.iter().take_while(|line| line.is_empty()).count();
     for (i, pair) in lines[blank..].chunks_exact(2).enumerate() {
         let line = blank + 2 * i + 1;
-        let refused = |line, what: String| Err(DrawingError::NotDxf { line, what });
         let [code, value] = [pair[0], pair[1]];
         let Ok(group) = code.parse::<i32>() else {
-            return refused(line, format!("`{code}` is no group code"));
+            refuse!("line {line} of the DXF file: `{code}` is no group code");
         };
-        let number = matches!(group, 10..=79 | 210..=239);
-        if number && !value.parse::<f64>().is_ok_and(f64::is_finite) {
-            return refused(line + 1, format!("`{value}` is no number"));
-        }
+        ensure!(
+            !matches!(group, 10..=79 | 210..=239) || value.parse().is_ok_and(f64::is_finite),
+            "line {} of the DXF file: `{value}` is no number",
+            line + 1
+        );
         match records.last_mut() {
             _ if (group, value) == (0, "EOF") => return Ok(records),
             _ if group == 0 => records.push(Record { kind: value, pairs: Vec::new() }),
@@ -222,10 +230,7 @@ fn records(text: &str) -> Result<Vec<Record<'_>>, DrawingError> {
             None => {}
         }
     }
-    Err(DrawingError::NotDxf {
-        line: lines.len(),
-        what: "the file ends without EOF; export it again".into(),
-    })
+    refuse!("line {} of the DXF file: the file ends without EOF; export it again", lines.len())
 }
 
 /// Points, and whether they are closed.
@@ -245,12 +250,7 @@ struct Drawing<'a> {
 
 impl Drawing<'_> {
     /// Adds the entities among records that are shown, `depth` blocks deep.
-    fn draw(
-        &mut self,
-        among: Range<usize>,
-        place: Place,
-        depth: usize,
-    ) -> Result<(), DrawingError> {
+    fn draw(&mut self, among: Range<usize>, place: Place, depth: usize) -> Result<(), Fault> {
         let records = self.records;
         self.drawn += 1 + among.len();
         for i in among {
@@ -279,7 +279,7 @@ impl Drawing<'_> {
     }
 
     /// Adds a block, in rows and columns.
-    fn insert(&mut self, insert: &Record, place: Place, depth: usize) -> Result<(), DrawingError> {
+    fn insert(&mut self, insert: &Record, place: Place, depth: usize) -> Result<(), Fault> {
         let Some(block) = self.blocks.get(&insert.name(2)).cloned() else {
             let name = insert.text(2);
             return Err(
@@ -312,7 +312,7 @@ impl Drawing<'_> {
 
 /// The points of an entity, and whether they are closed; `None` if it is a note. `further` are the
 /// records after it.
-fn contour(entity: &Record, further: &[Record]) -> Result<Option<Points>, DrawingError> {
+fn contour(entity: &Record, further: &[Record]) -> Result<Option<Points>, Fault> {
     let centre = entity.at(10);
     // Arcs and polylines that are seen from below are mirrored.
     let below = entity.number(230) < 0.0;
@@ -371,7 +371,7 @@ fn turned(from: f64, to: f64) -> f64 {
 }
 
 /// Points on a B-spline or on a spline through points.
-fn spline_points(entity: &Record) -> Result<Vec<[f64; 2]>, DrawingError> {
+fn spline_points(entity: &Record) -> Result<Vec<[f64; 2]>, Fault> {
     let degree = entity.number(71) as usize;
     let knots: Vec<f64> = entity.numbers(40).collect();
     let points = entity.points(10);

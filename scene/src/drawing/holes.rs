@@ -1,16 +1,15 @@
 //! The contours that lie in others: the holes of an outline.
 
-use crate::drawing::contour::{Contour, DrawingError, LISTED, rounded};
-use design::geometry::polygon;
-use design::geometry::region::Region;
+use crate::drawing::contour::{Contour, LISTED, crossing};
+use design::geometry::{polygon, region::Region};
+use support::{Fault, refuse};
 
 /// Smallest area of a hole over the area of the outline: specks of a tracing are smaller.
 const SPECK: f64 = 1e-4;
 
 /// For each contour those before it, the larger ones, that it lies in, at least in part.
 pub(super) fn around(contours: &[Contour]) -> Vec<Vec<usize>> {
-    let boxes: Vec<_> =
-        contours.iter().map(|contour| polygon::bounds(contour.points.iter().copied())).collect();
+    let boxes: Vec<_> = contours.iter().map(Contour::bounds).collect();
     let mut around = vec![Vec::new(); contours.len()];
     for outer in (0..contours.len()).filter(|outer| contours[*outer].is_whole()) {
         let inside = Region { polygons: vec![vec![contours[outer].points.clone()]] };
@@ -37,7 +36,7 @@ pub(super) fn of(
     outline: usize,
     contours: &[Contour],
     around: &[Vec<usize>],
-) -> Result<(Vec<usize>, Vec<String>), DrawingError> {
+) -> Result<(Vec<usize>, Vec<String>), Fault> {
     if !around[outline].is_empty() {
         return Ok((Vec::new(), Vec::new()));
     }
@@ -48,11 +47,11 @@ pub(super) fn of(
     for contour in &inner {
         contours[*contour].check()?;
     }
-    let [x0, y0] = contours[outline].points[0];
-    let all = inner.iter().chain([&outline]).map(|contour| &contours[*contour].points);
-    let near_zero = all.map(|points| points.iter().map(|[x, y]| [x - x0, y - y0]).collect());
-    if let Some([x, y]) = polygon::crossing(near_zero.collect::<Vec<Vec<_>>>().iter()) {
-        return Err(DrawingError::Crossing { x: rounded(x + x0), y: rounded(y + y0) });
+    let all = inner.iter().chain([&outline]).map(|contour| &contours[*contour]);
+    if let Some([x, y]) = crossing(&all.collect::<Vec<_>>()) {
+        refuse!(
+            "contours cross or touch each other near ({x}, {y}); move them apart, or delete one of them"
+        );
     }
     let (holes, islands): (Vec<_>, Vec<_>) =
         inner.into_iter().partition(|inner| around[*inner].len() == 1);
@@ -70,11 +69,11 @@ pub(super) fn of(
 
 #[cfg(test)]
 mod tests {
-    use crate::drawing::contour::DrawingError;
+    use super::Fault;
     use crate::drawing::drawn_outline::{Outline, of_text};
 
     /// Contours of squares, each by its lower left corner and its side.
-    fn squares(squares: &[[f64; 3]], number: Option<usize>) -> Result<Outline, DrawingError> {
+    fn squares(squares: &[[f64; 3]], number: Option<usize>) -> Result<Outline, Fault> {
         let paths = squares.iter().map(|[x, y, side]| format!("M{x} {y}h{side}v{side}h-{side}z"));
         let data = paths.collect::<String>();
         of_text(

@@ -13,9 +13,10 @@ pub(super) fn joined(contours: Vec<Contour>) -> Vec<Contour> {
     let contours = contours.into_iter().map(Contour::merged);
     let contours: Vec<_> = contours.filter(|contour| contour.points.len() > 1).collect();
     let points = contours.iter().flat_map(|contour| &contour.points);
-    let [low, high] = polygon::bounds(points.copied());
-    let within = JOINED * f64::max(high[0] - low[0], high[1] - low[1]);
-    let mut nodes = Nodes { low, within, points: Vec::new(), cells: HashMap::new() };
+    let bounds = polygon::bounds(points.copied());
+    let [width, height] = polygon::size(bounds);
+    let within = JOINED * width.max(height);
+    let mut nodes = Nodes { low: bounds[0], within, points: Vec::new(), cells: HashMap::new() };
     let (whole, open): (Vec<_>, Vec<_>) = contours.into_iter().partition(Contour::is_whole);
     let mut kept = once(whole, &mut nodes);
     if !open.is_empty() {
@@ -31,7 +32,7 @@ fn once(whole: Vec<Contour>, nodes: &mut Nodes) -> Vec<Contour> {
     let mut kept: Vec<Contour> = Vec::new();
     for contour in whole {
         // Only contours of one bounding box are compared.
-        let corners = polygon::bounds(contour.points.iter().copied()).map(|p| nodes.node(p));
+        let corners = contour.bounds().map(|p| nodes.node(p));
         let rivals: &mut Vec<usize> = twins.entry(corners).or_default();
         let mut edges = |contour: &Contour| {
             let mut edges = nodes.lines(polygon::edges(&contour.points));

@@ -23,9 +23,9 @@ pub(super) fn moved(document: &Document) -> Option<(String, [f64; 2])> {
 
 /// The largest coordinate of points over the longer side of their bounding box.
 pub(super) fn distance_over_size(points: &[[f64; 2]]) -> f64 {
-    let [low, high] = polygon::bounds(points.iter().copied());
+    let [width, height] = polygon::size(polygon::bounds(points.iter().copied()));
     let largest = points.as_flattened().iter().map(|c| c.abs());
-    largest.fold(0.0, f64::max) / (high[0] - low[0]).max(high[1] - low[1])
+    largest.fold(0.0, f64::max) / width.max(height)
 }
 
 /// The data of an element that draws an outline, as absolute segments.

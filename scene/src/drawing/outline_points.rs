@@ -3,27 +3,16 @@
 //! lines or before a constant. Blank lines separate blocks, which are joined where their ends meet;
 //! a line above them may count their points, as in airfoils in the form of Lednicer.
 
-use crate::drawing::contour::Contour;
-use crate::drawing::drawn_outline::listed;
-use crate::drawing::joined_lines::joined;
-use std::path::{Path, PathBuf};
-use support::file_error::FileError;
-use support::text_file;
-use support::text_table::{TextRow, TextTable};
+use crate::drawing::{contour::Contour, drawn_outline::listed, joined_lines::joined};
+use std::path::Path;
+use support::{
+    Fault, at, text_file,
+    text_table::{TextRow, TextTable},
+};
 
 /// Units behind the names of columns, with their length (mm).
 const UNITS: [(&str, f64); 5] =
     [("mm", 1.0), ("cm", 10.0), ("m", 1000.0), ("in", 25.4), ("inch", 25.4)];
-
-/// Why a text is no outline.
-#[derive(Debug, thiserror::Error)]
-#[allow(missing_docs, reason = "the message of a variant is its documentation")]
-pub enum PointsError {
-    #[error("cannot read the target outline {0}")]
-    Read(#[from] FileError),
-    #[error("{path}:{line}: {what}", path = .path.display())]
-    Line { path: PathBuf, line: u64, what: String },
-}
 
 /// Where x and y stand in a line, and the length of their unit (mm).
 struct Columns {
@@ -32,9 +21,11 @@ struct Columns {
 }
 
 /// The points in a file (mm), in its order.
-pub(crate) fn read(path: &Path) -> Result<Vec<[f64; 2]>, PointsError> {
-    let text = text_file::read(path).map_err(FileError::at(path))?;
-    points(&text).map_err(|(line, what)| PointsError::Line { path: path.to_owned(), line, what })
+pub(crate) fn read(path: &Path) -> Result<Vec<[f64; 2]>, Fault> {
+    let file = path.display();
+    let text = text_file::read(path);
+    let text = text.map_err(at(format!("cannot read the target outline {file}")))?;
+    points(&text).map_err(|(line, what)| format!("{file}:{line}: {what}").into())
 }
 
 /// The points of a text (mm); an error has the number of its line.

@@ -3,12 +3,17 @@
 //! usvg reads the document: it converts rect, circle, ellipse and polygon to paths and arcs to
 //! cubic curves, and it resolves styles, `<use>` and transforms.
 
-use crate::drawing::contour::{Contour, DrawingError, WELD};
-use crate::drawing::css_geometry::edited;
-use crate::drawing::visible_paths::{Subpath, add_visible, is_filled, subpaths, transformed};
-use crate::drawing::{css_geometry, near_origin, svg_warnings};
-use usvg::roxmltree::{Document, ParsingOptions};
-use usvg::{ImageHrefResolver, Options, Path, Transform, Tree};
+use crate::drawing::{
+    contour::{Contour, WELD},
+    css_geometry::{self, edited},
+    near_origin, svg_warnings,
+    visible_paths::{Subpath, add_visible, is_filled, subpaths, transformed},
+};
+use support::{Fault, ensure};
+use usvg::{
+    ImageHrefResolver, Options, Path, Transform, Tree,
+    roxmltree::{Document, ParsingOptions},
+};
 
 /// Removes the background colour of the root element and markers, which usvg would draw as paths,
 /// and draws lines of no width, which are hairlines of a laser.
@@ -18,7 +23,7 @@ const OUTLINES_ALONE: &str = "svg { background-color: none !important } \
 
 /// The contours of the visible paths of an SVG text in the coordinates of its page, y downwards,
 /// and the warnings about what of it is not read.
-pub(super) fn contours(svg: &str) -> Result<(Vec<Contour>, Vec<String>), DrawingError> {
+pub(super) fn contours(svg: &str) -> Result<(Vec<Contour>, Vec<String>), Fault> {
     let options = Options {
         style_sheet: Some(OUTLINES_ALONE.to_owned()),
         // An image has no outline; its file is not opened.
@@ -30,15 +35,15 @@ pub(super) fn contours(svg: &str) -> Result<(Vec<Contour>, Vec<String>), Drawing
     };
     let document = parsed(svg)?;
     let root = document.root_element().tag_name().name();
-    if root != "svg" {
-        let what = format!("is a document of the kind `{root}`");
-        return Err(DrawingError::OtherKind { what });
-    }
+    ensure!(
+        root == "svg",
+        "the file is a document of the kind `{root}`; export the drawing as SVG or DXF"
+    );
     let svg = edited(svg, css_geometry::edits(&document)?);
     let moved = near_origin::moved(&parsed(&svg)?);
     let (svg, origin) = moved.unwrap_or((svg, [0.0; 2]));
     let (tree, warnings) = svg_warnings::of(|| Tree::from_str(&svg, &options));
-    let tree = tree.map_err(DrawingError::NotSvg)?;
+    let tree = tree.map_err(not_svg)?;
     let mut paths = Vec::new();
     add_visible(tree.root(), &mut paths)?;
     if paths.is_empty() {
@@ -53,7 +58,7 @@ pub(super) fn contours(svg: &str) -> Result<(Vec<Contour>, Vec<String>), Drawing
             () => "",
         };
         let warnings = warnings.iter().map(|warning| format!(": {warning}"));
-        return Err(DrawingError::NoPath { why: alone.to_owned() + &warnings.collect::<String>() });
+        return Err(no_path(&(alone.to_owned() + &warnings.collect::<String>())));
     }
     let of_path = |path: &Path| -> Vec<Contour> {
         let (transform, filled) = (path.abs_transform(), is_filled(path));
@@ -63,10 +68,24 @@ pub(super) fn contours(svg: &str) -> Result<(Vec<Contour>, Vec<String>), Drawing
     Ok((paths.into_iter().flat_map(of_path).collect(), warnings))
 }
 
-fn parsed(svg: &str) -> Result<Document<'_>, DrawingError> {
+pub(super) fn not_svg(error: usvg::Error) -> Fault {
+    format!("the file is not readable as SVG: {error}; save the drawing as plain SVG").into()
+}
+
+/// The error of a drawing without a path, and the reason in words, which may be empty.
+pub(super) fn no_path(why: &str) -> Fault {
+    format!(
+        "there is no visible path in the file{why}; draw the outline as a path, polygon, rect, circle \
+         or ellipse with a fill or a stroke, outside of <defs>, or in DXF as lines, arcs, polylines or splines in model \
+         space on a layer that is on, thawed and plotted"
+    )
+    .into()
+}
+
+fn parsed(svg: &str) -> Result<Document<'_>, Fault> {
     let options = ParsingOptions { allow_dtd: true, ..ParsingOptions::default() };
     let document = Document::parse_with_options(svg, options);
-    document.map_err(|error| DrawingError::NotSvg(usvg::Error::ParsingFailed(error)))
+    document.map_err(|error| not_svg(usvg::Error::ParsingFailed(error)))
 }
 
 impl Subpath {
@@ -98,25 +117,25 @@ mod tests {
     use crate::drawing::drawn_outline::of_text;
     use design::geometry::polygon;
 
-    fn vertices(svg: &str) -> Result<Vec<[f64; 2]>, DrawingError> {
+    fn vertices(svg: &str) -> Result<Vec<[f64; 2]>, Fault> {
         of_text(svg, None).map(|outline| outline.vertices)
     }
 
     /// The outline of a document with this content.
-    fn drawn(content: &str) -> Result<Vec<[f64; 2]>, DrawingError> {
+    fn drawn(content: &str) -> Result<Vec<[f64; 2]>, Fault> {
         vertices(&format!("<svg xmlns=\"http://www.w3.org/2000/svg\">{content}</svg>"))
     }
 
-    fn of(data: &str) -> Result<Vec<[f64; 2]>, DrawingError> {
+    fn of(data: &str) -> Result<Vec<[f64; 2]>, Fault> {
         drawn(&format!("<path id=\"x\" d=\"{data}\" stroke='none'/>"))
     }
 
-    fn stroked(data: &str) -> Result<Vec<[f64; 2]>, DrawingError> {
+    fn stroked(data: &str) -> Result<Vec<[f64; 2]>, Fault> {
         drawn(&format!("<path d=\"{data}\" fill='none' stroke='#000'/>"))
     }
 
     /// [left, right, low, high] of the outline.
-    fn bounds(outline: Result<Vec<[f64; 2]>, DrawingError>) -> [f64; 4] {
+    fn bounds(outline: Result<Vec<[f64; 2]>, Fault>) -> [f64; 4] {
         let points = outline.unwrap_or_else(|error| panic!("{error}"));
         let extent = |axis: usize| {
             let values = || points.iter().map(|point| point[axis]);
@@ -133,7 +152,7 @@ mod tests {
         assert!(all_near, "{found:?} is not {expected:?}");
     }
 
-    fn assert_refused(outline: Result<Vec<[f64; 2]>, DrawingError>, part: &str) {
+    fn assert_refused(outline: Result<Vec<[f64; 2]>, Fault>, part: &str) {
         let error = outline.unwrap_err().to_string();
         assert!(error.contains(part), "{error}");
     }

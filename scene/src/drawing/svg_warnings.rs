@@ -1,8 +1,7 @@
 //! The warnings that usvg and its reader of style sheets write to a log.
 
 use log::{LevelFilter, Log, Metadata, Record};
-use std::cell::RefCell;
-use std::sync::Once;
+use std::{cell::RefCell, sync::Once};
 
 thread_local! {
     static WARNINGS: RefCell<Vec<String>> = const { RefCell::new(Vec::new()) };

@@ -1,10 +1,13 @@
 //! The visible paths of an SVG document and their parts. A clip may surround a path, and hides nothing
 //! of it.
 
-use crate::drawing::contour::{DrawingError, flatten};
+use crate::drawing::contour::flatten;
 use design::geometry::polygon;
-use usvg::tiny_skia_path::{PathSegment, Point};
-use usvg::{ClipPath, Group, Node, Path, Transform};
+use support::{Fault, refuse};
+use usvg::{
+    ClipPath, Group, Node, Path, Transform,
+    tiny_skia_path::{PathSegment, Point},
+};
 
 /// How far a path may reach out of a clip around it, over the length of an edge of the clip:
 /// rounding.
@@ -14,10 +17,7 @@ pub(super) fn is_filled(path: &Path) -> bool {
 }
 
 /// Adds the visible paths of a group, in document order; an error if only a part of them is drawn.
-pub(super) fn add_visible<'a>(
-    group: &'a Group,
-    paths: &mut Vec<&'a Path>,
-) -> Result<(), DrawingError> {
+pub(super) fn add_visible<'a>(group: &'a Group, paths: &mut Vec<&'a Path>) -> Result<(), Fault> {
     if group.opacity().get() == 0.0 {
         return Ok(());
     }
@@ -39,10 +39,10 @@ pub(super) fn add_visible<'a>(
     let clip = clip.map(|clip| ("clipPath", clip.id()));
     let cut = clip.or_else(|| group.mask().map(|mask| ("mask", mask.id())));
     match cut {
-        Some((element, id)) if paths.len() > before => {
-            let id = id.to_owned();
-            Err(DrawingError::Cut { element, id })
-        }
+        Some((element, id)) if paths.len() > before => refuse!(
+            "the path is drawn in part alone, because of the {element} `{id}`; release it in the drawing program, so that the \
+             path itself is the outline"
+        ),
         _ => Ok(()),
     }
 }

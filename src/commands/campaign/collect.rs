@@ -15,7 +15,7 @@ use verification::{SpotStates, rows};
 /// Rays on the finer mesh are in the database too; `train` corrects the others by them. Example:
 /// kirigami campaign collect configs/campaigns/demo.toml
 #[derive(Args)]
-pub(super) struct CollectCommand {
+pub(crate) struct CollectCommand {
     #[command(flatten)]
     campaign: CampaignArgs,
     /// Parquet file to write; the spot check is written next to it [default: hinges.parquet in the

@@ -1,8 +1,7 @@
 //! `kirigami campaign plan`
 
 use super::campaign_args::{CampaignArgs, print_tally};
-use crate::commands::solve_args::FeSolver;
-use crate::ui::processors;
+use crate::{commands::solve_args::FeSolver, ui::processors};
 use anyhow::Result;
 use app::progress::duration;
 use clap::Args;
@@ -10,7 +9,7 @@ use support::table::Table;
 
 /// Print what a run would solve, why, and the estimated time
 #[derive(Args)]
-pub(super) struct PlanCommand {
+pub(crate) struct PlanCommand {
     #[command(flatten)]
     campaign: CampaignArgs,
     /// Print JSON

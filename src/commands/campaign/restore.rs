@@ -13,7 +13,7 @@ use verification::collected_windows;
 /// or other versions of gmsh and ccx do not belong to the campaign and are skipped. Rays of the
 /// spot check are solved again, since its file has four states of each.
 #[derive(Args)]
-pub(super) struct RestoreCommand {
+pub(crate) struct RestoreCommand {
     #[command(flatten)]
     campaign: CampaignArgs,
     /// Database (Parquet with its manifest)

@@ -1,15 +1,15 @@
 //! `kirigami campaign run`
 
 use super::campaign_args::{CampaignArgs, print_tally};
-use crate::commands::solve_args::{FeSolver, SolveArgs};
-use crate::ui::interrupt;
+use crate::{
+    commands::solve_args::{FeSolver, SolveArgs},
+    ui::interrupt,
+};
 use anyhow::{Result, bail, ensure};
-use app::failure::Unfinished;
-use app::progress::Progress;
+use app::{failure::Unfinished, progress::Progress};
 use clap::Args;
 use fe_driver::{RunOptions, Shard, Tally};
-use std::path::Path;
-use std::time::Duration;
+use std::{path::Path, time::Duration};
 use verification::every_ray_failed;
 
 /// Solve all rays that are not solved yet
@@ -17,7 +17,7 @@ use verification::every_ray_failed;
 /// Exit code 0 if nothing is left to solve, 75 if stopped before that by Ctrl-C or by --time-limit:
 /// run the same command again to continue.
 #[derive(Args)]
-pub(super) struct RunCommand {
+pub(crate) struct RunCommand {
     #[command(flatten)]
     campaign: CampaignArgs,
     #[command(flatten)]

@@ -8,7 +8,7 @@ use serde::Serialize;
 
 /// Print the state of the jobs, the reasons of failures, the throughput, and the tasks on a cluster
 #[derive(Args)]
-pub(super) struct StatusCommand {
+pub(crate) struct StatusCommand {
     #[command(flatten)]
     campaign: CampaignArgs,
     /// Print JSON

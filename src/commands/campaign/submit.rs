@@ -1,8 +1,10 @@
 //! `kirigami campaign submit`
 
 use super::campaign_args::CampaignArgs;
-use crate::commands::solve_args::FeSolver;
-use crate::ui::count::{count, jobs};
+use crate::{
+    commands::solve_args::FeSolver,
+    ui::count::{count, jobs},
+};
 use anyhow::Result;
 use app::progress::duration;
 use clap::Args;
@@ -18,7 +20,7 @@ use std::num::NonZeroUsize;
 /// variables (SBATCH_PARTITION, SBATCH_ACCOUNT). Example: kirigami campaign submit
 /// configs/campaigns/pet-0.5mm.toml --shards 32 --time 240
 #[derive(Args)]
-pub(super) struct SubmitCommand {
+pub(crate) struct SubmitCommand {
     #[command(flatten)]
     campaign: CampaignArgs,
     /// Number of tasks, at most one a ray; each solves every N-th ray

@@ -1,8 +1,7 @@
 //! `kirigami dataset compare`: differences of a mesh from a finer one on the same rays.
 
 use anyhow::{Result, ensure};
-use app::train::correction;
-use app::{output_file, run_folder};
+use app::{output_file, run_folder, train::correction};
 use clap::Args;
 use dataset::{ComparedRay, ComparedState, Database, compare, left_out};
 use std::path::PathBuf;
@@ -15,7 +14,7 @@ use verification::{SCALE, spread_table};
 /// mesh, and writes them to compare.md. Example: kirigami dataset
 /// compare data/polypropylene-3mm/hinges.parquet
 #[derive(Args)]
-pub(super) struct CompareCommand {
+pub(crate) struct CompareCommand {
     /// Database to evaluate (Parquet with its manifest)
     #[arg(value_name = "DATABASE")]
     database: PathBuf,

@@ -1,15 +1,23 @@
 //! The level `final`: a search with finite elements for the hinges.
 
-use crate::commands::design::DesignCommand;
-use crate::commands::solve_args::{SolveArgs, task_error};
-use crate::ui::interrupt;
+use crate::{
+    commands::{
+        design::DesignCommand,
+        solve_args::{SolveArgs, task_error},
+    },
+    ui::interrupt,
+};
 use anyhow::{Context, Result, ensure};
-use app::design::write_refined;
-use app::progress::{announce, duration};
+use app::{
+    design::write_refined,
+    progress::{announce, duration},
+};
 use output::report::Report;
-use scene::design_run::OnStep;
-use scene::run_inputs::{SCENE_FILE, holds_a_run};
-use scene::{Level, Scene, SceneConfig};
+use scene::{
+    Level, Scene, SceneConfig,
+    design_run::OnStep,
+    run_inputs::{SCENE_FILE, holds_a_run},
+};
 use verification::{ElementWindows, final_design, most_cpu_seconds, verification_tier};
 
 impl DesignCommand {

@@ -1,10 +1,7 @@
 //! The command line arguments that select a scene and a design.
 
-use anyhow::Result;
 use app::chosen::Chosen;
 use clap::Args;
-use design::pattern::design_vector::DesignVector;
-use scene::Scene;
 use std::path::PathBuf;
 
 /// A scene and a design of its sheet.
@@ -23,15 +20,5 @@ pub struct Inspected {
 impl Inspected {
     pub(crate) fn chosen(&self) -> Chosen<'_> {
         Chosen { scene: &self.scene, design: self.design.as_deref() }
-    }
-
-    /// See [`Chosen::read`].
-    pub(crate) fn read(&self) -> Result<(Scene, DesignVector, String)> {
-        self.chosen().read()
-    }
-
-    /// See [`Chosen::read_run`].
-    pub(crate) fn read_run(&self) -> Result<(Scene, DesignVector, String)> {
-        self.chosen().read_run()
     }
 }

@@ -4,11 +4,12 @@ use analysis::material_check::{Intended, MaterialCheck};
 use anyhow::{Result, bail, ensure};
 use clap::Args;
 use hinge::{Regime, SheetMaterial};
-use scene::run_inputs::scene_file;
-use scene::{Posture, SceneConfig};
+use scene::{Posture, SceneConfig, run_inputs::scene_file};
 use std::path::PathBuf;
-use support::table::{Cell, Table};
-use support::toml_file;
+use support::{
+    table::{Cell, Table},
+    toml_file,
+};
 
 /// Check a material before windows are solved with it
 ///
@@ -17,7 +18,7 @@ use support::toml_file;
 /// tear. Exits with 1 if a verdict is an error. Example: kirigami material check
 /// configs/materials/pet-0.5mm.toml configs/scenes/pet-7x7.toml
 #[derive(Args)]
-pub(super) struct CheckCommand {
+pub(crate) struct CheckCommand {
     /// Material (TOML); see configs/materials
     #[arg(value_name = "MATERIAL")]
     material: PathBuf,

@@ -1,9 +1,7 @@
 //! `kirigami material fit`: from the files of a testing machine to a material file.
 
 use anyhow::{Result, ensure};
-use app::charts::tensile_test;
-use app::shell_word::shell_word;
-use app::{output_file, picture, run_folder};
+use app::{charts::tensile_test, output_file, picture, run_folder, shell_word::shell_word};
 use clap::Args;
 use hinge::SheetMaterial;
 use std::path::{Path, PathBuf};
@@ -24,7 +22,7 @@ use tensile::{
 /// material fit strip-*.csv --name film --thickness 0.5 --density-kg-m3 1390
 #[derive(Args)]
 #[command(allow_negative_numbers = true)]
-pub(super) struct FitCommand {
+pub(crate) struct FitCommand {
     /// Records of the specimens: tables as text, such as CSV
     #[arg(value_name = "TEST", required = true)]
     tests: Vec<PathBuf>,

@@ -9,25 +9,37 @@
 mod conclusion;
 mod fine_tuning;
 
-use crate::commands::campaign::RayProgress;
-use crate::commands::material::learn::conclusion::{MATERIAL, WEIGHTS, conclusion};
-use crate::commands::material::learn::fine_tuning::FineTuning;
-use crate::commands::solve_args::{FeSolver, SolveArgs, task_error};
-use crate::ui::interrupt;
-use crate::ui::with_unit::{percent, time};
+use crate::{
+    commands::{
+        campaign::RayProgress,
+        material::learn::{
+            conclusion::{MATERIAL, WEIGHTS, conclusion},
+            fine_tuning::FineTuning,
+        },
+        solve_args::{FeSolver, SolveArgs, task_error},
+    },
+    ui::{
+        interrupt,
+        with_unit::{percent, time},
+    },
+};
 use ::train::{ErrorInterval, TrainingConfig, check_pretrained};
 use anyhow::{Context, Result, bail, ensure};
-use app::failure::Unfinished;
-use app::new_project::{self, edited};
-use app::progress::duration;
-use app::run_folder;
+use app::{
+    failure::Unfinished,
+    new_project::{self, edited},
+    progress::duration,
+    run_folder,
+};
 use clap::Args;
 use dataset::{Database, SplitPlan};
 use fe_driver::{Campaign, random_paths};
 use hinge::{Regime, SheetMaterial, TrainingDomain};
 use mesher::Tier;
-use std::path::{Path, PathBuf};
-use std::time::{Duration, Instant};
+use std::{
+    path::{Path, PathBuf},
+    time::{Duration, Instant},
+};
 use surrogate::Surrogate;
 use toml_edit::{ArrayOfTables, DocumentMut};
 use verification::{
@@ -45,7 +57,7 @@ use verification::{
 /// and training that can be edited. Example: kirigami material learn
 /// configs/materials/polypropylene-0.8mm.toml --accuracy 1% --time 1h --out runs/polypropylene
 #[derive(Args)]
-pub(super) struct LearnCommand {
+pub(crate) struct LearnCommand {
     /// Material (TOML), as written by `material fit`
     #[arg(value_name = "MATERIAL")]
     material: PathBuf,

@@ -10,7 +10,7 @@ use surrogate::{Surrogate, Teacher};
 ///
 /// All numbers are in the JSON file next to the weights.
 #[derive(Args)]
-pub(super) struct CardCommand {
+pub(crate) struct CardCommand {
     /// Weights (safetensors with their card)
     #[arg(value_name = "WEIGHTS")]
     weights: PathBuf,

@@ -14,7 +14,7 @@ use surrogate::Surrogate;
 /// any. Example: kirigami surrogate test data/pet-0.5mm/medium.safetensors
 /// data/pet-0.5mm/spot-check.parquet
 #[derive(Args)]
-pub(super) struct TestCommand {
+pub(crate) struct TestCommand {
     /// Weights (safetensors with their card)
     #[arg(value_name = "WEIGHTS")]
     weights: PathBuf,

@@ -1,12 +1,19 @@
 //! `kirigami verify --sheet`: the whole sheet by finite elements.
 
-use crate::commands::solve_args::{FeSolver, task_error};
-use crate::commands::verify::VerifyCommand;
-use crate::ui::interrupt;
+use crate::{
+    commands::{
+        solve_args::{FeSolver, task_error},
+        verify::VerifyCommand,
+    },
+    ui::interrupt,
+};
 use anyhow::{Result, anyhow, bail};
-use app::design_checks::record;
-use app::progress::{announce, duration, watched};
-use app::{output_file, picture, run_folder};
+use app::{
+    design_checks::record,
+    output_file, picture,
+    progress::{announce, duration, watched},
+    run_folder,
+};
 use design::pattern::design_vector::DesignVector;
 use fe_driver::{SheetSolve, Solve, sheet_reached};
 use mesher::Panels;

@@ -1,15 +1,16 @@
 //! What the sheet is made of, what its hinge law rests on, and the searches and checks of the run.
 
 use super::{Fact, fact, number, text};
-use crate::cut_file::Machines;
-use crate::report::deployed::{DeployedDesign, FinishedRun, extent};
-use crate::report::estimate::Estimate;
-use crate::report::numbers::rounded;
-use analysis::design_checks::WholeSheet;
-use analysis::levels::Levels;
-use analysis::unit::Unit;
-use design::pattern::grid::Grid;
-use design::sheet::kinematics::deployed_boundaries;
+use crate::{
+    cut_file::Machines,
+    report::{
+        deployed::{DeployedDesign, FinishedRun, extent},
+        estimate::Estimate,
+        numbers::rounded,
+    },
+};
+use analysis::{design_checks::WholeSheet, levels::Levels, unit::Unit};
+use design::{pattern::grid::Grid, sheet::kinematics::deployed_boundaries};
 use scene::{CoarseSearch, Level, LevelDifference};
 use support::severity::Severity;
 use surrogate::TestErrors;

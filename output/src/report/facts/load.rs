@@ -2,11 +2,15 @@
 //! that stays, and when the load is taken off.
 
 use super::{Fact, fact, number, text};
-use crate::report::deployed::{DeployedDesign, FinishedRun, is_heavy, of_the_load, posture};
-use crate::report::numbers::rounded;
-use analysis::localisation::elasto_gravity_length;
-use analysis::springback::{ResidualShape, TOO_FAR, moment_after_overshoot, unload};
-use analysis::unit::Unit;
+use crate::report::{
+    deployed::{DeployedDesign, FinishedRun, is_heavy, of_the_load, posture},
+    numbers::rounded,
+};
+use analysis::{
+    localisation::elasto_gravity_length,
+    springback::{ResidualShape, TOO_FAR, moment_after_overshoot, unload},
+    unit::Unit,
+};
 use design::equilibrium::load_step::Status;
 use hinge::Creep;
 use scene::{FRICTION, Posture};

@@ -2,10 +2,14 @@
 //! designed.
 
 use super::{Fact, fact};
-use crate::report::deployed::{DeployedDesign, FinishedRun};
-use crate::report::numbers::rounded;
-use analysis::mounting::Fastener;
-use analysis::what_if::{ChangedSheet, WhatIf};
+use crate::report::{
+    deployed::{DeployedDesign, FinishedRun},
+    numbers::rounded,
+};
+use analysis::{
+    mounting::Fastener,
+    what_if::{ChangedSheet, WhatIf},
+};
 
 /// The steps of a mounted sheet.
 pub(super) fn mounting(of: &DeployedDesign, run: &FinishedRun) -> Vec<Fact> {

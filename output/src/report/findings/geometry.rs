@@ -1,13 +1,22 @@
 //! Findings about the target, the panels and their windows, and the cuts.
 
-use super::{Found, Rule, at, found, rule};
-use crate::cut_file::{ROUNDING, fits};
-use crate::display::Shape;
-use crate::report::deployed::{DeployedDesign, miss};
-use crate::report::numbers::rounded;
-use design::equilibrium::load_step::LoadStep;
-use design::sheet::hinge_window::Window;
-use design::sheet::validity::{OVERLAP, overlap};
+use super::{Rule, at, found, rule};
+use crate::{
+    cut_file::{ROUNDING, fits},
+    display::Shape,
+    report::{
+        deployed::{DeployedDesign, miss},
+        numbers::rounded,
+    },
+};
+use design::{
+    equilibrium::load_step::LoadStep,
+    geometry::polygon::size,
+    sheet::{
+        hinge_window::Window,
+        validity::{OVERLAP, overlap},
+    },
+};
 use scene::placement::{NOT_SEEN, RECOGNISED};
 use support::severity::Severity::{Error, Note, Warning};
 
@@ -26,7 +35,17 @@ pub(super) const RULES: [Rule; 8] = [
             "a viewer would not recognise it; an error below 75 %",
             "a larger stock or a thinner sheet, without parts narrower than two panels",
         ],
-        not_recognised,
+        |of| {
+            // Sheets of an even pattern are made to be recognised; others are compared by their outline.
+            let seen = of.run?.seen;
+            let is_even = of.scene.config.cells.is_some();
+            let grave = if seen < NOT_SEEN { Error } else { Warning };
+            (is_even && seen < RECOGNISED).then(|| {
+                let seen = rounded(100.0 * seen, 3);
+                found(format!("{seen} % of the target is seen: a viewer would not recognise it"))
+                    .with(grave)
+            })
+        },
     ),
     rule(
         "target-missed",
@@ -36,7 +55,16 @@ pub(super) const RULES: [Rule; 8] = [
             "its distance is above 1 % of the longer side; a warning from 3 %, an error from 20 %",
             "another target, more panels, a larger stroke or load",
         ],
-        missed,
+        |of| {
+            let error = of.run?.after.outline_error;
+            let [width, height] = of.flat_size();
+            let ratio = error / width.max(height);
+            let mut grave =
+                std::iter::zip(MISSED, [Note, Warning, Error]).filter(|(least, _)| ratio > *least);
+            let (_, severity) = grave.next_back()?;
+            let seen = of.run?.seen;
+            Some(found(miss(seen, error, of.flat_size())).with(severity))
+        },
     ),
     rule(
         "panels-overlap",
@@ -46,7 +74,44 @@ pub(super) const RULES: [Rule; 8] = [
             "no sheet moves like that; a warning before the end of the path",
             "a larger target, or more loads that open the cuts",
         ],
-        panels_overlap,
+        |of| {
+            // Panels cannot lie over each other, whatever the hinge law. On the way the edges of closed cuts,
+            // which are softer in the model than in the sheet, may let them by a little.
+            let DeployedDesign { deployment, hinges, .. } = of;
+            let covered = |step: &LoadStep| overlap(&deployment.sheet, &step.configuration);
+            let at_the_end = covered(deployment.final_step());
+            let openings = hinges.iter().map(|row| row.theta_deg.to_radians());
+            let mean = openings.sum::<f64>() / hinges.len() as f64;
+            let lie = |most: f64| {
+                let most = rounded(100.0 * most, 2);
+                format!("panels lie over each other, by up to {most} % of the area of a panel")
+            };
+            let mut causes = Vec::new();
+            if mean < SHUT {
+                let mean = rounded(mean.to_degrees(), 3);
+                causes.push(format!(
+                    "the cuts are closed further than in the flat sheet, by a mean opening of {mean} deg"
+                ));
+            }
+            if at_the_end > OVERLAP {
+                causes.push(lie(at_the_end));
+            }
+            if !causes.is_empty() {
+                return Some(found(format!(
+                    "{}: no sheet moves like that; use a larger target, or loads that open the cuts",
+                    causes.join(", and ")
+                )));
+            }
+            let most = deployment.path.iter().map(covered).fold(0.0, f64::max);
+            (most > OVERLAP).then(|| {
+                let message = format!(
+                    "on the way, {}: the edges of a closed cut press against each other in the sheet, and its load is larger there; pull at \
+                     more panels",
+                    lie(most)
+                );
+                found(message).with(Warning)
+            })
+        },
     ),
     rule(
         "windows-overlap",
@@ -56,7 +121,20 @@ pub(super) const RULES: [Rule; 8] = [
             "the sum of the hinge energies is not exact",
             "`objective.panel_shape` above zero, larger panels",
         ],
-        windows_overlap,
+        |of| {
+            let sheet = &of.deployment.sheet;
+            let windows = Window::of_sheet(sheet);
+            let overlapping = |h: &usize| {
+                let mut others = windows.iter().enumerate().filter(|(other, _)| other != h);
+                others.any(|(_, other)| windows[*h].overlaps(other))
+            };
+            let message = format!(
+                "windows of {} mm radius overlap: their ligaments are not independent, and the sum of \
+                 hinge energies is not exact",
+                sheet.options.process.r_win
+            );
+            at((0..windows.len()).filter(overlapping).collect(), message)
+        },
     ),
     rule(
         "windows-leave-panels",
@@ -66,7 +144,18 @@ pub(super) const RULES: [Rule; 8] = [
             "the sum of the hinge energies is not exact",
             "as above",
         ],
-        windows_leave_panels,
+        |of| {
+            let sheet = &of.deployment.sheet;
+            let windows = Window::of_sheet(sheet).into_iter().zip(&sheet.hinges);
+            let leaving = windows.enumerate().filter(|(_, (window, hinge))| {
+                let [a, b] = hinge.panels().map(|panel| &sheet.panels[panel]);
+                !window.within(a, b)
+            });
+            let r_win = sheet.options.process.r_win;
+            let message =
+                format!("panels are too small for the {r_win} mm windows of their hinges");
+            at(leaving.map(|(h, _)| h).collect(), message)
+        },
     ),
     rule(
         "cannot-be-cut",
@@ -76,7 +165,7 @@ pub(super) const RULES: [Rule; 8] = [
             "there are no cut lines",
             "narrower ligaments, longer cuts; wider ligaments, larger holes (`fillet_ratio`, `hole_diameter`)",
         ],
-        cannot_be_cut,
+        |of| of.cuts.as_ref().err().map(|error| found(error.to_string())),
     ),
     rule(
         "cuts-too-close",
@@ -86,7 +175,11 @@ pub(super) const RULES: [Rule; 8] = [
             "the ligament is narrower than designed",
             "`objective.panel_shape`, narrower range",
         ],
-        cuts_too_close,
+        |of| {
+            let cuts = of.cuts.as_ref().ok()?;
+            let close = of.hinges_where(|row| cuts.clearance(row.hinge) < row.w_lig - ROUNDING);
+            at(close, "another cut is closer to the tip than w_lig")
+        },
     ),
     rule(
         "stock-too-small",
@@ -96,121 +189,19 @@ pub(super) const RULES: [Rule; 8] = [
             "they are larger than `cutting.stock` without its margin",
             "a smaller `sheet.size`, or `init --stock`",
         ],
-        stock,
+        |of| {
+            // The cuts of a sheet are within the stock that it is cut from.
+            let cuts = of.cuts.as_ref().ok()?;
+            let stock = cuts.cutting.stock?.size();
+            let taken = size(Shape::extent(cuts.drawing().cuts()));
+            let room = stock.map(|side| (side - 2.0 * cuts.cutting.margin).max(0.0));
+            (!fits(taken, room.map(|side| side + ROUNDING))).then(|| {
+                found(format!(
+                    "the cuts take {:.1} x {:.1} mm with kerf and over-run, but the stock has {:.1} x {:.1} mm inside its margin: use a smaller \
+                     sheet.size",
+                    taken[0], taken[1], room[0], room[1]
+                ))
+            })
+        },
     ),
 ];
-
-/// Sheets of an even pattern are made to be recognised; others are compared by their outline.
-fn not_recognised(of: &DeployedDesign) -> Option<Found> {
-    let seen = of.run?.seen;
-    let is_even = of.scene.config.cells.is_some();
-    let grave = if seen < NOT_SEEN { Error } else { Warning };
-    (is_even && seen < RECOGNISED).then(|| {
-        let seen = rounded(100.0 * seen, 3);
-        found(format!("{seen} % of the target is seen: a viewer would not recognise it"))
-            .with(grave)
-    })
-}
-
-fn missed(of: &DeployedDesign) -> Option<Found> {
-    let error = of.run?.after.outline_error;
-    let [width, height] = of.flat_size();
-    let ratio = error / width.max(height);
-    let mut grave =
-        std::iter::zip(MISSED, [Note, Warning, Error]).filter(|(least, _)| ratio > *least);
-    let (_, severity) = grave.next_back()?;
-    let seen = of.run?.seen;
-    Some(found(miss(seen, error, of.flat_size())).with(severity))
-}
-
-/// Panels cannot lie over each other, whatever the hinge law. On the way the edges of closed cuts,
-/// which are softer in the model than in the sheet, may let them by a little.
-fn panels_overlap(of: &DeployedDesign) -> Option<Found> {
-    let DeployedDesign { deployment, hinges, .. } = of;
-    let covered = |step: &LoadStep| overlap(&deployment.sheet, &step.configuration);
-    let at_the_end = covered(deployment.final_step());
-    let openings = hinges.iter().map(|row| row.theta_deg.to_radians());
-    let mean = openings.sum::<f64>() / hinges.len() as f64;
-    let lie = |most: f64| {
-        let most = rounded(100.0 * most, 2);
-        format!("panels lie over each other, by up to {most} % of the area of a panel")
-    };
-    let mut causes = Vec::new();
-    if mean < SHUT {
-        let mean = rounded(mean.to_degrees(), 3);
-        causes.push(format!(
-            "the cuts are closed further than in the flat sheet, by a mean opening of {mean} deg"
-        ));
-    }
-    if at_the_end > OVERLAP {
-        causes.push(lie(at_the_end));
-    }
-    if !causes.is_empty() {
-        return Some(found(format!(
-            "{}: no sheet moves like that; use a larger target, or loads that open the cuts",
-            causes.join(", and ")
-        )));
-    }
-    let most = deployment.path.iter().map(covered).fold(0.0, f64::max);
-    (most > OVERLAP).then(|| {
-        let message = format!(
-            "on the way, {}: the edges of a closed cut press against each other in the sheet, and its load is larger there; pull at \
-             more panels",
-            lie(most)
-        );
-        found(message).with(Warning)
-    })
-}
-
-fn windows_overlap(of: &DeployedDesign) -> Option<Found> {
-    let sheet = &of.deployment.sheet;
-    let windows = Window::of_sheet(sheet);
-    let overlapping = |h: &usize| {
-        let mut others = windows.iter().enumerate().filter(|(other, _)| other != h);
-        others.any(|(_, other)| windows[*h].overlaps(other))
-    };
-    let message = format!(
-        "windows of {} mm radius overlap: their ligaments are not independent, and the sum of \
-         hinge energies is not exact",
-        sheet.options.process.r_win
-    );
-    at((0..windows.len()).filter(overlapping).collect(), message)
-}
-
-fn windows_leave_panels(of: &DeployedDesign) -> Option<Found> {
-    let sheet = &of.deployment.sheet;
-    let windows = Window::of_sheet(sheet).into_iter().zip(&sheet.hinges);
-    let leaving = windows.enumerate().filter(|(_, (window, hinge))| {
-        let [a, b] = [hinge.panel_a(), hinge.panel_b()].map(|panel| &sheet.panels[panel]);
-        !window.within(a, b)
-    });
-    let r_win = sheet.options.process.r_win;
-    let message = format!("panels are too small for the {r_win} mm windows of their hinges");
-    at(leaving.map(|(h, _)| h).collect(), message)
-}
-
-fn cannot_be_cut(of: &DeployedDesign) -> Option<Found> {
-    of.cuts.as_ref().err().map(|error| found(error.to_string()))
-}
-
-fn cuts_too_close(of: &DeployedDesign) -> Option<Found> {
-    let cuts = of.cuts.as_ref().ok()?;
-    let close = of.hinges_where(|row| cuts.clearance(row.hinge) < row.w_lig - ROUNDING);
-    at(close, "another cut is closer to the tip than w_lig")
-}
-
-/// The cuts of a sheet are within the stock that it is cut from.
-fn stock(of: &DeployedDesign) -> Option<Found> {
-    let cuts = of.cuts.as_ref().ok()?;
-    let stock = cuts.cutting.stock?.size();
-    let [low, high] = Shape::extent(cuts.drawing().cuts());
-    let taken = [0, 1].map(|axis| high[axis] - low[axis]);
-    let room = stock.map(|side| (side - 2.0 * cuts.cutting.margin).max(0.0));
-    (!fits(taken, room.map(|side| side + ROUNDING))).then(|| {
-        found(format!(
-            "the cuts take {:.1} x {:.1} mm with kerf and over-run, but the stock has {:.1} x {:.1} mm inside its margin: use a smaller \
-             sheet.size",
-            taken[0], taken[1], room[0], room[1]
-        ))
-    })
-}

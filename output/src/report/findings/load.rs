@@ -1,16 +1,22 @@
 //! Findings about the path, its load, weight and friction, and panels that leave the plane.
 
 use super::{Found, Rule, found, rule};
-use crate::report::deployed::{DeployedDesign, is_heavy, left_out, of_the_load, posture};
-use crate::report::numbers::rounded;
-use analysis::calibration::CALIBRATION;
-use analysis::flatness::{Flatness, error_on_table};
-use analysis::mounting::{Fastener, borne_by_hole};
-use analysis::out_of_plane::{MOST, Stability};
-use analysis::unit::Unit;
-use design::equilibrium::load_step::{LoadStep, Status};
-use design::geometry::polygon::contains;
-use design::sheet::cut_sheet::PanelPoint;
+use crate::report::{
+    deployed::{DeployedDesign, is_heavy, left_out, of_the_load, posture},
+    numbers::rounded,
+};
+use analysis::{
+    calibration::CALIBRATION,
+    flatness::{Flatness, error_on_table},
+    mounting::{Fastener, borne_by_hole},
+    out_of_plane::{MOST, Stability},
+    unit::Unit,
+};
+use design::{
+    equilibrium::load_step::{LoadStep, Status},
+    geometry::polygon::contains,
+    sheet::cut_sheet::PanelPoint,
+};
 use hinge::Regime;
 use scene::{FRICTION, Posture};
 use support::severity::Severity::{Error, Note, Warning};
@@ -24,19 +30,53 @@ pub(super) const RULES: [Rule; 14] = [
             "a jump, an inaccurate step, or no equilibrium, an error at the end",
             "other loads or supports, or a stroke (`[drive]`)",
         ],
-        path,
+        |of| {
+            let weighed = of.deployment.weight_steps().len();
+            // A jump under a prescribed stroke or motion is no maximum of the load.
+            let dead = of.scene.config.has_loads() && of.scene.config.drive.is_none();
+            let mut before = "the beginning".to_owned();
+            let mut departures = Vec::new();
+            for (i, step) in of.deployment.path.iter().enumerate() {
+                let by_weight = i < weighed;
+                let place = match (by_weight, step.weight == 1.0) {
+                    (true, true) => "the whole weight".to_owned(),
+                    (true, false) => format!("{} of the weight", rounded(step.weight, 2)),
+                    (false, _) => format!("load factor {:.3}", step.load_factor),
+                };
+                let peaks = if by_weight || !dead { "" } else { "the load peaks and " };
+                departures.extend(departure(step, peaks, &before, &place));
+                before = place;
+            }
+            let message =
+                format!("the equilibrium path is not smooth and stable: {}", departures.join(", "));
+            let ends = of.deployment.final_step().status == Status::Diverged;
+            (!departures.is_empty())
+                .then(|| found(message).with(if ends { Error } else { Warning }))
+        },
     ),
     rule(
         "target-drawing",
         Warning,
         ["the drawing of the target", "it is open, or not read wholly", "another drawing"],
-        target_drawing,
+        |of| {
+            let notes = &of.scene.target.notes;
+            (!notes.is_empty())
+                .then(|| found(format!("the drawing of the target: {}", notes.join("; "))))
+        },
     ),
     rule(
         "target-crosses",
         Warning,
         ["the target crosses or touches itself", "its inside is not defined", "another drawing"],
-        target_crosses,
+        |of| {
+            let target = &of.scene.target;
+            target.crossing.filter(|_| target.notes.is_empty()).map(|[x, y]| {
+                found(format!(
+                    "the target outline crosses or touches itself near ({x:.1}, {y:.1}) mm: its inside is not defined; order \
+                     its vertices around the outline"
+                ))
+            })
+        },
     ),
     rule(
         "point-outside",
@@ -46,7 +86,24 @@ pub(super) const RULES: [Rule; 14] = [
             "it no longer contains the point that is held or pulled",
             "`at = \"bottom\"`, or another point",
         ],
-        point_outside,
+        |of| {
+            // A point at which a panel is held or pulled does not move with its cuts.
+            let panels = &of.deployment.sheet.panels;
+            let attachments = of.scene.actuation().attachments.into_iter();
+            let outside = attachments.filter(|attachment| {
+                let panel = &panels[attachment.panel];
+                matches!(attachment.point, PanelPoint::Fixed(_))
+                    && !contains(&panel.corners, panel.reference)
+            });
+            let outside: Vec<String> = outside.map(|attachment| attachment.name).collect();
+            (!outside.is_empty()).then(|| {
+                found(format!(
+                    "the design has moved a panel away from the point at which it is held or pulled ({}): move the point, or name \
+                     one that moves with the cuts, such as at = \"bottom\"",
+                    outside.join("; ")
+                ))
+            })
+        },
     ),
     rule(
         "not-modelled",
@@ -56,7 +113,11 @@ pub(super) const RULES: [Rule; 14] = [
             "what the posture leaves out, such as friction",
             "as below",
         ],
-        not_modelled,
+        |of| {
+            of.scene.surrogate()?;
+            of.run?;
+            left_out(of.scene).map(|missing| found(format!("not modelled: {missing}")))
+        },
     ),
     rule(
         "leaves-plane",
@@ -66,7 +127,27 @@ pub(super) const RULES: [Rule; 14] = [
             "nothing, or only its weight, keeps the sheet flat ([flatness](results/flatness/README.md)); a film with corners off by more than 5 % of the sheet is an error, a plate that stays a note",
             "hold it flat, narrower ligaments, a thicker sheet, more pulls, or `kirigami verify --sheet`",
         ],
-        leaves_plane,
+        |of| {
+            // Panels that leave the plane unless something holds them flat.
+            let posture = posture(of.scene)?;
+            let solved = of.whole_sheet().is_some_and(|sheet| sheet.support == posture);
+            if posture == Posture::HeldFlat || solved {
+                return None;
+            }
+            let kept = match posture {
+                Posture::Lying => "only its weight keeps the panels down on the surface",
+                Posture::Mounted => "between the fasteners nothing keeps the panels in the plane",
+                _ => "nothing keeps the panels in the plane",
+            };
+            let widest = of.hinges.iter().fold(0.0, |most, row| row.w_lig.max(most));
+            let stability = |problem| Stability::new(of.scene, &problem, of.deployment);
+            Some(match of.scene.material.regime(widest) {
+                Regime::Plate => {
+                    plate_leaves_plane(kept, of.scene.problem().ok().and_then(stability))
+                }
+                Regime::Film => film_leaves_plane(of, posture, kept, widest),
+            })
+        },
     ),
     WHOLE_SHEET,
     rule(
@@ -77,7 +158,18 @@ pub(super) const RULES: [Rule; 14] = [
             "it is more than 5 % of the load of a free sheet",
             "`posture.kind = \"hanging\"` with `down`",
         ],
-        weightless,
+        |of| {
+            // A weight that acts in the plane of the sheet but not in the model.
+            of.scene.surrogate()?;
+            let acts = matches!(posture(of.scene)?, Posture::Hanging | Posture::Free);
+            let ratio = of.weight_over_load().filter(|ratio| *ratio > HEAVY)?;
+            (acts && !is_heavy(of.scene)).then(|| {
+                found(format!(
+                    "the weight of the sheet is {} and not modelled: if it hangs, set posture.kind = \"hanging\" with `down`",
+                    of_the_load(ratio)
+                ))
+            })
+        },
     ),
     rule(
         "friction",
@@ -87,7 +179,18 @@ pub(super) const RULES: [Rule; 14] = [
             "it is more than 5 % of the load of a lying sheet",
             "lift or shake the sheet while it opens",
         ],
-        friction,
+        |of| {
+            // Friction that the design does not know of.
+            of.scene.surrogate()?;
+            let ratio = FRICTION * of.weight_over_load()?;
+            (ratio > HEAVY && posture(of.scene)? == Posture::Lying).then(|| {
+                found(format!(
+                    "friction on the surface, at mu = {FRICTION}, is {}, and the design does not contain it: lift or shake the sheet while \
+                     it opens, or reduce the friction",
+                    of_the_load(ratio)
+                ))
+            })
+        },
     ),
     rule(
         "hung-weight",
@@ -97,7 +200,18 @@ pub(super) const RULES: [Rule; 14] = [
             "they have more than fifty times its mass",
             "`mass_g` is in grams",
         ],
-        hung_weight,
+        |of| {
+            // Weights that are too heavy to hang; a mass under a prescribed stroke is only a direction.
+            let config = &of.scene.config;
+            let grams: f64 = config.loads.iter().filter_map(|load| load.mass_g).sum();
+            let ratio = 1e-3 * grams / of.mass_kg();
+            (of.run.is_some() && config.drive.is_none() && ratio > HUNG).then(|| {
+                found(format!(
+                    "the weights that hang from the sheet have {} times its mass: mass_g is in grams; write 2 for two grams",
+                    rounded(ratio, 2)
+                ))
+            })
+        },
     ),
     rule(
         "load-peak",
@@ -107,7 +221,32 @@ pub(super) const RULES: [Rule; 14] = [
             "a hung weight of the final size does not open the sheet",
             "a stroke (`[drive]`)",
         ],
-        load_peak,
+        |of| {
+            let reached = of.run?.reached.as_ref()?;
+            let peak = reached.peak?;
+            let [length, force] = reached.units;
+            let [maximum, at, last, end, carried] = [
+                peak.load,
+                peak.displacement,
+                reached.load,
+                reached.displacement,
+                peak.dead_load_reaches?,
+            ]
+            .map(|value| rounded(value, 4));
+            let such = if force == Unit::Newton { ", such as a hung weight," } else { "" };
+            let consequence = if reached.load * reached.displacement > 0.0 {
+                format!(
+                    "a dead load of {last} {force}{such} does not open this sheet: it moves it by {carried} {length} and not by {end} {length}"
+                )
+            } else {
+                format!(
+                    "no dead load opens this sheet by {end} {length}: the load has changed its direction there, to {last} {force}"
+                )
+            };
+            Some(found(format!(
+                "{consequence}; the load peaks at {maximum} {force} at a stroke of {at} {length}"
+            )))
+        },
     ),
     rule(
         "load-plateau",
@@ -117,7 +256,24 @@ pub(super) const RULES: [Rule; 14] = [
             "it changes the mean opening by more than five degrees",
             "fasteners (`posture.kind = \"mounted\"`), or a stroke (`[drive]`)",
         ],
-        load_plateau,
+        |of| {
+            let config = &of.scene.config;
+            let changes = &of.run.filter(|_| config.has_loads() && config.drive.is_none())?.changes;
+            let by_loads = changes.iter().filter(|row| row.change.starts_with("the loads"));
+            let openings: Vec<[f64; 2]> =
+                by_loads.filter_map(|row| Some(row.end?.openings)).collect();
+            let far = openings.iter().any(|[before, after]| (after - before).abs() > PLATEAU);
+            let after: Vec<String> =
+                openings.iter().map(|[_, after]| rounded(after.to_degrees(), 3)).collect();
+            far.then(|| {
+                found(format!(
+                    "with loads 10 % lower and higher hinges open by {} in place of {} deg on the mean: a load does not determine the shape; fasten panels at \
+                     their places, or prescribe the stroke",
+                    after.join(" and "),
+                    rounded(openings[0][0].to_degrees(), 3)
+                ))
+            })
+        },
     ),
     rule(
         "mounting",
@@ -127,7 +283,30 @@ pub(super) const RULES: [Rule; 14] = [
             "on the way of its hole a ligament tears, or no equilibrium is found, or the sheet ends in another state",
             "another order of the supports, more fasteners",
         ],
-        mounting,
+        |of| {
+            let mounting = of.run?.mounting.as_ref()?;
+            let tears = |damage: Option<f64>| damage.is_some_and(|damage| damage >= 1.0);
+            let put_in = mounting.fasteners.len();
+            let torn = mounting.fasteners.iter().position(|fastener| tears(fastener.damage));
+            let message = match torn {
+                Some(i) => format!(
+                    "a ligament tears while panel P{} is pulled to its place",
+                    mounting.fasteners[i].panel
+                ),
+                None if !mounting.is_complete() => {
+                    format!(
+                        "no equilibrium is found on the way of fastener {put_in} of {}",
+                        mounting.count
+                    )
+                }
+                None if mounting.apart > ELSEWHERE => format!(
+                    "fastened one after the other the sheet ends in another state than the report has, corners up to {} mm away",
+                    rounded(mounting.apart, 2)
+                ),
+                None => return None,
+            };
+            Some(found(message))
+        },
     ),
     rule(
         "fastener-force",
@@ -137,32 +316,27 @@ pub(super) const RULES: [Rule; 14] = [
             "it is more than half of what the edge of its hole bears (yield stress times thickness times diameter), or more than a hand holds on the way (150 N)",
             "more fasteners, larger holes; pull panels along",
         ],
-        fastener_force,
+        |of| {
+            let fasteners = &of.run?.mounting.as_ref()?.fasteners;
+            let over = |fastener: &&Fastener| {
+                let bears = fastener.hole.map(|hole| borne_by_hole(&of.scene.material, hole));
+                bears.is_some_and(|bears| fastener.holds > bears)
+            };
+            if let Some(Fastener { panel, holds, .. }) = fasteners.iter().find(over) {
+                return Some(found(format!(
+                    "the fastener of panel P{panel} holds {} N, more than half of what the edge of its hole bears",
+                    rounded(*holds, 2)
+                )));
+            }
+            let Fastener { panel, pull, .. } =
+                fasteners.iter().find(|fastener| fastener.pull > HAND)?;
+            Some(found(format!(
+                "panel P{panel} is pulled to its place with up to {} N, more than one hand holds: pull the panels next to it along, or with two persons",
+                rounded(*pull, 2)
+            )))
+        },
     ),
 ];
-
-fn path(of: &DeployedDesign) -> Option<Found> {
-    let weighed = of.deployment.weight_steps().len();
-    // A jump under a prescribed stroke or motion is no maximum of the load.
-    let dead = of.scene.config.has_loads() && of.scene.config.drive.is_none();
-    let mut before = "the beginning".to_owned();
-    let mut departures = Vec::new();
-    for (i, step) in of.deployment.path.iter().enumerate() {
-        let by_weight = i < weighed;
-        let place = match (by_weight, step.weight == 1.0) {
-            (true, true) => "the whole weight".to_owned(),
-            (true, false) => format!("{} of the weight", rounded(step.weight, 2)),
-            (false, _) => format!("load factor {:.3}", step.load_factor),
-        };
-        let peaks = if by_weight || !dead { "" } else { "the load peaks and " };
-        departures.extend(departure(step, peaks, &before, &place));
-        before = place;
-    }
-    let message =
-        format!("the equilibrium path is not smooth and stable: {}", departures.join(", "));
-    let ends = of.deployment.final_step().status == Status::Diverged;
-    (!departures.is_empty()).then(|| found(message).with(if ends { Error } else { Warning }))
-}
 
 /// How a step of the path at a place is not a stable equilibrium; `None` if it is one.
 fn departure(step: &LoadStep, peaks: &str, before: &str, place: &str) -> Option<String> {
@@ -177,112 +351,11 @@ fn departure(step: &LoadStep, peaks: &str, before: &str, place: &str) -> Option<
     })
 }
 
-fn target_drawing(of: &DeployedDesign) -> Option<Found> {
-    let notes = &of.scene.target.notes;
-    (!notes.is_empty()).then(|| found(format!("the drawing of the target: {}", notes.join("; "))))
-}
-
-fn target_crosses(of: &DeployedDesign) -> Option<Found> {
-    let target = &of.scene.target;
-    target.crossing.filter(|_| target.notes.is_empty()).map(|[x, y]| {
-        found(format!(
-            "the target outline crosses or touches itself near ({x:.1}, {y:.1}) mm: its inside is not defined; order \
-             its vertices around the outline"
-        ))
-    })
-}
-
-/// A point at which a panel is held or pulled does not move with its cuts.
-fn point_outside(of: &DeployedDesign) -> Option<Found> {
-    let panels = &of.deployment.sheet.panels;
-    let attachments = of.scene.actuation().attachments.into_iter();
-    let outside = attachments.filter(|attachment| {
-        let panel = &panels[attachment.panel];
-        matches!(attachment.point, PanelPoint::Fixed(_))
-            && !contains(&panel.corners, panel.reference)
-    });
-    let outside: Vec<String> = outside.map(|attachment| attachment.name).collect();
-    (!outside.is_empty()).then(|| {
-        found(format!(
-            "the design has moved a panel away from the point at which it is held or pulled ({}): move the point, or name \
-             one that moves with the cuts, such as at = \"bottom\"",
-            outside.join("; ")
-        ))
-    })
-}
-
-fn not_modelled(of: &DeployedDesign) -> Option<Found> {
-    of.scene.surrogate()?;
-    of.run?;
-    left_out(of.scene).map(|missing| found(format!("not modelled: {missing}")))
-}
-
 /// Weight or friction over load from which a sheet opens otherwise than without it.
 const HEAVY: f64 = 0.05;
 /// Ratio of the mass of hung weights to the mass of the sheet from which the weights are probably
 /// given in another unit.
 const HUNG: f64 = 50.0;
-
-/// A weight that acts in the plane of the sheet but not in the model.
-fn weightless(of: &DeployedDesign) -> Option<Found> {
-    of.scene.surrogate()?;
-    let acts = matches!(posture(of.scene)?, Posture::Hanging | Posture::Free);
-    let ratio = of.weight_over_load().filter(|ratio| *ratio > HEAVY)?;
-    (acts && !is_heavy(of.scene)).then(|| {
-        found(format!(
-            "the weight of the sheet is {} and not modelled: if it hangs, set posture.kind = \"hanging\" with `down`",
-            of_the_load(ratio)
-        ))
-    })
-}
-
-/// Friction that the design does not know of.
-fn friction(of: &DeployedDesign) -> Option<Found> {
-    of.scene.surrogate()?;
-    let ratio = FRICTION * of.weight_over_load()?;
-    (ratio > HEAVY && posture(of.scene)? == Posture::Lying).then(|| {
-        found(format!(
-            "friction on the surface, at mu = {FRICTION}, is {}, and the design does not contain it: lift or shake the sheet while \
-             it opens, or reduce the friction",
-            of_the_load(ratio)
-        ))
-    })
-}
-
-/// Weights that are too heavy to hang; a mass under a prescribed stroke is only a direction.
-fn hung_weight(of: &DeployedDesign) -> Option<Found> {
-    let config = &of.scene.config;
-    let grams: f64 = config.loads.iter().filter_map(|load| load.mass_g).sum();
-    let ratio = 1e-3 * grams / of.mass_kg();
-    (of.run.is_some() && config.drive.is_none() && ratio > HUNG).then(|| {
-        found(format!(
-            "the weights that hang from the sheet have {} times its mass: mass_g is in grams; write 2 for two grams",
-            rounded(ratio, 2)
-        ))
-    })
-}
-
-fn load_peak(of: &DeployedDesign) -> Option<Found> {
-    let reached = of.run?.reached.as_ref()?;
-    let peak = reached.peak?;
-    let [length, force] = reached.units;
-    let [maximum, at, last, end, carried] =
-        [peak.load, peak.displacement, reached.load, reached.displacement, peak.dead_load_reaches?]
-            .map(|value| rounded(value, 4));
-    let such = if force == Unit::Newton { ", such as a hung weight," } else { "" };
-    let consequence = if reached.load * reached.displacement > 0.0 {
-        format!(
-            "a dead load of {last} {force}{such} does not open this sheet: it moves it by {carried} {length} and not by {end} {length}"
-        )
-    } else {
-        format!(
-            "no dead load opens this sheet by {end} {length}: the load has changed its direction there, to {last} {force}"
-        )
-    };
-    Some(found(format!(
-        "{consequence}; the load peaks at {maximum} {force} at a stroke of {at} {length}"
-    )))
-}
 
 /// Findings of `kirigami verify --sheet`, which the report of a run repeats.
 pub(super) const WHOLE_SHEET: Rule = rule(
@@ -295,26 +368,6 @@ pub(super) const WHOLE_SHEET: Rule = rule(
     ],
     |_| None,
 );
-
-/// Panels that leave the plane unless something holds them flat.
-fn leaves_plane(of: &DeployedDesign) -> Option<Found> {
-    let posture = posture(of.scene)?;
-    let solved = of.whole_sheet().is_some_and(|sheet| sheet.support == posture);
-    if posture == Posture::HeldFlat || solved {
-        return None;
-    }
-    let kept = match posture {
-        Posture::Lying => "only its weight keeps the panels down on the surface",
-        Posture::Mounted => "between the fasteners nothing keeps the panels in the plane",
-        _ => "nothing keeps the panels in the plane",
-    };
-    let widest = of.hinges.iter().fold(0.0, |most, row| row.w_lig.max(most));
-    let stability = |problem| Stability::new(of.scene, &problem, of.deployment);
-    Some(match of.scene.material.regime(widest) {
-        Regime::Plate => plate_leaves_plane(kept, of.scene.problem().ok().and_then(stability)),
-        Regime::Film => film_leaves_plane(of, posture, kept, widest),
-    })
-}
 
 /// How far a plate is from leaving its plane: see [`Stability`].
 fn plate_leaves_plane(kept: &str, stability: Option<Stability>) -> Found {
@@ -379,67 +432,8 @@ fn film_leaves_plane(of: &DeployedDesign, posture: Posture, kept: &str, widest: 
 /// (rad): five degrees.
 const PLATEAU: f64 = 0.0873;
 
-fn load_plateau(of: &DeployedDesign) -> Option<Found> {
-    let config = &of.scene.config;
-    let changes = &of.run.filter(|_| config.has_loads() && config.drive.is_none())?.changes;
-    let by_loads = changes.iter().filter(|row| row.change.starts_with("the loads"));
-    let openings: Vec<[f64; 2]> = by_loads.filter_map(|row| Some(row.end?.openings)).collect();
-    let far = openings.iter().any(|[before, after]| (after - before).abs() > PLATEAU);
-    let after: Vec<String> =
-        openings.iter().map(|[_, after]| rounded(after.to_degrees(), 3)).collect();
-    far.then(|| {
-        found(format!(
-            "with loads 10 % lower and higher hinges open by {} in place of {} deg on the mean: a load does not determine the shape; fasten panels at \
-             their places, or prescribe the stroke",
-            after.join(" and "),
-            rounded(openings[0][0].to_degrees(), 3)
-        ))
-    })
-}
-
 /// Distance of corners from which a mounted sheet has ended in another state (mm).
 const ELSEWHERE: f64 = 0.5;
 
-fn mounting(of: &DeployedDesign) -> Option<Found> {
-    let mounting = of.run?.mounting.as_ref()?;
-    let tears = |damage: Option<f64>| damage.is_some_and(|damage| damage >= 1.0);
-    let put_in = mounting.fasteners.len();
-    let torn = mounting.fasteners.iter().position(|fastener| tears(fastener.damage));
-    let message = match torn {
-        Some(i) => format!(
-            "a ligament tears while panel P{} is pulled to its place",
-            mounting.fasteners[i].panel
-        ),
-        None if !mounting.is_complete() => {
-            format!("no equilibrium is found on the way of fastener {put_in} of {}", mounting.count)
-        }
-        None if mounting.apart > ELSEWHERE => format!(
-            "fastened one after the other the sheet ends in another state than the report has, corners up to {} mm away",
-            rounded(mounting.apart, 2)
-        ),
-        None => return None,
-    };
-    Some(found(message))
-}
-
 /// Force that a hand holds while a fastener is put in (N).
 const HAND: f64 = 150.0;
-
-fn fastener_force(of: &DeployedDesign) -> Option<Found> {
-    let fasteners = &of.run?.mounting.as_ref()?.fasteners;
-    let over = |fastener: &&Fastener| {
-        let bears = fastener.hole.map(|hole| borne_by_hole(&of.scene.material, hole));
-        bears.is_some_and(|bears| fastener.holds > bears)
-    };
-    if let Some(Fastener { panel, holds, .. }) = fasteners.iter().find(over) {
-        return Some(found(format!(
-            "the fastener of panel P{panel} holds {} N, more than half of what the edge of its hole bears",
-            rounded(*holds, 2)
-        )));
-    }
-    let Fastener { panel, pull, .. } = fasteners.iter().find(|fastener| fastener.pull > HAND)?;
-    Some(found(format!(
-        "panel P{panel} is pulled to its place with up to {} N, more than one hand holds: pull the panels next to it along, or with two persons",
-        rounded(*pull, 2)
-    )))
-}

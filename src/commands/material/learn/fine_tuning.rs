@@ -6,8 +6,7 @@ use anyhow::{Context, Result};
 use app::train::kept_fit;
 use dataset::Database;
 use hinge::{HingeDeformation, HingeDesign};
-use std::path::PathBuf;
-use std::sync::atomic::AtomicBool;
+use std::{path::PathBuf, sync::atomic::AtomicBool};
 use surrogate::Surrogate;
 
 /// What the trainings of all rounds have in common.
