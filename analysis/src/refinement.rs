@@ -11,7 +11,8 @@ use design::optimise::outer_loop::{Ended, Until};
 use scene::design_run::{BegunRun, Designed, Earlier, InverseDesignError, LEVELS, OnStep};
 use scene::{Scene, SceneError};
 use std::sync::atomic::AtomicBool;
-use support::fault::{Fault, fault};
+use support::fault::Fault;
+use support::refuse;
 
 /// Why no design is found.
 #[derive(Debug, thiserror::Error)]
@@ -46,17 +47,16 @@ pub fn refine(
     let size = scene.config.sheet.outline().size();
     let least = LEAST * size;
     if tolerance < least {
-        let what = format!("{tolerance} mm is less than the rounding of a sheet of {size:.0} mm");
-        return Err(fault("", what, format!("ask for at least {least:.1e} mm")).into());
+        refuse!(
+            "{tolerance} mm is less than the rounding of a sheet of {size:.0} mm: ask for at least {least:.1e} mm"
+        );
     }
     let ([coarsest], finer @ [_, ..]) = levels.split_at(levels.len().min(1)) else {
         let found = levels.first().map_or("no learned level".into(), |it| format!("`{it}` alone"));
-        return Err(fault(
-            "",
-            format!("an accuracy is measured by two learned levels, and the scene has {found}"),
-            "name a smaller network (surrogate.draft) or further ones (surrogate.ensemble), or design at one level (--level)",
-        )
-        .into());
+        refuse!(
+            "an accuracy is measured by two learned levels, and the scene has {found}: name a smaller network (surrogate.draft) \
+     or further ones (surrogate.ensemble), or design at one level (--level)"
+        );
     };
     let mut earlier = Earlier::default();
     let mut run = BegunRun::new(scene.at_level(*coarsest)?, None)?;

@@ -5,15 +5,15 @@
 //! the two the next reader renames it.
 
 use crate::database::Database;
-use crate::error::{DatasetError, refused};
+use crate::error::DatasetError;
 use crate::manifest::{FORMAT_VERSION, Manifest};
 use crate::parquet;
 use std::fmt::Display;
 use std::io::Write;
 use std::path::{Path, PathBuf};
-use support::fault::{Fault, fault, unread, unwritten};
+use support::fault::{Fault, unread, unwritten};
 use support::whole_file::{self, Unnamed};
-use support::{regular_file, sealed_json};
+use support::{fault, refuse, regular_file, sealed_json};
 
 impl Database {
     /// Reads `X.parquet` and its manifest `X.json`; an error if the hash of the file is not that in
@@ -23,15 +23,15 @@ impl Database {
             Some(finished) => finished,
             None => read_files(path)?,
         };
-        let rows = parquet::decode(&parquet)
-            .map_err(|error| fault(path.display().to_string(), error.to_string(), ""))?;
+        let rows =
+            parquet::decode(&parquet).map_err(|error| fault!("{}: {error}", path.display()))?;
         match manifest.disagrees(&rows) {
             None => Ok(Self { rows, parquet, manifest }),
-            Some(what) => Err(refused(format!(
+            Some(what) => refuse!(
                 "{} and its manifest do not belong together: {what}; copy the two files again, or \
                  collect the campaign again",
                 path.display()
-            ))),
+            ),
         }
     }
 
@@ -82,20 +82,20 @@ fn finish(path: &Path) -> Result<Option<(Manifest, Vec<u8>)>, DatasetError> {
 fn read_files(path: &Path) -> Result<(Manifest, Vec<u8>), DatasetError> {
     let parquet = read_bytes(path)?;
     if let Some(what) = other_kind(&parquet) {
-        return Err(refused(format!(
+        refuse!(
             "{} {what}: a database is a Parquet file (.parquet) with its manifest",
             path.display()
-        )));
+        );
     }
     let manifest = read_manifest(&manifest_path(path))?;
     let found = parquet::hash(&parquet);
     if found != manifest.hash {
-        return Err(refused(format!(
+        refuse!(
             "{} does not match its manifest (its BLAKE3 hash is {found}, not {}); copy both files \
              from the same place, or collect the campaign again",
             path.display(),
             manifest.hash
-        )));
+        );
     }
     Ok((manifest, parquet))
 }
@@ -104,10 +104,10 @@ fn read_files(path: &Path) -> Result<(Manifest, Vec<u8>), DatasetError> {
 pub(crate) fn refuse_existing(path: &Path, replace: bool) -> Result<(), DatasetError> {
     let files = [path.to_owned(), manifest_path(path)];
     match files.into_iter().find(|path| !replace && path.exists()) {
-        Some(path) => Err(refused(format!(
+        Some(path) => refuse!(
             "{} already exists; choose another name, or replace it with `--replace`",
             path.display()
-        ))),
+        ),
         None => Ok(()),
     }
 }
@@ -129,21 +129,18 @@ fn read_manifest(path: &Path) -> Result<Manifest, DatasetError> {
     let bytes = read_bytes(path)?;
     let Version { format_version } = serde_json::from_slice(&bytes).map_err(no_manifest(path))?;
     if format_version != u64::from(FORMAT_VERSION) {
-        return Err(refused(format!(
+        refuse!(
             "{} has the format version {format_version}, but this program reads only version \
              {FORMAT_VERSION}: collect the campaign again, or use the program that wrote it",
             path.display()
-        )));
+        );
     }
     Ok(sealed_json::from_slice(&bytes).map_err(no_manifest(path))?)
 }
 
 /// Maps the error of the manifest `path`, for use in `map_err`.
 fn no_manifest<E: Display>(path: &Path) -> impl FnOnce(E) -> Fault {
-    move |error| {
-        let what = format!("{} is not a manifest of a database: {error}", path.display());
-        Fault::from(what)
-    }
+    move |error| fault!("{} is not a manifest of a database: {error}", path.display())
 }
 
 /// What a file is that does not begin like a Parquet file.

@@ -2,7 +2,7 @@
 //! themselves need not be in memory at the same time.
 
 use crate::acceptance::{AcceptanceLimits, Rejection};
-use crate::error::{DatasetError, refused};
+use crate::error::DatasetError;
 use crate::manifest::{FORMAT_VERSION, FinerMesh, Manifest};
 use crate::meshes::Meshes;
 use crate::rows::Row;
@@ -11,6 +11,7 @@ use crate::split::{Split, SplitPlan};
 use hinge::{HingeConstants, TrainingDomain};
 use std::cmp::Ordering;
 use std::collections::{BTreeMap, BTreeSet};
+use support::{fault, refuse};
 
 /// The order of the rows of a database.
 pub(crate) fn by_job_and_lambda(left: &Row, right: &Row) -> Ordering {
@@ -68,9 +69,7 @@ impl Digest {
         if let Some((last, before)) = &self.last
             && last.cmp(job).then_with(|| before.total_cmp(&lambda)) != Ordering::Less
         {
-            return Err(refused(format!(
-                "job {job}: lambda = {lambda} occurs twice; was the job collected twice?"
-            )));
+            refuse!("job {job}: lambda = {lambda} occurs twice; was the job collected twice?");
         }
         self.last = Some((job.clone(), lambda));
         Ok(())
@@ -78,7 +77,7 @@ impl Digest {
 
     /// The manifest of the rows, whose Parquet file has the given hash.
     pub(crate) fn manifest(self, hash: String, plan: &SplitPlan) -> Result<Manifest, DatasetError> {
-        let no_rows = |rejected| refused(format!("no rows: {}", reasons(rejected)));
+        let no_rows = |rejected| DatasetError::from(fault!("no rows: {}", reasons(rejected)));
         let bent_rays = self.meshes.bent_rays.unwrap_or_default();
         let Some((rays, finer)) = self.meshes.sorted()? else {
             return Err(no_rows(&self.rejected));

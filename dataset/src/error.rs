@@ -12,8 +12,3 @@ pub enum DatasetError {
     #[error(transparent)]
     Fault(#[from] Fault),
 }
-
-/// The error with a message.
-pub(crate) fn refused(what: impl Into<Fault>) -> DatasetError {
-    what.into().into()
-}

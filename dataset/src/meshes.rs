@@ -4,12 +4,13 @@
 //! All rows have one material, one kerf and one window radius, since a surrogate has no feature for
 //! them. The finer mesh is the one with fewer rays, or, of as many, with the longer solves.
 
-use crate::error::{DatasetError, refused};
+use crate::error::DatasetError;
 use crate::rows::{RayKey, Row, ray_key};
 use crate::split::Geometries;
 use hinge::{HingeDeformation, HingeDesign, Regime};
 use std::cmp::Reverse;
 use std::collections::BTreeSet;
+use support::fault;
 
 /// The rows of one mesh.
 #[derive(Default)]
@@ -156,8 +157,9 @@ fn refuse_other(first: &Row, row: &Row, quantities: &[Quantity]) -> Result<(), D
 }
 
 fn mixed(column: &str, Row { job, .. }: &Row, [expected, found]: [String; 2]) -> DatasetError {
-    refused(format!(
+    fault!(
         "job {job}: {column} = {found}, but other rows have {expected}; collect them in separate \
          databases"
-    ))
+    )
+    .into()
 }

@@ -1,9 +1,10 @@
 //! The columns of the database, their units and their meanings.
 
-use crate::error::{DatasetError, refused};
+use crate::error::DatasetError;
 use crate::rows::Row;
 use polars::prelude::{Column, DataFrame, IntoColumn, NamedFrom, Series};
 use support::fault::Fault;
+use support::{fault, refuse};
 
 /// What a column of a database holds.
 #[derive(Debug)]
@@ -177,21 +178,20 @@ pub(crate) fn from_frame(frame: &DataFrame, most_text: usize) -> Result<Vec<Row>
     let mut left = most_text;
     let mut rows = vec![Row::default(); frame.height()];
     for ColumnMeaning { name, value, .. } in &COLUMNS {
-        let gap = |index| refused(format!("column `{name}` has no value in row {index}"));
+        let gap = |index| fault!("column `{name}` has no value in row {index}");
         let series = frame.column(name)?;
         match value {
             Value::Text(_, set) => {
                 for (index, (row, text)) in rows.iter_mut().zip(series.str()?.iter()).enumerate() {
                     let text = text.ok_or_else(|| gap(index))?;
                     left = left.checked_sub(text.len()).ok_or_else(|| {
-                        refused(format!(
+                        fault!(
                             "the texts of the table exceed {most_text} bytes at row {index} of the \
                              column `{name}`: the file is damaged, or made to fill the memory"
-                        ))
+                        )
                     })?;
-                    set(row, text).map_err(|error| {
-                        refused(format!("column `{name}`, row {index}: {error}"))
-                    })?;
+                    set(row, text)
+                        .map_err(|error| fault!("column `{name}`, row {index}: {error}"))?;
                 }
             }
             Value::Number(_, set) => {
@@ -209,10 +209,10 @@ pub(crate) fn from_frame(frame: &DataFrame, most_text: usize) -> Result<Vec<Row>
         }
     }
     match rows.iter().find(|row| !is_finite(row)) {
-        Some(Row { job, sample, .. }) => Err(refused(format!(
+        Some(Row { job, sample, .. }) => refuse!(
             "job {job}, lambda = {}: the row contains a number that is not finite",
             sample.lambda
-        ))),
+        ),
         None => Ok(rows),
     }
 }

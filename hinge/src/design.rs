@@ -4,6 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 use support::fault::Fault;
+use support::refuse;
 
 /// Geometry of the ligament left between the tip of a main cut and a secondary cut; (7).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -126,26 +127,25 @@ impl HingeDesign {
     /// Rejects a design that cannot be cut; the error names the violated inequality.
     pub fn validate(&self) -> Result<(), InvalidDesign> {
         let Self { w_lig, alpha, fillet_ratio, kerf, r_win } = *self;
-        let refuse = |what: String| Err(Fault::from(what).into());
         let named = ["w_lig", "alpha", "fillet_ratio", "kerf", "r_win"];
         let values = [w_lig, alpha, fillet_ratio, kerf, r_win];
         if let Some((name, value)) = named.iter().zip(values).find(|(_, it)| !it.is_finite()) {
-            return refuse(format!("{name} = {value} is not a finite number"));
+            refuse!("{name} = {value} is not a finite number");
         }
         if !(MIN_W_LIG..=MAX_W_LIG).contains(&w_lig) {
-            return refuse(format!(
+            refuse!(
                 "w_lig = {w_lig} mm violates {MIN_W_LIG} <= w_lig <= {MAX_W_LIG}: lengths are in mm{}",
                 unit_slip(w_lig)
-            ));
+            );
         }
         if alpha <= 0.0 || alpha >= PI {
             let deg = alpha.to_degrees();
-            return refuse(format!("alpha = {deg:.4} deg violates 0 < alpha < 180"));
+            refuse!("alpha = {deg:.4} deg violates 0 < alpha < 180");
         }
         if fillet_ratio <= 0.0 || fillet_ratio >= 1.0 {
-            return refuse(format!(
+            refuse!(
                 "fillet_ratio = {fillet_ratio} violates 0 < fillet_ratio < 1 (the hole would cut the ligament)"
-            ));
+            );
         }
         let limit = 2.0 * self.fillet_radius();
         if kerf <= 0.0 || kerf >= limit {
@@ -153,9 +153,7 @@ impl HingeDesign {
         }
         let limit = MIN_WINDOW * w_lig;
         if r_win <= limit {
-            return refuse(format!(
-                "r_win = {r_win} mm violates r_win > {MIN_WINDOW} w_lig = {limit} mm"
-            ));
+            refuse!("r_win = {r_win} mm violates r_win > {MIN_WINDOW} w_lig = {limit} mm");
         }
         Ok(())
     }

@@ -27,8 +27,6 @@ mod covered_states;
 mod directions;
 mod stored_domain;
 
-pub use stored_domain::InvalidDomain;
-
 use crate::domain::directions::{DIRECTION, DIRECTIONS, EXPONENT, norm};
 use crate::net_ligament::{NetLigament, NetLigamentJet};
 use crate::{HingeConstants, HingeDeformation, HingeDesign, Jet};

@@ -1,7 +1,8 @@
 //! The checks that a mesh must pass before it is solved.
 
 use crate::{Boundary, ElementKind, PlaneMesh, Window, WindowMesh, sides};
-use support::fault::{Fault, fault};
+use support::fault::Fault;
+use support::{fault, refuse};
 
 /// Maximum accepted ratio of the longest to the shortest in-plane edge of an element.
 const MAX_ASPECT: f64 = 40.0;
@@ -28,7 +29,7 @@ impl WindowMesh {
     pub fn quality(&self) -> Result<MeshQuality, Fault> {
         for boundary in [Boundary::ArcA, Boundary::ArcB] {
             if self.plane.edges.iter().all(|(of, _)| *of != boundary) {
-                return Err(Fault::from(format!("the mesh has no edge on {boundary:?}")));
+                refuse!("the mesh has no edge on {boundary:?}");
             }
         }
         let (jacobian_ratio, largest_aspect) = check_elements(&self.plane, &self.gauss_volumes)?;
@@ -42,7 +43,7 @@ impl WindowMesh {
 }
 
 pub(crate) fn wrong_area(area: f64, exact: f64) -> Fault {
-    Fault::from(format!("the area of the mesh is {area} mm^2, but its shape has {exact} mm^2"))
+    fault!("the area of the mesh is {area} mm^2, but its shape has {exact} mm^2")
 }
 
 /// The minimum ratio of Jacobians and the maximum aspect ratio of solid elements, layers of the
@@ -58,8 +59,7 @@ pub(crate) fn check_elements(
         let minimum = jacobians.clone().fold(f64::INFINITY, f64::min);
         let maximum = jacobians.fold(0.0, f64::max);
         if minimum <= 0.0 || minimum.is_nan() {
-            let what = format!("its Jacobian is {minimum} mm^3 at a Gauss point");
-            return Err(fault(format!("element {element} is folded"), what, ""));
+            refuse!("element {element} is folded: its Jacobian is {minimum} mm^3 at a Gauss point");
         }
         jacobian_ratio = jacobian_ratio.min(minimum / maximum);
     }
@@ -72,9 +72,9 @@ pub(crate) fn check_elements(
         let longest = lengths.clone().fold(0.0, f64::max);
         let aspect = longest / lengths.fold(f64::INFINITY, f64::min);
         if aspect > MAX_ASPECT {
-            let what =
-                format!("the ratio of its longest to its shortest edge is {aspect} > {MAX_ASPECT}");
-            return Err(fault(format!("element {element} is a sliver"), what, ""));
+            refuse!(
+                "element {element} is a sliver: the ratio of its longest to its shortest edge is {aspect} > {MAX_ASPECT}"
+            );
         }
         largest_aspect = largest_aspect.max(aspect);
     }

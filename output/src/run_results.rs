@@ -8,9 +8,9 @@ use scene::Scene;
 use scene::design_run::{Designed, InverseDesignError};
 use std::io;
 use std::path::Path;
-use support::fault::{Fault, fault};
+use support::fault::Fault;
 use support::file_error::FileError;
-use support::whole_file;
+use support::{fault, whole_file};
 
 /// Writes the results of [`RUN_FILES`]: the picture of the flat sheet for a design with cut lines,
 /// the cut files for a design without errors, or if `force`.
@@ -45,7 +45,7 @@ pub fn write_results(scene: &Scene, designed: &Designed, force: bool) -> Result<
 }
 
 fn unwritten(error: FileError) -> Fault {
-    fault("", format!("cannot write {error}"), "")
+    fault!("cannot write {error}")
 }
 
 /// Removes the files of an earlier run of the scene, so that the next one begins at the start

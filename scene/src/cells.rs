@@ -6,7 +6,8 @@ use design::pattern::grid::Grid;
 use design::sheet::topology::Topology;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use support::fault::{Fault, fault};
+use support::fault;
+use support::fault::Fault;
 
 /// A kept void in a row of the voids.
 const KEPT: char = 'o';
@@ -65,7 +66,7 @@ impl CellsConfig {
     /// The panels and hinges that it describes.
     pub(crate) fn topology(&self, grid: Grid) -> Result<Topology, Fault> {
         let wrong =
-            |what: String| fault("cells", what, "write them again by `kirigami init --target`");
+            |what: String| fault!("cells: {what}: write them again by `kirigami init --target`");
         let fits = |row: &String| {
             row.chars().count() == grid.m - 1 && row.chars().all(|c| c == KEPT || c == LEFT_OUT)
         };

@@ -5,10 +5,9 @@ use crate::solved_hinges::SolvedHingesError;
 use crate::springback_file::SpringbackFileError;
 use crate::target::TargetError;
 use design::equilibrium::tangent::MIN_PIVOT_RATIO;
-use hinge::{InvalidDesign, InvalidMaterial};
+use hinge::InvalidDesign;
 use std::path::PathBuf;
 use support::fault::Fault;
-use support::key_limits::OutOfRange;
 
 /// A value of a scene that is outside its range or that other values exclude; the message names the
 /// key.
@@ -17,14 +16,10 @@ use support::key_limits::OutOfRange;
 pub enum InvalidScene {
     #[error(transparent)]
     Fault(#[from] Fault),
-    #[error(transparent)]
-    OutOfRange(#[from] OutOfRange),
     #[error("{source} (the outline of the flat sheet is {perimeter:.0} mm long)")]
-    TargetLength { source: OutOfRange, perimeter: f64 },
+    TargetLength { source: Fault, perimeter: f64 },
     #[error(transparent)]
     Target(#[from] TargetError),
-    #[error(transparent)]
-    Material(#[from] InvalidMaterial),
     #[error("title contains the control character {0:?}: remove it")]
     Title(char),
     #[error("sheet: give either size or corners")]
@@ -44,7 +39,7 @@ pub enum InvalidScene {
     )]
     Kerf { kerf: f64, slit: f64 },
     #[error("{source} (a window is a part of the sheet, which is {size:.0} mm large)")]
-    Window { source: OutOfRange, size: f64 },
+    Window { source: Fault, size: f64 },
     #[error("ligament.range = [{min}, {max}] mm violates minimum < maximum")]
     LigamentRange { min: f64, max: f64 },
     #[error("{key} = {w_lig} mm violates {min} < {key} < {max} mm (ligament.range)")]

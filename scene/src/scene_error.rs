@@ -1,21 +1,15 @@
 //! Errors of a scene.
 
 use crate::invalid_scene::InvalidScene;
-use hinge::MaterialError;
 use std::path::{Path, PathBuf};
-use support::toml_file::ConfigError;
-use surrogate::WeightsError;
+use support::fault::Fault;
 
 /// Why a scene is invalid; every message names the file and the key.
 #[derive(Debug, thiserror::Error)]
 #[allow(missing_docs, reason = "the message of a variant is its documentation")]
 pub enum SceneError {
     #[error(transparent)]
-    Config(#[from] ConfigError),
-    #[error(transparent)]
-    Material(#[from] MaterialError),
-    #[error(transparent)]
-    Weights(#[from] WeightsError),
+    Fault(#[from] Fault),
     #[error("{path}: {source}", path = .path.display())]
     Invalid { path: PathBuf, source: Box<InvalidScene> },
 }

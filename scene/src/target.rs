@@ -12,8 +12,9 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
+use support::fault::Fault;
 use support::file_error::FileError;
-use support::key_limits::{self, OutOfRange};
+use support::key_limits;
 use support::regular_file;
 
 /// A target as written in a scene; lengths in mm, in the coordinates of the flat sheet.
@@ -109,7 +110,7 @@ pub enum TargetError {
     #[error("{path}: {source}", path = .path.display())]
     Drawing { path: PathBuf, source: DrawingError },
     #[error(transparent)]
-    OutOfRange(#[from] OutOfRange),
+    Fault(#[from] Fault),
     #[error("the target outline encloses no area: give at least three corners in order")]
     NoArea,
 }

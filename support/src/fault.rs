@@ -1,74 +1,42 @@
 //! An error that no caller tells from another: it is read by a person.
 
-use std::fmt;
+use std::fmt::Display;
 use std::path::Path;
 
-/// Where something is wrong (a file, line, key or job), what is wrong, and what to do. Empty texts
-/// are left out of the message. An error that a caller matches is a variant of an enum instead.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Fault {
-    /// The place, such as `supports[2].panel`.
-    pub place: String,
-    /// The mistake, with its values and units.
-    pub what: String,
-    /// The remedy, in the imperative.
-    pub remedy: String,
+/// What is wrong, after its place (a file, line, key or job) and before what to do, each behind a
+/// colon. An error that a caller matches is a variant of an enum instead.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{0}")]
+pub struct Fault(String);
+
+/// The [`Fault`] with a message, written as for [`format!`].
+#[macro_export]
+macro_rules! fault {
+    ($($message:tt)*) => {
+        $crate::fault::Fault::from(format!($($message)*))
+    };
 }
 
-/// The fault at `place`.
-pub fn fault(
-    place: impl Into<String>,
-    what: impl Into<String>,
-    remedy: impl Into<String>,
-) -> Fault {
-    Fault { place: place.into(), what: what.into(), remedy: remedy.into() }
+/// Returns the [`Fault`] with a message, written as for [`format!`], or an error made of it.
+#[macro_export]
+macro_rules! refuse {
+    ($($message:tt)*) => {
+        return Err($crate::fault!($($message)*).into())
+    };
 }
 
 impl From<String> for Fault {
-    /// A mistake in words, without a place.
-    fn from(what: String) -> Self {
-        fault("", what, "")
-    }
-}
-
-impl From<&str> for Fault {
-    fn from(what: &str) -> Self {
-        what.to_owned().into()
+    fn from(message: String) -> Self {
+        Self(message)
     }
 }
 
 /// Maps the error of reading `path`, for use in `map_err`.
-pub fn unread<E: fmt::Display>(path: &Path) -> impl FnOnce(E) -> Fault {
-    move |error| format!("cannot read {}: {error}", path.display()).into()
+pub fn unread<E: Display>(path: &Path) -> impl FnOnce(E) -> Fault {
+    move |error| fault!("cannot read {}: {error}", path.display())
 }
 
 /// Maps the error of writing `path`, for use in `map_err`.
-pub fn unwritten<E: fmt::Display>(path: &Path) -> impl FnOnce(E) -> Fault {
-    move |error| format!("cannot write {}: {error}", path.display()).into()
-}
-
-impl fmt::Display for Fault {
-    fn fmt(&self, text: &mut fmt::Formatter) -> fmt::Result {
-        let Self { place, what, remedy } = self;
-        let texts = [place, what, remedy].map(String::as_str);
-        let said = texts.into_iter().filter(|text| !text.is_empty());
-        text.write_str(&said.collect::<Vec<_>>().join(": "))
-    }
-}
-
-impl std::error::Error for Fault {}
-
-#[cfg(test)]
-mod tests {
-    use super::fault;
-
-    #[test]
-    fn empty_texts_are_left_out() {
-        let whole = fault("supports", "a sheet without supports has no equilibrium", "add one");
-        assert_eq!(
-            whole.to_string(),
-            "supports: a sheet without supports has no equilibrium: add one"
-        );
-        assert_eq!(fault("", "no rows", "").to_string(), "no rows");
-    }
+pub fn unwritten<E: Display>(path: &Path) -> impl FnOnce(E) -> Fault {
+    move |error| fault!("cannot write {}: {error}", path.display())
 }

@@ -1,6 +1,6 @@
 //! The error of an operation on a file.
 
-use crate::fault::{Fault, fault};
+use crate::fault::Fault;
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -24,6 +24,6 @@ impl FileError {
 
 impl From<FileError> for Fault {
     fn from(FileError { path, source }: FileError) -> Self {
-        fault(path.display().to_string(), source.to_string(), "")
+        fault!("{}: {source}", path.display())
     }
 }

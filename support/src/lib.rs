@@ -24,10 +24,12 @@ macro_rules! add_line {
     }};
 }
 
+#[macro_use]
+pub mod fault;
+
 pub mod caught_panic;
 pub mod csv_table;
 pub mod document;
-pub mod fault;
 pub mod file_error;
 pub mod interpolation;
 pub mod key_limits;

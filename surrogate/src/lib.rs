@@ -30,7 +30,7 @@
 //! let [_, _, moment] = energies[999].forces; // N mm
 //! assert_eq!(energies[0].w, 0.0);
 //! assert!(moment.is_finite());
-//! # Ok::<_, surrogate::WeightsError>(())
+//! # Ok::<_, support::fault::Fault>(())
 //! ```
 
 #![cfg_attr(not(test), warn(unreachable_pub))]
@@ -62,4 +62,3 @@ pub use model::{Layers, Surrogate};
 pub use network::{Layer, Network, Tensor};
 pub use springback::{Springback, SpringbackErrors};
 pub use tanh::tanh_in_place;
-pub use weights::WeightsError;

@@ -9,8 +9,9 @@ use safetensors::{Dtype, SafeTensors};
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
+use support::fault::Fault;
 use support::sealed_json;
-use surrogate::{FORMAT_VERSION, Order, Surrogate, WeightsError};
+use surrogate::{FORMAT_VERSION, Order, Surrogate};
 use tempfile::TempDir;
 
 /// A copy of the files of a surrogate, to be changed and written.
@@ -43,7 +44,7 @@ impl File {
         self.folder.path().join("chi.safetensors")
     }
 
-    fn load(&self) -> Result<Surrogate, WeightsError> {
+    fn load(&self) -> Result<Surrogate, Fault> {
         let views = self.tensors.iter().map(|(name, (dtype, shape, data))| {
             let view = TensorView::new(*dtype, shape.clone(), data).unwrap();
             (name.clone(), view)

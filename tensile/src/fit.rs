@@ -10,6 +10,7 @@ use crate::thinning::thinned;
 use serde::Serialize;
 use std::path::PathBuf;
 use support::fault::Fault;
+use support::{fault, refuse};
 
 /// What is known about a material besides the records of its specimens.
 #[derive(Clone, Copy, Debug)]
@@ -219,11 +220,11 @@ fn draws(specimens: &[Specimen]) -> Result<Vec<Draw>, Fault> {
         let these = specimens.iter().filter(|specimen| specimen.draw.is_some() == draw);
         these.map(|specimen| specimen.path.display().to_string()).collect::<Vec<_>>().join(", ")
     };
-    Err(Fault::from(format!(
+    Err(fault!(
         "{} have a draw plateau, {} have none: fit them apart, or leave out specimens that broke early",
         names(true),
         names(false)
-    )))
+    ))
 }
 
 /// The mean hardening curve, and the true stress to which the upper yield is cut, if it is. `draw`
@@ -242,11 +243,9 @@ fn hardening(
     };
     let top = uniform[uniform.len() - 1];
     let drawing = ColdDrawing::new(top, plateau.mean, ratio.mean, young).ok_or_else(|| {
-        Fault::from(format!(
-            "the natural draw ratio {:.3} is not beyond the upper yield at the plastic strain {:.3}: check --draw-ratio, \
+        fault!("the natural draw ratio {:.3} is not beyond the upper yield at the plastic strain {:.3}: check --draw-ratio, \
              the initial section over the section of the drawn neck",
-            ratio.mean, top[1]
-        ))
+            ratio.mean, top[1])
     })?;
     let yields = drawing.yields_at();
     uniform.iter_mut().for_each(|row| row[0] = row[0].min(yields));
@@ -291,10 +290,10 @@ fn fracture(
 ) -> Result<(f64, Option<f64>, FractureSource), Fault> {
     if let Some(strain) = given {
         if strain < end {
-            return Err(Fault::from(format!(
+            refuse!(
                 "--fracture-strain {strain} is less than the plastic strain {end:.4} that the specimens reach on \
                  average: it is ln(A0 / A), from the section A of the broken specimen"
-            )));
+            );
         }
         return Ok((strain, None, FractureSource::Given));
     }
@@ -311,10 +310,10 @@ fn fracture(
     let reached = |it: &Specimen| it.after.last().or(it.before.last()).map(|row| row[1]);
     let scatter = Statistic::new(specimens.iter().filter_map(reached)).deviation;
     if let Some(scatter) = scatter.filter(|scatter| *scatter > end) {
-        return Err(Fault::from(format!(
+        refuse!(
             "the specimens have a fracture strain of {end:.4} ± {scatter:.4}, which is none: give --fracture-strain, or \
              leave out specimens that broke early"
-        )));
+        );
     }
     Ok((end, scatter, source))
 }

@@ -58,9 +58,10 @@ pub use record::{Cause, ReadColumn, RecordOptions, RecordRow};
 pub use specimen::{Softening, Specimen, SpecimenOptions};
 
 use std::path::Path;
+use support::fault;
 use support::fault::Fault;
 
 /// Puts the file before what is wrong with it.
 fn in_file(path: &Path) -> impl Fn(String) -> Fault + Copy {
-    move |what| Fault::from(format!("{} {what}", path.display()))
+    move |what| fault!("{} {what}", path.display())
 }

@@ -1,12 +1,13 @@
 //! The material file of a fit, with its provenance as comments.
 
 use crate::{Cause, MaterialFit, Origin, ReadColumn, Specimen, Statistic};
-use hinge::{InvalidMaterial, SheetMaterial};
+use hinge::SheetMaterial;
+use support::fault::Fault;
 
 impl MaterialFit {
     /// The material of the fit, with name, thickness, Poisson's ratio and density of `known`, which
     /// a tensile test does not measure. The error names a value that no sheet has.
-    pub fn material(&self, known: SheetMaterial) -> Result<SheetMaterial, InvalidMaterial> {
+    pub fn material(&self, known: SheetMaterial) -> Result<SheetMaterial, Fault> {
         let material = SheetMaterial {
             young: self.young.mean,
             fracture_strain: self.fracture_strain,

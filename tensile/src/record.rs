@@ -10,7 +10,8 @@ use crate::quantity::Quantity::{
 use serde::Serialize;
 use std::fmt;
 use std::path::{Path, PathBuf};
-use support::fault::{Fault, fault};
+use support::fault;
+use support::fault::Fault;
 use support::text_table::TextRow;
 
 /// What a file does not say about its columns and its specimen.
@@ -139,8 +140,8 @@ impl Record {
             }
         }
         let at = |row: &TextRow| {
-            let place = format!("{}:{}", path.display(), row.line);
-            move |what: String| fault(place, what, "")
+            let (path, line) = (path.display(), row.line);
+            move |what: String| fault!("{path}:{line}: {what}")
         };
         for column in &read_as {
             if let Some(row) = table.thousands(column.number - 1) {

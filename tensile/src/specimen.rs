@@ -20,7 +20,8 @@ use crate::record::{Cause, ReadColumn, Record, RecordRow, within};
 use crate::regression::Regression;
 use serde::Serialize;
 use std::path::PathBuf;
-use support::fault::{Fault, fault};
+use support::fault;
+use support::fault::Fault;
 
 /// What is known about the material or its specimens besides the records.
 #[derive(Clone, Copy, Debug, Default)]
@@ -110,11 +111,11 @@ impl Specimen {
         let file = in_file(&path);
         let Cleaned { curve: nominal, averaged, noise } =
             cleaned(&mut record.rows).map_err(|line| {
-                fault(
-                    format!("{}:{line}", path.display()),
-                    "from here on the strain falls for most of the file",
-                    "sort the rows by time, and give each specimen its own file",
-                )
+                fault!(
+    "{}:{line}: from here on the strain falls for most of the file: sort the rows by time, and give each specimen its \
+     own file",
+    path.display()
+)
             })?;
         let curve = Compensated::new(&record, &nominal, noise, options).map_err(file)?;
         let Compensated { young, elastic, noise, rows: smooth, .. } = &curve;

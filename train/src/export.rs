@@ -1,12 +1,14 @@
 //! Conversion of Burn's networks to the layers of a weight file.
 
 use crate::affine::Affine;
-use crate::error::TrainError;
 use crate::networks::{Mlp, Networks};
+use burn::tensor::TensorReadError;
+use support::fault;
+use support::fault::Fault;
 use surrogate::{Layer, Layers, Tensor};
 
 /// The layers in float64, with weights as (outputs, inputs).
-pub(crate) fn layers(networks: &Networks) -> Result<Layers, TrainError> {
+pub(crate) fn layers(networks: &Networks) -> Result<Layers, Fault> {
     let layers = |network: &Mlp| network.affine().into_iter().map(layer).collect();
     Ok(Layers {
         chi: layers(&networks.chi)?,
@@ -15,12 +17,23 @@ pub(crate) fn layers(networks: &Networks) -> Result<Layers, TrainError> {
     })
 }
 
-fn layer(affine: Affine) -> Result<Layer, TrainError> {
+/// The fault of a tensor that the backend does not return.
+pub(crate) fn unread(error: TensorReadError) -> Fault {
+    fault!("a tensor cannot be read from the backend: {error}")
+}
+
+fn layer(affine: Affine) -> Result<Layer, Fault> {
     let weight = affine.weight.inner().transpose();
     let bias = affine.bias.inner();
     Ok(Layer {
-        weight: Tensor { shape: weight.dims().to_vec(), values: weight.try_into_vec_as()? },
-        bias: Tensor { shape: bias.dims().to_vec(), values: bias.try_into_vec_as()? },
+        weight: Tensor {
+            shape: weight.dims().to_vec(),
+            values: weight.try_into_vec_as().map_err(unread)?,
+        },
+        bias: Tensor {
+            shape: bias.dims().to_vec(),
+            values: bias.try_into_vec_as().map_err(unread)?,
+        },
     })
 }
 

@@ -13,7 +13,6 @@
 //! pretrained networks.
 
 use crate::config::{DAMAGE_SHARPNESS, TrainingConfig};
-use crate::error::{TrainError, failed};
 use crate::export::layers;
 use crate::mirror;
 use crate::networks::{Networks, options};
@@ -22,6 +21,8 @@ use crate::validation::Parity;
 use burn::tensor::DType;
 use dataset::{Manifest, Row};
 use hinge::HingeConstants;
+use support::fault::Fault;
+use support::{fault, refuse};
 use surrogate::{Card, Layer, Layers, Standardisation, Surrogate, feature_names};
 
 /// The initial networks and their scales.
@@ -37,13 +38,12 @@ impl Initial {
         pretrained: &Surrogate,
         rows: &[Row],
         manifest: &Manifest,
-    ) -> Result<Self, TrainError> {
+    ) -> Result<Self, Fault> {
         if pretrained.card().domain.holes.is_some() && manifest.domain.holes.is_none() {
-            return Err(failed(
+            refuse!(
                 "the initial weights are for holes of several radii, but the database has holes of one radius; start with \
                  weights for one radius, or with random weights"
-                    .into(),
-            ));
+            );
         }
         let pretrained = at_size_of(pretrained, &manifest.hinge);
         let parity = Parity::new(&pretrained, rows);
@@ -94,24 +94,24 @@ pub(crate) fn inherit(card: &mut Card, pretrained: &Surrogate, rows: &[Row]) {
 }
 
 /// Rejects initial weights whose sizes, sharpness or symmetry differ from the configuration.
-pub fn check_pretrained(pretrained: &Surrogate, config: &TrainingConfig) -> Result<(), TrainError> {
+pub fn check_pretrained(pretrained: &Surrogate, config: &TrainingConfig) -> Result<(), Fault> {
     let given = pretrained.layers();
     let heads = 1 + usize::from(given.chi_p.is_some());
     let damage = std::iter::repeat_n(config.damage().to_vec(), heads);
     let expected: Vec<_> = std::iter::once(config.embedding.clone()).chain(damage).collect();
     let found = given.widths();
     if found != expected {
-        return Err(failed(format!(
+        refuse!(
             "the initial weights have the layers {found:?}, but the configuration has {expected:?} \
              (embedding and damage heads); change the configuration, or start with random weights"
-        )));
+        );
     }
     let found = pretrained.card().damage_sharpness;
     if found != DAMAGE_SHARPNESS {
-        return Err(failed(format!(
+        refuse!(
             "the initial weights have `damage_sharpness = {found}`, and a training has \
              {DAMAGE_SHARPNESS}; start with random weights"
-        )));
+        );
     }
     let exact = options(DType::F64);
     let folded = Networks::from_layers(&given, &exact);
@@ -120,9 +120,7 @@ pub fn check_pretrained(pretrained: &Surrogate, config: &TrainingConfig) -> Resu
     if unchanged && centred {
         return Ok(());
     }
-    Err(failed(
-        "the initial weights do not have the mirror symmetry; start with random weights".into(),
-    ))
+    Err(fault!("the initial weights do not have the mirror symmetry; start with random weights"))
 }
 
 /// The factor of the predictions that is closest to the targets.

@@ -5,7 +5,6 @@
 //! data as JSON.
 
 use crate::epoch::Epoch;
-use crate::error::{TrainError, failed};
 use crate::networks::Networks;
 use burn::module::Module;
 use burn::optim::ModuleOptimizer;
@@ -15,7 +14,8 @@ use safetensors::tensor::{Dtype, SafeTensors, TensorView};
 use serde::{Deserialize, Serialize};
 use std::fmt::Display;
 use std::path::{Path, PathBuf};
-use support::fault::{unread, unwritten};
+use support::fault::{Fault, unread, unwritten};
+use support::{fault, refuse};
 use surrogate::Card;
 
 /// Format version of the file. A state is temporary, so no other version is read.
@@ -46,17 +46,17 @@ pub(crate) struct State {
 /// The names of the records.
 const RECORDS: [&str; 3] = ["networks", "best", "optimiser"];
 
-fn unrecorded(error: RecordError) -> TrainError {
-    failed(format!("the backend cannot record the networks: {error}"))
+fn unrecorded(error: RecordError) -> Fault {
+    fault!("the backend cannot record the networks: {error}")
 }
 
 /// The error of a file that is no whole state, with the reason.
-fn malformed(path: &Path) -> impl Fn(&dyn Display) -> TrainError {
+fn malformed(path: &Path) -> impl Fn(&dyn Display) -> Fault {
     move |reason| {
         let path = path.display();
-        failed(format!(
+        fault!(
             "{path} is not a state of a training, or is damaged ({reason}); delete it and start again"
-        ))
+        )
     }
 }
 
@@ -67,7 +67,7 @@ pub(crate) fn write(
     networks: &Networks,
     best: &Networks,
     optimiser: &ModuleOptimizer,
-) -> Result<(), TrainError> {
+) -> Result<(), Fault> {
     let records = [
         networks.clone().into_record().into_bytes().map_err(unrecorded)?,
         best.clone().into_record().into_bytes().map_err(unrecorded)?,
@@ -90,7 +90,7 @@ pub(crate) fn write(
 }
 
 impl State {
-    pub(crate) fn read(path: &Path) -> Result<Self, TrainError> {
+    pub(crate) fn read(path: &Path) -> Result<Self, Fault> {
         let malformed = malformed(path);
         let bytes = support::regular_file::read(path).map_err(unread(path))?;
         let (hash, body) = bytes
@@ -121,7 +121,7 @@ impl State {
 
     /// An error if the state has a different configuration, database, split or distillation, or
     /// different initial weights.
-    pub(crate) fn check(&self, card: &Card) -> Result<(), TrainError> {
+    pub(crate) fn check(&self, card: &Card) -> Result<(), Fault> {
         let saved = &self.progress.card;
         for (what, same) in [
             ("configuration", saved.training == card.training),
@@ -131,11 +131,11 @@ impl State {
             ("distillation", saved.distillation == card.distillation),
         ] {
             if !same {
-                return Err(failed(format!(
+                refuse!(
                     "{} is the state of another training: the {what} is different; continue with \
                      the original one, or discard it with --replace",
                     self.path.display()
-                )));
+                );
             }
         }
         Ok(())
@@ -147,7 +147,7 @@ impl State {
         self,
         networks: &Networks,
         optimiser: ModuleOptimizer,
-    ) -> Result<(Networks, Networks, ModuleOptimizer), TrainError> {
+    ) -> Result<(Networks, Networks, ModuleOptimizer), Fault> {
         let [current, best, adam] = self.records.map(Bytes::from_bytes_vec);
         let load = |record| networks.clone().try_load_record(ModuleRecord::from_bytes(record)?);
         let restored = || Ok((load(current)?, load(best)?, optimiser.from_bytes(adam)?));

@@ -1,7 +1,7 @@
 //! A whole sheet by finite elements: its solve, and what the hinge law predicts of it.
 
 use crate::sheet_check::{HingeCheck, PanelCheck, SheetCheck, StateCheck, findings};
-use crate::verification_error::{VerificationError, refused};
+use crate::verification_error::VerificationError;
 use crate::whole_sheet::{no_posture, sheet_problem, with_support};
 use analysis::actuation_curve::ActuationCurve;
 use analysis::flanks::flank_gap;
@@ -18,6 +18,7 @@ use mesher::{Panels, Tier};
 use scene::placement::seen_in;
 use scene::{Posture, Scene};
 use std::array::from_fn;
+use support::fault;
 use support::statistics::rms_and_maximum;
 
 /// Tilt of a panel up to which its flanks are measured in the plane (rad).
@@ -65,7 +66,7 @@ impl SheetTask {
         let posture = scene.config.posture.map(|posture| posture.kind);
         let problem = scene.problem()?;
         let no_loads =
-            || refused("whole sheets need supports and loads: the scene has level = \"pin\"");
+            || fault!("whole sheets need supports and loads: the scene has level = \"pin\"");
         let mechanics = problem.model.mechanics().ok_or_else(no_loads)?;
         let deployment = problem.deploy(design)?;
         deployment.at_full_load()?;

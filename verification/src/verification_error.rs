@@ -6,6 +6,7 @@ use fe_driver::{CampaignError, SolveListError};
 use scene::SceneError;
 use scene::design_run::InverseDesignError;
 use std::path::Path;
+use support::fault;
 use support::fault::Fault;
 use support::file_error::FileError;
 
@@ -33,14 +34,10 @@ pub enum VerificationError {
     Fault(#[from] Fault),
 }
 
-/// The error with a message.
-pub(crate) fn refused(what: impl Into<Fault>) -> VerificationError {
-    what.into().into()
-}
-
 /// The error of a campaign in a folder none of whose rays has rows.
 pub fn every_ray_failed(folder: &Path) -> Fault {
-    let jobs = folder.join("jobs");
-    let what = format!("every ray failed: read a job's log in {}", jobs.display());
-    Fault::from(what + ", fix the cause, then run `kirigami campaign run --retry`")
+    fault!(
+        "every ray failed: read a job's log in {}, fix the cause, then run `kirigami campaign run --retry`",
+        folder.join("jobs").display()
+    )
 }

@@ -26,7 +26,8 @@ use std::sync::{
     Arc,
     atomic::{AtomicBool, Ordering},
 };
-use support::fault::{Fault, fault};
+use support::fault::Fault;
+use support::{fault, refuse};
 
 /// Number of load steps in which the weight comes on.
 const WEIGHT_STEPS: usize = 2;
@@ -67,14 +68,13 @@ impl EquilibriumSolver {
     ) -> Result<Self, Fault> {
         let topology = topology.into();
         if steps == 0 {
-            return Err(fault("", "0 load steps", "use at least 1"));
+            refuse!("0 load steps: use at least 1");
         }
         let panels = topology.panel_count();
         let check = |what: &str, panel: usize| match panel < panels {
             true => Ok(()),
             false => {
-                let what = format!("{what} on panel {panel}");
-                Err(fault(what, format!("the panels of the sheet are 0..{panels}"), ""))
+                Err(fault!("{what} on panel {panel}: the panels of the sheet are 0..{panels}"))
             }
         };
         let mut supported = vec![[false; 3]; panels];
@@ -82,7 +82,7 @@ impl EquilibriumSolver {
             check("a support", panel)?;
             finite("a support", panel, value)?;
             if std::mem::replace(&mut supported[panel][dof.index()], true) {
-                return Err(Fault::from(format!("{dof:?} of panel {panel} is supported twice")));
+                refuse!("{dof:?} of panel {panel} is supported twice");
             }
         }
         let mut total = vec![[0.0; 3]; panels];
@@ -130,8 +130,9 @@ impl EquilibriumSolver {
         let held = self.supports.iter();
         if let Some(support) = held.into_iter().find(|s| loads[s.panel][s.dof.index()] != 0.0) {
             let Support { panel, dof, .. } = *support;
-            let what = format!("panel {panel} is loaded in {dof:?}, where it is supported");
-            return Err(fault("", what, "loads act on free degrees of freedom"));
+            refuse!(
+                "panel {panel} is loaded in {dof:?}, where it is supported: loads act on free degrees of freedom"
+            );
         }
         self.loads = loads.into();
         match self.drive.take() {
@@ -203,11 +204,11 @@ impl EquilibriumSolver {
     /// magnitudes.
     pub fn driven(mut self, stroke: f64) -> Result<Self, Fault> {
         if !stroke.is_finite() {
-            return Err(Fault::from(format!("the stroke {stroke} mm is not a finite number")));
+            refuse!("the stroke {stroke} mm is not a finite number");
         }
         let direction = Stroke::new(&self.loads, &self.pattern.gather(&self.loads));
-        let what = "displacement control needs a load, whose stroke is prescribed";
-        let direction = direction.ok_or_else(|| Fault::from(what))?;
+        let no_load = || fault!("displacement control needs a load, whose stroke is prescribed");
+        let direction = direction.ok_or_else(no_load)?;
         self.drive = Some((Box::new(direction), stroke));
         Ok(self)
     }
@@ -227,7 +228,7 @@ impl EquilibriumSolver {
     /// The same problem with a weight of `by_area` (N/mm^2) in the plane of the sheet.
     pub fn with_weight(mut self, by_area: [f64; 2]) -> Result<Self, Fault> {
         if !by_area.iter().all(|component| component.is_finite()) {
-            return Err(Fault::from(format!("the weight {by_area:?} N/mm^2 is not finite")));
+            refuse!("the weight {by_area:?} N/mm^2 is not finite");
         }
         self.weight = by_area;
         Ok(self)
@@ -246,11 +247,13 @@ impl EquilibriumSolver {
     /// An error if the supports leave a sheet free to move as a rigid body and its weight does not
     /// hold it.
     pub fn check_supports(&self, sheet: &Sheet) -> Result<(), Fault> {
-        let remedy = "support at least three degrees of freedom, such as one clamp or a pin and a roller; \
-                      one pin is enough for a sheet that hangs by its weight, without a prescribed stroke, from \
-                      a point that is not its centre of gravity";
-        let what = "the supports leave the sheet free to move as a rigid body";
-        self.start(sheet).map(drop).ok_or_else(|| fault("", what, remedy))
+        self.start(sheet).map(drop).ok_or_else(|| {
+            fault!(
+                "the supports leave the sheet free to move as a rigid body: support at least three degrees of freedom, \
+                 such as one clamp or a pin and a roller; one pin is enough for a sheet that hangs by its weight, without \
+                 a prescribed stroke, from a point that is not its centre of gravity"
+            )
+        })
     }
 
     /// The unloaded sheet: flat, and turned about a nail from which it hangs; `None` if it is free
@@ -274,6 +277,8 @@ impl EquilibriumSolver {
 }
 
 fn finite(what: &str, panel: usize, value: f64) -> Result<(), Fault> {
-    let what = || format!("{what} of {value} on panel {panel} is not a finite number");
-    value.is_finite().then_some(()).ok_or_else(|| Fault::from(what()))
+    if value.is_finite() {
+        return Ok(());
+    }
+    Err(fault!("{what} of {value} on panel {panel} is not a finite number"))
 }

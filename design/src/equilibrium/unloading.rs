@@ -18,6 +18,7 @@ use crate::{
     hinge_law::Order,
     sheet::{cut_sheet::Sheet, kinematics::Configuration},
 };
+use support::fault;
 use support::fault::Fault;
 
 /// Number of steps in which the loads are taken off.
@@ -52,7 +53,7 @@ impl EquilibriumSolver {
         };
         let what = "without the supports that moved it the sheet is free to move as a rigid body, and its \
                     unloaded position is undetermined. Hold it by supports that do not move";
-        free.check_supports(sheet).map_err(|_| Fault::from(what)).map(|()| free)
+        free.check_supports(sheet).map_err(|_| fault!("{what}")).map(|()| free)
     }
 
     /// The forces (F_x, F_y, M) on the free panels that balance a configuration without loads;

@@ -29,10 +29,7 @@ use crate::{
 use hinge::TrainingDomain;
 use serde::Serialize;
 use std::sync::{Arc, atomic::AtomicBool};
-use support::{
-    fault::{Fault, fault},
-    verbose,
-};
+use support::{fault, fault::Fault, refuse, verbose};
 
 /// Why a design has no objective value.
 #[derive(Debug, thiserror::Error)]
@@ -82,8 +79,9 @@ impl Model {
 
     /// The same; an error if all hinges are pins.
     pub fn equilibrium(&self) -> Result<&Mechanics, Fault> {
-        let remedy = "set level = \"linear\" or \"standard\"";
-        self.mechanics().ok_or_else(|| fault("", "the level `pin` has no equilibrium", remedy))
+        self.mechanics().ok_or_else(|| {
+            fault!("the level `pin` has no equilibrium: set level = \"linear\" or \"standard\"")
+        })
     }
 
     /// The training domain of the hinge law, if it has one.
@@ -318,7 +316,7 @@ impl DesignProblem {
         outline: &[PanelCorner],
     ) -> Result<ObjectiveValue, DesignError> {
         if self.objective.shape.target.is_empty() {
-            return Err(Fault::from("the target has no points").into());
+            refuse!("the target has no points");
         }
         deployment.at_full_load()?;
         Ok(self.objective.evaluate(&Deployed {
@@ -347,17 +345,20 @@ impl Mechanics {
     /// strain. Its weight grows with the thickness; contact is not changed.
     pub(crate) fn scaled(&self, thickness: f64, stress: f64) -> Result<Self, Fault> {
         if !(thickness > 0.0 && stress > 0.0 && thickness.is_finite() && stress.is_finite()) {
-            let why = "a ligament, the thickness or the stresses are not positive";
-            return Err(fault("a sheet with these errors cannot exist", why, ""));
+            refuse!(
+                "a sheet with these errors cannot exist: a ligament, the thickness or the stresses are not positive"
+            );
         }
         let mut similar =
             Self { law: Arc::clone(&self.law), contact: self.contact, solver: self.solver.clone() };
         if (thickness, stress) != (1.0, 1.0) {
             let law = self.law.scaled(thickness, stress);
-            let what = "the hinge law does not determine the hinges of a sheet of another thickness, \
-                        or of a stronger material";
-            let remedy = "use level = \"standard\"";
-            similar.law = law.ok_or_else(|| fault("", what, remedy))?;
+            similar.law = law.ok_or_else(|| {
+                fault!(
+                    "the hinge law does not determine the hinges of a sheet of another thickness, or of a stronger \
+                     material: use level = \"standard\""
+                )
+            })?;
             similar.solver.weight = self.solver.weight.map(|weight| thickness * weight);
         }
         Ok(similar)

@@ -27,7 +27,8 @@ use faer::{
     sparse::{SparseColMat, Triplet, linalg::solvers::Lu},
 };
 use serde::{Deserialize, Serialize};
-use support::fault::{Fault, fault};
+use support::fault::Fault;
+use support::{fault, refuse};
 
 /// The fixed outline of the flat sheet: corners SW, SE, NE, NW (mm).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -62,14 +63,14 @@ impl Outline {
             let turn = cross(corner(k + 1) - corner(k), corner(k + 2) - corner(k + 1));
             turn > 0.0 && turn.is_finite()
         });
-        let what = || {
-            format!(
-                "the outline {:?} is not a convex quadrilateral with its corners \
-                 counter-clockwise from the south-west",
-                self.corners
-            )
-        };
-        convex.then_some(()).ok_or_else(|| Fault::from(what()))
+        if convex {
+            return Ok(());
+        }
+        Err(fault!(
+            "the outline {:?} is not a convex quadrilateral with its corners counter-clockwise from the \
+     south-west",
+            self.corners
+        ))
     }
 }
 
@@ -99,8 +100,7 @@ impl CutPattern {
     ) -> Result<Self, Fault> {
         let Grid { m, n } = grid;
         if m < 2 || n < 2 {
-            let what = format!("a sheet of {m} x {n} panels has no interior cut");
-            return Err(fault("", what, "use at least 2 x 2"));
+            refuse!("a sheet of {m} x {n} panels has no interior cut: use at least 2 x 2");
         }
         outline.check()?;
         coordinates.check(grid)?;
@@ -205,14 +205,13 @@ impl CutPattern {
 }
 
 fn colliding(name: &str, index: usize) -> Fault {
-    let what = format!(
+    fault!(
         "{name}[{index}] is so far from 0 that its chart (5) rounds to a bound: two cuts collide"
-    );
-    Fault::from(what)
+    )
 }
 
 fn singular() -> Fault {
-    Fault::from("the collinearity system of the pattern is singular")
+    fault!("the collinearity system of the pattern is singular")
 }
 
 /// The matrix of (3)-(4): one row per cut endpoint.

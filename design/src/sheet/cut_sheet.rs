@@ -30,7 +30,8 @@ use hinge::HingeDesign;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
-use support::fault::{Fault, fault};
+use support::fault::Fault;
+use support::refuse;
 
 /// The point at which the hinge deformation (8) is measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
@@ -170,8 +171,7 @@ impl Sheet {
     ) -> Result<Self, Fault> {
         if w_lig.len() != topology.hinge_count() {
             let (found, expected) = (w_lig.len(), topology.hinge_count());
-            let what = format!("{found} ligament widths for {expected} hinges");
-            return Err(Fault::from(what));
+            refuse!("{found} ligament widths for {expected} hinges");
         }
         let shapes = std::iter::zip(&topology.endpoints, &topology.trims);
         let panels = std::iter::zip(0.., shapes)
@@ -328,8 +328,7 @@ impl Hinge {
         options: SheetOptions,
     ) -> Result<Self, Fault> {
         if !(w_lig > 0.0 && w_lig.is_finite()) {
-            let what = format!("w_lig[{hinge}] = {w_lig} mm is not a positive finite number");
-            return Err(Fault::from(what));
+            refuse!("w_lig[{hinge}] = {w_lig} mm is not a positive finite number");
         }
         let unit = |from: usize, to: usize| {
             let segment = complex(points[to]) - complex(points[from]);
@@ -340,9 +339,10 @@ impl Hinge {
         // m rotated by alpha is e_sec.
         let alpha = cross(main, e_sec).atan2(dot(main, e_sec));
         if !(alpha > 0.0 && alpha < std::f64::consts::PI) {
-            let alpha_deg = alpha.to_degrees();
-            let what = format!("hinge {hinge} has the cut angle {alpha_deg} deg, outside (0, 180)");
-            return Err(fault("", what, "its cuts have collapsed"));
+            refuse!(
+                "hinge {hinge} has the cut angle {} deg, outside (0, 180): its cuts have collapsed",
+                alpha.to_degrees()
+            );
         }
         let corner = points[site.corner];
         let hinge = Self {

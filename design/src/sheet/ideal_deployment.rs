@@ -18,12 +18,15 @@ use crate::{
     },
 };
 use faer::c64;
+use support::fault;
 use support::fault::Fault;
 
 /// An error unless the opening angle (rad) is finite.
 pub fn check_opening(theta: f64) -> Result<(), Fault> {
-    let what = || format!("the opening angle {theta} rad is not a finite number");
-    theta.is_finite().then_some(()).ok_or_else(|| Fault::from(what()))
+    if theta.is_finite() {
+        return Ok(());
+    }
+    Err(fault!("the opening angle {theta} rad is not a finite number"))
 }
 
 /// The configuration with every hinge open by `theta` (rad).

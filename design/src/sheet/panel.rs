@@ -5,7 +5,8 @@ use crate::geometry::region::Contour;
 use crate::pattern::grid::{NW, SE, SW};
 use crate::sheet::topology::Trim;
 use faer::c64;
-use support::fault::{Fault, fault};
+use support::fault::Fault;
+use support::refuse;
 
 /// A point of a panel in the flat sheet.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -49,8 +50,9 @@ impl Panel {
         let sectors = sectors(&arms);
         let area = 0.5 * sectors.iter().sum::<f64>();
         if !(area > 0.0 && area.is_finite()) {
-            let what = format!("panel {panel} has the area {area} mm^2, which must be positive");
-            return Err(fault("", what, "its cuts have collapsed"));
+            refuse!(
+                "panel {panel} has the area {area} mm^2, which must be positive: its cuts have collapsed"
+            );
         }
         let next = |j: usize| (j + 1) % arms.len();
         let moment: c64 = (0..arms.len()).map(|j| (arms[j] + arms[next(j)]) * sectors[j]).sum();

@@ -4,7 +4,8 @@
 //! terminated leaves an incomplete last block: an unterminated line and an incomplete last frame
 //! are dropped. Any input gives either frames or an error that names the line.
 
-use support::fault::{Fault, fault};
+use support::fault;
+use support::fault::Fault;
 
 /// The numbers of rows that a complete increment prints.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -102,8 +103,7 @@ pub(crate) fn read_printed<F: Printed>(bytes: &[u8], layout: &F::Layout) -> Resu
     let mut frames: Vec<F> = Vec::new();
     let mut block = None;
     for (number, line) in text.lines().enumerate() {
-        let line_error =
-            |what: &str| fault(format!("the solver's output, line {}", number + 1), what, "");
+        let line_error = |what: &str| fault!("the solver's output, line {}: {what}", number + 1);
         let line = line.trim();
         if line.is_empty() {
             continue;
@@ -135,13 +135,10 @@ pub(crate) fn read_printed<F: Printed>(bytes: &[u8], layout: &F::Layout) -> Resu
         frames.pop();
     }
     match frames.iter().find(|frame| !frame.is_complete(layout)) {
-        Some(frame) => {
-            let lambda = frame.time();
-            let what = format!(
-                "the solver's output is incomplete at lambda = {lambda}, which is not the last increment"
-            );
-            Err(Fault::from(what))
-        }
+        Some(frame) => Err(fault!(
+            "the solver's output is incomplete at lambda = {}, which is not the last increment",
+            frame.time()
+        )),
         None => Ok(frames),
     }
 }
@@ -303,7 +300,7 @@ mod tests {
     fn damage_inside_the_output_is_an_error() {
         let missing = two_increments().replacen("         1   8  1.5E-02\n", "", 1);
         let error = read_dat(missing.as_bytes(), LAYOUT).unwrap_err();
-        assert!(error.what.contains("incomplete at lambda = 0.5"), "{error}");
+        assert!(error.to_string().contains("incomplete at lambda = 0.5"), "{error}");
         for (old, new) in [
             ("4.25E+01", "NaN"),
             // A node that the mesh does not have.
@@ -315,7 +312,7 @@ mod tests {
         ] {
             let damaged = two_increments().replacen(old, new, 1);
             let error = read_dat(damaged.as_bytes(), LAYOUT).unwrap_err();
-            assert!(error.place.contains(", line "), "{old}: {error}");
+            assert!(error.to_string().contains(", line "), "{old}: {error}");
         }
     }
 

@@ -15,9 +15,8 @@ use crate::{
 };
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
-use support::fault::{Fault, fault};
 use support::file_error::FileError;
-use support::{lock_file, whole_file};
+use support::{fault, lock_file, refuse, whole_file};
 
 /// The folder of a campaign.
 #[derive(Clone, Debug)]
@@ -55,19 +54,19 @@ impl CampaignFolder {
 
     /// Reads `campaign.json`.
     pub(crate) fn index(&self) -> Result<Index, CampaignError> {
-        let what = || format!("{} contains no campaign", self.0.display());
         let index = read_json(&self.index_path())?;
-        Ok(index.ok_or_else(|| fault("", what(), "run a campaign there first"))?)
+        Ok(index.ok_or_else(|| {
+            fault!("{} contains no campaign: run a campaign there first", self.0.display())
+        })?)
     }
 
     /// Reads `campaign.json` if it exists; an error if it is of a campaign with another name.
     pub(crate) fn known(&self, name: &str) -> Result<Option<Index>, CampaignError> {
         match read_json::<Index>(&self.index_path())? {
-            Some(Index { name: found, .. }) if found != name => {
-                let folder = self.0.display();
-                let what = format!("{folder} contains the campaign `{found}`, not `{name}`");
-                Err(fault("", what, "choose another folder").into())
-            }
+            Some(Index { name: found, .. }) if found != name => refuse!(
+                "{} contains the campaign `{found}`, not `{name}`: choose another folder",
+                self.0.display()
+            ),
             known => Ok(known),
         }
     }
@@ -92,11 +91,11 @@ impl CampaignFolder {
         {
             let (host, index) = (host(), self.index_path());
             let index = index.display();
-            Err(Fault::from(format!(
+            Err(fault!(
                 "{host} has {here}, but the campaign is solved with {known}: rows of different versions are not \
                  collected together. Use the same versions on every host; or delete {index}, and all rays are \
                  solved again with the versions of the next run (no file of a job is lost)"
-            )))?;
+            ))?;
         }
         for entry in entries(&home)? {
             if overlaps(shard, &entry.file_name().to_string_lossy()) {

@@ -15,9 +15,9 @@ use serde::{Deserialize, Serialize};
 use std::fmt::Display;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
-use support::fault::{Fault, fault};
+use support::fault::Fault;
 use support::file_error::FileError;
-use support::toml_file;
+use support::{fault, toml_file};
 
 /// A campaign with its material, from a TOML file of `configs/campaigns/`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -140,9 +140,9 @@ impl Campaign {
 
     /// Reads a campaign, its material and its further rays.
     pub fn load(path: &Path) -> Result<Self, CampaignError> {
-        let other = |error: &dyn Display| Fault::from(error.to_string());
+        let other = |error: &dyn Display| fault!("{error}");
         let mut campaign: Self = toml_file::read(path).map_err(|error| other(&error))?;
-        let invalid = |reason: String| fault(path.display().to_string(), reason, "");
+        let invalid = |reason: String| fault!("{}: {reason}", path.display());
         campaign.check().map_err(invalid)?;
         let folder = path.parent().unwrap_or(Path::new(""));
         let material = SheetMaterial::load(&folder.join(&campaign.material_file));

@@ -5,9 +5,8 @@ use serde_json::json;
 use std::fs::File;
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
-use support::fault::fault;
 use support::file_error::FileError;
-use support::lock_file;
+use support::{lock_file, refuse};
 
 /// The open history of a shard. The shard stays locked until this value is dropped or the process
 /// exits.
@@ -25,8 +24,7 @@ impl EventLog {
         match held {
             Ok(file) => Ok(Self { path, file }),
             Err(error) if error.kind() == ErrorKind::WouldBlock => {
-                let what = format!("another run has locked {}", path.display());
-                Err(fault("", what, "wait until it ends, or stop it").into())
+                refuse!("another run has locked {}: wait until it ends, or stop it", path.display())
             }
             Err(source) => Err(FileError { path, source }.into()),
         }

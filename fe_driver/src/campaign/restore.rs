@@ -8,7 +8,7 @@ use hinge::HingeSample;
 use mesher::Tier;
 use std::collections::{HashMap, HashSet};
 use std::path::Path;
-use support::fault::fault;
+use support::refuse;
 
 /// What a database contains of a solve.
 #[derive(Clone, Debug, PartialEq)]
@@ -66,10 +66,11 @@ pub fn restore(
         known.then_some((index, solves))
     };
     let Some((index, solves)) = tools.into_iter().find_map(solves_with) else {
-        let id = &first.id;
-        let why = "they were solved with other settings, with another version of gmsh or ccx, or for another campaign";
-        let what = format!("none of the jobs belongs to the campaign (the first is {id})");
-        return Err(fault("", what, why).into());
+        refuse!(
+            "none of the jobs belongs to the campaign (the first is {}): they were solved with other settings, with another \
+     version of gmsh or ccx, or for another campaign",
+            first.id
+        );
     };
     let solves: HashMap<_, _> = index.jobs.iter().zip(solves).collect();
     let folder = CampaignFolder(folder.to_owned());

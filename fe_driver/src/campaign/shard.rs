@@ -5,7 +5,8 @@
 
 use std::fmt;
 use std::str::FromStr;
-use support::fault::{Fault, fault};
+use support::fault;
+use support::fault::Fault;
 
 /// The part of the jobs that one run works on; written `2/4` for the second of four.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -40,8 +41,9 @@ impl FromStr for Shard {
             let (index, count) = (index.parse().ok()?, count.parse().ok()?);
             (1..=count).contains(&index).then_some(Self { index, count })
         };
-        let what = format!("`{text}` is not a shard");
-        parse().ok_or_else(|| fault("", what, "write i/n with 1 <= i <= n, for example 2/4"))
+        parse().ok_or_else(|| {
+            fault!("`{text}` is not a shard: write i/n with 1 <= i <= n, for example 2/4")
+        })
     }
 }
 

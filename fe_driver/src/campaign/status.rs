@@ -8,7 +8,7 @@ use mesher::Tier;
 use serde::Serialize;
 use std::collections::{BTreeMap, HashMap};
 use std::path::Path;
-use support::fault::fault;
+use support::refuse;
 
 /// Numbers of jobs in each state, with their total cost.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
@@ -195,9 +195,10 @@ pub fn known_parts(
         [] => "its rays".to_owned(),
         changes => changes.join(", "),
     };
-    let folder = folder.0.display();
-    let what = format!("the campaign has changed since it was run in {folder} ({changes})");
-    Err(fault("", what, "run it again first").into())
+    refuse!(
+        "the campaign has changed since it was run in {} ({changes}): run it again first",
+        folder.0.display()
+    )
 }
 
 /// The state of the campaign in `folder`, as it was last run.

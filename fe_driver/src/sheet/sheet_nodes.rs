@@ -3,6 +3,7 @@
 use crate::{Held, OutOfPlaneRestraint, POINTS, Place, Pulled, RigidBody, SheetProblem};
 use mesher::{Panels, Part, SheetMesh};
 use std::collections::BTreeSet;
+use support::fault;
 use support::fault::Fault;
 
 /// Largest distance of a node from the line on which a panel is held (mm).
@@ -103,7 +104,7 @@ impl SheetNodes {
 }
 
 fn no_nodes(panel: usize) -> Fault {
-    Fault::from(format!("panel {panel} has no nodes where it is held or pulled"))
+    fault!("panel {panel} has no nodes where it is held or pulled")
 }
 
 /// The plane nodes of a support.

@@ -8,8 +8,9 @@ use crate::{StepControl, ToolVersions};
 use hinge::SheetMaterial;
 use mesher::{Panels, SheetShape, Tier};
 use serde::{Deserialize, Serialize};
-use support::fault::{Fault, fault};
+use support::fault::Fault;
 use support::interpolation::piece;
+use support::refuse;
 
 /// Version of the geometry, the input deck and the evaluation of sheets. It is increased when a
 /// change of the code changes results; solves of an older version are then stale.
@@ -150,22 +151,23 @@ impl SheetProblem {
     pub fn validate(&self) -> Result<(), Fault> {
         let moves = |held: &Held| held.motion.into_iter().flatten().any(|shift| shift != 0.0);
         if self.total_load() == 0.0 && !self.held.iter().any(moves) {
-            let remedy = "it needs a load, or a support that moves";
-            return Err(fault("", "nothing pulls the sheet", remedy));
+            refuse!("nothing pulls the sheet: it needs a load, or a support that moves");
         }
         if self.held.is_empty() {
-            return Err(fault("", "no panel is held", "the sheet is free to move"));
+            refuse!("no panel is held: the sheet is free to move");
         }
         if self.restraint == OutOfPlaneRestraint::Nothing && !self.is_held_upright() {
-            let what = "nothing keeps the sheet in its plane, and no panel is clamped";
-            let remedy = "it would fall out of it; clamp a panel, pin three that are not on one line, or hold it flat";
-            return Err(fault("", what, remedy));
+            refuse!(
+                "nothing keeps the sheet in its plane, and no panel is clamped: it would fall out of it; clamp a panel, pin three \
+     that are not on one line, or hold it flat"
+            );
         }
         if self.shape.model == Panels::Rigid
             && (self.contact || self.restraint == OutOfPlaneRestraint::Table)
         {
-            let what = "rigid panels have no flanks that touch and do not rest on a table";
-            return Err(fault("", what, "use --sheet meshed"));
+            refuse!(
+                "rigid panels have no flanks that touch and do not rest on a table: use --sheet meshed"
+            );
         }
         Ok(())
     }

@@ -4,6 +4,7 @@
 use mesher::MeshError;
 use serde::{Deserialize, Serialize};
 use strum::VariantNames;
+use support::fault;
 use support::fault::Fault;
 use support::file_error::FileError;
 use support::program::{ToolEnd, ToolError};
@@ -62,7 +63,7 @@ pub enum Cause {
 /// The error for a name that is no kind of failure.
 fn unknown(name: &str) -> Fault {
     let known = FailureKind::VARIANTS.join(", ");
-    Fault::from(format!("unknown failure `{name}`; choose one of {known}"))
+    fault!("unknown failure `{name}`; choose one of {known}")
 }
 
 impl FailureKind {

@@ -2,7 +2,8 @@
 
 use crate::{Solve, SolveFolder, SolveRecord, SolveState, WindowSolve};
 use std::path::PathBuf;
-use support::fault::{Fault, fault};
+use support::fault;
+use support::fault::Fault;
 use support::file_error::FileError;
 
 /// A solve with its record and its samples.
@@ -48,9 +49,12 @@ impl<S: Solve> Solved<S> {
         let message = record.message.clone().unwrap_or_else(|| failure.to_string());
         // The first line: the others quote the end of the solver's log, which is in the folder.
         let reason = message.lines().next().unwrap_or_default();
-        let (attempts, lambda, work) = (record.attempts, record.lambda, work.display());
-        let what =
-            format!("{reason} ({attempts} attempts, the furthest to lambda = {lambda:.3}; {work})");
-        Err(fault(solve.description(), what, ""))
+        Err(fault!(
+            "{}: {reason} ({} attempts, the furthest to lambda = {:.3}; {})",
+            solve.description(),
+            record.attempts,
+            record.lambda,
+            work.display()
+        ))
     }
 }

@@ -3,11 +3,8 @@
 use crate::domain::TrainingDomain;
 use crate::domain::directions::DIRECTIONS;
 use serde::Deserialize;
-
-/// A stored domain that violates a rule.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("the training domain violates the rule `{0}`")]
-pub struct InvalidDomain(&'static str);
+use support::fault::Fault;
+use support::refuse;
 
 /// The fields of a domain, not checked yet.
 #[derive(Deserialize)]
@@ -25,9 +22,9 @@ pub(super) struct Stored {
 }
 
 impl TryFrom<Stored> for TrainingDomain {
-    type Error = InvalidDomain;
+    type Error = Fault;
 
-    fn try_from(stored: Stored) -> Result<Self, InvalidDomain> {
+    fn try_from(stored: Stored) -> Result<Self, Fault> {
         let Stored { w_lig, alpha, holes, mean_path, centre, half_range, supports } = stored;
         let is_interval =
             |[minimum, maximum]: [f64; 2]| minimum <= maximum && (maximum - minimum).is_finite();
@@ -46,7 +43,7 @@ impl TryFrom<Stored> for TrainingDomain {
             ("mean_path is finite", mean_path.iter().all(|c| c.is_finite())),
         ];
         match rules.into_iter().find(|(_, holds)| !holds) {
-            Some((rule, _)) => Err(InvalidDomain(rule)),
+            Some((rule, _)) => refuse!("the training domain violates the rule `{rule}`"),
             None => Ok(Self { w_lig, alpha, holes, mean_path, centre, half_range, supports }),
         }
     }
