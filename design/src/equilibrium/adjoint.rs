@@ -19,19 +19,22 @@
 
 use crate::{
     equilibrium::{
-        corrector::Branch, hinged_sheet::HingedSheet, load_step::LoadStep, potential::PathStage,
-        refined_solve::refined_solve, solver::EquilibriumSolver, weight::add_weight_gradient,
+        hinged_sheet::HingedSheet,
+        load_step::LoadStep,
+        potential::{Branch, PathStage},
+        refined_solve::refined_solve,
+        solver::EquilibriumSolver,
+        weight::add_weight_gradient,
     },
-    geometry::plane::{add, complex},
     hinge_law::{HingeGradient, Order},
     sheet::{
         cut_sheet::SheetGradient,
-        kinematics::{HingeGeometryGradient, HingeMotion},
-        panel_vectors::{add_at_hinge, at_hinge},
+        kinematics::{HingeGeometryGradient, HingeMotion, add_at_hinge, add_motions, at_hinge},
     },
 };
 use std::borrow::Cow;
-use support::vectors::{self, dot};
+use std::iter::zip;
+use support::vectors::dot;
 
 /// Backward error of an adjoint solve above which the tangent is considered singular.
 pub(crate) const SINGULAR: f64 = 1e-6;
@@ -89,7 +92,7 @@ pub(crate) fn adjoint(
         virtual_motion: Vec::new(),
         residual: 0.0,
     };
-    for (i, (step, mut by_q)) in std::iter::zip(path, by_configurations).enumerate() {
+    for (i, (step, mut by_q)) in zip(path, by_configurations).enumerate() {
         let is_last = i + 1 == path.len();
         if !is_last && by_states.iter().all(|hinge| hinge[i] == HingeGradient::default()) {
             continue;
@@ -117,14 +120,10 @@ pub(crate) fn adjoint(
         if let Some(held) = &held {
             add_motions(&mut lambda, &held.motion, 1.0);
         }
-        for (sum, lambda) in std::iter::zip(&mut sums.loads, &lambda) {
-            (0..3).for_each(|d| sum[d] += step.load_factor * lambda[d]);
-        }
+        add_motions(&mut sums.loads, &lambda, step.load_factor);
         if let Some(stroke) = stroke {
             let by_loads = stroke.by_loads(&solver.loads, &step.configuration);
-            for (sum, by_load) in std::iter::zip(&mut sums.loads, by_loads) {
-                (0..3).for_each(|d| sum[d] -= solution.mu * by_load[d]);
-            }
+            add_motions(&mut sums.loads, &by_loads, -solution.mu);
         }
         let weight = solver.weight.map(|component| step.weight * component);
         let configuration = &step.configuration;
@@ -175,14 +174,10 @@ fn held_motion(
 ) -> HeldMotion {
     let mut motion = vec![[0.0; 3]; by_reactions.len()];
     add_motions(&mut motion, by_reactions, -1.0);
-    let potential = Branch::new(solver, sheet, PathStage::Actuation).potential(1.0);
-    let state = potential.state(step.configuration.clone());
+    let branch = Branch::new(solver, sheet, PathStage::Actuation);
+    let state = branch.state(1.0, step.configuration.clone(), Order::Tangent);
     let state = state.expect("the energy of an equilibrium is finite");
-    HeldMotion { resistance: potential.resistance(&state, &motion), motion }
-}
-
-fn add_motions(sum: &mut [[f64; 3]], motion: &[[f64; 3]], factor: f64) {
-    vectors::add(sum.as_flattened_mut(), motion.as_flattened(), factor);
+    HeldMotion { resistance: branch.resistance(&state, &motion), motion }
 }
 
 fn add_geometry(
@@ -192,9 +187,8 @@ fn add_geometry(
     gradient: &HingeGeometryGradient,
     sign: f64,
 ) {
-    let add_point = |sum: &mut [f64; 2], point| add(sum, sign * complex(point));
-    add_point(&mut by_sheet.attachments[hinge], gradient.attachment);
-    add_point(&mut by_sheet.references[a], gradient.reference_a);
-    add_point(&mut by_sheet.references[b], gradient.reference_b);
+    by_sheet.attachments[hinge] += sign * gradient.attachment;
+    by_sheet.references[a] += sign * gradient.reference_a;
+    by_sheet.references[b] += sign * gradient.reference_b;
     by_sheet.frame_angles[hinge] += sign * gradient.frame_angle;
 }

@@ -11,6 +11,7 @@
 //! ```
 
 use crate::equilibrium::tangent::{Factor, TangentPattern};
+use std::iter::zip;
 use support::vectors::dot;
 
 /// The direction c of the loads in the free degrees of freedom.
@@ -58,7 +59,7 @@ impl Stroke {
             };
             std::array::from_fn(|d| (q[d] - stroke * by_size[d]) / self.size)
         };
-        std::iter::zip(loads, configuration).map(by_load).collect()
+        zip(loads, configuration).map(by_load).collect()
     }
 
     /// Whether the sum F is differentiable in each component of the load on a panel.
@@ -144,7 +145,7 @@ impl HeldFactor {
             return (x, 0.0);
         };
         let mu = (dot(&border.direction, &x) - d) / border.compliance;
-        for (x, y) in std::iter::zip(&mut x, &border.response) {
+        for (x, y) in zip(&mut x, &border.response) {
             *x -= mu * y;
         }
         (x, mu)

@@ -21,8 +21,7 @@ use crate::{
     hinge_law::Order,
     sheet::{
         cut_sheet::Sheet,
-        kinematics::{Configuration, HingeMotion},
-        panel_vectors::{add_at_hinge, at_hinge},
+        kinematics::{Configuration, HingeMotion, add_at_hinge, at_hinge},
     },
 };
 use support::vectors::dot;

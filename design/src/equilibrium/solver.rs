@@ -22,6 +22,7 @@ use crate::{
         topology::Topology,
     },
 };
+use std::iter::zip;
 use std::sync::{
     Arc,
     atomic::{AtomicBool, Ordering},
@@ -152,8 +153,8 @@ impl EquilibriumSolver {
     pub(crate) fn in_loads(&self, gradient: &[[f64; 3]]) -> Vec<[f64; 3]> {
         let mut gradient = self.pattern.spread(&self.pattern.gather(gradient));
         if let Some(stroke) = self.stroke() {
-            for (gradient, load) in std::iter::zip(&mut gradient, &self.loads) {
-                for (entry, smooth) in std::iter::zip(gradient, stroke.smooth_in(load)) {
+            for (gradient, load) in zip(&mut gradient, &self.loads) {
+                for (entry, smooth) in zip(gradient, stroke.smooth_in(load)) {
                     *entry *= f64::from(smooth);
                 }
             }

@@ -8,10 +8,9 @@
 
 use crate::{
     equilibrium::{
-        corrector::Branch,
         hinged_sheet::HingedSheet,
         load_step::LoadStep,
-        potential::PathStage,
+        potential::{Branch, PathStage},
         solver::EquilibriumSolver,
         supports::{Dof, Support, hold_rigid_body},
     },
@@ -59,8 +58,8 @@ impl EquilibriumSolver {
     /// The forces (F_x, F_y, M) on the free panels that balance a configuration without loads;
     /// `None` if its energy is not finite.
     fn holding(&self, sheet: HingedSheet, configuration: Configuration) -> Option<Vec<[f64; 3]>> {
-        let potential = Branch::new(self, sheet, PathStage::Actuation).potential(0.0);
-        let state = potential.state_up_to(configuration, Order::Forces)?;
+        let branch = Branch::new(self, sheet, PathStage::Actuation);
+        let state = branch.state(0.0, configuration, Order::Forces)?;
         Some(self.pattern.spread(&state.gradient))
     }
 }

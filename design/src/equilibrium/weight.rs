@@ -9,18 +9,36 @@
 //! ```
 
 use crate::{
-    equilibrium::panel_force::PanelForce,
-    geometry::plane::{I, add, complex, cross, dot, turn},
+    geometry::plane::{I, complex, cross, dot, turn},
     sheet::{
         cut_sheet::{Panel, Sheet, SheetGradient},
         kinematics::Configuration,
     },
 };
 use faer::c64;
+use std::iter::zip;
 
 /// Distance of the centre of gravity from a nail, relative to the size of the sheet, below which
 /// the sheet hangs in no definite position.
 const BALANCED: f64 = 1e-6;
+
+/// A force on a panel in one of its positions, with its derivative.
+#[derive(Clone, Copy, Default)]
+pub(crate) struct PanelForce {
+    /// (F_x, F_y, M) about the reference point of the panel.
+    pub force: [f64; 3],
+    /// Minus the derivative of `force` in the motion of the panel.
+    pub stiffness: [[f64; 3]; 3],
+    /// The potential energy of the force (N mm).
+    pub potential: f64,
+}
+
+impl PanelForce {
+    /// The resistance of the stiffness to a motion.
+    pub(crate) fn resistance(&self, motion: &[f64; 3]) -> [f64; 3] {
+        self.stiffness.map(|row| row[0] * motion[0] + row[1] * motion[1] + row[2] * motion[2])
+    }
+}
 
 /// The weight of a panel in one of its rotations.
 #[derive(Clone, Copy)]
@@ -58,7 +76,7 @@ pub(crate) fn weights_of_panels<'a>(
     by_area: [f64; 2],
     configuration: &'a [[f64; 3]],
 ) -> impl Iterator<Item = PanelForce> + 'a {
-    std::iter::zip(&sheet.panels, configuration)
+    zip(&sheet.panels, configuration)
         .map(move |(panel, &motion)| PanelWeight::new(panel, by_area, motion[2]).on(panel, motion))
 }
 
@@ -71,14 +89,14 @@ pub(crate) fn add_weight_gradient(
     configuration: &[[f64; 3]],
     lambda: &[[f64; 3]],
 ) {
-    for (k, (panel, [x, y, turned])) in std::iter::zip(&sheet.panels, lambda).enumerate() {
+    for (k, (panel, [x, y, turned])) in zip(&sheet.panels, lambda).enumerate() {
         let weight = PanelWeight::new(panel, by_area, configuration[k][2]);
         let spin = I * turn(configuration[k][2]) * *turned;
         let motion = c64::new(*x, *y) + I * weight.arm * *turned;
         by_sheet.areas[k] += dot(complex(by_area), motion);
         let by_arm = weight.force * spin.conj();
-        add(&mut by_sheet.centroids[k], by_arm);
-        add(&mut by_sheet.references[k], -by_arm);
+        by_sheet.centroids[k] += by_arm;
+        by_sheet.references[k] -= by_arm;
     }
 }
 

@@ -7,7 +7,6 @@ use crate::{
         load_step::LoadStep,
         warm_start::WarmStart,
     },
-    geometry::plane::add,
     hinge_law::{HingeGradient, PreparedLaw},
     objective::design_problem::{
         Deployment, DesignError, DesignProblem, Evaluation, Mechanics, Sensitivities,
@@ -20,6 +19,8 @@ use crate::{
         topology::PanelCorner,
     },
 };
+use std::iter::zip;
+use support::vectors;
 
 /// The partial derivatives of a function of a deployment.
 pub(super) struct Partials<'a> {
@@ -104,7 +105,7 @@ impl DesignProblem {
     ) -> Result<Gradient, DesignError> {
         let sheet = &deployment.sheet;
         let Partials { outline, by_outline, mut by_sheet, .. } = partials;
-        let outline = std::iter::zip(outline, by_outline);
+        let outline = zip(outline, by_outline);
         let by_compared = outline_pullback(sheet, deployment.final_step(), outline, &mut by_sheet);
         let (mut by_opening, mut adjoint_residual) = (None, 0.0);
         let mut virtual_motion = Vec::new();
@@ -141,7 +142,7 @@ impl DesignProblem {
         let stays = || PatternCoordinates::uniform(self.topology.grid);
         let design = DesignVector {
             pattern: if self.topology.is_full() { by_pattern } else { stays() },
-            omega: std::iter::zip(&design.omega, by_width)
+            omega: zip(&design.omega, by_width)
                 .map(|(&omega, by_width)| by_width * self.widths.slope(omega))
                 .collect(),
             opening: by_opening,
@@ -164,12 +165,12 @@ fn outline_pullback<'a>(
         let flat = sheet.panels[panel].boundary[corner];
         let (by_motion, by_flat, by_reference) =
             deployed_pullback(&sheet.panels[panel], compared.configuration[panel], flat, gradient);
-        (0..3).for_each(|c| by_compared[panel][c] += by_motion[c]);
+        vectors::add(&mut by_compared[panel], &by_motion, 1.0);
         let by_corners = sheet.panels[panel].corner_pullback(corner, by_flat);
-        for (sum, by_corner) in std::iter::zip(&mut by_sheet.corners[panel], by_corners) {
-            add(sum, by_corner);
+        for (sum, by_corner) in zip(&mut by_sheet.corners[panel], by_corners) {
+            *sum += by_corner;
         }
-        add(&mut by_sheet.references[panel], by_reference);
+        by_sheet.references[panel] += by_reference;
     }
     by_compared
 }

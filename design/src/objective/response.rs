@@ -30,11 +30,11 @@ use crate::{
     pattern::design_vector::DesignVector,
     sheet::{
         cut_sheet::SheetGradient,
-        kinematics::{HingeMotion, deployed_corners},
-        panel_vectors::at_hinge,
+        kinematics::{HingeMotion, at_hinge, deployed_corners},
     },
 };
 use hinge::HingeDeformation;
+use std::iter::zip;
 use support::vectors::dot;
 
 /// Inputs of the equilibrium other than the design; by default the inputs of the problem.
@@ -214,16 +214,15 @@ impl DesignProblem {
         let energies = law.energies(&state.deformations, Order::Design);
         // Minus the virtual work of forces of the hinges.
         let work = |forces: &dyn Fn(usize) -> [f64; 3]| -> f64 {
-            let hinges = std::iter::zip(&sheet.hinges, &motions).enumerate();
+            let hinges = zip(&sheet.hinges, &motions).enumerate();
             let works = hinges.map(|(h, (hinge, motion))| {
                 dot(&forces(h), &motion.rates(at_hinge(hinge, virtual_motion)))
             });
             -works.sum::<f64>()
         };
         let weight = weights_of_panels(sheet, mechanics.solver.weight, &state.configuration);
-        let of_weight: f64 = std::iter::zip(weight, virtual_motion)
-            .map(|(weight, motion)| dot(&weight.force, motion))
-            .sum();
+        let of_weight: f64 =
+            zip(weight, virtual_motion).map(|(weight, motion)| dot(&weight.force, motion)).sum();
         let thickness =
             |h: usize| by_thickness(&energies[h], &state.deformations[h], designs[h].w_lig);
         let [of_thickness, of_stress] = mechanics.law.scales();

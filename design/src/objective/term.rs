@@ -7,6 +7,8 @@ use crate::{
     pattern::fit_variables::FitVariables,
     sheet::cut_sheet::{Sheet, SheetGradient},
 };
+use faer::c64;
+use std::iter::zip;
 use std::{fmt::Debug, sync::Arc};
 use support::vectors;
 
@@ -87,15 +89,14 @@ pub(crate) fn over_panels(
     weight: f64,
     scale: f64,
     gradient: &mut TermGradient,
-    function: impl Fn(&[[f64; 2]; 4], &mut f64, &mut [[f64; 2]; 4]),
+    function: impl Fn(&[[f64; 2]; 4], &mut f64, &mut [c64; 4]),
 ) -> f64 {
     let mut value = 0.0;
-    for (panel, sums) in std::iter::zip(&at.sheet.panels, &mut gradient.by_sheet.corners) {
-        let mut by_corners = [[0.0; 2]; 4];
+    for (panel, sums) in zip(&at.sheet.panels, &mut gradient.by_sheet.corners) {
+        let mut by_corners = [c64::ZERO; 4];
         function(&panel.corners, &mut value, &mut by_corners);
-        let entries = by_corners.as_flattened().iter();
-        for (sum, entry) in std::iter::zip(sums.as_flattened_mut(), entries) {
-            *sum += weight * (scale * entry);
+        for (sum, by_corner) in zip(sums, by_corners) {
+            *sum += weight * (scale * by_corner);
         }
     }
     scale * value
@@ -157,5 +158,7 @@ pub(crate) fn on_panels(term: &dyn Term, panels: &[[[f64; 2]; 4]]) -> (f64, Vec<
     }
     let at = Deployed { sheet: &sheet, path: &[], outline: &[], fit: None };
     let mut gradient = TermGradient::zeros(&at);
-    (term.evaluate(&at, 1.0, &mut gradient), gradient.by_sheet.corners)
+    let value = term.evaluate(&at, 1.0, &mut gradient);
+    let by_corners = gradient.by_sheet.corners.into_iter();
+    (value, by_corners.map(|corners| corners.map(crate::geometry::plane::point)).collect())
 }

@@ -6,6 +6,7 @@
 
 use crate::pattern::grid::Grid;
 use serde::{Deserialize, Serialize};
+use std::iter::zip;
 use support::fault::Fault;
 use support::{fault, refuse};
 
@@ -142,6 +143,6 @@ pub fn partial_sums_pullback(tau: &[f64], gradient: &[f64]) -> Vec<f64> {
     for s in (0..gradient.len()).rev() {
         by_weight[s] = by_weight[s + 1] + gradient[s];
     }
-    let mean: f64 = std::iter::zip(&weights, &by_weight).map(|(w, g)| w * g).sum();
-    std::iter::zip(&weights, &by_weight).map(|(w, g)| w * (g - mean)).collect()
+    let mean: f64 = zip(&weights, &by_weight).map(|(w, g)| w * g).sum();
+    zip(&weights, &by_weight).map(|(w, g)| w * (g - mean)).collect()
 }

@@ -11,7 +11,7 @@
 
 use crate::{
     geometry::{
-        plane::{add, complex, cross, dot},
+        plane::{complex, cross, dot, point},
         polygon::bounds,
     },
     pattern::{
@@ -27,6 +27,7 @@ use faer::{
     sparse::{SparseColMat, Triplet, linalg::solvers::Lu},
 };
 use serde::{Deserialize, Serialize};
+use std::iter::zip;
 use support::fault::Fault;
 use support::{fault, refuse};
 
@@ -143,7 +144,7 @@ impl CutPattern {
 
     /// The sides r L and (1 - r) L of the void of every interior cut (mm), row by row.
     pub fn void_sides(&self) -> Vec<[f64; 2]> {
-        let cuts = std::iter::zip(self.grid.interior_vertices(), &self.r);
+        let cuts = zip(self.grid.interior_vertices(), &self.r);
         cuts.map(|((i, j), r)| {
             let [a, b] = self.grid.facing_endpoints(i, j);
             let length = (complex(self.points[a]) - complex(self.points[b])).norm();
@@ -154,13 +155,13 @@ impl CutPattern {
 
     /// The gradient in (z, ell) and in the outline's corners of a function with the given gradient
     /// in [`points`](Self::points).
-    pub fn pullback(&self, points: &[[f64; 2]]) -> (PatternCoordinates, [[f64; 2]; 4]) {
+    pub fn pullback(&self, points: &[c64]) -> (PatternCoordinates, [[f64; 2]; 4]) {
         let adjoint = self
             .system
-            .solve_transpose(Mat::from_fn(points.len(), 2, |row, axis| points[row][axis]));
+            .solve_transpose(Mat::from_fn(points.len(), 2, |row, axis| point(points[row])[axis]));
         let adjoint = |point: usize| complex([adjoint[(point, 0)], adjoint[(point, 1)]]);
 
-        let z = std::iter::zip(self.grid.interior_vertices(), &self.r)
+        let z = zip(self.grid.interior_vertices(), &self.r)
             .map(|((i, j), r)| {
                 let [a, b] = self.grid.facing_endpoints(i, j);
                 let slit = complex(self.points[a]) - complex(self.points[b]);
@@ -185,22 +186,22 @@ impl CutPattern {
 
     /// The gradient in the outline's corners, from the adjoint of the cut endpoints.
     fn outline_pullback(&self, adjoint: impl Fn(usize) -> c64) -> [[f64; 2]; 4] {
-        let mut corners = [[0.0; 2]; 4];
+        let mut corners = [c64::ZERO; 4];
         for (edge, tau) in self.tau.iter().enumerate() {
             let [start, end] = EDGES[edge];
-            for (s, tau) in std::iter::zip(1.., tau) {
+            for (s, tau) in zip(1.., tau) {
                 let (i, j) = self.grid.edge_vertex(edge, s);
                 let [x, x_prime] = self.grid.endpoints(i, j).map(&adjoint);
                 let force = x + x_prime;
-                add(&mut corners[start], force * (1.0 - tau));
-                add(&mut corners[end], force * *tau);
+                corners[start] += force * (1.0 - tau);
+                corners[end] += force * *tau;
             }
         }
         let Grid { m, n } = self.grid;
-        for (corner, (i, j)) in std::iter::zip(&mut corners, [(0, 0), (m, 0), (m, n), (0, n)]) {
-            self.grid.endpoints(i, j).into_iter().for_each(|point| add(corner, adjoint(point)));
+        for (corner, (i, j)) in zip(&mut corners, [(0, 0), (m, 0), (m, n), (0, n)]) {
+            self.grid.endpoints(i, j).into_iter().for_each(|point| *corner += adjoint(point));
         }
-        corners
+        corners.map(point)
     }
 }
 
@@ -218,7 +219,7 @@ fn singular() -> Fault {
 fn collinearity(grid: Grid, r: &[f64]) -> Vec<Triplet<usize, usize, f64>> {
     let mut entries: Vec<_> =
         (0..grid.point_count()).map(|point| Triplet::new(point, point, 1.0)).collect();
-    for ((i, j), &r) in std::iter::zip(grid.interior_vertices(), r) {
+    for ((i, j), &r) in zip(grid.interior_vertices(), r) {
         let [a, b] = grid.facing_endpoints(i, j);
         let [x, x_prime] = grid.endpoints(i, j);
         entries.extend([

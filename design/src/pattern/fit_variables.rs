@@ -10,6 +10,7 @@
 
 use crate::pattern::{coordinates::logistic, cut_pattern::Outline};
 use serde::{Deserialize, Serialize};
+use std::array::from_fn;
 
 /// The variables of a fit, or a gradient in them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -34,7 +35,7 @@ impl FitVariables {
     pub fn outline(&self, stock: &Outline) -> Outline {
         let middle = middle(stock);
         Outline {
-            corners: std::array::from_fn(|i| {
+            corners: from_fn(|i| {
                 let along = |c: usize| stock.corners[i][c] - middle[c];
                 [0, 1].map(|c| middle[c] + logistic(self.corners[i][c]) * along(c))
             }),
@@ -54,7 +55,7 @@ impl FitVariables {
             let fraction = logistic(self.corners[i][c]);
             by_outline[i][c] * fraction * (1.0 - fraction) * (stock.corners[i][c] - middle[c])
         };
-        Self { ln_size, rotation, corners: std::array::from_fn(|i| [by_u(i, 0), by_u(i, 1)]) }
+        Self { ln_size, rotation, corners: from_fn(|i| [by_u(i, 0), by_u(i, 1)]) }
     }
 }
 

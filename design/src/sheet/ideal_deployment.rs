@@ -11,7 +11,7 @@
 //! through the sheet. Pitches follow (6).
 
 use crate::{
-    geometry::plane::{I, add, complex, dot, point, turn},
+    geometry::plane::{I, complex, dot, point, turn},
     sheet::{
         cut_sheet::{Sheet, SheetGradient},
         kinematics::Configuration,
@@ -81,8 +81,8 @@ pub fn ideal_deployment_pullback(
             let spin = turn(rotation(sheet, panel, theta));
             let arm = complex(sheet.panels[panel].reference) - corner;
             let by_arm = sign * (1.0 - spin).conj() * force;
-            add(&mut by_sheet.references[panel], by_arm);
-            add(&mut by_sheet.corners[corner_panel][corner_index], -by_arm);
+            by_sheet.references[panel] += by_arm;
+            by_sheet.corners[corner_panel][corner_index] -= by_arm;
             by_rotation[panel] -= sign * dot(force, I * spin * arm);
         }
     }

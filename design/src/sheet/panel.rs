@@ -5,6 +5,7 @@ use crate::geometry::region::Contour;
 use crate::pattern::grid::{NW, SE, SW};
 use crate::sheet::topology::Trim;
 use faer::c64;
+use std::array::from_fn;
 use support::fault::Fault;
 use support::refuse;
 
@@ -94,7 +95,7 @@ impl Panel {
     /// boundary.
     pub(crate) fn corner_pullback(&self, point: usize, gradient: c64) -> [c64; 4] {
         let [south_east, north_west] = match &self.trim {
-            None => return std::array::from_fn(|corner| f64::from(corner == point) * gradient),
+            None => return from_fn(|corner| f64::from(corner == point) * gradient),
             Some(trim) => trim[point],
         };
         let mut corners = [c64::ZERO; 4];
@@ -109,18 +110,18 @@ impl Panel {
         let by_points = gradients.iter().enumerate();
         by_points.fold([c64::ZERO; 4], |sum, (point, gradient)| {
             let corners = self.corner_pullback(point, *gradient);
-            std::array::from_fn(|corner| sum[corner] + corners[corner])
+            from_fn(|corner| sum[corner] + corners[corner])
         })
     }
 
     /// The gradient in the corners of a function with the given gradient in a point.
-    pub(super) fn pullback(&self, point: PanelPoint, gradient: [f64; 2]) -> [c64; 4] {
+    pub(super) fn pullback(&self, point: PanelPoint, gradient: c64) -> [c64; 4] {
         match point {
             PanelPoint::Centroid => self.centroid_pullback(gradient),
             PanelPoint::Middle(ends) => {
                 let mut corners = [c64::ZERO; 4];
                 for corner in ends {
-                    corners[corner] += complex(gradient) / 2.0;
+                    corners[corner] += gradient / 2.0;
                 }
                 corners
             }
@@ -141,8 +142,7 @@ impl Panel {
     ///
     /// Let p_j be the vectors from the centroid and S_j = p_j x p_(j+1). The centroid moves by
     /// sum_j [(dp_j + dp_(j+1)) S_j + (p_j + p_(j+1)) dS_j] / (3 sum_j S_j).
-    fn centroid_pullback(&self, gradient: [f64; 2]) -> [c64; 4] {
-        let gradient = complex(gradient);
+    fn centroid_pullback(&self, gradient: c64) -> [c64; 4] {
         let arm = |corner: &[f64; 2]| complex(*corner) - complex(self.centroid);
         let arms: Vec<c64> = self.boundary.iter().map(arm).collect();
         let sectors = sectors(&arms);
