@@ -18,6 +18,7 @@ use mesher::{Panels, Tier};
 use scene::placement::seen_in;
 use scene::{Posture, Scene};
 use std::array::from_fn;
+use std::iter::zip;
 use support::fault;
 use support::statistics::rms_and_maximum;
 
@@ -156,7 +157,7 @@ impl SheetTask {
         let flat = vec![[0.0; 3]; self.deployment.sheet.panels.len()];
         let before = loaded[..next - 1].last().or(weighed.last());
         let from = before.map_or(&flat, |step| &step.configuration);
-        let configuration = std::iter::zip(from, &loaded[next - 1].configuration);
+        let configuration = zip(from, &loaded[next - 1].configuration);
         let plane = self.out_of_plane.as_ref().map(|steps| &steps[weighed.len()..]);
         let tilt = |steps: &[OutOfPlane]| {
             let from = next.checked_sub(2).map_or(Some(0.0), |step| steps[step].tilt());
@@ -177,9 +178,9 @@ impl SheetTask {
     fn corner_errors(&self, configuration: &[[f64; 3]], state: &SheetState) -> Vec<Vec<f64>> {
         let sheet = &self.deployment.sheet;
         let deployed = deployed_boundaries(sheet, configuration);
-        let panels = std::iter::zip(&sheet.panels, &state.panels).zip(&deployed);
+        let panels = zip(&sheet.panels, &state.panels).zip(&deployed);
         let errors = panels.map(|((panel, moved), deployed)| {
-            let corners = std::iter::zip(&panel.boundary, deployed);
+            let corners = zip(&panel.boundary, deployed);
             let error = |(flat, [u, v]): (&[f64; 2], &[f64; 2])| {
                 let [x, y, z] = moved.moved(*flat);
                 (x - u).hypot(y - v).hypot(z)
@@ -225,7 +226,7 @@ impl SheetTask {
             let [u, v, _] = moved.moved(panel.reference);
             [u - x, v - y, moved.turn()]
         };
-        std::iter::zip(&self.deployment.sheet.panels, &state.panels).map(motion).collect()
+        zip(&self.deployment.sheet.panels, &state.panels).map(motion).collect()
     }
 
     /// How much of the target is seen.
@@ -258,8 +259,8 @@ impl SheetTask {
         let sheet = &self.deployment.sheet;
         let states = hinge_deformations(sheet, &self.in_plane(state));
         let regime = |design: &HingeDesign| self.scene.material.regime(design.w_lig);
-        let hinges = std::iter::zip(&sheet.hinges, sheet.designs());
-        let gaps = std::iter::zip(hinges, states).map(|((hinge, design), state)| {
+        let hinges = zip(&sheet.hinges, sheet.designs());
+        let gaps = zip(hinges, states).map(|((hinge, design), state)| {
             // The cut ends outside of the window, at the other end of its edge of panel A.
             let (panel, corner) = hinge.site.a;
             let corners = sheet.panels[panel].corners;
@@ -296,7 +297,7 @@ impl SheetTask {
             ],
         });
         let errors = self.corner_errors(&configuration, last);
-        let panels = std::iter::zip(&last.panels, errors).enumerate();
+        let panels = zip(&last.panels, errors).enumerate();
         let panels = panels.map(|(number, (panel, errors))| PanelCheck {
             panel: number,
             tilt_deg: panel.tilt().to_degrees(),

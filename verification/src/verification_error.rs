@@ -2,7 +2,7 @@
 
 use dataset::DatasetError;
 use design::objective::design_problem::DesignError;
-use fe_driver::{CampaignError, SolveListError};
+use fe_driver::SolveListError;
 use scene::SceneError;
 use scene::design_run::InverseDesignError;
 use std::path::Path;
@@ -16,8 +16,6 @@ use support::file_error::FileError;
 pub enum VerificationError {
     #[error(transparent)]
     Solve(#[from] SolveListError),
-    #[error(transparent)]
-    Campaign(#[from] CampaignError),
     #[error(transparent)]
     Dataset(#[from] DatasetError),
     #[error(transparent)]

@@ -11,6 +11,7 @@ use mesher::{
     Frame, Imperfection, PanelShape, Panels, PlacedWindow, PlaneRecipe, SheetMesh, SheetShape, Tier,
 };
 use scene::{Posture, PostureConfig, Scene, SupportKind};
+use std::iter::zip;
 use support::fault::Fault;
 use support::{fault, refuse};
 
@@ -140,7 +141,7 @@ fn pulled(scene: &Scene, sheet: &Sheet) -> Result<Vec<Pulled>, VerificationError
 /// The supports of the scene.
 fn held(scene: &Scene, sheet: &Sheet) -> Result<Vec<Held>, VerificationError> {
     let attachments = scene.actuation().attachments;
-    let supports = std::iter::zip(&scene.config.supports, &attachments);
+    let supports = zip(&scene.config.supports, &attachments);
     let held = supports.map(|(support, attachment)| {
         if support.rotation_deg != 0.0 {
             refuse!(
@@ -188,12 +189,12 @@ pub(crate) fn meshed_radii(sheet: &Sheet) -> Result<Vec<f64>, VerificationError>
     let mut ratio = r_win / widths().fold(f64::INFINITY, f64::min);
     loop {
         let radii: Vec<f64> = widths().map(|w_lig| r_win.min(ratio * w_lig)).collect();
-        let windows: Vec<Window> = std::iter::zip(Window::of_sheet(sheet), &radii)
+        let windows: Vec<Window> = zip(Window::of_sheet(sheet), &radii)
             .map(|(window, radius)| Window { radius: APART * radius, ..window })
             .collect();
         let apart = (windows.iter().enumerate())
             .all(|(h, one)| windows[..h].iter().all(|other| !one.overlaps(other)));
-        let inside = std::iter::zip(&windows, &sheet.hinges).all(|(window, hinge)| {
+        let inside = zip(&windows, &sheet.hinges).all(|(window, hinge)| {
             let [a, b] = [hinge.panel_a(), hinge.panel_b()].map(|k| &sheet.panels[k]);
             window.within(a, b)
         });
@@ -226,7 +227,7 @@ fn sheet_shape(
     };
     let radii = meshed_radii(sheet)?;
     let smallest = radii.iter().copied().fold(f64::INFINITY, f64::min);
-    let windows = std::iter::zip(Window::of_sheet(sheet), &radii);
+    let windows = zip(Window::of_sheet(sheet), &radii);
     let finished: Vec<_> =
         (0..sheet.panels.len()).map(|panel| FinishedPanel::new(sheet, panel)).collect();
     let placed = (sheet.hinges.iter().zip(sheet.designs())).zip(windows).map(

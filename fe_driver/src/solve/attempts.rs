@@ -13,6 +13,7 @@ use crate::{
 use serde::Serialize;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
+use support::fault::Fault;
 use support::file_error::FileError;
 use support::worker_pool::{NoThread, Reports, work_through};
 
@@ -20,6 +21,8 @@ use support::worker_pool::{NoThread, Reports, work_through};
 #[derive(Debug, thiserror::Error)]
 #[allow(missing_docs, reason = "the message of a variant is its documentation")]
 pub enum SolveListError {
+    #[error(transparent)]
+    Fault(#[from] Fault),
     #[error(transparent)]
     File(#[from] FileError),
     #[error(transparent)]
