@@ -1,9 +1,8 @@
 //! A database: consistent rows, their Parquet file and its manifest.
 
 use crate::digest::{Digest, by_job_and_lambda};
-use crate::error::DatasetError;
 use crate::manifest::Manifest;
-use crate::parquet;
+use crate::parquet::{self, DatasetError};
 use crate::rows::{Fidelity, Row};
 use crate::schema::COLUMNS;
 use crate::split::{Part, SplitPlan, geometry};

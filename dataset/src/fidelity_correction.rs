@@ -17,7 +17,7 @@
 use crate::bridge::{Bridge, TERMS};
 use crate::compare::{COMPARED, ComparedRay, ComparedState};
 use crate::database::Database;
-use crate::error::DatasetError;
+use crate::parquet::DatasetError;
 use crate::rows::{Fidelity, Row};
 use hinge::HingeSample;
 use support::refuse;

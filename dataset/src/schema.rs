@@ -1,6 +1,6 @@
 //! The columns of the database, their units and their meanings.
 
-use crate::error::DatasetError;
+use crate::parquet::DatasetError;
 use crate::rows::Row;
 use polars::prelude::{Column, DataFrame, IntoColumn, NamedFrom, Series};
 use support::fault::Fault;

@@ -3,7 +3,7 @@
 //! All rays of one (w_lig, alpha) and of its mirror image belong to the same part. The test part
 //! therefore contains only geometries that are not in the training part.
 
-use crate::error::DatasetError;
+use crate::parquet::DatasetError;
 use crate::rows::Row;
 use rand::SeedableRng;
 use rand::seq::SliceRandom;

@@ -4,6 +4,7 @@ use crate::{
     Extrusion, Imperfection, Levels, MAX_AREA_ERROR, Panels, PlacedWindow, PlaneMesh, SheetShape,
     Side, Window, check_elements, cross, dot, minus, unit, wrong_area,
 };
+use std::iter::zip;
 use support::fault::Fault;
 
 /// Largest distance of a node from the arc of its window, over r_win.
@@ -57,7 +58,7 @@ impl SheetMesh {
             })
             .collect();
         let mut height = vec![0.0; plane.nodes.len()];
-        for (face, part) in std::iter::zip(&plane.faces, &parts) {
+        for (face, part) in zip(&plane.faces, &parts) {
             if let Part::Window(window) = part {
                 let window = &shape.windows[*window];
                 for node in face {
@@ -101,7 +102,7 @@ impl SheetMesh {
 
     /// The plane nodes of a part, in increasing order.
     pub fn plane_nodes(&self, part: Part) -> Vec<usize> {
-        let faces = std::iter::zip(&self.plane.faces, &self.parts);
+        let faces = zip(&self.plane.faces, &self.parts);
         let mut nodes: Vec<usize> = faces
             .filter(|(_, of)| **of == part)
             .flat_map(|(face, _)| face.iter().copied())
@@ -121,7 +122,7 @@ impl SheetMesh {
         let mut nodes = Vec::new();
         for (number, PlacedWindow { design, frame, panels, .. }) in shape.windows.iter().enumerate()
         {
-            let sides = std::iter::zip(Side::BOTH, panels).filter(|(_, (of, _))| *of == panel);
+            let sides = zip(Side::BOTH, panels).filter(|(_, (of, _))| *of == panel);
             for (side, _) in sides {
                 nodes.extend(self.plane_nodes(Part::Window(number)).into_iter().filter(|node| {
                     let local = frame.local(self.plane.nodes[*node]);
@@ -168,7 +169,7 @@ impl SheetMesh {
             let [x, y] = minus(self.plane.nodes[*node], point);
             x.hypot(y)
         };
-        let faces = std::iter::zip(&self.plane.faces, &self.parts);
+        let faces = zip(&self.plane.faces, &self.parts);
         let corners = faces
             .filter(|(_, of)| **of == part)
             .flat_map(|(face, _)| face[..face.len() / 2].iter().copied());
@@ -213,7 +214,7 @@ impl SheetShape {
         let outline = self.outline(panel);
         let next = outline.iter().cycle().skip(1);
         let mut sums = [0.0; 3];
-        for (from, to) in std::iter::zip(&outline, next) {
+        for (from, to) in zip(&outline, next) {
             let twice = cross(*from, *to);
             sums[0] += 0.5 * twice;
             (0..2).for_each(|i| sums[i + 1] += twice * (from[i] + to[i]) / 6.0);

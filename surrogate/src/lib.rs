@@ -40,7 +40,6 @@ mod damage;
 mod energy;
 mod ensemble;
 mod features;
-mod hinge_energy;
 mod mlp_kernels;
 mod model;
 mod network;
@@ -56,8 +55,7 @@ pub use card::{
 pub use damage::HingeDamage;
 pub use energy::Prepared;
 pub use ensemble::mean_and_variance;
-pub use features::{FEATURE_NAMES, Standardisation, feature_names, features};
-pub use hinge_energy::{HingeEnergy, Order};
+pub use features::{FEATURE_NAMES, HingeEnergy, Order, Standardisation, feature_names, features};
 pub use model::{Layers, Surrogate};
 pub use network::{Layer, Network, Tensor};
 pub use springback::{Springback, SpringbackErrors};

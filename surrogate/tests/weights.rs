@@ -296,7 +296,7 @@ fn the_damage_of_huge_weights_stays_finite() {
         let mut file = File::of("chi_domain");
         file.change("chi_p.2.bias", |bias| bias[0] *= factor);
         let surrogate = file.load().unwrap();
-        let damage = surrogate.damage(&[design(18.0, 1.2)], &[state])[0];
+        let damage = surrogate.damage(&[design(18.0, 1.2)], &[state], true)[0];
         let peak = damage.d_peak.unwrap();
         assert!(peak >= 0.0 && peak.is_finite());
         assert!(damage.peak_gradient.to_array().iter().all(|slope| slope.is_finite()));

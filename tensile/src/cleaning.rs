@@ -1,9 +1,8 @@
 //! Rows of a record that are not a monotone loading: unloading loops, rows after the break,
 //! repeated and shaking strains.
 
-use crate::isotonic::pools;
 use crate::record::{Cause, RecordRow};
-use crate::regression::mean;
+use crate::regression::{mean, pools};
 use support::statistics::median;
 
 /// The monotone part of a record.

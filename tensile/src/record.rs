@@ -2,8 +2,7 @@
 
 use crate::in_file;
 use crate::name::Name;
-use crate::number_table::NumberTable;
-use crate::preamble::{self, StatedDimension};
+use crate::number_table::{self, NumberTable, StatedDimension};
 use crate::quantity::Quantity::{
     self, Extension, Force, PlasticStrain, Strain, Stress, TrueStrain, TrueStress,
 };
@@ -128,7 +127,7 @@ impl Record {
         let column = |index: usize| ReadColumn::new(pair[index], labels, options).map_err(refuse);
         let read_as = [column(0)?, column(1)?];
         let used = pair.map(|(quantity, _)| quantity);
-        let (stated, mut unused) = preamble::dimensions(&table.preamble, table.style);
+        let (stated, mut unused) = number_table::dimensions(&table.preamble, table.style);
         let (sizes, stated) = sizes(used, stated, &mut unused, options).map_err(refuse)?;
         let units = options.units.iter().filter(|(of, _)| !used.contains(of));
         unused.extend(units.map(|(quantity, unit)| format!("--units {quantity}={unit}")));

@@ -14,7 +14,7 @@ use crate::in_file;
 use crate::landmarks::{self, Draw, End, offset_yield, uniform_end};
 use crate::linear_part::LinearPart;
 use crate::local_curve::{first_part, second_part, true_row};
-use crate::preamble::StatedDimension;
+use crate::number_table::StatedDimension;
 use crate::quantity::Quantity::Extension;
 use crate::record::{Cause, ReadColumn, Record, RecordRow, within};
 use crate::regression::Regression;

@@ -12,10 +12,9 @@
 //! Apart from these factors and from rounding, the function of the networks is the function of the
 //! pretrained networks.
 
+use crate::affine;
 use crate::config::{DAMAGE_SHARPNESS, TrainingConfig};
-use crate::export::layers;
-use crate::mirror;
-use crate::networks::{Networks, options};
+use crate::networks::{Networks, layers, options};
 use crate::samples::Scales;
 use crate::validation::Parity;
 use burn::tensor::DType;
@@ -116,7 +115,7 @@ pub fn check_pretrained(pretrained: &Surrogate, config: &TrainingConfig) -> Resu
     let exact = options(DType::F64);
     let folded = Networks::from_layers(&given, &exact);
     let unchanged = layers(&folded)? == given;
-    let centred = mirror::is_centred(&pretrained.card().standardisation);
+    let centred = affine::is_centred(&pretrained.card().standardisation);
     if unchanged && centred {
         return Ok(());
     }

@@ -1,9 +1,10 @@
 //! Rows as inputs and targets of the networks: standardised features, scaled targets, batches.
 
-use crate::mirror;
+use crate::affine;
 use burn::tensor::{Tensor, TensorCreationOptions, TensorData};
 use dataset::Row;
 use hinge::{HingeDeformation, HingeDesign, HingeSample, NetLigament};
+use std::array::from_fn;
 use support::fault::Fault;
 use support::{fault, refuse, statistics};
 use surrogate::{Card, FEATURE_NAMES, Standardisation, feature_names, features};
@@ -113,7 +114,7 @@ impl Scales {
         let with_peak = rows.iter().filter(|row| row.sample.d_peak.is_some()).count();
         let peak_weight = count / (with_peak as f64).max(1.0);
         let mut standardisation = Standardisation { mean, std };
-        mirror::centre(&mut standardisation);
+        affine::centre(&mut standardisation);
         Ok(Self {
             standardisation,
             hole,
@@ -154,7 +155,7 @@ impl Scales {
     pub(crate) fn sample(&self, design: &HingeDesign, sample: &HingeSample) -> Sample {
         let Standardisation { mean, std } = &self.standardisation;
         let standardise = |xi: [f64; FEATURES]| -> [f64; FEATURES] {
-            std::array::from_fn(|k| mean.get(k).map_or(0.0, |mean| (xi[k] - mean) / std[k]))
+            from_fn(|k| mean.get(k).map_or(0.0, |mean| (xi[k] - mean) / std[k]))
         };
         let ligament = NetLigament::new(design, self.hole);
         let (design, sample) = (&ligament.design(design), &ligament.sample(sample));
@@ -165,11 +166,9 @@ impl Scales {
         Sample {
             inputs: standardise(features(design, &sample.deformation())),
             origin: standardise(features(design, &HingeDeformation::default())),
-            force_factors: std::array::from_fn(|k| {
-                self.energy * by_deformation[k] / (std[k] * self.forces[k])
-            }),
+            force_factors: from_fn(|k| self.energy * by_deformation[k] / (std[k] * self.forces[k])),
             energy: sample.w / self.energy,
-            forces: std::array::from_fn(|k| forces[k] / self.forces[k]),
+            forces: from_fn(|k| forces[k] / self.forces[k]),
             damage: [
                 sample.d / self.damage,
                 self.peak.map_or(0.0, |scale| sample.d_peak.unwrap_or(0.0) / scale),

@@ -1,17 +1,14 @@
 //! The training loop: optimiser steps with a cosine learning-rate schedule. Each network is taken
 //! from the epoch of its minimum validation error.
 
-use crate::bins::error_bins;
 use crate::config::{DAMAGE_SHARPNESS, TrainingConfig};
 use crate::distillation::TrainingData;
-use crate::epoch::Epoch;
-use crate::export::{layers, unread};
 use crate::fine_tuning::{Initial, check_pretrained, inherit};
 use crate::loss::loss;
-use crate::networks::{Networks, options};
+use crate::networks::{Networks, layers, options, unread};
 use crate::samples::{Batch, Sample, Scales};
-use crate::state::{self, Progress, State};
-use crate::validation::Parity;
+use crate::state::{self, Epoch, Progress, State};
+use crate::validation::{Parity, error_bins};
 use burn::grad_clipping::GradientClippingConfig;
 use burn::module::ParamGroup;
 use burn::optim::{AdamConfig, GradientsParams, ModuleOptimizer, MuonConfig};

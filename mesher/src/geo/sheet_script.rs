@@ -4,6 +4,7 @@
 use super::Script;
 use super::structured::{self, Rim};
 use crate::{Frame, Panels, PlacedWindow, SheetShape, Window, cross, dot, minus, unit};
+use std::iter::zip;
 use support::add_line;
 
 /// Largest distance of a point on the edge of a panel from it (mm).
@@ -31,7 +32,7 @@ pub(crate) fn sheet_script(shape: &SheetShape) -> Result<String, String> {
         let curves = structured::add(&mut geo, &Window(&window.design), &shape.plane);
         faces.push(first..=geo.patches);
         let sides = [curves.rim_a, curves.rim_b];
-        for (rim, (panel, corner)) in std::iter::zip(sides, window.panels) {
+        for (rim, (panel, corner)) in zip(sides, window.panels) {
             let ends = rim.ends.map(|end| window.frame.point(end));
             rims[panel][corner] = Some(Arc { number, rim, ends });
         }
@@ -160,7 +161,7 @@ impl PanelOutline<'_> {
     fn check_arc(&self, corner: usize, arc: &Arc) -> Result<(), String> {
         let panel = &self.shape.panels[self.panel];
         let edges = [panel.edge_before(corner), corner];
-        for (edge, end) in std::iter::zip(edges, [arc.ends[1], arc.ends[0]]) {
+        for (edge, end) in zip(edges, [arc.ends[1], arc.ends[0]]) {
             let [from, to] = panel.edge(edge);
             let off = cross(unit(from, to), minus(end, from)).abs();
             if off > ON_EDGE {
