@@ -11,9 +11,8 @@ use design::optimise::outer_loop::SearchState;
 use design::pattern::design_vector::DesignVector;
 use design::sheet::kinematics::deployed_corners;
 use scene::{CoarseSearch, Level, LevelDifference, Scene};
-use support::fault;
-use support::fault::Fault;
 use support::statistics::rms_and_maximum;
+use support::{Fault, fault};
 
 /// What is compared of a sheet at a level.
 #[derive(Clone)]

@@ -5,8 +5,7 @@ use crate::path_fit::{Fit, MIN_POINTS, PathFit};
 use crate::shape_path::ShapePath;
 use design::geometry::similarity::Scale;
 use std::collections::HashSet;
-use support::fault::Fault;
-use support::{fault, refuse};
+use support::{Fault, fault, refuse};
 
 /// A measured sheet and its path.
 #[derive(Clone, Debug)]

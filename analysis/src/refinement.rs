@@ -11,8 +11,7 @@ use design::optimise::outer_loop::{Ended, Until};
 use scene::design_run::{BegunRun, Designed, Earlier, InverseDesignError, LEVELS, OnStep};
 use scene::{Scene, SceneError};
 use std::sync::atomic::AtomicBool;
-use support::fault::Fault;
-use support::refuse;
+use support::{Fault, refuse};
 
 /// Why no design is found.
 #[derive(Debug, thiserror::Error)]

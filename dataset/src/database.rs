@@ -7,8 +7,7 @@ use crate::rows::{Fidelity, Row};
 use crate::schema::COLUMNS;
 use crate::split::{Part, SplitPlan, geometry};
 use std::collections::BTreeSet;
-use support::fault;
-use support::fault::Fault;
+use support::{Fault, fault};
 
 /// Rows in the order of job and lambda, with the bytes of their Parquet file and its manifest.
 #[derive(Clone, Debug)]

@@ -14,9 +14,8 @@ use crate::summary::Contents;
 use std::fmt::{self, Display};
 use std::io::Write;
 use std::path::{Path, PathBuf};
-use support::fault::{Fault, unread, unwritten};
 use support::whole_file::{self, Unnamed};
-use support::{fault, refuse, regular_file, sealed_json};
+use support::{Fault, fault, refuse, regular_file, sealed_json, unread, unwritten};
 
 impl Database {
     /// Reads `X.parquet` and its manifest `X.json`; an error if the hash of the file is not that in

@@ -6,7 +6,6 @@ use crate::split::{Split, SplitPlan};
 use hinge::{HingeConstants, TrainingDomain};
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
-use std::fmt;
 
 /// Format version of the Parquet file and its manifest; no other version is read.
 pub const FORMAT_VERSION: u32 = 4;
@@ -120,28 +119,25 @@ impl Default for AcceptanceLimits {
 }
 
 /// Why a row was rejected: the first reason that applies.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[derive(
+    Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, thiserror::Error,
+)]
 #[serde(rename_all = "kebab-case")]
 pub enum Rejection {
     /// A number is not finite.
+    #[error("a number is not finite")]
     NotFinite,
     /// The design cannot be cut; see [`hinge::HingeDesign::validate`].
+    #[error(
+        "the hinge cannot be cut or is outside of the limits of its keys (lengths in mm, angles in rad?)"
+    )]
     InvalidDesign,
     /// W < 0 or D < 0.
+    #[error("W or D is negative")]
     Negative,
     /// The energy and the work of the reaction forces differ by more than the limit.
+    #[error("the energy is not the work of the forces (units of W, forces and lengths?)")]
     EnergyResidual,
-}
-
-impl fmt::Display for Rejection {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        f.write_str(match self {
-            Self::NotFinite => "a number is not finite",
-            Self::InvalidDesign => "the hinge cannot be cut or is outside of the limits of its keys (lengths in mm, angles in rad?)",
-            Self::Negative => "W or D is negative",
-            Self::EnergyResidual => "the energy is not the work of the forces (units of W, forces and lengths?)",
-        })
-    }
 }
 
 impl AcceptanceLimits {

@@ -7,8 +7,7 @@ use polars::io::parquet::write::{BatchedWriter, KeyValueMetadata};
 use polars::prelude::{CompatLevel, ParquetReader, ParquetWriter, SchemaExt, SerReader};
 use polars_parquet::write::schema_to_metadata_key;
 use std::io::{Cursor, Write};
-use support::fault::Fault;
-use support::{caught_panic, fault, refuse};
+use support::{Fault, caught_panic, fault, refuse};
 
 /// Number of rows of a group. The rows of one group are in memory at a time.
 const GROUP: usize = 1 << 16;

@@ -3,8 +3,7 @@
 use crate::parquet::DatasetError;
 use crate::rows::Row;
 use polars::prelude::{Column, DataFrame, IntoColumn, NamedFrom, Series};
-use support::fault::Fault;
-use support::{fault, refuse};
+use support::{Fault, fault, refuse};
 
 /// What a column of a database holds.
 #[derive(Debug)]

@@ -117,4 +117,4 @@ pub use solve::service::SolveService;
 pub use solve::solve_folder::{SolveFolder, SolveRecord, SolveStore};
 pub use solve::solver::{Solution, Solve, Solved, SolvedPath, Solver, ToolVersions};
 pub use solve::window_solve::{StepControl, WindowProblem, WindowSolve};
-pub use support::file_error::FileError;
+pub use support::FileError;

@@ -3,8 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
-use support::fault::Fault;
-use support::refuse;
+use support::{Fault, refuse};
 
 /// Geometry of the ligament left between the tip of a main cut and a secondary cut; (7).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]

@@ -4,9 +4,7 @@ use crate::Regime;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
-use support::fault::Fault;
-use support::key_limits;
-use support::{fault, refuse, toml_file};
+use support::{Fault, fault, key_limits, refuse, toml_file};
 
 /// Standard acceleration of gravity, rounded (m/s^2 = N/kg).
 pub const STANDARD_GRAVITY: f64 = 9.81;

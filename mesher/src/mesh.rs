@@ -8,9 +8,8 @@
 use crate::{Boundary, ElementKind, Extrusion, MeshRecipe, PlaneMesh, Window, sides};
 use hinge::HingeDesign;
 use std::fmt::Write;
-use support::fault::Fault;
 use support::vtk::{CellKind, UnstructuredGrid};
-use support::{fault, refuse};
+use support::{Fault, fault, refuse};
 
 /// A window of solid elements of one kind; indices count from 0.
 #[derive(Clone, Debug)]

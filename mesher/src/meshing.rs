@@ -7,9 +7,8 @@ use hinge::HingeDesign;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
-use support::fault::Fault;
-use support::file_error::FileError;
 use support::program::{self, Tool, ToolError, ToolKind};
+use support::{Fault, FileError};
 
 /// Why no mesh was generated.
 #[derive(Debug, thiserror::Error)]

@@ -5,8 +5,7 @@
 use crate::ElementKind;
 use std::collections::HashMap;
 use std::str::FromStr;
-use support::fault::Fault;
-use support::{fault, refuse};
+use support::{Fault, fault, refuse};
 
 /// The named boundary curves of the window.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

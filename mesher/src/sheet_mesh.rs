@@ -5,7 +5,7 @@ use crate::{
     Side, Window, check_elements, cross, dot, minus, unit, wrong_area,
 };
 use std::iter::zip;
-use support::fault::Fault;
+use support::{Fault, Point};
 
 /// Largest distance of a node from the arc of its window, over r_win.
 const ON_RIM: f64 = 1e-6;
@@ -164,7 +164,7 @@ impl SheetMesh {
     }
 
     /// The corner node of a part's faces that is nearest to a point.
-    pub fn nearest(&self, part: Part, point: [f64; 2]) -> Option<usize> {
+    pub fn nearest(&self, part: Part, point: Point) -> Option<usize> {
         let distance = |node: &usize| {
             let [x, y] = minus(self.plane.nodes[*node], point);
             x.hypot(y)
@@ -179,7 +179,7 @@ impl SheetMesh {
 
 impl PlacedWindow {
     /// Height (mm) of the bump at a point of the window.
-    fn height(&self, thickness: f64, point: [f64; 2]) -> f64 {
+    fn height(&self, thickness: f64, point: Point) -> f64 {
         let [x, y] = self.frame.local(point);
         let bump = Imperfection { amplitude: self.bump, widths: Imperfection::WIDTHS };
         bump.height(&self.design, thickness, x, y)
@@ -188,7 +188,7 @@ impl PlacedWindow {
 
 impl SheetShape {
     /// The finished edge of a panel along the main cut of a window.
-    fn flank(&self, window: usize, side: Side) -> [[f64; 2]; 2] {
+    fn flank(&self, window: usize, side: Side) -> [Point; 2] {
         let [a, b] = self.windows[window].panels;
         // Edges are counted by the corner at which they begin, counter-clockwise: the flank ends at
         // the corner of A.

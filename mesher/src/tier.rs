@@ -6,8 +6,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::time::Duration;
 use strum::{IntoEnumIterator, VariantNames};
-use support::fault;
-use support::fault::Fault;
+use support::{Fault, fault};
 
 /// A named mesh fineness; for each regime in order of increasing CPU time.
 ///

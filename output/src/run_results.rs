@@ -8,9 +8,7 @@ use scene::Scene;
 use scene::design_run::{Designed, InverseDesignError};
 use std::io;
 use std::path::Path;
-use support::fault::Fault;
-use support::file_error::FileError;
-use support::{fault, whole_file};
+use support::{Fault, FileError, fault, whole_file};
 
 /// Writes the results of [`RUN_FILES`]: the picture of the flat sheet for a design with cut lines,
 /// the cut files for a design without errors, or if `force`.

@@ -3,7 +3,7 @@
 use design::DesignError;
 use pyo3::{create_exception, exceptions::PyException, prelude::*};
 use std::fmt::Display;
-use support::fault::Fault;
+use support::Fault;
 
 create_exception!(
     kirigami,

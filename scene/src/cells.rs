@@ -6,8 +6,7 @@ use design::pattern::grid::Grid;
 use design::sheet::topology::Topology;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use support::fault;
-use support::fault::Fault;
+use support::{Fault, fault};
 
 /// A kept void in a row of the voids.
 const KEPT: char = 'o';

@@ -20,9 +20,8 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
-use support::file_error::FileError;
 use support::sealed_json::{self, SealError};
-use support::{regular_file, whole_file};
+use support::{FileError, regular_file, whole_file};
 
 /// The folder of the coarse searches, in the folder of a run.
 pub const LEVELS: &str = "levels";

@@ -7,7 +7,7 @@ use crate::target::TargetError;
 use design::equilibrium::tangent::MIN_PIVOT_RATIO;
 use hinge::InvalidDesign;
 use std::path::PathBuf;
-use support::fault::Fault;
+use support::Fault;
 
 /// A value of a scene that is outside its range or that other values exclude; the message names the
 /// key.

@@ -96,7 +96,7 @@ impl Scene {
         Ok(Model::Equilibrium(Box::new(Mechanics { law, contact: Some(contact), solver })))
     }
 
-    fn solver(&self) -> Result<EquilibriumSolver, support::fault::Fault> {
+    fn solver(&self) -> Result<EquilibriumSolver, support::Fault> {
         let level = self.config.level;
         let settings = level.solver(self.config.solver);
         let actuation = self.actuation();

@@ -21,9 +21,8 @@ use std::collections::BTreeMap;
 use std::convert::Infallible;
 use std::io;
 use std::path::{Path, PathBuf};
-use support::file_error::FileError;
 use support::sealed_json::{self, SealError};
-use support::{regular_file, whole_file};
+use support::{FileError, regular_file, whole_file};
 
 /// The state of a run, in its folder.
 pub const STATE_FILE: &str = "state.json";

@@ -2,7 +2,7 @@
 
 use crate::invalid_scene::InvalidScene;
 use std::path::{Path, PathBuf};
-use support::fault::Fault;
+use support::Fault;
 
 /// Why a scene is invalid; every message names the file and the key.
 #[derive(Debug, thiserror::Error)]

@@ -73,7 +73,7 @@ impl StartConfig {
     }
 
     /// The start pattern of the search.
-    pub fn pattern(&self, grid: Grid) -> Result<PatternCoordinates, support::fault::Fault> {
+    pub fn pattern(&self, grid: Grid) -> Result<PatternCoordinates, support::Fault> {
         let uniform = PatternCoordinates::uniform(grid);
         let start = PatternCoordinates {
             z: match &self.r {

@@ -8,9 +8,8 @@ use hinge::{HingeDeformation, HingeDesign};
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use support::file_error::FileError;
 use support::sealed_json::{self, SealError};
-use support::{regular_file, whole_file};
+use support::{FileError, regular_file, whole_file};
 
 /// A hinge at the end of its path by finite elements.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]

@@ -4,7 +4,7 @@ use crate::keys::{SceneConfig, resolved};
 use hinge::SheetMaterial;
 use std::f64::consts::FRAC_PI_2;
 use std::path::{Path, PathBuf};
-use support::fault::Fault;
+use support::Fault;
 use surrogate::Springback;
 
 /// Why a law of released hinges is not for the hinges of a scene.

@@ -12,10 +12,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
-use support::fault::Fault;
-use support::file_error::FileError;
-use support::key_limits;
-use support::regular_file;
+use support::{Fault, FileError, key_limits, regular_file};
 
 /// A target as written in a scene; lengths in mm, in the coordinates of the flat sheet.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]

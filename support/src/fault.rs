@@ -1,7 +1,8 @@
-//! An error that no caller tells from another: it is read by a person.
+//! Errors that no caller tells from another, for people to read, and errors of files.
 
 use std::fmt::Display;
-use std::path::Path;
+use std::io;
+use std::path::{Path, PathBuf};
 
 /// What is wrong, after its place (a file, line, key or job) and before what to do, each behind a
 /// colon. An error that a caller matches is a variant of an enum instead.
@@ -13,7 +14,7 @@ pub struct Fault(String);
 #[macro_export]
 macro_rules! fault {
     ($($message:tt)*) => {
-        $crate::fault::Fault::from(format!($($message)*))
+        $crate::Fault::from(format!($($message)*))
     };
 }
 
@@ -39,4 +40,28 @@ pub fn unread<E: Display>(path: &Path) -> impl FnOnce(E) -> Fault {
 /// Maps the error of writing `path`, for use in `map_err`.
 pub fn unwritten<E: Display>(path: &Path) -> impl FnOnce(E) -> Fault {
     move |error| fault!("cannot write {}: {error}", path.display())
+}
+
+/// A file that cannot be read, written or parsed.
+#[derive(Debug, thiserror::Error)]
+#[error("{path}: {source}", path = .path.display())]
+pub struct FileError {
+    /// The file.
+    pub path: PathBuf,
+    /// Why the operation on the file failed.
+    pub source: io::Error,
+}
+
+impl FileError {
+    /// Maps the error of an operation on `path`, for use in `map_err`.
+    pub fn at<E: Into<io::Error>>(path: &Path) -> impl FnOnce(E) -> Self {
+        let path = path.to_owned();
+        move |source| Self { path, source: source.into() }
+    }
+}
+
+impl From<FileError> for Fault {
+    fn from(FileError { path, source }: FileError) -> Self {
+        fault!("{}: {source}", path.display())
+    }
 }

@@ -2,7 +2,7 @@
 //! `schemars(range(..))` of its field, and its unit in the first parentheses of the field's
 //! documentation, as in "Thickness of the sheet (mm)".
 
-use crate::fault::Fault;
+use crate::Fault;
 use schemars::{JsonSchema, schema_for};
 use serde::Serialize;
 use serde_json::Value;

@@ -25,12 +25,11 @@ macro_rules! add_line {
 }
 
 #[macro_use]
-pub mod fault;
+mod fault;
 
 pub mod caught_panic;
 pub mod csv_table;
 pub mod document;
-pub mod file_error;
 pub mod interpolation;
 pub mod key_limits;
 pub mod lock_file;
@@ -57,3 +56,8 @@ pub mod verbose;
 pub mod vtk;
 pub mod whole_file;
 pub mod worker_pool;
+
+pub use fault::{Fault, FileError, unread, unwritten};
+
+/// A point or vector of the plane, or a point of a curve.
+pub type Point = [f64; 2];

@@ -1,9 +1,9 @@
 //! Reading TOML configuration files. An unknown key is an error that names the most similar known
 //! key; an array with more elements than its type has is an error.
 
-use crate::fault::{Fault, unread};
 use crate::nearest::nearest;
 use crate::text_file;
+use crate::{Fault, unread};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use std::path::Path;

@@ -4,8 +4,7 @@ use crate::features::{LOG_WIDTH, Standardisation, feature_names};
 use crate::network::{finite, other_shape};
 use hinge::{HingeConstants, TrainingDomain};
 use serde::{Deserialize, Deserializer, Serialize};
-use support::fault::Fault;
-use support::refuse;
+use support::{Fault, refuse};
 
 /// Format version of the weight file and its card; no other version is read.
 pub const FORMAT_VERSION: u32 = 9;

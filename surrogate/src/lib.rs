@@ -30,7 +30,7 @@
 //! let [_, _, moment] = energies[999].forces; // N mm
 //! assert_eq!(energies[0].w, 0.0);
 //! assert!(moment.is_finite());
-//! # Ok::<_, support::fault::Fault>(())
+//! # Ok::<_, support::Fault>(())
 //! ```
 
 #![cfg_attr(not(test), warn(unreachable_pub))]

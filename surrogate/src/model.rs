@@ -9,7 +9,7 @@ use crate::reference_ligament;
 use hinge::{
     HingeDeformation, HingeDesign, HingeSample, NetLigament, Regime, SheetMaterial, TrainingDomain,
 };
-use support::fault::Fault;
+use support::Fault;
 
 /// The networks of (14), with the card that contains their scaling and provenance.
 #[derive(Clone, Debug)]

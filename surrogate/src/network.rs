@@ -2,8 +2,7 @@
 
 use crate::features::{FEATURES, Standardisation};
 use faer::Mat;
-use support::fault::Fault;
-use support::{fault, refuse};
+use support::{Fault, fault, refuse};
 
 /// An array of a weight file, in row-major order.
 #[derive(Clone, Debug, PartialEq)]

@@ -18,9 +18,7 @@ use serde::{Deserialize, Serialize};
 use std::array::from_fn;
 use std::f64::consts::FRAC_PI_2;
 use std::path::Path;
-use support::fault::{Fault, unread};
-use support::sealed_json;
-use support::{fault, regular_file};
+use support::{Fault, fault, regular_file, sealed_json, unread};
 
 /// The even and the odd terms: products of two of the factors (1, ln w_lig, eta_a, theta, alpha -
 /// 90 deg, eta_s), of which the last two change sign in the mirrored hinge.

@@ -22,8 +22,7 @@ use std::collections::BTreeMap;
 use std::fmt::Display;
 use std::io;
 use std::path::{Path, PathBuf};
-use support::fault::{Fault, unread, unwritten};
-use support::{fault, refuse, regular_file, sealed_json, whole_file};
+use support::{Fault, fault, refuse, regular_file, sealed_json, unread, unwritten, whole_file};
 
 impl Surrogate {
     /// Reads `X.safetensors` and its card `X.json`.

@@ -9,8 +9,7 @@ use safetensors::{Dtype, SafeTensors};
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
-use support::fault::Fault;
-use support::sealed_json;
+use support::{Fault, sealed_json};
 use surrogate::{FORMAT_VERSION, Order, Surrogate};
 use tempfile::TempDir;
 

@@ -10,8 +10,7 @@ use crate::{Cause, ReadColumn, Specimen};
 use hinge::SheetMaterial;
 use serde::Serialize;
 use std::path::PathBuf;
-use support::fault::Fault;
-use support::{fault, refuse};
+use support::{Fault, Point, fault, refuse};
 
 /// What is known about a material besides the records of its specimens.
 #[derive(Clone, Copy, Debug)]
@@ -183,7 +182,7 @@ impl MaterialFit {
                 beyond_maximum_force([end.stress, end.strain], fracture_strain, young.mean);
             curve.extend(marked(&[[stress, fracture_strain]], Origin::Extrapolated));
         }
-        let rows: Vec<[f64; 2]> = curve.iter().map(|row| [row.stress, row.strain]).collect();
+        let rows: Vec<Point> = curve.iter().map(|row| [row.stress, row.strain]).collect();
         let (kept, table_deviation) = thinned(&rows, options.rows);
         let mut table: Vec<HardeningRow> = kept.into_iter().map(|row| curve[row]).collect();
         for row in &mut table {
@@ -235,7 +234,7 @@ fn hardening(
     young: f64,
     draw: Option<(Statistic, Statistic)>,
 ) -> Result<(Vec<HardeningRow>, Option<f64>), Fault> {
-    let mean = |part: fn(&Specimen) -> &[[f64; 2]]| {
+    let mean = |part: fn(&Specimen) -> &[Point]| {
         mean_curve(&specimens.iter().map(part).collect::<Vec<_>>())
     };
     let mut uniform = mean(|specimen| &specimen.before);
@@ -264,8 +263,8 @@ fn hardening(
 ///
 /// The stress at zero is the mean. From there the mean increment of the curves that reach an
 /// interval is added, so that a specimen that breaks early leaves no jump.
-fn mean_curve(curves: &[&[[f64; 2]]]) -> Vec<[f64; 2]> {
-    let length = |curve: &[[f64; 2]]| curve[curve.len() - 1][1] - curve[0][1];
+fn mean_curve(curves: &[&[Point]]) -> Vec<Point> {
+    let length = |curve: &[Point]| curve[curve.len() - 1][1] - curve[0][1];
     let end = Statistic::new(curves.iter().map(|curve| length(curve))).mean;
     let mut stress = Statistic::new(curves.iter().map(|curve| curve[0][0])).mean;
     let mut rows = vec![[stress, 0.0]];
@@ -273,7 +272,7 @@ fn mean_curve(curves: &[&[[f64; 2]]]) -> Vec<[f64; 2]> {
         let [before, strain] =
             [interval - 1, interval].map(|index| end * (index as f64 / INTERVALS as f64).powi(2));
         if strain > before {
-            let at = |curve: &[[f64; 2]], strain| interpolated(curve, 0, curve[0][1] + strain);
+            let at = |curve: &[Point], strain| interpolated(curve, 0, curve[0][1] + strain);
             let reached = curves.iter().filter(|curve| length(curve) >= before);
             let increments = reached.map(|curve| at(curve, strain) - at(curve, before));
             stress += Statistic::new(increments).mean;
@@ -324,8 +323,8 @@ fn rounded(value: f64, digits: i32) -> f64 {
     (value * unit).round() / unit
 }
 
-fn marked(rows: &[[f64; 2]], origin: Origin) -> Vec<HardeningRow> {
-    let row = |&[stress, strain]: &[f64; 2]| HardeningRow { stress, strain, origin };
+fn marked(rows: &[Point], origin: Origin) -> Vec<HardeningRow> {
+    let row = |&[stress, strain]: &Point| HardeningRow { stress, strain, origin };
     rows.iter().map(row).collect()
 }
 

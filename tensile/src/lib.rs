@@ -52,8 +52,7 @@ pub use record::{Cause, ReadColumn, RecordOptions, RecordRow};
 pub use specimen::{Softening, Specimen, SpecimenOptions};
 
 use std::path::Path;
-use support::fault;
-use support::fault::Fault;
+use support::{Fault, fault};
 
 /// Puts the file before what is wrong with it.
 fn in_file(path: &Path) -> impl Fn(String) -> Fault + Copy {

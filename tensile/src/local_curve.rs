@@ -3,17 +3,18 @@
 
 use crate::landmarks::{Draw, yield_stress};
 use crate::regression::{mean, non_decreasing, pools};
+use support::Point;
 
 /// Plastic strain above which no yield can be read from a curve: its noise is too large.
 const MAX_ONSET: f64 = 5e-3;
 
 /// A row [nominal strain, nominal stress] as [logarithmic strain, true stress].
-pub(super) fn true_row(&[strain, stress]: &[f64; 2]) -> [f64; 2] {
+pub(super) fn true_row(&[strain, stress]: &Point) -> Point {
     [strain.ln_1p(), stress * (1.0 + strain)]
 }
 
 /// [true stress, plastic strain] of a nominal row.
-fn local(row: &[f64; 2], young: f64) -> [f64; 2] {
+fn local(row: &Point, young: f64) -> Point {
     let [strain, stress] = true_row(row);
     [stress, strain - stress / young]
 }
@@ -22,12 +23,12 @@ fn local(row: &[f64; 2], young: f64) -> [f64; 2] {
 /// becomes the stress at zero plastic strain. A film may reach its upper yield before: its curve is
 /// then one row.
 pub(super) fn first_part(
-    curve: &[[f64; 2]],
+    curve: &[Point],
     young: f64,
     onset: f64,
     draws: bool,
-) -> Option<Vec<[f64; 2]>> {
-    let rows: Vec<[f64; 2]> = curve.iter().map(|row| local(row, young)).collect();
+) -> Option<Vec<Point>> {
+    let rows: Vec<Point> = curve.iter().map(|row| local(row, young)).collect();
     let after = rows.iter().rposition(|row| row[1] <= onset)? + 1;
     let yields = if after < rows.len() {
         yield_stress(&rows, after, onset, Some(0.0))
@@ -40,7 +41,7 @@ pub(super) fn first_part(
 }
 
 /// The local curve from the natural draw ratio on.
-pub(super) fn second_part(curve: &[[f64; 2]], draw: &Draw, young: f64) -> Vec<[f64; 2]> {
+pub(super) fn second_part(curve: &[Point], draw: &Draw, young: f64) -> Vec<Point> {
     let drawn = curve.partition_point(|row| 1.0 + row[0] <= draw.draw_ratio);
     let mut part = vec![local(&[draw.draw_ratio - 1.0, draw.plateau], young)];
     part.extend(curve[drawn..].iter().map(|row| local(row, young)));
@@ -49,7 +50,7 @@ pub(super) fn second_part(curve: &[[f64; 2]], draw: &Draw, young: f64) -> Vec<[f
 
 /// The curve [stress, plastic strain] with increasing strain and non-decreasing stress. The first
 /// row is unchanged.
-fn monotone(curve: &[[f64; 2]]) -> Vec<[f64; 2]> {
+fn monotone(curve: &[Point]) -> Vec<Point> {
     let [first, start] = curve[0];
     let pools = pools(curve[1..].iter().map(|row| row[1].max(start)), true).into_iter();
     let mut rows = vec![curve[0]];
@@ -82,9 +83,9 @@ fn monotone(curve: &[[f64; 2]]) -> Vec<[f64; 2]> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct ColdDrawing {
     /// [true stress (MPa), plastic strain] at the upper yield.
-    pub from: [f64; 2],
+    pub from: Point,
     /// The same at the natural draw ratio.
-    pub to: [f64; 2],
+    pub to: Point,
     /// Mean true stress (MPa) over the plastic strain.
     pub mean: f64,
 }
@@ -92,7 +93,7 @@ pub(super) struct ColdDrawing {
 impl ColdDrawing {
     /// From the end of the measured curve to the natural draw ratio `ratio` under the nominal
     /// stress `plateau` (MPa). `None` if the ratio is not beyond the upper yield.
-    pub(crate) fn new(from: [f64; 2], plateau: f64, ratio: f64, young: f64) -> Option<Self> {
+    pub(crate) fn new(from: Point, plateau: f64, ratio: f64, young: f64) -> Option<Self> {
         let [sigma, plastic] = from;
         let stress = ratio * plateau;
         let to = [stress, ratio.ln() - stress / young];
@@ -110,7 +111,7 @@ impl ColdDrawing {
     }
 
     /// `count` points up to the natural draw ratio, at which the measured curve continues.
-    pub(crate) fn points(&self, count: usize) -> Vec<[f64; 2]> {
+    pub(crate) fn points(&self, count: usize) -> Vec<Point> {
         let [sigma, plastic] = [self.yields_at(), self.from[1]];
         let rise = self.to[0] - sigma;
         // A cut yield stress is constant up to the natural draw ratio.
@@ -126,7 +127,7 @@ impl ColdDrawing {
 
 /// The true stress (MPa) at the plastic strain `plastic` beyond the maximum force at `from`;
 /// Considere.
-pub(super) fn beyond_maximum_force(from: [f64; 2], plastic: f64, young: f64) -> f64 {
+pub(super) fn beyond_maximum_force(from: Point, plastic: f64, young: f64) -> f64 {
     // eps - eps_m contains the elastic part (sigma - sigma_m) / E.
     let [sigma, start] = from;
     sigma * (1.0 + (plastic - start) / (1.0 - sigma / young))

@@ -10,9 +10,8 @@ use crate::quantity::{Quantity::Extension, are_units, bare};
 use serde::Serialize;
 use std::fmt;
 use std::path::Path;
-use support::fault::{Fault, unread};
 use support::text_table::{NumberStyle, TextRow, TextTable};
-use support::{regular_file, text_file};
+use support::{Fault, regular_file, text_file, unread};
 
 /// The cells of one specimen; they are converted to numbers where they are used.
 #[derive(Clone, Debug)]

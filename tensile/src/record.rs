@@ -9,9 +9,8 @@ use crate::quantity::Quantity::{
 use serde::Serialize;
 use std::fmt;
 use std::path::{Path, PathBuf};
-use support::fault;
-use support::fault::Fault;
 use support::text_table::TextRow;
+use support::{Fault, fault};
 
 /// What a file does not say about its columns and its specimen.
 #[derive(Clone, Debug, Default)]

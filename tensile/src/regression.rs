@@ -1,12 +1,13 @@
 //! The straight line through rows [x, y], by least squares, and linear interpolation between them.
 
 use std::ops::Range;
+use support::Point;
 use support::interpolation::piece;
 
 /// The line through a set of rows.
 pub(super) struct Regression {
     /// Means of x and y.
-    pub mean: [f64; 2],
+    pub mean: Point,
     /// Sum of the squared deviations of x from its mean.
     pub squares: f64,
     /// Slope of the line; not finite if all x are equal.
@@ -17,7 +18,7 @@ pub(super) struct Regression {
 }
 
 impl Regression {
-    pub(crate) fn new(rows: &[[f64; 2]]) -> Self {
+    pub(crate) fn new(rows: &[Point]) -> Self {
         let mean = mean(rows);
         let (mut squares, mut products, mut total) = (0.0, 0.0, 0.0);
         for row in rows {
@@ -33,13 +34,13 @@ impl Regression {
 }
 
 /// The mean of rows.
-pub(super) fn mean(rows: &[[f64; 2]]) -> [f64; 2] {
+pub(super) fn mean(rows: &[Point]) -> Point {
     [0, 1].map(|of| rows.iter().map(|row| row[of]).sum::<f64>() / rows.len() as f64)
 }
 
 /// The value in the column `of` of a curve at the value `x` in its other column, which increases:
 /// linear between rows, constant beyond the ends.
-pub(super) fn interpolated(curve: &[[f64; 2]], of: usize, x: f64) -> f64 {
+pub(super) fn interpolated(curve: &[Point], of: usize, x: f64) -> f64 {
     let (low, high, fraction) = piece(curve, |row| row[1 - of], x);
     low[of] + (high[of] - low[of]) * fraction
 }
@@ -85,7 +86,7 @@ pub(super) const TOLERANCE: f64 = 1e-3;
 /// The indices of at most `most` rows (at least 2) of a curve [stress, strain], and the maximum
 /// deviation of the interpolated stress over the stress. The row with the largest deviation is
 /// added until none exceeds [`TOLERANCE`].
-pub(super) fn thinned(curve: &[[f64; 2]], most: usize) -> (Vec<usize>, f64) {
+pub(super) fn thinned(curve: &[Point], most: usize) -> (Vec<usize>, f64) {
     let mut kept = vec![0, curve.len() - 1];
     kept.dedup();
     loop {

@@ -2,8 +2,7 @@
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use support::fault::Fault;
-use support::{fault, key_limits};
+use support::{Fault, fault, key_limits};
 use surrogate::Surrogate;
 
 /// Sizes, loss weights and optimiser of one training.

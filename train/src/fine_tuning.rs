@@ -20,8 +20,7 @@ use crate::validation::Parity;
 use burn::tensor::DType;
 use dataset::{Manifest, Row};
 use hinge::HingeConstants;
-use support::fault::Fault;
-use support::{fault, refuse};
+use support::{Fault, fault, refuse};
 use surrogate::{Card, Layer, Layers, Standardisation, Surrogate, feature_names};
 
 /// The initial networks and their scales.

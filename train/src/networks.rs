@@ -6,8 +6,7 @@ use burn::module::{Module, Param};
 use burn::tensor::{DType, Device, Tensor, TensorCreationOptions, TensorData, TensorReadError};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use support::fault;
-use support::fault::Fault;
+use support::{Fault, fault};
 use surrogate::{Layer, Layers};
 
 /// The networks have no common layers: D_peak, which has more scatter, would otherwise cause the

@@ -5,8 +5,7 @@ use burn::tensor::{Tensor, TensorCreationOptions, TensorData};
 use dataset::Row;
 use hinge::{HingeDeformation, HingeDesign, HingeSample, NetLigament};
 use std::array::from_fn;
-use support::fault::Fault;
-use support::{fault, refuse, statistics};
+use support::{Fault, fault, refuse, statistics};
 use surrogate::{Card, FEATURE_NAMES, Standardisation, feature_names, features};
 
 /// The scales of (14) and (15), computed from the training rows.

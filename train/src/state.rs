@@ -13,8 +13,7 @@ use safetensors::tensor::{Dtype, SafeTensors, TensorView};
 use serde::{Deserialize, Deserializer, Serialize};
 use std::fmt::Display;
 use std::path::{Path, PathBuf};
-use support::fault::{Fault, unread, unwritten};
-use support::{fault, refuse};
+use support::{Fault, fault, refuse, unread, unwritten};
 use surrogate::Card;
 
 /// Format version of the file. A state is temporary, so no other version is read.

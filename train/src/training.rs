@@ -22,8 +22,7 @@ use std::collections::BTreeSet;
 use std::f64::consts::PI;
 use std::path::Path;
 use std::time::Instant;
-use support::fault;
-use support::fault::Fault;
+use support::{Fault, fault};
 use surrogate::{Card, FORMAT_VERSION, Surrogate, TestErrors, UNITS, feature_names};
 
 /// A trained surrogate with its history and test errors.

@@ -7,6 +7,7 @@ use dataset::{ComparedState, Row};
 use hinge::TrainingDomain;
 use std::array::from_fn;
 use std::iter::zip;
+use support::Point;
 use support::statistics::root_mean_square;
 use surrogate::{BinQuantity, ErrorBin, FitError, SpotCheck, Surrogate, TestErrors};
 
@@ -48,7 +49,7 @@ impl Parity {
     }
 
     /// [target, prediction] of the quantity `i` of [`dataset::COMPARED`] in every state.
-    pub fn points(&self, i: usize) -> impl Iterator<Item = [f64; 2]> {
+    pub fn points(&self, i: usize) -> impl Iterator<Item = Point> {
         self.states.iter().map(move |state| [state.reference[i], state.value[i]])
     }
 
@@ -120,27 +121,27 @@ impl Parity {
 
 /// The root mean square error divided by the root mean square of the targets, each error being
 /// limited to the latter; NaN if no target is known and predicted, or all are zero.
-fn limited_error(points: impl Iterator<Item = [f64; 2]>) -> f64 {
-    let known: Vec<[f64; 2]> = known(points).filter(|[_, predicted]| !predicted.is_nan()).collect();
+fn limited_error(points: impl Iterator<Item = Point>) -> f64 {
+    let known: Vec<Point> = known(points).filter(|[_, predicted]| !predicted.is_nan()).collect();
     let target = root_mean_square(known.iter().map(|[target, _]| *target));
     let errors =
         known.iter().map(|[target_here, predicted]| (predicted - target_here).abs().min(target));
     if target > 0.0 { root_mean_square(errors) / target } else { f64::NAN }
 }
 
-fn rms_error(points: impl Iterator<Item = [f64; 2]>) -> f64 {
+fn rms_error(points: impl Iterator<Item = Point>) -> f64 {
     root_mean_square(known(points).map(|[target, predicted]| predicted - target))
 }
 
 /// The points whose target is known.
-fn known(points: impl Iterator<Item = [f64; 2]>) -> impl Iterator<Item = [f64; 2]> {
+fn known(points: impl Iterator<Item = Point>) -> impl Iterator<Item = Point> {
     points.filter(|[target, _]| !target.is_nan())
 }
 
 /// Errors of points [target, prediction] relative to the targets; unknown if no target is known,
 /// or all are zero.
-pub(crate) fn fit_error(points: impl Iterator<Item = [f64; 2]>) -> FitError {
-    let points: Vec<[f64; 2]> = known(points).collect();
+pub(crate) fn fit_error(points: impl Iterator<Item = Point>) -> FitError {
+    let points: Vec<Point> = known(points).collect();
     let target = root_mean_square(points.iter().map(|[target, _]| *target));
     let nonzero = points.iter().filter(|[target, _]| *target != 0.0);
     let mut relative: Vec<f64> =
@@ -161,7 +162,7 @@ const BINS: usize = 5;
 /// ligament width, cut angle, hole if it is a feature, and distance from the edge of the domain.
 /// Bins without rows are omitted.
 pub(crate) fn error_bins(parity: &Parity, rows: &[Row], domain: &TrainingDomain) -> Vec<ErrorBin> {
-    let degrees = |range: [f64; 2]| range.map(f64::to_degrees);
+    let degrees = |range: Point| range.map(f64::to_degrees);
     let [eta_a, eta_s, theta] = domain.bounds();
     let quantities = [
         (BinQuantity::EtaA, eta_a),

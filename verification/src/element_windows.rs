@@ -7,24 +7,17 @@ use fe_driver::{DeformationPath, HingePath, SolveService, WindowProblem, WindowS
 use hinge::{HingeDeformation, HingeSample, SheetMaterial};
 use mesher::Tier;
 use serde::Serialize;
-use std::fmt;
-use support::fault;
-use support::fault::Fault;
+use support::{Fault, fault};
 use surrogate::Surrogate;
 
 /// A hinge of a sheet that finite elements did not follow along its path.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, thiserror::Error)]
+#[error("hinge {hinge}: {reason}")]
 pub struct UnsolvedHinge {
     /// Number of the hinge.
     pub hinge: usize,
     /// Its window, why it was not solved, and the folder of its last attempt.
     pub reason: String,
-}
-
-impl fmt::Display for UnsolvedHinge {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        write!(f, "hinge {}: {}", self.hinge, self.reason)
-    }
 }
 
 /// Finite elements for the hinges of sheets.

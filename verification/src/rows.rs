@@ -12,7 +12,7 @@ use hinge::{HingeDeformation, HingeDesign, HingeSample, SheetMaterial};
 use mesher::Tier;
 use std::collections::HashMap;
 use std::path::Path;
-use support::fault::Fault;
+use support::Fault;
 use support::table::Table;
 
 /// Rows with these samples of a solved window.

@@ -19,8 +19,8 @@ use scene::placement::seen_in;
 use scene::{Posture, Scene};
 use std::array::from_fn;
 use std::iter::zip;
-use support::fault;
 use support::statistics::rms_and_maximum;
+use support::{Point, fault};
 
 /// Tilt of a panel up to which its flanks are measured in the plane (rad).
 const UPRIGHT: f64 = 0.02;
@@ -39,7 +39,7 @@ pub struct SheetTask {
     /// Whether the flanks of its cuts touch; `false` unless set.
     pub contact: bool,
     /// Displacement and load by the law, before the loads and at every load step.
-    curve: Vec<[f64; 2]>,
+    curve: Vec<Point>,
     /// The plate out of its plane by the law at every load step; `None` where the law has none.
     out_of_plane: Option<Vec<OutOfPlane>>,
 }
@@ -48,7 +48,7 @@ pub struct SheetTask {
 struct LawState {
     configuration: Configuration,
     /// Displacement (mm) and load (N).
-    load_point: [f64; 2],
+    load_point: Point,
     /// The margin against leaving the plane at the next load step, and the largest tilt (rad).
     margin: Option<f64>,
     tilt: Option<f64>,
@@ -181,7 +181,7 @@ impl SheetTask {
         let panels = zip(&sheet.panels, &state.panels).zip(&deployed);
         let errors = panels.map(|((panel, moved), deployed)| {
             let corners = zip(&panel.boundary, deployed);
-            let error = |(flat, [u, v]): (&[f64; 2], &[f64; 2])| {
+            let error = |(flat, [u, v]): (&Point, &Point)| {
                 let [x, y, z] = moved.moved(*flat);
                 (x - u).hypot(y - v).hypot(z)
             };
@@ -230,7 +230,7 @@ impl SheetTask {
     }
 
     /// How much of the target is seen.
-    fn seen(&self, state: &SheetState) -> [f64; 2] {
+    fn seen(&self, state: &SheetState) -> Point {
         let LawState { configuration, .. } = self.by_law(state.fraction);
         [configuration, self.in_plane(state)]
             .map(|motions| seen_in(&self.scene, &self.deployment, &motions))

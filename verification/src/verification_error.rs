@@ -6,9 +6,7 @@ use fe_driver::SolveListError;
 use scene::SceneError;
 use scene::design_run::InverseDesignError;
 use std::path::Path;
-use support::fault;
-use support::fault::Fault;
-use support::file_error::FileError;
+use support::{Fault, FileError, fault};
 
 /// Why a task has no result.
 #[derive(Debug, thiserror::Error)]

@@ -12,8 +12,7 @@ use mesher::{
 };
 use scene::{Posture, PostureConfig, Scene, SupportKind};
 use std::iter::zip;
-use support::fault::Fault;
-use support::{fault, refuse};
+use support::{Fault, fault, refuse};
 
 /// Size of the elements of panels over r_win.
 const ELEMENT_SIZE: f64 = 0.8;

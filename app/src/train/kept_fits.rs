@@ -9,7 +9,7 @@ use anyhow::{Result, bail};
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
-use support::fault::Fault;
+use support::Fault;
 use surrogate::{Card, Surrogate};
 
 /// Maximum training time that is lost if the process is killed.

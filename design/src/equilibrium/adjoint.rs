@@ -29,7 +29,9 @@ use crate::{
     hinge_law::{HingeGradient, Order},
     sheet::{
         cut_sheet::SheetGradient,
-        kinematics::{HingeGeometryGradient, HingeMotion, add_at_hinge, add_motions, at_hinge},
+        kinematics::{
+            HingeGeometryGradient, HingeMotion, Motion, add_at_hinge, add_motions, at_hinge,
+        },
     },
 };
 use std::borrow::Cow;
@@ -54,22 +56,22 @@ pub(crate) struct PathGradient<'a> {
     /// Gradient in the load factor of the last load step; read under displacement control only.
     pub by_load_factor: f64,
     /// Gradient in the last configuration.
-    pub by_last: Vec<[f64; 3]>,
+    pub by_last: Vec<Motion>,
     /// Gradient in the forces (F_x, F_y, M) of the supports in the last state; zero at free degrees
     /// of freedom. `None` if it depends on none.
-    pub by_reactions: Option<Vec<[f64; 3]>>,
+    pub by_reactions: Option<Vec<Motion>>,
 }
 
 /// Results of the adjoint other than the gradient in the sheet.
 pub(crate) struct AdjointSums {
     /// Gradient with respect to (F_x, F_y, M) of every panel at full load.
-    pub loads: Vec<[f64; 3]>,
+    pub loads: Vec<Motion>,
     /// Gradient with respect to (k_a, k_s, k_theta) of every hinge; zero for a law without such
     /// constants.
     pub constants: Vec<[f64; 3]>,
     /// lambda of the last state, a virtual motion of every panel: the function changes by minus the
     /// work on it of an additional force of the hinges.
-    pub virtual_motion: Vec<[f64; 3]>,
+    pub virtual_motion: Vec<Motion>,
     /// Maximum componentwise backward error of the solves.
     pub residual: f64,
 }
@@ -160,8 +162,8 @@ pub(crate) fn adjoint(
 
 /// The virtual motion of the supports, and the forces that resist it.
 struct HeldMotion {
-    motion: Vec<[f64; 3]>,
-    resistance: Vec<[f64; 3]>,
+    motion: Vec<Motion>,
+    resistance: Vec<Motion>,
 }
 
 /// The virtual motion of the supports for a function with the given gradient in their forces, minus
@@ -170,7 +172,7 @@ fn held_motion(
     solver: &EquilibriumSolver,
     sheet: HingedSheet,
     step: &LoadStep,
-    by_reactions: &[[f64; 3]],
+    by_reactions: &[Motion],
 ) -> HeldMotion {
     let mut motion = vec![[0.0; 3]; by_reactions.len()];
     add_motions(&mut motion, by_reactions, -1.0);

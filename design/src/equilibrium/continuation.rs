@@ -15,7 +15,7 @@
 
 use crate::{
     equilibrium::{
-        corrector::{Corrected, Point},
+        corrector::{Corrected, Waypoint},
         displacement_control::HeldFactor,
         hinged_sheet::HingedSheet,
         load_step::DescentEnd,
@@ -60,7 +60,7 @@ pub(crate) const LEAP: f64 = 0.03;
 /// A path up to its last point.
 pub(crate) struct Follower<'a> {
     pub branch: Branch<'a>,
-    pub last: Point,
+    pub last: Waypoint,
     /// The increment that ends in `last`; `None` at the beginning of a branch.
     pub arc: Option<PathArc>,
     /// Ratio of lengths by the rates at the two ends of the arc.
@@ -92,7 +92,7 @@ impl<'a> Follower<'a> {
         let stable = branch.factorised(&state).factor.filter(HeldFactor::is_stable);
         let mut follower = Self {
             branch,
-            last: Point::still(position.clone()),
+            last: Waypoint::still(position.clone()),
             arc: None,
             stretch: 1.0,
             length: FIRST,
@@ -238,7 +238,7 @@ impl<'a> Follower<'a> {
 
     /// The arc from the last point to another, and the ratio of lengths by the rates at its two
     /// ends.
-    fn arc_to(&self, point: &Point) -> (PathArc, f64) {
+    fn arc_to(&self, point: &Waypoint) -> (PathArc, f64) {
         let last = &self.last;
         let product = |position: &PathPoint| {
             (self.branch).product(&last.rate.configuration, &position.configuration)
@@ -257,7 +257,7 @@ impl<'a> Follower<'a> {
         (arc, stretch)
     }
 
-    fn accept(&mut self, point: Point, (arc, stretch): (PathArc, f64), next: f64) {
+    fn accept(&mut self, point: Waypoint, (arc, stretch): (PathArc, f64), next: f64) {
         let left = |(distance, resolution)| ((distance - arc.length) / stretch, resolution);
         self.unstable = self.unstable.map(left).filter(|(distance, _)| *distance > 0.0);
         let before = std::mem::replace(&mut self.last, point);
@@ -271,7 +271,7 @@ impl<'a> Follower<'a> {
 
     /// The jump that dead loads cause at the end of the branch; `beyond` is the unstable point next
     /// to it.
-    fn jump(&mut self, beyond: Point, fold: bool) -> Option<()> {
+    fn jump(&mut self, beyond: Waypoint, fold: bool) -> Option<()> {
         let start = if fold { self.beyond_limit_point(&beyond) } else { beyond.position };
         let start = self.step_past_returns(start);
         self.restart_on_stable_branch(start, fold).ok()
@@ -294,7 +294,7 @@ impl<'a> Follower<'a> {
     /// A position at the load of the limit point, past it: there the unstable equilibrium is the
     /// ridge of the energy, from which the sheet moves away. Nearer to the limit point if panels
     /// overlap.
-    fn beyond_limit_point(&self, beyond: &Point) -> PathPoint {
+    fn beyond_limit_point(&self, beyond: &Waypoint) -> PathPoint {
         let (arc, _) = self.arc_to(beyond);
         let top = bisected(0.0, arc.length, |length| arc.slope(length) > 0.0);
         let at = arc.at(top).max(self.last.position.at);
@@ -339,7 +339,7 @@ impl<'a> Follower<'a> {
 
 impl Branch<'_> {
     /// The distance of the path from the middle of an arc, by factors of a tangent near its end.
-    fn midpoint_error(&self, arc: &PathArc, point: &Point) -> f64 {
+    fn midpoint_error(&self, arc: &PathArc, point: &Waypoint) -> f64 {
         let middle = arc.position(0.5 * arc.length);
         self.state_at(&middle, Order::Forces).zip(point.factor.as_ref()).map_or(
             f64::INFINITY,

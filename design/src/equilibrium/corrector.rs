@@ -20,6 +20,7 @@ use crate::{
         predictor::PathPoint,
     },
     hinge_law::Order,
+    sheet::kinematics::Motion,
 };
 
 /// Maximum number of corrections.
@@ -49,7 +50,7 @@ pub(crate) struct Corrected {
     /// parameter by them.
     pub state: PotentialState,
     pub factor: HeldFactor,
-    pub rate: Vec<[f64; 3]>,
+    pub rate: Vec<Motion>,
     /// Length of the first correction: the error of the prediction (rad, or panel sizes).
     pub error: f64,
 }
@@ -62,12 +63,12 @@ struct Linearised {
 
 struct NewtonCorrection {
     at: f64,
-    motion: Vec<[f64; 3]>,
+    motion: Vec<Motion>,
     /// rad, or panel sizes
     length: f64,
 }
 
-pub(crate) struct Point {
+pub(crate) struct Waypoint {
     pub position: PathPoint,
     /// The rate along the path; the fastest hinge moves by one (rad, or panel sizes).
     pub rate: PathPoint,
@@ -77,7 +78,7 @@ pub(crate) struct Point {
     pub factor: Option<HeldFactor>,
 }
 
-impl Point {
+impl Waypoint {
     /// A position without a known rate: from there the path goes on by its load parameter.
     pub(crate) fn still(position: PathPoint) -> Self {
         let rate = PathPoint {
@@ -241,7 +242,7 @@ impl Branch<'_> {
         &mut self,
         state: &PotentialState,
         factor: &HeldFactor,
-        in_plane: Option<(&[[f64; 3]], &PathPoint)>,
+        in_plane: Option<(&[Motion], &PathPoint)>,
     ) -> NewtonCorrection {
         let direct = self.direct(state, factor);
         let (motion, at) = match in_plane {
@@ -263,7 +264,7 @@ impl Branch<'_> {
     }
 
     /// The correction d_0 of a state at constant load.
-    pub(crate) fn direct(&self, state: &PotentialState, factor: &HeldFactor) -> Vec<[f64; 3]> {
+    pub(crate) fn direct(&self, state: &PotentialState, factor: &HeldFactor) -> Vec<Motion> {
         let downhill: Vec<f64> = state.gradient.iter().map(|g| -g).collect();
         let pattern = &self.solver.pattern;
         pattern.spread(&factor.solve(pattern, &downhill))
@@ -272,17 +273,17 @@ impl Branch<'_> {
     /// The correction in the plane normal to the path, and the correction of the load parameter.
     pub(crate) fn in_plane(
         &self,
-        direct: &[[f64; 3]],
-        rate: &[[f64; 3]],
+        direct: &[Motion],
+        rate: &[Motion],
         normal: &PathPoint,
-    ) -> (Vec<[f64; 3]>, f64) {
-        let along = |motion: &[[f64; 3]]| self.product(&normal.configuration, motion);
+    ) -> (Vec<Motion>, f64) {
+        let along = |motion: &[Motion]| self.product(&normal.configuration, motion);
         let dt = -along(direct) / along(rate);
         (moved(direct, rate, dt), dt)
     }
 
     /// The product of two motions; lengths are divided by the size of a panel.
-    pub(crate) fn product(&self, a: &[[f64; 3]], b: &[[f64; 3]]) -> f64 {
+    pub(crate) fn product(&self, a: &[Motion], b: &[Motion]) -> f64 {
         let scale = 1.0 / (self.panel_size * self.panel_size);
         std::iter::zip(a, b)
             .map(|([ax, ay, phi], [bx, by, psi])| scale * (ax * bx + ay * by) + phi * psi)
@@ -290,7 +291,7 @@ impl Branch<'_> {
     }
 
     /// The point of the branch at a corrected position, seen along the rate `before`.
-    pub(crate) fn point(&self, corrected: Corrected, before: Option<&PathPoint>) -> Point {
+    pub(crate) fn point(&self, corrected: Corrected, before: Option<&PathPoint>) -> Waypoint {
         let Corrected { position, state, factor, rate, .. } = corrected;
         let rate = self.refined_rate(&state, &factor, rate);
         let size = self.length(&state, &rate);
@@ -305,8 +306,8 @@ impl Branch<'_> {
         let forces = self.force_rates(&state, &rate);
         let rate = PathPoint { at: 1.0, configuration: rate, forces };
         let rate = PathPoint::sum([(scale, &rate)]);
-        let turning = |most: f64, rate: &[f64; 3]| rate[2].abs().max(most);
-        Point {
+        let turning = |most: f64, rate: &Motion| rate[2].abs().max(most);
+        Waypoint {
             turning: rate.configuration.iter().fold(0.0, turning),
             rate,
             position,
@@ -319,8 +320,8 @@ impl Branch<'_> {
         &self,
         state: &PotentialState,
         factor: &HeldFactor,
-        mut rate: Vec<[f64; 3]>,
-    ) -> Vec<[f64; 3]> {
+        mut rate: Vec<Motion>,
+    ) -> Vec<Motion> {
         let pattern = &self.solver.pattern;
         let driving = self.driving(state);
         for _ in 0..RATE.1 {
@@ -337,7 +338,7 @@ impl Branch<'_> {
     }
 
     /// The rate of the configuration with the load parameter.
-    pub(crate) fn rate(&self, state: &PotentialState, factor: &HeldFactor) -> Vec<[f64; 3]> {
+    pub(crate) fn rate(&self, state: &PotentialState, factor: &HeldFactor) -> Vec<Motion> {
         let solver = self.solver;
         let (supports, stroke) = if self.stage == PathStage::Actuation {
             let stroke = solver.drive.as_ref().map_or(0.0, |(_, stroke)| *stroke);

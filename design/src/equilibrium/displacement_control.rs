@@ -11,6 +11,7 @@
 //! ```
 
 use crate::equilibrium::tangent::{Factor, TangentPattern};
+use crate::sheet::kinematics::Motion;
 use std::iter::zip;
 use support::vectors::dot;
 
@@ -28,7 +29,7 @@ impl Stroke {
     /// The stroke of the loads (F_x, F_y, M), given in `loads` with three entries per panel, in the
     /// free degrees of freedom; `None` without any load. If there are only couples, F is the sum of
     /// the couples and the stroke is an angle.
-    pub(crate) fn new(loads: &[[f64; 3]], gathered: &[f64]) -> Option<Self> {
+    pub(crate) fn new(loads: &[Motion], gathered: &[f64]) -> Option<Self> {
         magnitude(loads).map(|(size, of_forces)| Self {
             direction: gathered.iter().map(|f| f / size).collect(),
             size,
@@ -46,9 +47,9 @@ impl Stroke {
     }
 
     /// The gradient of the stroke of a configuration with respect to the loads.
-    pub(crate) fn by_loads(&self, loads: &[[f64; 3]], configuration: &[[f64; 3]]) -> Vec<[f64; 3]> {
+    pub(crate) fn by_loads(&self, loads: &[Motion], configuration: &[Motion]) -> Vec<Motion> {
         let stroke = work(loads, configuration) / self.size;
-        let by_load = |([x, y, m], q): (&[f64; 3], &[f64; 3])| {
+        let by_load = |([x, y, m], q): (&Motion, &Motion)| {
             let force = x.hypot(*y);
             let by_size = if !self.of_forces {
                 [0.0, 0.0, m.signum()]
@@ -63,7 +64,7 @@ impl Stroke {
     }
 
     /// Whether the sum F is differentiable in each component of the load on a panel.
-    pub(crate) fn smooth_in(&self, &[x, y, m]: &[f64; 3]) -> [bool; 3] {
+    pub(crate) fn smooth_in(&self, &[x, y, m]: &Motion) -> [bool; 3] {
         let pulled = x.hypot(y) > 0.0;
         if self.of_forces { [pulled, pulled, true] } else { [false, false, m != 0.0] }
     }
@@ -154,7 +155,7 @@ impl HeldFactor {
 
 /// The sum of the magnitudes of the translational components, or of the rotational ones if the
 /// former are zero, and whether it is the former; `None` if all are zero.
-pub fn magnitude(by_panel: &[[f64; 3]]) -> Option<(f64, bool)> {
+pub fn magnitude(by_panel: &[Motion]) -> Option<(f64, bool)> {
     let along: f64 = by_panel.iter().map(|[x, y, _]| x.hypot(*y)).sum();
     let about: f64 = by_panel.iter().map(|[_, _, m]| m.abs()).sum();
     match (along > 0.0, about > 0.0) {
@@ -165,6 +166,6 @@ pub fn magnitude(by_panel: &[[f64; 3]]) -> Option<(f64, bool)> {
 }
 
 /// The work of the forces (F_x, F_y, M) on panels in motions of them (N mm).
-pub fn work(forces: &[[f64; 3]], motions: &[[f64; 3]]) -> f64 {
+pub fn work(forces: &[Motion], motions: &[Motion]) -> f64 {
     dot(forces.as_flattened(), motions.as_flattened())
 }

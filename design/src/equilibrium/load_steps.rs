@@ -6,7 +6,7 @@
 use crate::{
     equilibrium::{
         continuation::{Follower, LEAP},
-        corrector::Point,
+        corrector::Waypoint,
         displacement_control::work,
         hinged_sheet::HingedSheet,
         load_step::{DescentEnd, LoadStep, Status, StepTangent},
@@ -17,7 +17,7 @@ use crate::{
         weight::weights_of_panels,
     },
     hinge_law::Order,
-    sheet::kinematics::{Configuration, HingeMotion, add_at_hinge},
+    sheet::kinematics::{Configuration, HingeMotion, Motion, add_at_hinge},
 };
 use support::vectors;
 
@@ -125,8 +125,8 @@ impl EquilibriumSolver {
         &self,
         hinged: HingedSheet,
         weight: f64,
-        configuration: &[[f64; 3]],
-    ) -> Vec<[f64; 3]> {
+        configuration: &[Motion],
+    ) -> Vec<Motion> {
         let sheet = hinged.sheet;
         let motions = HingeMotion::all(sheet, configuration);
         let deformations: Vec<_> = motions.iter().map(HingeMotion::deformation).collect();
@@ -145,7 +145,7 @@ impl EquilibriumSolver {
 
     /// The forces (F_x, F_y, M) by which the supports hold the panels in an equilibrium at full
     /// load (N, N, N mm); zero at free degrees of freedom.
-    pub fn reactions(&self, sheet: HingedSheet, configuration: &[[f64; 3]]) -> Vec<[f64; 3]> {
+    pub fn reactions(&self, sheet: HingedSheet, configuration: &[Motion]) -> Vec<Motion> {
         let branch = Branch::new(self, sheet, PathStage::Actuation);
         let state = branch.state(1.0, configuration.to_vec(), Order::Forces);
         let state = state.expect("the energy of an equilibrium is finite");
@@ -291,7 +291,7 @@ impl Follower<'_> {
         self.branch.hold(&mut start, &self.last.position);
         let minimum = self.branch.minimum(&start)?;
         let moved = self.branch.distance(&minimum.state, &start);
-        self.last = Point::still(minimum.state.position());
+        self.last = Waypoint::still(minimum.state.position());
         self.begin();
         Ok((minimum, moved))
     }

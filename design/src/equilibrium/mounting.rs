@@ -15,8 +15,7 @@ use crate::{
     geometry::plane::{complex, point, turn_less_one},
     sheet::{cut_sheet::Panel, kinematics::Configuration},
 };
-use support::fault::Fault;
-use support::refuse;
+use support::{Fault, refuse};
 
 /// Number of load steps on the way of a hole.
 const STEPS: usize = 4;

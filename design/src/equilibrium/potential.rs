@@ -21,7 +21,7 @@ use crate::{
         weight::{PanelForce, weights_of_panels},
     },
     hinge_law::{HingeEnergy, Order},
-    sheet::kinematics::{Configuration, HingeMotion, add_at_hinge, add_motions, at_hinge},
+    sheet::kinematics::{Configuration, HingeMotion, Motion, add_at_hinge, add_motions, at_hinge},
 };
 use hinge::HingeDeformation;
 use std::array::from_fn;
@@ -81,7 +81,7 @@ pub(crate) struct PotentialState {
     pub expected: Option<Vec<[f64; 3]>>,
     /// d Pi / d q over all degrees of freedom: at the supports, the forces that hold them (N, N, N
     /// mm).
-    pub unbalanced: Vec<[f64; 3]>,
+    pub unbalanced: Vec<Motion>,
     /// d Pi / d q over the free degrees of freedom.
     pub gradient: Vec<f64>,
     /// Maximum unbalanced force, relative to `force`.
@@ -99,7 +99,7 @@ impl PotentialState {
     }
 
     /// (F_a, F_s, M_theta) per hinge.
-    pub(crate) fn forces(&self) -> Vec<[f64; 3]> {
+    pub(crate) fn forces(&self) -> Vec<Motion> {
         self.energies.iter().map(|energy| energy.forces).collect()
     }
 
@@ -184,7 +184,7 @@ impl<'a> Branch<'a> {
             (None, PathStage::Weight) => (0.0, 0.0),
             (None, PathStage::Actuation) => (at, at),
         };
-        let unbalanced: Vec<[f64; 3]> = zip(&inner, &solver.loads)
+        let unbalanced: Vec<Motion> = zip(&inner, &solver.loads)
             .map(|(inner, load)| from_fn(|d| inner[d] - load_factor * load[d]))
             .collect();
         let works = (solver.loads.as_flattened().iter())
@@ -240,9 +240,9 @@ impl<'a> Branch<'a> {
     }
 
     /// The zeta with the smallest residual.
-    fn multiplier(&self, inner: &[[f64; 3]]) -> f64 {
+    fn multiplier(&self, inner: &[Motion]) -> f64 {
         let arm = 1.0 / (self.panel_size * self.panel_size);
-        let product = |[x, y, m]: [f64; 3], [fx, fy, fm]: [f64; 3]| x * fx + y * fy + arm * m * fm;
+        let product = |[x, y, m]: Motion, [fx, fy, fm]: Motion| x * fx + y * fy + arm * m * fm;
         let (mut along, mut square) = (0.0, 0.0);
         for (&inner, &load) in zip(inner, &self.solver.loads) {
             along += product(inner, load);
@@ -252,7 +252,7 @@ impl<'a> Branch<'a> {
     }
 
     /// Maximum of forces and moments, as a force (N).
-    pub(crate) fn largest(&self, forces: impl Iterator<Item = [f64; 3]>) -> f64 {
+    pub(crate) fn largest(&self, forces: impl Iterator<Item = Motion>) -> f64 {
         forces
             .map(|[x, y, moment]| (x * x + y * y).sqrt().max(moment.abs() / self.panel_size))
             .fold(0.0, f64::max)
@@ -279,7 +279,7 @@ impl<'a> Branch<'a> {
     }
 
     /// The weight of every panel; empty if there is none.
-    fn on_panels(&self, at: f64, configuration: &[[f64; 3]]) -> Vec<PanelForce> {
+    fn on_panels(&self, at: f64, configuration: &[Motion]) -> Vec<PanelForce> {
         let on = self.weight_on(at);
         match self.solver.weight.map(|component| on * component) {
             [0.0, 0.0] => Vec::new(),
@@ -297,7 +297,7 @@ impl<'a> Branch<'a> {
 
     /// The forces on the panels (F_x, F_y, M) that grow with the load parameter in a state, by
     /// their rates.
-    pub(crate) fn driving(&self, state: &PotentialState) -> Vec<[f64; 3]> {
+    pub(crate) fn driving(&self, state: &PotentialState) -> Vec<Motion> {
         let solver = self.solver;
         match (self.stage, &solver.drive) {
             (PathStage::Weight, _) => {
@@ -311,7 +311,7 @@ impl<'a> Branch<'a> {
     }
 
     /// The rates of the hinge forces under a motion of all panels.
-    pub(crate) fn force_rates(&self, state: &PotentialState, motion: &[[f64; 3]]) -> Vec<[f64; 3]> {
+    pub(crate) fn force_rates(&self, state: &PotentialState, motion: &[Motion]) -> Vec<[f64; 3]> {
         let hinges = state.motions.iter().zip(&state.energies);
         zip(&self.sheet.sheet.hinges, hinges)
             .map(|(hinge, (hinge_motion, energy))| {
@@ -322,7 +322,7 @@ impl<'a> Branch<'a> {
     }
 
     /// H times a motion of all panels, including the supported ones.
-    pub(crate) fn resistance(&self, state: &PotentialState, motion: &[[f64; 3]]) -> Vec<[f64; 3]> {
+    pub(crate) fn resistance(&self, state: &PotentialState, motion: &[Motion]) -> Vec<Motion> {
         let mut forces = vec![[0.0; 3]; motion.len()];
         for (h, hinge) in self.sheet.sheet.hinges.iter().enumerate() {
             let (hinge_motion, energy) = (&state.motions[h], &state.energies[h]);
@@ -342,14 +342,14 @@ impl<'a> Branch<'a> {
     pub(crate) fn moved(
         &self,
         state: &PotentialState,
-        motion: &[[f64; 3]],
+        motion: &[Motion],
         fraction: f64,
     ) -> Option<PotentialState> {
         self.state(state.at, moved(&state.configuration, motion, fraction), Order::Tangent)
     }
 
     /// Maximum panel rotation (rad) or hinge translation (panel sizes) of a motion.
-    pub(crate) fn length(&self, state: &PotentialState, motion: &[[f64; 3]]) -> f64 {
+    pub(crate) fn length(&self, state: &PotentialState, motion: &[Motion]) -> f64 {
         zip(&self.sheet.sheet.hinges, &state.motions)
             .map(|(hinge, hinge_motion)| {
                 let motions = at_hinge(hinge, motion);
@@ -362,10 +362,6 @@ impl<'a> Branch<'a> {
 }
 
 /// The configuration after a fraction of a motion.
-pub(crate) fn moved(
-    configuration: &[[f64; 3]],
-    motion: &[[f64; 3]],
-    fraction: f64,
-) -> Configuration {
+pub(crate) fn moved(configuration: &[Motion], motion: &[Motion], fraction: f64) -> Configuration {
     zip(configuration, motion).map(|(q, d)| from_fn(|c| q[c] + fraction * d[c])).collect()
 }

@@ -18,7 +18,7 @@ use crate::{
     },
     sheet::{
         cut_sheet::{AttachmentPoint, Sheet},
-        kinematics::Configuration,
+        kinematics::{Configuration, Motion},
         topology::Topology,
     },
 };
@@ -27,8 +27,7 @@ use std::sync::{
     Arc,
     atomic::{AtomicBool, Ordering},
 };
-use support::fault::Fault;
-use support::{fault, refuse};
+use support::{Fault, fault, refuse};
 
 /// Number of load steps in which the weight comes on.
 const WEIGHT_STEPS: usize = 2;
@@ -42,14 +41,14 @@ pub struct EquilibriumSolver {
     /// Prescribed motions at full load.
     pub(crate) supports: Box<[Support]>,
     /// (F_x, F_y, M) per panel at full load.
-    pub(crate) loads: Box<[[f64; 3]]>,
+    pub(crate) loads: Box<[Motion]>,
     /// Weight of a unit of area (N/mm^2), zero without weight.
     pub(crate) weight: [f64; 2],
     /// The points at which panels are held or pulled; the others have their centroids as reference
     /// points.
     pub(crate) attachment_points: Box<[AttachmentPoint]>,
     /// Loads held constant from the beginning of the path.
-    pub(crate) held: Box<[[f64; 3]]>,
+    pub(crate) held: Box<[Motion]>,
     /// Direction of the stroke and its value at full load, under displacement control.
     pub(crate) drive: Option<(Box<Stroke>, f64)>,
     /// Shared by the solvers of one sheet with other loads.
@@ -123,7 +122,7 @@ impl EquilibriumSolver {
     ///
     /// # Panics
     /// If there is not one load for each panel.
-    pub fn loaded(mut self, loads: &[[f64; 3]]) -> Result<Self, Fault> {
+    pub fn loaded(mut self, loads: &[Motion]) -> Result<Self, Fault> {
         assert_eq!(loads.len(), self.loads.len(), "one load per panel");
         for (panel, load) in loads.iter().enumerate() {
             load.iter().try_for_each(|value| finite("a load", panel, *value))?;
@@ -143,14 +142,14 @@ impl EquilibriumSolver {
     }
 
     /// Loads (F_x, F_y, M) on the panels at full load (N, N, N mm).
-    pub fn loads(&self) -> &[[f64; 3]] {
+    pub fn loads(&self) -> &[Motion] {
         &self.loads
     }
 
     /// A gradient in the loads, zero in those that are no variables: at the supports, and under
     /// displacement control those whose magnitude has a kink in the sum of all, at panels without
     /// them.
-    pub(crate) fn in_loads(&self, gradient: &[[f64; 3]]) -> Vec<[f64; 3]> {
+    pub(crate) fn in_loads(&self, gradient: &[Motion]) -> Vec<Motion> {
         let mut gradient = self.pattern.spread(&self.pattern.gather(gradient));
         if let Some(stroke) = self.stroke() {
             for (gradient, load) in zip(&mut gradient, &self.loads) {
@@ -164,7 +163,7 @@ impl EquilibriumSolver {
 
     /// The components of forces on the panels at the supports; at the free degrees of freedom they
     /// are zero.
-    pub(crate) fn at_supports(&self, forces: &[[f64; 3]]) -> Vec<[f64; 3]> {
+    pub(crate) fn at_supports(&self, forces: &[Motion]) -> Vec<Motion> {
         let mut at_supports = vec![[0.0; 3]; forces.len()];
         for support in &self.supports {
             let (panel, dof) = (support.panel, support.dof.index());
@@ -174,7 +173,7 @@ impl EquilibriumSolver {
     }
 
     /// The motions (u_x, u_y, phi) of the panels that the supports prescribe at full load.
-    pub fn support_motions(&self) -> Vec<[f64; 3]> {
+    pub fn support_motions(&self) -> Vec<Motion> {
         let mut motions = vec![[0.0; 3]; self.loads.len()];
         for support in &self.supports {
             motions[support.panel][support.dof.index()] = support.value;
@@ -190,7 +189,7 @@ impl EquilibriumSolver {
     /// The displacement of a configuration along the loads, by which a stroke is prescribed: their
     /// work over the sum of their magnitudes (mm; rad if there are only couples). `None` without
     /// loads.
-    pub fn displacement(&self, configuration: &[[f64; 3]]) -> Option<f64> {
+    pub fn displacement(&self, configuration: &[Motion]) -> Option<f64> {
         let (size, _) = magnitude(&self.loads)?;
         Some(work(&self.loads, configuration) / size)
     }

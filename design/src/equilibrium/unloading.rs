@@ -17,8 +17,7 @@ use crate::{
     hinge_law::Order,
     sheet::{cut_sheet::Sheet, kinematics::Configuration},
 };
-use support::fault;
-use support::fault::Fault;
+use support::{Fault, fault};
 
 /// Number of steps in which the loads are taken off.
 const STEPS: usize = 10;

@@ -12,7 +12,7 @@ use crate::{
     geometry::plane::{I, complex, cross, dot, turn},
     sheet::{
         cut_sheet::{Panel, Sheet, SheetGradient},
-        kinematics::Configuration,
+        kinematics::{Configuration, Motion},
     },
 };
 use faer::c64;
@@ -26,16 +26,16 @@ const BALANCED: f64 = 1e-6;
 #[derive(Clone, Copy, Default)]
 pub(crate) struct PanelForce {
     /// (F_x, F_y, M) about the reference point of the panel.
-    pub force: [f64; 3],
+    pub force: Motion,
     /// Minus the derivative of `force` in the motion of the panel.
-    pub stiffness: [[f64; 3]; 3],
+    pub stiffness: [Motion; 3],
     /// The potential energy of the force (N mm).
     pub potential: f64,
 }
 
 impl PanelForce {
     /// The resistance of the stiffness to a motion.
-    pub(crate) fn resistance(&self, motion: &[f64; 3]) -> [f64; 3] {
+    pub(crate) fn resistance(&self, motion: &Motion) -> Motion {
         self.stiffness.map(|row| row[0] * motion[0] + row[1] * motion[1] + row[2] * motion[2])
     }
 }
@@ -57,7 +57,7 @@ impl PanelWeight {
         }
     }
 
-    fn on(&self, panel: &Panel, [u_x, u_y, _]: [f64; 3]) -> PanelForce {
+    fn on(&self, panel: &Panel, [u_x, u_y, _]: Motion) -> PanelForce {
         let flat = complex(panel.centroid) - complex(panel.reference);
         let mut stiffness = [[0.0; 3]; 3];
         stiffness[2][2] = dot(self.arm, self.force);
@@ -74,7 +74,7 @@ impl PanelWeight {
 pub(crate) fn weights_of_panels<'a>(
     sheet: &'a Sheet,
     by_area: [f64; 2],
-    configuration: &'a [[f64; 3]],
+    configuration: &'a [Motion],
 ) -> impl Iterator<Item = PanelForce> + 'a {
     zip(&sheet.panels, configuration)
         .map(move |(panel, &motion)| PanelWeight::new(panel, by_area, motion[2]).on(panel, motion))
@@ -86,8 +86,8 @@ pub(crate) fn add_weight_gradient(
     by_sheet: &mut SheetGradient,
     sheet: &Sheet,
     by_area: [f64; 2],
-    configuration: &[[f64; 3]],
-    lambda: &[[f64; 3]],
+    configuration: &[Motion],
+    lambda: &[Motion],
 ) {
     for (k, (panel, [x, y, turned])) in zip(&sheet.panels, lambda).enumerate() {
         let weight = PanelWeight::new(panel, by_area, configuration[k][2]);

@@ -11,8 +11,7 @@
 use crate::hinge_law::law::HingeEnergy;
 use hinge::HingeDeformation;
 use std::f64::consts::PI;
-use support::fault::Fault;
-use support::refuse;
+use support::{Fault, refuse};
 
 /// The constants of the barrier.
 #[derive(Clone, Copy, Debug, PartialEq)]

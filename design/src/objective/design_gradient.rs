@@ -15,7 +15,7 @@ use crate::{
     sheet::{
         cut_sheet::{Sheet, SheetGradient},
         ideal_deployment::ideal_deployment_pullback,
-        kinematics::deployed_pullback,
+        kinematics::{Motion, deployed_pullback},
         topology::PanelCorner,
     },
 };
@@ -39,7 +39,7 @@ pub(super) struct Partials<'a> {
     /// Gradient in size and rotation of a fitted target.
     pub by_fit: [f64; 2],
     /// Gradient in the forces of the supports in the last step; `None` if all are zero.
-    pub by_reactions: Option<Vec<[f64; 3]>>,
+    pub by_reactions: Option<Vec<Motion>>,
 }
 
 /// The gradient of a function of a deployment.
@@ -50,7 +50,7 @@ pub(super) struct Gradient {
     pub sensitivities: Sensitivities,
     /// [`AdjointSums::virtual_motion`](crate::equilibrium::adjoint::AdjointSums::virtual_motion);
     /// empty without equilibrium.
-    pub virtual_motion: Vec<[f64; 3]>,
+    pub virtual_motion: Vec<Motion>,
     /// [`Evaluation::adjoint_residual`].
     pub adjoint_residual: f64,
 }
@@ -159,7 +159,7 @@ fn outline_pullback<'a>(
     compared: &LoadStep,
     outline: impl Iterator<Item = (&'a PanelCorner, &'a [f64; 2])>,
     by_sheet: &mut SheetGradient,
-) -> Vec<[f64; 3]> {
+) -> Vec<Motion> {
     let mut by_compared = vec![[0.0; 3]; sheet.panels.len()];
     for (&(panel, corner), &gradient) in outline {
         let flat = sheet.panels[panel].boundary[corner];

@@ -29,7 +29,7 @@ use crate::{
 use hinge::TrainingDomain;
 use serde::Serialize;
 use std::sync::{Arc, atomic::AtomicBool};
-use support::{fault, fault::Fault, refuse, verbose};
+use support::{Fault, Point, fault, refuse, verbose};
 
 /// Why a design has no objective value.
 #[derive(Debug, thiserror::Error)]
@@ -126,7 +126,7 @@ pub struct Deployment {
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Sensitivities {
     /// Gradient in the outline's corners, at fixed r and tau.
-    pub outline: [[f64; 2]; 4],
+    pub outline: [Point; 4],
     /// Gradient in (F_x, F_y, M) of each panel at full load; empty without equilibrium.
     pub loads: Vec<[f64; 3]>,
     /// Gradient in (k_a, k_s, k_theta) of each hinge; empty without equilibrium, zero unless
@@ -177,12 +177,12 @@ impl Deployment {
     }
 
     /// Positions of panel corners at full load (mm).
-    pub fn outline(&self, corners: &[PanelCorner]) -> Vec<[f64; 2]> {
+    pub fn outline(&self, corners: &[PanelCorner]) -> Vec<Point> {
         self.outline_at(self.final_step(), corners)
     }
 
     /// Positions of panel corners in a state of the sheet (mm).
-    pub(crate) fn outline_at(&self, step: &LoadStep, corners: &[PanelCorner]) -> Vec<[f64; 2]> {
+    pub(crate) fn outline_at(&self, step: &LoadStep, corners: &[PanelCorner]) -> Vec<Point> {
         let configuration = &step.configuration;
         let deployed = |&(panel, corner): &PanelCorner| {
             let flat = self.sheet.panels[panel].boundary[corner];

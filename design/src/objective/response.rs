@@ -30,7 +30,7 @@ use crate::{
     pattern::design_vector::DesignVector,
     sheet::{
         cut_sheet::SheetGradient,
-        kinematics::{HingeMotion, at_hinge, deployed_corners},
+        kinematics::{HingeMotion, Motion, at_hinge, deployed_corners},
     },
 };
 use hinge::HingeDeformation;
@@ -41,7 +41,7 @@ use support::vectors::dot;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Conditions {
     /// (F_x, F_y, M) on every panel at full load (N, N, N mm); `None` for the loads of the problem.
-    pub loads: Option<Vec<[f64; 3]>>,
+    pub loads: Option<Vec<Motion>>,
     /// Thickness over the thickness of the problem.
     pub thickness: f64,
     /// All stresses at equal strain over the stresses of the problem.
@@ -60,7 +60,7 @@ pub struct Response {
     pub deployment: Deployment,
     /// Forces (F_x, F_y, M) by which the supports hold every panel (N, N, N mm), about the point
     /// where it is held; zero where it is free.
-    pub reactions: Vec<[f64; 3]>,
+    pub reactions: Vec<Motion>,
 }
 
 impl Response {
@@ -81,7 +81,7 @@ pub struct ResponseCotangent {
     /// Gradient in the deployed corners of every panel.
     pub corners: Vec<[[f64; 2]; 4]>,
     /// Gradient in the reactions.
-    pub reactions: Vec<[f64; 3]>,
+    pub reactions: Vec<Motion>,
     /// Gradient in the load factor.
     pub load_factor: f64,
 }
@@ -94,7 +94,7 @@ pub struct ResponseGradient {
     /// Gradient in (F_x, F_y, M) on every panel at full load; zero at the supports, where no load
     /// is possible, and under a prescribed stroke in the forces on panels without a force: the sum
     /// of all magnitudes, which the stroke refers to, has a kink there.
-    pub loads: Vec<[f64; 3]>,
+    pub loads: Vec<Motion>,
     /// Gradient in the logarithm of the thickness; `None` if the hinge law does not determine it.
     pub thickness: Option<f64>,
     /// Gradient in the logarithm of all stresses at equal strain; `None` if the hinge law does not
@@ -153,7 +153,7 @@ impl DesignProblem {
     pub fn response_at(
         &self,
         design: &DesignVector,
-        configuration: &[[f64; 3]],
+        configuration: &[Motion],
     ) -> Result<Response, DesignError> {
         self.responded(design, |solver, hinged| {
             (vec![solver.full_load(hinged, configuration.to_vec())], false)

@@ -10,7 +10,7 @@ use crate::{
 use faer::c64;
 use std::iter::zip;
 use std::{fmt::Debug, sync::Arc};
-use support::vectors;
+use support::{Point, vectors};
 
 /// A term of the objective.
 pub trait Term: Debug + Send + Sync {
@@ -61,7 +61,7 @@ pub struct Deployed<'a> {
     /// The load steps, without the flat state.
     pub path: &'a [LoadStep],
     /// The deployed positions of the outline points P (mm).
-    pub outline: &'a [[f64; 2]],
+    pub outline: &'a [Point],
     /// How the sheet is fitted to its target.
     pub fit: Option<FitVariables>,
 }
@@ -70,7 +70,7 @@ pub struct Deployed<'a> {
 #[derive(Clone, Debug, PartialEq)]
 pub struct TermGradient {
     /// Gradient in the deployed positions of P.
-    pub by_outline: Vec<[f64; 2]>,
+    pub by_outline: Vec<Point>,
     /// Gradient in the measures of each hinge at each load step, for the sum over hinges instead of
     /// their mean.
     pub by_measures: Vec<Vec<MeasureGradient>>,
@@ -89,7 +89,7 @@ pub(crate) fn over_panels(
     weight: f64,
     scale: f64,
     gradient: &mut TermGradient,
-    function: impl Fn(&[[f64; 2]; 4], &mut f64, &mut [c64; 4]),
+    function: impl Fn(&[Point; 4], &mut f64, &mut [c64; 4]),
 ) -> f64 {
     let mut value = 0.0;
     for (panel, sums) in zip(&at.sheet.panels, &mut gradient.by_sheet.corners) {
@@ -129,7 +129,7 @@ impl TermGradient {
     }
 
     /// Adds `weight` times a gradient in the deployed positions of P.
-    pub fn add_by_outline(&mut self, weight: f64, by_outline: &[[f64; 2]]) {
+    pub fn add_by_outline(&mut self, weight: f64, by_outline: &[Point]) {
         let sums = self.by_outline.as_flattened_mut();
         vectors::add(sums, by_outline.as_flattened(), weight);
     }

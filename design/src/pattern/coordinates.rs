@@ -7,8 +7,7 @@
 use crate::pattern::grid::Grid;
 use serde::{Deserialize, Serialize};
 use std::iter::zip;
-use support::fault::Fault;
-use support::{fault, refuse};
+use support::{Fault, fault, refuse};
 
 /// Unconstrained coordinates of a pattern (5), or a gradient in them.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

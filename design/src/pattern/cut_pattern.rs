@@ -28,15 +28,14 @@ use faer::{
 };
 use serde::{Deserialize, Serialize};
 use std::iter::zip;
-use support::fault::Fault;
-use support::{fault, refuse};
+use support::{Fault, Point, fault, refuse};
 
 /// The fixed outline of the flat sheet: corners SW, SE, NE, NW (mm).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Outline {
     /// Corners SW, SE, NE, NW (mm).
-    pub corners: [[f64; 2]; 4],
+    pub corners: [Point; 4],
 }
 
 impl Outline {
@@ -87,7 +86,7 @@ pub struct CutPattern {
     /// Boundary positions on the edges bottom, right, top, left, as fractions of the edge.
     pub tau: [Vec<f64>; 4],
     /// Cut endpoints (mm), row by row: x_ij, then x'_ij of each vertex.
-    pub points: Vec<[f64; 2]>,
+    pub points: Vec<Point>,
     /// Factors of the collinearity system, stored for the pullback.
     system: Lu<usize, f64>,
 }
@@ -124,7 +123,7 @@ impl CutPattern {
         .sp_lu()
         .map_err(|_| singular())?;
         let solution = system.solve(outline_points(grid, &outline, &tau));
-        let points: Vec<[f64; 2]> =
+        let points: Vec<Point> =
             (0..grid.point_count()).map(|row| [solution[(row, 0)], solution[(row, 1)]]).collect();
         if points.iter().flatten().any(|value| !value.is_finite()) {
             return Err(singular());
@@ -133,17 +132,17 @@ impl CutPattern {
     }
 
     /// x_ij (mm).
-    pub fn x(&self, i: usize, j: usize) -> [f64; 2] {
+    pub fn x(&self, i: usize, j: usize) -> Point {
         self.points[self.grid.endpoint(i, j, Endpoint::X)]
     }
 
     /// x'_ij (mm).
-    pub fn x_prime(&self, i: usize, j: usize) -> [f64; 2] {
+    pub fn x_prime(&self, i: usize, j: usize) -> Point {
         self.points[self.grid.endpoint(i, j, Endpoint::XPrime)]
     }
 
     /// The sides r L and (1 - r) L of the void of every interior cut (mm), row by row.
-    pub fn void_sides(&self) -> Vec<[f64; 2]> {
+    pub fn void_sides(&self) -> Vec<Point> {
         let cuts = zip(self.grid.interior_vertices(), &self.r);
         cuts.map(|((i, j), r)| {
             let [a, b] = self.grid.facing_endpoints(i, j);
@@ -155,7 +154,7 @@ impl CutPattern {
 
     /// The gradient in (z, ell) and in the outline's corners of a function with the given gradient
     /// in [`points`](Self::points).
-    pub fn pullback(&self, points: &[c64]) -> (PatternCoordinates, [[f64; 2]; 4]) {
+    pub fn pullback(&self, points: &[c64]) -> (PatternCoordinates, [Point; 4]) {
         let adjoint = self
             .system
             .solve_transpose(Mat::from_fn(points.len(), 2, |row, axis| point(points[row])[axis]));
@@ -185,7 +184,7 @@ impl CutPattern {
     }
 
     /// The gradient in the outline's corners, from the adjoint of the cut endpoints.
-    fn outline_pullback(&self, adjoint: impl Fn(usize) -> c64) -> [[f64; 2]; 4] {
+    fn outline_pullback(&self, adjoint: impl Fn(usize) -> c64) -> [Point; 4] {
         let mut corners = [c64::ZERO; 4];
         for (edge, tau) in self.tau.iter().enumerate() {
             let [start, end] = EDGES[edge];

@@ -11,6 +11,7 @@
 use crate::pattern::{coordinates::logistic, cut_pattern::Outline};
 use serde::{Deserialize, Serialize};
 use std::array::from_fn;
+use support::Point;
 
 /// The variables of a fit, or a gradient in them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -21,7 +22,7 @@ pub struct FitVariables {
     /// Rotation of the target about its centre, counter-clockwise (rad).
     pub rotation: f64,
     /// u of the corners SW, SE, NE, NW.
-    pub corners: [[f64; 2]; 4],
+    pub corners: [Point; 4],
 }
 
 impl FitVariables {
@@ -48,7 +49,7 @@ impl FitVariables {
         &self,
         stock: &Outline,
         [ln_size, rotation]: [f64; 2],
-        by_outline: &[[f64; 2]; 4],
+        by_outline: &[Point; 4],
     ) -> Self {
         let middle = middle(stock);
         let by_u = |i: usize, c: usize| {
@@ -59,7 +60,7 @@ impl FitVariables {
     }
 }
 
-fn middle(stock: &Outline) -> [f64; 2] {
+fn middle(stock: &Outline) -> Point {
     let [sw, _, ne, _] = stock.corners;
     [0, 1].map(|c| 0.5 * (sw[c] + ne[c]))
 }

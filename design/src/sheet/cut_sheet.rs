@@ -31,8 +31,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::iter::zip;
 use std::sync::Arc;
-use support::fault::Fault;
-use support::refuse;
+use support::{Fault, Point, refuse};
 
 /// The point at which the hinge deformation (8) is measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
@@ -74,15 +73,15 @@ pub struct Hinge {
     /// The two panels and the cuts that bound the hinge.
     pub site: HingeSite,
     /// The ideal corner C, shared by the two panels (mm).
-    pub corner: [f64; 2],
+    pub corner: Point,
     /// The tip O of the main cut (mm).
-    pub tip: [f64; 2],
+    pub tip: Point,
     /// The point at which (8) is measured: `corner` or `tip` (mm).
-    pub attachment: [f64; 2],
+    pub attachment: Point,
     /// Unit vector along the secondary cut.
-    pub e_sec: [f64; 2],
+    pub e_sec: Point,
     /// Unit vector from the corner along the main cut.
-    pub main: [f64; 2],
+    pub main: Point,
     /// Material between O and the finished edge of the secondary cut (mm).
     pub w_lig: f64,
     /// Distance of O from the line of the secondary cut (mm): w_lig plus half of the slit, or
@@ -108,7 +107,7 @@ pub struct Sheet {
     /// Ordered by vertex, row by row; at each vertex x before x'.
     pub hinges: Vec<Hinge>,
     /// Cut endpoints of the pattern.
-    points: Vec<[f64; 2]>,
+    points: Vec<Point>,
 }
 
 /// The gradient of a function of the sheet with respect to all quantities of the sheet.
@@ -323,7 +322,7 @@ impl Hinge {
     fn new(
         hinge: usize,
         site: HingeSite,
-        points: &[[f64; 2]],
+        points: &[Point],
         [w_lig, set_back]: [f64; 2],
         options: SheetOptions,
     ) -> Result<Self, Fault> {

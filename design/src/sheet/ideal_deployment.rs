@@ -18,8 +18,7 @@ use crate::{
     },
 };
 use faer::c64;
-use support::fault;
-use support::fault::Fault;
+use support::{Fault, fault};
 
 /// An error unless the opening angle (rad) is finite.
 pub fn check_opening(theta: f64) -> Result<(), Fault> {

@@ -23,35 +23,38 @@ use crate::{
 use faer::c64;
 use hinge::HingeDeformation;
 use std::iter::zip;
-use support::vectors;
+use support::{Point, vectors};
 
-/// A rigid motion (u_x, u_y, phi) of every panel relative to the flat sheet (mm, mm, rad).
-pub type Configuration = Vec<[f64; 3]>;
+/// A rigid motion (u_x, u_y, phi) of a panel (mm, mm, rad), or forces and a moment on it.
+pub type Motion = [f64; 3];
+
+/// The motion of every panel relative to the flat sheet.
+pub type Configuration = Vec<Motion>;
 
 /// The deployed position of a point of a panel with the motion `motion`.
-pub fn deployed(panel: &Panel, motion: [f64; 3], flat: [f64; 2]) -> [f64; 2] {
+pub fn deployed(panel: &Panel, motion: Motion, flat: Point) -> Point {
     let [u_x, u_y, phi] = motion;
     let reference = complex(panel.reference);
     point(c64::new(u_x, u_y) + reference + turn(phi) * (complex(flat) - reference))
 }
 
 /// The deployed corners SW, SE, NE, NW of every panel (mm).
-pub fn deployed_corners(sheet: &Sheet, configuration: &[[f64; 3]]) -> Vec<[[f64; 2]; 4]> {
+pub fn deployed_corners(sheet: &Sheet, configuration: &[Motion]) -> Vec<[Point; 4]> {
     zip(&sheet.panels, configuration)
         .map(|(panel, &motion)| panel.corners.map(|corner| deployed(panel, motion, corner)))
         .collect()
 }
 
 /// The deployed boundary of every panel (mm).
-pub fn deployed_boundaries(sheet: &Sheet, configuration: &[[f64; 3]]) -> Vec<Vec<[f64; 2]>> {
-    let moved = |(panel, motion): (&Panel, &[f64; 3])| {
+pub fn deployed_boundaries(sheet: &Sheet, configuration: &[Motion]) -> Vec<Vec<Point>> {
+    let moved = |(panel, motion): (&Panel, &Motion)| {
         panel.boundary.iter().map(|point| deployed(panel, *motion, *point)).collect()
     };
     zip(&sheet.panels, configuration).map(moved).collect()
 }
 
 /// Distance of every panel corner between two configurations (mm).
-pub fn corner_distances(sheet: &Sheet, from: &[[f64; 3]], to: &[[f64; 3]]) -> Vec<f64> {
+pub fn corner_distances(sheet: &Sheet, from: &[Motion], to: &[Motion]) -> Vec<f64> {
     let [from, to] = [from, to].map(|configuration| deployed_corners(sheet, configuration));
     zip(from.as_flattened(), to.as_flattened()).map(|(p, q)| distance(*p, *q)).collect()
 }
@@ -60,10 +63,10 @@ pub fn corner_distances(sheet: &Sheet, from: &[[f64; 3]], to: &[[f64; 3]]) -> Ve
 /// the deployed position of the point.
 pub fn deployed_pullback(
     panel: &Panel,
-    motion: [f64; 3],
-    flat: [f64; 2],
-    gradient: [f64; 2],
-) -> ([f64; 3], c64, c64) {
+    motion: Motion,
+    flat: Point,
+    gradient: Point,
+) -> (Motion, c64, c64) {
     let force = complex(gradient);
     let spin = turn(motion[2]);
     let arm = spin * (complex(flat) - complex(panel.reference));
@@ -72,7 +75,7 @@ pub fn deployed_pullback(
 }
 
 /// The deformation (8) of every hinge.
-pub fn hinge_deformations(sheet: &Sheet, configuration: &[[f64; 3]]) -> Vec<HingeDeformation> {
+pub fn hinge_deformations(sheet: &Sheet, configuration: &[Motion]) -> Vec<HingeDeformation> {
     let motions = HingeMotion::all(sheet, configuration);
     motions.iter().map(HingeMotion::deformation).collect()
 }
@@ -116,13 +119,13 @@ pub struct HingeGeometryGradient {
 
 impl HingeMotion {
     /// The motions of all hinges of a sheet.
-    pub fn all(sheet: &Sheet, configuration: &[[f64; 3]]) -> Vec<Self> {
+    pub fn all(sheet: &Sheet, configuration: &[Motion]) -> Vec<Self> {
         let hinges = 0..sheet.hinges.len();
         hinges.map(|h| Self::new(sheet, h, configuration)).collect()
     }
 
     /// The kinematics of one hinge, given by its index.
-    pub fn new(sheet: &Sheet, hinge: usize, configuration: &[[f64; 3]]) -> Self {
+    pub fn new(sheet: &Sheet, hinge: usize, configuration: &[Motion]) -> Self {
         let hinge = &sheet.hinges[hinge];
         let [a, b] = hinge.panels();
         let [c_a, c_b] = [a, b].map(|panel| complex(sheet.panels[panel].reference));
@@ -266,18 +269,18 @@ fn relative_motion([ax, ay, phi_a, bx, by, phi_b]: [f64; 6]) -> [f64; 4] {
 }
 
 /// Adds `factor` times a vector (x, y, phi) per panel to a sum.
-pub(crate) fn add_motions(sum: &mut [[f64; 3]], motion: &[[f64; 3]], factor: f64) {
+pub(crate) fn add_motions(sum: &mut [Motion], motion: &[Motion], factor: f64) {
     vectors::add(sum.as_flattened_mut(), motion.as_flattened(), factor);
 }
 
 /// The components of the two panels of a hinge.
-pub(crate) fn at_hinge(hinge: &Hinge, by_panel: &[[f64; 3]]) -> [f64; 6] {
+pub(crate) fn at_hinge(hinge: &Hinge, by_panel: &[Motion]) -> [f64; 6] {
     let [a, b] = hinge.panels().map(|panel| by_panel[panel]);
     [a[0], a[1], a[2], b[0], b[1], b[2]]
 }
 
 /// Adds the components of the two panels of a hinge.
-pub(crate) fn add_at_hinge(by_panel: &mut [[f64; 3]], hinge: &Hinge, components: [f64; 6]) {
+pub(crate) fn add_at_hinge(by_panel: &mut [Motion], hinge: &Hinge, components: [f64; 6]) {
     for (panel, components) in zip(hinge.panels(), components.chunks(3)) {
         vectors::add(&mut by_panel[panel], components, 1.0);
     }

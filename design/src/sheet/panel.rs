@@ -6,8 +6,7 @@ use crate::pattern::grid::{NW, SE, SW};
 use crate::sheet::topology::Trim;
 use faer::c64;
 use std::array::from_fn;
-use support::fault::Fault;
-use support::refuse;
+use support::{Fault, Point, refuse};
 
 /// A point of a panel in the flat sheet.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -18,23 +17,23 @@ pub enum PanelPoint {
     /// The middle between two corners.
     Middle([usize; 2]),
     /// A point that does not move with the cuts (mm).
-    Fixed([f64; 2]),
+    Fixed(Point),
 }
 
 /// A rigid panel in the flat sheet.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Panel {
     /// SW, SE, NE, NW of its cell (mm).
-    pub corners: [[f64; 2]; 4],
+    pub corners: [Point; 4],
     /// The polygon that it is, counter-clockwise: the corners, unless it is trimmed (mm).
-    pub boundary: Vec<[f64; 2]>,
+    pub boundary: Vec<Point>,
     pub(crate) trim: Option<Trim>,
     /// The point whose motion is (u_x, u_y), where the panel is held or pulled.
     pub point: PanelPoint,
     /// Its position (mm).
-    pub reference: [f64; 2],
+    pub reference: Point,
     /// The centroid of the area (mm).
-    pub centroid: [f64; 2],
+    pub centroid: Point,
     /// mm^2
     pub area: f64,
 }
@@ -42,7 +41,7 @@ pub struct Panel {
 impl Panel {
     pub(super) fn new(
         panel: usize,
-        corners: [[f64; 2]; 4],
+        corners: [Point; 4],
         trim: Option<Trim>,
     ) -> Result<Self, Fault> {
         let boundary = boundary(&corners, trim.as_ref());
@@ -81,7 +80,7 @@ impl Panel {
     }
 
     /// The position of a point of the panel in the flat sheet (mm).
-    pub fn position(&self, point: PanelPoint) -> [f64; 2] {
+    pub fn position(&self, point: PanelPoint) -> Point {
         match point {
             PanelPoint::Centroid => self.centroid,
             PanelPoint::Middle([from, to]) => {
@@ -143,7 +142,7 @@ impl Panel {
     /// Let p_j be the vectors from the centroid and S_j = p_j x p_(j+1). The centroid moves by
     /// sum_j [(dp_j + dp_(j+1)) S_j + (p_j + p_(j+1)) dS_j] / (3 sum_j S_j).
     fn centroid_pullback(&self, gradient: c64) -> [c64; 4] {
-        let arm = |corner: &[f64; 2]| complex(*corner) - complex(self.centroid);
+        let arm = |corner: &Point| complex(*corner) - complex(self.centroid);
         let arms: Vec<c64> = self.boundary.iter().map(arm).collect();
         let sectors = sectors(&arms);
         let scaled = gradient / (3.0 * sectors.iter().sum::<f64>());
@@ -159,10 +158,10 @@ impl Panel {
 }
 
 /// The polygon that a panel is, counter-clockwise (mm).
-pub fn boundary(corners: &[[f64; 2]; 4], trim: Option<&Trim>) -> Contour {
+pub fn boundary(corners: &[Point; 4], trim: Option<&Trim>) -> Contour {
     let along = |c: usize, to: usize| corners[to][c] - corners[SW][c];
     let in_cell =
-        |[x, y]: &[f64; 2]| [0, 1].map(|c| corners[SW][c] + x * along(c, SE) + y * along(c, NW));
+        |[x, y]: &Point| [0, 1].map(|c| corners[SW][c] + x * along(c, SE) + y * along(c, NW));
     trim.map_or_else(|| corners.to_vec(), |trim| trim.iter().map(in_cell).collect())
 }
 

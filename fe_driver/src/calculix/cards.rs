@@ -3,7 +3,7 @@
 
 use crate::{DeformationPath, StepControl};
 use hinge::{HingeDeformation, HingeForces, SheetMaterial};
-use support::add_line;
+use support::{Point, add_line};
 
 /// A number in a format that ccx reads: a field has 20 characters, and this format uses at most 19.
 pub(crate) fn real(x: f64) -> String {
@@ -46,11 +46,7 @@ pub(crate) fn write_material(d: &mut String, material: &SheetMaterial) {
 }
 
 /// A table of (time since the beginning of the first step, value).
-pub(crate) fn write_amplitude(
-    d: &mut String,
-    name: &str,
-    pairs: impl IntoIterator<Item = [f64; 2]>,
-) {
+pub(crate) fn write_amplitude(d: &mut String, name: &str, pairs: impl IntoIterator<Item = Point>) {
     add_line!(d, "*AMPLITUDE,NAME={name},TIME=TOTAL TIME");
     let pairs: Vec<String> = (pairs.into_iter())
         .map(|[time, value]| format!("{},{}", real(time), real(value)))
@@ -83,7 +79,7 @@ pub(crate) struct DrivenArc<'a> {
     /// Nodes of the arc, counted from 0.
     pub nodes: &'a [usize],
     /// The point to which the motion refers, in the undeformed mesh (mm).
-    pub about: [f64; 2],
+    pub about: Point,
     /// The control nodes of (q1, q2) and of (q3, q4), counted from 1.
     pub drivers: [usize; 2],
 }
@@ -144,7 +140,7 @@ pub(crate) struct PanelMotion {
     /// Rotation about O (rad).
     pub theta: f64,
     /// Displacement of O on panel B (mm), in the frame of panel A.
-    pub du: [f64; 2],
+    pub du: Point,
 }
 
 impl PanelMotion {
@@ -166,7 +162,7 @@ impl PanelMotion {
     /// (F_a, F_s, M_theta) from the resultant `force` (N) on panel B and its `moment` (N mm) about
     /// the current position of O on B. They are the gradient of the work with respect to (a, s,
     /// theta); M_theta has a contribution of the force because du rotates with theta/2.
-    pub(crate) fn forces(&self, force: [f64; 2], moment: f64) -> HingeForces {
+    pub(crate) fn forces(&self, force: Point, moment: f64) -> HingeForces {
         let [f_a, f_s] = rotated(force, -0.5 * self.theta);
         HingeForces {
             f_a,
@@ -177,7 +173,7 @@ impl PanelMotion {
 }
 
 /// The vector (x, y) rotated counter-clockwise by `angle` (rad).
-pub(crate) fn rotated([x, y]: [f64; 2], angle: f64) -> [f64; 2] {
+pub(crate) fn rotated([x, y]: Point, angle: f64) -> Point {
     let (sin, cos) = angle.sin_cos();
     [cos * x - sin * y, sin * x + cos * y]
 }

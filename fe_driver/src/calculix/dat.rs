@@ -4,8 +4,7 @@
 //! terminated leaves an incomplete last block: an unterminated line and an incomplete last frame
 //! are dropped. Any input gives either frames or an error that names the line.
 
-use support::fault;
-use support::fault::Fault;
+use support::{Fault, fault};
 
 /// The numbers of rows that a complete increment prints.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -20,9 +20,7 @@ use std::fs::File;
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
-use support::fault::Fault;
-use support::file_error::FileError;
-use support::{fault, lock_file, refuse, whole_file};
+use support::{Fault, FileError, fault, lock_file, refuse, whole_file};
 
 /// The folder of a campaign.
 #[derive(Clone, Debug)]

@@ -11,8 +11,7 @@ use hinge::{HingeConstants, HingeDeformation};
 use serde::Deserialize;
 use std::f64::consts::FRAC_PI_2;
 use std::path::Path;
-use support::fault::Fault;
-use support::{csv_table, refuse};
+use support::{Fault, csv_table, refuse};
 
 /// One row of the file: a hinge and the end of its ray.
 #[derive(Deserialize)]

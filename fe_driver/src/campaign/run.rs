@@ -10,8 +10,7 @@ use std::collections::{BTreeMap, HashMap, HashSet};
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
-use support::file_error::FileError;
-use support::refuse;
+use support::{FileError, refuse};
 
 /// Which jobs a run works on, and how.
 #[derive(Clone, Copy, Debug)]

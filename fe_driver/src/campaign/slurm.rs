@@ -11,9 +11,7 @@ use std::fmt;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf, absolute};
 use std::process::Command;
-use support::fault::Fault;
-use support::file_error::FileError;
-use support::{fault, lock_file, refuse, verbose, whole_file};
+use support::{Fault, FileError, fault, lock_file, refuse, verbose, whole_file};
 
 /// The script of a task and of the job that collects.
 const SCRIPT: &str = include_str!("../../../configs/cluster/slurm.sh");

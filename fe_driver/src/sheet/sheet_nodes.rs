@@ -4,8 +4,7 @@ use crate::{Held, OutOfPlaneRestraint, Place, Pulled, SheetProblem, real, write_
 use hinge::STANDARD_GRAVITY;
 use mesher::{Panels, Part, SheetMesh};
 use std::collections::BTreeSet;
-use support::fault::Fault;
-use support::{add_line, fault};
+use support::{Fault, add_line, fault};
 
 /// Largest distance of a node from the line on which a panel is held (mm).
 const ON_LINE: f64 = 1e-6;

@@ -13,9 +13,8 @@ use crate::{
 use serde::Serialize;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
-use support::fault::Fault;
-use support::file_error::FileError;
 use support::worker_pool::{NoThread, Reports, work_through};
+use support::{Fault, FileError};
 
 /// Why a list of solves ended before its last solve. What was solved until then is kept.
 #[derive(Debug, thiserror::Error)]

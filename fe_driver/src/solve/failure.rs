@@ -4,10 +4,8 @@
 use mesher::MeshError;
 use serde::{Deserialize, Serialize};
 use strum::VariantNames;
-use support::fault;
-use support::fault::Fault;
-use support::file_error::FileError;
 use support::program::{ToolEnd, ToolError};
+use support::{Fault, FileError, fault};
 
 /// Why a solve has no samples, or only samples of a part of its path. Records and tables use its
 /// name.

@@ -13,9 +13,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
-use support::fault;
-use support::fault::Fault;
-use support::file_error::FileError;
+use support::{Fault, FileError, fault};
 
 /// A program that solves problems of one kind. Attempts run in parallel.
 pub trait Solver<S: Solve = WindowSolve>: Sync {

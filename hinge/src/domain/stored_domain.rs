@@ -5,9 +5,8 @@ use crate::domain::directions::{DIRECTION, DIRECTIONS, norm};
 use crate::{HingeDeformation, HingeDesign};
 use serde::Deserialize;
 use std::array::from_fn;
-use support::fault::Fault;
-use support::refuse;
 use support::vectors::dot;
+use support::{Fault, refuse};
 
 /// The fields of a domain, not checked yet.
 #[derive(Deserialize)]

@@ -7,9 +7,8 @@ use crate::drawing::contour::Contour;
 use crate::drawing::drawn_outline::listed;
 use crate::drawing::joined_lines::joined;
 use std::path::{Path, PathBuf};
-use support::file_error::FileError;
-use support::text_file;
 use support::text_table::{TextRow, TextTable};
+use support::{FileError, text_file};
 
 /// Units behind the names of columns, with their length (mm).
 const UNITS: [(&str, f64); 5] =

@@ -2,7 +2,7 @@
 
 use crate::closed_form::{config, database, energies, finished, rows};
 use std::path::Path;
-use support::fault::Fault;
+use support::Fault;
 use train::{Start, Trained, Training, TrainingConfig};
 
 /// A training of `epochs` epochs after `run` of them.
