@@ -2,9 +2,9 @@
 
 use crate::digest::{Digest, by_job_and_lambda};
 use crate::manifest::Manifest;
-use crate::parquet::{self, DatasetError};
+use crate::parquet;
 use crate::rows::{Fidelity, Row};
-use crate::schema::COLUMNS;
+use crate::schema::{COLUMNS, DatasetError};
 use crate::split::{Part, SplitPlan, geometry};
 use std::collections::BTreeSet;
 use support::{Fault, fault};

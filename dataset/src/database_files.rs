@@ -7,8 +7,9 @@
 use crate::database::Database;
 use crate::digest::{Digest, by_job_and_lambda};
 use crate::manifest::{FORMAT_VERSION, Manifest};
-use crate::parquet::{self, DatasetError, Hashing, Table};
+use crate::parquet::{self, Hashing, Table};
 use crate::rows::Row;
+use crate::schema::DatasetError;
 use crate::split::SplitPlan;
 use crate::summary::Contents;
 use std::fmt::{self, Display};

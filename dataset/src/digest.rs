@@ -2,9 +2,8 @@
 //! themselves need not be in memory at the same time.
 
 use crate::manifest::{AcceptanceLimits, FORMAT_VERSION, FinerMesh, Manifest, Rejection};
-use crate::parquet::DatasetError;
 use crate::rows::{RayKey, Row, ray_key};
-use crate::schema::COLUMNS;
+use crate::schema::{COLUMNS, DatasetError};
 use crate::split::{Geometries, Split, SplitPlan};
 use hinge::{HingeConstants, HingeDeformation, HingeDesign, Regime, TrainingDomain};
 use std::cmp::{Ordering, Reverse};

@@ -17,8 +17,8 @@
 use crate::bridge::{Bridge, TERMS};
 use crate::compare::{COMPARED, ComparedRay, ComparedState};
 use crate::database::Database;
-use crate::parquet::DatasetError;
 use crate::rows::{Fidelity, Row};
+use crate::schema::DatasetError;
 use hinge::HingeSample;
 use support::refuse;
 

@@ -42,9 +42,8 @@ pub use compare::{COMPARED, ComparedRay, ComparedState, compare, reference_rms, 
 pub use database::Database;
 pub use fidelity_correction::{LeftOut, left_out};
 pub use manifest::{AcceptanceLimits, FORMAT_VERSION, FinerMesh, Manifest, Rejection};
-pub use parquet::DatasetError;
 
 pub use database_files::Collected;
 pub use rows::{Fidelity, Row, with_mirrored};
-pub use schema::{COLUMNS, ColumnMeaning};
+pub use schema::{COLUMNS, ColumnMeaning, DatasetError};
 pub use split::{Part, Split, SplitPlan};

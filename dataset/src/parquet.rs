@@ -2,12 +2,12 @@
 //! that its table need not be in memory.
 
 use crate::rows::Row;
-use crate::schema;
+use crate::schema::{self, DatasetError};
 use polars::io::parquet::write::{BatchedWriter, KeyValueMetadata};
 use polars::prelude::{CompatLevel, ParquetReader, ParquetWriter, SchemaExt, SerReader};
 use polars_parquet::write::schema_to_metadata_key;
 use std::io::{Cursor, Write};
-use support::{Fault, caught_panic, fault, refuse};
+use support::{caught_panic, fault, refuse};
 
 /// Number of rows of a group. The rows of one group are in memory at a time.
 const GROUP: usize = 1 << 16;
@@ -138,19 +138,6 @@ impl<W: Write> Write for Hashing<W> {
     fn flush(&mut self) -> std::io::Result<()> {
         self.to.flush()
     }
-}
-
-// The error of collecting, reading, writing and correcting a database.
-
-/// Why a database cannot be collected, read, written or corrected.
-#[derive(Debug, thiserror::Error)]
-pub enum DatasetError {
-    /// The table has other columns or types.
-    #[error("the table is not a valid database: {0}")]
-    Table(#[from] polars::error::PolarsError),
-    /// Any other mistake.
-    #[error(transparent)]
-    Fault(#[from] Fault),
 }
 
 #[cfg(test)]

@@ -1,6 +1,5 @@
 //! The columns of the database, their units and their meanings.
 
-use crate::parquet::DatasetError;
 use crate::rows::Row;
 use polars::prelude::{Column, DataFrame, IntoColumn, NamedFrom, Series};
 use support::{Fault, fault, refuse};
@@ -155,6 +154,17 @@ pub static COLUMNS: [ColumnMeaning; 32] = [
         Value::Ratio(1),
     ),
 ];
+
+/// Why a database cannot be collected, read, written or corrected.
+#[derive(Debug, thiserror::Error)]
+pub enum DatasetError {
+    /// The table has other columns or types.
+    #[error("the table is not a valid database: {0}")]
+    Table(#[from] polars::error::PolarsError),
+    /// Any other mistake.
+    #[error(transparent)]
+    Fault(#[from] Fault),
+}
 
 /// The table of `rows`.
 pub(crate) fn to_frame(rows: &[Row]) -> Result<DataFrame, DatasetError> {

@@ -3,8 +3,8 @@
 //! All rays of one (w_lig, alpha) and of its mirror image belong to the same part. The test part
 //! therefore contains only geometries that are not in the training part.
 
-use crate::parquet::DatasetError;
 use crate::rows::Row;
+use crate::schema::DatasetError;
 use rand::SeedableRng;
 use rand::seq::SliceRandom;
 use rand_chacha::ChaCha8Rng;
