@@ -1,14 +1,13 @@
 //! Polygons: clipping, distances and intersections of convex ones, counter-clockwise;
 //! self-crossings of any.
 
+use crate::geometry::plane::{complex, cross, dot, point};
+use faer::c64;
 use support::Point;
 
 /// The intersection of two convex polygons.
 pub fn common(polygon: &[Point], other: &[Point]) -> Vec<Point> {
-    edges(other).fold(polygon.to_vec(), |part, (p, q)| {
-        let (dx, dy) = (q[0] - p[0], q[1] - p[1]);
-        clip(&part, |[x, y]| dy * (x - p[0]) - dx * (y - p[1]))
-    })
+    edges(other).fold(polygon.to_vec(), |part, edge| clip(&part, |at| -side(edge, at)))
 }
 
 /// Area of any simple polygon, negative if it is clockwise (mm^2).
@@ -36,7 +35,7 @@ pub fn clip(polygon: &[Point], height: impl Fn(Point) -> f64) -> Vec<Point> {
         }
         if (below_p <= 0.0) != (below_q <= 0.0) {
             let f = below_p / (below_p - below_q);
-            kept.push([p[0] + f * (q[0] - p[0]), p[1] + f * (q[1] - p[1])]);
+            kept.push(between(p, q, f));
         }
     }
     kept
@@ -44,10 +43,7 @@ pub fn clip(polygon: &[Point], height: impl Fn(Point) -> f64) -> Vec<Point> {
 
 /// Whether a convex counter-clockwise polygon contains a point; its border belongs to it.
 pub fn contains(polygon: &[Point], point: Point) -> bool {
-    edges(polygon).all(|(p, q)| {
-        let d = [q[0] - p[0], q[1] - p[1]];
-        side((p, q), point) >= -1e-9 * (d[0] * d[0] + d[1] * d[1])
-    })
+    edges(polygon).all(|(p, q)| side((p, q), point) >= -1e-9 * vector(p, q).norm_sqr())
 }
 
 /// Distance from a point to a convex counter-clockwise polygon; infinite if it is empty (mm).
@@ -66,7 +62,7 @@ pub fn distance_to_outline(point: Point, polygon: &[Point]) -> f64 {
 
 /// Distance between two points (mm).
 pub fn distance(p: Point, q: Point) -> f64 {
-    f64::hypot(q[0] - p[0], q[1] - p[1])
+    vector(p, q).norm()
 }
 
 /// The mean of points.
@@ -103,21 +99,29 @@ pub fn distance_between_segments(s: [[f64; 2]; 2], t: [[f64; 2]; 2]) -> f64 {
     from_ends(s, t).min(from_ends(t, s))
 }
 
-/// The point of the segment from `a` to `b` nearest to `point`.
-pub fn nearest_on_segment(point: Point, a: Point, b: Point) -> Point {
-    let (d, e) = ([b[0] - a[0], b[1] - a[1]], [point[0] - a[0], point[1] - a[1]]);
-    let square = d[0] * d[0] + d[1] * d[1];
-    let along =
-        if square > 0.0 { ((d[0] * e[0] + d[1] * e[1]) / square).clamp(0.0, 1.0) } else { 0.0 };
-    [a[0] + along * d[0], a[1] + along * d[1]]
+/// The point of the segment from `a` to `b` nearest to `at`.
+pub fn nearest_on_segment(at: Point, a: Point, b: Point) -> Point {
+    let whole = vector(a, b);
+    let square = whole.norm_sqr();
+    let along = dot(whole, vector(a, at)) / square;
+    if square > 0.0 { between(a, b, along.clamp(0.0, 1.0)) } else { a }
+}
+
+/// The vector from `p` to `q`.
+fn vector(p: Point, q: Point) -> c64 {
+    complex(q) - complex(p)
+}
+
+/// The point of the line from `p` to `q` at a fraction of their distance.
+fn between(p: Point, q: Point, fraction: f64) -> Point {
+    point(complex(p) + vector(p, q) * fraction)
 }
 
 /// The point on the border of a closed polygon nearest to `point`.
 pub fn nearest_on_outline(point: Point, polygon: &[Point]) -> Point {
-    let squared = |[x, y]: Point| (x - point[0]).powi(2) + (y - point[1]).powi(2);
     let feet = edges(polygon).map(|(a, b)| {
         let foot = nearest_on_segment(point, a, b);
-        (squared(foot), foot)
+        (vector(point, foot).norm_sqr(), foot)
     });
     let nearest = feet.min_by(|p, q| p.0.total_cmp(&q.0));
     nearest.map_or(point, |(_, foot)| foot)
@@ -211,7 +215,7 @@ type Edge = (Point, Point);
 
 /// Distance of a point from the line of an edge times the length of the edge, positive on its left.
 pub fn side((a, b): Edge, point: Point) -> f64 {
-    (b[0] - a[0]) * (point[1] - a[1]) - (b[1] - a[1]) * (point[0] - a[0])
+    cross(vector(a, b), vector(a, point))
 }
 
 /// A common point of two segments whose boxes overlap, unless one of them is on one side of the
@@ -222,7 +226,7 @@ fn shared_point((p, q): Edge, (r, s): Edge) -> Option<Point> {
         return None;
     }
     let along = if side_p == side_q { 0.0 } else { side_p / (side_p - side_q) };
-    Some([0, 1].map(|c| p[c] + along * (q[c] - p[c])))
+    Some(between(p, q, along))
 }
 
 #[cfg(test)]
